@@ -11,7 +11,8 @@ from .moves import PoseStep
 from .optima import Endings, RunnerUp
 from .reading import sensitivity_from_dict
 from .shadow_prices import ShadowPrice
-from .wording import sensitivity_lines
+from .sizes import SizeGain
+from .wording import sensitivity_lines, size_gain_text, size_text
 
 __all__ = [
     "FAR",
@@ -27,8 +28,11 @@ __all__ = [
     "RunnerUp",
     "Sensitivity",
     "ShadowPrice",
+    "SizeGain",
     "analyse",
     "budget_of",
     "sensitivity_from_dict",
     "sensitivity_lines",
+    "size_gain_text",
+    "size_text",
 ]

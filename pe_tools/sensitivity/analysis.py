@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -20,7 +21,8 @@ from .flatness import FAR, NEAR, AxisCost, flatness
 from .fresh_samples import Difference, FreshSamples
 from .moves import Neighbourhood
 from .optima import BETWEEN, DESCENT, EXAMINED, MAX_RUNNERS_UP, Basins, Endings
-from .shadow_prices import ShadowPrice, Unmet, shadow_prices
+from .shadow_prices import ShadowPrice, Unmet, shadow_prices, with_sizes
+from .sizes import SizePricing
 
 SHARE = 8
 """The analysis evaluates at most the search's evaluations divided by this."""
@@ -136,6 +138,13 @@ def budget_of(study: Study, evaluations: int) -> tuple[tuple[float, ...], bool] 
     return steps, left >= near + far + ENDINGS_NEED
 
 
+def _for_sizes(study: Study, evaluations: int, with_endings: bool) -> float:
+    """Return up to how many rigs may be evaluated before what sizes gain is left out."""
+    if study.search.goals.sensitivity == FULL:
+        return math.inf
+    return evaluations // SHARE - (ENDINGS_NEED if with_endings else 0)
+
+
 def analyse(
     start: Study,
     best: Study,
@@ -163,10 +172,10 @@ def analyse(
     goes_on : callable
         False: the user has stopped the job; the analysis is given up.
     """
-    budget = budget_of(best, evaluations)
-    if budget is None or not goes_on():
+    parts = budget_of(best, evaluations)
+    if parts is None or not goes_on():
         return None
-    steps, with_endings = budget
+    steps, with_endings = parts
     samples, space = FreshSamples(best, best.rig, workers), start.search_space()
     around = Neighbourhood(best.rig, space)
     axes = []
@@ -175,6 +184,8 @@ def analyse(
         if not goes_on():
             return None
     prices = shadow_prices(samples, around, axes, _unmet_by(best))
+    budget = _for_sizes(best, evaluations, with_endings)
+    prices = with_sizes(prices, SizePricing(samples, around), lambda: samples.evaluations < budget)
     endings = Basins(samples, space).endings(archive.placements()) if with_endings else None
     return Sensitivity(
         samples.size,

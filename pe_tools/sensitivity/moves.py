@@ -7,12 +7,14 @@ the search could do next, and what holds it back where it cannot.
 
 from __future__ import annotations
 
+import copy
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from pe_core.geometry.poses import Pose
+from pe_core.scene.housing import Housing
 from pe_core.scene.rig import Rig
 from pe_core.search import (
     AXES,
@@ -24,6 +26,7 @@ from pe_core.search import (
     pose_values,
 )
 from pe_core.search.linkage import followers
+from pe_core.search.rules import Trial
 
 UNIT_M, UNIT_RAD = 0.01, math.radians(1.0)
 """One step: 1 cm along x, y and z of the ground frame, 1 deg of roll, pitch and yaw."""
@@ -43,8 +46,12 @@ class PoseStep(NamedTuple):
     @property
     def text(self) -> str:
         """The step: "roof z +1 cm", "front pitch -1 deg"."""
-        unit = "cm" if self.axis in POSITION_AXES else "deg"
-        return f"{self.sensor} {self.axis} {self.units:+g} {unit}"
+        return f"{self.sensor} {self.axis} {self.units:+g} {self.unit}"
+
+    @property
+    def unit(self) -> str:
+        """The unit of the step: "cm" or "deg"."""
+        return "cm" if self.axis in POSITION_AXES else "deg"
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,12 +80,12 @@ class Neighbourhood:
     """
 
     def __init__(self, rig: Rig, space: SearchSpace) -> None:
-        self.rig, self._space = rig, space
+        self.rig, self.space = rig, space
         self.parametrization = Parametrization(rig, space)
         self._followers = followers(rig, space.mounting, space.vehicle)
         self._following = {each.name: each.leader for each in self._followers}
         self._variables = dict(self._positions())
-        self._broken_here = self.parametrization.broken(rig)
+        self._broken_here = self._broken(rig)
 
     @property
     def leaders(self) -> tuple[str, ...]:
@@ -97,26 +104,37 @@ class Neighbourhood:
         """
         if sensor in self._following:
             return "linked"
-        mount = self._space.mounting.mount_of(sensor)
+        mount = None if sensor in self.space.fixed else self.space.mounting.mount_of(sensor)
         if (sensor, axis) in self._variables:
             on_surface = isinstance(mount, SurfaceMount) and axis in POSITION_AXES
             return "surface" if on_surface else "free"
         return "fixed" if mount is None or isinstance(mount, SurfaceMount) else "slot"
+
+    def with_housings(self, housings: Mapping[str, Housing]) -> Neighbourhood | None:
+        """Return the same moves with other housings; None where these have no room.
+
+        Each sensor keeps its origin, and what it is mounted on.
+        """
+        other = copy.copy(self)
+        other.space = replace(self.space, housings=housings)
+        other._broken_here = other._broken(self.rig)
+        return other if other._broken_here <= self._broken_here else None
 
     def design_moves(self, units: float = 1.0) -> Iterator[Move]:
         """Yield the moves of each leader along each axis, back and forth."""
         for name in self.leaders:
             for axis in AXES:
                 for step in (PoseStep(name, axis, -units), PoseStep(name, axis, units)):
-                    yield self._design_move(step)
+                    yield self.design_move(step)
 
-    def _design_move(self, step: PoseStep) -> Move:
+    def design_move(self, step: PoseStep) -> Move:
+        """Return the move of a leader along an axis."""
         status = self.status(step.sensor, step.axis)
         if status == "surface":
             return self._along_surface(step)
         if status == "free":
             return self._within_bounds(step)
-        mount = self._space.mounting.on.get(step.sensor)
+        mount = self.space.mounting.on.get(step.sensor)
         held = f"slots of {mount!r}" if status == "slot" else f"{step.axis} of {step.sensor!r} held"
         rig = self._carried(step)
         return Move(step, rig, (held, *self._rules(rig)))
@@ -124,7 +142,7 @@ class Neighbourhood:
     def _within_bounds(self, step: PoseStep) -> Move:
         number = self._variables[step.sensor, step.axis]
         variable, vector = self.parametrization.variables[number], list(self._vector)
-        vector[number] += step.units * _unit(step.axis)
+        vector[number] += step.units * unit_of_axis(step.axis)
         if variable.low - SLACK <= vector[number] <= variable.high + SLACK:
             rig = self.parametrization.candidate(vector).rig
             return Move(step, rig, tuple(self._rules(rig)))
@@ -135,14 +153,14 @@ class Neighbourhood:
     def _along_surface(self, step: PoseStep) -> Move:
         """Slide along the surface; where that leads nowhere, off its edge or away from it."""
         number, vector = self._variables[step.sensor, step.axis], list(self._vector)
-        vector[number] += step.units * _unit(step.axis)
+        vector[number] += step.units * unit_of_axis(step.axis)
         rig = self.parametrization.candidate(vector).rig
         here, there = (each[step.sensor].pose.position for each in (self.rig, rig))
         if math.dist(here, there) >= 0.5 * abs(step.units) * UNIT_M:
             return Move(step, rig, tuple(self._rules(rig)))
         rig = self._carried(step)
         rules = (text for text in self._rules(rig) if not text.startswith(CLEARANCE))
-        return Move(step, rig, (f"mount {self._space.mounting.on[step.sensor]!r}", *rules))
+        return Move(step, rig, (f"mount {self.space.mounting.on[step.sensor]!r}", *rules))
 
     @property
     def _vector(self) -> tuple[float, ...]:
@@ -150,8 +168,13 @@ class Neighbourhood:
 
     def _rules(self, rig: Rig) -> list[str]:
         """Return the rules that a rig breaks and the placement does not, in their order."""
-        broken = self.parametrization.broken(rig) - self._broken_here
+        broken = self._broken(rig) - self._broken_here
         return [rule.text for rule in self.parametrization.rules if rule.text in broken]
+
+    def _broken(self, rig: Rig) -> frozenset[str]:
+        """Return the texts of the rules that a rig breaks, with the housings of the space."""
+        trial = Trial(rig, self.space)
+        return frozenset(r.text for r in self.parametrization.rules if r.broken(trial))
 
     def _carried(self, step: PoseStep) -> Rig:
         """Return the rig with a sensor moved, and all that follow it."""
@@ -169,7 +192,9 @@ class Neighbourhood:
                 number += 1
 
     def _axes_of(self, name: str) -> tuple[str, ...]:
-        bounds, mount = self._space.bounds.get(name, {}), self._space.mounting.mount_of(name)
+        if name in self.space.fixed:
+            return ()
+        bounds, mount = self.space.bounds.get(name, {}), self.space.mounting.mount_of(name)
         if mount is None:
             return tuple(axis for axis in AXES if axis in bounds)
         if isinstance(mount, SurfaceMount):
@@ -177,7 +202,8 @@ class Neighbourhood:
         return ("slot",)
 
 
-def _unit(axis: str) -> float:
+def unit_of_axis(axis: str) -> float:
+    """Return one unit of a step along an axis [m or rad]."""
     return UNIT_M if axis in POSITION_AXES else UNIT_RAD
 
 
@@ -186,5 +212,5 @@ def _moved(rig: Rig, name: str, step: PoseStep) -> Pose:
     if name != step.sensor:
         return pose
     values = pose_values(pose)
-    values[step.axis] += step.units * _unit(step.axis)
+    values[step.axis] += step.units * unit_of_axis(step.axis)
     return pose_from_values(values)

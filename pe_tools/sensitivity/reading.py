@@ -15,6 +15,7 @@ from .fresh_samples import STEEP_AP, STEEP_NATS, Difference
 from .moves import PoseStep
 from .optima import Endings, RunnerUp
 from .shadow_prices import ShadowPrice
+from .sizes import SizeGain
 
 
 def sensitivity_from_dict(table: Mapping[str, Any] | None, rig: Rig) -> Sensitivity | None:
@@ -55,7 +56,18 @@ def _axis(row: Mapping[str, Any], steep: float) -> AxisCost:
 def _price(row: Mapping[str, Any]) -> ShadowPrice:
     step = PoseStep(str(row["sensor"]), str(row["axis"]), float(row["step"]))
     gain = Difference(-float(row["gain"]), float(row["stderr"]))
-    return ShadowPrice(tuple(map(str, row["constraints"])), step, gain)
+    return ShadowPrice(
+        tuple(map(str, row["constraints"])), step, gain, _size(row.get("size"), step)
+    )
+
+
+def _size(row: Mapping[str, Any] | None, step: PoseStep) -> SizeGain | None:
+    """Return what one size gains; None also from a result of an earlier version."""
+    if row is None or "gain" not in row:
+        return None if row is None else SizeGain(str(row["size"]))
+    sized = PoseStep(step.sensor, str(row["axis"]), float(row["step"]))
+    gain = Difference(-float(row["gain"]), float(row["stderr"]))
+    return SizeGain(str(row["size"]), tuple(map(str, row["housing_of"])), sized, gain)
 
 
 def _endings(table: Mapping[str, Any], rig: Rig) -> Endings:

@@ -2,13 +2,13 @@
 
 A constraint is active if a step of 1 cm or 1 deg that it forbids lowers the entropy. The gain of
 the best such step is a lower bound of the shadow price: after it, other sensors could follow. A
-step that several constraints forbid is told with all of them.
+step that several constraints forbid is told with all of them. `sizes` adds what a size would gain.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from pe_core.scene.rig import Rig
@@ -17,6 +17,7 @@ from pe_core.search import AXES
 from .flatness import AxisCost
 from .fresh_samples import Difference, FreshSamples
 from .moves import Neighbourhood, PoseStep
+from .sizes import SizeGain, SizePricing
 
 Unmet = Callable[[Rig], Sequence[str]]
 """Names of the requirements that a rig does not meet and that are to be kept."""
@@ -34,11 +35,14 @@ class ShadowPrice:
         The step that gains most.
     gain : Difference
         How much the entropy changes: negative [nats].
+    size : SizeGain or None
+        What one size would gain; None where the budget of the analysis was spent.
     """
 
     constraints: tuple[str, ...]
     step: PoseStep
     gain: Difference
+    size: SizeGain | None = None
 
     @property
     def name(self) -> str:
@@ -55,7 +59,20 @@ class ShadowPrice:
             "step": self.step.units,
             "gain": -mean,
             "stderr": stderr,
+            "size": None if self.size is None else self.size.to_dict(),
         }
+
+
+def with_sizes(
+    prices: Iterable[ShadowPrice], sizes: SizePricing, has_budget: Callable[[], bool] = lambda: True
+) -> tuple[ShadowPrice, ...]:
+    """Return active constraints with what one size of each would gain, as the budget allows."""
+    return tuple(
+        replace(each, size=sizes.gain(each.constraints, each.step))
+        if each.constraints and has_budget()
+        else each
+        for each in prices
+    )
 
 
 def shadow_prices(

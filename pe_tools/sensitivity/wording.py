@@ -9,6 +9,7 @@ from .analysis import Sensitivity
 from .flatness import FAR, FLAT, NEAR, AxisCost
 from .fresh_samples import Difference
 from .shadow_prices import ShadowPrice
+from .sizes import A_SLOT, SizeGain
 
 NAMED = 4
 """How many axes, constraints or runners-up a line names."""
@@ -52,7 +53,8 @@ def _axes_lines(axes: Sequence[AxisCost], unit: str) -> Iterator[str]:
 def _constraint_lines(found: Sensitivity) -> Iterator[str]:
     unit = unit_of(found)
     for price in found.active[:NAMED]:
-        yield f"held by {price.name}: {price.step.text} would gain {price_text(price)} {unit}"
+        gain = f"{price.step.text} would gain {price_text(price)} {unit}"
+        yield f"held by {price.name}: {gain}{_sized(price)}"
     if len(found.active) > NAMED:
         yield f"held by {len(found.active) - NAMED} more constraints"
     if not found.active:
@@ -64,7 +66,39 @@ def _constraint_lines(found: Sensitivity) -> Iterator[str]:
 
 def price_text(price: ShadowPrice) -> str:
     """Return what a step gains, with its error."""
-    return f"{-price.gain.mean:.4f} +- {max(price.gain.stderr, 1e-4):.4f}"
+    return _gain_text(price.gain)
+
+
+def size_text(size: SizeGain) -> str:
+    """Return a size and its step: "none", "roof z +5 cm", "one slot, eye x +70 cm"."""
+    if size.step is None:
+        return size.size
+    if size.sensors:
+        own = size.sensors == (size.step.sensor,)
+        of = "" if own else f" for {' and '.join(size.sensors)}"
+        return f"the housing of {size.size}{of}, {size.step.text}"
+    return f"{size.size}, {size.step.text}" if size.size == A_SLOT else size.step.text
+
+
+def size_gain_text(size: SizeGain) -> str:
+    """Return what a size gains, with its error; "nothing" where that cannot be told from 0."""
+    if size.gain is None:
+        return ""
+    return _gain_text(size.gain) if size.gain.is_gain else "nothing"
+
+
+def _gain_text(gain: Difference) -> str:
+    return f"{-gain.mean:.4f} +- {max(gain.stderr, 1e-4):.4f}"
+
+
+def _sized(price: ShadowPrice) -> str:
+    """Return what one size gains, after what a step gains; empty where it was not evaluated."""
+    size = price.size
+    if size is None:
+        return ""
+    if size.gain is None:
+        return f"; sizes: {size_text(size)}"
+    return f"; one size, {size_text(size)}: {size_gain_text(size)}"
 
 
 def _ending_lines(found: Sensitivity) -> Iterator[str]:

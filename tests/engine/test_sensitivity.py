@@ -21,7 +21,9 @@ from pe_tools.sensitivity import (
 from pe_tools.sensitivity.fresh_samples import SAMPLES, FreshSamples
 from pe_tools.sensitivity.moves import Neighbourhood
 from pe_tools.sensitivity.optima import Basins
-from pe_tools.sensitivity.shadow_prices import shadow_prices
+from pe_tools.sensitivity.shadow_prices import ShadowPrice, shadow_prices, with_sizes
+from pe_tools.sensitivity.sizes import NONE, SizePricing
+from pe_tools.sensitivity.wording import size_gain_text, size_text
 from tests.engine import shapes
 
 TOP_M = 1.8
@@ -99,6 +101,149 @@ def test_shadow_prices_name_the_constraint_and_the_gain_of_a_step():
     held = study(free={"roof": ("z",)})
     prices = shadow_prices(slope, Neighbourhood(held.rig, held.search_space()), ())
     assert [p.name for p in prices] == ["bounds of z of 'roof'", "x of 'roof' held"]
+
+
+def sized(given, samples=None):
+    """Active constraints of a study by their names, with what a size of each gains."""
+    around = Neighbourhood(given.rig, given.search_space())
+    samples = samples or Slope(given.rig)
+    return {
+        p.name: p
+        for p in with_sizes(shadow_prices(samples, around, ()), SizePricing(samples, around))
+    }
+
+
+def test_a_larger_step_over_a_bound_gains_five_times_as_much():
+    size = sized(study(free={"roof": ("x", "z")}))["bounds of z of 'roof'"].size
+    assert (size.size, size.step.text) == ("5 cm", "roof z +5 cm")
+    assert size.gain.mean == pytest.approx(-0.15)
+    assert size_text(size) == "roof z +5 cm" and size_gain_text(size) == "0.1500 +- 0.0001"
+
+
+def test_a_larger_step_that_another_constraint_forbids_is_not_taken():
+    """The sensor without a housing is its origin: 2 cm above it is the limit of the height."""
+    given = study(free={"roof": ("z",)})
+    limit = pe.Constraints(max_height=TOP_M + 0.02)
+    given = replace(given, search=replace(given.search, mounting=pe.Mounting(constraints=limit)))
+    size = sized(given)["bounds of z of 'roof'"].size
+    assert size.step.text == "roof z +1 cm" and size.gain.mean == pytest.approx(-0.03)
+
+
+BOX = {"kind": "lidar", "elevations_deg": [-5.0, 5.0], "azimuth_count": 36, "max_range_m": 60.0}
+
+
+@pytest.fixture
+def boxes():
+    """Three LiDARs of the catalogue that differ in the width of their housings: 20, 19, 14 cm."""
+    widths = {"wide box": 0.2, "tall box": 0.2, "small box": 0.14}
+    for name, width in widths.items():
+        size = [width, width, 0.19 if name == "tall box" else 0.2]
+        housing = {"shape": "box", "size": size, "optical_center": [0.0, 0.0, 0.1]}
+        pe.catalog.add(name, {**BOX, "source": "test", "housing": housing | {"source": "test"}})
+    yield
+    for name in widths:
+        pe.catalog.remove(name)
+
+
+def free_study(sensors, free, vehicle=None, **mounting):
+    rig = pe.Rig(sensors)
+    settings = pe.Search(free=dict.fromkeys((s.name for s in rig), free))
+    settings = replace(settings, mounting=pe.Mounting(**mounting))
+    return pe.Study(rig, vehicle, shapes.small_space(), search=settings)
+
+
+def boxed(position, name="roof"):
+    return pe.Sensor(name, pe.catalog.load("wide box"), pe.Pose(position, (0.0, 0.0, 0.0)))
+
+
+def test_a_smaller_housing_gains_the_way_that_it_frees(boxes):
+    """The front of a box 20 cm wide is at a no-go area. Half of 20 - 14 cm are 3 cm of way.
+
+    The box that is only less high is the next one by volume, but frees nothing ahead.
+    """
+    area = pe.NoGo("hatch", x=(1.1, 2.0))
+    limits = pe.Constraints(no_go=[area])
+    given = free_study([boxed((1.0, 0.0, 1.8))], ("x",), constraints=limits)
+    price = sized(given)["no_go 'hatch' for 'roof'"]
+    assert price.gain.mean == pytest.approx(-0.02)
+    assert (price.size.size, price.size.sensors) == ("small box", ("roof",))
+    assert price.size.step.text == "roof x +3 cm" and price.size.gain.mean == pytest.approx(-0.06)
+    assert size_text(price.size) == "the housing of small box, roof x +3 cm"
+    table = price.to_dict()["size"]
+    assert table["housing_of"] == ["roof"] and table["gain"] == pytest.approx(0.06)
+
+
+def test_no_smaller_housing_is_no_size(boxes):
+    """A sensor without a housing, and one above which even the smallest has no room to go."""
+    limits = pe.Constraints(no_go=[pe.NoGo("hatch", x=(1.0, 2.0))])
+    model = shapes.small_lidar(4, 90)
+    sensor = pe.Sensor("roof", model, pe.Pose((0.995, 0.0, 1.8), (0.0, 0.0, 0.0)))
+    given = free_study([sensor], ("x",), constraints=limits)
+    size = sized(given)["no_go 'hatch' for 'roof'"].size
+    assert size.size == NONE and size.gain is None and size_text(size) == NONE
+    assert ShadowPrice(("no_go",), None, None, size).size.to_dict() == {"size": NONE}
+
+
+class Inwards(Slope):
+    """The nearer the left sensor is to the middle, the better."""
+
+    def value(self, rig):
+        return rig["left"].pose.position[1]
+
+
+def test_both_sensors_of_a_pair_take_the_smaller_housing(boxes):
+    """A gap of 2 mm is there already: the box that is only less high does not bring it."""
+    sensors = [boxed((0.0, y, 1.8), n) for n, y in (("left", 0.101), ("right", -0.101))]
+    limits = pe.Constraints(clear_housings=True)
+    pairs = [("left", "right")]
+    given = free_study(sensors, ("y",), constraints=limits, pairs=pairs)
+    price = sized(given, Inwards(given.rig))["clear housings of 'left' and 'right'"]
+    assert price.size.sensors == ("left", "right") and price.size.step.text == "left y -3.1 cm"
+    assert price.size.gain.mean == pytest.approx(-0.031)
+    text = "the housing of small box for left and right, left y -3.1 cm"
+    assert size_text(price.size) == text
+
+
+def test_a_list_of_slots_is_relaxed_by_one_slot():
+    slots = [pe.Slot(f"{x}", pe.Pose((x, 0.0, 1.8), (0.0, 0.0, 0.0))) for x in (0.0, 0.7, 1.5)]
+    sensor = pe.Sensor("roof", shapes.small_lidar(4, 90), slots[-1].pose)
+    mounts = {"rack": pe.SlotMount(slots)}
+    given = free_study([sensor], (), mounts=mounts, on={"roof": "rack"})
+    sizes = {p.step.text: p.size for p in sized(given).values()}
+    around = Neighbourhood(given.rig, given.search_space())
+    sizes = SizePricing(Slope(given.rig), around)
+    ahead = next(m for m in around.design_moves() if m.step.text == "roof x +1 cm")
+    size = sizes.gain(ahead.forbidden_by, ahead.step)
+    assert size_text(size) == "one slot, roof x +70 cm" and size.gain.mean == pytest.approx(-1.4)
+    up = next(m for m in around.design_moves() if m.step.text == "roof z +1 cm")
+    assert sizes.gain(up.forbidden_by, up.step).size == NONE  # all slots are at one height
+
+
+def test_what_has_no_sizes_says_so_and_a_spent_budget_is_told_apart():
+    given = study(free={"roof": ("z",)})
+    around = Neighbourhood(given.rig, given.search_space())
+    sizes, slope = SizePricing(Slope(given.rig), around), Slope(given.rig)
+    step = next(around.design_moves()).step
+    assert sizes.gain(("bounds of z of 'roof'", "requirement 'front'"), step).size == NONE
+    assert sizes.gain(("standoff of 'roof'",), step).size == NONE
+    prices = with_sizes(shadow_prices(slope, around, ()), sizes, lambda: False)
+    assert prices and all(price.size is None for price in prices)
+
+
+def test_moves_of_a_rig_with_a_fixed_sensor():
+    """What stays has no variables, whatever axes were free; the others keep theirs."""
+    sensors = [
+        shapes.lidar_on_roof(shapes.small_lidar(4, 90), (0.0, y, 1.7), name=n)
+        for n, y in (("a", 0.4), ("b", -0.4))
+    ]
+    given = free_study(sensors, ("x",))
+    goals = Goals(fixed=("a",))
+    given = replace(given, search=replace(given.search, goals=goals))
+    around = Neighbourhood(given.rig, given.search_space())
+    moves = {m.step.text: m for m in around.design_moves()}
+    assert moves["b x +1 cm"].forbidden_by == ()
+    assert moves["b x +1 cm"].rig["b"].pose.position[0] == pytest.approx(0.01)
+    assert moves["a x +1 cm"].forbidden_by == ("x of 'a' held",)
 
 
 class Wells:

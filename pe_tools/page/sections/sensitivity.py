@@ -11,8 +11,8 @@ from ..report_context import ReportContext, Section
 
 AxisMap = Callable[[float], float]
 """Maps a value to its position on the drawing."""
-WIDTH = 460
-LEFT, RIGHT, ROW, GROUP, TOP, BOTTOM = 96, 40, 18, 30, 10, 26
+WIDTH = 484
+LEFT, RIGHT, ROW, GROUP, TOP, BOTTOM = 120, 40, 18, 30, 10, 26
 LEAST_NATS, LEAST_AP = 0.004, 0.0004
 """The axis of costs shows at least this, so that noise does not look like a slope [nats; AP]."""
 STATUS = {
@@ -23,6 +23,11 @@ STATUS = {
     "linked": "linked",
 }
 """What the search does with an axis, in the table."""
+SIZES_NOTE = (
+    "<p>One size: where a housing touches, the next smaller housing of the catalogue, of the same "
+    "kind, with which the sensor can go on; it measures as before. Where bounds or a mount end: "
+    "5 cm or 5&deg;. In a list of slots: one slot more.</p>"
+)
 STYLE = """
 .flatness { max-width: 100%; height: auto; }
 .flatness text { font-size: 12px; fill: var(--soft); }
@@ -193,24 +198,34 @@ def _cost(cost: sure.Difference) -> Markup:
 
 
 def _constraints(found: sure.Sensitivity) -> str:
+    if not found.prices:
+        return (
+            "<p>No constraint is active: no step of 1 cm or 1&deg; that is forbidden would "
+            f"{'raise the expected AP' if found.by_ap else 'lower the entropy'}.</p>"
+        )
     rows = [
         [
             price.name or "none: a longer search would take it",
             price.step.text,
             f"{number(-price.gain.mean, 4)} \N{PLUS-MINUS SIGN} "
             f"{number(max(price.gain.stderr, 1e-4), 4)}",
+            *_size_cells(price.size),
         ]
         for price in found.prices
     ]
-    if not rows:
-        return (
-            "<p>No constraint is active: no step of 1 cm or 1&deg; that is forbidden would "
-            f"{'raise the expected AP' if found.by_ap else 'lower the entropy'}.</p>"
-        )
     gain = f"gain [{'expected AP' if found.by_ap else 'nats'}], at least"
-    heads = ("constraint", "step that gains most", gain)
-    title = "Active constraints, and what relaxing each by 1 cm or 1 degree gains (shadow prices)"
-    return table(title, heads, rows)
+    heads = ("constraint", "step that gains most", gain, "one size", gain)
+    title = (
+        "Active constraints, and what relaxing each by 1 cm or 1 degree, or by one size, gains "
+        "(shadow prices)"
+    )
+    return table(title, heads, rows) + SIZES_NOTE
+
+
+def _size_cells(size: sure.SizeGain | None) -> tuple[str, str]:
+    if size is None:
+        return "", ""
+    return sure.size_text(size), sure.size_gain_text(size).replace("+-", "\N{PLUS-MINUS SIGN}")
 
 
 def _endings(found: sure.Sensitivity, context: ReportContext) -> str:

@@ -110,7 +110,7 @@ def perception_of(settings: bpy.types.PropertyGroup) -> pe.PerceptionModel:
         for row in settings.curves
         if row.own and row.name in kinds.KINDS
     }
-    return pe.PerceptionModel(**curves)
+    return pe.PerceptionModel(**values_of(settings, pe.PerceptionModel), **curves)
 
 
 def clearance_of(scene: bpy.types.Scene) -> float:
@@ -222,7 +222,8 @@ def write_settings(settings: bpy.types.PropertyGroup, record: SceneRecord) -> No
     Vehicle, sensors, prior, mounts and constraints are written by others.
     """
     own, tolerance = record.search, record.search.tolerance
-    for instance in (record.space, record.targets, own, own.schedule, record.selection):
+    instances = (record.space, record.targets, record.model, own, own.schedule, record.selection)
+    for instance in instances:
         write_values(settings, instance)
     settings.score_samples, settings.method = record.samples, own.method
     settings.keep_requirements = own.requirements == KEEP

@@ -40,7 +40,7 @@ class PE_PT_targets(Tab, bpy.types.Panel):
         settings = context.scene.perception_entropy
         draw_properties(self.layout, settings, ("targets",))
         if settings.targets == OBJECTS:
-            draw_properties(self.layout, settings, ("traffic", "scenes"))
+            draw_properties(self.layout, settings, ("traffic", "scenes", "ap_model"))
         else:
             draw_with_zero(self.layout, settings, "score_samples", "All")
 

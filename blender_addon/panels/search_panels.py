@@ -28,7 +28,7 @@ class PE_PT_search(Tab, bpy.types.Panel):
         if settings.targets == OBJECTS:
             return
         if settings.objective == EXPECTED_AP:
-            self.layout.prop(settings, "scenes")
+            draw_properties(self.layout, settings, ("scenes", "ap_model"))
         else:
             draw_with_zero(self.layout, settings, "search_samples", "All")
 

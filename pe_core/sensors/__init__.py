@@ -12,55 +12,19 @@ from .object_kernel import ObjectKernel, ObjectView
 from .perception import BLIND_RULES, PerceptionModel
 from .radar import RADAR, Radar, RadarMode
 from .ray_fan_view import FieldPicture
+from .scan_curves import CURVE_MODELS, SCANS, scan_curves
 from .ultrasonic import ULTRASONIC, Ultrasonic
 from .weather import Weather
 from .weather_rig import rig_in_weather
 
-__all__ = [
-    "BLIND_RULES",
-    "KINDS",
-    "BeamField",
-    "BrownConrady",
-    "Camera",
-    "EgoMask",
-    "FTheta",
-    "FieldPicture",
-    "GridKernel",
-    "GroundKernel",
-    "GroundView",
-    "KannalaBrandt",
-    "Kind",
-    "Lens",
-    "Lidar",
-    "Measured",
-    "MeasurementCache",
-    "ObjectKernel",
-    "ObjectMeasurementCache",
-    "ObjectView",
-    "Occlusion",
-    "PerceptionModel",
-    "Pinhole",
-    "Radar",
-    "RadarMode",
-    "RangePicture",
-    "SampleKernel",
-    "Ultrasonic",
-    "ViewPatch",
-    "VisibleGround",
-    "VisibleGroundCache",
-    "Voxels",
-    "Weather",
-    "beam_field",
-    "derived_object_curves",
-    "kind_named",
-    "kind_of",
-    "measure",
-    "measure_objects",
-    "range_picture",
-    "register",
-    "rig_in_weather",
-    "unregister",
-]
+__all__ = ["BLIND_RULES", "CURVE_MODELS", "KINDS", "SCANS", "BeamField", "BrownConrady", "Camera"]
+__all__ += ["EgoMask", "FTheta", "FieldPicture", "GridKernel", "GroundKernel", "GroundView"]
+__all__ += ["KannalaBrandt", "Kind", "Lens", "Lidar", "Measured", "MeasurementCache"]
+__all__ += ["ObjectKernel", "ObjectMeasurementCache", "ObjectView", "Occlusion", "PerceptionModel"]
+__all__ += ["Pinhole", "Radar", "RadarMode", "RangePicture", "SampleKernel", "Ultrasonic"]
+__all__ += ["ViewPatch", "VisibleGround", "VisibleGroundCache", "Voxels", "Weather", "beam_field"]
+__all__ += ["derived_object_curves", "kind_named", "kind_of", "measure", "measure_objects"]
+__all__ += ["range_picture", "register", "rig_in_weather", "scan_curves", "unregister"]
 
 for _kind in (LIDAR, CAMERA, RADAR, ULTRASONIC):
     register(_kind)

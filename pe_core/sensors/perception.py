@@ -10,6 +10,7 @@ from ..base.read_only import ReadOnlyDict
 from ..base.values import A_NAME, choice
 from ..metric.entropy import ApCurve
 from .kind import KINDS, ClassCurves, kind_named
+from .scan_curves import CURVE_MODELS, MODEL, PAPER, SCANS, scan_curves
 
 BLIND_RULES = ("floor", "literal")
 SOURCE = "perception model"
@@ -25,7 +26,9 @@ class PerceptionModel:
         "floor": a sensor that sees nothing changes nothing. "literal": the literal formula (eq. 7),
         in which a blind sensor changes the result.
     objects : mapping of kind to mapping of class to ApCurve
-        Curves of whole objects, m counted on the object, in place of the kind's own.
+        Curves of whole objects, m counted on the object, in place of the model's.
+    model : {"paper", "scans"}
+        Curves of the other objects: the kind's own, or of LiDARs those from scans.
     **curves : ApCurve
         By kind, ``lidar=ApCurve(0.2, 0.5)``; a kind's own by default. They are attributes as well:
         ``model.lidar`` is ``model.curve("lidar")``.
@@ -40,11 +43,18 @@ class PerceptionModel:
     other_curves: Mapping[str, ApCurve]
     """Curves by kind, only those that differ from the kind's own."""
     objects: ClassCurves
+    model: str = MODEL
 
     def __init__(
-        self, blind: str = "floor", *, objects: ClassCurves | None = None, **curves: ApCurve
+        self,
+        blind: str = "floor",
+        *,
+        objects: ClassCurves | None = None,
+        model: str = PAPER,
+        **curves: ApCurve,
     ) -> None:
         put = object.__setattr__
+        put(self, "model", choice("ap", "model", model, CURVE_MODELS))
         put(self, "blind", choice("fusion", "blind", blind, BLIND_RULES))
         put(self, "other_curves", _checked_curves(curves))
         put(self, "objects", _checked_objects(objects or {}))
@@ -67,12 +77,18 @@ class PerceptionModel:
             When there is none.
         """
         own_curves = kind_named(kind, SOURCE).object_curves
-        curve = self.objects.get(kind, {}).get(name) or own_curves.get(name)
+        fitted = scan_curves().curves.get(kind, {}) if self.model == SCANS else {}
+        given = self.objects.get(kind, {}).get(name)
+        curve = given or fitted.get(name) or own_curves.get(name)
         if curve is None:
             field = f"[ap.{kind}.objects.{name}]"
             expected = f"a and b of {name!r} as an object (pe fit finds them)"
             raise InputError(SOURCE, field, expected, "none")
         return curve
+
+    def with_model(self, model: str) -> PerceptionModel:
+        """Return this with the curves of objects of another model."""
+        return PerceptionModel(self.blind, objects=self.objects, model=model, **self.other_curves)
 
     @property
     def curves(self) -> dict[str, ApCurve]:
@@ -82,7 +98,8 @@ class PerceptionModel:
     def __repr__(self) -> str:
         curves = ", ".join(f"{kind}={curve!r}" for kind, curve in self.curves.items())
         objects = f", objects={dict(self.objects)!r}" if self.objects else ""
-        return f"PerceptionModel(blind={self.blind!r}, {curves}{objects})"
+        model = f", model={self.model!r}" if self.model != PAPER else ""
+        return f"PerceptionModel(blind={self.blind!r}, {curves}{objects}{model})"
 
 
 def _checked_curves(curves: Mapping[str, ApCurve]) -> Mapping[str, ApCurve]:

@@ -36,15 +36,17 @@ def read_model(curves: Table, fusion: Table) -> PerceptionModel:
     objects = {kind: _read_objects(table.table(CLASSES)) for kind, table in tables.items()}
     own = {kind: _read_curve(table, default.curve(kind)) for kind, table in tables.items()}
     blind = fusion.text("blind", default.blind, BLIND_RULES)
-    model = PerceptionModel(blind, objects=objects, **own)
+    chosen = read_settings(curves, PerceptionModel)["model"]
+    model = PerceptionModel(blind, objects=objects, model=chosen, **own)
     curves.finish()
     fusion.finish()
     return model
 
 
 def curves_table(model: PerceptionModel) -> dict[str, Any]:
-    """Return the table [ap]: all curves by kind, and curves by class that are not the default."""
-    return {
+    """Return the table [ap]: all curves by kind, and the model and classes that are not default."""
+    named = settings_table(model) if model.model != PerceptionModel().model else {}
+    return named | {
         kind: {"a": c.a, "b": c.b, CLASSES: _objects_table(model, kind)}
         for kind, c in model.curves.items()
     }

@@ -15,6 +15,7 @@ from ..scoring.requirements import Criterion, Under, Zone
 from ..scoring.targets import TargetRule
 from ..search import Constraints, Front, Goals, Schedule, Selection, Stop, Tolerance
 from ..search.tolerance import CASES, ERRORS
+from ..sensors import PerceptionModel
 from .study import Search, Study
 
 
@@ -41,6 +42,7 @@ SECTIONS = (
     StudyTable("space", PerceptionSpace),
     StudyTable("vehicle", Vehicle),
     StudyTable("metric", TargetRule),
+    StudyTable("ap", PerceptionModel),
     StudyTable("reference", Reference),
     StudyTable("optimize", Search),
     StudyTable("optimize", Schedule),

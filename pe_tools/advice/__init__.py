@@ -5,8 +5,9 @@ Nothing here computes a score; results of `pe_core` are checked, compared and de
 
 from pe_tools.advice.advice import joined, percent
 
-from .advice import FRAGILE, UNMET, Advice, fragile, off_by, unmet
+from .advice import FRAGILE, PROVISIONAL, UNMET, Advice, fragile, off_by, unmet
 from .condition_checks import condition_warnings
+from .curve_checks import curve_note, curve_warnings
 from .hardware import OTHER_HARDWARE, hardware_note
 from .key_figures import (
     SENSOR_COLUMNS,
@@ -38,6 +39,7 @@ __all__ = [
     "BLIND_TO_M",
     "FRAGILE",
     "OTHER_HARDWARE",
+    "PROVISIONAL",
     "SENSOR_COLUMNS",
     "SHORT_ZONES",
     "UNMET",
@@ -56,6 +58,8 @@ __all__ = [
     "compare",
     "compare_figures",
     "condition_warnings",
+    "curve_note",
+    "curve_warnings",
     "fragile",
     "hardware_note",
     "hidden_sensors",

@@ -46,6 +46,10 @@ FRAGILE = "fragile"
 """Code of the warning that concerns the placement of all sensors."""
 UNMET = "requirement"
 """Code of the warning about a requirement that a search could not keep."""
+PROVISIONAL = "provisional"
+"""Code of the warning about AP curves that rest on a part of their runs."""
+SUBJECTS = {FRAGILE: "placement", UNMET: "placement", PROVISIONAL: "AP curves"}
+"""What warnings without a sensor concern, by code; others concern the vehicle."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +59,8 @@ class Advice:
     Attributes
     ----------
     subject : str or None
-        Name of the sensor; None if the warning concerns the vehicle or the whole placement.
+        Name of the sensor; None if the warning concerns the vehicle, the whole placement
+        or the AP curves.
     code : str
         Identifier of the warning for programs: ``"inside"``, ``"size"``, ...
     text : str
@@ -80,8 +85,7 @@ class Advice:
     @property
     def line(self) -> str:
         """The sentence after the name of its subject."""
-        whole = "placement" if self.code in (FRAGILE, UNMET) else "vehicle"
-        return f"{self.subject or whole}: {self.text}"
+        return f"{self.subject or SUBJECTS.get(self.code, 'vehicle')}: {self.text}"
 
     def to_dict(self) -> dict[str, Any]:
         """Return the warning as plain JSON data."""

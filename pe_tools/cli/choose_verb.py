@@ -89,8 +89,7 @@ def _more_notes(chosen: TradeOff) -> Iterator[str]:
     """Yield what the designs make of requirements, an early stop, and infeasible designs."""
     if chosen.requirements_note:
         yield chosen.requirements_note
-    if chosen.hardware_note:
-        yield chosen.hardware_note
+    yield from chosen.notes
     if chosen.stopped:
         yield "stopped early: this is the front of what was found so far"
     for name, why in chosen.refused.items():

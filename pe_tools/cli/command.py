@@ -16,7 +16,7 @@ from typing import Any, NoReturn, TextIO
 from pe_core import catalog
 from pe_core.base.errors import InputError
 from pe_core.base.files import quoted
-from pe_core.sensors import kind_of
+from pe_core.sensors import CURVE_MODELS, kind_of
 from pe_core.study import METHODS, OBJECTIVES, SCHEDULED_METHOD, Study, under
 
 from .goal_options import add_goal_options, with_goals
@@ -76,6 +76,10 @@ def add_score_options(parser: argparse.ArgumentParser, workers: str = "threads")
     voxels, count = count_up_to(MAX_VOXELS), count_up_to(MAX_WORKERS)
     about = "voxels a score looks at (0: all)"
     parser.add_argument("--grid-samples", type=voxels, metavar="N", help=about)
+    about = "AP curves of whole objects: from publications, or of LiDARs from our own scans"
+    parser.add_argument(
+        "--ap-model", choices=CURVE_MODELS, metavar="|".join(CURVE_MODELS), help=about
+    )
     parser.add_argument("--state", metavar="NAME", help="a state of the study, in place of all")
     parser.add_argument("--weather", metavar="NAME", help="a weather of the study, in place of all")
     parser.add_argument("--workers", type=count, metavar="N", help=f"{workers} (default: all)")
@@ -98,6 +102,8 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
     """Return the study with the changes of the command line's options."""
     if args.grid_samples is not None:
         study = replace(study, samples=args.grid_samples)
+    if (model := getattr(args, "ap_model", None)) is not None:
+        study = replace(study, model=study.model.with_model(model))
     state, weather = getattr(args, "state", None), getattr(args, "weather", None)
     if state or weather:
         study = under(study, study.conditions.one(state, weather))

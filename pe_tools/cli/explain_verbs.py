@@ -150,7 +150,8 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     data["words"] = said
     error = max(score.stderr for score in scores.values())
     models = ([sensor.model for sensor in study.rig] for study in studies.values())
-    notes = [note] if (note := advice.hardware_note(models)) else []
+    curves = advice.curve_note(study.model for study in studies.values())
+    notes = [note for note in (advice.hardware_note(models), curves) if note]
     data["notes"] = notes
     lines = [*comparison(names, [*rows, *figure_rows]), *said, *_notes(error, alike), *notes]
     return _answer(data, lines, args.json)

@@ -14,7 +14,7 @@ from pe_core.base import dump_json
 from pe_core.base.errors import InputError
 from pe_core.study import SEARCH, STUDY
 
-from ..advice import hardware_note
+from ..advice import curve_note, hardware_note
 from ..jobs import Outcome, Progress, check_files, prepare_folder, result_names, write_outcome
 from ..sweep import (
     BEGUN,
@@ -75,7 +75,8 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
         if received.signum is not None:
             raise Interrupted(received.signum, f"{work.state}; the same command goes on")
     note = hardware_note([s.model for s in run.study.rig] for run in runs)
-    lines = [*table_lines(work.rows, kind), *[note] * bool(note)]
+    curves = curve_note(run.study.model for run in runs)
+    lines = [*table_lines(work.rows, kind), *filter(None, (note, curves))]
     text = dump_json(work.data) if args.json else "\n".join(lines)
     whole = all(row.status == DONE for row in work.rows) and not work.fell_back
     return text, terminal.DONE if whole else terminal.BAD_INPUT

@@ -17,7 +17,7 @@ from pe_core.study.objective_search import is_by_ap, search_evaluator
 from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Search, Study
 
-from ..advice import Advice, hardware_note
+from ..advice import Advice, curve_note, hardware_note
 from .candidate_workers import ExecutorSource, candidate_workers
 from .designed import Models, design_names, design_study
 from .front_checkpoint import FrontJournals
@@ -142,6 +142,11 @@ class TradeOff:
             return f"no design meets all {count} requirements: {some}"
         good = sum(not design.broken for design in self.front)
         return f"{good} of {len(self.front)} on the front meet all {count} requirements"
+
+    @property
+    def notes(self) -> list[str]:
+        """What limits a front: entropies of designs with other sensors, provisional AP curves."""
+        return [note for note in (self.hardware_note, curve_note([self.study.model])) if note]
 
     @property
     def hardware_note(self) -> str:

@@ -51,7 +51,7 @@ def front_dict(chosen: TradeOff, host: Mapping[str, str] | None = None) -> dict[
         "front": [design.name for design in chosen.front],
         "designs": [_design_dict(d, d in chosen.front, files) for d in chosen.designs],
         "refused": chosen.refused,
-        "notes": [chosen.hardware_note] if chosen.hardware_note else [],
+        "notes": chosen.notes,
         "inputs": {
             "study": study_to_dict(chosen.study),
             "vehicle_sha256": vehicle_digest(chosen.study.vehicle),

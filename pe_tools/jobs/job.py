@@ -18,7 +18,7 @@ from pe_core.search import EvaluatedRig, Robustness
 from pe_core.study.condition_table import ConditionTable, condition_table
 from pe_core.study.study import Study
 
-from ..advice import Advice, warnings
+from ..advice import Advice, curve_warnings, warnings
 from ..sensitivity import Sensitivity
 from .searched_figure import IN_NATS, SearchedFigure
 
@@ -244,7 +244,7 @@ class Job:
 
         def work() -> tuple[Advice, ...]:
             found_warnings = warnings(study.rig, study.vehicle, study.space, study.prior, score)
-            return (*self.notes, *found_warnings)
+            return (*self.notes, *curve_warnings(study.model), *found_warnings)
 
         return (yield from self._beside(work, lambda: waiting, to_the_end=True))
 

@@ -88,6 +88,7 @@ def _result(outcome: Outcome, host: dict[str, str]) -> dict[str, Any]:
         **({} if outcome.conditions is None else {"conditions": outcome.conditions.to_dict()}),
         **_search_dict(outcome),
         **_in_traffic(outcome),
+        "ap_model": outcome.study.model.model,
         **_sensitivity(outcome),
         "evaluations": outcome.evaluations,
         "stopped": outcome.stopped,

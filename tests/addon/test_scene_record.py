@@ -86,6 +86,7 @@ def rich(car):
     settings.prior = "highway"
     assert bpy.ops.pe.add_focus(region="front") == {"FINISHED"}
     settings.targets, settings.traffic, settings.scenes = "objects", True, 24
+    settings.ap_model = "scans"
     curve = settings.curves.add()
     curve.name, curve.own, curve.a, curve.b = "lidar", True, 0.2, 0.1
     settings.score_samples, settings.search_samples = 2048, 1024

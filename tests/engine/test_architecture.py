@@ -69,6 +69,7 @@ LINES_OF_ROOMS = {
     "pe_core/sensors/ray_fan": 690,
     "pe_core/scene/radar_covers": 40,
     "pe_core/sensors/weather": 360,
+    "pe_core/sensors/scan_curves": 70,
     "pe_core/scene/vehicle_state": 280,
     "pe_core/study/condition_": 700,
     "pe_core/study/objective_": 80,
@@ -76,8 +77,9 @@ LINES_OF_ROOMS = {
     "pe_core/study/goals_": 90,
     "pe_core/search/methods/portfolio": 650,
 }
-"""Lines of requirements, of conditions, of the kinds of sensors that are not the paper's, and of a
-search's goals, its objective and its default method, beside `MAX_LINES` of all others."""
+"""Lines of requirements, of conditions, of the kinds of sensors and the AP curves that are not the
+paper's, and of a search's goals, its objective and its default method, beside `MAX_LINES` of all
+others."""
 LIBRARIES = {
     "collada": {"pe_tools/formats"},
     "pxr": {"pe_tools/formats"},

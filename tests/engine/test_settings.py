@@ -45,7 +45,7 @@ def test_every_declared_setting_is_a_key_of_the_study_file():
     """A setting of a dataclass that no section lists would be declared for nothing."""
     classes = (pe.Study, pe.Search, pe.Schedule, pe.Constraints, pe.Tolerance, pe.Selection)
     classes += (pe.PerceptionSpace, pe.TargetRule, pe.Reference, pe.Vehicle)
-    classes += (Goals, Stop, Front)
+    classes += (Goals, Stop, Front, pe.PerceptionModel)
     classes += (pe.requirements.Zone, pe.requirements.Criterion, pe.requirements.Under)
     declared = sum(len(settings_of(cls)) for cls in classes)
     assert declared == len(SETTINGS)

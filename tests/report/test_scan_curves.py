@@ -8,6 +8,8 @@ import pytest
 
 import pe_core as engine
 from pe_core.scoring.targets import ObjectEvaluator, TargetRule
+from pe_core.sensors import scan_curves as scan_file
+from pe_core.sensors.scan_curves import FILE
 from pe_tools.validity.own.curve_section import curve_section, curves_text, date_of, write_curves
 from pe_tools.validity.own.placements import placements, vehicle
 from pe_tools.validity.own.plan import FIXED, PLAIN, full_plan, quick_plan
@@ -125,3 +127,13 @@ def test_a_file_of_the_same_curves_keeps_its_date(tmp_path):
 def saved():
     path = ROOT / "docs" / "validity" / "own" / "results.json"
     return json.loads(path.read_text("utf-8"))["ap_curves"]
+
+
+def test_the_engine_s_file_is_the_fit_of_the_saved_results():
+    """Whoever commits more runs writes it: pe validate --own --page-only --curves FILE."""
+    text = FILE.read_text("utf-8")
+    assert text == curves_text(saved(), date_of(text))
+    curves = scan_file()
+    assert curves.runs == saved()["done"] and curves.planned == saved()["planned"]
+    for name, row in saved()["classes"].items():
+        assert curves.curves["lidar"][name] == engine.ApCurve(row["a"], row["b"])

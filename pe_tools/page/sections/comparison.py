@@ -73,6 +73,8 @@ def _summary_lines(
         yield "The vehicles differ."
     if note := advice.hardware_note([s.model for s in context.rig] for context in contexts):
         yield escaped(note)
+    if note := advice.curve_note(context.study.model for context in contexts):
+        yield f"{escaped(note)}."
     if error := max(context.after.stderr for context in contexts):
         yield (
             f"Scores are based on samples, with a standard error up to {error:.4f} nats. ± is the "

@@ -62,10 +62,15 @@ def _curve_table(contexts: tuple[ReportContext, ...]) -> str:
     ]
     title = "AP curves: the AP of a voxel with m beams or pixels is a ln m + b, clipped to 0 to 1"
     curves = table(title, ("", "a", "b", "source"), rows, css="words")
-    if contexts[0].after.objects is None:
+    if contexts[0].after.objects is None and contexts[0].outcome.in_traffic is None:
         return curves
-    source = "given by the study" if model.objects else "derived from those above by size"
-    return f'{curves}<p class="note">Curves of whole objects, by class: {source}.</p>'
+    source = (
+        "of LiDARs, fitted to detectors on simulated scans (docs/validity/own)"
+        if model.model == kinds.SCANS
+        else "fitted to published detectors, or derived from those above by size"
+    )
+    own = '<p class="note">Those that the study gives come first.</p>' if model.objects else ""
+    return f'{curves}<p class="note">Curves of whole objects, by class: {source}.</p>{own}'
 
 
 def _curve_row(name: str, curve: pe.ApCurve) -> list[str]:

@@ -10,6 +10,7 @@ from typing import Any
 
 from pe_core import InputError
 from pe_core.base import dumps, write_bytes
+from pe_core.sensors.lidar import LIDAR
 
 from ...reproduction.wording import joined, table
 from .scan_curves import A_BOUNDS
@@ -54,7 +55,8 @@ placements and seeds, each with its own fit.*
 
 a and b depend on each other: the placements of one rig have much the same numbers of beams. Expected AP is that of
 all objects in the space of the scores, 80 m ahead and behind; the detector is asked for those in its own, smaller
-region. So a curve holds for this detector, and a level for expected AP as this project computes it.
+region. So a curve holds for this detector, and a level for expected AP as this project computes it. These curves are
+`[ap] model = "scans"` of a study ([objects](../../objects.md#curves-from-scans)).
 """
 
 
@@ -116,7 +118,7 @@ def curves_text(found: Json, date: str) -> str:
         "complete": found["done"] == found["planned"],
     }
     curves = {n: {"a": row["a"], "b": row["b"]} for n, row in found["classes"].items()}
-    return HEAD + dumps({**head, "curves": curves})
+    return HEAD + dumps({**head, "curves": {LIDAR.name: curves}})
 
 
 def write_curves(path: Path, found: Json) -> None:

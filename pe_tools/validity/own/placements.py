@@ -17,12 +17,19 @@ from pe_core.geometry import rotate, rotation_matrix
 from pe_core.sensors.lidar import Lidar
 
 from ...reproduction.paper import STUDIES
+from ..scores import box_triangles
 from .plan import ACROSS, FIXED, MIXED, PlacementRule, StudyPlan
 from .posed_sensors import PosedSensors, PoseValues, first_of_each, numbered, pose_of, pose_texts
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
+SHUTTLE = "shuttle"
+SHUTTLE_BOXES = {
+    "hull": ((0.0, 0.0, 1.35), (6.0, 2.0, 2.1)),
+    "pod": ((0.0, 0.0, 2.475), (1.6, 1.0, 0.25)),
+}
+"""Centre and size of its parts [m]: the shuttle of the benchmarks of searches."""
 MAX_DRAWS = 20_000
 """A rule that this many draws do not satisfy is wrong."""
 NEIGHBOURHOOD_M = 0.15
@@ -69,7 +76,11 @@ def lidar_model(plan: StudyPlan, channels: int) -> Lidar:
 
 @cache
 def vehicle(name: str) -> pe.Vehicle:
-    """Return a vehicle that comes with the project: sedan or bus."""
+    """Return a vehicle that comes with the project, sedan or bus, or the shuttle of boxes."""
+    if name == SHUTTLE:
+        boxes = [box_triangles(center, size, 0.0) for center, size in SHUTTLE_BOXES.values()]
+        parts = np.repeat(np.arange(len(boxes)), [len(b) for b in boxes]).astype(np.int32)
+        return pe.Vehicle(np.concatenate(boxes), parts, tuple(SHUTTLE_BOXES))
     mesh = pe.read_mesh(STUDIES.parent / f"{name}.npz")
     return pe.Vehicle(mesh.triangles, mesh.parts, mesh.part_names)
 

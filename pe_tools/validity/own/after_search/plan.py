@@ -1,0 +1,156 @@
+"""The plan of the detectors before and after a search, as `plan.toml` has it."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib import resources
+
+from pe_core.base import Table
+
+from .. import plan as lidar_plan
+from ..placements import SHUTTLE
+from ..plan import PLAN_FILE, StudyPlan, full_plan, numbers_of, quick_plan
+from ..posed_sensors import PoseValues
+
+START = "start"
+"""Name of the placement before a search; those after it have that of their objective."""
+RIGS = ("experiment_4", "shuttle")
+TITLES = {RIGS[0]: "experiment 4", RIGS[1]: "shuttle"}
+Bounds = Mapping[str, tuple[float, float]]
+
+
+@dataclass(frozen=True, slots=True)
+class SearchedRig:
+    """A rig of LiDARs of one model on a vehicle, before a search.
+
+    Attributes
+    ----------
+    name, vehicle, model : str
+    poses : tuple of PoseValues
+        Where the LiDARs are at the start.
+    bounds : mapping
+        Of each LiDAR, by axis [m, rad]; empty: as shipped.
+    clear_housings : bool
+        Whether the search keeps housings clear of the body and of each other.
+    """
+
+    name: str
+    vehicle: str
+    model: str
+    poses: tuple[PoseValues, ...]
+    bounds: Bounds
+    clear_housings: bool
+
+
+@dataclass(frozen=True, slots=True)
+class AfterSearchPlan:
+    """The whole plan.
+
+    Attributes
+    ----------
+    study : StudyPlan
+        The LiDAR study's plan, with this one's seeds, and with the digest of both files.
+    rigs : tuple of SearchedRig
+    objectives : tuple of str
+    search_seed, samples : int
+        Of the searches; voxels on which their start and result are scored.
+    evaluations : int
+        Of a search; 0: as many as the method takes.
+    confidence : float
+        Of the intervals.
+    """
+
+    study: StudyPlan
+    rigs: tuple[SearchedRig, ...]
+    objectives: tuple[str, ...]
+    search_seed: int
+    samples: int
+    evaluations: int
+    confidence: float
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of the two files' content, which placements and results keep."""
+        return self.study.digest
+
+
+@cache
+def full_after_search_plan() -> AfterSearchPlan:
+    """Return the plan of the study."""
+    own, shared = (
+        resources.files(package).joinpath(PLAN_FILE).read_text(encoding="utf-8")
+        for package in (__package__, lidar_plan.__package__)
+    )
+    return after_search_plan_of(own, hashlib.sha256((shared + own).encode()).hexdigest()[:16])
+
+
+@cache
+def quick_after_search_plan() -> AfterSearchPlan:
+    """Return a plan that only shows that everything runs: one rig, few scenes, short searches."""
+    plan, quick = full_after_search_plan(), quick_plan()
+    study = replace(
+        plan.study,
+        digest=f"quick-{plan.digest}",
+        scenes=quick.scenes,
+        mixed=quick.mixed,
+        training=quick.training,
+        statistics=quick.statistics,
+    )
+    return replace(plan, study=study, rigs=plan.rigs[1:], samples=4096, evaluations=6)
+
+
+def after_search_plan_of(text: str, digest: str) -> AfterSearchPlan:
+    """Return the plan of a file's text.
+
+    Raises
+    ------
+    InputError
+        When a key is missing, unknown, or has another type.
+    """
+    table, shared = Table(tomllib.loads(text), PLAN_FILE), full_plan()
+    table.whole("version")
+    search = table.table("search")
+    seeds = tuple(map(int, numbers_of(table, "seeds")))
+    plan = AfterSearchPlan(
+        study=replace(
+            shared,
+            digest=digest,
+            vehicles=(*shared.vehicles, SHUTTLE),  # those before keep their scenes
+            training=replace(shared.training, seeds=seeds),
+        ),
+        rigs=tuple(_rig(name, table.table(name)) for name in RIGS),
+        objectives=search.texts("objectives"),
+        search_seed=search.whole("seed"),
+        samples=search.whole("samples"),
+        evaluations=0,
+        confidence=table.number("confidence"),
+    )
+    search.finish()
+    table.finish()
+    return plan
+
+
+def _rig(name: str, table: Table) -> SearchedRig:
+    bounds = table.table("bounds")
+    rig = SearchedRig(
+        name,
+        table.text("vehicle"),
+        table.text("model"),
+        tuple(tuple(map(float, pose)) for pose in table.raw("poses")),
+        dict(_bounds(bounds, key) for key in bounds.names),
+        bool(table.raw("clear_housings")),
+    )
+    bounds.finish()
+    table.finish()
+    return rig
+
+
+def _bounds(table: Table, key: str) -> tuple[str, tuple[float, float]]:
+    low, high = table.numbers(key, 2)
+    axis = key.removesuffix("_deg")
+    return (axis, (low, high)) if axis == key else (axis, (math.radians(low), math.radians(high)))

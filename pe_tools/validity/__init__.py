@@ -25,7 +25,10 @@ def add_verb(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
     about = f"train detectors at the placements of the plan (default folder {OWN_FOLDER})"
     own.add_argument("--own", action="store_true", help=about)
     about = "the study of camera placements instead of that of LiDARs"
-    own.add_argument("--cameras", action="store_true", help=about)
+    which = own.add_mutually_exclusive_group()
+    which.add_argument("--cameras", action="store_true", help=about)
+    about = "the study before and after a search: its searches, unless they are done, and its runs"
+    which.add_argument("--after-search", action="store_true", help=about)
     own.add_argument("--resume", action="store_true", help="go on where the folder's runs end")
     about = "do at most so many runs now"
     own.add_argument("--runs", type=count_up_to(MAX_RUNS), metavar="N", help=about)
@@ -35,7 +38,7 @@ def add_verb(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
 
 
 def _validate(args: argparse.Namespace) -> Answer:
-    if args.own or args.cameras:
+    if args.own or args.cameras or args.after_search:
         from .own.command import validate_own
 
         args.default_output, args.default_quick_output = OWN_FOLDER, OWN_QUICK_FOLDER

@@ -15,6 +15,10 @@ from pe_core import InputError
 from pe_core.geometry.raycast import VisibleTriangles
 from pe_core.geometry.triangle_tree import TriangleTree
 from pe_tools.validity.own import shapes
+from pe_tools.validity.own.after_search.plan import full_after_search_plan
+from pe_tools.validity.own.after_search.searches import searched_placements
+from pe_tools.validity.own.after_search.section import after_search_section
+from pe_tools.validity.own.after_search.study import AfterSearchFiles
 from pe_tools.validity.own.batches import NEITHER, detections, inputs, targets
 from pe_tools.validity.own.cameras.plan import full_camera_plan
 from pe_tools.validity.own.cameras.section import camera_section
@@ -284,7 +288,12 @@ def test_the_page_is_that_of_the_saved_results():
         found = json.loads((folder / "cameras" / "results.json").read_text("utf-8"))
     assert found["done"] == len(done_with_cameras)
     curves = curve_section(saved["ap_curves"])
-    more = curves, camera_section(cameras, found, done_with_cameras), outside
+    searches = full_after_search_plan()
+    searched = json.loads((folder / "after_search" / "results.json").read_text("utf-8"))
+    placements = searched_placements(searches, folder)
+    done_after = AfterSearchFiles(folder, searches, placements).read()
+    after = after_search_section(searches, searched, done_after)
+    more = curves, after, camera_section(cameras, found, done_with_cameras), outside
     assert (folder / "README.md").read_text("utf-8") == page(PLAN, saved, done, *more)
 
 

@@ -1,4 +1,4 @@
-"""``pe validate --own [--cameras]``: do the runs that are missing, then write the page."""
+"""``pe validate --own [--cameras | --after-search]``: do the missing runs, then write the page."""
 
 from __future__ import annotations
 
@@ -16,6 +16,14 @@ from ...cli import DONE, Answer, noted_when_interrupted, tell
 from ...reproduction.plotting import EXTRA, has_matplotlib
 from ...reproduction.task_runner import print_progress
 from ...reproduction.wording import PAGE, check_page
+from .after_search.plan import (
+    AfterSearchPlan,
+    full_after_search_plan,
+    quick_after_search_plan,
+)
+from .after_search.searches import searched_placements
+from .after_search.section import after_search_section, answer
+from .after_search.study import AfterSearchFiles, after_search_analysis
 from .analysis import CAMERAS, analysis, designs_of
 from .cameras.plan import CameraPlan, full_camera_plan, quick_camera_plan
 from .cameras.section import PICTURES, SHOWN_SCENE, camera_section
@@ -46,13 +54,17 @@ def validate_own(args: argparse.Namespace, folder: Path) -> Answer:
     plan, of_cameras = (
         (quick_plan(), quick_camera_plan()) if args.quick else (full_plan(), full_camera_plan())
     )
+    after_search = quick_after_search_plan() if args.quick else full_after_search_plan()
     files, camera_files = RunFiles(folder, plan), CameraFiles(folder, of_cameras)
-    if args.cameras:
+    if args.after_search:
+        _do_after_search(args, after_search, folder)
+    elif args.cameras:
         do_runs(args, camera_files, CAMERA_DETECTOR, lambda compute, run: compute(of_cameras, run))
     else:
         do_runs(args, files, DETECTOR, lambda compute, run: compute(plan, run, folder / CAST))
     results = files.read()
     cameras, section_of_cameras = _of_cameras(of_cameras, camera_files)
+    searched, section_of_searches = _of_searches(after_search, folder)
     rigs = [(p, p.rig(plan)) for p in _scored(plan, results)]
     scores = placement_scores(plan, rigs, folder, print_progress)
     outside = "" if args.quick else _from_outside(plan, folder)
@@ -61,7 +73,8 @@ def validate_own(args: argparse.Namespace, folder: Path) -> Answer:
     if args.curves:
         write_curves(Path(args.curves), found["ap_curves"])
     curves = curve_section(found["ap_curves"])
-    text = page(plan, found, results, curves, section_of_cameras, outside)
+    more = curves, section_of_searches, section_of_cameras, outside
+    text = page(plan, found, results, *more)
     write_bytes(folder / PAGE, text.encode())
     if has_matplotlib():
         _draw(plan, results, scores, folder)
@@ -69,9 +82,31 @@ def validate_own(args: argparse.Namespace, folder: Path) -> Answer:
         _draw_cameras(of_cameras, camera_files)
     else:
         tell(f"no plots, as matplotlib is missing: {EXTRA}")
+    if args.after_search:
+        return dump_json(searched) if args.json else _after_search_summary(searched), DONE
     if args.json:
         return dump_json(cameras if args.cameras else found), DONE
     return _camera_summary(of_cameras, cameras) if args.cameras else _summary(found), DONE
+
+
+def _do_after_search(args: argparse.Namespace, plan: AfterSearchPlan, folder: Path) -> None:
+    """Do the searches that are missing, then the missing runs."""
+    report = None if args.page_only else print_progress
+    files = AfterSearchFiles(folder, plan, searched_placements(plan, folder, report))
+    do_runs(args, files, DETECTOR, lambda compute, run: compute(plan.study, run, folder / CAST))
+
+
+def _of_searches(plan: AfterSearchPlan, folder: Path) -> tuple[Mapping[str, Any], str]:
+    """Return what the runs before and after the searches say, and their section of the page."""
+    placements = searched_placements(plan, folder)
+    files = AfterSearchFiles(folder, plan, placements)
+    if len(placements) == len(plan.rigs):  # no search is done
+        return after_search_analysis(plan, {}, {}), ""
+    results, rigs = files.read(), [(p, p.rig(plan.study)) for p in placements]
+    scores = placement_scores(plan.study, rigs, files.folder, print_progress)
+    found = after_search_analysis(plan, results, scores)
+    write_bytes(files.folder / CONCLUSIONS, dump_json(found).encode())
+    return found, after_search_section(plan, found, results)
 
 
 def _of_cameras(plan: CameraPlan, files: CameraFiles) -> tuple[Mapping[str, Any], str]:
@@ -149,6 +184,11 @@ def _camera_summary(plan: CameraPlan, found: Mapping[str, Any]) -> str:
     )
 
 
+def _after_search_summary(found: Mapping[str, Any]) -> str:
+    done = f"{found['done']} of {found['planned']} runs before and after a search are done"
+    return f"{done}\n{answer(dict(found))}"
+
+
 def do_runs(
     args: argparse.Namespace,
     files: ResultFiles[R],
@@ -175,7 +215,7 @@ def do_runs(
     missing = files.missing()
     total = len(files.all)
     done = total - len(missing)
-    if args.page_only or not missing:
+    if args.page_only or args.runs == 0 or not missing:
         return
     if done and not args.resume:
         found = f"{done} of {total} runs; pass --resume to go on"

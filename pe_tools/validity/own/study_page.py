@@ -34,7 +34,7 @@ def page(plan: StudyPlan, results: Json, runs: Mapping[str, Json], *more: str) -
     runs : mapping
         Results by the name of the run.
     *more : str
-        The sections on AP curves, on cameras and on results of others.
+        The sections on AP curves, searches, cameras and results of others.
     """
     sections = [
         _head(plan, results),
@@ -280,5 +280,6 @@ def _again() -> str:
 
 `pip install 'perception-entropy[validate]'`, then `pe validate --own --output FOLDER`: all runs, in the order of the
 plan. Delete the file of a run, and `--resume` does it again. `--runs N` does the next N; `--page-only` writes
-the page; `--quick` shows with three placements that everything runs. `--cameras` does the runs of cameras instead.
+the page; `--quick` shows with three placements that everything runs. `--cameras` does the runs of cameras
+instead, `--after-search` those before and after a search.
 """

@@ -12,7 +12,6 @@ import pe_core as pe
 from pe_core import InputError, catalog
 from pe_core.base import dump_json, write_bytes
 from pe_core.search import PAPER_FREE
-from pe_tools.jobs import OptimizeJob
 
 from ....reproduction.results_file import made_by, read_json
 from ..placements import Placement, vehicle
@@ -69,9 +68,14 @@ def study_of(plan: AfterSearchPlan, rig: SearchedRig, objective: str) -> pe.Stud
     return pe.Study(sensors, vehicle(rig.vehicle), samples=plan.samples, search=search)
 
 
+def placement_name(rig: SearchedRig, what: str) -> str:
+    """Return the name of a placement of a rig by what found it."""
+    return f"after-{rig.name}-{what}".replace("_", "-")
+
+
 def placement_of(rig: SearchedRig, what: str, poses: tuple[PoseValues, ...]) -> SearchedPlacement:
     """Return a placement of a rig by what found it."""
-    name = f"after-{rig.name}-{what}".replace("_", "-")
+    name = placement_name(rig, what)
     model = catalog.load(rig.model)
     channels = len(model.elevations)  # type: ignore[attr-defined]  # the plan names LiDARs
     found = (name, rig.vehicle, poses, False, FOLDER, channels, rig.model, rig.name, what)
@@ -79,17 +83,19 @@ def placement_of(rig: SearchedRig, what: str, poses: tuple[PoseValues, ...]) -> 
 
 
 def searched_placements(
-    plan: AfterSearchPlan, folder: Path, report: Callable[[str], None]
+    plan: AfterSearchPlan, folder: Path, report: Callable[[str], None] | None = None
 ) -> list[SearchedPlacement]:
     """Return the placements of all rigs; searches that the file does not have are run.
+
+    Without `report` none is run, and placements that are not there are left out.
 
     Parameters
     ----------
     plan : AfterSearchPlan
     folder : Path
         Of the study of LiDARs.
-    report : callable
-        Takes a line for each search.
+    report : callable, optional
+        Takes a line for each search that is run.
 
     Raises
     ------
@@ -107,13 +113,14 @@ def searched_placements(
         placements.append(placement_of(rig, START, rig.poses))
         for objective in plan.objectives:
             key = f"{rig.name}, {objective}"
-            if key not in kept["searches"]:
+            if key not in kept["searches"] and report is not None:
                 report(f"searching {key}")
                 kept["searches"][key] = _search(plan, rig, objective)
                 path.parent.mkdir(parents=True, exist_ok=True)
                 write_bytes(path, dump_json(kept).encode())
-            poses = tuple(map(tuple, kept["searches"][key]["poses"]))
-            placements.append(placement_of(rig, objective, poses))
+            if key in kept["searches"]:
+                poses = tuple(map(tuple, kept["searches"][key]["poses"]))
+                placements.append(placement_of(rig, objective, poses))
     return placements
 
 
@@ -127,7 +134,7 @@ class _SearchIdentity:
 
 def _search(plan: AfterSearchPlan, rig: SearchedRig, objective: str) -> Json:
     """Run a search; return what was found, as JSON data."""
-    job = OptimizeJob(study_of(plan, rig, objective))
+    job = pe.OptimizeJob(study_of(plan, rig, objective))
     for _ in job:
         pass
     outcome = job.outcome

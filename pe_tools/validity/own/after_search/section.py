@@ -1,0 +1,122 @@
+"""The section of the page on detectors before and after a search, from saved results alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from ....reproduction.wording import joined, table
+from ..analysis import HOLDS, OPEN, REFUTED
+from ..study_page import trainings_text
+from .plan import START, TITLES, AfterSearchPlan
+from .searches import FOLDER, PLACEMENTS
+
+Json = dict[str, Any]
+
+TITLE = "## After a search: does the optimum find more?"
+WORDS = {"entropy": "perception entropy", "expected_ap": "expected AP in traffic"}
+VERDICTS = {HOLDS: "finds more", REFUTED: "finds no more", OPEN: "open"}
+
+
+def after_search_section(plan: AfterSearchPlan, found: Json, runs: Mapping[str, Json]) -> str:
+    """Return the section of the page.
+
+    Parameters
+    ----------
+    plan : AfterSearchPlan
+    found : mapping
+        The analysis.
+    runs : mapping
+        Results by the name of the run.
+    """
+    missing = found["done"] < found["planned"]
+    told = f"\n{trainings_text(runs)}\n" if runs else ""
+    return f"""
+{TITLE}
+
+By a plan of its own: [before and after a search](after_search.md). Detectors at the start of two searches and at what
+they found ([placements]({FOLDER}/{PLACEMENTS})); LiDARs alone. {found["done"]} of {found["planned"]} runs are
+done{"; figures so far" if missing and runs else ""}. **{answer(found)}**
+
+{_placements(plan, found)}
+
+*AP: mean of the five classes and of the seeds, from the lowest to the highest seed. Perception entropy: lower is
+better.*
+
+{_comparisons(plan, found)}
+
+*After minus before, of the same seed; Student's interval over the seeds, 95 %.*
+{told}"""
+
+
+def answer(found: Json) -> str:
+    """Return in a sentence for each objective whether its optimum finds more than the start."""
+    if set(found["answers"].values()) == {OPEN}:
+        return "Whether a detector finds more with the optimum of either search than with the start is open."
+    return " ".join(
+        _answer(objective, verdict, found) for objective, verdict in found["answers"].items()
+    )
+
+
+def _answer(objective: str, verdict: str, found: Json) -> str:
+    where = f"with the placement of the search by {WORDS[objective]}"
+    if verdict == OPEN:
+        return f"Whether a detector finds more {where} than with the start is open."
+    shown = [
+        TITLES[name]
+        for name, rig in found["rigs"].items()
+        if rig["after"][objective]["verdict"] == HOLDS
+    ]
+    if verdict == HOLDS:
+        return f"A detector finds more {where} than with the start: {joined(shown)}."
+    if shown:
+        return (
+            f"A detector finds more {where} than with the start on one rig alone: {joined(shown)}."
+        )
+    return f"It was not shown that a detector finds more {where} than with the start."
+
+
+def _placements(plan: AfterSearchPlan, found: Json) -> str:
+    lines = [
+        [
+            TITLES[rig.name],
+            START if what == START else WORDS[what],
+            _number(row["entropy"], 3),
+            _number(row["expected_ap"], 3),
+            _aps(row["ap"]),
+        ]
+        for rig in plan.rigs
+        for what, row in found["rigs"][rig.name]["placements"].items()
+    ]
+    titles = ["rig", "placement", "perception entropy", "expected AP in traffic", "AP"]
+    return table(titles, lines)
+
+
+def _comparisons(plan: AfterSearchPlan, found: Json) -> str:
+    lines = [
+        [TITLES[rig.name], WORDS[objective], _difference(row), VERDICTS[row["verdict"]]]
+        for rig in plan.rigs
+        for objective, row in found["rigs"][rig.name]["after"].items()
+    ]
+    return table(["rig", "search by", "difference of AP (95 %)", "the optimum"], lines)
+
+
+def _difference(row: Json) -> str:
+    if row["mean"] is None:
+        return "-"
+    if row["interval"] is None:
+        return f"{row['mean']:+.3f}"
+    low, high = row["interval"]
+    return f"{row['mean']:+.3f} ({low:+.3f} to {high:+.3f})"
+
+
+def _aps(values: list[float | None]) -> str:
+    done = [v for v in values if v is not None]
+    if not done:
+        return "-"
+    spread = f" ({min(done):.3f} to {max(done):.3f})" if len(done) > 1 else ""
+    return f"{sum(done) / len(done):.3f}{spread}"
+
+
+def _number(value: float | None, digits: int) -> str:
+    return "-" if value is None else f"{value:.{digits}f}"

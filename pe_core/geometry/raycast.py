@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from .bins import FACES, Raster, RowSpans, Spans, row_spans
 from .culling import Ends, FaceLook, VisibleBoxes
-from .indexing import blocks, count_up
+from .indexing import blocks, count_up, stable_order
 from .ray_traversal import RayBoxes, RayWalk
 from .ray_triangle import Facing, Targets, min_distance
 from .triangle_tree import TriangleTree
@@ -34,8 +34,6 @@ MAX_BINS = 1024
 """Maximum number of bins along a side."""
 FINER = 2.0
 """Maximum ratio of bins to rays along a side, for meshes with many triangles."""
-RADIX_BINS = 1 << 16
-"""Maximum number of bins for 16-bit keys, for which NumPy uses radix sort."""
 SORTING_SHARE = 0.8
 """Rays are sorted again when at most this share of them is not finished."""
 
@@ -59,19 +57,18 @@ class BinnedRays:
         fine = max(along, min(FINER * along, np.sqrt(triangles) / 2.0))
         side = 2 ** int(np.ceil(np.log2(fine + 1.0)))
         self._triangles = triangles
-        ends = [(float(w.min()), float(w.max())) for w in (u, v)]
-        self.raster = Raster(ends[0], ends[1], min(side, MAX_BINS))
+        across, down = ((float(w.min()), float(w.max())) for w in (u, v))
+        self.raster = Raster(across, down, min(side, MAX_BINS))
         n = self.raster.count
         bins = self.raster.rows(u) * n + self.raster.columns(v)
-        key = bins.astype(np.uint16) if n * n <= RADIX_BINS else bins
-        order = np.argsort(key, kind="stable")
+        order = stable_order(bins)
         self.ray, self.u, self.v = ray[order], u[order], v[order]
         self.directions = directions[:, order]
         counts = np.bincount(bins, minlength=n * n)
         self._starts = np.concatenate([[0], np.cumsum(counts)])
         sums = np.zeros((n + 1, n + 1), np.int32)
-        ray_counts = counts.reshape(n, n).astype(np.int32)
-        np.cumsum(np.cumsum(ray_counts, axis=1, dtype=np.int32), axis=0, out=sums[1:, 1:])
+        rows = np.cumsum(counts.reshape(n, n), axis=1, dtype=np.int32)
+        np.cumsum(rows, axis=0, out=sums[1:, 1:])
         self._sums = sums.reshape(-1)
 
     @classmethod

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.indexing import count_up
+from ..geometry.indexing import count_up, stable_order
 from .object_kernel import PlacedBoxes
 
 Floats = NDArray[np.float64]
@@ -22,8 +22,8 @@ APART_RAD = 1e-6
 class BoxRays:
     """Rays from a sensor that hit boxes, (R,) each.
 
-    `item` is the box, by its position in the request; `directions` (R, 3) are unit vectors in the
-    ground frame; `distance` is the distance to the box [m].
+    `item` is the box; `directions` (R, 3) are unit vectors in the ground frame; `distance` is the
+    distance to the box [m].
     """
 
     item: Ints
@@ -42,7 +42,7 @@ class Rivals:
     @classmethod
     def of(cls, scenes: Ints, which: Ints) -> Rivals:
         """Return all other boxes of the same scenes."""
-        order = np.argsort(scenes, kind="stable")
+        order = stable_order(scenes)
         first = np.searchsorted(scenes[order], scenes[which], "left")
         count = np.searchsorted(scenes[order], scenes[which], "right") - first
         other = order[np.repeat(first, count) + count_up(count)]
@@ -82,10 +82,8 @@ def rivals_near(boxes: PlacedBoxes, scenes: Ints, balls: Floats, which: Ints) ->
     x, y = boxes.ground_offsets()
     flat = np.hypot(x, y)
     near = flat - balls
-    across, along = (
-        x[item] * y[other] - y[item] * x[other],
-        x[item] * x[other] + y[item] * y[other],
-    )
+    across = x[item] * y[other] - y[item] * x[other]
+    along = x[item] * x[other] + y[item] * y[other]
     half = np.arcsin(balls / np.maximum(flat, balls))
     apart = np.abs(np.arctan2(across, along)) > half[item] + half[other] + APART_RAD
     before = near[other] < flat[item] + balls[item]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -80,6 +81,13 @@ def require_mask_size(name: str, rays: int) -> None:
         raise InputError(name, "mask", f"at most {MAX_RAYS:,} pixels or beams", f"{rays:,}")
 
 
+def count_by_part(stopped_by: NDArray[np.integer], part_names: Sequence[str]) -> dict[str, int]:
+    """Return the number of rays that end on each part, the largest number first."""
+    counts = np.bincount(stopped_by[stopped_by >= 0])
+    order = np.argsort(-counts, kind="stable").tolist()
+    return {part_names[k]: int(counts[k]) for k in order if counts[k]}
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class EgoMask:
     """Which rays of a sensor end on its own vehicle, and on which part of it.
@@ -107,9 +115,6 @@ class EgoMask:
         """(H, W) which pixels show nothing."""
         return self.parts == OUTSIDE
 
-    def counts(self, part_names: tuple[str, ...]) -> dict[str, int]:
+    def counts(self, part_names: Sequence[str]) -> dict[str, int]:
         """Number of rays that end on each part of the vehicle, in descending order."""
-        hit = self.parts[self.parts >= 0]
-        counts = np.bincount(hit, minlength=len(part_names))
-        order = np.argsort(-counts, kind="stable")
-        return {part_names[k]: int(counts[k]) for k in order.tolist() if counts[k]}
+        return count_by_part(self.parts, part_names)

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ..geometry.poses import rotate
 from ..scene.rig import Sensor, SensorModel
 from ..scene.vehicle import Vehicle
-from .field_of_view import FREE, EgoMask
+from .field_of_view import FREE, EgoMask, count_by_part
 from .kernels import Occlusion
 
 Floats = NDArray[np.float64]
@@ -77,18 +77,13 @@ class RayFan:
     @cached_property
     def angles(self) -> tuple[Floats, Floats]:
         """Elevations (E,) and azimuths (A,) of the rays, ascending [rad]."""
-        (left, right), (low, high) = self.window
-        return _middles(low, high, len(self.distance)), _middles(
-            left, right, self.distance.shape[1]
-        )
+        ((left, right), (low, high)), (rows, columns) = self.window, self.distance.shape
+        return _middles(low, high, rows), _middles(left, right, columns)
 
     def occlusion(self, inside: NDArray[np.bool_]) -> Occlusion:
         """Count the rays of the field of view, `inside` (E, A), that end on the vehicle."""
-        parts = self.part[inside & (self.part >= 0)]
-        counts = np.bincount(parts, minlength=len(self.part_names))
-        order = np.argsort(-counts, kind="stable").tolist()
-        by_part = {self.part_names[k]: int(counts[k]) for k in order if counts[k]}
-        return Occlusion(int(inside.sum()), len(parts), by_part)
+        by_part = count_by_part(self.part[inside], self.part_names)
+        return Occlusion(int(inside.sum()), sum(by_part.values()), by_part)
 
     def mask(self) -> EgoMask:
         """Return which rays end on the vehicle: a row an elevation, the highest first."""

@@ -31,7 +31,7 @@ from ..advice import Advice, condition_warnings, fragile, unmet
 from ..sensitivity import Archive, Sensitivity, analyse
 from .candidate_workers import ExecutorSource, candidate_workers
 from .job import HistoryRow, Job, Outcome, Progress, StartEnd, begun
-from .searched_figure import IN_AP, searched_figure
+from .searched_figure import IN_AP, searched_figure, searched_samples
 from .stopping import TARGET, StopWatch
 
 
@@ -154,8 +154,14 @@ class OptimizeJob(Job):
     def _evaluator_of(self, samples: int) -> RigJudge:
         """Return what evaluates candidates on a number of voxels, or in its share of scenes."""
         if is_by_ap(self.study):
-            return search_evaluator(self.study, samples, self.workers)
+            few = searched_samples(self.study, samples)
+            return search_evaluator(self.study, few, self.workers)
         return self._own_evaluator_of(samples)
+
+    @cached_property
+    def _in_traffic(self) -> RigJudge:
+        """The evaluator of expected AP in all scenes of the study."""
+        return search_evaluator(self.study, self.study.search.samples, self.workers)
 
     def _own_evaluator_of(self, samples: int) -> RigJudge:
         """Return the evaluator of the study's own targets."""
@@ -229,7 +235,7 @@ class OptimizeJob(Job):
             return None if score is None else _Scored(score)
         if searched_study(self.study).targets == self.study.targets:
             return _Scored(score, score.objects)
-        work = partial(self._evaluators[-1].score, rig)
+        work = partial(self._in_traffic.score, rig)
         found = yield from self._beside(work, lambda: waiting, to_the_end)
         return None if found is None else _Scored(score, found.objects)
 

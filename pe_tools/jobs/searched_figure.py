@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pe_core.study.objective_search import searched_study
+from pe_core.study.objective_search import is_by_ap, searched_study
 from pe_core.study.objective_setting import ENTROPY, EXPECTED_AP
 from pe_core.study.requirement_search import INFEASIBLE, is_infeasible
 from pe_core.study.study import Study
@@ -56,10 +56,21 @@ IN_AP = SearchedFigure(EXPECTED_AP, "expected AP", -1.0)
 FIGURES = {figure.key: figure for figure in (IN_NATS, IN_AP)}
 
 
+def searched_samples(study: Study, samples: int) -> int:
+    """Return what stands for a level's number of voxels: by expected AP, half on the last level.
+
+    A scene takes long to evaluate. So a search looks at no more than half of the study's scenes,
+    and its result is scored on all of them.
+    """
+    half = study.search.samples // 2
+    return min(samples, half) if is_by_ap(study) and half else samples
+
+
 def searched_on(study: Study) -> tuple[str, str]:
     """Return on what a study's search evaluates: "16,384, then 65,536" and "voxels"."""
     searched = searched_study(study)
-    looks = [searched.looks_at(samples) for samples in study.search.level_samples]
+    few = [searched_samples(study, samples) for samples in study.search.level_samples]
+    looks = [searched.looks_at(samples) for samples in few]
     levels = ", then ".join(dict.fromkeys(f"{n:,}" if n else "all" for n in looks))
     return levels, "scenes of objects" if searched.targets.are_objects else "voxels"
 

@@ -120,6 +120,17 @@ def test_a_search_raises_the_ap_and_tells_both(plain):
     assert "30 placements judged on 8 scenes of objects" in text
 
 
+def test_a_search_goes_by_half_of_the_scenes_and_its_result_is_scored_on_all():
+    given = replace(study(), targets=pe.TargetRule(scenes=80))
+    given = replace(given, search=replace(given.search, evaluations=6))
+    outcome = finished(given)
+    own, last = outcome.history[-1], outcome.in_traffic[1]
+    assert jobs.searched_on(given) == ("40", "scenes of objects") and last.scenes == 80
+    half = replace(given, targets=pe.TargetRule(scenes=40))
+    assert own.entropy == -ap_of(half, own.rig) != -ap_of(given, own.rig)
+    assert last.ap == ap_of(given, outcome.study.rig)
+
+
 def test_files_have_the_ap_and_never_its_negative(plain):
     data = result_dict(plain)
     assert data["objective"] == AP and data[AP]["after"]["ap"] == plain.in_traffic[1].ap

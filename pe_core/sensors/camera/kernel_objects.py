@@ -58,20 +58,21 @@ class CameraObjects(ObjectKernel):
         view, camera, seen = self._view, cast(Camera, sensor.model), None
         if view.vehicle is not None:
             seen = view.vehicle.seen_from(sensor.pose.position, camera.sees_through_glass)
-        asked = images.area > 0.0
-        if not view.traffic:
-            asked &= _may_be_hidden(camera, axes, images, seen)
-        some = np.flatnonzero(asked)
-        own, image = boxes.take(which[some]), images.some(some)
-        rays = rays_to_boxes(camera, axes, own, image, np.arange(len(some)))
+        image = images.some(shown := np.flatnonzero(images.area > 0.0))
+        by_vehicle = _may_be_hidden(camera, axes, image, seen)
+        rivals, asked = None, by_vehicle
+        if view.traffic:
+            rivals = rivals_near(boxes, view.objects.scenes, self._balls, which[shown])
+            asked = by_vehicle | (rivals.count > 0)
+        rays = rays_to_boxes(camera, axes, boxes.take(which[shown]), image, np.flatnonzero(asked))
         hidden = np.zeros(len(rays.item), bool)
         if seen is not None:
-            hidden |= seen.first_hit(rays.directions).distance < rays.distance
-        if view.traffic:
-            rivals = rivals_near(boxes, self._view.objects.scenes, self._balls, which[some])
+            near = np.flatnonzero(by_vehicle[rays.item])  # rays that the vehicle may stop
+            hidden[near] = seen.first_hit(rays.directions[near]).distance < rays.distance[near]
+        if rivals is not None:
             hidden |= behind_others(boxes, rivals, rays)
         share = np.ones(len(which))
-        share[some] = visible_share(rays, hidden, len(some))
+        share[shown] = visible_share(rays, hidden, len(shown))
         return share
 
 

@@ -42,11 +42,12 @@ SIDE_PLACES = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 15)] * 2), axis=-1).
 def rays_to_boxes(
     camera: Camera, axes: Floats, boxes: PlacedBoxes, images: BoxImages, which: Ints
 ) -> BoxRays:
-    """Return the rays through the images of boxes `which` (P,) that hit these boxes."""
+    """Return the rays through the images of boxes `which` (P,) that hit them; `item` is the box."""
     found = list(_met(camera, axes, boxes, images, which))
     if not found:
         return BoxRays(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros(0))
-    return BoxRays(*(np.concatenate(w) for w in zip(*found, strict=True)))
+    rank, directions, distance = (np.concatenate(w) for w in zip(*found, strict=True))
+    return BoxRays(which[rank], directions, distance)
 
 
 def visible_share(rays: BoxRays, hidden: Flags, count: int) -> Floats:
@@ -134,6 +135,6 @@ def count_object_pixels(
         seen = vehicle.seen_from(sensor.pose.position, camera.sees_through_glass)
         hidden |= seen.first_hit(rays.directions).distance < rays.distance
     if traffic:
-        hidden |= behind_others(boxes, Rivals.of(objects.scenes, shown), rays)
-    area[shown] *= visible_share(rays, hidden, len(shown))
+        hidden |= behind_others(boxes, Rivals.of(objects.scenes, np.arange(len(area))), rays)
+    area *= visible_share(rays, hidden, len(area))
     return area

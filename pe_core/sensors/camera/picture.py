@@ -69,12 +69,8 @@ def picture_occlusion(sensor: Sensor, vehicle: Vehicle | None) -> Occlusion:
     if vehicle is None:
         return Occlusion(len(rays))
     hits = vehicle.first_hit(sensor.pose.position, rays, sensor.model.sees_through_glass)
-    met = np.isfinite(hits.distance)
-    parts = np.asarray(vehicle.parts)[hits.face[met]]
-    counts = np.bincount(parts, minlength=len(vehicle.part_names))
-    order = np.argsort(-counts, kind="stable")
-    by_part = {vehicle.part_names[i]: int(counts[i]) for i in order if counts[i]}
-    return Occlusion(len(rays), int(np.count_nonzero(met)), by_part)
+    parts = np.asarray(vehicle.parts)[hits.face[np.isfinite(hits.distance)]]
+    return Occlusion(len(rays), len(parts), EgoMask(parts).counts(vehicle.part_names))
 
 
 RAYS_AT_ONCE = 1 << 19

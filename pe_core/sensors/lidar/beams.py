@@ -18,6 +18,7 @@ from ...geometry.poses import rotate
 from ...geometry.raycast import Hits
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
+from ..field_of_view import count_by_part
 from ..kernels import Occlusion
 from .definition import beam_directions
 from .lattice import lattice_of
@@ -54,9 +55,7 @@ class BeamField:
 
     def stopped_count(self, part_names: tuple[str, ...]) -> dict[str, int]:
         """Return the number of beams that end on each part, the largest number first."""
-        counts = np.bincount(self.stopped_by[self.stopped_by >= 0], minlength=len(part_names))
-        order = np.argsort(-counts, kind="stable")
-        return {part_names[i]: int(counts[i]) for i in order if counts[i]}
+        return count_by_part(self.stopped_by, part_names)
 
 
 def beam_field(
@@ -78,8 +77,7 @@ def beam_field(
 
 def occlusion_of(field: BeamField, vehicle: Vehicle | None) -> Occlusion:
     """Count a LiDAR's beams, those that the vehicle occludes, and the latter by part."""
-    names = () if vehicle is None else tuple(vehicle.part_names)
-    by_part = field.stopped_count(names)
+    by_part = {} if vehicle is None else field.stopped_count(tuple(vehicle.part_names))
     return Occlusion(len(field.ends), sum(by_part.values()), by_part)
 
 

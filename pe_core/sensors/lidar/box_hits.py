@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.indexing import blocks, count_up
+from ...geometry.indexing import blocks, count_up, stable_order
 from ...geometry.poses import dot, rotate
 from ...scene.rig import Sensor
 from ..object_kernel import PlacedBoxes
@@ -110,8 +110,8 @@ def concatenated(parts: list[BoxHits]) -> BoxHits:
     """Join hits."""
     if not parts:
         return BoxHits(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
-    box, beam = (np.concatenate([getattr(p, key) for p in parts]) for key in ("box", "beam"))
-    return BoxHits(box, beam, np.concatenate([p.enter for p in parts]))
+    keys = ("box", "beam", "enter")
+    return BoxHits(*(np.concatenate([getattr(p, key) for p in parts]) for key in keys))
 
 
 def nearest_hits(hits: BoxHits, scenes: Ints, beam_count: int) -> BoxHits:
@@ -120,7 +120,7 @@ def nearest_hits(hits: BoxHits, scenes: Ints, beam_count: int) -> BoxHits:
     Fast because it takes minima over `beam_count` beams, scene by scene, and sorts no distances.
     """
     scene = scenes[hits.box]
-    order = np.argsort(scene, kind="stable")
+    order = stable_order(scene)
     starts = np.flatnonzero(np.diff(scene[order], prepend=-1))
     nearest, nearest_box = np.full(beam_count, np.inf), np.full(beam_count, NO_BOX)
     kept = [np.zeros(0, np.int64)]

@@ -24,7 +24,7 @@ from ..object_kernel import ObjectKernel, ObjectView, PlacedBoxes
 from .beams import BeamCache
 from .box_hits import BoxTester, FanBeams, azimuth_spans, candidate_hits, concatenated, nearest_hits
 from .definition import BoxHits
-from .fan_runs import ChannelRuns, RotatedFan, RunBlock, fans_of
+from .fan_runs import ChannelRuns, Fan, RotatedFan, RunBlock, fans_of
 from .lattice import lattice_of
 from .planar_clip import PlanarBoxes, TiltedBoxes, tilted_runs, upright_runs
 
@@ -73,21 +73,18 @@ def _count(tester: BoxTester, scenes: Ints | None) -> Ints:
     fans = fans_of(tester.lidar)
     few = len(fans) <= MAX_FANS and all(fan.slopes.steepest < MAX_SLOPE for fan in fans)
     roll, pitch, _ = tester.sensor.pose.rpy
-    if few and roll == 0.0 and pitch == 0.0:
+    if not few:
+        return _count_candidates(tester, scenes)
+    if roll == 0.0 and pitch == 0.0:
         planar = PlanarBoxes.of(tester.boxes)
-        below_sensor = tester.hits_of_all_beams(np.flatnonzero(~planar.beside))
-        if scenes is None:
-            return tester.count(below_sensor) + _count_alone(tester, _upright(tester, planar))
-        unsorted = np.unique(scenes[~planar.beside])
-        return _count_traffic(tester, _upright(tester, planar), below_sensor, scenes, unsorted)
-    if few:
+        outside, blocks = planar.beside, _upright(tester, planar)
+    else:
         tilted = TiltedBoxes.of(tester.boxes, tester.sensor.pose.ground_from_sensor)
-        around_sensor = tester.hits_of_all_beams(np.flatnonzero(~tilted.outside))
-        if scenes is None:
-            return tester.count(around_sensor) + _count_alone(tester, _tilted(tester, tilted))
-        unsorted = np.unique(scenes[~tilted.outside])
-        return _count_traffic(tester, _tilted(tester, tilted), around_sensor, scenes, unsorted)
-    return _count_candidates(tester, scenes)
+        outside, blocks = tilted.outside, _tilted(tester, tilted)
+    others = tester.hits_of_all_beams(np.flatnonzero(~outside))
+    if scenes is None:
+        return tester.count(others) + _count_alone(tester, blocks)
+    return _count_traffic(tester, blocks, others, scenes, np.unique(scenes[~outside]))
 
 
 def _count_candidates(tester: BoxTester, scenes: Ints | None) -> Ints:
@@ -147,10 +144,7 @@ def _upright(tester: BoxTester, planar: PlanarBoxes) -> Iterator[tuple[FanBeams,
     """Yield the runs of an upright LiDAR through all boxes it is beside, fan by fan."""
     lidar, yaw = tester.lidar, tester.sensor.pose.rpy[2]
     boxes = np.flatnonzero(planar.beside & (planar.distance <= lidar.max_range))
-    beyond = tester.max_distances() >= lidar.max_range
-    range_unsure = (planar.distance <= lidar.min_range) | beyond
-    for fan in fans_of(lidar):
-        beams = FanBeams.of(fan, lattice_of(lidar), tester.ends, range_unsure)
+    for fan, beams in _fans(tester, planar.distance):
         rotated = RotatedFan.of(fan, yaw, lidar.azimuth_step, lidar.azimuth_count)
         for block in upright_runs(rotated, tester.boxes, planar, boxes):
             yield beams, block
@@ -161,13 +155,19 @@ def _tilted(tester: BoxTester, tilted: TiltedBoxes) -> Iterator[tuple[FanBeams, 
     lidar, distance = tester.lidar, 1.0 / tilted.near
     spans, among = azimuth_spans(tester)
     boxes = np.flatnonzero(tilted.outside & (distance <= lidar.max_range) & among)
-    beyond = tester.max_distances() >= lidar.max_range
-    range_unsure = (distance <= lidar.min_range) | beyond
-    for fan in fans_of(lidar):
-        beams = FanBeams.of(fan, lattice_of(lidar), tester.ends, range_unsure)
+    for fan, beams in _fans(tester, distance):
         in_sensor = RotatedFan.of(fan, 0.0, lidar.azimuth_step, lidar.azimuth_count)
         for block in tilted_runs(in_sensor, tilted, spans, boxes):
             yield beams, block
+
+
+def _fans(tester: BoxTester, distance: Floats) -> Iterator[tuple[Fan, FanBeams]]:
+    """Yield the fans and their beams; boxes (N,) at a `distance` may be out of range in part."""
+    lidar = tester.lidar
+    beyond = tester.max_distances() >= lidar.max_range
+    for fan in fans_of(lidar):
+        unsure = (distance <= lidar.min_range) | beyond
+        yield fan, FanBeams.of(fan, lattice_of(lidar), tester.ends, unsure)
 
 
 class FanTraffic:
@@ -201,7 +201,9 @@ class FanTraffic:
         sorted_runs = order[~undecided[order]]
         visible = _not_taken_before(ray[sorted_runs], bits[sorted_runs]) & countable[sorted_runs]
         np.add.at(counts, runs.box[sorted_runs], _bit_count(visible))
-        return counts, self._hits(runs.take(undecided))
+        runs = runs.take(undecided)
+        hits = self._fan.hits_of_runs(self._tester, runs)
+        return counts, BoxHits(runs.box[hits.run], hits.beam, hits.enter)
 
     def _bits(self, runs: ChannelRuns) -> tuple[Bits, Bits]:
         """Bits (R, W) of the beams that hit a run's box, and of those beyond the minimum range."""
@@ -228,10 +230,6 @@ class FanTraffic:
         unsure_rays = ray[nearer[(ray[nearer] == ray[farther]) & ~separate]]
         in_unsorted = np.isin(self._scenes[runs.box], self._unsorted_scenes)
         return np.isin(ray, unsure_rays) | in_unsorted
-
-    def _hits(self, runs: ChannelRuns) -> BoxHits:
-        hits = self._fan.hits_of_runs(self._tester, runs)
-        return BoxHits(runs.box[hits.run], hits.beam, hits.enter)
 
 
 def _bits_between(low: NDArray, high: NDArray, words: int) -> Bits:

@@ -19,8 +19,10 @@ from pe_core.study import Study, load_study
 from pe_core.study.requirement_file import CONFIDENCE, Preset, preset, presets
 from pe_core.study.requirement_help import Suggestion, suggestions
 
+from ..advice import curve_note
+from .command import add_curve_option, with_curves
 from .run_job import print_vehicle
-from .terminal import DONE, Answer
+from .terminal import DONE, Answer, tell
 
 NOT_MET = 3
 """Exit status of a check with a requirement that is not met."""
@@ -43,6 +45,7 @@ def add_check_options(parser: argparse.ArgumentParser) -> None:
     about = "also by how many sensors each place within 10 m is seen, for what is so tall [m]"
     parser.add_argument("--redundancy", type=float, metavar="M", help=about)
     parser.add_argument("--csv", metavar="FILE", help="write the table to a CSV file")
+    add_curve_option(parser)
 
 
 def add_requirements_verb(verbs: Any) -> None:
@@ -80,11 +83,13 @@ def check(path: str, args: argparse.Namespace) -> Answer:
 
 def check_study(study: Study, args: argparse.Namespace) -> Answer:
     """Hold a study to its requirements and to the presets that are named."""
-    study, unchecked = with_presets(study, args.preset)
+    study, unchecked = with_presets(with_curves(study, args), args.preset)
     if not study.requirements and args.redundancy is None:
         expected = "[[requirement]] in the study, --preset ID, or --redundancy M"
         raise InputError("check", "requirements", expected, "none")
     print_vehicle(study)
+    if note := curve_note([study.model]):
+        tell(note)
     verdicts = study.verdicts()
     if args.csv:
         write_bytes(Path(args.csv), verdicts_csv(verdicts).encode(errors="backslashreplace"))

@@ -76,13 +76,23 @@ def add_score_options(parser: argparse.ArgumentParser, workers: str = "threads")
     voxels, count = count_up_to(MAX_VOXELS), count_up_to(MAX_WORKERS)
     about = "voxels a score looks at (0: all)"
     parser.add_argument("--grid-samples", type=voxels, metavar="N", help=about)
-    about = "AP curves of whole objects: from publications, or of LiDARs from our own scans"
-    parser.add_argument(
-        "--ap-model", choices=CURVE_MODELS, metavar="|".join(CURVE_MODELS), help=about
-    )
+    add_curve_option(parser)
     parser.add_argument("--state", metavar="NAME", help="a state of the study, in place of all")
     parser.add_argument("--weather", metavar="NAME", help="a weather of the study, in place of all")
     parser.add_argument("--workers", type=count, metavar="N", help=f"{workers} (default: all)")
+
+
+def add_curve_option(parser: argparse.ArgumentParser) -> None:
+    """Add the option of the AP curves of whole objects to a parser."""
+    about = "AP curves of whole objects: from publications, or of LiDARs from our own scans"
+    form = "|".join(CURVE_MODELS)
+    parser.add_argument("--ap-model", choices=CURVE_MODELS, metavar=form, help=about)
+
+
+def with_curves(study: Study, args: argparse.Namespace) -> Study:
+    """Return the study with the AP curves of that option."""
+    model = getattr(args, "ap_model", None)
+    return study if model is None else replace(study, model=study.model.with_model(model))
 
 
 def count_up_to(greatest: int) -> Callable[[str], int]:
@@ -102,8 +112,7 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
     """Return the study with the changes of the command line's options."""
     if args.grid_samples is not None:
         study = replace(study, samples=args.grid_samples)
-    if (model := getattr(args, "ap_model", None)) is not None:
-        study = replace(study, model=study.model.with_model(model))
+    study = with_curves(study, args)
     state, weather = getattr(args, "state", None), getattr(args, "weather", None)
     if state or weather:
         study = under(study, study.conditions.one(state, weather))

@@ -12,6 +12,7 @@ from pe_core.sensors.kind import SIZES
 from pe_core.study import study_from_dict, study_to_dict
 from pe_tools import advice
 from pe_tools.cli.verbs import main
+from tests.engine import shapes
 
 OWN = pe.ApCurve(0.2, 0.1)
 SCANS = pe.PerceptionModel(model="scans")
@@ -29,6 +30,15 @@ position = [0.0, 0.0, 1.9]
 name = "front"
 model = "Camera 60 deg"
 position = [1.0, 0.0, 1.4]
+"""
+ADULT = """
+[vehicle]
+mesh = "car.npz"
+[[requirement]]
+name = "adult ahead"
+body = "adult"
+zone = { x = [12, 14], y = [-1, 1], step = 0.5 }
+criterion = { ap = 0.6 }
 """
 
 
@@ -116,6 +126,17 @@ def test_provisional_curves_are_one_line_and_the_option_chooses_them(
     assert capsys.readouterr().out.count("the curves from scans are provisional") == 1
 
 
+def test_a_check_takes_the_curves_and_tells_them(path, provisional, capsys):
+    """An adult whom a rig has to find with an AP of 0.6: it does by the curves from scans alone."""
+    path.write_text(f"{STUDY}{ADULT}", "utf-8")
+    car = shapes.box_car()
+    pe.write_mesh(path.parent / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
+    assert main(["check", str(path)]) == 3
+    assert "provisional" not in capsys.readouterr().err
+    assert main(["check", str(path), "--ap-model", "scans"]) == 0
+    assert capsys.readouterr().err.count("the curves from scans are provisional") == 1
+
+
 def test_the_result_says_which_curves_it_used(path, tmp_path, provisional, capsys):
     for model in ("paper", "scans"):
         folder = tmp_path / model
@@ -138,3 +159,16 @@ def test_complete_curves_need_no_warning(monkeypatch):
 def test_the_file_of_curves_is_read_only_when_it_is_needed(monkeypatch):
     monkeypatch.setattr(perception_module, "scan_curves", lambda: pytest.fail("read"))
     pe.PerceptionModel().object_curve("lidar", "car")
+
+
+def test_the_page_says_which_curves_it_used(path, tmp_path, provisional, capsys):
+    pages = {}
+    for model in ("paper", "scans"):
+        folder = tmp_path / f"page {model}"
+        assert main(["review", str(path), "--ap-model", model, "-o", str(folder)]) == 0
+        pages[model] = (folder / "review.html").read_text("utf-8")
+    told = "of LiDARs, fitted to detectors on simulated scans"
+    assert told in pages["scans"] and told not in pages["paper"]
+    assert "fitted to published detectors, or derived" in pages["paper"]
+    provisional_line = "the curves from scans are provisional"
+    assert provisional_line in pages["scans"] and provisional_line not in pages["paper"]

@@ -32,7 +32,7 @@ from pe_tools.validity.own.precision import ClassScene, average_precision, in_ri
 from pe_tools.validity.own.runs import RunFiles, runs
 from pe_tools.validity.own.scenes import CLASSES, NOBODY, scene
 from pe_tools.validity.own.segmentation import section
-from pe_tools.validity.own.study_page import page
+from pe_tools.validity.own.study_page import answer, page
 from tests.report.conftest import ROOT, pe
 from tests.thorough import THOROUGH
 
@@ -295,6 +295,8 @@ def test_the_page_is_that_of_the_saved_results():
     after = after_search_section(searches, searched, done_after)
     more = curves, after, camera_section(cameras, found, done_with_cameras), outside
     assert (folder / "README.md").read_text("utf-8") == page(PLAN, saved, done, *more)
+    readme = (ROOT / "README.md").read_text("utf-8")
+    assert answer(saved) in " ".join(readme.split()), "the README tells the answer of the page"
 
 
 def test_the_command_refuses_to_mix_results_and_says_what_is_missing(tmp_path):

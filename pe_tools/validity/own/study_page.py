@@ -64,15 +64,15 @@ on each other; shapes of a few solids; a small detector, trained with hundreds o
 not for sizes. In the plain world the ground is flat and there are no houses, which favours height. Absolute AP is
 no prediction for a product.
 
-**The answer.** {_answer(results)}
+**The answer.** {answer(results)}
 
 {done} of {planned} runs are done. The study was fixed before the first of them: [plan](plan.md). `pe validate --own
 --resume` does the next ones and writes this page; every figure is computed from the files in the folder `runs`.
 """
 
 
-def _answer(results: Json) -> str:
-    """Return the answer in three sentences; each has a verdict only when its runs are done."""
+def answer(results: Json) -> str:
+    """Return the answer in three sentences, also for the README; open until the runs are done."""
     verdicts = [row["verdict"] for row in results["statements"]]
     return f"{_within(verdicts[0])} {_good(verdicts[2:4])} {_across(verdicts[4:])}"
 

@@ -69,6 +69,8 @@ def _report(rows: list[Timing]) -> str:
         "",
         *requirement_searches.table_lines(),
         "",
+        "One search on more and more workers: [search_scale.md](search_scale.md).",
+        "",
         _machine(),
         "",
     ]

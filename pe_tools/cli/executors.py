@@ -22,6 +22,7 @@ from pe_core.study import Study
 
 from ..jobs import Checkpoint, Job, OptimizeJob, SearchState, read_search
 from ..sweep import FolderCheckpoints, RunCheckpoints, SweepRun, WorkerPool
+from .kept_memory import KeptMemory
 from .terminal import tell
 
 
@@ -220,7 +221,7 @@ class DaskWorkers:
     def __init__(self, address: str) -> None:
         self._address = address
         self._client = _client_of(address)
-        self.executor: Executor = self._client.get_executor(pure=False)
+        self.executor: Executor = KeptMemory(self._client.get_executor(pure=False))
         self._alone = False
         self._saved = ClusterCheckpoints(self._client)
         self.finish = self._saved.finish

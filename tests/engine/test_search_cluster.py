@@ -1,19 +1,21 @@
-"""One search of sixteen sensors by a Dask cluster on the loopback: the bits of one process."""
+"""One search of sixteen sensors by processes and a Dask cluster: the bits of one process."""
 
 import os
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.search.payload import Payload
+from pe_core.search import Goals, Payload, Processes
+from pe_tools.cli.kept_memory import KeptMemory
 from tests.engine import shapes
 from tests.thorough import THOROUGH
 
-WORKERS, SENSORS, EVALUATIONS = 4, 16, 120
+WORKERS, SENSORS, EVALUATIONS = 4, 16, 60
 
 
 class Noted:
@@ -48,30 +50,79 @@ def study():
     return pe.Study(pe.Rig(sensors), car, shapes.small_space())
 
 
-@pytest.mark.skipif(not THOROUGH, reason="starts four processes of a cluster")
-@pytest.mark.skipif(sys.platform == "win32", reason="as the other test of a cluster")
-def test_a_search_of_sixteen_sensors_by_four_workers_takes_the_steps_of_one_process(
-    study, tmp_path
-):
+def steps(objective, study, executor=None):
+    found = pe.optimize(
+        objective, study.rig, study.search_space(), evaluations=EVALUATIONS, executor=executor
+    )
+    return [(s.entropy, s.improved, [own.pose for own in s.best]) for s in found]
+
+
+@pytest.fixture(scope="module")
+def by_one_process(study):
+    return steps(study.evaluator(1024), study)
+
+
+@pytest.fixture
+def client():
+    """The client of a cluster of four workers."""
     distributed = pytest.importorskip("distributed")
-    evaluator = study.evaluator(1024)
-
-    def steps(objective, executor=None):
-        found = pe.optimize(
-            objective, study.rig, study.search_space(), evaluations=EVALUATIONS, executor=executor
-        )
-        return [(s.entropy, s.improved, [own.pose for own in s.best]) for s in found]
-
     options = {"host": "127.0.0.1", "dashboard_address": None, "threads_per_worker": 1}
     with (
         distributed.LocalCluster(n_workers=WORKERS, processes=True, **options) as cluster,
-        distributed.Client(cluster) as client,
+        distributed.Client(cluster) as connected,
     ):
-        client.wait_for_workers(WORKERS)
-        by_workers = steps(Noted(str(tmp_path), evaluator), client.get_executor())
-    assert by_workers == steps(evaluator)
-    unpickled = [path.name.split()[1] for path in tmp_path.glob("unpickled *")]
-    assert 1 < len(unpickled) == len(set(unpickled)) <= WORKERS, "the mesh comes once to each"
+        connected.wait_for_workers(WORKERS)
+        yield connected
+
+
+@pytest.mark.skipif(not THOROUGH, reason="starts four processes of a cluster")
+@pytest.mark.skipif(sys.platform == "win32", reason="as the other test of a cluster")
+def test_a_search_of_sixteen_sensors_by_workers_of_a_cluster_takes_the_steps_of_one_process(
+    study, client, by_one_process, tmp_path
+):
+    addresses = list(client.scheduler_info()["workers"])
+    for count in (1, 2, WORKERS):
+        noted = Noted(str(tmp_path), study.evaluator(1024))
+        executor = client.get_executor(workers=addresses[:count], pure=False)
+        assert steps(noted, study, KeptMemory(executor)) == by_one_process
+        files = list(tmp_path.glob("unpickled *"))
+        unpickled = [path.name.split()[1] for path in files]
+        assert 0 < len(unpickled) == len(set(unpickled)) <= count, "the mesh comes once to each"
+        for path in files:
+            path.unlink()
+
+
+@pytest.mark.skipif(not THOROUGH, reason="starts four processes of a cluster")
+@pytest.mark.skipif(sys.platform == "win32", reason="as the other test of a cluster")
+def test_a_job_sends_the_mesh_once_for_both_levels_of_its_search(study, client):
+    search = replace(study.search, evaluations=40, samples=1024, goals=Goals(sensitivity="off"))
+    given = replace(study, search=search, samples=1024)
+    sent, scatter = [], client.scatter
+
+    def counted(data, **options):
+        sent.extend(len(each.data) for each in data)
+        return scatter(data, **options)
+
+    client.scatter = counted
+    job, alone = pe.OptimizeJob(given), pe.OptimizeJob(given, 1)
+    job.executor = KeptMemory(client.get_executor(pure=False))
+    for each in (job, alone):
+        for _ in each:
+            pass
+    assert job.outcome.judged == alone.outcome.judged
+    assert len(sent) == 1 and sent[0] > study.vehicle.triangles.nbytes // 2
+
+
+@pytest.mark.skipif(not THOROUGH, reason="starts six processes")
+@pytest.mark.parametrize("count", [2, 4])
+def test_a_search_of_sixteen_sensors_by_processes_takes_the_steps_of_one(
+    study, by_one_process, count
+):
+    pool = Processes(count)
+    try:
+        assert steps(study.evaluator(1024), study, pool) == by_one_process
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
 
 
 def test_a_candidate_is_sent_without_the_mesh_and_without_models(study):

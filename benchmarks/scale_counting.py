@@ -1,0 +1,96 @@
+"""What a search on workers costs beside time: unpickled meshes, bytes on the loopback, processor.
+
+Workers import this file, so it is none that is run as a script.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import time
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from pathlib import Path
+
+import pe_core as pe
+from pe_core.search import Judgement, Objective, evaluate_all
+
+LOOPBACK = Path("/proc/net/dev")
+
+
+class CountedObjective:
+    """An objective that leaves a file each time a worker unpickles it, with the mesh.
+
+    Parameters
+    ----------
+    folder : str
+        Where the files are left.
+    objective : Objective
+    """
+
+    def __init__(self, folder: str, objective: Objective) -> None:
+        self.folder, self.objective = folder, objective
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        vars(self).update(state)
+        (Path(self.folder) / f"unpickled {os.getpid()} {time.monotonic_ns()}").touch()
+
+    def entropy(self, rig: pe.Rig) -> float:
+        """Return the entropy of a rig [nats]."""
+        return self.objective.entropy(rig)
+
+    def judge(self, rig: pe.Rig, below: float = math.inf) -> Judgement:
+        """Return the entropy of a rig, or a lower bound that is not below `below`."""
+        return self.objective.judge(rig, below)
+
+
+class BatchNotes:
+    """An objective that notes in this process how many candidates a search asks for at once."""
+
+    def __init__(self, objective: Objective, sizes: list[int]) -> None:
+        self._objective, self._sizes = objective, sizes
+
+    def entropy(self, rig: pe.Rig) -> float:
+        """Return the entropy of a rig [nats]."""
+        return self._objective.entropy(rig)
+
+    def judge(self, rig: pe.Rig, below: float = math.inf) -> Judgement:
+        """Return the entropy of a rig, or a lower bound that is not below `below`."""
+        return self._objective.judge(rig, below)
+
+    def evaluate_all(
+        self, rigs: Sequence[pe.Rig], cutoff: float, executor: Executor | None
+    ) -> list[Judgement]:
+        """Evaluate several rigs, as the objective inside does."""
+        self._sizes.append(len(rigs))
+        return evaluate_all(self._objective, rigs, cutoff, executor)
+
+
+def unpickled_by(folder: Path) -> list[int]:
+    """Return how many times each process unpickled an objective, and remove the files."""
+    files = list(folder.glob("unpickled *"))
+    processes = [path.name.split()[1] for path in files]
+    for path in files:
+        path.unlink()
+    return [processes.count(each) for each in sorted(set(processes))]
+
+
+def loopback_bytes() -> int:
+    """Return the bytes that went over the loopback since the machine was started."""
+    line = next(x for x in LOOPBACK.read_text("utf-8").splitlines() if x.strip().startswith("lo:"))
+    return int(line.split()[1])
+
+
+def processor_s() -> tuple[float, float]:
+    """Return the processor time of this process, and of all below it that live [s]."""
+    import psutil
+
+    own = psutil.Process()
+    times = [each.cpu_times() for each in (own, *own.children(recursive=True))]
+    used = [float(each.user + each.system) for each in times]
+    return used[0], sum(used[1:])
+
+
+def ideal_speedup(sizes: Sequence[int], workers: int) -> float:
+    """Return how much sooner batches end with so many workers, all candidates alike: computed."""
+    return sum(sizes) / sum(math.ceil(size / workers) for size in sizes)

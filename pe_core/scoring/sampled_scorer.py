@@ -154,7 +154,7 @@ class SampledScorer:
 
     def _entropy_of(self, rig: Rig, measured: Mapping[str, NDArray]) -> float:
         names = [s.name for s in rig]
-        return self._whole(*self._fusion.entropies(fused_early(rig, measured, names)))[0]
+        return rounded(float(np.mean(self._fusion.entropies(fused_early(rig, measured, names))[0])))
 
     def _entropies(self, rig: Rig, members: Collection[str]) -> tuple[Floats, NDArray[np.bool_]]:
         """Return entropy and visibility of every sampled voxel, for some of the rig's sensors."""

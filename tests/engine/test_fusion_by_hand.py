@@ -8,7 +8,7 @@ import pytest
 
 import pe_core as pe
 from pe_core import sensors as kinds
-from pe_core.metric import H_BLIND, POINTPILLARS, RTM3D, average_precision
+from pe_core.metric import H_BLIND, POINTPILLARS, RTM3D, average_precision, entropy_of
 from pe_core.metric.fusion import (
     Fusion,
     PlaneFusion,
@@ -251,3 +251,21 @@ def test_areas_in_single_precision_count_by_eleven_binary_digits():
     m = np.array([100.0, 100.06, 100.0625], np.float32)
     added = PlaneFusion(Fusion(pe.PerceptionModel()), (1, 1)).added("camera", m)
     assert added[0] == added[1] < added[2]
+
+
+@pytest.mark.parametrize("blind", ["floor", "literal"])
+@pytest.mark.parametrize("shape", [(1000,), (40, 25), (0,)])
+def test_voxels_taken_by_index_have_the_bits_of_those_taken_by_flags(blind, shape):
+    """The plain way: every group's m, at the voxels that a group beside the counted one sees."""
+    rng = np.random.default_rng(3)
+    counts = rng.integers(0, 30, shape) * (rng.random(shape) < 0.7)
+    areas = [rng.exponential(50.0, shape) * (rng.random(shape) < share) for share in (0.2, 0.4)]
+    groups = [("lidar", counts.astype(np.uint32)), *(("camera", m) for m in areas)]
+    fusion = Fusion(pe.PerceptionModel(blind))
+    entropies, seen = fusion.entropies(groups)
+    flags = (areas[0] > 0.0) | (areas[1] > 0.0) if blind == "floor" else np.ones(shape, bool)
+    precisions = [fusion.precision(m[flags], kind) for kind, m in groups]
+    assert np.array_equal(entropies[flags], entropy_of(late_fusion(precisions, blind)))
+    alone = fusion.tables("lidar").entropy[np.minimum(counts, fusion.saturation_count("lidar"))]
+    assert np.array_equal(entropies[~flags], alone[~flags])
+    assert np.array_equal(seen, (counts > 0) | (areas[0] > 0.0) | (areas[1] > 0.0))

@@ -7,30 +7,13 @@ next one, which takes twice as long as the evaluation itself.
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
-from functools import cache
 from typing import Any, TypeVar
 
+from pe_core.search.processes import keep_freed_memory
+
 T = TypeVar("T")
-
-M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3
-"""Parameters of mallopt (glibc's malloc.h)."""
-TRIM_BYTES, MMAP_BYTES = 1 << 28, 1 << 25
-"""Freed memory that a process keeps; size from which an array has pages of its own, glibc's
-maximum [bytes]."""
-
-
-@cache
-def keep_freed_memory() -> bool:
-    """Have this process keep freed memory; False where the C library cannot be told."""
-    try:
-        mallopt = ctypes.CDLL(None).mallopt
-    except (AttributeError, OSError, TypeError):  # not glibc: musl, macOS, Windows
-        return False
-    pairs = ((M_TRIM_THRESHOLD, TRIM_BYTES), (M_MMAP_THRESHOLD, MMAP_BYTES))
-    return all([mallopt(parameter, size) == 1 for parameter, size in pairs])
 
 
 def with_kept_memory(function: Callable[..., T], *args: Any, **kwargs: Any) -> T:

@@ -11,6 +11,7 @@ from typing import Any
 
 from pe_core.base.errors import InputError
 from pe_core.base.plugins import call_plugin, find_plugins, load_plugin, plugin_name
+from pe_core.search.processes import keep_freed_memory
 from pe_core.study import STUDY, Study, load_study
 from pe_core.version import __version__
 
@@ -40,6 +41,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     128 plus the number of a signal.
     """
     open_missing_streams()
+    keep_freed_memory()
 
     def work() -> Answer:
         given = sys.argv[1:] if argv is None else argv

@@ -8,7 +8,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from pe_tools.cli.kept_memory import KeptMemory, keep_freed_memory
+from pe_core.search.processes import keep_freed_memory
+from pe_tools.cli.kept_memory import KeptMemory
 from tests.engine.processes import ROOT
 
 DASK = {"MALLOC_TRIM_THRESHOLD_": "65536"}
@@ -16,7 +17,7 @@ DASK = {"MALLOC_TRIM_THRESHOLD_": "65536"}
 FAULTS = """
 import resource, sys
 import numpy as np
-from pe_tools.cli.kept_memory import keep_freed_memory
+from pe_core.search.processes import keep_freed_memory
 assert "keep" not in sys.argv or keep_freed_memory()
 def faults():
     return resource.getrusage(resource.RUSAGE_SELF).ru_minflt

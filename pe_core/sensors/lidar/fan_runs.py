@@ -83,23 +83,15 @@ RUN_FIELDS = tuple(field.name for field in fields(ChannelRuns))
 
 
 @dataclass(frozen=True, slots=True)
-class RunBlock:
+class RunBlock(ChannelRuns):
     """Runs of boxes (N,) at consecutive azimuth steps: `box` is (N,), all else (A, N).
 
-    Fields are those of `ChannelRuns`. Where a plane misses a box, `low` equals `high`.
+    Where a plane misses a box, `low` equals `high`.
     """
 
-    box: Ints
-    column: NDArray[np.int32]
-    low: Small
-    high: Small
-    near: Floats
-    far: Floats
-    unsure: Flags
-
-    def take(self, flags: Flags) -> ChannelRuns:
-        """Return the runs that are flagged (A, N)."""
-        index = np.flatnonzero(flags)
+    def take(self, index: NDArray) -> ChannelRuns:
+        """Return the runs with these flags (A, N)."""
+        index = np.flatnonzero(index)
         columns = {key: getattr(self, key).reshape(-1)[index] for key in RUN_FIELDS[1:]}
         return ChannelRuns(box=self.box[index % len(self.box)], **columns)
 

@@ -44,7 +44,7 @@ def ap_against_scores(
         panel.set_xlabel(label)
     axes[0].invert_xaxis()  # the better, the further right, as in the other panels
     axes[0].set_ylabel("mean AP of five classes")
-    axes[0].legend(loc="upper left", frameon=False, handletextpad=0.1)
+    axes[0].legend(loc="best", frameon=False, handletextpad=0.1)
     save_plot(figure, path)
 
 
@@ -85,7 +85,7 @@ def expected_against_found(path: Path, classes: Mapping[str, dict[str, Any]]) ->
         panel.set_ylim(0.0, 1.0)
         remove_frame(panel)
     axes[0].set_ylabel("expected AP in traffic")
-    axes[0].legend(loc="lower right", frameon=False, handletextpad=0.1)
+    axes[-1].legend(loc="upper left", frameon=False, handletextpad=0.1)
     axes[len(axes) // 2].set_xlabel("AP found")
     save_plot(figure, path)
 

@@ -168,6 +168,8 @@ def begin_worker(key: str = "", data: bytes = b"") -> None:
     """In a worker: keep the payload, leave signals to the parent process, and end with it."""
     receive(key, data)
     keep_freed_memory()
+    if hasattr(signal, "pthread_sigmask"):  # blocked until now: see `_signals_blocked`
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGTERM])
     for name in TERMINAL_SIGNALS:
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
@@ -213,16 +215,17 @@ def _without_main() -> Iterator[None]:
 
 @contextmanager
 def _signals_blocked() -> Iterator[None]:
-    """Block `TERMINAL_SIGNALS` in the processes that are started meanwhile.
+    """Block SIGTERM and `TERMINAL_SIGNALS` here, and in the processes that are started meanwhile.
 
-    A terminal sends these signals to all processes at once, also to one that does not ignore them
-    yet: a worker would end in the middle of an import, with a traceback. The process that tracks
-    semaphores is started here, too: it ignores all of them but SIGHUP.
+    A handler that raises in the middle of `submit` would leave a lock of the pool taken, for which
+    its thread then waits for ever. A terminal sends its signals to all processes at once, also to
+    one that does not ignore them yet: a worker would end in the middle of an import, with a
+    traceback. The process that tracks semaphores is started here, too: it ignores all but SIGHUP.
     """
     if not hasattr(signal, "pthread_sigmask"):  # Windows has no such signals
         yield
         return
-    numbers = {getattr(signal, name) for name in TERMINAL_SIGNALS}
+    numbers = {signal.SIGTERM, *(getattr(signal, name) for name in TERMINAL_SIGNALS)}
     before = signal.pthread_sigmask(signal.SIG_BLOCK, numbers)
     try:
         resource_tracker.ensure_running()

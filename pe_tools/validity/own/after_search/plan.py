@@ -21,7 +21,7 @@ START = "start"
 """Name of the placement before a search; those after it have that of their objective."""
 RIGS = ("experiment_4", "shuttle")
 TITLES = {RIGS[0]: "experiment 4", RIGS[1]: "shuttle"}
-Bounds = Mapping[str, tuple[float, float]]
+AxisRanges = Mapping[str, tuple[float, float]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ class SearchedRig:
     vehicle: str
     model: str
     poses: tuple[PoseValues, ...]
-    bounds: Bounds
+    bounds: AxisRanges
     clear_housings: bool
 
 

@@ -11,8 +11,7 @@ from .advice import PROVISIONAL, Advice
 
 def curve_warnings(model: PerceptionModel) -> tuple[Advice, ...]:
     """Return a warning where curves of objects are those from scans and provisional."""
-    fitted = scan_curves()
-    if model.model != SCANS or fitted.complete:
+    if model.model != SCANS or (fitted := scan_curves()).complete:
         return ()
     text = (
         f"the curves from scans are provisional: {fitted.runs} of {fitted.planned} runs of their "

@@ -164,9 +164,8 @@ def _tilted(tester: BoxTester, tilted: TiltedBoxes) -> Iterator[tuple[FanBeams, 
 def _fans(tester: BoxTester, distance: Floats) -> Iterator[tuple[Fan, FanBeams]]:
     """Yield the fans and their beams; boxes (N,) at a `distance` may be out of range in part."""
     lidar = tester.lidar
-    beyond = tester.max_distances() >= lidar.max_range
+    unsure = (distance <= lidar.min_range) | (tester.max_distances() >= lidar.max_range)
     for fan in fans_of(lidar):
-        unsure = (distance <= lidar.min_range) | beyond
         yield fan, FanBeams.of(fan, lattice_of(lidar), tester.ends, unsure)
 
 

@@ -149,8 +149,21 @@ class StudyPlan:
 @cache
 def full_plan() -> StudyPlan:
     """Return the plan of the study."""
-    text = resources.files(__package__).joinpath(PLAN_FILE).read_text(encoding="utf-8")
-    return plan_of(text)
+    return plan_of(_text_of(__package__))
+
+
+def text_and_digest(package: str) -> tuple[str, str]:
+    """Return the text of the plan of a study that shares this one, and the digest of both files."""
+    text = _text_of(package)
+    return text, _digest(_text_of(__package__) + text)
+
+
+def _text_of(package: str) -> str:
+    return resources.files(package).joinpath(PLAN_FILE).read_text(encoding="utf-8")
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 @cache
@@ -182,7 +195,7 @@ def plan_of(text: str) -> StudyPlan:
     table = Table(tomllib.loads(text), PLAN_FILE)
     table.whole("version")
     plan = StudyPlan(
-        digest=hashlib.sha256(text.encode()).hexdigest()[:16],
+        digest=_digest(text),
         seed=table.whole("seed"),
         vehicles=table.table("vehicles").texts("names"),
         placements=placement_rule(table.table("placements")),

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib import resources
 
 from pe_core.base import Table
 
-from .. import plan as lidar_plan
 from ..placements import SHUTTLE
-from ..plan import PLAN_FILE, StudyPlan, full_plan, numbers_of, quick_plan
+from ..plan import PLAN_FILE, StudyPlan, full_plan, numbers_of, quick_plan, text_and_digest
 from ..posed_sensors import PoseValues
 
 START = "start"
@@ -82,11 +79,7 @@ class AfterSearchPlan:
 @cache
 def full_after_search_plan() -> AfterSearchPlan:
     """Return the plan of the study."""
-    own, shared = (
-        resources.files(package).joinpath(PLAN_FILE).read_text(encoding="utf-8")
-        for package in (__package__, lidar_plan.__package__)
-    )
-    return after_search_plan_of(own, hashlib.sha256((shared + own).encode()).hexdigest()[:16])
+    return after_search_plan_of(*text_and_digest(__package__))
 
 
 @cache

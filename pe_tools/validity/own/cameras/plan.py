@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib import resources
 
 from pe_core.base import Table
 from pe_core.sensors.camera import Camera
 
-from .. import plan as lidar_plan
 from ..plan import (
     PLAN_FILE,
     SPLITS,
@@ -23,6 +20,7 @@ from ..plan import (
     placement_rule,
     quick_plan,
     region_of,
+    text_and_digest,
     training_rule,
 )
 
@@ -85,11 +83,7 @@ class CameraPlan:
 @cache
 def full_camera_plan() -> CameraPlan:
     """Return the plan of the study of cameras."""
-    own, shared = (
-        resources.files(package).joinpath(PLAN_FILE).read_text(encoding="utf-8")
-        for package in (__package__, lidar_plan.__package__)
-    )
-    return camera_plan_of(own, hashlib.sha256((shared + own).encode()).hexdigest()[:16])
+    return camera_plan_of(*text_and_digest(__package__))
 
 
 @cache

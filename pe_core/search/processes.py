@@ -135,11 +135,11 @@ class LazyProcesses:
     count : int, optional
         How many processes; by default as many as there are processors, 1: none.
     common : iterable, optional
-        What their tasks have in common.
+        What their tasks have in common; it is read when they start.
     """
 
     def __init__(self, count: int | None = None, common: Iterable[object] = ()) -> None:
-        self._count, self._common, self._began = count, tuple(common), time.monotonic()
+        self._count, self._common, self._began = count, common, time.monotonic()
         self._thread: threading.Thread | None = None
         self._processes: Processes | None = None
         self._ended = False

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager, suppress
+from itertools import chain
 
 from pe_core.search import LazyProcesses, Objective, Unreadable, send_payload, shared_parts
 
@@ -28,14 +29,15 @@ def candidate_workers(
     others : iterable
         What else the searches have in common, such as models of sensors.
     """
-    parts = [part for objective in objectives for part in shared_parts(objective)]
+    parts = (part for objective in objectives for part in shared_parts(objective))
+    common = chain(parts, others)  # read when the processes start, if they do
     if job.executor is not None:
         given = job.executor
         with suppress(Unreadable):  # such candidates are evaluated here
-            send_payload(given, (*parts, *others))
+            send_payload(given, common)
         yield lambda: given
         return
-    helpers = LazyProcesses(job.workers, (*parts, *others))
+    helpers = LazyProcesses(job.workers, common)
     try:
         yield helpers
     finally:

@@ -376,7 +376,8 @@ class _DesignJob(OptimizeJob):
         """Search without scoring the start and the result."""
         waiting = Progress("preparing", 0.0)
         yield from self._beside(self._checked, lambda: waiting)
-        yield from self._search()
+        with self._candidate_workers() as self._helpers:
+            yield from self._search()
 
 
 def _fewest_broken(designs: Sequence[Design]) -> list[Design]:

@@ -28,7 +28,7 @@ from pe_core.study.requirement_search import conflicts, feasible_first, is_infea
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 
 from ..advice import Advice, condition_warnings, fragile, unmet
-from ..sensitivity import Archive, Sensitivity, analyse
+from ..sensitivity import Archive, FreshSamples, Sensitivity, analyse, fresh_objectives, is_analysed
 from .candidate_workers import ExecutorSource, candidate_workers
 from .job import HistoryRow, Job, Outcome, Progress, StartEnd, begun
 from .searched_figure import IN_AP, searched_figure, searched_samples
@@ -125,6 +125,7 @@ class OptimizeJob(Job):
         self._ended: list[HistoryRow] = []
         self.stop_reason = ""
         self._archive = Archive()
+        self._helpers: ExecutorSource = lambda: None
         self._first: HistoryRow | None = None
         self._progress = Progress("preparing", 0.0)
 
@@ -151,6 +152,12 @@ class OptimizeJob(Job):
         """Evaluators of the rig, one for each level of the search method."""
         return [self._evaluator_of(samples) for samples in self.study.search.level_samples]
 
+    @cached_property
+    def _fresh_objectives(self) -> list[Objective]:
+        """What the result is analysed with; empty without an analysis."""
+        wanted = self.analyses and is_analysed(self.study)
+        return fresh_objectives(self.study, self.workers) if wanted else []
+
     def _evaluator_of(self, samples: int) -> RigJudge:
         """Return what evaluates candidates on a number of voxels, or in its share of scenes."""
         if is_by_ap(self.study):
@@ -173,6 +180,10 @@ class OptimizeJob(Job):
         preparing = Progress("preparing", 0.0)
         if (yield from self._beside(self._checked, lambda: preparing)) is None:
             return
+        with self._candidate_workers() as self._helpers:
+            yield from self._scored_and_searched()
+
+    def _scored_and_searched(self) -> Iterator[Progress]:
         first = yield from self._scored(
             self.study.rig, Progress("scoring the start", 0.0), self.before
         )
@@ -230,13 +241,13 @@ class OptimizeJob(Job):
         self, rig: Rig, waiting: Progress, known: Score | None = None, to_the_end: bool = False
     ) -> Generator[Progress, None, _Scored | None]:
         """Score a placement; of a search by expected AP, on objects in traffic, too."""
+        by_ap = is_by_ap(self.study)
+        apart = by_ap and searched_study(self.study).targets != self.study.targets
+        scoring = begun(partial(self._in_traffic.score, rig)) if apart else None
         score = known or (yield from self._score(rig, waiting, to_the_end=to_the_end))
-        if score is None or not is_by_ap(self.study):
-            return None if score is None else _Scored(score)
-        if searched_study(self.study).targets == self.study.targets:
-            return _Scored(score, score.objects)
-        work = partial(self._in_traffic.score, rig)
-        found = yield from self._beside(work, lambda: waiting, to_the_end)
+        if score is None or scoring is None:
+            return None if score is None else _Scored(score, score.objects if by_ap else None)
+        found = yield from self._awaited(scoring, lambda: waiting, to_the_end)
         return None if found is None else _Scored(score, found.objects)
 
     def _better_of(self, before: _Scored) -> Generator[Progress, None, tuple[_Scored, Study]]:
@@ -250,7 +261,6 @@ class OptimizeJob(Job):
         return before, self.study  # the search's sample overrated the placement
 
     def _about(self, stage: str, value: float) -> Progress:
-        """Return the progress of a stage after the search."""
         return Progress(stage, 1.0, value, self.evaluations, searched_figure(self.study))
 
     def _robustness(
@@ -275,9 +285,9 @@ class OptimizeJob(Job):
             return None
 
         def work() -> Sensitivity | None:
-            searched_on, goes_on = self._evaluators[-1], lambda: not self.stopped
-            given = (self.study, best, searched_on, self._archive, self.evaluations)
-            return analyse(*given, self.workers, goes_on)
+            samples = FreshSamples(best, best.rig, self._fresh_objectives, self._helpers)
+            given = (self.study, best, self._evaluators[-1], self._archive, self.evaluations)
+            return analyse(*given, samples, lambda: not self.stopped)
 
         return (yield from self._beside(work, lambda: waiting, to_the_end=True))
 
@@ -311,35 +321,38 @@ class OptimizeJob(Job):
         rigs = {"": self.study.rig, **{s.name: s.placed(self.study.rig) for s in starts}}
         ended: list[list[HistoryRow]] = []
         began = time.monotonic()
-        with self._candidate_workers() as helpers:
-            for number, (name, rig) in enumerate(rigs.items()):
-                if self.stopped or self.stop_reason == TARGET:
-                    break
-                if number:  # the best so far stays the job's until a start ends better
-                    self.history = []
-                figure = searched_figure(self.study)
-                watch = StopWatch(self.study.search.goals.stop, self._objectives, began, figure)
-                share = number / len(rigs), 1.0 / len(rigs)
-                yield from self._search_from(rig, objectives, helpers, watch, share)
-                if len(rigs) > 1 and self.history:
-                    ended.append(self.history)
-                    entropy = objectives[-1].entropy(self.history[-1].rig)
-                    self.ends.append(StartEnd(name, entropy, self.evaluations))
-                    best = min(range(len(ended)), key=lambda k: self.ends[k].entropy)
-                    self.history = self._ended = ended[best]
+        for number, (name, rig) in enumerate(rigs.items()):
+            if self.stopped or self.stop_reason == TARGET:
+                break
+            if number:  # the best so far stays the job's until a start ends better
+                self.history = []
+            figure = searched_figure(self.study)
+            watch = StopWatch(self.study.search.goals.stop, self._objectives, began, figure)
+            share = number / len(rigs), 1.0 / len(rigs)
+            yield from self._search_from(rig, objectives, watch, share)
+            if len(rigs) > 1 and self.history:
+                ended.append(self.history)
+                entropy = objectives[-1].entropy(self.history[-1].rig)
+                self.ends.append(StartEnd(name, entropy, self.evaluations))
+                best = min(range(len(ended)), key=lambda k: self.ends[k].entropy)
+                self.history = self._ended = ended[best]
 
     @contextmanager
     def _candidate_workers(self) -> Iterator[ExecutorSource]:
-        """Yield what evaluates candidates, until the search ends."""
+        """Yield what evaluates candidates of the search and of its analysis."""
         models = (sensor.model for sensor in self.study.rig)
-        with candidate_workers(self, self._objectives, models) as helpers:
+        with candidate_workers(self, self._all_objectives(), models) as helpers:
             yield helpers
+
+    def _all_objectives(self) -> Iterator[Objective]:
+        """Yield the objectives of search and analysis; the latter's are made when asked for."""
+        yield from self._objectives
+        yield from self._fresh_objectives
 
     def _search_from(
         self,
         rig: Rig,
         objectives: list[Objective],
-        helpers: ExecutorSource,
         watch: StopWatch,
         share: tuple[float, float],
     ) -> Iterator[Progress]:
@@ -353,7 +366,7 @@ class OptimizeJob(Job):
             search.schedule,
             method=search.method,
             evaluations=round(search.evaluations * share[1]),
-            executor=helpers,
+            executor=self._helpers,
         )
         while step := (yield from self._awaited(begun(lambda: next(steps, None)), self._now)):
             fraction = share[0] + share[1] * step.fraction

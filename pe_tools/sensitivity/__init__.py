@@ -3,10 +3,10 @@
 All of it is evaluated on voxels that the search has not seen. Nothing here changes a result.
 """
 
-from .analysis import Flattery, Sensitivity, analyse, budget_of
+from .analysis import Flattery, Sensitivity, analyse, budget_of, is_analysed
 from .archive import Archive
 from .flatness import FAR, FLAT, NEAR, STEEP, AxisCost
-from .fresh_samples import Difference
+from .fresh_samples import Difference, FreshSamples, fresh_objectives
 from .moves import PoseStep
 from .optima import Endings, RunnerUp
 from .reading import sensitivity_from_dict
@@ -24,6 +24,7 @@ __all__ = [
     "Difference",
     "Endings",
     "Flattery",
+    "FreshSamples",
     "PoseStep",
     "RunnerUp",
     "Sensitivity",
@@ -31,6 +32,8 @@ __all__ = [
     "SizeGain",
     "analyse",
     "budget_of",
+    "fresh_objectives",
+    "is_analysed",
     "sensitivity_from_dict",
     "sensitivity_lines",
     "size_gain_text",

@@ -115,6 +115,14 @@ class Sensitivity:
         }
 
 
+def is_analysed(study: Study) -> bool:
+    """Return whether the result of a long search is analysed.
+
+    A search over states and weathers minimises what no fresh sample has.
+    """
+    return study.search.goals.sensitivity != OFF and study.search.conditions is None
+
+
 def budget_of(study: Study, evaluations: int) -> tuple[tuple[float, ...], bool] | None:
     """Return the steps of the table and whether the endings are examined; None for no analysis.
 
@@ -125,8 +133,8 @@ def budget_of(study: Study, evaluations: int) -> tuple[tuple[float, ...], bool] 
         Of the search. Short searches have less, so that the analysis does not outlast them.
     """
     wanted, sensors = study.search.goals.sensitivity, len(study.rig)
-    if wanted == OFF or study.search.conditions is not None:
-        return None  # a search over states and weathers minimises what no fresh sample has
+    if not is_analysed(study):
+        return None
     if wanted == FULL:
         return (NEAR, FAR), True
     left = evaluations // SHARE
@@ -151,7 +159,7 @@ def analyse(
     searched_on: RigJudge,
     archive: Archive,
     evaluations: int,
-    workers: int | None = None,
+    samples: FreshSamples,
     goes_on: Callable[[], bool] = lambda: True,
 ) -> Sensitivity | None:
     """Return the sensitivity analysis of a search's result; None where its budget is too small.
@@ -168,7 +176,8 @@ def analyse(
         What the search evaluated.
     evaluations : int
         How many.
-    workers : int, optional
+    samples : FreshSamples
+        Of the study with the result, which is their reference.
     goes_on : callable
         False: the user has stopped the job; the analysis is given up.
     """
@@ -176,7 +185,7 @@ def analyse(
     if parts is None or not goes_on():
         return None
     steps, with_endings = parts
-    samples, space = FreshSamples(best, best.rig, workers), start.search_space()
+    space = start.search_space()
     around = Neighbourhood(best.rig, space)
     axes = []
     for row in flatness(samples, around, steps):

@@ -60,11 +60,15 @@ def flatness(
     samples: FreshSamples, neighbourhood: Neighbourhood, steps: tuple[float, ...] = (NEAR, FAR)
 ) -> Iterator[AxisCost]:
     """Yield the costs of each axis of each sensor, in the rig's order."""
+    both = (*(-each for each in steps), *steps)
     for sensor in samples.reference:
+        moved = {
+            (axis, units): lone_move(samples.reference, PoseStep(sensor.name, axis, units))
+            for axis in AXES
+            for units in both
+        }
+        samples.evaluate([samples.reference, *moved.values()])
         for axis in AXES:
-            cost = {}
-            for units in (*(-each for each in steps), *steps):
-                step = PoseStep(sensor.name, axis, units)
-                cost[units] = samples.change(lone_move(samples.reference, step))
+            cost = {units: samples.change(moved[axis, units]) for units in both}
             status = neighbourhood.status(sensor.name, axis)
             yield AxisCost(sensor.name, axis, status, cost, samples.steep)

@@ -7,6 +7,8 @@ on the same voxels, and their standard error follows from the scatter over the s
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Executor
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -16,7 +18,7 @@ from numpy.typing import NDArray
 from pe_core.scene.rig import Rig
 from pe_core.scoring import Evaluator, RigJudge
 from pe_core.scoring.score import rounded
-from pe_core.search import Objective, objective_of
+from pe_core.search import Objective, evaluate_all, objective_of
 from pe_core.study.objective_search import is_by_ap, on_objects, searched_study
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 
@@ -29,7 +31,8 @@ T_95 = 2.353
 MIN_VOXELS, MIN_SCENES = 2_048, 8
 """Size of one sample at least."""
 MAX_VOXELS = 8_192
-"""Size of one sample at most: all of them together are half of the default search's voxels."""
+"""Size of one sample at most: all of them together are half of the default search's voxels. Of a
+study's scenes it is half, too, as many as its search evaluates."""
 GOLDEN = (0.8191725133961645, 0.6710436067037893, 0.5497004779019703)
 """Powers of the inverse of 1.2207..., the root of x^4 = x + 1 (Roberts' R3 sequence)."""
 STEEP_NATS, STEEP_AP = 0.01, 0.001
@@ -71,16 +74,21 @@ class FreshSamples:
     study : Study
     reference : Rig
         Differences are taken from this rig: the result of the search.
-    workers : int, optional
+    objectives : sequence of Objective, optional
+        The `fresh_objectives` of the study; by default they are made here.
+    helpers : callable, optional
+        Returns the executor that evaluates rigs; by default this thread does.
     """
 
-    def __init__(self, study: Study, reference: Rig, workers: int | None = None) -> None:
-        self._study = study
-        evaluators = [_evaluator(study, number, workers) for number in range(SAMPLES)]
-        search = study.search
-        self._objectives: list[Objective] = [
-            objective_of(each, search.tolerance, search.seed) for each in evaluators
-        ]
+    def __init__(
+        self,
+        study: Study,
+        reference: Rig,
+        objectives: Sequence[Objective] = (),
+        helpers: Callable[[], Executor | None] = lambda: None,
+    ) -> None:
+        self._study, self._helpers = study, helpers
+        self._objectives = objectives or fresh_objectives(study)
         self._values: dict[tuple[object, ...], Floats] = {}
         self.reference = reference
 
@@ -101,10 +109,18 @@ class FreshSamples:
 
     def values(self, rig: Rig) -> Floats:
         """Return the entropy of a rig on each sample, (SAMPLES,) [nats]."""
-        key = tuple((s.name, s.pose.position, s.pose.rpy) for s in rig)
-        if key not in self._values:
-            self._values[key] = np.array([each.entropy(rig) for each in self._objectives])
-        return self._values[key]
+        self.evaluate([rig])
+        return self._values[_key(rig)]
+
+    def evaluate(self, rigs: Iterable[Rig]) -> None:
+        """Evaluate rigs side by side, as far as they are not known: `values` then has them."""
+        new = {key: rig for rig in rigs if (key := _key(rig)) not in self._values}
+        if not new:
+            return
+        executor, asked = self._helpers(), list(new.values())
+        by_sample = [evaluate_all(o, asked, executor=executor) for o in self._objectives]
+        for key, found in zip(new, zip(*by_sample, strict=True), strict=True):
+            self._values[key] = np.array([each.entropy for each in found])
 
     def mean(self, rig: Rig) -> Difference:
         """Return the entropy of a rig over all samples, with its standard error [nats]."""
@@ -115,6 +131,17 @@ class FreshSamples:
         return _mean(self.values(rig) - self.values(self.reference if base is None else base))
 
 
+def fresh_objectives(study: Study, workers: int | None = None) -> list[Objective]:
+    """Return what evaluates rigs on each fresh sample; it depends on no placement."""
+    search = study.search
+    evaluators = [_evaluator(study, number, workers) for number in range(SAMPLES)]
+    return [objective_of(each, search.tolerance, search.seed) for each in evaluators]
+
+
+def _key(rig: Rig) -> tuple[object, ...]:
+    return tuple((s.name, s.pose.position, s.pose.rpy) for s in rig)
+
+
 def _mean(values: Floats) -> Difference:
     spread = float(np.std(values, ddof=1))
     return Difference(float(np.mean(values)), spread / len(values) ** 0.5)
@@ -123,7 +150,7 @@ def _mean(values: Floats) -> Difference:
 def _size(study: Study) -> int:
     """Return the voxels (or scenes) of one sample: fewer where a tolerance has many cases."""
     if searched_study(study).targets.are_objects:
-        return max(MIN_SCENES, study.targets.scenes // SAMPLES)
+        return max(MIN_SCENES, study.targets.scenes // (2 * SAMPLES))
     cases = len(study.search.tolerance.cases(study.rig)) if study.search.tolerance.is_on else 1
     wanted = (study.search.samples or DEFAULT_SEARCH_SAMPLES) // (2 * SAMPLES)
     fewer = min(wanted, MAX_VOXELS) // max(1, cases // 4)

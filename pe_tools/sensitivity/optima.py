@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain, islice
 from typing import Any
 
 from pe_core.base.degrees import degrees_in_file
@@ -109,7 +110,10 @@ class Basins:
     def endings(self, placements: Iterator[Rig]) -> Endings:
         """Return the optima apart from the reference among placements of a search."""
         apart = self._apart(placements)
+        self._samples.evaluate(apart)
         apart.sort(key=lambda rig: self._samples.mean(rig).mean)
+        ways = (self._between(rig, self._samples.reference) for rig in apart)
+        self._samples.evaluate(chain.from_iterable(way for way in ways if way))
         found: list[Rig] = []
         same = 0
         for rig in apart:
@@ -143,18 +147,23 @@ class Basins:
         if is_near(one, other):
             return False
         worse = one if self._samples.change(one, other).mean > 0.0 else other
-        for rig in self._between(one, other):
-            if rig is None or self._samples.change(rig, worse).is_loss:
-                return True
-        return False
+        way = self._between(one, other)
+        if way is None:
+            return True
+        self._samples.evaluate(way)
+        return any(self._samples.change(rig, worse).is_loss for rig in way)
 
-    def _between(self, one: Rig, other: Rig) -> Iterator[Rig | None]:
-        """Yield placements on the way; None for one that breaks a rule."""
+    def _between(self, one: Rig, other: Rig) -> list[Rig] | None:
+        """Return placements on the way; None if one of them breaks a rule."""
         first, last = (self._vector(rig) for rig in (one, other))
+        way = []
         for share in BETWEEN:
             vector = [a + share * (b - a) for a, b in zip(first, last, strict=True)]
             rig = self._coding.candidate(vector).rig
-            yield rig if self._coding.allowed(rig) else None
+            if not self._coding.allowed(rig):
+                return None
+            way.append(rig)
+        return way
 
     def _vector(self, rig: Rig) -> tuple[float, ...]:
         return Parametrization(rig, self._space).start.vector
@@ -164,11 +173,13 @@ class Basins:
         coding = Parametrization(rig, self._space)
         best, left, scale = coding.start, DESCENT, 1.0
         for _ in range(HALVINGS + 1):
-            for candidate in list(self._around(coding, best, scale)):
-                if left and coding.allowed(candidate.rig):
-                    left -= 1
-                    if self._samples.change(candidate.rig, best.rig).mean < 0.0:
-                        best = candidate
+            around = (c for c in self._around(coding, best, scale) if coding.allowed(c.rig))
+            asked = list(islice(around, left))
+            left -= len(asked)
+            self._samples.evaluate(candidate.rig for candidate in asked)
+            for candidate in asked:
+                if self._samples.change(candidate.rig, best.rig).mean < 0.0:
+                    best = candidate
             scale /= 2.0
         return best.rig
 

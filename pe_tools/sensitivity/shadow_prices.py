@@ -106,7 +106,9 @@ def shadow_prices(
 def _of_design(
     samples: FreshSamples, neighbourhood: Neighbourhood, unmet: Unmet | None
 ) -> Iterator[ShadowPrice]:
-    for move in neighbourhood.design_moves():
+    moves = list(neighbourhood.design_moves())
+    samples.evaluate(move.rig for move in moves)
+    for move in moves:
         gain = samples.change(move.rig)
         if gain.is_gain:
             broken = () if unmet is None else unmet(move.rig)

@@ -16,7 +16,7 @@ from typing import Any
 
 from pe_core import catalog
 from pe_core.scene.housing import Housing
-from pe_core.scene.rig import Sensor
+from pe_core.scene.rig import Rig, Sensor
 from pe_core.search import SlotMount, pose_values
 
 from .flatness import FAR
@@ -172,13 +172,20 @@ class SizePricing:
         return [step._replace(units=math.copysign(each, step.units)) for each in sorted(far)]
 
     def _best(self, size: str, sensors: tuple[str, ...], steps: Sequence[PoseStep]) -> SizeGain:
-        linked = self._around.links
-        gains = []
-        for step in steps:
-            alone = step.sensor in linked
-            rig = lone_move(self._around.rig, step) if alone else self._around.design_move(step).rig
-            gains.append(SizeGain(size, sensors, step, self._samples.change(rig)))
-        return min(gains, key=_mean)
+        rigs = [self._moved(step) for step in steps]
+        self._samples.evaluate(rigs)
+        return min(
+            (
+                SizeGain(size, sensors, step, self._samples.change(rig))
+                for step, rig in zip(steps, rigs, strict=True)
+            ),
+            key=_mean,
+        )
+
+    def _moved(self, step: PoseStep) -> Rig:
+        if step.sensor in self._around.links:
+            return lone_move(self._around.rig, step)
+        return self._around.design_move(step).rig
 
 
 def smaller_housings(sensor: Sensor, housing: Housing) -> Iterator[tuple[str, Housing]]:

@@ -1,6 +1,7 @@
 """How sure a search is: costs by axis, active constraints, other optima, flattery; its limits."""
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -52,7 +53,7 @@ def outcome():
 
 def test_costs_are_those_of_plain_evaluations_and_the_result_is_not_touched(outcome):
     found, rig = outcome.sensitivity, outcome.study.rig
-    samples = FreshSamples(study(), rig, 1)
+    samples = FreshSamples(study(), rig)
     assert found.voxels == samples.size and len(samples._objectives) == SAMPLES
     row = next(each for each in found.axes if each.axis == "z")
     pose = rig["roof"].pose
@@ -66,6 +67,25 @@ def test_costs_are_those_of_plain_evaluations_and_the_result_is_not_touched(outc
     without = finished(pe.OptimizeJob(study("off"), 1))
     assert without.sensitivity is None and without.judged == outcome.judged
     assert without.study.rig["roof"].pose == pose and without.after.entropy == outcome.after.entropy
+
+
+class CountingThreads(ThreadPoolExecutor):
+    """Threads as workers, which count their tasks."""
+
+    tasks = 0
+
+    def submit(self, fn, /, *args, **kwargs):
+        self.tasks += 1
+        return super().submit(fn, *args, **kwargs)
+
+
+def test_workers_do_the_analysis_and_find_the_same(outcome):
+    job = pe.OptimizeJob(study(), 1)
+    with CountingThreads(2) as threads:
+        job.executor = threads
+        by_workers = finished(job)
+    assert threads.tasks > SAMPLES * by_workers.sensitivity.evaluations
+    assert by_workers.sensitivity.to_dict() == outcome.sensitivity.to_dict()
 
 
 def test_yaw_of_a_spinning_lidar_is_flatter_than_its_height(outcome):
@@ -82,6 +102,9 @@ class Slope:
     def value(self, rig):
         x, _, z = rig["roof"].pose.position
         return -3.0 * z - 2.0 * x
+
+    def evaluate(self, rigs):
+        """Nothing is computed beforehand."""
 
     def change(self, rig, base=None):
         return Difference(self.value(rig) - self.value(base or self.reference), 0.0)
@@ -259,7 +282,7 @@ class Wells:
     def mean(self, rig):
         return Difference(self.value(rig), 0.0)
 
-    change = Slope.change
+    change, evaluate = Slope.change, Slope.evaluate
 
 
 def at(rig, x):
@@ -308,7 +331,7 @@ def test_a_short_search_is_not_outlasted_by_its_analysis():
     assert budget_of(auto, 300) == ((1.0, 5.0), False)
     assert budget_of(auto, 2000) == ((1.0, 5.0), True)
     evaluator = auto.evaluator(2048)
-    given = (auto, auto, evaluator, Archive(), 10**6, 1)
+    given = (auto, auto, evaluator, Archive(), 10**6, FreshSamples(auto, auto.rig))
     assert analyse(*given, lambda: False) is None
 
 

@@ -226,7 +226,7 @@ def _cluster(count: int, kept: bool = True) -> Iterator[Executor]:
     """Yield a cluster's executor: as `pe --scheduler` has it, or as a program has it of Dask."""
     from distributed import Client, LocalCluster
 
-    from pe_tools.cli.kept_memory import KeptMemory
+    from pe_tools.cli.cluster_executor import ClusterExecutor
 
     options: dict[str, Any] = {"host": "127.0.0.1", "dashboard_address": None}
     with (
@@ -235,7 +235,7 @@ def _cluster(count: int, kept: bool = True) -> Iterator[Executor]:
     ):
         client.wait_for_workers(count)
         executor = client.get_executor(pure=False)
-        yield KeptMemory(executor) if kept else executor
+        yield ClusterExecutor(executor) if kept else executor
 
 
 WORKERS: dict[str, Callable[[], Any]] = {
@@ -277,9 +277,9 @@ def table(found: Json) -> list[str]:
         "its answer. On the loopback Dask's own messages come on top, those of an idle cluster",
         "are taken off. In a batch all sixteen sensors of each candidate have moved.",
         "Dask has its workers give freed memory back at once (last rows); `pe` has them keep it.",
-        "Each worker unpickles the mesh once. Every two seconds Dask's memory manager drops all",
-        "copies of the payload but one, and sends them again: that is most of the bytes with two",
-        "workers or more (8.6 kB a candidate without it, 33 kB with it, two workers).",
+        "Each worker unpickles the mesh once. `pe` sends it once, too; in the last rows Dask's",
+        "memory manager drops all copies of the payload but one every two seconds, and sends them",
+        "again.",
         "",
         f"The search asked for {_asked(found['rows'][-1]['batches'])} candidates at once, in the",
         f"mean. With a load above {MAX_LOAD:g} something else ran beside: no rates by the clock.",

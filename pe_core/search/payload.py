@@ -1,7 +1,8 @@
 """The payload of a search: what its tasks have in common, sent to every worker once.
 
-Our own processes get it from their initializer, workers of Dask by the scatter of their client. To
-workers of other executors it comes with every task, and each of them unpickles it once.
+Executors with a method `start_with` bring it to their workers: our own processes by their
+initializer, the cluster of ``pe --scheduler`` by a plugin. An executor of Dask without it has the
+client scatter it. To workers of others it comes with every task. Each worker unpickles it once.
 """
 
 from __future__ import annotations
@@ -22,7 +23,9 @@ MAX_OBJECTS = 12
 _SENT: WeakKeyDictionary[Executor, SentPayload] = WeakKeyDictionary()
 """The payload that the workers of each executor have."""
 _INITIAL: dict[str, bytes] = {}
-"""In a process of ours: the payload that its initializer brought, by key."""
+"""In a worker: the payloads that came before their tasks, by key."""
+MAX_PAYLOADS = 4
+"""How many of them a worker of a cluster keeps: several searches may share it."""
 _WORKER = threading.local()
 """The payload that this worker has unpickled, and its key. Threads share none of it, so that no
 thread waits for another."""
@@ -96,7 +99,7 @@ def send_payload(executor: Executor, objects: Iterable[object]) -> SentPayload:
 
 def _argument(executor: Any, packed: PackedPayload) -> Any:
     """Send a payload in the way of the executor; return the argument that refers to it."""
-    if hasattr(executor, "start_with"):  # `Processes`
+    if hasattr(executor, "start_with"):  # `Processes`, for example
         executor.start_with(packed.key, packed.data)
         return PackedPayload(packed.key)
     scatter = getattr(getattr(executor, "_client", None), "scatter", None)
@@ -109,8 +112,10 @@ def _argument(executor: Any, packed: PackedPayload) -> Any:
 
 
 def receive(key: str, data: bytes) -> None:
-    """Keep the payload that the initializer brings, in a process of ours."""
+    """Keep a payload that comes before its tasks; of several the newest ones."""
     _INITIAL[key] = data
+    while len(_INITIAL) > MAX_PAYLOADS:
+        del _INITIAL[next(iter(_INITIAL))]
 
 
 def unpickled(packed: PackedPayload, content: bytes) -> Any:

@@ -22,7 +22,7 @@ from pe_core.study import Study
 
 from ..jobs import Checkpoint, Job, OptimizeJob, SearchState, read_search
 from ..sweep import FolderCheckpoints, RunCheckpoints, SweepRun, WorkerPool
-from .kept_memory import KeptMemory
+from .cluster_executor import ClusterExecutor
 from .terminal import tell
 
 
@@ -221,7 +221,7 @@ class DaskWorkers:
     def __init__(self, address: str) -> None:
         self._address = address
         self._client = _client_of(address)
-        self.executor: Executor = KeptMemory(self._client.get_executor(pure=False))
+        self.executor = ClusterExecutor(self._client.get_executor(pure=False))
         self._alone = False
         self._saved = ClusterCheckpoints(self._client)
         self.finish = self._saved.finish
@@ -263,6 +263,7 @@ class DaskWorkers:
 
     def close(self) -> None:
         """Disconnect from the cluster, which continues to run."""
+        self.executor.withdraw()
         self._client.close(timeout=CONNECT_S)
 
 

@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from pe_core.search.processes import keep_freed_memory
-from pe_tools.cli.kept_memory import KeptMemory
+from pe_tools.cli.cluster_executor import ClusterExecutor
 from tests.engine.processes import ROOT
 
 DASK = {"MALLOC_TRIM_THRESHOLD_": "65536"}
@@ -50,7 +50,7 @@ class Inner(ThreadPoolExecutor):
 
 
 def test_calls_their_results_and_errors_go_through():
-    with KeptMemory(Inner(1)) as executor:
+    with ClusterExecutor(Inner(1)) as executor:
         assert executor._client == "the client"
         assert executor.submit(divmod, 17, 5).result() == (3, 2)
         assert executor.submit(int, "11", base=2).result() == 3

@@ -231,7 +231,7 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
         default="auto",
     )
     start_variants: BoolProperty(
-        name="Start from Variants",
+        name="From Variants",
         description="Searches also start from all other variants; all starts share the budget",
     )
     start_poses: StringProperty(

@@ -25,7 +25,7 @@ MODEL: str = setting(
     "AP curves of whole objects: from publications, or of LiDARs fitted to detectors on scans",
     Panel(
         "ap_model",
-        "Curves of Objects",
+        "Object AP",
         menu=(
             ("Publications", "Fitted to published detectors, or converted from the paper's curves"),
             ("Scans", "LiDARs: fitted to detectors that this project trained on simulated scans"),

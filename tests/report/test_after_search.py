@@ -145,8 +145,15 @@ def test_a_verdict_needs_all_seeds_of_its_comparison_and_a_sentence_both_rigs():
         ("shuttle", "expected_ap"): HOLDS,
     }
     assert found["answers"] == {"entropy": HOLDS, "expected_ap": REFUTED}
-    assert "finds more with the placement of the search by perception entropy" in answer(found)
-    assert "on one rig alone: shuttle" in answer(found)
+    all_rigs, one_rig = answer(found).split(". ")
+    assert all_rigs == (
+        "After a search by perception entropy a detector finds more than at the start on "
+        "2 of 2 rigs (experiment 4 and shuttle)"
+    )
+    assert one_rig == (
+        "After a search by expected AP in traffic a detector finds more than at the start on "
+        "1 of 2 rigs (shown: shuttle; not shown: experiment 4)."
+    )
     partly = after_search_analysis(PLAN, results_of(gains, seeds=2), {})
     assert set(partly["answers"].values()) == {OPEN} and "is open" in answer(partly)
     assert partly["rigs"]["shuttle"]["after"]["entropy"]["mean"] == pytest.approx(0.05, abs=0.01)
@@ -163,6 +170,11 @@ def test_the_committed_placements_are_of_this_plan_and_the_section_is_that_of_th
     assert saved["done"] == len(results) and saved["planned"] == planned_runs(PLAN)
     section = after_search_section(PLAN, saved, {})
     assert "experiment 4" in section and answer(saved) in section
+    readme = (ROOT / "README.md").read_text("utf-8")
+    assert answer(saved) in " ".join(readme.split()), "the README tells the answer of the page"
+    told = (ROOT / "docs" / "optimize.md").read_text("utf-8")
+    gains = [row["mean"] for rig in saved["rigs"].values() for row in rig["after"].values()]
+    assert all(f"{gain:+.3f}" in told for gain in gains), "and the documentation its figures"
 
 
 def test_the_command_goes_on_with_what_is_there_by_resume_alone(tmp_path):

@@ -89,11 +89,12 @@ def _within(verdict: str) -> str:
 def _good(verdicts: Sequence[str]) -> str:
     if OPEN in verdicts:
         return "Whether it still does among good placements, and beyond height, is open, too."
-    texts = [
-        f"{'still ranks' if verdicts[0] == HOLDS else 'was not shown to rank'} good placements",
-        f"{'says' if verdicts[1] == HOLDS else 'was not shown to say'} more than their height",
-    ]
-    return f"It {joined(texts)}."
+    shown = "still holds" if verdicts[0] == HOLDS else "was not shown"
+    says = "says" if verdicts[1] == HOLDS else "was not shown to say"
+    return (
+        f"Among the better half of the placements this {shown}; entropy {says} more than the "
+        "height of the LiDARs."
+    )
 
 
 def _across(verdicts: Sequence[str]) -> str:

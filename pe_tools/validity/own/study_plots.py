@@ -85,7 +85,7 @@ def expected_against_found(path: Path, classes: Mapping[str, dict[str, Any]]) ->
         panel.set_ylim(0.0, 1.0)
         remove_frame(panel)
     axes[0].set_ylabel("expected AP in traffic")
-    axes[-1].legend(loc="upper left", frameon=False, handletextpad=0.1)
+    axes[-1].legend(loc="lower right", frameon=False, handletextpad=0.1)
     axes[len(axes) // 2].set_xlabel("AP found")
     save_plot(figure, path)
 

@@ -59,21 +59,22 @@ def answer(found: Json) -> str:
 
 
 def _answer(objective: str, verdict: str, found: Json) -> str:
-    where = f"with the placement of the search by {WORDS[objective]}"
+    after = f"after a search by {WORDS[objective]}"
     if verdict == OPEN:
-        return f"Whether a detector finds more {where} than with the start is open."
-    shown = [
-        TITLES[name]
-        for name, rig in found["rigs"].items()
-        if rig["after"][objective]["verdict"] == HOLDS
-    ]
-    if verdict == HOLDS:
-        return f"A detector finds more {where} than with the start: {joined(shown)}."
-    if shown:
-        return (
-            f"A detector finds more {where} than with the start on one rig alone: {joined(shown)}."
-        )
-    return f"It was not shown that a detector finds more {where} than with the start."
+        return f"Whether a detector finds more {after} than at the start is open."
+    shown, others = (
+        [
+            TITLES[name]
+            for name, rig in found["rigs"].items()
+            if (rig["after"][objective]["verdict"] == HOLDS) == wanted
+        ]
+        for wanted in (True, False)
+    )
+    if not shown:
+        return f"It was not shown that a detector finds more {after} than at the start."
+    where = f"{len(shown)} of {len(shown) + len(others)} rigs"
+    names = f"shown: {joined(shown)}; not shown: {joined(others)}" if others else joined(shown)
+    return f"A{after[1:]} a detector finds more than at the start on {where} ({names})."
 
 
 def _placements(plan: AfterSearchPlan, found: Json) -> str:

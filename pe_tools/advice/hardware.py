@@ -8,9 +8,9 @@ from pe_core.scene.rig import SensorModel
 from pe_core.study.catalog_lookup import same_model
 
 OTHER_HARDWARE = (
-    "The rigs differ in models or numbers of sensors. Entropy orders placements of one hardware; "
-    "that it orders different hardware has not been shown. Look at the expected AP in traffic "
-    "beside it (docs/validity/own)."
+    "The rigs differ in models or numbers of sensors. Entropy ranked simulated rigs of other "
+    "LiDARs as detectors did; for cameras and radars that has not been shown. Look at the "
+    "expected AP in traffic beside it (docs/validity/own)."
 )
 
 

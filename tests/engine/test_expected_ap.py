@@ -16,6 +16,7 @@ from pe_core.study import Conditions, load_study_data, study_from_dict, study_to
 from pe_core.study.condition_search import study_objective
 from pe_core.study.objective_search import ExpectedApEvaluator, search_evaluator, searched_study
 from pe_tools import jobs
+from pe_tools.advice import OTHER_HARDWARE
 from pe_tools.cli.choose_verb import front_summary
 from pe_tools.cli.terminal import summary
 from pe_tools.cli.verbs import main
@@ -348,9 +349,9 @@ def test_choices_are_a_front_of_price_and_ap(screened, monkeypatch):
 def test_a_front_by_entropy_of_other_hardware_has_a_note():
     job = pe.ChoiceJob(chosen(objective="entropy"), 1)
     list(job)
-    note = "The rigs differ in models or numbers of sensors. Entropy orders placements of one"
-    assert job.trade_off.hardware_note.startswith(note)
-    assert note in front_summary(job.trade_off)
+    note = job.trade_off.hardware_note
+    assert note.startswith("The rigs differ in models or numbers of sensors. Entropy ranked")
+    assert note == OTHER_HARDWARE and note in front_summary(job.trade_off)
     assert front_dict(job.trade_off)["notes"] == [job.trade_off.hardware_note]
 
 

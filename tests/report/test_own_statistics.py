@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pe_tools.validity import ranks
-from pe_tools.validity.own.analysis import HOLDS, OPEN, REFUTED, analysis
+from pe_tools.validity.own.analysis import HOLDS, OPEN, REFUTED, analysis, step_title
 from pe_tools.validity.own.placements import placements
 from pe_tools.validity.own.plan import FIXED, full_plan, quick_plan
 from pe_tools.validity.own.rank_tests import (
@@ -25,6 +25,7 @@ from pe_tools.validity.own.rank_tests import (
 )
 from pe_tools.validity.own.runs import runs
 from pe_tools.validity.own.scores import PRIMARY
+from pe_tools.validity.own.study_page import page
 
 RULE = replace(full_plan().statistics, permutations=9_999, resamples=500)
 
@@ -176,6 +177,27 @@ def test_verdicts_follow_from_whole_designs_alone():
     part = analysis(plan, *made_up(plan, missing=steps + 10))
     assert {row["verdict"] for row in part["statements"]} == {OPEN}
     assert part["designs"][FIXED]["scores"][PRIMARY]["rho"] > 0.9  # so far
+
+
+def test_a_step_decides_nothing_and_marks_the_statements_whose_sign_it_changes():
+    plan = replace(full_plan(), statistics=replace(RULE, permutations=99, resamples=60))
+    done, scores = made_up(plan)
+    plain = analysis(plan, done, scores)
+    for name, result in done.items():
+        if name.startswith("town-grid-fixed"):
+            result["ap"] = 1.0 - result["ap"]
+    turned = analysis(plan, done, scores)
+    title = "town world, grid detector, fixed"
+    assert [row["sign_changes"] for row in plain["statements"]] == [[]] * 6
+    assert [row["sign_changes"] for row in turned["statements"]] == [[title]] * 4 + [[]] * 2
+    for whole, other in zip(plain["statements"], turned["statements"], strict=True):
+        assert {**whole, "sign_changes": []} == {**other, "sign_changes": []}
+    step = next(s for s in turned["steps"] if step_title(s) == title)
+    assert step["order"]["rho"] == pytest.approx(-1.0) and step["placements"] == 12
+    row = step["scores"][PRIMARY]
+    assert row["rho"] == pytest.approx(-1.0) and row["plain"]["rho"] == pytest.approx(1.0)
+    text = page(plan, turned, {})
+    assert f"| holds; sign changes: {title} |" in text and "is above 0 in 3 of 4 steps" in text
 
 
 def test_few_placements_give_no_figures():

@@ -93,13 +93,13 @@ def analysis(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, 
         Scores by the name of the placement, of all placements with results.
     """
     tables = {d.name: design_table(plan, d, scores) for d in designs_of(plan, results)}
-    pairs = _pairs(plan, results, scores)
+    pairs, steps = _pairs(plan, results, scores), _steps(plan, results, scores)
     return {
         "runs": {"done": len(results), "planned": len(runs(plan))},
         "designs": tables,
         "pairs": pairs,
-        "steps": _steps(plan, results, scores),
-        "statements": _statements(plan, tables, pairs),
+        "steps": steps,
+        "statements": _statements(plan, tables, pairs, steps),
     }
 
 
@@ -200,22 +200,27 @@ def _row(
 ) -> Json:
     values, samples = _values(score, design.chosen, scores), design.samples
     heights = np.array([p.mean_height for p in design.chosen])
-    members = samples.members
-
-    def rho(resample: Resample) -> Floats:
-        return rho_within(values[resample.index], resample.ap, members)
-
-    row: Json = {
-        "rho": _rounded(float(rho_within(values, samples.ap, members))),
-        "interval": _interval(plan, samples, rho),
-        "p": permutation_p(values, samples, plan.statistics, plan.seed),
-    }
+    row = _rho(plan, samples, values)
+    row["p"] = permutation_p(values, samples, plan.statistics, plan.seed)
     if score.name != HEIGHT:
         row["given_height"] = _partial(plan, samples, values, heights)
         row["height_given"] = _partial(plan, samples, heights, values)
     if samples.aps.shape[1] > 1:
         row["better_half"] = _better_half(plan, samples, values)
     return row
+
+
+def _rho(plan: StudyPlan, samples: PlacementSamples, values: Floats) -> Json:
+    """Return the rank correlation of values with AP, and its interval."""
+    members = samples.members
+
+    def rho(resample: Resample) -> Floats:
+        return rho_within(values[resample.index], resample.ap, members)
+
+    return {
+        "rho": _rounded(float(rho_within(values, samples.ap, members))),
+        "interval": _interval(plan, samples, rho),
+    }
 
 
 def _partial(plan: StudyPlan, samples: PlacementSamples, values: Floats, given: Floats) -> Json:
@@ -233,18 +238,7 @@ def _partial(plan: StudyPlan, samples: PlacementSamples, values: Floats, given: 
 
 def _better_half(plan: StudyPlan, samples: PlacementSamples, values: Floats) -> Json | None:
     index, half = better_half(samples)
-    members = half.members
-    if not members:
-        return None
-    of_half = values[index]
-
-    def rho(resample: Resample) -> Floats:
-        return rho_within(of_half[resample.index], resample.ap, members)
-
-    return {
-        "rho": _rounded(float(rho_within(of_half, half.ap, members))),
-        "interval": _interval(plan, half, rho),
-    }
+    return _rho(plan, half, values[index]) if half.members else None
 
 
 def _interval(
@@ -305,17 +299,20 @@ def _steps(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, Js
             if design.has_figures and set(design.chosen) <= set(plain.chosen):
                 index = np.array([plain.chosen.index(p) for p in design.chosen])
                 same = plain.samples.subset(index)
+                entry |= {"placements": len(design.chosen), "seeds": design.samples.aps.shape[1]}
+                entry["order"] = _rho(plan, same, design.samples.ap)
                 for score in _of_design(name):
                     values = _values(score, design.chosen, scores)
-                    rhos = (rho_within(values, s.ap, s.members) for s in (design.samples, same))
-                    here, there = (_rounded(float(r)) for r in rhos)
-                    entry["scores"][score.name] = {"rho": here, "plain": there}
+                    here, there = (_rho(plan, s, values) for s in (design.samples, same))
+                    entry["scores"][score.name] = {**here, "plain": there}
             found.append(entry)
     return found
 
 
-def _statements(plan: StudyPlan, tables: Mapping[str, Json], pairs: Json) -> list[Json]:
-    """Return the statements of the plan, each with its figures and its verdict."""
+def _statements(
+    plan: StudyPlan, tables: Mapping[str, Json], pairs: Json, steps: Sequence[Json]
+) -> list[Json]:
+    """Return the statements of the plan, each with its figures, its verdict and its marks."""
     rule, fixed = plan.statistics, tables[FIXED]
     primary = fixed["scores"].get(PRIMARY, {})
     half = primary.get("better_half") or {}
@@ -347,9 +344,29 @@ def _statements(plan: StudyPlan, tables: Mapping[str, Json], pairs: Json) -> lis
             "statement": text,
             "figures": {k: figures[k] for k in ("rho", "share", "interval", "p") if k in figures},
             "verdict": verdict if figures and part["done"] == part["planned"] else OPEN,
+            "sign_changes": _sign_changes(
+                steps,
+                FIXED if part is fixed else ACROSS,
+                EXPECTED_AP if figures is difference else PRIMARY,
+            ),
         }
         for text, figures, verdict, part in rows
     ]
+
+
+def _sign_changes(steps: Sequence[Json], design: str, score: str) -> list[str]:
+    """Return the steps in which the rho of a score has another sign than in the plain world."""
+    changed = []
+    for step in steps:
+        row = step["scores"].get(score) if step["design"] == design else None
+        if row and (row["rho"] or 0.0) * (row["plain"]["rho"] or 0.0) < 0.0:
+            changed.append(step_title(step))
+    return changed
+
+
+def step_title(step: Json) -> str:
+    """Return what a step is called."""
+    return f"{step['world']} world, {step['detector']} detector, {step['design']}"
 
 
 def _beside(figures: Json, edge: float) -> str:

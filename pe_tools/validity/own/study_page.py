@@ -7,7 +7,7 @@ from typing import Any
 
 from ...reproduction.wording import joined, range_text, table, wrapped
 from ..findings import p_text, rho_text
-from .analysis import FRESH, HOLDS, OPEN, REFUTED, UNDECIDED
+from .analysis import FRESH, HOLDS, OPEN, REFUTED, UNDECIDED, step_title
 from .plan import ACROSS, FIXED, MIXED, StudyPlan
 from .scores import PRIMARY
 
@@ -115,8 +115,7 @@ def _across(verdicts: Sequence[str]) -> str:
 
 def _statements(results: Json) -> str:
     lines = [
-        [row["statement"], _figures(row["figures"]), row["verdict"]]
-        for row in results["statements"]
+        [row["statement"], _figures(row["figures"]), _verdict(row)] for row in results["statements"]
     ]
     return f"""
 ## The statements of the plan
@@ -125,6 +124,12 @@ The plan says when each holds and when it is refuted. *Open*: runs are missing, 
 
 {table(["statement", "figures", "verdict"], lines)}
 """
+
+
+def _verdict(row: Json) -> str:
+    """Return the verdict of a statement, marked where a step changes the sign of its rho."""
+    changed = row["sign_changes"]
+    return row["verdict"] + (f"; sign changes: {joined(changed)}" if changed else "")
 
 
 def _figures(figures: Json) -> str:
@@ -230,25 +235,50 @@ share that a score orders rightly. Chance: 0.50.
 
 
 def _steps(steps: Sequence[Json]) -> str:
-    parts = []
-    for step in steps:
-        title = f"{step['world']} world, {step['detector']} detector, {step['design']}"
-        state = f"{step['done']} of {step['planned']} runs"
-        if not step["scores"]:
-            parts.append(f"- {title}: {state}.")
-            continue
-        lines = [
-            [score, rho_text(row["rho"]), rho_text(row["plain"]), _sign(row)]
-            for score, row in step["scores"].items()
+    if not steps:
+        return ""
+    parts = [_step(step) for step in steps]
+    between = "\n\n" if any(step["scores"] for step in steps) else "\n"
+    return f"## Steps towards reality\n\n{_of_steps(steps)}{between.join(parts)}"
+
+
+def _of_steps(steps: Sequence[Json]) -> str:
+    """Return in a sentence how the primary score does in all steps that have figures."""
+    rows = [step["scores"][PRIMARY] for step in steps if step["scores"]]
+    if not rows:
+        return ""
+    above, whole = (
+        sum((value or 0.0) > 0.0 for value in values)
+        for values in ([row["rho"] for row in rows], [row["interval"][0] for row in rows])
+    )
+    return (
+        f"Rho of {PRIMARY} is above 0 in {above} of {len(rows)} steps "
+        f"({joined([rho_text(row['rho']) for row in rows])}), its whole interval in {whole}. The steps decide no "
+        "statement; their placements are few.\n\n"
+    )
+
+
+def _step(step: Json) -> str:
+    title, state = step_title(step), f"{step['done']} of {step['planned']} runs"
+    if not step["scores"]:
+        return f"- {title}: {state}."
+    lines = [
+        [
+            f"**{score}**" if score == PRIMARY else score,
+            *(f"{rho_text(part['rho'])} {_interval(part)}" for part in (row, row["plain"])),
         ]
-        titles = ["score", "rho", "the same placements, plain and grid", ""]
-        parts.append(f"### {title}\n\n{state}.\n\n{table(titles, lines)}")
-    body = "\n\n".join(parts) if any(s["scores"] for s in steps) else "\n".join(parts)
-    return f"## Steps towards reality\n\n{body}" if steps else ""
+        for score, row in step["scores"].items()
+    ]
+    titles = ["score", "rho (95 %)", "plain world, grid detector"]
+    done = step["done"] == step["planned"]
+    order = step["order"]
+    return f"""\
+### {title[0].upper()}{title[1:]}
 
+{state}{"" if done else f"; figures {SO_FAR}"}, {step["placements"]} placements, seeds averaged: {step["seeds"]}. Rho of the
+AP here and the AP of the same placements in the plain world with the grid detector: {rho_text(order["rho"])} {_interval(order)}.
 
-def _sign(row: Json) -> str:
-    return "sign changes" if (row["rho"] or 0.0) * (row["plain"] or 0.0) < 0.0 else ""
+{table(titles, lines)}"""
 
 
 def _runs(runs: Mapping[str, Json]) -> str:

@@ -36,9 +36,9 @@ from .method import Given, MethodPart, Phase, QuestionStream, sampled_candidate
 from .portfolio_linear import LinearDescent
 from .portfolio_steps import MultiscaleDescent
 
-PER_SENSOR, PER_OTHER, MOST_PER_SENSOR = 300, 175, 800
-"""Placements for each sensor that moves, where no budget is given: so many, and so many more for
-each other one that moves, up to so many."""
+FEW, PER_SENSOR = (0, 300, 950, 1275), 400
+"""Placements where no budget is given: for none to three sensors that move, and for each of
+more."""
 SURVEYS, SURVEYED = 2, 6
 """Surveys before the first descent, and places that each of them tries for each sensor,"""
 SURVEY_SHARE = 0.3
@@ -240,7 +240,7 @@ def ask(given: Given) -> QuestionStream:
 
 def budget(sensors: int) -> int:
     """Return how many placements are evaluated where no budget is given."""
-    return sensors * min(PER_SENSOR + PER_OTHER * (sensors - 1), MOST_PER_SENSOR)
+    return FEW[sensors] if sensors < len(FEW) else PER_SENSOR * sensors
 
 
 def _race(given: Given, incumbent: Incumbent, total: int) -> MethodPart[None]:

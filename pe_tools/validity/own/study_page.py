@@ -252,7 +252,7 @@ def _of_steps(steps: Sequence[Json]) -> str:
         for values in ([row["rho"] for row in rows], [row["interval"][0] for row in rows])
     )
     return (
-        f"Rho of {PRIMARY} is above 0 in {above} of {len(rows)} steps "
+        f"*{PRIMARY}*: rho is above 0 in {above} of {len(rows)} steps "
         f"({joined([rho_text(row['rho']) for row in rows])}), its whole interval in {whole}. The steps decide no "
         "statement; their placements are few.\n\n"
     )

@@ -67,11 +67,12 @@ def emit_idle() -> float | None:
 
     Timers are called between a move of the mouse and Blender's update of it. A listener may cause
     that update: a change noted then finds this timer still registered, so the timer has to continue
-    by itself.
+    by itself. After a redraw longer than `IDLE_S` both timers are due, and Blender calls the one
+    that was registered first: `moving` must not come after the last `idle`.
     """
     left, count = _idle_at - time.monotonic(), _change_count
-    if left > 0.0:
-        return left
+    if left > 0.0 or bpy.app.timers.is_registered(emit_moving):
+        return max(left, 0.0)
     signals.idle.emit()
     return None if count == _change_count else IDLE_S
 

@@ -29,17 +29,23 @@ class Timers:
         return self.now
 
     def pass_by(self, seconds):
-        """Let time pass, and call what is due; as in Blender, it is registered while it runs."""
+        """Let time pass, and call what is due."""
         end = self.now + seconds
-        while due := [(at, f) for f, at in self.waiting.items() if at <= end]:
-            at, function = min(due, key=lambda pair: pair[0])
-            self.now = max(at, self.now)
+        while self.waiting and min(self.waiting.values()) <= end:
+            self.now = max(min(self.waiting.values()), self.now)
+            self._call_due()
+        self.now = end
+
+    def _call_due(self):
+        """As Blender does: in the order of registration; a timer is registered while it runs."""
+        for function, at in list(self.waiting.items()):
+            if at > self.now:
+                continue
             again = function()
             if again is not None:
                 self.waiting[function] = self.now + again
             else:
                 del self.waiting[function]
-        self.now = end
 
 
 @pytest.fixture
@@ -83,6 +89,15 @@ def test_a_drag_is_reported_as_long_as_it_lasts_and_its_rest_once(car, timers, h
     assert heard == [MOVED] * 5
     timers.pass_by(10.0)
     assert heard == [MOVED] * 5 + [RESTED] and not timers.waiting
+
+
+def test_a_rest_is_told_last_when_a_redraw_takes_longer_than_the_wait(car, timers, heard):
+    drag(car.objects["roof"])
+    timers.pass_by(0.1)
+    drag(car.objects["roof"])
+    timers.now += 2.0 * change_events.IDLE_S  # no timer is called while Blender draws
+    timers.pass_by(10.0)
+    assert heard == [MOVED, MOVED, RESTED] and not timers.waiting
 
 
 @pytest.mark.parametrize("signal", [signals.moving, signals.idle], ids=[MOVED, RESTED])

@@ -23,8 +23,11 @@ WITHOUT_WEBGL = """
   HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
     return kind.startsWith("webgl") ? null : real.call(this, kind, ...more);
   };"""
-SETTLED = """() => new Promise((done) =>
-  requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done))))"""
+SETTLED = """() => new Promise((done) => {
+  setTimeout(done, 2000);
+  requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done)));
+})"""
+"""A busy machine may never draw a page that it takes for hidden; Playwright waits for ever then."""
 
 
 @contextmanager

@@ -215,21 +215,44 @@ def _without_main() -> Iterator[None]:
 
 @contextmanager
 def _signals_blocked() -> Iterator[None]:
-    """Block SIGTERM and `TERMINAL_SIGNALS` here, and in the processes that are started meanwhile.
+    """Hold SIGTERM and `TERMINAL_SIGNALS` back here, and block them in processes started meanwhile.
 
     A handler that raises in the middle of `submit` would leave a lock of the pool taken, for which
     its thread then waits for ever. A terminal sends its signals to all processes at once, also to
     one that does not ignore them yet: a worker would end in the middle of an import, with a
     traceback. The process that tracks semaphores is started here, too: it ignores all but SIGHUP.
     """
-    if not hasattr(signal, "pthread_sigmask"):  # Windows has no such signals
-        yield
-        return
-    numbers = {signal.SIGTERM, *(getattr(signal, name) for name in TERMINAL_SIGNALS)}
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, numbers)
+    names = ("SIGTERM", *TERMINAL_SIGNALS)
+    numbers = {getattr(signal, name) for name in names if hasattr(signal, name)}
+    with _handlers_held(numbers):
+        if not hasattr(signal, "pthread_sigmask"):  # Windows blocks no signals
+            yield
+            return
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, numbers)
+        try:
+            resource_tracker.ensure_running()
+            signal.pthread_sigmask(signal.SIG_BLOCK, numbers)  # ensure_running has unblocked SIGINT
+            yield
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _handlers_held(numbers: Iterable[int]) -> Iterator[None]:
+    """Call Python's handlers of signals after the block.
+
+    To block signals is not enough: another thread then gets them, and Python calls their handlers
+    in the main thread all the same; in other threads never.
+    """
+    here = threading.current_thread() is threading.main_thread()
+    before = {n: signal.getsignal(n) for n in numbers if here and callable(signal.getsignal(n))}
+    came: list[int] = []
     try:
-        resource_tracker.ensure_running()
-        signal.pthread_sigmask(signal.SIG_BLOCK, numbers)  # ensure_running has unblocked SIGINT
+        for number in before:
+            signal.signal(number, lambda number, _: came.append(number))
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        for number in came:
+            signal.raise_signal(number)

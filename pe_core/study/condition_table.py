@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_state import State
 from ..scoring import RigJudge, Score
@@ -229,8 +228,3 @@ def matrix(table: ConditionTable) -> np.ndarray:
     rows = [[r.entropy for r in table.rows]]
     rows += [[r.without[name] for r in table.rows] for name in table.sensors]
     return np.array(rows)
-
-
-def rig_under(study: Study, condition: StateInWeather, rig: Rig) -> Rig:
-    """Return another rig of the study under a condition."""
-    return condition.rig(rig, study.vehicle)

@@ -36,7 +36,7 @@ from .method import Given, MethodPart, Phase, QuestionStream, sampled_candidate
 from .portfolio_linear import LinearDescent
 from .portfolio_steps import MultiscaleDescent
 
-FEW, PER_SENSOR = (0, 300, 950, 1275), 400
+FEW, PER_SENSOR = (0, 400, 950, 1275), 400
 """Placements where no budget is given: for none to three sensors that move, and for each of
 more."""
 SURVEYS, SURVEYED = 2, 6

@@ -211,7 +211,8 @@ def ask(given: Given) -> QuestionStream:
     incumbent, survey = Incumbent(given.start, given.entropy), Survey(given)
     steps = MultiscaleDescent(given, [given.seed, sensors, 1])
     each = len(STARTS) * PLACEMENTS_PER_START
-    races = total >= each * sensors and not survey.has_slots_alone
+    moves = any(v.low < v.high for v in given.parametrization.variables)
+    races = moves and total >= each * sensors and not survey.has_slots_alone
     count = max(1, min(SURVEYED, int(SURVEY_SHARE * total / (SURVEYS * sensors))))
     for _ in range(SURVEYS):
         yield from survey.survey(incumbent, Phase(0, total), count)

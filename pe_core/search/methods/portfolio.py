@@ -2,13 +2,14 @@
 
 No single method is the best on every problem. Surveys find the region: each sensor tries places all
 over its range, the others kept. A large budget is for a race of block descents from several starts,
-then for block descents and steps of all lengths. A small one is for linear descents, which move all
-sensors at once, and block descents, which find what a linear model does not show. Sensors on lists
-of slots try all slots, exchange them, and move two at a time.
+then for block descents and steps of all lengths. A small one is for a linear descent and surrogate
+descents, which move all sensors at once by models, and for block descents, which find what a model
+does not show. Sensors on lists of slots try all slots, exchange them, and move two at a time.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import combinations
@@ -35,6 +36,7 @@ from .block_descent import samples as samples
 from .method import Given, MethodPart, Phase, QuestionStream, sampled_candidate
 from .portfolio_linear import LinearDescent
 from .portfolio_steps import MultiscaleDescent
+from .portfolio_surrogate import History, SurrogateDescent
 
 FEW, PER_SENSOR = (0, 400, 950, 1275), 400
 """Placements where no budget is given: for none to three sensors that move, and for each of
@@ -45,10 +47,13 @@ SURVEY_SHARE = 0.3
 """but at most this share of the budget in all."""
 NEAR, NEAR_COUNT = 0.3, 3
 """Reach of the surveys between descents, as a share of each range, and places for each sensor."""
-RADIUS, NEXT_RADIUS, LEAST_RADIUS = 1.0 / 6.0, 0.1, 0.004
-"""Radius of the first linear descent and of the next ones, and where they end, in ranges."""
-LINEAR_SHARE, BLOCK_SHARE = 0.4, 0.5
-"""Shares of the budget that is left, for each linear descent and each block descent after it."""
+RADIUS, RACED_RADIUS, LEAST_RADIUS = 1.0 / 6.0, 0.1, 0.004
+"""Radius of the linear descent, of the one after a race, and where they end, in ranges."""
+STEP, NEXT_STEP = 0.2, 0.1
+"""Deviation of the first steps of the first surrogate descent, and of the next ones, in ranges."""
+LINEAR_SHARE, SURROGATE_SHARE, NEXT_SURROGATE_SHARE, BLOCK_SHARE = 0.25, 0.4, 0.5, 0.5
+"""Shares of the budget that is left: for the linear descent, the first surrogate descent and the
+next ones, and each block descent after them."""
 RACED_LINEAR_SHARE, RACED_BLOCK_SHARE, STEP_SHARE = 0.1, 0.6, 0.3
 """After a race: shares of the budget that is left, for the one linear descent, and each time for a
 block descent and then for steps,"""
@@ -72,7 +77,7 @@ class Incumbent:
             self.count += 1
             self._take(candidate, value)
 
-    def descended(self, descent: Descent | LinearDescent) -> None:
+    def descended(self, descent: Descent | LinearDescent | SurrogateDescent) -> None:
         """Take the result of a descent."""
         self.count += descent.count
         self._take(descent.best, descent.entropy)
@@ -92,9 +97,12 @@ class Survey:
     Parameters
     ----------
     given : Given
+    exact : bool
+        Whether placements of sensors in ranges are all evaluated to the end, for a model of them.
     """
 
-    def __init__(self, given: Given) -> None:
+    def __init__(self, given: Given, exact: bool = False) -> None:
+        self._exact = exact
         self._parametrization, blocks = given.parametrization, given.parametrization.blocks
         self._rng = np.random.default_rng([given.seed, len(blocks)])
         first = [given.parametrization.variables[block[0]] for block in blocks]
@@ -126,7 +134,8 @@ class Survey:
                 incumbent.told((yield from self._turns[number].evaluate(incumbent.best, phase)))
                 continue
             sampled = [self._sampled(incumbent.best, number, block, reach) for _ in range(count)]
-            yield from _evaluate(incumbent, phase, [c for c in sampled if c is not None])
+            kept = [c for c in sampled if c is not None]
+            yield from _evaluate(incumbent, phase, kept, self._exact)
         if len(self._turns) > 1:
             yield from _evaluate(incumbent, phase, list(self._exchanged(incumbent.best)))
 
@@ -196,23 +205,30 @@ def _within(variable: DesignVariable, value: float, reach: float, share: float) 
     return low + share * (high - low)
 
 
-def _evaluate(incumbent: Incumbent, phase: Phase, candidates: list[Candidate]) -> MethodPart[None]:
-    """Evaluate placements of which only those better than the incumbent matter."""
+def _evaluate(
+    incumbent: Incumbent, phase: Phase, candidates: list[Candidate], exact: bool = False
+) -> MethodPart[None]:
+    """Evaluate placements; unless exactly, only those better than the incumbent matter."""
     moved = [c for c in candidates if c.vector != incumbent.best.vector]
     if moved:
-        values = yield from phase.evaluate(moved, incumbent.entropy)
+        values = yield from phase.evaluate(moved, math.inf if exact else incumbent.entropy)
         incumbent.told(zip(moved, values, strict=True))
 
 
 def ask(given: Given) -> QuestionStream:
     """Survey on few voxels; then descend on all voxels of the search until the budget is spent."""
+    history = History(given.start, given.entropy)
+    yield from history.follow(_searched(given, history))
+
+
+def _searched(given: Given, history: History) -> QuestionStream:
     sensors = len(given.parametrization.blocks)
     total = given.evaluations or budget(sensors)
-    incumbent, survey = Incumbent(given.start, given.entropy), Survey(given)
+    large = total >= len(STARTS) * PLACEMENTS_PER_START * sensors
+    incumbent, survey = Incumbent(given.start, given.entropy), Survey(given, exact=not large)
     steps = MultiscaleDescent(given, [given.seed, sensors, 1])
-    each = len(STARTS) * PLACEMENTS_PER_START
     moves = any(v.low < v.high for v in given.parametrization.variables)
-    races = moves and total >= each * sensors and not survey.has_slots_alone
+    races = large and moves and not survey.has_slots_alone
     count = max(1, min(SURVEYED, int(SURVEY_SHARE * total / (SURVEYS * sensors))))
     for _ in range(SURVEYS):
         yield from survey.survey(incumbent, Phase(0, total), count)
@@ -231,7 +247,7 @@ def ask(given: Given) -> QuestionStream:
         elif races:
             yield from _settle(given, incumbent, phase, number, steps)
         else:
-            yield from _descend(given, incumbent, phase, number)
+            yield from _descend(given, incumbent, phase, number, history)
         if not stalled:
             yield from survey.survey(incumbent, phase, NEAR_COUNT, NEAR)
         if incumbent.count == before[0]:
@@ -268,7 +284,7 @@ def _settle(
 ) -> MethodPart[None]:
     """Descend with all sensors at once the first time, then with one at a time, then by steps."""
     if number == 1:
-        yield from _linear_descent(given, incumbent, phase, NEXT_RADIUS, RACED_LINEAR_SHARE)
+        yield from _linear_descent(given, incumbent, phase, RACED_RADIUS, RACED_LINEAR_SHARE)
     left = phase.total - incumbent.count
     count = float(left)
     if left > LAST_STEPS * len(given.parametrization.blocks):
@@ -278,10 +294,18 @@ def _settle(
     yield from steps.descend(incumbent, phase, count)
 
 
-def _descend(given: Given, incumbent: Incumbent, phase: Phase, number: int) -> MethodPart[None]:
-    """Descend with all sensors at once, then one at a time."""
-    radius = RADIUS if number == 1 else NEXT_RADIUS
-    yield from _linear_descent(given, incumbent, phase, radius, LINEAR_SHARE)
+def _descend(
+    given: Given, incumbent: Incumbent, phase: Phase, number: int, history: History
+) -> MethodPart[None]:
+    """Descend with all sensors at once by models, then one at a time."""
+    step, share = NEXT_STEP, NEXT_SURROGATE_SHARE
+    if number == 1:
+        yield from _linear_descent(given, incumbent, phase, RADIUS, LINEAR_SHARE)
+        step, share = STEP, SURROGATE_SHARE
+    start, seed = (incumbent.best, incumbent.entropy), [given.seed, number, 2]
+    surrogate = SurrogateDescent(given, history, *start, seed, step)
+    yield from surrogate.descend(phase, share * (phase.total - incumbent.count))
+    incumbent.descended(surrogate)
     yield from _block_descent(given, incumbent, phase, [given.seed, number], BLOCK_SHARE)
 
 

@@ -75,7 +75,7 @@ LINES_OF_ROOMS = {
     "pe_core/study/objective_": 80,
     "pe_core/search/goals": 240,
     "pe_core/study/goals_": 90,
-    "pe_core/search/methods/portfolio": 650,
+    "pe_core/search/methods/portfolio": 970,
 }
 """Lines of requirements, of conditions, of the kinds of sensors and the AP curves that are not the
 paper's, and of a search's goals, its objective and its default method, beside `MAX_LINES` of all

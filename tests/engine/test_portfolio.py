@@ -218,6 +218,8 @@ def test_a_survey_asks_for_one_sensor_at_a_time_and_tells_what_the_next_has_to_b
     question = part.send([Judgement(value, False) for value in (6.0, 3.0, 4.0, 7.0)])
     assert question.cutoff == 3.0
     assert len({c.rig["roof"].pose for c in question.candidates}) == 1
+    exact = Survey(Given(coding, coding.start, 5.0), exact=True)
+    assert next(exact.survey(Incumbent(coding.start, 5.0), PHASE, 4)).cutoff == math.inf
 
 
 def test_the_recurrence_fills_a_square_evenly():

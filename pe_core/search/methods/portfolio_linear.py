@@ -15,13 +15,10 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..design_variable import SHARE
 from ..parametrization import Candidate
 from .method import Given, MethodPart, Phase
-
-Floats = NDArray[np.float64]
+from .portfolio_ranges import Floats, UnitRanges
 
 LEAST_HEIGHT, LONGEST, NEW_HEIGHT = 0.25, 2.1, 0.5
 """Powell's alpha, beta, gamma: least height and longest edge of a simplex, and the height of a new
@@ -65,14 +62,11 @@ class LinearDescent:
     """
 
     def __init__(self, given: Given, start: Candidate, entropy: float, radius: float) -> None:
-        self._parametrization, variables = given.parametrization, given.parametrization.variables
-        each = list(enumerate(variables))
-        self._free = [k for k, v in each if v.low < v.high and v.unit != SHARE]
+        self._parametrization, self._ranges = given.parametrization, UnitRanges(given)
+        self._free = self._ranges.free
         self._blocks = _blocks(given.parametrization.blocks, self._free)
-        self._low = np.array([variables[k].low for k in self._free])
-        self._range = np.array([variables[k].high for k in self._free]) - self._low
         self.best, self.entropy, self.count, self.radius = start, entropy, 0, radius
-        self._pole, self._value = self._scaled(start), entropy
+        self._pole, self._value = self._ranges.point(start.vector), entropy
         self._edges = np.eye(len(self._free))
         self._rises = np.zeros(len(self._free))
 
@@ -84,10 +78,6 @@ class LinearDescent:
                 yield from self._first_edges(phase, block)
         while self._free and self.count < end and self.radius >= finest:
             yield from self._iterate(phase)
-
-    def _scaled(self, candidate: Candidate) -> Floats:
-        values = np.array([candidate.vector[k] for k in self._free])
-        return (values - self._low) / self._range
 
     def _first_edges(self, phase: Phase, block: Sequence[int]) -> MethodPart[None]:
         """Evaluate a step along each variable of one sensor, from the best so far."""
@@ -190,9 +180,7 @@ class LinearDescent:
             moved = point - self._pole
             if float(np.abs(moved).max()) < 0.1 * abs(share) * length:
                 continue  # it is at the end of its range
-            vector = list(self.best.vector)
-            for k, value in zip(self._free, self._low + point * self._range, strict=True):
-                vector[k] = float(value)
+            vector = self._ranges.vector(self.best.vector, point)
             candidate = self._parametrization.candidate(vector)
             if self._parametrization.allowed(candidate.rig):
                 return moved, candidate

@@ -16,13 +16,11 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..design_variable import SHARE
-from ..parametrization import Candidate, Vector
-from .method import MAX_SAMPLED, Given, MethodPart, Phase, Question, QuestionStream
-
-Floats = NDArray[np.float64]
+from ..parametrization import Candidate
+from .method import MAX_SAMPLED, Given, MethodPart, Phase, QuestionStream
+from .portfolio_ranges import Floats, UnitRanges
 
 SAMPLED = 500
 """Placements sampled for each question."""
@@ -57,7 +55,7 @@ class History:
         answers = None
         while True:
             try:
-                question: Question = next(questions) if answers is None else questions.send(answers)
+                question = next(questions) if answers is None else questions.send(answers)
             except StopIteration:
                 return
             answers = yield question
@@ -70,7 +68,8 @@ class History:
 class CubicModel:
     """A cubic radial basis function with a linear tail, to which points are added one by one.
 
-    The inverse of its equations is kept and bordered (the same bits on every system).
+    The inverse of its equations is kept, and bordered with each point, by operations that have the
+    same bits on every system.
 
     Parameters
     ----------
@@ -84,7 +83,7 @@ class CubicModel:
 
     def add(self, point: Floats, value: float) -> None:
         """Add a point (D,) and its value."""
-        row = np.concatenate([[1.0], point, self.distances(point[:, None])[:, 0] ** 3])
+        row = np.concatenate([[1.0], point, _cubed(self.distances(point[:, None])[:, 0])])
         across = (row[:, None] * self._inverse).sum(axis=0)
         height = NOISE - math.fsum(row * across)
         grown = np.zeros((len(row) + 1, len(row) + 1))
@@ -115,7 +114,7 @@ class CubicModel:
         capped = np.minimum(self._values, np.median(self._values))
         values = np.concatenate([tail, capped])
         weights = (values[:, None] * self._inverse).sum(axis=0)
-        rows = [np.ones((1, points.shape[1])), points, distances**3]
+        rows = [np.ones((1, points.shape[1])), points, _cubed(distances)]
         return np.asarray((weights[:, None] * np.concatenate(rows)).sum(axis=0))
 
 
@@ -153,15 +152,13 @@ class SurrogateDescent:
         step: float,
     ) -> None:
         self._parametrization, self._history = given.parametrization, history
-        each = list(enumerate(given.parametrization.variables))
-        self._free = [k for k, v in each if v.low < v.high and v.unit != SHARE]
-        self._low = np.array([each[k][1].low for k in self._free])
-        self._range = np.array([each[k][1].high for k in self._free]) - self._low
+        self._ranges = UnitRanges(given)
+        self._free = self._ranges.free
         self.best, self.entropy, self.count = start, entropy, 0
         self._rng = np.random.default_rng(seed)
         self._step, self._longest = step, step
         self._gains = self._failures = 0
-        self._slots = [k for k, v in each if v.unit == SHARE]
+        self._slots = [k for k, v in enumerate(given.parametrization.variables) if v.unit == SHARE]
         self._model = self._learnt()
 
     def descend(self, phase: Phase, count: float) -> MethodPart[None]:
@@ -180,19 +177,16 @@ class SurrogateDescent:
         """Return a model of known placements with the slots of the best."""
         model, best = CubicModel(len(self._free)), self.best.vector
         known = [
-            (self._scaled(vector), value)
+            (self._ranges.point(vector), value)
             for vector, value in zip(self._history.vectors, self._history.values, strict=True)
             if all(vector[k] == best[k] for k in self._slots)
         ]
-        at = self._scaled(best)
+        at = self._ranges.point(best)
         away = [math.fsum((point - at) ** 2) for point, _ in known]
         nearest = sorted(range(len(known)), key=away.__getitem__)[:MAX_KNOWN]
         for number in nearest:
             model.add(*known[number])
         return model
-
-    def _scaled(self, vector: Vector) -> Floats:
-        return (np.array([vector[k] for k in self._free]) - self._low) / self._range
 
     def _candidates(self, moved: float) -> list[Candidate]:
         """Return placements that break no rule, each the best by its weight, to be evaluated.
@@ -215,7 +209,7 @@ class SurrogateDescent:
             chosen.append(candidate)
             if len(chosen) == len(MODEL_WEIGHTS):
                 break
-            between = points - self._scaled(candidate.vector)[:, None]
+            between = points - self._ranges.point(candidate.vector)[:, None]
             away = np.minimum(away, np.sqrt((between * between).sum(axis=0)))
         return chosen
 
@@ -225,14 +219,12 @@ class SurrogateDescent:
         moves = self._rng.random(shape) < moved
         moves[self._rng.integers(shape[0], size=SAMPLED), np.arange(SAMPLED)] |= ~moves.any(axis=0)
         steps = np.where(moves, self._rng.normal(0.0, self._step, shape), 0.0)
-        points = np.abs(self._scaled(self.best.vector)[:, None] + steps)
+        points = np.abs(self._ranges.point(self.best.vector)[:, None] + steps)
         return np.clip(1.0 - np.abs(1.0 - points), 0.0, 1.0)
 
     def _candidate(self, point: Floats) -> Candidate | None:
         """Return the placement at a point, None if it breaks a rule or is the best one."""
-        vector = list(self.best.vector)
-        for k, value in zip(self._free, self._low + point * self._range, strict=True):
-            vector[k] = float(value)
+        vector = self._ranges.vector(self.best.vector, point)
         candidate = self._parametrization.candidate(vector)
         moved = candidate.vector != self.best.vector
         return candidate if moved and self._parametrization.allowed(candidate.rig) else None
@@ -243,7 +235,7 @@ class SurrogateDescent:
         for candidate, value in zip(candidates, values, strict=True):
             self.count += 1
             if math.isfinite(value):
-                self._model.add(self._scaled(candidate.vector), value)
+                self._model.add(self._ranges.point(candidate.vector), value)
             if value < self.entropy:
                 self.best, self.entropy = candidate, value
         if self.entropy < before - GAIN:
@@ -255,6 +247,11 @@ class SurrogateDescent:
         if self._failures >= max(MIN_FAILURES, len(self._free)):
             self._step = max(self._step / 2.0, self._longest / SHORTEST)
             self._failures = 0
+
+
+def _cubed(values: Floats) -> Floats:
+    """Return cubes; NumPy's own power is not the same on every system."""
+    return values * values * values
 
 
 def _share(values: Floats) -> Floats:

@@ -114,8 +114,7 @@ def test_a_drag_is_followed_and_ends_exact_to_the_bit(live, screenshots, install
 
 
 def test_vertices_moved_in_edit_mode_count_and_make_a_result_stale(live):
-    live.press("pe.score")
-    live.wait_for(lambda: live.state["has_result"], 2 * EFFECT_TIMEOUT_S, "a score")
+    live.press_until("pe.score", lambda: live.state["has_result"], "a score")
     assert not live.state["stale"]
     start = wait_for_rest(live)
     live.do("""

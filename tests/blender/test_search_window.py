@@ -29,7 +29,7 @@ def test_a_search_on_a_painted_roof_shows_its_curve(stage, screenshots):
     """)
     start = place(stage)
     assert start[2] < ON_THE_ROOF_M
-    stage.press("pe.optimize")
+    stage.press_until("pe.optimize", lambda: stage.state["running"], "the search to start")
     stage.wait_until(f"len({shown('points')}) > 1", BETTER_TIMEOUT_S)
     stage.point_at_view()
     stage.rest()  # the search goes on drawing

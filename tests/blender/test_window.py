@@ -13,8 +13,7 @@ def test_add_a_sensor_and_score(window, screenshots):
     )
 
     assert not window.state["has_result"], "a result that nobody asked for"
-    window.press("pe.score")
-    window.wait_for(lambda: window.state["has_result"], SCORE_TIMEOUT_S, "a score")
+    window.press_until("pe.score", lambda: window.state["has_result"], "a score")
     window.screenshot(screenshots / "window_score.png")
 
     assert math.isfinite(window.state["entropy"])

@@ -112,8 +112,7 @@ def test_shift_goes_on_and_esc_leaves_with_nothing_more(window, pointer):
 
 
 def test_a_duplicate_by_shift_d_is_a_sensor_without_a_result(window):
-    window.press("pe.score")
-    window.wait_for(lambda: window.state["has_result"], 180, "a score")
+    window.press_until("pe.score", lambda: window.state["has_result"], "a score")
     (original,) = sensors(window)
     window.point_at_view()
     window.key("shift+d")

@@ -129,7 +129,8 @@ class Window:
     ) -> None:
         """Click the button of an operator that acts at once, again where the click was lost.
 
-        A click without any effect was seen twice on busy machines, never again on the same commit.
+        A click without any effect was seen three times on busy machines, never again on the same
+        commit.
         """
         for _ in range(CLICKS - 1):
             self.press(operator, words)

@@ -195,3 +195,16 @@ def test_a_history_keeps_values_and_no_bounds():
         questions.send([Judgement(1.0, False), None, Judgement(2.5, True)])
     assert history.vectors == [coding.start.vector, near.vector]
     assert history.values == [3.0, 1.0]
+
+
+def test_infinite_values_count_as_bad_ones_and_are_left_behind():
+    def half(rig):
+        x = pose_values(rig["roof"].pose)["x"]
+        return x * x if x > -0.5 else math.inf
+
+    rig, space = mounting.space(can(), free=("x", "y"))
+    found, run = descent(half, rig, space)
+    run(60)
+    assert found.entropy < 0.01
+    found, run = descent(lambda rig: math.inf, rig, space)
+    assert run(20) == []

@@ -108,10 +108,12 @@ class CubicModel:
     def expected(self, points: Floats, distances: Floats) -> Floats:
         """Return the model's values (M,) at points (D, M) with their distances (N, M).
 
-        Values above the median count as the median: a model of bad placements need not be right.
+        Values above the median of the finite ones count as that median: a model of bad placements
+        need not be right.
         """
         tail = np.zeros(len(points) + 1)
-        capped = np.minimum(self._values, np.median(self._values))
+        finite = self._values[np.isfinite(self._values)]
+        capped = np.minimum(self._values, np.median(finite))
         values = np.concatenate([tail, capped])
         weights = (values[:, None] * self._inverse).sum(axis=0)
         rows = [np.ones((1, points.shape[1])), points, _cubed(distances)]
@@ -163,7 +165,7 @@ class SurrogateDescent:
 
     def descend(self, phase: Phase, count: float) -> MethodPart[None]:
         """Descend for about `count` placements."""
-        while self._free and self.count < count:
+        while self._free and math.isfinite(self.entropy) and self.count < count:
             fewer = 1.0 - math.log1p(self.count) / math.log1p(count)
             candidates = self._candidates(min(1.0, MOVED / len(self._free)) * fewer)
             if not candidates:
@@ -234,8 +236,7 @@ class SurrogateDescent:
         before = self.entropy
         for candidate, value in zip(candidates, values, strict=True):
             self.count += 1
-            if math.isfinite(value):
-                self._model.add(self._ranges.point(candidate.vector), value)
+            self._model.add(self._ranges.point(candidate.vector), value)
             if value < self.entropy:
                 self.best, self.entropy = candidate, value
         if self.entropy < before - GAIN:

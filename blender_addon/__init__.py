@@ -24,7 +24,7 @@ from . import (
     worker,
 )
 from .overlay import draw_handler as overlay
-from .translation_context import in_own_context, names_of, tooltips_of
+from .translation_context import in_own_context
 
 CLASSES = (*preferences_panel.CLASSES, *properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
 
@@ -33,7 +33,7 @@ def register() -> None:
     """Called by Blender when the add-on is enabled."""
     for cls in CLASSES:
         in_own_context(cls)
-    language.register(text for cls in CLASSES for text in (*names_of(cls), *tooltips_of(cls)))
+    language.register()
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     properties.add_pointers()

@@ -11,7 +11,7 @@ from pe_core import scene as geometry
 from pe_core import sensors as kinds
 from pe_core import study as studies
 from pe_core.scoring import requirements, sight
-from pe_tools import advice, exchange, graphics, jobs, languages, outputs, page
+from pe_tools import advice, exchange, graphics, jobs, outputs, page
 from pe_tools import cli as app
 
 __all__ = [
@@ -23,7 +23,6 @@ __all__ = [
     "graphics",
     "jobs",
     "kinds",
-    "languages",
     "outputs",
     "page",
     "pe",

@@ -1,43 +1,92 @@
-"""The add-on in the language of Blender's interface.
+"""The panel in the language of Blender's interface.
 
-Blender itself translates the names of operators, panels and properties, and tooltips; it has them
-from `register`. All other texts are translated by `shown` where they are drawn or reported: labels,
-and sentences with figures in them, which are put together in English. Both have one catalogue,
-`pe_tools.languages`, and so does the review page.
+Names of operators, panels, properties and items of menus, and short labels, have a catalogue
+(``languages/*.po``). Blender looks up the names; `shown` looks up what is drawn as a label.
+Sentences, messages, files and the review page are English: a text without a translation is shown
+as it is.
 """
 
 from __future__ import annotations
 
+import ast
 import re
-from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
 
 import bpy
 
 from . import preferences
-from .engine import languages
+from .engine import pe
 from .translation_context import CONTEXT
 
+FOLDER = Path(__file__).parent / "languages"
+LANGUAGES = {"de": "Deutsch", "ja": "日本語", "zh": "简体中文"}
+"""Codes of the languages that there is a catalogue of, and their own names."""
+LOCALES = {"de": "de", "ja": "ja", "zh_HANS": "zh", "zh_CN": "zh"}
+"""How Blender's locales begin, and their languages. zh_HANT, traditional Chinese, has none."""
 CONTEXTS = (CONTEXT, "*")
 """Contexts in which Blender looks a message up: ours, and that of tooltips and of categories."""
 LENGTH = re.compile(r"(?<![\d.,])(\d{1,2}\.\d{1,3}) m(?![\w²³/])")
 NAME = __package__ or __name__
 
 
+def read_po(path: Path) -> dict[str, str]:
+    """Return the translations of a gettext file by message; those that are empty are left out.
+
+    Contexts and plural forms are not used.
+
+    Raises
+    ------
+    InputError
+        When a line is none of such a file, or the file is not in UTF-8.
+    """
+    try:
+        lines = path.read_text("utf-8").splitlines()
+    except UnicodeDecodeError:
+        raise pe.InputError(path, "text", "UTF-8", "another encoding") from None
+    entries: list[dict[str, str]] = [{}]
+    key = ""
+    for number, line in enumerate(map(str.strip, lines), 1):
+        if not line or line.startswith("#"):
+            continue
+        if line.startswith(("msgid ", "msgstr ")):
+            key, _, line = line.partition(" ")
+            if key == "msgid":
+                entries.append({})
+        try:
+            text = ast.literal_eval(line)
+        except (ValueError, SyntaxError):
+            text = None
+        if not isinstance(text, str) or not key:
+            expected = "msgid or msgstr with a text in quotes"
+            raise pe.InputError(path, f"line {number}", expected, line)
+        entries[-1][key] = entries[-1].get(key, "") + text
+    pairs = ((entry.get("msgid"), entry.get("msgstr")) for entry in entries)
+    return {message: to for message, to in pairs if message and to}
+
+
+@cache
+def catalog(language: str) -> dict[str, str]:
+    """Return the translations of a language, read once; none for English."""
+    return read_po(FOLDER / f"{language}.po") if language in LANGUAGES else {}
+
+
 def current() -> str:
-    """Return the code of the interface's language; English if that one has no catalogue."""
+    """Return the code of the interface's language; empty for English and all without catalogue."""
     if not bpy.context.preferences.view.use_translate_interface:
-        return languages.ENGLISH
-    return languages.language_of_locale(bpy.app.translations.locale or "")
+        return ""
+    return language_of_locale(bpy.app.translations.locale or "")
+
+
+def language_of_locale(locale: str) -> str:
+    """Return the language of a locale of Blender's; empty where there is no catalogue."""
+    starts = (start for start in LOCALES if locale == start or locale.startswith(f"{start}_"))
+    return LOCALES.get(next(starts, ""), "")
 
 
 def shown(text: str) -> str:
     """Return a text that is drawn or reported, in the interface's language and units."""
-    return with_unit(languages.catalog(current()).translated(text))
-
-
-def filled(message: str, **values: object) -> str:
-    """Return a message in the interface's language, with values that are not translated."""
-    return languages.catalog(current()).filled(message, **values)
+    return with_unit(catalog(current()).get(text, text))
 
 
 def draw_label(layout: bpy.types.UILayout, text: str, icon: str = "NONE") -> None:
@@ -55,21 +104,12 @@ def with_unit(text: str) -> str:
     return LENGTH.sub(lambda length: f"{1000.0 * float(length[1]):.0f} mm", text)
 
 
-def _messages(language: str, texts: Iterable[str]) -> dict[tuple[str, str], str]:
-    """Return the messages of a language without placeholders, as Blender takes them.
-
-    With them go the translations of texts that are put together: "UN R151: cyclist beside".
-    """
-    catalog = languages.catalog(language)
-    composed = set(texts) - catalog.plain.keys()
-    messages = dict(catalog.plain) | {text: catalog.translated(text) for text in composed}
-    return {(context, text): to for text, to in messages.items() for context in CONTEXTS}
-
-
-def register(texts: Iterable[str]) -> None:
-    """Give Blender the messages of all languages; `texts` are those of what is registered."""
-    texts = tuple(texts)
-    by_locale = {locale: _messages(code, texts) for locale, code in languages.LOCALES.items()}
+def register() -> None:
+    """Give Blender the messages of all languages."""
+    by_locale = {
+        locale: {(context, text): to for text, to in catalog(code).items() for context in CONTEXTS}
+        for locale, code in LOCALES.items()
+    }
     bpy.app.translations.register(NAME, by_locale)  # type: ignore[arg-type]  # the stub is wrong
 
 

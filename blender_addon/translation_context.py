@@ -51,13 +51,6 @@ def names_of(cls: type) -> Iterator[str]:
         yield from (item[1] for item in _items(declared))
 
 
-def tooltips_of(cls: type) -> Iterator[str]:
-    """Yield the tooltips of a class's properties: Blender looks them up in its own context."""
-    for declared in own_properties(cls).values():
-        yield declared.keywords.get("description", "")
-        yield from (item[2] for item in _items(declared))
-
-
 def _items(declared: Any) -> tuple[tuple[Any, ...], ...]:
     """Return the items of a menu that are known beforehand."""
     items = declared.keywords.get("items", ())

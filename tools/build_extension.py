@@ -189,7 +189,7 @@ def check_contents(archive: Path) -> None:
     presets = {path.relative_to(ROOT).as_posix() for path in ENGINE.glob("**/*.toml")}
     always = {"__init__.py", "blender_manifest.toml", "LICENSE", "pe_core/__init__.py", EXAMPLE}
     always |= {path.relative_to(ROOT).as_posix() for path in TOOLS.glob("page/**/*.[cj]s*")}
-    always |= {path.relative_to(ROOT).as_posix() for path in TOOLS.glob("languages/*.po")}
+    always |= {path.relative_to(ADDON).as_posix() for path in ADDON.glob("languages/*.po")}
     assets = {path.relative_to(ADDON).as_posix() for path in ADDON.glob("assets/*")}
     for wanted in sorted(always | presets | assets):
         if wanted not in names:

@@ -12,7 +12,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
-from .. import bridge, language, signals
+from .. import bridge, signals
 from ..engine import app, exchange, jobs, outputs, page, pe
 from ..language import shown
 from .export_job import ExportJob, ExportOperator, ExportSteps, WrittenFiles, report_files
@@ -155,8 +155,7 @@ def headless_command(path: Path, render: bool, about: page.About) -> str:
         return ""
     options = ["review", "-o", path.parent.name or ".", *([] if render else ["--no-render"])]
     texts = {field.name: getattr(about, field.name) for field in fields(about)}
-    english = page.About().language
-    options += [f"--{name}={text}" for name, text in texts.items() if text not in ("", english)]
+    options += [f"--{name}={text}" for name, text in texts.items() if text]
     file = shlex.quote(Path(bpy.data.filepath).name)
     return app.as_typed(f"blender -b {file} --command pe", options)
 
@@ -214,7 +213,7 @@ class PE_OT_export_review(ExportOperator, bpy.types.Operator):
     def job(self, context: bpy.types.Context) -> ExportJob:
         """Read the scene; score, render and write the page step by step."""
         path, scene = chosen_file(self.filepath), context.scene.name
-        about = page.About(self.title, self.author, self.date, self.revision, language.current())
+        about = page.About(self.title, self.author, self.date, self.revision)
         study = bridge.study_as_drawn(context.scene)
         facts = {
             "command": headless_command(path, self.render, about),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from ..language import draw_label, filled
+from ..language import draw_label
 from ..operators import ShownSource, ShownVerdict, shown_verdicts, source_of
 from ..properties.requirement_fields import (
     AREA,
@@ -123,8 +123,7 @@ def _draw_source(
         return
     header, inside = layout.panel("PE_requirement_source", default_closed=True)
     if source.check:
-        after = filled("After {check}", check=source.check)  # a name: not translated
-        header.label(text=after, translate=False)
+        header.label(text=f"After {source.check}", translate=False)
     else:
         draw_label(header, "Source")
     if inside is not None:

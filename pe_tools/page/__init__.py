@@ -77,8 +77,6 @@ def add_review_options(parser: argparse.ArgumentParser) -> None:
     about = "date on the page, any text; 'today' is the day of the run (none without it)"
     parser.add_argument("--date", default="", metavar="TEXT", help=about)
     parser.add_argument("--revision", default="", metavar="TEXT", help="revision of the page")
-    about = "language of the page: en (default), de, ja, zh"
-    parser.add_argument("--language", default="en", metavar="CODE", help=about)
 
 
 def add_page() -> None:

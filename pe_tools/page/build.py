@@ -117,7 +117,7 @@ def _write(contexts: Sequence[ReportContext], args: argparse.Namespace) -> app.A
 
 
 def _about(args: argparse.Namespace) -> About:
-    return About(args.title, args.author, args.date, args.revision, args.language)
+    return About(args.title, args.author, args.date, args.revision)
 
 
 def _read_study(path: str) -> pe.Study:

@@ -20,7 +20,6 @@ from pe_core import study as studies
 
 from .. import jobs
 from .markup import css_string, escaped, script_json
-from .page_language import PageLanguage
 from .report_context import About, ReportContext, Section, keyed_contexts
 from .sections import BOTTOM_SECTIONS, STUDY_SECTIONS, TOP_SECTIONS
 
@@ -131,58 +130,54 @@ def _study_chapters(contexts: tuple[ReportContext, ...], build: BuildSection) ->
 
 def _document(contexts: tuple[ReportContext, ...], chapters: list[Chapter], about: About) -> str:
     sections = [section for chapter in chapters for _, section in chapter]
-    to = PageLanguage(contexts, about)
-    body, style_sheet = without_style_attributes(to.html(_body(contexts, chapters, about, to)))
+    body, style_sheet = without_style_attributes(_body(contexts, chapters, about))
     css = [*((HERE / name).read_text("utf-8") for name in STYLES)]
     css += [sheet for section in sections for sheet in section.styles]
-    css += [_print_margins(contexts, about, to), style_sheet]
+    css += [_print_margins(contexts, about), style_sheet]
     sheets = [f"\n{sheet}\n" for sheet in dict.fromkeys(css)]
     programs = dict.fromkeys(script for section in sections for script in section.scripts)
     scripts = [f"\n{_safe_script(program)}\n" for program in programs]
     return "\n".join(
         [
-            f'<!DOCTYPE html>\n<html lang="{to.code}">\n<head>\n<meta charset="utf-8">',
+            '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
             f'<meta http-equiv="Content-Security-Policy" content="{policy(sheets, scripts)}">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
             f'<meta name="generator" content="perception-entropy {pe.__version__}">',
             *([f'<meta name="author" content="{escaped(about.author)}">'] if about.author else []),
-            f"<title>{escaped(_title(contexts, about, to))}</title>",
+            f"<title>{escaped(_title(contexts, about))}</title>",
             *(f"<style>{sheet}</style>" for sheet in sheets),
             "</head>",
             body,
-            *(_data(context, section, to) for chapter in chapters for context, section in chapter),
+            *(_data(context, section) for chapter in chapters for context, section in chapter),
             *(f"<script>{script}</script>" for script in scripts),
             "</body>\n</html>\n",
         ]
     )
 
 
-def _body(
-    contexts: tuple[ReportContext, ...], chapters: list[Chapter], about: About, to: PageLanguage
-) -> str:
+def _body(contexts: tuple[ReportContext, ...], chapters: list[Chapter], about: About) -> str:
     return "\n".join(
         [
             f'<body class="{"several" if len(contexts) > 1 else "single"}">',
             '<a class="skip" href="#page">Skip to the review</a>',
-            _masthead(contexts, about, to),
+            _masthead(contexts, about),
             _contents(chapters),
             '<main id="page">',
             *(_chapter(chapter, len(contexts)) for chapter in chapters),
-            to.note,
             "</main>",
         ]
     )
 
 
-def _title(contexts: tuple[ReportContext, ...], about: About, to: PageLanguage) -> str:
-    names = f" {to.text('and')} ".join(context.name for context in contexts)
-    return about.title or to.text(f"Sensor review: {names}")
+def _title(contexts: tuple[ReportContext, ...], about: About) -> str:
+    names = " and ".join(context.name for context in contexts)
+    return about.title or f"Sensor review: {names}"
 
 
-def _print_margins(contexts: tuple[ReportContext, ...], about: About, to: PageLanguage) -> str:
+def _print_margins(contexts: tuple[ReportContext, ...], about: About) -> str:
     """Return CSS for the margins of a printed page: title and revision, page numbers."""
-    revision = to.text(f"Revision {about.revision}") if about.revision else ""
-    title = _title(contexts, about, to)
+    revision = f"Revision {about.revision}" if about.revision else ""
+    title = _title(contexts, about)
     left = css_string(" \N{MIDDLE DOT} ".join(filter(None, (title, revision))))
     font = "font: 8pt system-ui, sans-serif; color: #57606a"
     return (
@@ -191,14 +186,14 @@ def _print_margins(contexts: tuple[ReportContext, ...], about: About, to: PageLa
     )
 
 
-def _masthead(contexts: tuple[ReportContext, ...], about: About, to: PageLanguage) -> str:
+def _masthead(contexts: tuple[ReportContext, ...], about: About) -> str:
     kicker = (
         "Review of the sensors on a vehicle" if len(contexts) == 1 else "Comparison of sensor rigs"
     )
     names = " <small>and</small> ".join(escaped(context.name) for context in contexts)
     heading = f"<h1>{escaped(about.title) or names}</h1>"
     below = f'<p class="of">{names}</p>' if about.title else ""
-    line = ", ".join(map(to.text, about.parts))
+    line = ", ".join(about.parts)
     line = f'<p class="about">{escaped(line)}</p>' if line else ""
     return f'<header class="masthead"><p class="kicker">{kicker}</p>{heading}{below}{line}</header>'
 
@@ -231,13 +226,12 @@ def _part(context: ReportContext, section: Section, several: bool) -> str:
     )
 
 
-def _data(context: ReportContext, section: Section, to: PageLanguage) -> str:
+def _data(context: ReportContext, section: Section) -> str:
     if not section.data:
         return ""
     name = f"data-{section.anchor}-{context.key}"
-    return (
-        f'<script type="application/json" id="{name}">{script_json(to.section(section))}</script>'
-    )
+    data = script_json(section.data)
+    return f'<script type="application/json" id="{name}">{data}</script>'
 
 
 def _safe_script(script: str) -> str:

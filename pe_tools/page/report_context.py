@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 import pe_core as pe
 from pe_core import search
 
-from .. import advice, graphics, jobs, languages
+from .. import advice, graphics, jobs
 
 T = TypeVar("T")
 MAX_TRIANGLES = 200_000
@@ -200,25 +200,19 @@ class About:
     author, revision : str
     date : str
         Any text ("2026-05-04", "May 2026"); "today" is the day of the run.
-    language : str
-        Code of the page's language: "en", "de", "ja", "zh".
 
     Raises
     ------
     InputError
-        When a text is longer than 200 letters, or there is no catalogue of the language.
+        When a text is longer than 200 letters.
     """
 
     title: str = ""
     author: str = ""
     date: str = ""
     revision: str = ""
-    language: str = languages.ENGLISH
 
     def __post_init__(self) -> None:
-        known = (languages.ENGLISH, *languages.LANGUAGES)
-        if self.language not in known:
-            raise pe.InputError("review", "language", " or ".join(known), self.language)
         for name in ("title", "author", "date", "revision"):
             text = " ".join(str(getattr(self, name)).split())
             if len(text) > MAX_LETTERS:

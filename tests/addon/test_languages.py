@@ -1,4 +1,4 @@
-"""The interface in other languages: texts that fit, and sentences that are translated."""
+"""The interface in other languages: names that fit, and where Blender looks them up."""
 
 import ast
 from pathlib import Path
@@ -8,7 +8,7 @@ import pytest
 
 import blender_addon
 from blender_addon import language, translation_context
-from blender_addon.engine import languages
+from blender_addon.engine import pe
 from blender_addon.panels import layout, main
 from blender_addon.translation_context import CONTEXT
 from tests.addon import layouts
@@ -30,24 +30,23 @@ NARROW = {
 
 
 @pytest.mark.parametrize("scale", [1.0, 2.0])
-@pytest.mark.parametrize("code", languages.LANGUAGES)
+@pytest.mark.parametrize("code", language.LANGUAGES)
 def test_labels_of_narrow_places_are_not_cut_off(addon, code, scale):
     layout.blf.size(layout.FONT, POINTS * scale)
-    catalog = languages.catalog(code)
-    shown = {text: catalog.translated(text) for text in NARROW}
+    catalog = language.catalog(code)
+    shown = {text: catalog.get(text, text) for text in NARROW}
     widths = {text: layout.blf.dimensions(layout.FONT, to)[0] for text, to in shown.items()}
     assert not {
         (text, shown[text], width) for text, width in widths.items() if width > NARROW[text] * scale
     }
 
 
-@pytest.mark.parametrize("scale", [1.0, 2.0])
-@pytest.mark.parametrize("code", languages.LANGUAGES)
-def test_sentences_wrap_in_the_sidebar_in_every_language(addon, code, scale):
+@pytest.mark.parametrize("code", language.LANGUAGES)
+def test_names_wrap_in_the_sidebar_in_every_language(addon, code):
     """No line is wider than the sidebar, also without gaps between words, and nothing is lost."""
-    room, size = (SIDEBAR_PX - layout.BESIDE_PX) * scale, POINTS * scale
+    room, size = SIDEBAR_PX - layout.BESIDE_PX, POINTS
     layout.blf.size(layout.FONT, size)
-    for text in languages.catalog(code).messages.values():
+    for text in (10 * name for name in language.catalog(code).values()):
         lines = layout.wrapped_lines(text, room, size)
         assert "".join(lines).replace(" ", "") == "".join(text.split()), text
         assert all(layout.blf.dimensions(layout.FONT, line)[0] <= room for line in lines), text
@@ -55,22 +54,33 @@ def test_sentences_wrap_in_the_sidebar_in_every_language(addon, code, scale):
 
 
 def test_the_panel_is_in_the_language_of_the_interface(addon, monkeypatch):
-    """What is composed is translated; what is whole is Blender's to translate."""
+    """Labels are translated; a text without a translation is English."""
     monkeypatch.setattr(language, "current", lambda: "de")
     shown = layouts.drawn(main.PE_PT_main, **vars(layouts.Window(bpy.context.scene)))
-    assert "1  Das Fahrzeug wählen" in shown.texts("label")
     assert "Noch keine Sensoren" in shown.texts("label")
-    assert language.shown("Added roof: 4 sensors") == "roof hinzugefügt: 4 Sensoren"
+    assert language.shown("Added roof: 4 sensors") == "Added roof: 4 sensors"
 
 
-def test_blender_is_given_every_whole_message_once(addon):
-    """In both contexts: Blender looks tooltips up in that of its own."""
-    for code in languages.LANGUAGES:
-        given = language._messages(code, ("UN R151: cyclist beside, moving",))
-        plain = languages.catalog(code).plain
-        assert len(plain) > 1000 and len(given) == 2 * len(plain) + 2
-        assert all(given[CONTEXT, text] == plain[text] == given["*", text] for text in plain)
-        assert plain["cyclist beside, moving"] in given[CONTEXT, "UN R151: cyclist beside, moving"]
+def test_locales_of_blender_have_their_languages():
+    of = language.language_of_locale
+    assert [of(x) for x in ("de_DE", "ja_JP", "zh_HANS", "zh_HANT", "en_US", "")] == [
+        *("de", "ja", "zh", "", "", "")
+    ]
+
+
+@pytest.mark.parametrize(
+    "content, expected",
+    [
+        (b'msgid "a"\nmsgstr oops\n', r"xx\.po: line 2: expected msgid or msgstr"),
+        (b'"a"\n', r"xx\.po: line 1: expected msgid or msgstr"),
+        ('msgid "a"\nmsgstr "ä"\n'.encode("latin-1"), r"xx\.po: text: expected UTF-8"),
+    ],
+)
+def test_a_damaged_catalogue_is_told_with_its_line(tmp_path, content, expected):
+    path = tmp_path / "xx.po"
+    path.write_bytes(content)
+    with pytest.raises(pe.InputError, match=expected):
+        language.read_po(path)
 
 
 def rna_of(cls):

@@ -6,35 +6,33 @@ from pathlib import Path
 
 import bpy
 from bl_ext.user_default import perception_entropy
-from bl_ext.user_default.perception_entropy import translation_context
-from bl_ext.user_default.perception_entropy.pe_tools import languages
+from bl_ext.user_default.perception_entropy import language, translation_context
 
 CONTEXT = translation_context.CONTEXT
 view = bpy.context.preferences.view
 view.use_translate_interface = view.use_translate_tooltips = True
 
 
-def texts(texts_of) -> set[str]:
-    """Return the names or tooltips of all that is registered."""
-    return {text for cls in perception_entropy.CLASSES for text in texts_of(cls)} - {""}
+def names() -> set[str]:
+    """Return the names of all that is registered."""
+    names_of = translation_context.names_of
+    return {text for cls in perception_entropy.CLASSES for text in names_of(cls)} - {""}
 
 
 def shown(code: str) -> dict[str, object]:
     """Return what differs from our catalogue in a language, and what the same words are else."""
     locale = next(each for each in bpy.app.translations.locales if each.startswith(code))
     view.language = locale
-    catalog, gettext = languages.catalog(code), bpy.app.translations
+    catalog, gettext = language.catalog(code), bpy.app.translations
     iface = gettext.pgettext_iface
-    words = {each: iface(each, CONTEXT) for each in texts(translation_context.names_of)}
-    tips = {each: gettext.pgettext_tip(each) for each in texts(translation_context.tooltips_of)}
-    own = {each: catalog.translated(each) for each in (*words, *tips)}
+    words = {each: iface(each, CONTEXT) for each in names()}
+    own = {each: catalog.get(each, each) for each in words}
     others = {each: iface(each) for each in words if iface(each) not in (each, own[each])}
     return {
         "names": len(words),
         "wrong_names": {each: word for each, word in words.items() if word != own[each]},
-        "wrong_tooltips": {each: tip for each, tip in tips.items() if tip != own[each]},
         "other_words_of_blender": others,
     }
 
 
-Path(sys.argv[-1]).write_text(json.dumps({code: shown(code) for code in languages.LANGUAGES}))
+Path(sys.argv[-1]).write_text(json.dumps({code: shown(code) for code in language.LANGUAGES}))

@@ -38,7 +38,6 @@ ROOMS = {
         "__main__": set(),
     },
     "pe_tools": {
-        "languages": set(),
         "formats": set(),
         "exchange": {"formats"},
         "graphics": set(),
@@ -48,7 +47,7 @@ ROOMS = {
         "outputs": {"exchange", "graphics"},
         "sweep": {"jobs"},
         "cli": {"formats", "exchange", "advice", "sensitivity", "jobs", "outputs", "sweep"},
-        "page": {"languages", "graphics", "advice", "sensitivity", "jobs", "cli"},
+        "page": {"graphics", "advice", "sensitivity", "jobs", "cli"},
         "reproduction": {"formats", "jobs", "cli"},
         "validity": {"cli", "reproduction"},
         "public": {"formats", "exchange", "advice", "jobs"},

@@ -192,11 +192,33 @@ def test_presets_and_tables_go_through_files():
     assert side.square_metres(np.radians([0, 45, 90])) == pytest.approx([10, 10**1.5, 100])
 
 
+def test_accuracies_of_sources_are_no_resolutions():
+    """Presets whose sources have no resolution find a car once; an accuracy below c / 2B ends."""
+    car = pe.Objects([[20.0, 0.0, 0.75]], [[4.5, 1.8, 1.5]], [0], [0], ("car",))
+    for name in ("Bosch LRR3", "Delphi ESR", "Autoliv NB SRR 80 m"):
+        model = catalog.load(name)
+        m = kinds.measure_objects(radar(model, (0, 0, 0.5)), car)[0]
+        assert 0.9 < m <= 1.0
+        assert all(mode.range_resolution is None for mode in model.modes)
+    table = catalog.to_table(catalog.load("Bosch LRR3"))
+    (mode,) = table["mode"]
+    for depth, allowed in ((0.1, False), (0.1499, True), (0.3, True)):
+        own = {**table, "mode": [{**mode, "range_resolution_m": depth}]}
+        if allowed:
+            kept = catalog.to_table(catalog.from_table("own", own))["mode"][0]
+            assert kept["range_resolution_m"] == depth and kept["bandwidth_mhz"] == 1000
+        else:
+            with pytest.raises(pe.InputError, match=r"range_resolution_m: .*, found 0\.1$"):
+                catalog.from_table("own", own)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
         ({"min_range_m": 200.0}, "mode 'scan': min_range_m: expected a length below 100 m, found"),
         ({"range_resolution_m": 0}, "range_resolution_m: expected a .*length above 0 m, found 0"),
+        ({"bandwidth_mhz": 0}, "bandwidth_mhz: expected a bandwidth above 0 MHz, found 0"),
+        ({"bandwidth_mhz": 299.0}, "range_resolution_m: expected a length >= 0.5013 m, c / 2B"),
         ({"azimuth_resolution_deg": 0}, "azimuth_resolution_deg: expected"),
         ({"elevation_resolution_deg": 0.0}, "elevation_resolution_deg: expected"),
         ({"azimuth_deg": [10, -10, 20]}, "azimuth_deg: expected two or more ascending angles"),

@@ -18,6 +18,7 @@ from ...base.values import A_NAME, Angle, Number, Whole, numbers
 from ...scene.rig import Sensor, SensorModel
 from ..field_of_view import MIN_RANGE
 from ..ray_fan import AngleWindow
+from ..weather import LIGHT_M_S
 from .detection import ratio_of_db, snr_for
 from .reflectivity import DBSM, Reflectivity
 
@@ -30,6 +31,7 @@ ANGLE_RESOLUTION = Angle(0.0, 180.0, above=True)
 PROBABILITY = Number(0.0, 1.0, above=True, below=True)
 LOSS = Number(0.0, 100.0, unit="dB")
 ATTENUATION = Number(0.0, 1e4, unit="dB/km")
+BANDWIDTH = Number(0.0, above=True, cap=1e6, unit="MHz", noun="bandwidth")
 LIST = Whole(1, 1_000_000, "detections")
 MAX_AZIMUTH_DEG, MAX_ELEVATION_DEG = 180.0, 89.0
 
@@ -54,18 +56,20 @@ class RadarMode:
     scales : (E,) float
         0 to 1.
     range_resolution : float, optional
-        [m]
+        [m]; not finer than c / 2B, where the bandwidth B is known.
     azimuth_resolution, elevation_resolution : float, optional
-        [rad]; without a resolution an object is not more than one cell deep, wide or high: on the
-        safe side.
+        [rad]; without a resolution an object is not more than one cell deep, wide or high.
     min_range, max_range : float
         Nothing is detected nearer or farther [m]. The default of the maximum is the largest of
         the ranges.
+    bandwidth_mhz : float, optional
+        Bandwidth B of the sweep, or the occupied one, which is not narrower [MHz].
 
     Raises
     ------
     InputError
-        When a figure is impossible, angles do not ascend, or the ranges cross.
+        When a figure is impossible, angles do not ascend, the ranges cross, or a range resolution
+        is below c / 2B.
     """
 
     name: str
@@ -78,6 +82,7 @@ class RadarMode:
     elevation_resolution: float | None = None
     min_range: float = 0.0
     max_range: float | None = None
+    bandwidth_mhz: float | None = None
 
     def __post_init__(self) -> None:
         name = A_NAME.checked("radar", "mode.name", self.name)
@@ -97,8 +102,17 @@ class RadarMode:
             "min_range": near,
             "max_range": far,
         }
+        finest = 0.0
+        if self.bandwidth_mhz is not None:
+            wide = checked["bandwidth_mhz"] = BANDWIDTH.checked(
+                who, "bandwidth_mhz", self.bandwidth_mhz
+            )
+            finest = LIGHT_M_S / (2.0e6 * wide)  # c / 2B, Skolnik, section 1.2
         if self.range_resolution is not None:
             depth = RESOLUTION.checked(who, "range_resolution_m", self.range_resolution)
+            if depth < finest:
+                expected = f"a length >= {finest:.4g} m, c / 2B of bandwidth_mhz {wide:g}"
+                raise InputError(who, "range_resolution_m", expected, f"{depth:g}")
             checked["range_resolution"] = depth
         for key in ("azimuth_resolution", "elevation_resolution"):
             if (value := getattr(self, key)) is not None:

@@ -21,7 +21,7 @@ MODE_KEYS = frozenset(
     {
         *("name", "azimuth_deg", "range_m", "elevation_deg", "elevation_scale"),
         *("range_resolution_m", "azimuth_resolution_deg", "elevation_resolution_deg"),
-        *("min_range_m", "max_range_m"),
+        *("min_range_m", "max_range_m", "bandwidth_mhz"),
     }
 )
 KEYS = frozenset({"mode", "rcs_dbsm", *OWN})
@@ -64,6 +64,7 @@ def _mode(name: str, table: Any, number: int) -> RadarMode:
             _radian("elevation_resolution_deg", table),
             table.get("min_range_m", 0.0),
             table.get("max_range_m"),
+            table.get("bandwidth_mhz"),
         )
     except InputError as error:  # name the radar as well
         raise InputError(
@@ -108,6 +109,8 @@ def _mode_table(mode: RadarMode) -> dict[str, Any]:
         table["elevation_scale"] = _shortest(mode.scales.tolist())
     if mode.range_resolution is not None:
         table["range_resolution_m"] = mode.range_resolution
+    if mode.bandwidth_mhz is not None:
+        table["bandwidth_mhz"] = mode.bandwidth_mhz
     for key in ("azimuth_resolution", "elevation_resolution"):
         if (angle := getattr(mode, key)) is not None:
             table[f"{key}_deg"] = degrees_in_file(angle)

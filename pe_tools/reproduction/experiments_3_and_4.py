@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 from pe_core.metric import H_BLIND
 
 from .claims import SMALL_DEG
 from .paper import PITCH_HEIGHT_M, PRIORS, ROW
 from .plan import pilot_name
 from .result_view import (
+    CLEAR,
     CORNER_ROWS,
     ReproductionResults,
     are_apart,
@@ -54,7 +57,7 @@ A search moves a sensor by two metres at most, so each pair of corners had a sea
 
 {_pilots(results)}
 
-{_pilots_and_searches(results)}
+{_told_apart(results)}{_pilots_and_searches(results)}
 
 **Figures: {results.verdict("3: figures", compared_with_printed(ours, theirs))}** (for the cost of unseen voxels see
 experiment 1): the paper's are {joined([str(v) for v in theirs])}, ours {joined([f"{v:.4f}" for v in ours])} at the
@@ -74,6 +77,20 @@ def _pilots(results: ReproductionResults) -> str:
             if name in results.values:
                 lines.append([row_label(row), start, f"{results[name]['entropy']:.4f}"])
     return table(["row", "corners at the start of the search", "entropy at its end"], lines)
+
+
+def _told_apart(results: ReproductionResults) -> str:
+    """Return from which difference on two pilots of a row differ by more than chance."""
+    rows = results.searched(CORNER_ROWS)
+    if not rows or len(results.effort.seeds) < 2:
+        return ""
+    keys = dict(zip(CORNER_ROWS, ("3 default", "3 front"), strict=True))
+    deviations = {row: results.searched_deviations(keys[row], PRIORS[0]) for row in rows}
+    limits = [f"{CLEAR * math.hypot(*deviations[row]):.3f} nats ({ROW[row].label})" for row in rows]
+    return (
+        f"A pilot is one search. Two pairs of corners are told apart by more than {joined(limits)}; "
+        "that is from the seeds of the long searches, and pilots have fewer candidates, so they may scatter more. "
+    )
 
 
 def _pilots_and_searches(results: ReproductionResults) -> str:

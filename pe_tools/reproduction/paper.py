@@ -86,9 +86,6 @@ ROWS = (
 )
 ROW = {row.name: row for row in ROWS}
 
-HOUR_S = 3600.0
-"""Duration of one optimization in the paper: "around an hour" on an Intel Core i7-8700, in C++."""
-
 PITCH_HEIGHT_M = 1.05
 """Height of the two LiDARs of the pitch figure: the printed one of experiment 3's front pair."""
 

@@ -119,9 +119,10 @@ def with_claims(results: ResultsFile, effort: Effort) -> dict[str, Any]:
 
 def summary(data: Mapping[str, Any]) -> str:
     """Return the claims in a few lines, for people."""
-    lines = []
+    results, lines = ReproductionResults(data), []
     for claim in data["claims"]:
         verdict = "holds" if claim["holds"] else "DOES NOT HOLD"
+        verdict = verdict if results.is_decided(claim) else "not decided"
         lines.append(
             f"{verdict:13}  {claim['text']} ({claim['where']}, {claim['prior']}): "
             f"{claim['better']} {claim['better_entropy']:.4f}, "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import statistics
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 from pe_core.metric import H_BLIND
 
 from .paper import HALF_LENGTH_M, HALF_WIDTH_M, PRIORS, ROOF_M, ROW, Position, study_of
-from .plan import best_search, effort_from_dict
+from .plan import CAMERA_ROWS, best_search, effort_from_dict
 from .results_file import CompleteResults
 from .wording import ABOUT_M, APART_DEG, APART_M, MOUNT_M
 
@@ -17,6 +18,16 @@ MIN_SECONDS = 1e-3
 """The smallest step of a duration in results.json."""
 ROOF_ROWS, CORNER_ROWS = ("1_pandar64", "1_hdl64e"), ("3_default", "3_front")
 """Rows of LiDARs above a car's roof, and at a bus's corners."""
+SEARCHED_PAIRS = {
+    "1": ROOF_ROWS,
+    "2": CAMERA_ROWS,
+    "3 default": ("3_default", "3_default"),
+    "3 front": ("3_front", "3_front"),
+    "4": ("4_cameras", "3_front"),
+}
+"""The rows whose searches a claim compares; experiment 3: two pilots of one row, a search each."""
+CLEAR = 2.0
+"""Standard deviations from which two searches differ by more than chance."""
 
 PositionBySensor = Mapping[str, Position]
 
@@ -95,9 +106,37 @@ class ReproductionResults(CompleteResults):
         seconds = [s for name, s in self.seconds.items() if name.startswith("search/")]
         return [max(s, MIN_SECONDS) for s in seconds]
 
+    def is_decided(self, claim: Mapping[str, Any]) -> bool:
+        """Return whether a claim's difference is larger than what chance does to its searches.
+
+        It is, if it is more than `CLEAR` standard deviations of the difference of two searches;
+        the deviation of one is that over the seeds of its row. Printed placements have none.
+        """
+        if claim["where"] != "searched":
+            return True
+        difference = claim["worse_entropy"] - claim["better_entropy"] - claim["by"]
+        deviations = self.searched_deviations(claim["experiment"], claim["prior"])
+        return bool(abs(difference) > CLEAR * math.hypot(*deviations))
+
+    def searched_deviations(self, experiment: str, prior: str) -> tuple[float, float]:
+        """Return the standard deviation over the seeds for both searches of a claim [nats].
+
+        Zero where a row has one seed: nothing is known then.
+        """
+        first, second = (
+            [search["entropy"] for search in self.searches(row, prior)]
+            for row in SEARCHED_PAIRS[experiment]
+        )
+        deviations = [statistics.stdev(v) if len(v) > 1 else 0.0 for v in (first, second)]
+        return deviations[0], deviations[1]
+
     def priors_holding(self, experiment: str, where: str) -> tuple[list[str], list[str]]:
-        """Return the priors under which a claim holds, and those under which it does not."""
+        """Return the priors under which a claim holds, and those under which it does not.
+
+        Those under which the searches do not decide it are in neither list.
+        """
         claims = [c for c in self.claims if (c["experiment"], c["where"]) == (experiment, where)]
+        claims = [c for c in claims if self.is_decided(c)]
         holding, others = (
             [c["prior"] for c in claims if c["holds"] is holds] for holds in (True, False)
         )
@@ -202,13 +241,18 @@ def height_verdict(differences: Sequence[float]) -> str:
     return f"{abs(mean):.2f} m {'higher' if mean > 0.0 else 'lower'} on average"
 
 
+def distances_from_the_paper(results: ReproductionResults, rows: Sequence[str]) -> list[float]:
+    """Return how far from the paper's place the farthest sensor of each search ends [m]."""
+    return [
+        max(math.dist(place, printed_positions(row)[name]) for name, place in positions.items())
+        for row in rows
+        for positions in results.final_positions(row)
+    ]
+
+
 def count_near_the_paper(results: ReproductionResults, row: str) -> int:
     """Return how many searches of a row end with every sensor within `MOUNT_M` of the paper's."""
-    printed = printed_positions(row)
-    return sum(
-        all(_distance(position, printed[name]) <= MOUNT_M for name, position in positions.items())
-        for positions in results.final_positions(row)
-    )
+    return sum(distance <= MOUNT_M for distance in distances_from_the_paper(results, [row]))
 
 
 def are_apart(placements: Mapping[str, Any]) -> bool:
@@ -217,7 +261,3 @@ def are_apart(placements: Mapping[str, Any]) -> bool:
     height = abs(first["position"][2] - second["position"][2])
     pitch = abs(first["rotation"][1] - second["rotation"][1])
     return bool(height > APART_M or pitch > APART_DEG)
-
-
-def _distance(a: Position, b: Position) -> float:
-    return sum((x - y) ** 2 for x, y in zip(a, b, strict=True)) ** 0.5

@@ -13,7 +13,13 @@ from pe_core.metric import POINTPILLARS
 from .claims import TEXTS
 from .paper import PRIORS, ROW, ROWS
 from .plan import FITS
-from .result_view import ReproductionResults, placement_text, printed_placement_text, row_label
+from .result_view import (
+    CLEAR,
+    ReproductionResults,
+    placement_text,
+    printed_placement_text,
+    row_label,
+)
 from .wording import joined, table
 
 CLASSES = ("pedestrian", "cyclist", "car")
@@ -40,7 +46,8 @@ def orderings(results: ReproductionResults) -> str:
 
 The first figure of each pair is of the rig that the paper finds better. Priors are compared at the
 placements that the paper prints; experiment 4 and "front doubled" have the paper's weights, which are doubled
-ahead of the vehicle.
+ahead of the vehicle. Searches differ by chance: *not decided* where two differ by no more than {CLEAR:g} standard
+deviations of their difference, from the seeds of their rows.
 """
 
 
@@ -50,6 +57,7 @@ def _ordering_cell(results: ReproductionResults, key: str, where: str, prior: st
     if claim is None:
         return ""
     verdict = "holds" if claim["holds"] else "**does not hold**"
+    verdict = verdict if results.is_decided(claim) else "**not decided**"
     text = f"{verdict}: {claim['better_entropy']:.4f}, {claim['worse_entropy']:.4f}"
     return results.verdict(f"table: {key}, {where}, {prior}", text)
 
@@ -112,6 +120,8 @@ def ordering_verdict(results: ReproductionResults, key: str) -> str:
         text += f", {'and' if yes else 'but the same'} in our own search"
     elif no_searched and not yes_searched:
         text += f", {'and' if not yes else 'but'} not in our own search"
+    elif not yes_searched and results.claim(key, "searched"):
+        text += "; not decided in our own search"
     return results.verdict(f"ordering {key}", f"{text}.")
 
 

@@ -6,8 +6,8 @@ import bpy
 from bpy.props import BoolProperty, StringProperty
 from mathutils import Matrix
 
-from .. import bridge, sensor_cache, signals
-from ..engine import pe
+from .. import bridge, sensor_cache, signals, vehicle_cache
+from ..engine import advice, pe
 from ..language import shown
 from .add_sensor import select_only
 from .reports import USER_ERRORS, OperatorResult, chosen_sensor, report, report_error
@@ -148,18 +148,23 @@ def mirrored_copy(context: bpy.types.Context, obj: bpy.types.Object) -> bpy.type
     Raises
     ------
     InputError
-        When it is its own mirror image.
+        When it is its own mirror image, or when its image is not on the vehicle.
     """
-    pose = bridge.pose_of(obj, context.evaluated_depsgraph_get())
+    depsgraph = context.evaluated_depsgraph_get()
+    sensor = bridge.sensor_from_object(obj, depsgraph)
+    pose, image = sensor.pose, bridge.mirrored_pose(sensor.pose)
     if bridge.in_the_middle(pose):
         expected = "a sensor beside the vehicle's middle plane"
         raise pe.InputError("scene", f"sensor {obj.name!r}", expected, "its own mirror image")
+    vehicle = vehicle_cache.shared.read(context.scene, depsgraph).vehicle
+    if vehicle is not None:
+        advice.check_mirror_image(vehicle, sensor, image)
     made = obj.copy()
     made.name = bridge.mirrored_name(obj.name)
     made.perception_entropy.has_result, made.perception_entropy.mirror_of = False, ""
     for collection in obj.users_collection:
         collection.objects.link(made)
-    bridge.place_poses(context.scene, {made.name: bridge.mirrored_pose(pose)})
+    bridge.place_poses(context.scene, {made.name: image})
     return made
 
 

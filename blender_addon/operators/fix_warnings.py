@@ -6,11 +6,12 @@ import math
 from collections.abc import Callable, Iterable
 
 import bpy
+import numpy as np
 from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
 from mathutils import Euler, Matrix, Vector
 
 from .. import bridge, signals
-from ..engine import pe
+from ..engine import geometry, pe
 from ..language import shown
 from .reports import USER_ERRORS, OperatorResult, report, report_error
 
@@ -71,12 +72,14 @@ def turn_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount
 
 
 def stand_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount) -> None:
-    """Turn the vehicle about x, y and z [deg], and put its lowest point on the ground."""
-    _turn_in_place(context, Euler([math.radians(each) for each in amount]))
-    context.view_layer.update()
-    low, _ = _bounds(_chosen_vehicle(context).all_objects)
-    if math.isfinite(low.z):
-        _transform_vehicle(context, Matrix.Translation((0.0, 0.0, -low.z)))
+    """Turn the vehicle about x, y and z [deg]; put it on the ground, its axis on the x axis."""
+    turn = Euler([math.radians(each) for each in amount]).to_matrix()
+    collection, depsgraph = _chosen_vehicle(context), context.evaluated_depsgraph_get()
+    vehicle = bridge.vehicle_from_collection(collection, depsgraph)
+    turned = vehicle.triangles @ np.array(turn).T
+    shape = geometry.BodyShape(turned, vehicle.parts, vehicle.part_names)
+    shift = (*shape.middle, shape.bounds[0][2])
+    _transform_vehicle(context, Matrix.Translation(-Vector(shift)) @ turn.to_4x4())
 
 
 def move_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount) -> None:

@@ -2,6 +2,7 @@
 
 from ..geometry.grids import PerceptionSpace
 from ..geometry.poses import Pose, rotate, rotation_matrix, rpy_from_matrix
+from .body_shape import BodyShape
 from .housing import Housing, cuts_body
 from .objects import Objects
 from .rig import Rig, Sensor
@@ -10,6 +11,7 @@ from .vehicle_description import Reference, guessed_reference, vehicle_line
 from .vehicle_state import Motion, State
 
 __all__ = [
+    "BodyShape",
     "Housing",
     "Motion",
     "Objects",

@@ -64,6 +64,23 @@ class BodyShape:
         return x, y, z
 
     @cached_property
+    def middle(self) -> tuple[float, float]:
+        """Point x, y that belongs on the origin [m]: the middle in x, the axis in y.
+
+        The axis is the middle of the bounds, or the centroid of the surface if that is nearer to
+        y = 0: a single mirror moves the bounds, and a single seat the centroid.
+        """
+        low, high = self.bounds
+        x, y = ((low + high)[:2] / 2.0).tolist()
+        triangles = self.triangles if self.is_ours is None else self.triangles[self.is_ours]
+        area = _areas(triangles)
+        total = float(area.sum())
+        if total > 0.0:
+            centroid = float((triangles[:, :, 1].mean(axis=1) * area).sum()) / total
+            y = 0.0 if centroid * y < 0.0 else min(y, centroid, key=abs)
+        return x, y
+
+    @cached_property
     def lopsided(self) -> tuple[float, float, float]:
         """Asymmetry of the surface along x, y, z: 0 if it equals its mirror image, at most 2.
 
@@ -73,8 +90,7 @@ class BodyShape:
         body = self.triangles if self.is_ours is None else self.triangles[self.is_ours]
         stride = -(-len(body) // ENOUGH)
         triangles = body[::stride]
-        normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-        area = np.sqrt((normal * normal).sum(axis=1))
+        area = _areas(triangles)
         x, y, z = (_lopsided(triangles[:, :, k].mean(axis=1), area) for k in range(3))
         return x, y, z
 
@@ -93,6 +109,12 @@ def corner_bounds(triangles: Floats) -> tuple[Floats, Floats]:
     """Lowest and highest corner (3,) of triangles (F, 3, 3), F at least 1."""
     axes = [triangles[..., k] for k in range(3)]  # axis by axis: many times as fast
     return np.array([axis.min() for axis in axes]), np.array([axis.max() for axis in axes])
+
+
+def _areas(triangles: Floats) -> Floats:
+    """Twice the areas (F,) of triangles [m2]."""
+    normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    return np.sqrt((normal * normal).sum(axis=1))
 
 
 def _lopsided(positions: Floats, area: Floats) -> float:

@@ -20,7 +20,7 @@ from .key_figures import (
     sensor_table,
 )
 from .location import AskedPlace, SensorAtPlace, ask_place
-from .mount_checks import stopped_shares
+from .mount_checks import check_mirror_image, stopped_shares
 from .ranking import Notation, ranking, win_words
 from .score_comparison import ComparedRow, compare, compare_figures
 from .summary import (
@@ -54,6 +54,7 @@ __all__ = [
     "SensorAtPlace",
     "SensorRow",
     "ask_place",
+    "check_mirror_image",
     "class_of",
     "compare",
     "compare_figures",

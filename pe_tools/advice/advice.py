@@ -70,7 +70,7 @@ class Advice:
     fix : str or None
         Correction: "turn_vehicle" by `amount` degrees counter-clockwise, "scale_vehicle" by
         a factor, "move_vehicle" by x, y and z [m], "stand_vehicle" by degrees about x, y and z and
-        then onto the ground, "roll_sensor" by degrees.
+        then onto the ground and the origin, "roll_sensor" by degrees.
     amount : tuple of float
         Arguments of the fix.
     """

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pe_core import catalog
+from pe_core.base.errors import InputError
 from pe_core.geometry.grids import PerceptionSpace
-from pe_core.geometry.poses import dot
+from pe_core.geometry.poses import Pose, dot
 from pe_core.geometry.raycast import Hits
 from pe_core.scene.housing import cuts_body
 from pe_core.scene.inside_test import is_enclosed
@@ -23,7 +24,7 @@ from pe_core.sensors import kind_of
 from pe_tools.advice.advice import metres, percent
 
 from .advice import Advice
-from .vehicle_checks import Bodywork
+from .vehicle_checks import OFF_AXIS_M, Bodywork
 
 Floats = NDArray[np.float64]
 
@@ -175,6 +176,31 @@ def distance_to(vehicle: Vehicle, point: Floats) -> float:
             if distance <= radius:
                 return distance
         radius *= 2.0
+
+
+IMAGE_GAP_M = 0.1
+"""A mirror image may be this much farther from the body than its original [m]."""
+
+
+def check_mirror_image(vehicle: Vehicle, sensor: Sensor, image: Pose) -> None:
+    """Check that a sensor's mirror image is on the vehicle where the sensor is.
+
+    Raises
+    ------
+    InputError
+        When the vehicle is not centred, or when the image is in the air beside it.
+    """
+    field, body = f"sensor {sensor.name!r}: mirror image", Bodywork(vehicle)
+    off_m = body.shape.middle[1]
+    if abs(off_m) > OFF_AXIS_M:
+        expected = "a vehicle whose axis is y = 0 (see the warning 'not centred')"
+        raise InputError("scene", field, expected, f"its axis at y = {off_m:.2f} m")
+    gap, image_gap = (
+        distance_to(body.itself, np.asarray(pose.position)) for pose in (sensor.pose, image)
+    )
+    if image_gap > gap + IMAGE_GAP_M:
+        expected = f"one as near to the vehicle as the sensor, {metres(gap)}"
+        raise InputError("scene", field, expected, f"one {metres(image_gap)} off it")
 
 
 def _housing(mounted: SensorAtBody) -> Iterator[Advice]:

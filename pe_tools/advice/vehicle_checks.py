@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pe_core.scene.body_shape import USUAL_SECOND_M, BodyShape, car_factor, fitting_units, is_usual
-from pe_core.scene.orientation import LONGER, across, front_by_names, wheel_center
+from pe_core.scene.orientation import LONGER, ON_GROUND, across, front_by_names, wheel_center
 from pe_core.scene.vehicle import Vehicle
 from pe_tools.advice.advice import metres
 
@@ -66,8 +66,9 @@ class Bodywork:
 SUNK_M, FLOATS_M = 0.15, 0.3
 """Allowed depth below and height above the ground [m]: tyres may sink in a little, and a body
 without wheels is a little above the ground."""
-OFF_ORIGIN_M = 1.0
-"""Allowed distance of the vehicle's centre from the origin [m]."""
+OFF_AXIS_M, OFF_MIDDLE_M = 0.05, 1.0
+"""Allowed distance of the vehicle's axis from the x axis, and of its middle from x = 0 [m]: the
+origin may be at an axle, but a mirror image is on the vehicle only if the axis is y = 0."""
 WIDE_M = 3.2
 """Greatest width of a road vehicle [m]: a lorry is 2.6 m wide, and each mirror adds 0.3 m."""
 FLOOR_M = 6.0
@@ -119,9 +120,12 @@ def _size(body: Bodywork) -> Iterator[Advice]:
 
 
 def _wide(body: Bodywork) -> Iterator[Advice]:
-    """Check for a mesh in other units: wider than any road vehicle, but flat like a car."""
+    """Check for a mesh in other units: wider than any road vehicle, but flat like a car.
+
+    On its side, a bus is as wide as it is high.
+    """
     x, y, z = body.size
-    if WIDE_M < y < x and z < y:
+    if WIDE_M < y < x and z < y and across(body.shape) != 2:
         factor = car_factor(x)
         text = (
             f"{metres(y)} wide is more than roads allow; scaled by {factor:g} it would be as long "
@@ -148,7 +152,8 @@ def _stand(text: str, code: str, turn: tuple[float, float, float]) -> Advice:
 def _quarter_turn(body: Bodywork) -> tuple[float, float, float]:
     """Return the turn about x and y [deg] that puts the wheels of a lying vehicle below its body.
 
-    Without names of wheels the side is unknown: the vehicle may then be on its roof.
+    Without names of wheels the side that is at coordinate 0 is taken for them; without either the
+    vehicle may then be on its roof.
     """
     middle = (body.low + body.high)[:2] / 2.0
     wheels, mirrored = wheel_center(body.shape), across(body.shape)
@@ -157,6 +162,7 @@ def _quarter_turn(body: Bodywork) -> tuple[float, float, float]:
         up = int(np.argmax(np.abs(offset)))
     else:
         up = 1 - mirrored if mirrored in (0, 1) else int(np.argmin(body.size[:2]))
+        offset[up] = -1.0 if abs(body.low[up]) <= ON_GROUND * body.size[up] else 1.0
     turn = -90.0 if offset[up] < 0.0 else 90.0
     return (0.0, turn, 0.0) if up == 0 else (-turn, 0.0, 0.0)
 
@@ -203,18 +209,20 @@ def _height(body: Bodywork) -> Iterator[Advice]:
     yield Advice(None, "height", text, fix="move_vehicle", amount=(0.0, 0.0, -bottom))
 
 
-def _off_origin(body: Bodywork) -> Iterator[Advice]:
-    """Check that the vehicle's centre is near the origin."""
-    x, y, _ = ((body.low + body.high) / 2.0).tolist()
-    away = float(np.hypot(x, y))
-    if away > OFF_ORIGIN_M:
-        text = (
-            f"its centre is {metres(away)} off the origin, at ({x:.1f}, {y:.1f}); objects are "
-            "expected round the origin"
-        )
-        yield Advice(None, "off_origin", text, fix="move_vehicle", amount=(-x, -y, 0.0))
+def _not_centred(body: Bodywork) -> Iterator[Advice]:
+    """Check that the vehicle's axis is the x axis, and its middle near the origin."""
+    x, y = body.shape.middle
+    if abs(y) > OFF_AXIS_M:
+        side = "left" if y > 0.0 else "right"
+        text = f"not centred: its axis is {metres(abs(y))} to the {side} of y = 0"
+        text += "; mirror images of sensors would be off the vehicle"
+    elif abs(x) > OFF_MIDDLE_M:
+        text = f"not centred: its middle is {metres(abs(x))} off the origin, at x = {x:.1f} m"
+    else:
+        return
+    yield Advice(None, "not_centred", text, fix="move_vehicle", amount=(0.0 - x, 0.0 - y, 0.0))
 
 
 CHECKS: tuple[Callable[[Bodywork], Iterator[Advice]], ...] = (
-    *(_wide, _stands, _on_its_roof, _faces, _height, _off_origin),
+    *(_wide, _stands, _on_its_roof, _faces, _height, _not_centred),
 )

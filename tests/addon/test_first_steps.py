@@ -4,6 +4,7 @@ import math
 from types import SimpleNamespace
 
 import bpy
+import numpy as np
 import pytest
 from mathutils import Matrix
 
@@ -120,8 +121,32 @@ def test_stand_on_wheels_puts_the_vehicle_on_the_ground(scene):
     assert bpy.ops.pe.mend(fix=found.fix, amount=found.amount) == {"FINISHED"}
     bpy.context.view_layer.update()
     low, high = scenes.vehicle(scene.perception_entropy.vehicle).bounds
-    assert low[2] == pytest.approx(0.0, abs=1e-5)
+    assert tuple(low) == pytest.approx((-2.0, -0.9, 0.0), abs=1e-5), "centred, on the ground"
     assert tuple(high - low) == pytest.approx((4.0, 1.8, 1.3), abs=1e-5)
+
+
+@pytest.mark.parametrize("quarter", [1, -1])
+def test_a_mesh_of_z_up_imported_as_y_up_is_mended_by_one_button(car, quarter):
+    """Wavefront's default axes lay it on its side, wheels at y = 0: 0.65 m beside its axis."""
+    vehicle = car.perception_entropy.vehicle
+    shape = scenes.vehicle(vehicle).bounds
+    for obj in car.objects:
+        obj.location.z -= 0.2  # the boxes begin 0.2 m above the ground
+    bpy.context.view_layer.update()
+    before = points_of(("body", "cabin", "roof"), car)
+    for obj in car.objects:
+        obj.matrix_world = Matrix.Rotation(quarter * math.pi / 2, 4, "X") @ obj.matrix_world
+    bpy.context.view_layer.update()
+    diagnostics.run_checks()
+    rows = {row.code: row for row in car.perception_entropy.result_warnings}
+    assert rows["not_centred"].fix == "move_vehicle"
+    found = rows["on_side"]
+    assert bpy.ops.pe.mend(fix=found.fix, amount=found.amount) == {"FINISHED"}
+    for now, was in zip(points_of(("body", "cabin", "roof"), car), before, strict=True):
+        assert now == pytest.approx(was, abs=1e-4)
+    assert np.allclose(scenes.vehicle(vehicle).bounds, np.array(shape) - (0, 0, 0.2), atol=1e-5)
+    diagnostics.run_checks()
+    assert not [row.code for row in car.perception_entropy.result_warnings]
 
 
 def test_an_arrow_ahead_of_the_vehicle_is_shown_until_there_is_a_sensor(scene):

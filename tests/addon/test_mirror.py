@@ -115,6 +115,23 @@ def test_a_linked_pair_moves_whichever_is_moved(left):
     assert alike(left, right) and left.location.x == pytest.approx(-1.0)
 
 
+def test_no_mirror_image_is_put_in_the_air(car):
+    """Beside its axis the vehicle is not where the image would be; nor without its other half."""
+    scenes.add_sensor("corner_left", location=(1.9, 0.8, 1.0))
+    for change in ("beside", "one-sided"):
+        for obj in car.perception_entropy.vehicle.objects:
+            obj.location.y += 0.77 if change == "beside" else -0.77
+        if change == "one-sided":
+            scenes.add_box(
+                car.perception_entropy.vehicle, "arm", (0.1, 0.6, 0.1), location=(1.9, 1.5, 0.9)
+            )
+            car.objects["corner_left"].location.y = 2.1
+        bpy.context.view_layer.update()
+        with pytest.raises(RuntimeError, match="mirror image"):
+            bpy.ops.pe.mirror_sensor(name="corner_left")
+        assert "corner_right" not in car.objects
+
+
 def test_both_moved_as_mirror_images_are_left_alone(left):
     right = mirror(linked=True)
     left.location.x = right.location.x = 1.9

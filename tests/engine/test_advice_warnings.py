@@ -268,6 +268,11 @@ def turned_by(vehicle, amount):
 LYING = ("on_tail", "on_side", "on_roof")
 
 
+def test_a_bus_on_its_side_is_not_to_be_scaled(bus):
+    codes = {code for _, code in told(moved(bus, SIDE))}
+    assert "on_side" in codes and "width" not in codes
+
+
 def test_the_fix_of_a_lying_vehicle_puts_its_wheels_down(sedan, bus):
     """However it lies: on tail or nose, on either side, on its roof, and along y as well."""
     nose, other = -np.array(TAIL) * [[1], [-1], [1]], np.array(SIDE) * [[1], [-1], [-1]]
@@ -340,14 +345,25 @@ def test_sunk_or_floating(sedan):
         assert (None, "height") not in told(moved(sedan, shift=(0, 0, little)))
 
 
-def test_off_the_origin(sedan):
-    found = told(moved(sedan, shift=(30, 1, 0)))[None, "off_origin"]
-    assert found.text.startswith("its centre is 30 m off the origin, at (30.0, 1.0)")
-    assert found.amount == pytest.approx((-30, -1, 0), abs=1e-3)
-    for shift in ((0.9, 0, 0), (0, 0.9, 0)):
-        assert (None, "off_origin") not in told(moved(sedan, shift=shift))
-    for shift in ((1.2, 0, 0), (0, -1.2, 0), (0.8, 0.8, 0)):
-        assert (None, "off_origin") in told(moved(sedan, shift=shift))
+def test_a_vehicle_beside_its_axis_or_off_the_origin_is_not_centred(sedan, bus):
+    for vehicle in (sedan, bus):
+        for shift in ((0.9, 0, 0), (0, 0.04, 0), (0, -0.04, 0)):
+            assert (None, "not_centred") not in told(moved(vehicle, shift=shift))
+        for shift in ((1.2, 0, 0), (0, -0.77, 0), (0, 0.06, 0), (30, 1, 0)):
+            found = told(moved(vehicle, shift=shift))[None, "not_centred"]
+            assert found.fix == "move_vehicle"
+            assert found.amount == pytest.approx(np.negative(shift), abs=0.01)
+            mended = moved(moved(vehicle, shift=shift), shift=found.amount)
+            assert (None, "not_centred") not in told(mended)
+
+
+def test_one_mirror_or_one_seat_leave_the_axis_where_it_is():
+    car = shapes.box_car().triangles
+    for low, high in (((0.5, 0.9, 0.9), (0.6, 1.2, 1.0)), ((-0.3, 0.2, 0.5), (0.3, 0.8, 1.3))):
+        with_one = pe.Vehicle(np.concatenate([car, shapes.box(low, high)]))
+        assert (None, "not_centred") not in told(with_one)
+        beside = told(moved(with_one, shift=(0, 0.5, 0)))[None, "not_centred"]
+        assert beside.amount[1] == pytest.approx(-0.5, abs=0.1)
 
 
 def test_a_car_as_wide_as_no_road_vehicle(sedan):

@@ -10,7 +10,7 @@ from pathlib import Path
 import bpy
 
 from .. import bridge, result_staleness
-from ..engine import app, catalog, exchange, jobs, page, pe, studies
+from ..engine import app, catalog, exchange, jobs, page, pe, studies, text
 from .open_file import (
     OPTIMIZED,
     REVIEW,
@@ -38,8 +38,7 @@ def add_objects_options(parser: argparse.ArgumentParser) -> None:
 def import_objects(args: argparse.Namespace) -> app.Answer:
     """Write a study of the scene's vehicle, with its cameras and empties as the sensors."""
     scene, output = bpy.context.scene, Path(args.output)
-    if output.exists() and not args.replace:
-        raise pe.InputError(output, "file", "a new file (or --replace)", "an existing file")
+    text.require_new(output, replace=args.replace)
     with from_file():
         models = app.chosen_models(args.model)
         for model in models.values():
@@ -63,8 +62,7 @@ def _study_of_rig(scene: bpy.types.Scene, rig: pe.Rig) -> pe.Study:
 def export_objects(study: pe.Study, args: argparse.Namespace) -> app.Answer:
     """Save the scene to another file, with a camera or an empty for each sensor."""
     path = Path(args.output)
-    if path.exists() and not args.replace:
-        raise pe.InputError(path, "file", "a new file (or --replace)", "an existing file")
+    text.require_new(path, replace=args.replace, inputs=[Path(bpy.data.filepath)])
     _, lines = bridge.put_objects(bpy.context.scene, study.rig)
     save_copy(path)
     for line in lines:

@@ -1,6 +1,6 @@
 """Values and files: checks of input values, files read and written whole, TOML, JSON, XML, YAML."""
 
-from .files import decode_text, read_bytes, write_bytes
+from .files import decode_text, read_bytes, require_new, write_bytes
 from .memory import available_bytes, require_memory
 from .serialization import dump_json, dumps
 from .table_reader import Table
@@ -16,5 +16,6 @@ __all__ = [
     "dumps",
     "read_bytes",
     "require_memory",
+    "require_new",
     "write_bytes",
 ]

@@ -7,7 +7,7 @@ import os
 import re
 import secrets
 import stat
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -21,6 +21,8 @@ TEXT_BYTES = 16 << 20
 """Maximum size of a study, a file of channel angles or a table."""
 
 CHUNK = 1 << 20
+BINARY = getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
+"""Flags of every file that is opened: no line ends changed, no child process inherits it."""
 
 _FILE_TYPES = {
     stat.S_IFDIR: "a folder",
@@ -53,10 +55,44 @@ def read_bytes(path: Path, max_bytes: int = TEXT_BYTES) -> bytes:
         raise InputError(str(path), "file", "a readable file", reason_of(error)) from error
 
 
+def require_new(path: Path, *, replace: bool, inputs: Iterable[Path] = ()) -> None:
+    """Refuse an output that would replace a file unasked: the one rule for files that a user names.
+
+    Whatever has the name counts, a link that leads nowhere, too. (A folder of results has
+    `FileSet`, which also replaces what this program wrote there.)
+
+    Parameters
+    ----------
+    path : path
+    replace : bool
+        Whether the user has agreed to replace a file of that name.
+    inputs : iterable of path
+        Files that the output is made from; none of them is ever replaced.
+
+    Raises
+    ------
+    InputError
+        When there is something of that name, or it is an input.
+    """
+    if any(_is_same(path, given) for given in inputs):
+        raise InputError(path, "file", "another file than the input", "the input")
+    if os.path.lexists(path) and not replace:
+        found = "an existing file" if os.path.exists(path) else "a link that leads nowhere"
+        raise InputError(path, "file", "a new file, or --replace", found)
+
+
+def _is_same(path: Path, other: Path) -> bool:
+    try:
+        return os.path.samefile(path, other)
+    except (OSError, ValueError):
+        return False
+
+
 def write_bytes(path: Path, data: bytes) -> None:
     """Write a file atomically: all of `data`, or the old file stays as it was.
 
-    A folder, pipe or device of that name is refused, not replaced.
+    A folder, pipe or device of that name is refused, not replaced. The file is on the disk, not in
+    its cache, when the function returns.
 
     Raises
     ------
@@ -69,7 +105,8 @@ def write_bytes(path: Path, data: bytes) -> None:
 def write_all_bytes(files: Mapping[Path, bytes]) -> None:
     """Write several files; if one of them cannot be written, all old files stay as they were.
 
-    A folder, pipe or device of such a name is refused, not replaced.
+    A folder, pipe or device of such a name is refused, not replaced. All files are on the disk when
+    the function returns.
 
     Raises
     ------
@@ -77,20 +114,108 @@ def write_all_bytes(files: Mapping[Path, bytes]) -> None:
         For the first file that cannot be written.
     """
     # Not the tempfile module: only the owner may read its files, and os.replace keeps that mode.
-    temporaries = {p: p.with_name(f".{p.name}.{secrets.token_hex(4)}.tmp") for p in files}
+    token = secrets.token_hex(4)
+    temporaries = {p: p.with_name(f".{token}{number}.tmp") for number, p in enumerate(files)}
     try:
         for path, data in files.items():
             with _writing(path):
                 if path.exists():
                     _require_regular(path, os.stat(path), "a path that can be written")
-                temporaries[path].write_bytes(data)
-        for path, temporary in temporaries.items():
-            with _writing(path):
-                os.replace(temporary, path)
+                write_synced(temporaries[path], data)
+        put_in_place({temporary: path for path, temporary in temporaries.items()})
     finally:
         for temporary in temporaries.values():
             with suppress(OSError, ValueError):
                 temporary.unlink(missing_ok=True)
+
+
+def put_in_place(moves: Mapping[Path, Path]) -> None:
+    """Rename whole files that are on the disk, all of them or none, and wait for the disk.
+
+    Where the file system has no hard links, a rename that fails leaves the earlier ones.
+
+    Parameters
+    ----------
+    moves : mapping of path to path
+        Final by temporary path, in the same folder each.
+
+    Raises
+    ------
+    InputError
+        When one of them cannot be renamed. The old files are back then.
+    """
+    old: dict[Path, Path] = {}
+    new: list[Path] = []
+    try:
+        for temporary, path in moves.items():
+            is_new = not os.path.lexists(path)
+            if len(moves) > 1 and not is_new:
+                old[path] = temporary.with_name(f"{temporary.name}.old")
+                with suppress(OSError):
+                    os.link(path, old[path], follow_symlinks=False)
+            with _writing(path):
+                os.replace(temporary, path)
+            new += [path] if is_new else []
+    except BaseException:  # Ctrl-C, too
+        for path, kept in old.items():
+            with suppress(OSError):
+                os.replace(kept, path)
+        for path in new:
+            with suppress(OSError):
+                path.unlink()
+        raise
+    finally:
+        for kept in old.values():
+            with suppress(OSError):
+                kept.unlink(missing_ok=True)
+    for folder in {path.parent for path in moves.values()}:
+        sync_folder(folder)
+
+
+def write_synced(path: Path, data: bytes) -> None:
+    """Write a file that is on the disk, not in its cache, when the function returns.
+
+    Raises
+    ------
+    OSError
+        When the disk is full or fails.
+    """
+    number = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | BINARY, 0o666)
+    try:
+        rest = memoryview(data)
+        while rest:
+            rest = rest[os.write(number, rest) :]
+        os.fsync(number)
+    finally:
+        os.close(number)
+
+
+def sync_file(path: Path) -> None:
+    """Have the disk hold a file's bytes before its name counts; a power failure would empty it.
+
+    Raises
+    ------
+    OSError
+        When the disk is full or fails: some file systems tell only here.
+    """
+    number = os.open(path, os.O_RDWR | BINARY)
+    try:
+        os.fsync(number)
+    finally:
+        os.close(number)
+
+
+def sync_folder(folder: Path) -> None:
+    """Have the disk hold the names of a folder's files. Not all systems can; then nothing is done.
+
+    The files are whole in any case: they were synchronised before they got their names.
+    """
+    with suppress(OSError):  # Windows opens no folders, some file systems synchronise none
+        number = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(number)
+        finally:
+            os.close(number)
 
 
 @contextmanager
@@ -124,8 +249,8 @@ def _require_regular(path: Path, status: os.stat_result, expected: str) -> None:
 def _read(path: Path, max_bytes: int) -> bytes:
     # Another process may have replaced the file since it was checked: open it such that a pipe
     # does not block and a terminal does not become the controlling one, and check again.
-    flags = sum(getattr(os, name, 0) for name in ("O_NONBLOCK", "O_NOCTTY", "O_CLOEXEC"))
-    handle = os.open(path, os.O_RDONLY | flags | getattr(os, "O_BINARY", 0))
+    flags = sum(getattr(os, name, 0) for name in ("O_NONBLOCK", "O_NOCTTY"))
+    handle = os.open(path, os.O_RDONLY | flags | BINARY)
     try:
         status = os.fstat(handle)
         _require_regular(path, status, "a readable file")

@@ -12,7 +12,7 @@ from typing import Any
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
-from pe_core.base.files import write_bytes
+from pe_core.base.files import require_new, write_bytes
 from pe_core.base.serialization import finite
 from pe_core.scoring.requirements import Redundancy, RedundancyMap, Verdict, checkable
 from pe_core.study import Study, load_study
@@ -45,6 +45,7 @@ def add_check_options(parser: argparse.ArgumentParser) -> None:
     about = "also by how many sensors each place within 10 m is seen, for what is so tall [m]"
     parser.add_argument("--redundancy", type=float, metavar="M", help=about)
     parser.add_argument("--csv", metavar="FILE", help="write the table to a CSV file")
+    parser.add_argument("--replace", action="store_true", help="replace a table that is there")
     add_curve_option(parser)
 
 
@@ -73,7 +74,7 @@ def check(path: str, args: argparse.Namespace) -> Answer:
     """Hold a study file to its requirements; the exit status says whether all are met."""
     study = load_study(path)
     try:
-        return check_study(study, args)
+        return check_study(study, args, [Path(path)])
     except InputError as error:
         if not error.source.startswith("requirement "):
             raise
@@ -81,8 +82,13 @@ def check(path: str, args: argparse.Namespace) -> Answer:
         raise InputError(path, field, error.expected, error.found) from None
 
 
-def check_study(study: Study, args: argparse.Namespace) -> Answer:
-    """Hold a study to its requirements and to the presets that are named."""
+def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] = ()) -> Answer:
+    """Hold a study to its requirements and to the presets that are named.
+
+    `inputs` are files that no output replaces.
+    """
+    if args.csv is not None:
+        require_new(Path(args.csv), replace=args.replace, inputs=inputs)
     study, unchecked = with_presets(with_curves(study, args), args.preset)
     if not study.requirements and args.redundancy is None:
         expected = "[[requirement]] in the study, --preset ID, or --redundancy M"
@@ -91,7 +97,7 @@ def check_study(study: Study, args: argparse.Namespace) -> Answer:
     if note := curve_note([study.model]):
         tell(note)
     verdicts = study.verdicts()
-    if args.csv:
+    if args.csv is not None:
         write_bytes(Path(args.csv), verdicts_csv(verdicts).encode(errors="backslashreplace"))
     status = DONE if all(v.met for v in verdicts) else NOT_MET
     wanted = args.suggest and status != DONE

@@ -10,7 +10,7 @@ from typing import Any
 
 from pe_core import catalog
 from pe_core.base.errors import InputError
-from pe_core.base.files import quoted
+from pe_core.base.files import quoted, require_new
 from pe_core.catalog import KnownRig
 from pe_core.scene import Pose, Reference, Vehicle, guessed_reference
 from pe_core.study import Study, save_study
@@ -152,6 +152,8 @@ def _add_axle_options(parser: argparse.ArgumentParser) -> None:
 def export(study: Study, args: argparse.Namespace) -> Answer:
     """Write a study's rig, or its scene, for another program."""
     _refuse_range(args)
+    given = [Path(args.study)] if hasattr(args, "study") else []
+    require_new(Path(args.output), replace=True, inputs=given)
     reference = _reference(args, study.reference, study.vehicle, args.to)
     where, options = (args.to, args.output), {"replace": args.replace}
     if args.to in SCENE_OUTPUTS:
@@ -174,8 +176,9 @@ def _refuse_range(args: argparse.Namespace) -> None:
 def new_study(args: argparse.Namespace) -> tuple[Path, Vehicle | None]:
     """Return the path of the new study, after checks, and the vehicle if there is a mesh."""
     output = Path(args.output)
-    if output.exists() and not args.replace:
-        raise InputError(output, "file", "a new file (or --replace)", "an existing file")
+    inputs = [Path(args.file)] if hasattr(args, "file") else []
+    inputs += [] if args.mesh is None else [output.parent / args.mesh]
+    require_new(output, replace=args.replace, inputs=inputs)
     if args.mesh is None:
         return output, None
     mesh = read_mesh(output.parent / args.mesh)

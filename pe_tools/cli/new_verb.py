@@ -14,7 +14,7 @@ import numpy as np
 
 from pe_core import catalog
 from pe_core.base.errors import InputError
-from pe_core.base.files import write_bytes
+from pe_core.base.files import require_new, write_bytes
 from pe_core.scene import Pose, Sensor, Vehicle, vehicle_line
 from pe_core.scene.body_shape import BodyShape, fitting_units, require_vehicle_size
 from pe_core.scene.mesh import AXIS_NAMES
@@ -52,7 +52,7 @@ def new_study(args: argparse.Namespace) -> Answer:
     """Write the study of a mesh, and tell what was found in the mesh."""
     mesh_path, output = Path(args.file), Path(args.output)
     area_path = output.with_name(f"{output.stem}_roof.npz")
-    _refuse_existing(output, mesh_path, args.replace)
+    require_new(output, replace=args.replace, inputs=[mesh_path])
     model = catalog.load(args.sensor)
     mesh, scale, unit = read_in_metres(mesh_path, args.up, args.forward, args.scale)
     vehicle = Vehicle(mesh.triangles, mesh.parts, mesh.part_names, glass_parts(mesh.part_names))
@@ -63,25 +63,12 @@ def new_study(args: argparse.Namespace) -> Answer:
     first = FirstStudy(_relative(mesh_path, output.parent), *found)
     written = [output]
     if (area := _area_mesh(roof)) is not None:
-        _refuse_existing(area_path, mesh_path, args.replace)
+        require_new(area_path, replace=args.replace, inputs=[mesh_path])
         write_mesh(area_path, area)
         written.append(area_path)
     write_bytes(output, study_text(first).encode())
     _warn(first)
     return "\n".join([*(f"wrote {path}" for path in written), *_next(output)]), DONE
-
-
-def _refuse_existing(path: Path, mesh: Path, may_replace: bool) -> None:
-    """Raise `InputError` where a file would be overwritten; the mesh never is."""
-    if path.exists() and (not may_replace or _is_same(path, mesh)):
-        raise InputError(path, "file", "a new file (or --replace)", "an existing file")
-
-
-def _is_same(path: Path, other: Path) -> bool:
-    try:
-        return path.samefile(other)
-    except OSError:
-        return False
 
 
 def _relative(mesh: Path, folder: Path) -> str:

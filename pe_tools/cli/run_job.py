@@ -218,7 +218,7 @@ def keep(
                 for name, aside in set_aside_files_of_other_runs(folder).items():
                     tell(f"{folder / name}: of an earlier run; it is {aside} now")
             continue
-        _print_other_runs(folder)
+        _print_other_runs(output)  # checkpoints of this run may lie beside an older result
         if folder != output:
             tell(f"the results are in {folder}")
         return (DONE if folder == output else BAD_INPUT), data

@@ -15,12 +15,22 @@ from pe_core.base.errors import InputError
 from pe_core.study import SEARCH, STUDY
 
 from ..advice import curve_note, hardware_note
-from ..jobs import Outcome, Progress, check_files, prepare_folder, result_names, write_outcome
+from ..jobs import (
+    Outcome,
+    Progress,
+    check_files,
+    files_of_other_runs,
+    prepare_folder,
+    result_names,
+    write_outcome,
+)
 from ..sweep import (
     BEGUN,
     DONE,
+    ELSEWHERE,
     SWEEP_CSV,
     SWEEP_JSON,
+    UNWRITTEN,
     WAITING,
     RunTask,
     SweepRow,
@@ -31,6 +41,7 @@ from ..sweep import (
     row_of_result,
     run_all,
     sweep_runs,
+    table_data,
     table_lines,
     write_table,
 )
@@ -76,9 +87,11 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
             raise Interrupted(received.signum, f"{work.state}; the same command goes on")
     note = hardware_note([s.model for s in run.study.rig] for run in runs)
     curves = curve_note(run.study.model for run in runs)
-    lines = [*table_lines(work.rows, kind), *filter(None, (note, curves))]
+    missing = [row for row in work.rows if row.status in (ELSEWHERE, UNWRITTEN)]
+    where = (f"{row.run.name}: {row.status}: {row.message}" for row in missing)
+    lines = [*table_lines(work.rows, kind), *where, *filter(None, (note, curves))]
     text = dump_json(work.data) if args.json else "\n".join(lines)
-    whole = all(row.status == DONE for row in work.rows) and not work.fell_back
+    whole = all(row.status == DONE for row in work.rows) and not work.failed_to_write
     return text, terminal.DONE if whole else terminal.BAD_INPUT
 
 
@@ -97,13 +110,23 @@ def _refuse_folders(
 
 
 class _SweepVerb:
-    """A running sweep: its rows and its folder."""
+    """A running sweep: its rows and its folder.
+
+    Attributes
+    ----------
+    rows : list of SweepRow
+    data : dict
+        Content of sweep.json.
+    failed_to_write : bool
+        Whether something could not be written to the folder of the sweep.
+    """
 
     def __init__(
         self, runs: Sequence[SweepRun], kind: str, folder: Path, places: ExitStack
     ) -> None:
         self._kind, self._folder, self._places = kind, folder, places
         self._fallback: Path | None = None
+        self.failed_to_write = False
         found = [row_of_result(run, folder / run.name, kind) for run in runs]
         self.rows = [
             row or SweepRow(run, self._unfinished(run))
@@ -111,12 +134,8 @@ class _SweepVerb:
         ]
         self._numbers = {run.name: number for number, run in enumerate(runs)}
         self._reporter, self._on_terminal = Reporter(sys.stderr), is_terminal(sys.stderr)
-        self.data: dict[str, Any] = write_table(self.rows, kind, folder)
-
-    @property
-    def fell_back(self) -> bool:
-        """Whether something could not be written to the folder of the sweep."""
-        return self._fallback is not None
+        self.data: dict[str, Any] = {}
+        self._write_table()
 
     @property
     def state(self) -> str:
@@ -183,31 +202,40 @@ class _SweepVerb:
         """Store the result of a run, update the table, and report the run."""
         number = self._numbers[name]
         run = self.rows[number].run
-        if isinstance(found, Outcome):
-            found = self._keep(name, found)
-        row = self.rows[number] = row_of(run, found)
+        kept = self._keep(name, found) if isinstance(found, Outcome) else ()
+        row = self.rows[number] = row_of(run, found, *kept)
         self._write_table()
         self._print_row(row, found)
 
-    def _keep(self, name: str, found: Outcome) -> Outcome | InputError:
-        """Write a run's results; if that fails, to the fallback folder."""
+    def _keep(self, name: str, found: Outcome) -> tuple[str, str]:
+        """Write a run's results; if that fails, to the fallback folder.
+
+        Returns
+        -------
+        status, message : str
+            Of the row of the run.
+        """
         try:
             write_outcome(found, self._folder / name)
-            return found
+            return DONE, ""
         except InputError as error:
+            self.failed_to_write = True
             self._print_failure(name, error)
+        for other in files_of_other_runs(self._folder / name):
+            self._print_failure(name, f"{other} there is not of this run")
         try:
             write_outcome(found, self._fall_back() / name)
-            return found
+            return ELSEWHERE, f"its results are in {self._fall_back() / name}"
         except InputError as error:
-            return error
+            self._print_failure(name, error)
+            return UNWRITTEN, str(error)
 
     def _write_table(self) -> None:
         """Write the table; if that fails, to the fallback folder."""
         try:
             self.data = write_table(self.rows, self._kind, self._folder)
         except InputError as error:
-            first = self._fallback is None
+            first, self.failed_to_write = not self.failed_to_write, True
             if first:
                 self._print_failure("", error)
             try:
@@ -215,6 +243,7 @@ class _SweepVerb:
             except InputError as second:
                 if first:
                     self._print_failure("", second)
+                self.data = table_data(self.rows, self._kind)
 
     def _fall_back(self) -> Path:
         """Return the fallback folder of the sweep; report it at its creation."""

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from pe_core.base.errors import InputError
-from pe_core.base.files import write_all_bytes
+from pe_core.base.files import require_new, write_all_bytes
 from pe_core.scene.rig import Rig
 from pe_core.scene.vehicle_description import Reference
 from pe_core.study.passthrough import Passthrough
@@ -166,8 +166,7 @@ def write_files(
         first, *remaining = files
         paths = {output: files[first]} | {folder / file: files[file] for file in remaining}
     for path in paths:
-        if path.exists() and not replace:
-            raise InputError(path, "file", "a new file, or --replace", "an existing file")
+        require_new(path, replace=replace)
     for folder in {path.parent for path in paths}:
         _make_folder(folder)
     write_all_bytes(paths)

@@ -18,7 +18,14 @@ from types import TracebackType
 from typing import Any
 
 from pe_core.base.errors import InputError
-from pe_core.base.files import read_bytes, reason_of, write_bytes
+from pe_core.base.files import (
+    put_in_place,
+    read_bytes,
+    reason_of,
+    sync_file,
+    write_bytes,
+    write_synced,
+)
 from pe_core.base.serialization import dump_json
 
 try:
@@ -130,19 +137,21 @@ class FileSet:
             The file cannot be written.
         """
         path = self._folder / name
-        temporary = path.with_name(f".{path.stem}.{secrets.token_hex(4)}{path.suffix}")
+        temporary = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
         self._made[name] = (temporary, "")
         try:
             if isinstance(write, bytes):
-                temporary.write_bytes(write)
+                write_synced(temporary, write)
             else:
                 write(temporary)
+                if temporary.exists():  # Blender may fail to write without an error
+                    sync_file(temporary)
         except InputError as error:
             raise error.at(path) from None
         except (OSError, ValueError) as error:
             raise InputError(path, "file", "a path that can be written", reason_of(error)) from None
         digest = sha256_of(temporary)
-        if not digest:  # Blender may fail to write without an error
+        if not digest:
             raise InputError(path, "file", "a path that can be written", "nothing was written")
         self._made[name] = (temporary, digest)
         return digest
@@ -173,8 +182,7 @@ class FileSet:
         new = {n: made for n, made in self._made.items() if sha256_of(self._folder / n) != made[1]}
         check_files(self._folder, new, self._replaceable)
         self._list(new)
-        for name, (temporary, _) in new.items():
-            os.replace(temporary, self._folder / name)
+        put_in_place({temporary: self._folder / name for name, (temporary, _) in new.items()})
         for name in set(self._unwanted) & set(our_files(self._folder)) - set(self._made):
             _unlink(self._folder / name)
 

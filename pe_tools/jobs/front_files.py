@@ -83,11 +83,11 @@ def write_front(
     """
     folder, data = prepare_folder(folder, FRONT_NAMES), front_dict(chosen, host)
     designs_folder = prepare_folder(folder / DESIGNS)
-    with FileSet(designs_folder) as files:
-        files.take_away(list(our_files(designs_folder)))
+    # All is written before the first file gets its name: on a full disk the old set stays whole.
+    with FileSet(folder) as files, FileSet(designs_folder) as designs:
+        designs.take_away(list(our_files(designs_folder)))
         for name, write in _writers(chosen).items():
-            files.add(name, write)
-    with FileSet(folder) as files:
+            designs.add(name, write)
         files.take_away([FRONT_PLOT, FRONT_PAGE])  # they show the front of an earlier run
         files.add(FRONT_CSV, front_csv(chosen).encode(errors="backslashreplace"))
         files.add(FRONT_JSON, dump_json(data).encode(errors="backslashreplace"))

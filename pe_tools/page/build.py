@@ -40,9 +40,10 @@ def review(args: argparse.Namespace) -> app.Answer:
 def _review(args: argparse.Namespace) -> app.Answer:
     paths = [str(Path(path).resolve()) if Path(path).is_dir() else path for path in args.studies]
     files = app.named_by_file(paths)
-    _check(len(files), args)
+    _check_count(len(files))
     requested = {name: app.with_options(_read_study(path), args) for name, path in files.items()}
     app.refuse_different(requested)
+    _check_output(args)
     contexts = []
     for name, study in requested.items():
         outcome = _search_outcome(files[name], args) or app.scored(study, args.workers)
@@ -80,9 +81,10 @@ def _review_studies(
     picture: Callable[[pe.Outcome], bytes] | None,
     versions: Mapping[str, str] | None,
 ) -> app.Answer:
-    _check(len(by_name), args)
+    _check_count(len(by_name))
     requested = {name: app.with_options(study, args) for name, study in by_name.items()}
     app.refuse_different(requested)
+    _check_output(args)
     contexts = []
     for name, study in requested.items():
         outcome = app.scored(study, args.workers)
@@ -103,10 +105,13 @@ def write_search_page(outcome: pe.Outcome, data: dict[str, Any], folder: Path) -
     jobs.add_to_result(data, folder, {PAGE: page_bytes([context])})
 
 
-def _check(study_count: int, args: argparse.Namespace) -> None:
-    """Refuse too many studies, and a folder that cannot be written, before the work starts."""
+def _check_count(study_count: int) -> None:
     if study_count > MAX_STUDIES:
         raise pe.InputError("command line", "STUDY", f"{MAX_STUDIES} at most", study_count)
+
+
+def _check_output(args: argparse.Namespace) -> None:
+    """Refuse a folder that cannot be written before the work; make it after the input is read."""
     _about(args)
     pe.prepare_folder(args.output, () if args.replace else (PAGE,))
 

@@ -13,13 +13,16 @@ from .sweep_runner import (
 from .sweep_table import (
     BEGUN,
     DONE,
+    ELSEWHERE,
     FAILED,
     SWEEP_CSV,
     SWEEP_JSON,
+    UNWRITTEN,
     WAITING,
     SweepRow,
     row_of,
     row_of_result,
+    table_data,
     table_lines,
     write_table,
 )
@@ -27,9 +30,11 @@ from .sweep_table import (
 __all__ = [
     "BEGUN",
     "DONE",
+    "ELSEWHERE",
     "FAILED",
     "SWEEP_CSV",
     "SWEEP_JSON",
+    "UNWRITTEN",
     "WAITING",
     "FolderCheckpoints",
     "RunCheckpoints",
@@ -44,6 +49,7 @@ __all__ = [
     "run_all",
     "run_task",
     "sweep_runs",
+    "table_data",
     "table_lines",
     "write_table",
 ]

@@ -22,6 +22,8 @@ from .sweep_runner import SweepRun
 
 SWEEP_CSV, SWEEP_JSON = "sweep.csv", "sweep.json"
 WAITING, BEGUN, DONE, FAILED = "waiting", "begun", "done", "failed"
+ELSEWHERE, UNWRITTEN = "elsewhere", "not written"
+"""The status of a run whose results are not in its folder but in another, or in none."""
 BEST, GAP = "*", "  "
 
 
@@ -32,13 +34,14 @@ class SweepRow:
     Attributes
     ----------
     run : SweepRun
-    status : {"waiting", "begun", "done", "failed"}
-        A run with the status "begun" may have a checkpoint of its search in its folder.
+    status : {"waiting", "begun", "done", "failed", "elsewhere", "not written"}
+        A run with the status "begun" may have a checkpoint of its search in its folder. One that is
+        "done" has its results there.
     before, entropy : float or None
         Entropy of the given study, and of the result [nats]; equal if there was no search.
     coverage : float or None
     message : str
-        Why the run failed.
+        Why the run failed or was not written, or where its results are.
     ap_before, ap : float or None
         Expected AP in traffic of the given study and of the result, of a search by it.
     """
@@ -53,13 +56,15 @@ class SweepRow:
     ap: float | None = None
 
 
-def row_of(run: SweepRun, result: Outcome | InputError) -> SweepRow:
-    """Return the row of a run's result."""
+def row_of(
+    run: SweepRun, result: Outcome | InputError, status: str = DONE, message: str = ""
+) -> SweepRow:
+    """Return the row of a run's result, with the status and the message of one that succeeded."""
     if isinstance(result, InputError):
         return SweepRow(run, FAILED, message=str(result))
     before, after = result.before, result.after
     aps = (None, None) if result.in_traffic is None else tuple(o.ap for o in result.in_traffic)
-    return SweepRow(run, DONE, before.entropy, after.entropy, after.coverage, "", *aps)
+    return SweepRow(run, status, before.entropy, after.entropy, after.coverage, message, *aps)
 
 
 def row_of_result(run: SweepRun, folder: Path, kind: str) -> SweepRow | None:
@@ -81,6 +86,11 @@ def row_of_result(run: SweepRun, folder: Path, kind: str) -> SweepRow | None:
         return None
 
 
+def table_data(rows: Sequence[SweepRow], kind: str) -> dict[str, Any]:
+    """Return what sweep.json holds."""
+    return {"kind": f"sweep of {kind}", "version": __version__, "runs": [_dict(r) for r in rows]}
+
+
 def write_table(rows: Sequence[SweepRow], kind: str, folder: Path) -> dict[str, Any]:
     """Write sweep.csv and sweep.json, together; return what sweep.json holds.
 
@@ -89,7 +99,7 @@ def write_table(rows: Sequence[SweepRow], kind: str, folder: Path) -> dict[str, 
     InputError
         The folder cannot be written, or one of the files belongs to another program.
     """
-    data = {"kind": f"sweep of {kind}", "version": __version__, "runs": [_dict(r) for r in rows]}
+    data = table_data(rows, kind)
     with FileSet(prepare_folder(folder)) as files:
         files.add(SWEEP_CSV, _csv(rows).encode(errors="backslashreplace"))
         files.add(SWEEP_JSON, dump_json(finite(data)).encode(errors="backslashreplace"))

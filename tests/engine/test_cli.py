@@ -134,3 +134,37 @@ def test_interrupt_keeps_the_best_so_far(study, tmp_path):
     assert data["after"]["entropy"] <= data["before"]["entropy"]
     best = pe.load_study(out / "study.toml")
     assert best.evaluator().score(best.rig).to_dict() == data["after"]
+
+
+OUTPUTS = {
+    "check": "check car.toml --preset all --csv {}",
+    "export a rig": "export car.toml --to csv -o {}",
+    "export a scene": "export car.toml --to footprints -o {}",
+    "import": "import rig.csv --from csv -o {}",
+    "new": "new car.npz -o {}",
+    "rigs": "rigs kitti -o {}",
+}
+"""Every output that is a file of a name that the user chooses."""
+
+
+@pytest.mark.parametrize("argv", OUTPUTS.values(), ids=OUTPUTS)
+def test_no_output_replaces_a_file_unasked_or_an_input(study, tmp_path, monkeypatch, capsys, argv):
+    monkeypatch.chdir(tmp_path)
+    assert main(["export", "car.toml", "--to", "csv", "-o", "rig.csv"]) == 0
+    Path("mine").write_text("mine")
+    Path("link").symlink_to("nowhere")
+    Path("loop").symlink_to("loop")
+    given = argv.split()[1]
+    files = {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
+    capsys.readouterr()
+    for name in {"mine", "car.toml", "car.npz", "link", "loop", given} - {"kitti"}:
+        assert main(argv.format(name).split()) == 1
+        assert name in (line := capsys.readouterr().err) and line.count("\n") == 1
+    if argv != OUTPUTS["rigs"]:
+        assert main([*argv.format(given).split(), "--replace"]) == 1
+        assert "expected another file than the input" in capsys.readouterr().err
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == files
+    assert Path("link").is_symlink() and Path("loop").is_symlink()
+    assert main(argv.format("free").split()) in (0, 3) and Path("free").exists()
+    assert main([*argv.format("mine").split(), "--replace"]) in (0, 3)
+    assert Path("mine").read_bytes() != b"mine"

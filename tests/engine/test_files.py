@@ -1,5 +1,6 @@
 """Reading and writing whole files, and how much memory there is: the rules that readers share."""
 
+import errno
 import os
 import sys
 from pathlib import Path
@@ -8,7 +9,7 @@ import pytest
 
 from pe_core.base import files, memory
 from pe_core.base.errors import InputError
-from pe_core.base.files import read_bytes, write_all_bytes, write_bytes
+from pe_core.base.files import read_bytes, require_new, write_all_bytes, write_bytes
 from pe_core.base.memory import available_bytes, report_memory_errors, require_memory, size_text
 
 resource = pytest.importorskip("resource")
@@ -153,3 +154,57 @@ def test_several_files_are_written_together_or_not_at_all(tmp_path):
     (tmp_path / "second").rmdir()
     write_all_bytes(new)
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == new
+
+
+FAULTS = ("ENOSPC", "EDQUOT", "EIO")
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+@pytest.mark.parametrize(
+    ("call", "first"),
+    [("write", 1), ("write", 2), ("fsync", 1), ("fsync", 2), ("replace", 1), ("replace", 2)],
+)
+def test_a_disk_that_fails_leaves_all_old_files(tmp_path, failing_call, call, first, fault):
+    old = {tmp_path / name: name.encode() for name in ("first", "second")}
+    write_all_bytes(old)
+    count = failing_call(call, getattr(errno, fault), first, once=call == "replace")
+    reason = os.strerror(getattr(errno, fault)).lower()
+    with pytest.raises(InputError, match=f"file: expected a path that can be written.*{reason}"):
+        write_all_bytes(dict.fromkeys(old, b"new") | {tmp_path / "third": b"new"})
+    assert count.fired >= 1
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == old
+
+
+def test_a_file_is_on_the_disk_before_its_name_counts_and_its_folder_after(tmp_path, monkeypatch):
+    """Else a power failure leaves an empty file, or the old name."""
+    done, real = [], {name: getattr(os, name) for name in ("write", "fsync", "replace")}
+
+    def noted(name):
+        def call(first, *others):
+            at = os.readlink(f"/proc/self/fd/{first}") if isinstance(first, int) else first
+            done.append((name, "folder" if os.path.isdir(at) else "file"))
+            return real[name](first, *others)
+
+        return call
+
+    for name in real:
+        monkeypatch.setattr(os, name, noted(name))
+    write_bytes(tmp_path / "study.toml", b"data")
+    in_order = [("write", "file"), ("fsync", "file"), ("replace", "file"), ("fsync", "folder")]
+    assert done == in_order
+
+
+def test_the_rule_for_outputs(tmp_path):
+    """A name that is free, or one that the user gives away; a link counts, an input never goes."""
+    path, link, loop = (tmp_path / name for name in ("mine", "link", "loop"))
+    require_new(path, replace=False, inputs=[path])
+    path.write_bytes(b"mine")
+    link.symlink_to("nowhere")
+    loop.symlink_to("loop")
+    for each, found in ((path, "an existing file"), (link, "a link"), (loop, "a link")):
+        with pytest.raises(InputError, match=f"a new file, or --replace, found {found}"):
+            require_new(each, replace=False)
+        require_new(each, replace=True)
+    (tmp_path / "also").symlink_to("mine")
+    with pytest.raises(InputError, match="another file than the input"):
+        require_new(tmp_path / "also", replace=True, inputs=[path])

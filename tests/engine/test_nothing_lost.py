@@ -1,5 +1,6 @@
 """Signals, streams and folders that go away: a search never ends without its result."""
 
+import errno
 import json
 import os
 import shutil
@@ -263,6 +264,56 @@ def test_a_full_disk_leaves_the_old_set_whole(study, out, elsewhere):
     assert list(elsewhere.iterdir()) == []
     assert "file too large" in command.complaints[0].lower()
     assert command.complaints[-1] == "pe: the results are not in any file\n"
+
+
+def test_a_disk_that_fills_after_a_checkpoint_over_an_older_set_is_told(
+    study, out, elsewhere, monkeypatch, capsys, failing_call
+):
+    """The checkpoint of this search then lies beside the result of the last one."""
+    from pe_tools.cli.run_job import keep
+
+    monkeypatch.setattr("tempfile.tempdir", str(elsewhere))
+    first = pe.OptimizeJob(pe.load_study(study))
+    list(first)
+    assert keep(first.outcome, out, None, None)[0] == 0
+    old = (out / "result.json").read_bytes()
+    job = pe.OptimizeJob(replace(first.study, search=replace(first.study.search, seed=9)))
+    list(job)
+    jobs.Checkpoint(job).save(out)
+    real = jobs.folder.write_synced
+    fired = []
+
+    def full(path, data):
+        if path.parent == out:
+            fired.append(path)
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        real(path, data)
+
+    monkeypatch.setattr(jobs.folder, "write_synced", full)
+    assert keep(job.outcome, out, None, None)[0] == 1
+    assert fired and (out / "result.json").read_bytes() == old
+    told = capsys.readouterr().err
+    assert f"{out / 'study.toml'}: not of this run" in told
+    assert f"{out / 'search.json'}: not of this run" in told
+    (folder,) = elsewhere.iterdir()
+    assert result(folder)["seed"] == 9 and f"the results are in {folder}" in told
+
+
+@pytest.mark.parametrize("call", ["fsync", "replace"])
+def test_a_set_is_replaced_whole_or_stays(study, out, failing_call, call):
+    job = pe.ScoreJob(pe.load_study(study))
+    list(job)
+    jobs.write_outcome(job.outcome, out)
+    before = {path.name: path.read_bytes() for path in out.iterdir()}
+    again = pe.ScoreJob(replace(job.study, samples=2048))
+    list(again)
+    count = failing_call(call, errno.EIO, first=3, once=call == "replace")
+    with pytest.raises(pe.InputError, match="input/output error"):
+        jobs.write_outcome(again.outcome, out)
+    assert count.fired >= 1
+    now = {path.name: path.read_bytes() for path in out.iterdir()}
+    assert {**now, ".perception-entropy.json": b""} == {**before, ".perception-entropy.json": b""}
+    assert jobs.files_of_other_runs(out) == []
 
 
 def test_a_file_that_appears_meanwhile_is_not_written_over(study, out, elsewhere):

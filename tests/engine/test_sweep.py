@@ -5,6 +5,7 @@ import json
 import multiprocessing
 import os
 import signal
+import subprocess
 import sys
 import time
 from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
@@ -320,10 +321,11 @@ def test_results_that_cannot_be_written_go_to_one_other_folder(study, out, tmp_p
     argv = ["sweep", str(study), "--set", "samples=1024,2048", "-o", str(out), "--workers", "1"]
     assert main(argv) == 0
     before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
-    real = os.replace
+    real, fired = os.replace, []
 
     def full(source, target):
         if out in type(out)(target).parents:
+            fired.append(target)
             raise OSError(28, "No space left on device")
         real(source, target)
 
@@ -334,14 +336,64 @@ def test_results_that_cannot_be_written_go_to_one_other_folder(study, out, tmp_p
     monkeypatch.setattr("pe_tools.cli.sweep_verb.workplace", work_until_full)
     assert main([*argv, "--seed", "9"]) == 1
     (folder,) = other.iterdir()
-    assert [row["status"] for row in table(folder)] == ["done", "done"]
+    assert len(fired) >= 3, "two results and a table"
+    assert [row["status"] for row in table(folder)] == ["elsewhere", "elsewhere"]
     for row in table(folder):
+        assert row["message"] == f"its results are in {folder / row['run']}"
         result = json.loads((folder / row["run"] / "result.json").read_text())
         assert result["entropy"] == float(row["entropy"])
     table_written = {out / name: (out / name).read_bytes() for name in ("sweep.csv", "sweep.json")}
     now = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
     listing = {out / ".perception-entropy.json": now[out / ".perception-entropy.json"]}
     assert now == {**before, **table_written, **listing}, "no file is half or gone"
+
+
+@pytest.mark.skipif(sys.platform != "linux" or os.geteuid() != 0, reason="only root may mount")
+@pytest.mark.parametrize(
+    ("size", "done"), [("size=64k", 2), ("size=128k", 5), ("nr_inodes=4", 0), ("nr_inodes=13", 1)]
+)
+def test_a_small_disk_that_fills(study, out, tmp_path, capfd, size, done):
+    """No run is said to be done without its results, and no result is lost."""
+    other = tmp_path / "temporary"
+    other.mkdir()
+    out.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", size, "none", str(out)], check=False)
+    if mounted.returncode:
+        pytest.skip("no file system may be mounted here")
+    try:
+        argv = ["sweep", study, "--set", "optimize.seed=1,2,3,4,5,6", "--grid-samples", 1024]
+        options = {"env": {**os.environ, "TMPDIR": str(other)}}
+        with Command(*argv, "-o", out / "sweep", "--workers", 1, "--json", **options) as command:
+            data = json.loads(command.process.stdout.read())
+            assert command.end() == 1
+        assert any("no space left on device" in line for line in command.complaints)
+        (folder,) = other.iterdir()
+        where = {"done": out / "sweep", "elsewhere": folder}
+        for run in data["runs"]:
+            result = json.loads((where[run["status"]] / run["run"] / "result.json").read_text())
+            assert result["entropy"] == run["entropy"]
+        assert sum(run["status"] == "done" for run in data["runs"]) == done
+    finally:
+        subprocess.run(["umount", str(out)], check=True)
+
+
+def test_a_result_that_no_folder_takes_is_told_and_not_called_done(study, out, tmp_path):
+    """No file may have more bytes than a small study has: the results are larger."""
+    import resource
+
+    def quota():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (2500, 2500))
+
+    argv = ["sweep", study, "--set", "optimize.seed=1,2", "--grid-samples", 1024, "-o", out]
+    options = {"env": {**os.environ, "TMPDIR": str(tmp_path)}, "preexec_fn": quota}
+    with Command(*argv, "--workers", 1, **options) as command:
+        text = command.process.stdout.read()
+        assert command.end() == 1
+    assert sum("file too large" in line for line in command.complaints) >= 4
+    assert [row["status"] for row in table(out)] == ["not written", "not written"]
+    assert all(row["entropy"] and "file too large" in row["message"] for row in table(out))
+    assert text.count("not written: ") == 2
+    assert not [*tmp_path.glob("perception-entropy-*")]
 
 
 class Dying(Executor):

@@ -2,6 +2,7 @@
 
 import html
 import json
+import os
 import re
 import shlex
 import tomllib
@@ -80,18 +81,27 @@ def test_ctrl_c_while_the_page_is_written_leaves_all_as_it_was(
 
 
 def test_ctrl_c_between_page_and_disk_leaves_no_half_page(study, tmp_path, monkeypatch):
-    real = Path.write_bytes
+    real = os.write
 
-    def cut_off(path, data):
-        real(path, data[: len(data) // 2])
+    def cut_off(number, data):
+        real(number, data[: len(data) // 2])
         raise KeyboardInterrupt
 
     (tmp_path / PAGE).write_text("mine")
     before = sorted(path.name for path in tmp_path.iterdir())
-    monkeypatch.setattr(Path, "write_bytes", cut_off)
+    monkeypatch.setattr(os, "write", cut_off)
     assert main(["review", str(study), "-o", str(tmp_path), "--replace"]) == 130
     assert sorted(path.name for path in tmp_path.iterdir()) == before
     assert (tmp_path / PAGE).read_text() == "mine"
+
+
+@pytest.mark.parametrize("given", [["missing.toml"], ["car.toml", "missing.toml"], ["broken.toml"]])
+def test_a_study_that_cannot_be_read_leaves_no_folder(study, tmp_path, capsys, monkeypatch, given):
+    monkeypatch.chdir(tmp_path)
+    study.rename("car.toml")
+    Path("broken.toml").write_text("[space")
+    assert main(["review", *given, "-o", "new/out"]) == 1
+    assert given[-1] in capsys.readouterr().err and not Path("new").exists()
 
 
 def test_a_folder_that_cannot_be_is_one_line(study, capsys):

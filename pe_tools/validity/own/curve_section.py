@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import datetime
+import os
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from pe_core import InputError
-from pe_core.base import dumps, write_bytes
+from pe_core.base import decode_text, dumps, read_bytes, require_new, write_bytes
 from pe_core.sensors.lidar import LIDAR
 
 from ...reproduction.wording import joined, table
@@ -132,8 +133,10 @@ def write_curves(path: Path, found: Json) -> None:
     if not found["classes"]:
         state = f"{found['done']} of {found['planned']}"
         raise InputError(path, "curves", "enough runs of the fixed design for a fit", state)
-    if path.exists():
-        before = path.read_text("utf-8")
+    if os.path.lexists(path):
+        before = decode_text(read_bytes(path))
+        if not before.startswith(HEAD):
+            require_new(path, replace=False)
         if before == curves_text(found, date_of(before)):
             return
     write_bytes(path, curves_text(found, datetime.date.today().isoformat()).encode())

@@ -35,6 +35,7 @@ def store_outcome(
     settings.result_kind = outcome.kind
     settings.result_entropy = outcome.after.entropy
     settings.result_before = outcome.before.entropy
+    settings.result_cost = outcome.cost
     settings.result_coverage = outcome.after.coverage
     settings.result_stderr = outcome.after.stderr
     result = pe.result_dict(outcome, blender_version())

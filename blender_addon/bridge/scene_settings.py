@@ -170,6 +170,7 @@ def goals_of(settings: bpy.types.PropertyGroup) -> search.Goals:
         starts=search.Start.of_text(settings.start_poses),
         front=search.Front(names, **values_of(settings, search.Front)),
         sensitivity=None if chosen == AUTO else chosen,
+        blind_ground=KEEP if settings.keep_blind_ground else None,
     )
 
 
@@ -179,6 +180,7 @@ def write_goals(settings: bpy.types.PropertyGroup, goals: search.Goals) -> None:
     write_values(settings, goals.front)
     settings.front_objectives = set(goals.front.objectives)
     settings.sensitivity = goals.sensitivity or AUTO
+    settings.keep_blind_ground = goals.blind_ground == KEEP
     settings.start_poses = search.Start.text_of(goals.starts)
     settings.start_variants = False
 

@@ -22,7 +22,8 @@ class PE_PT_search(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.perception_entropy
-        draw_properties(self.layout, settings, ("objective", "method", "candidates"))
+        names = ("objective", "keep_blind_ground", "method", "candidates")
+        draw_properties(self.layout, settings, names)
         draw_with_zero(self.layout, settings, "evaluations", "All")
         self.layout.prop(settings, "seed")
         if settings.targets == OBJECTS:

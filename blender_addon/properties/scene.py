@@ -213,6 +213,12 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
         description="Placements that meet all requirements are better than those that do not; "
         "without it, a search minimizes the entropy alone",
     )
+    keep_blind_ground: BoolProperty(
+        name="No More Blind Ground",
+        description="Placements with no more blind ground than now come first: ground within 10 m "
+        "of the vehicle where no sensor sees what is 0.5 m tall. A candidate takes longer",
+        default=True,
+    )
     method: EnumProperty(
         items=METHODS,
         name="Method",
@@ -320,6 +326,9 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
     )
     result_before: FloatProperty(
         name="Before", description="Perception entropy at the start of the search"
+    )
+    result_cost: StringProperty(
+        name="Cost", description="What the last search made worse, in one sentence"
     )
     result_coverage: FloatProperty(
         name="Coverage", description="Share of the prior that is visible to a sensor, 0 to 1"

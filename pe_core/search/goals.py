@@ -189,6 +189,8 @@ class Goals:
     front : Front
     sensitivity : {"full", "off"}, optional
         The analysis of the result: all of it, none, or what an eighth of the evaluations allows.
+    blind_ground : {"keep"}, optional
+        Placements with no more blind ground than the start's are better than all others.
     """
 
     stop: Stop = field(default_factory=Stop)
@@ -200,6 +202,12 @@ class Goals:
         OneOf((FULL, OFF)),
         "The analysis of a search's result (flatness, active constraints, other optima): all of "
         "it or none; without the key as much as an eighth of the evaluations allow",
+    )
+    blind_ground: str | None = setting(
+        None,
+        OneOf(("keep",)),
+        "Placements with no more blind ground than the start's come first: ground within 10 m of "
+        "the vehicle where no sensor sees what is 0.5 m tall",
     )
 
     def __post_init__(self) -> None:

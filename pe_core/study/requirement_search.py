@@ -1,4 +1,4 @@
-"""Requirements as constraints of a search: feasible first, then entropy.
+"""Constraints of a search: feasible first, then entropy.
 
 `[optimize] requirements = "keep"`: a placement that meets all requirements beats each one that does
 not. Of placements that break some, the one with the least violation is the best; their entropies do
@@ -8,7 +8,8 @@ not matter and are not computed.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from ..scoring.requirements import RequirementChecker
 from ..scoring.score import rounded
 from ..search import Tolerance, optimize, shared_parts
 from ..search.methods.method import sampled_candidate
+from .blind_ground_search import BlindGroundLimit
 from .requirement_check import checker_of, mounting_cases
 
 if TYPE_CHECKING:
@@ -25,46 +27,29 @@ if TYPE_CHECKING:
 
 KEEP = "keep"
 INFEASIBLE = 100.0
-"""Value of a placement that breaks a requirement, without the violation: above all entropies."""
+"""Value of a placement that breaks a constraint, without the violation: above all entropies."""
 
 
-class FeasibleFirst:
-    """What a search with requirements minimises.
+class Constraint(Protocol):
+    """Something that a placement keeps, or breaks by so much."""
 
-    The value of a placement is its entropy [nats] if it meets all requirements; else it is
-    `INFEASIBLE` and the sum of the violations, each above 0 to 1.
+    def violation(self, rig: Rig) -> float:
+        """Return by how much a placement breaks it; 0 where it is kept."""
+
+
+class RequirementConstraint:
+    """The constraint that all requirements of a study are met.
 
     Parameters
     ----------
-    objective : Objective
-        The entropy.
     checker : RequirementChecker
     tolerance : Tolerance
         Its mounting errors are those that requirements have to be met under.
     seed : int
     """
 
-    def __init__(
-        self, objective: Objective, checker: RequirementChecker, tolerance: Tolerance, seed: int = 0
-    ) -> None:
-        self._objective, self._checker = objective, checker
-        self._tolerance, self._seed = tolerance, seed
-
-    def entropy(self, rig: Rig) -> float:
-        """Return the value of a placement."""
-        violation = self.violation(rig)
-        return INFEASIBLE + violation if violation else self._objective.entropy(rig)
-
-    def judge(self, rig: Rig, below: float = math.inf) -> Judgement:
-        """Return the value of a placement, or a lower bound that is not below `below`."""
-        violation = self.violation(rig)
-        if violation:
-            return Judgement(INFEASIBLE + violation, False)
-        return self._objective.judge(rig, below)
-
-    def shared_parts(self) -> tuple[object, ...]:
-        """Return what workers are sent once: the parts of the objective, and the checker."""
-        return (*shared_parts(self._objective), self._checker)
+    def __init__(self, checker: RequirementChecker, tolerance: Tolerance, seed: int = 0) -> None:
+        self._checker, self._tolerance, self._seed = checker, tolerance, seed
 
     def violation(self, rig: Rig) -> float:
         """Return the sum of the violations of all requirements; 0 where all are met."""
@@ -73,24 +58,79 @@ class FeasibleFirst:
         return rounded(sum(self._checker.shortfalls(rig, cases)))
 
 
-def feasible_first(
-    study: Study, objective: Objective, checker: RequirementChecker | None = None
-) -> Objective:
-    """Return what a study's search minimises: the objective, or `FeasibleFirst` of it.
+class FeasibleFirst:
+    """What a search with constraints minimises.
+
+    The value of a placement is its entropy [nats] if it keeps all constraints; else it is
+    `INFEASIBLE` and the sum of the violations.
+
+    Parameters
+    ----------
+    objective : Objective
+        The entropy.
+    constraints : sequence of Constraint
+    """
+
+    def __init__(self, objective: Objective, constraints: Sequence[Constraint]) -> None:
+        self._objective, self._constraints = objective, tuple(constraints)
+
+    def entropy(self, rig: Rig) -> float:
+        """Return the value of a placement."""
+        violation = self.violation(rig)
+        return INFEASIBLE + violation if violation else self._objective.entropy(rig)
+
+    def judge(self, rig: Rig, below: float = math.inf) -> Judgement:
+        """Return the value of a placement, or a lower bound that is not below `below`.
+
+        What is not below a cutoff with its entropy is not below it if it breaks a constraint, so
+        constraints, which take longer, are then not checked.
+        """
+        if below > INFEASIBLE:
+            violation = self.violation(rig)
+            return (
+                Judgement(INFEASIBLE + violation, False)
+                if violation
+                else self._objective.judge(rig, below)
+            )
+        found = self._objective.judge(rig, below)
+        if found.is_lower_bound or found.entropy >= below:
+            return Judgement(found.entropy, True)
+        violation = self.violation(rig)
+        return Judgement(INFEASIBLE + violation, False) if violation else found
+
+    def shared_parts(self) -> tuple[object, ...]:
+        """Return what workers are sent once: the parts of the objective, and the constraints."""
+        return (*shared_parts(self._objective), *self._constraints)
+
+    def violation(self, rig: Rig) -> float:
+        """Return the sum of the violations of all constraints; 0 where all are kept."""
+        return rounded(sum(each.violation(rig) for each in self._constraints))
+
+
+def constraints_of(study: Study) -> tuple[Constraint, ...]:
+    """Return what placements of a study's search have to keep: requirements, blind ground.
 
     Raises
     ------
     InputError
         When a zone of a requirement that is to be kept cannot be placed.
     """
-    search = study.search
-    if search.requirements != KEEP or not study.requirements:
-        return objective
-    return FeasibleFirst(objective, checker or checker_of(study), search.tolerance, search.seed)
+    search, constraints = study.search, list[Constraint]()
+    if search.requirements == KEEP and study.requirements:
+        checker = checker_of(study)
+        constraints.append(RequirementConstraint(checker, search.tolerance, search.seed))
+    if search.goals.blind_ground == KEEP:
+        constraints.append(BlindGroundLimit.of(study))
+    return tuple(constraints)
+
+
+def feasible_first(objective: Objective, constraints: Sequence[Constraint]) -> Objective:
+    """Return what a search minimises: the objective, or `FeasibleFirst` of it."""
+    return FeasibleFirst(objective, constraints) if constraints else objective
 
 
 def is_infeasible(value: float) -> bool:
-    """Whether a value of a search is that of a placement that breaks a requirement."""
+    """Whether a value of a search is that of a placement that breaks a constraint."""
     return value >= INFEASIBLE
 
 

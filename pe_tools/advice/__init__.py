@@ -3,6 +3,7 @@
 Nothing here computes a score; results of `pe_core` are checked, compared and described.
 """
 
+from pe_core.scoring.sight import BLIND_TO_M
 from pe_tools.advice.advice import joined, percent
 
 from .advice import FRAGILE, PROVISIONAL, UNMET, Advice, fragile, off_by, unmet
@@ -23,8 +24,8 @@ from .location import AskedPlace, SensorAtPlace, ask_place
 from .mount_checks import check_mirror_image, stopped_shares
 from .ranking import Notation, ranking, win_words
 from .score_comparison import ComparedRow, compare, compare_figures
+from .search_cost import costs_nothing, search_cost
 from .summary import (
-    BLIND_TO_M,
     Outlook,
     class_of,
     lone_reach,
@@ -59,6 +60,7 @@ __all__ = [
     "compare",
     "compare_figures",
     "condition_warnings",
+    "costs_nothing",
     "curve_note",
     "curve_warnings",
     "fragile",
@@ -76,6 +78,7 @@ __all__ = [
     "percent",
     "ranking",
     "rig_words",
+    "search_cost",
     "sensor_rows",
     "sensor_table",
     "sensor_words",

@@ -9,11 +9,11 @@ from typing import Any
 from pe_core.scene.rig import Rig
 from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.score import FAR_M, NEAR_M, Score
-from pe_core.scoring.sight import Reach, Sight, ends_with_space
+from pe_core.scoring.sight import BLIND_TO_M, Reach, Sight, ends_with_space
 from pe_tools.advice.advice import percent
 
 from .mount_checks import stopped_shares
-from .summary import BLIND_TO_M, Outlook, class_of
+from .summary import Outlook, class_of
 
 SENSOR_COLUMNS = ("sensor", "loss [nats]", "costs most", "hidden by")
 SHORT_ZONES = {

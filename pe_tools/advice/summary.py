@@ -11,7 +11,7 @@ from pe_core.base.errors import InputError, shown
 from pe_core.prior.prior import Prior
 from pe_core.scene.rig import Rig
 from pe_core.scoring.score import FARTHEST_M, FoundClass, ObjectScore
-from pe_core.scoring.sight import BlindGround, Reach, Sight, VisibleShares, shown_end
+from pe_core.scoring.sight import BLIND_TO_M, BlindGround, Reach, Sight, VisibleShares, shown_end
 from pe_tools.advice.advice import percent
 
 NEAREST_M = 0.5
@@ -78,9 +78,6 @@ BEARINGS = {"front": 0.0, "rear": math.pi, "left": math.pi / 2.0, "right": -math
 ANY_CLASS = "any"
 """Name of the only class of a prior without classes."""
 CLASSES_NAMED = 8
-BLIND_TO_M = 0.5
-"""Height of the object for which blind ground is computed [m]: a post at the kerb or a small child.
-Flat ground would not do: far from the vehicle beams meet it only in rings."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,6 +14,8 @@ from pe_core.study import Study, load_study
 
 AUTO = "auto"
 """Value of `--sensitivity` that leaves the study's own."""
+KEEP, ANY = "keep", "any"
+"""Values of `--blind-ground`: the study's key, or none."""
 
 
 def add_goal_options(parser: argparse.ArgumentParser) -> None:
@@ -31,6 +33,8 @@ def add_goal_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--start", action="append", metavar="STUDY", help=about)
     about = f"a Pareto front of these: two or more of {', '.join(OBJECTIVES)}"
     parser.add_argument("--front", type=_names, metavar="NAME,...", help=about)
+    about = "keep: no more blind ground than the start; any: as much as the search likes"
+    parser.add_argument("--blind-ground", choices=(KEEP, ANY), metavar="keep|any", help=about)
     about = "how sure the result is: as far as an eighth of the evaluations goes, all of it, or off"
     parser.add_argument(
         "--sensitivity", choices=(AUTO, FULL, OFF), metavar="auto|full|off", help=about
@@ -47,6 +51,8 @@ def with_goals(study: Study, args: argparse.Namespace) -> Study:
         goals = replace(goals, front=Front(names, goals.front.points))
     if (wanted := getattr(args, "sensitivity", None)) not in (None, AUTO):
         goals = replace(goals, sensitivity=wanted)
+    if (wanted := getattr(args, "blind_ground", None)) is not None:
+        goals = replace(goals, blind_ground=KEEP if wanted == KEEP else None)
     if goals == search.goals:
         return study
     changed = replace(study, search=replace(search, goals=goals))

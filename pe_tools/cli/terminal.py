@@ -121,6 +121,7 @@ def summary(outcome: Outcome) -> str:
             *_in_traffic(outcome),
             f"entropy   {before.entropy:.4f} -> {after.entropy:.4f} nats",
             f"coverage  {before.coverage:.1%} -> {after.coverage:.1%}",
+            f"{outcome.cost}",
             *_moves(outcome.robustness),
         ]
     if outcome.after.objects is not None:

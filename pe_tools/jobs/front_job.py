@@ -8,10 +8,14 @@ from dataclasses import dataclass, replace
 from pe_core.base.errors import InputError
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigJudge
-from pe_core.scoring.requirements import RequirementChecker
 from pe_core.search import Journal, Objective, Picks, feasible_start, optimize
 from pe_core.study.objective_search import is_by_ap, search_evaluator
-from pe_core.study.requirement_search import FeasibleFirst, feasible_first
+from pe_core.study.requirement_search import (
+    Constraint,
+    FeasibleFirst,
+    constraints_of,
+    feasible_first,
+)
 from pe_core.study.study import Study
 
 from .candidate_workers import ExecutorSource, candidate_workers
@@ -69,7 +73,7 @@ class FrontJob(Job):
         self._choice = study.designs()
         self._designs: list[tuple[Models, float, Study]] = []
         self._figures: list[FrontFigures] = []
-        self._checkers: list[RequirementChecker | None] = []
+        self._constraints: list[tuple[Constraint, ...]] = []
         self._helpers: ExecutorSource | None = None
         self._found: list[_Found] = []
         self._errors: dict[Picks, InputError] = {}
@@ -112,17 +116,16 @@ class FrontJob(Job):
                 self._errors[each] = error
                 continue
             self._designs.append((models, price, study))
-            keeps = study.search.requirements and study.requirements
-            self._checkers.append(study.checker() if keeps else None)
+            self._constraints.append(constraints_of(study))
             self._figures.append(FrontFigures(study, self.names, shared, price, in_traffic))
         return True
 
     def _values(self) -> Iterator[Objective]:
         """Yield a value of each design: what its searches share goes to the workers beforehand."""
         count = len(self.names)
-        for number, figures in enumerate(self._figures):
+        for figures, constraints in zip(self._figures, self._constraints, strict=True):
             value = ScalarValue(figures, [0.0] * count, [0.0] * count, [1.0] * count)
-            yield feasible_first(self._designs[number][2], value, self._checkers[number])
+            yield feasible_first(value, constraints)
 
     def _search_design(self, number: int, count: int) -> Iterator[Progress]:
         """Search the points of one design, each from the best placement so far."""
@@ -156,7 +159,7 @@ class FrontJob(Job):
         ideal = [min(column) for column in columns]
         span = [max(c) - min(c) or max(abs(min(c)), 1.0) for c in columns]
         value = feasible_first(
-            study, ScalarValue(figures, weights, ideal, span), self._checkers[number]
+            ScalarValue(figures, weights, ideal, span), self._constraints[number]
         )
         begin = min(rigs, key=value.entropy) if rigs else study.rig
         search, variables = study.search, len(study.coding().variables)
@@ -240,5 +243,5 @@ class FrontJob(Job):
 
 
 def _is_kept(value: Objective, rig: Rig) -> bool:
-    """Whether a placement keeps the requirements that it has to."""
+    """Whether a placement keeps the constraints of the search."""
     return not isinstance(value, FeasibleFirst) or not value.violation(rig)

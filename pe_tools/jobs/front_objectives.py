@@ -26,11 +26,10 @@ from pe_core.search.goals import (
     WORST_LOSS,
 )
 from pe_core.search.tolerance import without_each
+from pe_core.study.blind_ground_search import blind_area
 from pe_core.study.objective_search import is_by_ap
 from pe_core.study.objective_setting import EXPECTED_AP
 from pe_core.study.study import Study
-
-from ..advice import BLIND_TO_M
 
 AUGMENTED = 0.05
 """Weight of the sum beside the maximum: it drops placements that are only weakly efficient."""
@@ -139,7 +138,7 @@ class FrontFigures:
 
     def _blind_ground(self, rig: Rig) -> float:
         assert self._sight is not None
-        return self._sight.blind(rig, max(BLIND_TO_M, self._study.space.z[0])).area
+        return blind_area(self._sight, rig)
 
     def _worst_loss(self, rig: Rig) -> float:
         whole, *lost = self._evaluator.entropies([rig, *without_each(rig)])

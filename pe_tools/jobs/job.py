@@ -18,7 +18,7 @@ from pe_core.search import EvaluatedRig, Robustness
 from pe_core.study.condition_table import ConditionTable, condition_table
 from pe_core.study.study import Study
 
-from ..advice import Advice, curve_warnings, warnings
+from ..advice import Advice, curve_warnings, search_cost, warnings
 from ..sensitivity import Sensitivity
 from .searched_figure import IN_NATS, SearchedFigure
 
@@ -87,6 +87,8 @@ class Outcome:
         Why the search ended before its budget did: "target", "seconds", "gain", or empty.
     in_traffic : tuple of ObjectScore, or None
         Of a search by expected AP: start and result on objects in traffic.
+    blind_m2 : (float, float), or None
+        Of a search: blind ground of start and result [m2] (`blind_area`).
     """
 
     kind: str
@@ -108,6 +110,12 @@ class Outcome:
     starts: tuple[StartEnd, ...] = ()
     stop_reason: str = ""
     in_traffic: tuple[ObjectScore, ObjectScore] | None = None
+    blind_m2: tuple[float, float] | None = None
+
+    @property
+    def cost(self) -> str:
+        """What a search cost, in one sentence; empty for a score."""
+        return "" if self.blind_m2 is None else search_cost(self.before, self.after, self.blind_m2)
 
 
 T = TypeVar("T")

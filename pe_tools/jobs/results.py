@@ -88,6 +88,7 @@ def _result(outcome: Outcome, host: dict[str, str]) -> dict[str, Any]:
         **({} if outcome.conditions is None else {"conditions": outcome.conditions.to_dict()}),
         **_search_dict(outcome),
         **_in_traffic(outcome),
+        **_cost(outcome),
         "ap_model": outcome.study.model.model,
         **_sensitivity(outcome),
         "evaluations": outcome.evaluations,
@@ -115,6 +116,14 @@ def _in_traffic(outcome: Outcome) -> dict[str, Any]:
         return {}
     before, after = (each.to_dict() for each in outcome.in_traffic)
     return {"objective": EXPECTED_AP, EXPECTED_AP: {"before": before, "after": after}}
+
+
+def _cost(outcome: Outcome) -> dict[str, Any]:
+    """Return the blind ground of a search's start and result, and what it cost in a sentence."""
+    if outcome.blind_m2 is None:
+        return {}
+    before, after = outcome.blind_m2
+    return {"blind_ground_m2": {"before": before, "after": after}, "cost": outcome.cost}
 
 
 def run_dict(seconds: float, host: Mapping[str, str]) -> dict[str, Any]:

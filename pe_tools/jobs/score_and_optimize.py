@@ -22,9 +22,15 @@ from pe_core.search import (
     optimize,
     robustness,
 )
+from pe_core.study.blind_ground_search import blind_area
 from pe_core.study.condition_search import study_objective
 from pe_core.study.objective_search import is_by_ap, search_evaluator, searched_study
-from pe_core.study.requirement_search import conflicts, feasible_first, is_infeasible
+from pe_core.study.requirement_search import (
+    conflicts,
+    constraints_of,
+    feasible_first,
+    is_infeasible,
+)
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 
 from ..advice import Advice, condition_warnings, fragile, unmet
@@ -138,13 +144,11 @@ class OptimizeJob(Job):
     @cached_property
     def _objectives(self) -> list[Objective]:
         """Objectives that evaluate candidates, one for each level of the search method."""
-        search = self.study.search
-        checker = self.study.checker() if search.requirements and self.study.requirements else None
+        levels = zip(self._evaluators, self.study.search.level_samples, strict=True)
+        constraints = constraints_of(self.study)
         return [
-            feasible_first(
-                self.study, study_objective(self.study, each, samples, self.workers), checker
-            )
-            for each, samples in zip(self._evaluators, search.level_samples, strict=True)
+            feasible_first(study_objective(self.study, each, samples, self.workers), constraints)
+            for each, samples in levels
         ]
 
     @cached_property
@@ -199,7 +203,8 @@ class OptimizeJob(Job):
         verdicts = yield from self._verdicts(best, looking)
         unmet_warnings = yield from self._unmet(best, verdicts or (), looking)
         sensitivity = yield from self._sensitivity(best, replace(looking, stage="analysing"))
-        if None in (warnings, robustness_result, verdicts, unmet_warnings):
+        blind = yield from self._beside(lambda: self._blind(best), lambda: looking, to_the_end=True)
+        if None in (warnings, robustness_result, verdicts, unmet_warnings, blind):
             return
         table = yield from self._conditions(best, looking)
         assert warnings is not None and robustness_result is not None
@@ -226,6 +231,7 @@ class OptimizeJob(Job):
             tuple(self.ends),
             self.stop_reason,
             _both(first.in_traffic, last.in_traffic),
+            blind,
         )
         yield self._about("done", last.value)
 
@@ -290,6 +296,12 @@ class OptimizeJob(Job):
             return analyse(*given, samples, lambda: not self.stopped)
 
         return (yield from self._beside(work, lambda: waiting, to_the_end=True))
+
+    def _blind(self, best: Study) -> tuple[float, float]:
+        """Return the blind ground of start and result [m2]."""
+        sight = self.study.sight()
+        before = blind_area(sight, self.study.rig)
+        return before, before if best is self.study else blind_area(sight, best.rig)
 
     def _unmet(
         self, best: Study, verdicts: tuple[Verdict, ...], waiting: Progress

@@ -45,9 +45,9 @@ class SearchedFigure:
         return f"an expected AP of {figure}" if self.higher_is_better else f"{figure} nats"
 
     def text(self, value: float) -> str:
-        """Return a placement's value as text: the figure, or by how much it breaks requirements."""
+        """Return a placement's value as text: the figure, or by how much it breaks constraints."""
         if is_infeasible(value):
-            return f"requirements broken by {value - INFEASIBLE:.3f}"
+            return f"constraints broken by {value - INFEASIBLE:.3f}"
         return f"{self.label} {self.to_figure(value):.4f}"
 
 

@@ -165,6 +165,8 @@ def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> 
         in_traffic = _in_traffic(result.get(figure.key) if figure.higher_is_better else None)
         reason = str(result.get("stop_reason") or "")
         warnings = tuple(_advice(table) for table in result["warnings"])
+        blind = result["blind_ground_m2"]
+        blind_m2 = float(blind["before"]), float(blind["after"])
         evaluations, stopped = int(result["evaluations"]), bool(result["stopped"])
     except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
         if isinstance(error, pe.InputError):
@@ -173,19 +175,21 @@ def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> 
         raise pe.InputError(path, "file", expected, "another file") from None
     first = score(start)
     last = first if best.rig == start.rig else score(best)
-    parts = (start, best, first.after, last.after, history, evaluations, stopped, 0.0, warnings)
-    held = last.verdicts, last.conditions
-    more = (
-        checkpoint.inputs,
-        checkpoint.judged,
-        robustness,
-        *held,
-        sure,
-        starts,
-        reason,
-        in_traffic,
+    scores = first.after, last.after
+    return pe.Outcome(
+        "optimize",
+        *(start, best, *scores, history, evaluations, stopped, 0.0, warnings),
+        inputs=checkpoint.inputs,
+        judged=checkpoint.judged,
+        robustness=robustness,
+        verdicts=last.verdicts,
+        conditions=last.conditions,
+        sensitivity=sure,
+        starts=starts,
+        stop_reason=reason,
+        in_traffic=in_traffic,
+        blind_m2=blind_m2,
     )
-    return pe.Outcome("optimize", *parts, *more)
 
 
 def command_of_folder(folder: Path) -> str:

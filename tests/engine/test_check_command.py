@@ -102,7 +102,7 @@ def test_a_search_that_keeps_requirements_says_how_many_it_met(study, tmp_path, 
     told = capsys.readouterr()
     assert "requirements  1 of 2 met" in told.out and "not met: bump, fails" in told.out
     assert "warning: placement: bump is not met" in told.out
-    assert "requirements broken by 0." in told.err
+    assert "constraints broken by 0." in told.err
     found = json.loads((tmp_path / "out" / "result.json").read_text())
     assert [row["met"] for row in found["requirements"]] == [True, False]
     assert 'requirements = "keep"' in (tmp_path / "out" / "study.toml").read_text()

@@ -269,7 +269,7 @@ def test_requirements_come_before_the_ap():
     texts = [p.value_text for p in job if p.stage == "optimizing"]
     assert [v.met for v in given.verdicts()] == [False]
     assert [v.met for v in job.outcome.verdicts] == [True]
-    assert any(text.startswith("requirements broken by ") for text in texts)
+    assert any(text.startswith("constraints broken by ") for text in texts)
     assert texts[-1].startswith("expected AP 0.")
     first = result_dict(job.outcome)["history"][0]
     assert first[AP] < -100.0  # no AP: what breaks a requirement is worse than any

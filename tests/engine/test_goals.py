@@ -50,6 +50,20 @@ def test_a_search_stops_at_its_target_with_the_steps_of_the_whole_one(plain):
     assert result_dict(outcome)["stop_reason"] == "target"
 
 
+def test_blind_ground_is_kept_by_key_or_option(tmp_path):
+    path = tmp_path / "study.toml"
+    pe.export_study(study(Goals(blind_ground="keep")), path)
+    assert 'blind_ground = "keep"' in path.read_text()
+    kept = pe.load_study(path)
+    assert kept.search.goals.blind_ground == "keep"
+    for option, found in (("any", None), ("keep", "keep")):
+        args = parser().parse_args(["optimize", str(path), "--blind-ground", option])
+        assert with_options(kept, args).search.goals.blind_ground == found
+    path.write_text(path.read_text().replace('"keep"', '"less"'))
+    with pytest.raises(pe.InputError, match=r"blind_ground: expected .*keep.*, found 'less'"):
+        pe.load_study(path)
+
+
 def test_a_search_stops_for_want_of_gain(plain):
     outcome = finished(study(Goals(Stop(gain=100.0, over=20))))
     assert outcome.stop_reason == "gain" and outcome.evaluations == 21

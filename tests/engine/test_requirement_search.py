@@ -20,8 +20,17 @@ from pe_core.scoring.requirements import (
     Zone,
     sees,
 )
+from pe_core.scoring.sight import BLIND_TO_M
+from pe_core.search import Goals
 from pe_core.study.requirement_help import suggestions
-from pe_core.study.requirement_search import INFEASIBLE, conflicts, feasible_first
+from pe_core.study.requirement_search import (
+    INFEASIBLE,
+    conflicts,
+    constraints_of,
+    feasible_first,
+)
+from pe_tools import advice
+from pe_tools.jobs import result_dict
 from tests.engine import shapes
 
 BEHIND = Zone(x=("rear + 0.6", "rear + 1.6"), y=(-0.6, 0.6), step=0.3)
@@ -163,9 +172,63 @@ def test_shortfalls_are_zero_exactly_where_a_verdict_says_met():
     again = pickle.loads(pickle.dumps(checker))
     assert again.shortfalls(moved) == offs
     evaluator = own.evaluator()
-    objective = feasible_first(own, evaluator)
-    kept = feasible_first(replace(own, search=replace(own.search, requirements=None)), evaluator)
+    objective = feasible_first(evaluator, constraints_of(own))
+    free = replace(own, search=replace(own.search, requirements=None))
+    kept = feasible_first(evaluator, constraints_of(free))
     assert kept is evaluator and objective.entropy(own.rig) > INFEASIBLE
+
+
+def tilted(blind_ground, method="cma-es"):
+    """A LiDAR at the front, tilted down: level it sees farther, and less of the near ground."""
+    van = pe.Vehicle(shapes.box((-2.5, -1.0, 0.25), (2.5, 1.0, 2.0)), clearance=0.0)
+    pose = pe.Pose.from_degrees((2.6, 0.0, 1.0), (0.0, 15.0, 0.0))
+    goals = Goals(sensitivity="off", blind_ground=blind_ground)
+    search = pe.Search(
+        free={"nose": ("pitch",)}, samples=1024, evaluations=24, method=method, goals=goals
+    )
+    space = pe.PerceptionSpace((-20, 20), (-16, 16), (0, 3), 0.2)
+    rig = pe.Rig([pe.Sensor("nose", shapes.small_lidar(16, 180), pose)])
+    return pe.Study(rig, van, space, samples=1024, search=search)
+
+
+@pytest.mark.parametrize("method", ["portfolio", "block-descent", "cma-es", "random"])
+def test_a_search_that_keeps_blind_ground_ends_with_no_more_of_it(method):
+    """Without the key the same search pays its gain with blind ground, and says so."""
+    free, kept = (finished(pe.OptimizeJob(tilted(keep, method), 1)) for keep in (None, "keep"))
+    before, after = free.blind_m2
+    assert after > before + 1.0
+    assert "blind ground (" in free.cost and advice.costs_nothing(kept.cost) == (
+        "nothing" in kept.cost
+    )
+    assert kept.blind_m2[0] == before >= kept.blind_m2[1]
+    assert "blind ground (" not in kept.cost and free.before == kept.before
+    assert free.after.entropy < kept.after.entropy <= kept.before.entropy
+    sight = kept.study.sight()
+    assert sight.blind(kept.study.rig, BLIND_TO_M).area == pytest.approx(kept.blind_m2[1])
+    told = result_dict(kept)
+    assert told["blind_ground_m2"] == {"before": before, "after": kept.blind_m2[1]}
+    assert told["cost"] == kept.cost
+
+
+def test_workers_and_cutoffs_keep_the_same_blind_ground():
+    given = tilted("keep")
+    assert constraints_of(tilted(None)) == ()
+    (limit,) = constraints_of(given)
+    objective = feasible_first(given.evaluator(), (limit,))
+    level = given.rig.with_poses([pe.Pose((2.6, 0.0, 1.0), (0.0, 0.0, 0.0))])
+    assert limit.violation(given.rig) == 0.0 < limit.violation(level) <= 1.0
+    again = pickle.loads(pickle.dumps(limit))
+    assert again.violation(level) == limit.violation(level)
+    value = objective.entropy(level)
+    assert value == INFEASIBLE + limit.violation(level) == objective.judge(level).entropy
+    entropy = given.evaluator().entropy(given.rig)
+    for cutoff in (entropy - 0.5, entropy, entropy + 0.5, INFEASIBLE + 2.0):
+        for rig in (given.rig, level):
+            found = objective.judge(rig, cutoff)
+            assert (found.entropy < cutoff) == (objective.entropy(rig) < cutoff)
+            assert found.is_lower_bound or found.entropy == objective.entropy(rig)
+    one, two = (finished(pe.OptimizeJob(given, workers)) for workers in (1, 2))
+    assert one.judged == two.judged and one.after == two.after
 
 
 def test_redundancy_is_what_each_sensor_sees_alone():

@@ -1,12 +1,13 @@
 """Visibility by location: the ground map, blind ground round the vehicle, reach."""
 
-from .blind_ground import BlindGround, BlindSpot, shown_end, shown_start
+from .blind_ground import BLIND_TO_M, BlindGround, BlindSpot, shown_end, shown_start
 from .grid_regions import outlines
 from .reach import Reach, ReachLine, ends_with_space, reach_line
 from .sight import Sight
 from .visibility import GroundSight, VisibleShares
 
 __all__ = [
+    "BLIND_TO_M",
     "BlindGround",
     "BlindSpot",
     "GroundSight",

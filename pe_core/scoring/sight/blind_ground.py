@@ -22,6 +22,9 @@ from .ground_cells import ROUNDING, GroundCells, Rectangle
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
+BLIND_TO_M = 0.5
+"""Height of the object for which blind ground is computed [m]: a post at the kerb or a small child.
+Flat ground would not do: far from the vehicle beams meet it only in rings."""
 NARROW_M = 0.1
 """A narrower strip of blind ground along the body does not count, on a side: edges may be this much
 too far out."""
@@ -104,7 +107,7 @@ def blind_ground(
     strips = {side: _Strip.of(cells, blind, body, side) for side in SIDES}
     return BlindGround(
         tuple(map(read_only, outlines(blind.astype(float), 0.5, cells.x, cells.y))),
-        float(np.count_nonzero(blind)) * cells.step**2,
+        area_of(cells, blind),
         height,
         within,
         MappingProxyType({side: strip.nearest() for side, strip in strips.items()}),
@@ -112,6 +115,11 @@ def blind_ground(
         MappingProxyType({side: strip.seen_from() for side, strip in strips.items()}),
         draft,
     )
+
+
+def area_of(cells: GroundCells, blind: Flags) -> float:
+    """Return the area of blind cells (NX, NY) [m2]."""
+    return float(np.count_nonzero(blind)) * cells.step**2
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,7 @@ from ..score import rounded
 from ..targets.lone_objects import LoneObjects
 from ..targets.object_sampling import sample_objects
 from ..targets.target_rule import TargetRule
-from .blind_ground import BlindGround, blind_ground, body_rectangle
+from .blind_ground import BlindGround, area_of, blind_ground, body_rectangle
 from .blind_squares import STEP_M, BlindSearch, fine_enough
 from .ground_cells import GroundCells, widened
 from .reach import AP, BEARINGS, Reach, Spokes, density_of, object_reach
@@ -147,18 +147,31 @@ class Sight:
             or no cell is within.
         """
         body = body_rectangle(self.vehicle)
-        cells = GroundCells.of(self.space, fine_enough(step), widened(body, within))
+        cells, blind, approximate = self._blind_cells(rig, height, within, step, draft)
+        return blind_ground(cells, blind, body, float(height), float(within), approximate)
+
+    def blind_area(
+        self, rig: Rig, height: float = 0.0, within: float = 10.0, step: float = STEP_M
+    ) -> float:
+        """Return the area of `blind` [m2], without its outlines: quicker."""
+        cells, blind, _ = self._blind_cells(rig, height, within, step, False)
+        return area_of(cells, blind)
+
+    def _blind_cells(
+        self, rig: Rig, height: float, within: float, step: float, draft: bool
+    ) -> tuple[GroundCells, NDArray[np.bool_], bool]:
+        """Return cells, which of them (NX, NY) are blind, and whether they are approximate."""
+        area = widened(body_rectangle(self.vehicle), within)
+        cells = GroundCells.of(self.space, fine_enough(step), area)
         layer_at(self.space, height)  # raises InputError for a height that is not in the space
-        height = float(height)
         with self._lock:
             search = self._voxel_sets.cached(
-                ("blind", height, cells.key),
+                ("blind", float(height), cells.key),
                 lambda: BlindSearch.of(
-                    cells, max(height, 0.0), self.vehicle, self._voxel_sets.kernel_cache
+                    cells, max(float(height), 0.0), self.vehicle, self._voxel_sets.kernel_cache
                 ),
             )
-            blind, approximate = search.blind(rig, draft)
-            return blind_ground(cells, blind, body, height, float(within), approximate)
+            return (cells, *search.blind(rig, draft))
 
     def reach(
         self, rig: Rig, class_name: str, *, ap: float = 0.5, bearings: int = 72, draft: bool = False

@@ -111,6 +111,7 @@ def _ap_answer(context: ReportContext, first: pe.ObjectScore, last: pe.ObjectSco
 def cautions(context: ReportContext) -> Markup:
     """Return notes: hidden sensors, blind ground, the worst loss of a sensor, warnings."""
     notes = [
+        _cost(context),
         *hidden_sensor_lines(context),
         _blind_ground(context),
         _worst_loss_line(context),
@@ -132,6 +133,15 @@ def hidden_sensor_lines(context: ReportContext) -> tuple[str, ...]:
 def _sentence(text: str) -> str:
     """Return a sentence with a capital; a name at its beginning is left as it is."""
     return text if text.startswith("<") else capitalized(text)
+
+
+def _cost(context: ReportContext) -> str:
+    """Return what a search cost, in the colour of a loss or of a gain."""
+    outcome = context.outcome
+    if outcome.blind_m2 is None:
+        return ""
+    css = "better" if advice.costs_nothing(outcome.cost) else "worse"
+    return f'<span class="{css}">{escaped(outcome.cost)}</span>'
 
 
 def _blind_ground(context: ReportContext) -> str:

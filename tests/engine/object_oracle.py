@@ -72,6 +72,67 @@ def pixels(sensor, ray_of, finer, objects, vehicle, traffic):
     return counts
 
 
+def visible_shares(sensor, ray_of, objects, vehicle, traffic, want=10_000):
+    """(N,) share of the rays to each object that nothing hides, NaN of objects hardly in the view.
+
+    Rays through every second pixel find the object's part of the picture; about `want` rays to the
+    object, evenly spread over that part, decide.
+    """
+    origin, turn = np.array(sensor.pose.position), oracle.rotation(*sensor.pose.rpy)
+    camera, shares = sensor.model, np.full(len(objects), np.nan)
+
+    def hits(across, down, triangles):
+        places = [w.ravel() for w in np.meshgrid(across, down)]
+        rays = ray_of(*places)
+        some = np.flatnonzero(~np.isnan(rays[:, 0]))
+        rays = rays[some] @ turn.T
+        distance = first_hits(origin, rays, triangles)
+        met = np.isfinite(distance)
+        return [w[some[met]] for w in places], rays[met], distance[met]
+
+    def hidden(rays, distance, triangles):
+        return first_hits(origin, rays, triangles) < distance
+
+    for item in range(len(objects)):
+        own = box_triangles(objects, item)
+        coarse = [np.arange(1.0, size, 2.0) for size in (camera.width, camera.height)]
+        (x, y), _, _ = hits(*coarse, own)
+        if len(x) < 12:
+            continue
+        low, high = (np.array([f(x), f(y)]) for f in (np.min, np.max))
+        low, high = low - 2.0, high + 2.0
+        finer = math.sqrt(want / (4.0 * len(x)))
+        rows = [np.arange(a + 0.5 / finer, b, 1.0 / finer) for a, b in zip(low, high, strict=True)]
+        rows = [
+            w[(w > 0.0) & (w < s)] for w, s in zip(rows, (camera.width, camera.height), strict=True)
+        ]
+        _, rays, distance = hits(*rows, own)
+        before = np.zeros(len(rays), bool)
+        if vehicle is not None:
+            before |= hidden(rays, distance, vehicle.triangles)
+        if traffic:
+            for other in np.flatnonzero(objects.scenes == objects.scenes[item]):
+                if other != item:
+                    before |= hidden(rays, distance, box_triangles(objects, other))
+        shares[item] = 1.0 - before.mean()
+    return shares
+
+
+def first_hits(origin, rays, triangles):
+    """(B,) distance to the nearest triangle; of a triangle only rays into its ball are tested."""
+    nearest = np.full(len(rays), np.inf)
+    for triangle in np.asarray(triangles) - origin:
+        middle = triangle.mean(axis=0)
+        away, ball = np.linalg.norm(middle), np.linalg.norm(triangle - middle, axis=1).max()
+        some = np.arange(len(rays))
+        if ball < away:
+            some = np.flatnonzero(rays @ middle >= math.sqrt(away**2 - ball**2) - 1e-9)
+        if len(some):
+            found = oracle.first_hits(np.zeros(3), rays[some], triangle[None])[0]
+            nearest[some] = np.minimum(nearest[some], found)
+    return nearest
+
+
 def hull_area(sensor, objects, item):
     """Area of the clipped convex hull of a box's image, None where a corner is not in front."""
     camera, points = sensor.model, []

@@ -1,6 +1,7 @@
 """The definition of m on objects against an oracle that shares no code with it."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,8 +10,9 @@ import pe_core as pe
 from pe_core import sensors as kinds
 from tests.engine import object_oracle, shapes
 from tests.engine.test_oracle import LIDARS, azimuths_of, random_pose
-from tests.thorough import pairs
+from tests.thorough import pairs, tries
 
+ROOT = Path(__file__).parents[2]
 SIZES = np.array([(4.6, 1.9, 1.7), (0.8, 0.7, 1.75), (1.76, 0.65, 1.74), (7.5, 2.55, 3.0)])
 VIEWS = {
     "free": (False, False),
@@ -91,6 +93,76 @@ def test_pixels_are_those_of_dense_rays(name, view):
         assert (np.abs(m - counted) <= open_ + hidden).all()
         seen += np.count_nonzero(m)
     assert seen > 2
+
+
+def near_a_car(rng):
+    """A pose close to a side of the car, that looks away from it or along it."""
+    at = rng.uniform(-1.0, 1.0, 2) * (2.2, 0.9)
+    side, end = rng.choice([-1.0, 1.0]), rng.random() < 0.4
+    x, y = (side * rng.uniform(2.35, 2.6), at[1]) if end else (at[0], side * rng.uniform(1.0, 1.2))
+    yaw = math.degrees(math.atan2(*((0.0, x) if end else (y, 0.0)))) + rng.uniform(-110, 110)
+    turned = (rng.uniform(-30, 30), rng.uniform(-20, 60), yaw)
+    return pe.Pose.from_degrees((x, y, rng.uniform(0.4, 1.6)), turned)
+
+
+WIDE_LENSES = {
+    "fisheye 190": pe.KannalaBrandt(100.0, 100.0, 200.0, 150.0, fov=math.radians(190.0)),
+    "fisheye 150": pe.KannalaBrandt(130.0, 130.0, 200.0, 150.0, fov=math.radians(150.0)),
+    "pinhole 140": None,
+}
+BODIES = np.array([(4.6, 1.9, 1.7), (0.5, 0.35, 1.7), (0.1, 0.1, 2.0), (3.0, 0.05, 0.05)])
+
+
+@pytest.mark.parametrize("name", WIDE_LENSES)
+def test_bodies_near_a_wide_camera_on_a_car(name):
+    """Images that fill little of their bounding rectangle, too, are seen within 4 %."""
+    rng, lens, worst, partly = np.random.default_rng(7), WIDE_LENSES[name], 0.0, 0
+    hfov = math.radians(140.0) if lens is None else None
+    camera = pe.Camera(name, 400, 300, hfov, lens)
+    rays = rays_of(camera)
+    if lens is not None:
+        rays = object_oracle.equidistant_rays(lens, lens.fov / 2.0)
+    for _ in range(tries(7, 60)):
+        sensor = pe.Sensor("s", camera, near_a_car(rng))
+        labels, turn = rng.integers(0, len(BODIES), 5), rng.uniform(-math.pi, math.pi, 5)
+        sizes = BODIES[labels]
+        away = rng.exponential(2.0, 5) + 0.4 + sizes[:, 0] / 2.0
+        x, y, _ = sensor.pose.position
+        centers = np.stack([x + away * np.cos(turn), y + away * np.sin(turn), sizes[:, 2] / 2], 1)
+        some = pe.Objects(centers, sizes, 3.0 * turn, labels, tuple("abcd"), np.zeros(5, int))
+        for vehicle, traffic in ((shapes.box_car(), False), (shapes.box_car(), True)):
+            m, whole = (
+                pe.measure_objects(sensor, some, v, t)
+                for v, t in ((vehicle, traffic), (None, False))
+            )
+            expected = object_oracle.visible_shares(sensor, rays, some, vehicle, traffic)
+            known = np.flatnonzero((whole > 0.0) & ~np.isnan(expected))
+            off = np.abs(m[known] / whole[known] - expected[known])
+            worst = max(worst, off.max(initial=0.0))
+            partly += np.count_nonzero((expected[known] > 0.0) & (expected[known] < 1.0))
+    assert worst <= 0.04
+    assert partly > 2
+
+
+def test_a_cyclist_at_the_edge_of_a_bus_s_fisheye():
+    """5 of 144 rays over the bounding rectangle would meet it, and one of 4 be visible."""
+    body = np.load(ROOT / "blend_assets" / "bus.npz")["triangles"]
+    lens = pe.KannalaBrandt(330.0, 330.0, 640.0, 480.0, fov=math.radians(190.0))
+    pose = pe.Pose.from_degrees((-3.084, 0.018, 0.939), (0.69, 22.74, 177.09))
+    eye = pe.Sensor("eye", pe.Camera("fisheye", 1280, 960, lens=lens), pose)
+    cyclist = pe.Objects(
+        [[-2.67, -1.91, 0.85]], [[0.5, 0.35, 1.7]], [math.radians(90)], [0], ["cyclist"]
+    )
+    near = np.linalg.norm(body.mean(axis=1) - pose.position, axis=1) < 4.0
+    whole = pe.measure_objects(eye, cyclist)[0]
+    assert whole == pytest.approx(4655.0, rel=0.005)
+    rays = object_oracle.equidistant_rays(lens, math.radians(95.0))
+    bus = pe.Vehicle(body)
+    (share,) = object_oracle.visible_shares(eye, rays, cyclist, pe.Vehicle(body[near]), False, 4000)
+    assert share == pytest.approx(303.0 / 4655.0, abs=0.005)
+    kernel = kinds.kind_of(eye).on_objects(kinds.ObjectView(cyclist, bus, False))
+    for m in (pe.measure_objects(eye, cyclist, bus)[0], kernel.measure(eye)[0]):
+        assert m == pytest.approx(share * whole, abs=0.04 * whole)
 
 
 @pytest.mark.parametrize("name", ["60 deg", "120 deg"])

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from ...geometry.poses import dot
 from ...scene.rig import Sensor
 from ...scene.vehicle import VisibleMesh
-from ..box_rays import behind_others, rivals_near
+from ..box_rays import BoxRays, behind_others, rivals_near
 from ..object_kernel import ObjectKernel, ObjectView, PlacedBoxes
 from .box_area import BoxImages, along_camera, box_images
 from .definition import is_ranged, out_of_range
 from .model import Camera
-from .object_definition import rays_to_boxes, visible_share
+from .object_definition import visible_share
 from .picture import PictureBins
 from .pixel_area import frustum_distance
 from .tie_rules import axes_of
@@ -64,15 +64,19 @@ class CameraObjects(ObjectKernel):
         if view.traffic:
             rivals = rivals_near(boxes, view.objects.scenes, self._balls, which[shown])
             asked = by_vehicle | (rivals.count > 0)
-        rays = rays_to_boxes(camera, axes, boxes.take(which[shown]), image, np.flatnonzero(asked))
-        hidden = np.zeros(len(rays.item), bool)
-        if seen is not None:
-            near = np.flatnonzero(by_vehicle[rays.item])  # rays that the vehicle may stop
-            hidden[near] = seen.first_hit(rays.directions[near]).distance < rays.distance[near]
-        if rivals is not None:
-            hidden |= behind_others(boxes, rivals, rays)
-        share = np.ones(len(which))
-        share[shown] = visible_share(rays, hidden, len(shown))
+
+        def is_hidden(rays: BoxRays) -> NDArray[np.bool_]:
+            hidden = np.zeros(len(rays.item), bool)
+            if seen is not None:
+                near = np.flatnonzero(by_vehicle[rays.item])  # rays that the vehicle may occlude
+                hidden[near] = seen.first_hit(rays.directions[near]).distance < rays.distance[near]
+            if rivals is not None:
+                hidden |= behind_others(boxes, rivals, rays)
+            return hidden
+
+        share, own = np.ones(len(which)), np.flatnonzero(asked)
+        placed = boxes.take(which[shown])
+        share[shown[own]] = visible_share(camera, axes, placed, image, own, is_hidden)
         return share
 
 

@@ -1,16 +1,18 @@
 """The measurement of objects by a camera, by definition: the visible area of each box's image.
 
-Rays through a fixed lattice over the image give the visible share. The bounding rectangle of a
-box's image has RAYS points in a Fibonacci lattice. No two of them have the same height or the same
+Rays through a lattice over the image give the visible share. The bounding rectangle of a box's
+image has the points of a Fibonacci lattice. No two of them have the same height or the same
 horizontal position. So an edge that cuts the image at any angle has the right share of the points
-on each side, within one or two hundredths. The rays through these points that hit the box decide.
+on each side. The rays through these points that hit the box decide. The image may fill little of
+its rectangle, as near the edge of a fisheye's field: the lattice is so fine that at least HITS rays
+are expected to hit. If the box is partly visible, a finer one, with PARTLY_HITS, replaces it.
 Sometimes no ray hits: the box is as thin as a wire, or only a sliver of it is in a fisheye's field.
 Then rays to points on the box's sides decide, if these are in the picture and in the field.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import cast
 
 import numpy as np
@@ -32,48 +34,78 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-RAYS, TURN = 144, 89
-"""Neighbouring Fibonacci numbers: point i is at i / RAYS across, and at i * TURN / RAYS down."""
-BOXES_AT_ONCE = 512
+FIBONACCI = np.array(
+    [55, 89, 144, 233, 377, 610, 987, 1597, 2584, 4181, 6765, 10946, 17711, 28657, 46368, 75025]
+)
+"""Point i of a lattice of FIBONACCI[k] is at i / FIBONACCI[k] across, and at
+i * FIBONACCI[k - 1] / FIBONACCI[k] down."""
+HITS, PARTLY_HITS = 55, 144
+RAYS_AT_ONCE = 73_728
 SIDE_PLACES = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 15)] * 2), axis=-1).reshape(-1, 2)
 """Points on a side of a box, in half sides, that rays aim at if no lattice ray hits the box."""
 
 
-def rays_to_boxes(
-    camera: Camera, axes: Floats, boxes: PlacedBoxes, images: BoxImages, which: Ints
-) -> BoxRays:
-    """Return the rays through the images of boxes `which` (P,) that hit them; `item` is the box."""
-    found = list(_met(camera, axes, boxes, images, which))
-    if not found:
-        return BoxRays(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros(0))
-    rank, directions, distance = (np.concatenate(w) for w in zip(*found, strict=True))
-    return BoxRays(which[rank], directions, distance)
+def visible_share(
+    camera: Camera,
+    axes: Floats,
+    boxes: PlacedBoxes,
+    images: BoxImages,
+    which: Ints,
+    is_hidden: Callable[[BoxRays], Flags],
+) -> Floats:
+    """Return the visible share (P,) of the images of boxes `which` (P,).
 
-
-def visible_share(rays: BoxRays, hidden: Flags, count: int) -> Floats:
-    """(P,) visible share of each box's rays; 1 for a box that no ray hits."""
-    whole = np.bincount(rays.item, minlength=count)
-    unseen = np.bincount(rays.item[hidden], minlength=count)
-    return np.asarray((whole - unseen + (whole == 0)) / np.maximum(whole, 1))
+    `is_hidden` says of rays to boxes whether something is before their box; `item` is the box.
+    """
+    share = np.ones(len(which))
+    some = np.arange(len(which))
+    for hits in (HITS, PARTLY_HITS):
+        found = list(_met(camera, axes, boxes, images, which[some], hits))
+        if not found:
+            break
+        rank, directions, distance = (np.concatenate(w) for w in zip(*found, strict=True))
+        hidden = is_hidden(BoxRays(which[some[rank]], directions, distance))
+        whole, unseen = (np.bincount(w, minlength=len(some)) for w in (rank, rank[hidden]))
+        share[some] = (whole - unseen) / whole
+        some = some[(share[some] > 0.0) & (share[some] < 1.0)]
+    return share
 
 
 def _met(
-    camera: Camera, axes: Floats, boxes: PlacedBoxes, images: BoxImages, which: Ints
+    camera: Camera, axes: Floats, boxes: PlacedBoxes, images: BoxImages, which: Ints, hits: int
 ) -> Iterator[tuple[Ints, Floats, Floats]]:
-    step = np.arange(RAYS) + 0.5
-    lattice = np.stack([step / RAYS, (step * TURN / RAYS) % 1.0], axis=1)
-    for some in blocks(len(which), BOXES_AT_ONCE):
-        own = which[some]
-        low, high = images.low[own, None], images.high[own, None]
-        places = (low + (high - low) * lattice).reshape(-1, 2)
-        directions, exists = _through(camera, axes, places)
-        rank = np.repeat(np.arange(some.start, some.stop), RAYS)[exists]
-        enter, leave = boxes.crossing(which[rank], directions)
-        met = np.flatnonzero((enter < leave) & (enter > 0.0))
-        yield rank[met], directions[met], enter[met]
-        missed = np.setdiff1d(np.arange(some.start, some.stop), rank[met], assume_unique=False)
-        if len(missed):
-            yield _to_sides(camera, axes, boxes, which[missed], missed)
+    """Ranks, directions and distances of rays that hit boxes; each box has at least one."""
+    extent = images.high[which] - images.low[which]
+    wanted = hits * extent[:, 0] * extent[:, 1] / images.area[which]
+    level = np.clip(np.searchsorted(FIBONACCI, wanted), 1, len(FIBONACCI) - 1)
+    for k in np.unique(level).tolist():
+        of_level = np.flatnonzero(level == k)
+        for some in blocks(len(of_level), max(1, RAYS_AT_ONCE // int(FIBONACCI[k]))):
+            yield from _met_by_lattice(camera, axes, boxes, images, which, of_level[some], k)
+
+
+def _met_by_lattice(
+    camera: Camera,
+    axes: Floats,
+    boxes: PlacedBoxes,
+    images: BoxImages,
+    which: Ints,
+    ranks: Ints,
+    level: int,
+) -> Iterator[tuple[Ints, Floats, Floats]]:
+    turn, count = FIBONACCI[level - 1 : level + 1].tolist()
+    step = np.arange(count) + 0.5
+    lattice = np.stack([step / count, (step * turn / count) % 1.0], axis=1)
+    low, high = images.low[which[ranks], None], images.high[which[ranks], None]
+    places = (low + (high - low) * lattice).reshape(-1, 2)
+    directions, exists = _through(camera, axes, places)
+    rank = np.repeat(ranks, count)[exists]
+    enter, leave = boxes.crossing(which[rank], directions)
+    met = np.flatnonzero((enter < leave) & (enter > 0.0))
+    yield (hit := rank[met]), directions[met], enter[met]
+    missed = ranks[np.bincount(hit, minlength=len(which))[ranks] == 0]
+    if len(missed):
+        yield _to_sides(camera, axes, boxes, which[missed], missed)
 
 
 def _to_sides(
@@ -128,13 +160,16 @@ def count_object_pixels(
     area[out_of_range(camera, objects.centers - np.asarray(sensor.pose.position))] = 0.0
     if vehicle is None and not traffic:
         return area
+
+    def is_hidden(rays: BoxRays) -> Flags:
+        hidden = np.zeros(len(rays.item), bool)
+        if vehicle is not None:
+            seen = vehicle.seen_from(sensor.pose.position, camera.sees_through_glass)
+            hidden |= seen.first_hit(rays.directions).distance < rays.distance
+        if traffic:
+            hidden |= behind_others(boxes, Rivals.of(objects.scenes, np.arange(len(area))), rays)
+        return hidden
+
     shown = np.flatnonzero(area)
-    rays = rays_to_boxes(camera, axes, boxes, images, shown)
-    hidden = np.zeros(len(rays.item), bool)
-    if vehicle is not None:
-        seen = vehicle.seen_from(sensor.pose.position, camera.sees_through_glass)
-        hidden |= seen.first_hit(rays.directions).distance < rays.distance
-    if traffic:
-        hidden |= behind_others(boxes, Rivals.of(objects.scenes, np.arange(len(area))), rays)
-    area *= visible_share(rays, hidden, len(area))
+    area[shown] *= visible_share(camera, axes, boxes, images, shown, is_hidden)
     return area

@@ -123,7 +123,7 @@ def export_study(args: argparse.Namespace) -> app.Answer:
     study = opened_study(args.variant)
     if args.to == OBJECTS:
         return export_objects(study, args)
-    if args.to is not None:
+    if args.to is not None or Path(args.output).suffix in app.SUFFIXES:
         return app.export(study, args)
     path = pe.prepare_folder(args.output) / studies.STUDY
     pe.export_study(study, path)

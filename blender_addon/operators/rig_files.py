@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -37,26 +38,50 @@ class PE_OT_export_rig(ExportHelper, bpy.types.Operator):
     filename_ext = ""
     check_extension = None
     format: EnumProperty(
-        items=_FORMAT_ITEMS, name="Format", description="The program and format to write for"
+        items=_FORMAT_ITEMS,
+        name="Format",
+        description="The program and format to write for; the suffix of the file's name follows it",
+    )
+    format_named: StringProperty(
+        description="The format that the file's name had last", options={"HIDDEN", "SKIP_SAVE"}
     )
     replace: BoolProperty(
         name="Replace", description="Replace existing files of a folder", default=False
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
-        files = exchange.rig_format(self.format).files
-        self.filepath = files[0] if len(files) == 1 else f"{self.format}_rig"
+        self.filepath = self.format_named = ""
+        self.check(context)
         begin_in_results_folder(self)
         return super().invoke(context, event)
 
+    def check(self, _context: bpy.types.Context) -> bool:
+        """While the dialog is open: a typed name chooses the format, a chosen format the suffix."""
+        before = self.format, self.filepath
+        if self.format != self.format_named:
+            files = exchange.rig_format(self.format).files
+            usual = files[0] if len(files) == 1 else f"{self.format}_rig"
+            path = Path(self.filepath)
+            known = len(files) == 1 and path.suffix and self.filepath
+            self.filepath = str(path.with_suffix(Path(usual).suffix) if known else usual)
+        else:
+            with contextlib.suppress(pe.InputError):
+                self.format = exchange.format_of_file(Path(self.filepath), exchange.FILES)
+        self.format_named = self.format
+        return (self.format, self.filepath) != before
+
     def execute(self, context: bpy.types.Context) -> OperatorResult:
-        scene, row = context.scene, exchange.rig_format(self.format)
+        scene = context.scene
         try:
             path = chosen_file(self.filepath)
+            is_told = self.properties.is_property_set("format") or not path.suffix
+            told = self.format if is_told else None
+            name = exchange.format_of_file(path, exchange.FILES, told)
+            row = exchange.rig_format(name)
             study = bridge.study_from_scene(scene, context.evaluated_depsgraph_get())
             # Of one file the dialog has asked.
             replace = self.replace or not (row.beside or len(row.files) > 1)
-            wanted = (study.rig, self.format, path, study.reference)
+            wanted = (study.rig, name, path, study.reference)
             passthrough = study.passthrough
             paths, lines = pe.export_rig(*wanted, passthrough=passthrough, replace=replace)
         except USER_ERRORS as error:

@@ -19,7 +19,14 @@ from .command import (
     run,
     with_options,
 )
-from .exchange_verbs import add_export_options, add_rigs_verb, chosen_models, export, study_of_rig
+from .exchange_verbs import (
+    SUFFIXES,
+    add_export_options,
+    add_rigs_verb,
+    chosen_models,
+    export,
+    study_of_rig,
+)
 from .explain_verbs import (
     add_compare_options,
     add_explain_options,
@@ -59,6 +66,7 @@ __all__ = [
     "DONE",
     "INTERRUPTED",
     "NOT_MET",
+    "SUFFIXES",
     "USAGE",
     "Answer",
     "More",

@@ -15,8 +15,17 @@ from pe_core.catalog import KnownRig
 from pe_core.scene import Pose, Reference, Vehicle, guessed_reference
 from pe_core.study import Study, save_study
 
-from ..exchange import RIG_FORMATS, ImportedRig, export_rig, import_rig, read_vehicle_info
+from ..exchange import (
+    FILES,
+    RIG_FORMATS,
+    ImportedRig,
+    export_rig,
+    format_of_file,
+    import_rig,
+    read_vehicle_info,
+)
 from ..formats import read_mesh
+from ..outputs import FILES as SCENE_FILES
 from ..outputs import SCENE_OUTPUTS, export_scene
 from .terminal import DONE, Answer, tell
 
@@ -95,6 +104,9 @@ def _columns(rows: Sequence[Sequence[str]]) -> list[str]:
     return ["  ".join(cells).rstrip() for cells in padded]
 
 
+FILE_NAMES = {**FILES, **SCENE_FILES}
+SUFFIXES = frozenset(Path(name).suffix for name in FILE_NAMES.values())
+"""Suffixes of files that name their format."""
 RANGED = tuple(row.name for row in SCENE_OUTPUTS.values() if row.has_range)
 """Outputs that draw fields of view, as far as asked for."""
 POSE = ("X", "Y", "Z", "ROLL", "PITCH", "YAW")
@@ -106,13 +118,13 @@ def add_export_options(
 ) -> None:
     """Add the options of ``export`` to a parser.
 
-    With `also_study`, the default without a format is to write the study. `more` has additional
-    formats of the caller.
+    With `also_study`, the default without a format and a suffix is to write the study. `more` has
+    additional formats of the caller.
     """
     known = [*RIG_FORMATS, *SCENE_OUTPUTS, *more]
-    about = f"format: {', '.join(known)}" + (" (default: a study)" if also_study else "")
-    needed = not also_study
-    parser.add_argument("--to", required=needed, choices=known, metavar="FORMAT", help=about)
+    default = "by the suffix of PATH" + (", or else a study" if also_study else "")
+    about = f"format: {', '.join(known)} (default: {default})"
+    parser.add_argument("--to", choices=known, metavar="FORMAT", help=about)
     about = "file, or folder for a format of several files"
     parser.add_argument("-o", "--output", required=True, metavar="PATH", help=about)
     about = f"of {', '.join(RANGED)}: how far sensors are drawn [m] (default: by their own range)"
@@ -151,6 +163,7 @@ def _add_axle_options(parser: argparse.ArgumentParser) -> None:
 
 def export(study: Study, args: argparse.Namespace) -> Answer:
     """Write a study's rig, or its scene, for another program."""
+    args.to = format_of_file(Path(args.output), FILE_NAMES, args.to)
     _refuse_range(args)
     given = [Path(args.study)] if hasattr(args, "study") else []
     require_new(Path(args.output), replace=True, inputs=given)

@@ -11,9 +11,10 @@ from .lens_pictures import Picture, straight
 from .losses import MAX_RANGE, MIN_RANGE, MODEL, lost_line
 from .portable import PortableSensor, with_pictures
 from .portable_kinds import picture_of, portable_sensors
-from .rig_formats import RIG_FORMATS, RigFormat, rig_format
+from .rig_formats import FILES, RIG_FORMATS, RigFormat, format_of_file, rig_format
 
 __all__ = [
+    "FILES",
     "MAX_BEAMS",
     "MAX_RANGE",
     "MIN_RANGE",
@@ -27,6 +28,7 @@ __all__ = [
     "RigFormat",
     "Written",
     "export_rig",
+    "format_of_file",
     "import_rig",
     "lost_line",
     "picture_of",

@@ -222,6 +222,42 @@ def rig_format(name: str) -> RigFormat:
     return RIG_FORMATS[name]
 
 
+def format_of_file(output: Path, files: Mapping[str, str], chosen: str | None = None) -> str:
+    """Return the format that a file to be written has: the suffix of its name decides.
+
+    Parameters
+    ----------
+    output : Path
+        File or folder to write.
+    files : mapping of str to str
+        The usual name of the file of each format that has one file, by the format's name.
+    chosen : str, optional
+        Name of the format that was asked for; it may be one that has a folder of files.
+
+    Raises
+    ------
+    InputError
+        When the suffix is that of another format than `chosen`, or names no single format.
+    """
+    suffix = output.suffix.lower()
+    fitting = [name for name, file in files.items() if Path(file).suffix == suffix]
+    if chosen is not None:
+        if suffix and fitting and chosen not in fitting:
+            found = f"{suffix}, the suffix of {' or '.join(fitting)}"
+            raise InputError(output, "format", f"a name for {chosen}", found)
+        return chosen
+    fitting = [name for name, file in files.items() if file == output.name] or fitting
+    if len(fitting) != 1:
+        known = ", ".join(fitting) if suffix and fitting else f"one of {', '.join(files)}"
+        expected = f"the name of a format ({known}), or a suffix that only one has"
+        raise InputError(output, "format", expected, suffix or "no suffix")
+    return fitting[0]
+
+
+FILES = MappingProxyType({row.name: row.files[0] for row in _ROWS if len(row.files) == 1})
+"""Usual name of the file by format, of the formats that have one."""
+
+
 def detect_format(path: Path) -> RigFormat:
     """Return the format that a file name identifies. Raise `InputError` if none does."""
     names = {entry.name for entry in path.iterdir()} if path.is_dir() else {path.name}

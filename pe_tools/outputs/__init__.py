@@ -3,13 +3,21 @@
 from .blind_volume import blind_volume
 from .footprints import GroundFootprint, GroundPlan
 from .glb import view_wires
-from .output_formats import SCENE_OUTPUTS, SceneOutput, export_scene, scene_files, scene_output
+from .output_formats import (
+    FILES,
+    SCENE_OUTPUTS,
+    SceneOutput,
+    export_scene,
+    scene_files,
+    scene_output,
+)
 from .request import BLIND, BODY, GLASS, OutputRequest, Rgb, hex_color, plain_names
 from .solid import Solid, mounted_view
 
 __all__ = [
     "BLIND",
     "BODY",
+    "FILES",
     "GLASS",
     "SCENE_OUTPUTS",
     "GroundFootprint",

@@ -77,6 +77,8 @@ _ROWS = (
 )
 SCENE_OUTPUTS = MappingProxyType({row.name: row for row in _ROWS})
 """Outputs by name."""
+FILES = MappingProxyType({row.name: row.file for row in _ROWS if not row.has_several})
+"""Usual name of the file by output, of the outputs that have one."""
 
 
 def scene_output(name: str) -> SceneOutput:

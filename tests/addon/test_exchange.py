@@ -1,6 +1,8 @@
 """Rigs of other programs leave the scene and come into it; axles stand where wheels are."""
 
 import json
+from functools import partial
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -8,6 +10,7 @@ import pytest
 
 from blender_addon import bridge
 from blender_addon.engine import exchange, pe
+from blender_addon.operators.rig_files import PE_OT_export_rig
 from blender_addon.overlay import annotations
 from pe_tools.cli.verbs import main
 from tests.addon import scenes
@@ -57,6 +60,31 @@ def test_a_rig_leaves_and_comes_back_as_a_variant(axled, tmp_path, name):
         assert theirs.pose.position == pytest.approx(ours.pose.position, abs=1e-5)
         turned = theirs.pose.ground_from_sensor - ours.pose.ground_from_sensor
         assert np.abs(turned).max() < 1e-5
+
+
+def test_the_suffix_of_a_rig_s_file_chooses_the_format(axled, tmp_path):
+    """`prius.urdf` became a CSV: the dialog's format is a default, what is typed is meant."""
+    path = tmp_path / "prius.urdf"
+    assert bpy.ops.pe.export_rig(filepath=str(path)) == {"FINISHED"}
+    assert path.read_text().startswith("<?xml")
+    with pytest.raises(RuntimeError, match=r"other\.urdf: format: "):
+        bpy.ops.pe.export_rig(filepath=str(tmp_path / "other.urdf"), format="csv")
+    assert not (tmp_path / "other.urdf").exists()
+
+
+def test_in_the_dialog_name_and_format_follow_each_other():
+    dialog = SimpleNamespace(format="csv", format_named="", filepath="")
+    check = partial(PE_OT_export_rig.check, dialog, None)
+    assert check() and dialog.filepath == "rig.csv"
+    assert not check()
+    dialog.filepath = "cars/prius.urdf"
+    assert check() and dialog.format == "urdf"
+    dialog.format = "ros"
+    assert check() and dialog.filepath == "cars/prius.xml"
+    dialog.filepath = "cars/prius.step"  # of no format: both stay
+    assert not check() and dialog.format == "ros"
+    dialog.format = "autoware"
+    assert check() and dialog.filepath == "autoware_rig"
 
 
 def test_a_camera_that_nobody_has_becomes_the_file_s_own(axled, tmp_path):

@@ -10,7 +10,8 @@ import pytest
 
 import pe_core as pe
 from pe_core.geometry.poses import rotation_matrix
-from pe_tools.exchange import RIG_FORMATS, rig_files
+from pe_tools.cli.exchange_verbs import FILE_NAMES
+from pe_tools.exchange import RIG_FORMATS, format_of_file, rig_files
 from pe_tools.exchange.frames import from_quaternion, quaternion
 
 AXLE = pe.Reference(-1.31, 0.33)
@@ -389,3 +390,44 @@ def test_the_command_writes_and_reads(tmp_path, capsys, monkeypatch):
     assert back.reference == AXLE and len(back.rig) == len(MIXED)
     assert main(command) == 1, "a study is there"
     assert "an existing file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("output", "chosen", "written"),
+    [
+        ("prius.urdf", None, "urdf"),
+        ("PRIUS.URDF", None, "urdf"),
+        ("objects.json", None, "carla"),
+        ("plan.dxf", None, "footprints-dxf"),
+        ("prius.urdf", "urdf", "urdf"),
+        ("rig", "ros", "ros"),
+        ("front.json", "osi", "osi"),
+        ("kit", "autoware", "autoware"),
+        ("prius.v2", "csv", "csv"),
+        ("prius.urdf", "csv", None),
+        ("plan.svg", "gltf", None),
+        ("rig.json", None, "driveworks"),
+        ("rig.json", "carla", "carla"),
+        ("front.json", None, None),
+        ("prius.step", None, None),
+        ("prius", None, None),
+    ],
+)
+def test_the_suffix_of_a_file_decides_its_format(output, chosen, written):
+    if written is None:
+        with pytest.raises(pe.InputError, match=f"{output}: format: "):
+            format_of_file(Path(output), FILE_NAMES, chosen)
+    else:
+        assert format_of_file(Path(output), FILE_NAMES, chosen) == written
+
+
+def test_the_command_takes_the_format_of_the_file_s_name(tmp_path, capsys, monkeypatch):
+    from pe_tools.cli.verbs import main
+
+    monkeypatch.chdir(tmp_path)
+    pe.save_study(pe.Study(MIXED), Path("study.toml"))
+    assert main(["export", "study.toml", "-o", "prius.urdf"]) == 0
+    assert Path("prius.urdf").read_bytes() == rig_files(MIXED, "urdf")[0]["rig.urdf"]
+    assert main(["export", "study.toml", "--to", "csv", "-o", "other.urdf"]) == 1
+    assert "other.urdf: format: " in capsys.readouterr().err
+    assert not Path("other.urdf").exists()

@@ -43,7 +43,7 @@ class RunningJob:
         self.progress = pe.Progress("starting", 0.0)
         self._steps: Iterator[pe.Progress] = iter(job)
         self._shown = self._seen = 0.0
-        self._better = 0
+        self._best: tuple[tuple[int, float], ...] = ()
         self._notice_until = 0.0
         manager = context.window_manager
         self._timer = manager.event_timer_add(TICK_S, window=context.window)
@@ -73,6 +73,8 @@ class RunningJob:
         entropy, figure = self.progress.entropy, self.progress.figure
         if entropy is None:
             return stage
+        if self.progress.stage == "optimizing" and (curve := getattr(self.job, "curve", ())):
+            entropy = curve[-1][1]  # as the 3D view shows it, from all starts
         sampled = self.progress.stage == "optimizing" and self.job.study.search.samples
         if figure.higher_is_better:
             return f"{stage}, best AP {'≈ ' if sampled else ''}{figure.to_figure(entropy):.3f}"
@@ -110,15 +112,15 @@ class RunningJob:
 
     def _show_search(self) -> None:
         """Show the curve of a search and the best placement in the 3D view, not too often."""
-        history = getattr(self.job, "history", ())
-        better = len(history) > self._better
+        curve = getattr(self.job, "curve", ())
+        better = curve[-1:] != self._best
         wait = BEST_EVERY_S if better else CURVE_EVERY_S
-        if not history or time.monotonic() - self._seen < wait:
+        if not curve or time.monotonic() - self._seen < wait:
             return
-        self._seen, self._better = time.monotonic(), len(history)
+        self._seen, self._best = time.monotonic(), curve[-1:]
         figure = jobs.searched_figure(self.job.study)
-        points = tuple((row.evaluation, figure.to_figure(row.entropy)) for row in history)
-        sensors = tuple(history[-1].rig) if len(history) > 1 else ()
+        points = tuple((evaluation, figure.to_figure(value)) for evaluation, value in curve)
+        sensors = tuple(self.job.best.rig) if len(curve) > 1 else ()
         sampled = bool(self.job.study.search.samples)
         count = cast(Any, self.job).evaluations  # a job with a history searches
         seen = search_curve.SearchProgress(

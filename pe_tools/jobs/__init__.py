@@ -17,7 +17,7 @@ from .front_files import (
     write_front,
 )
 from .front_job import FrontJob
-from .job import HistoryRow, Job, Outcome, Progress, StartEnd
+from .job import HistoryRow, Job, Outcome, Progress, StartEnd, best_so_far
 from .results import (
     add_to_result,
     files_of_other_runs,
@@ -62,6 +62,7 @@ __all__ = [
     "StartEnd",
     "TradeOff",
     "add_to_result",
+    "best_so_far",
     "check_files",
     "condition_lines",
     "conditions_csv",

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Executor, Future, wait
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, TypeVar
 
+from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigJudge
 from pe_core.scoring.requirements import Verdict
 from pe_core.scoring.score import ObjectScore, Score, ScoreStopped
 from pe_core.search import EvaluatedRig, Robustness
 from pe_core.study.condition_table import ConditionTable, condition_table
+from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Study
 
 from ..advice import Advice, curve_warnings, search_cost, warnings
@@ -35,6 +37,36 @@ class HistoryRow:
     round: int
     entropy: float
     rig: Rig
+
+
+def best_so_far(*starts: Sequence[HistoryRow]) -> tuple[tuple[int, float], ...]:
+    """Return the curve of a search: (evaluation, value) of each best so far, which never rises.
+
+    A search that goes on with more samples evaluates its best placement again. Values before that
+    are shifted by as much as that placement's own changed: they are of the same samples then.
+    Placements that break requirements are left out once one keeps them.
+
+    Parameters
+    ----------
+    *starts : sequence of HistoryRow
+        The history from each start of the search, in their order.
+    """
+    best: list[tuple[int, float]] = []
+    for rows in starts:
+        curve: list[tuple[int, float]] = []
+        for row, before in zip(rows, (None, *rows), strict=False):
+            if before is not None and _poses(row.rig) == _poses(before.rig):
+                shift = row.entropy - before.entropy
+                curve = [(evaluation, value + shift) for evaluation, value in curve]
+            elif not curve or row.entropy < curve[-1][1]:
+                curve.append((row.evaluation, row.entropy))
+        best += [point for point in curve if not best or point[1] < best[-1][1]]
+    kept = [point for point in best if not is_infeasible(point[1])]
+    return tuple(kept or best)
+
+
+def _poses(rig: Rig) -> list[Pose]:
+    return [sensor.pose for sensor in rig]
 
 
 @dataclass(frozen=True, slots=True)

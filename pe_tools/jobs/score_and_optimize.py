@@ -36,7 +36,7 @@ from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 from ..advice import Advice, condition_warnings, fragile, unmet
 from ..sensitivity import Archive, FreshSamples, Sensitivity, analyse, fresh_objectives, is_analysed
 from .candidate_workers import ExecutorSource, candidate_workers
-from .job import HistoryRow, Job, Outcome, Progress, StartEnd, begun
+from .job import HistoryRow, Job, Outcome, Progress, StartEnd, begun, best_so_far
 from .searched_figure import IN_AP, searched_figure, searched_samples
 from .stopping import TARGET, StopWatch
 
@@ -140,6 +140,12 @@ class OptimizeJob(Job):
         """The study with the best placement so far."""
         rows = self._ended or self.history
         return self.study.with_rig(rows[-1].rig) if rows else self.study
+
+    @property
+    def curve(self) -> tuple[tuple[int, float], ...]:
+        """The best so far, from all starts: `best_so_far`."""
+        earlier = () if self._ended is self.history else self._ended
+        return best_so_far(earlier, self.history)
 
     @cached_property
     def _objectives(self) -> list[Objective]:

@@ -60,11 +60,14 @@ def test_a_running_search_tells_the_view_each_time_it_finds_better(car, monkeypa
     context = type("Context", (), {"scene": car, "window_manager": Manager(), "window": None})
     running = RunningJob(context, job)
     monkeypatch.setattr("blender_addon.operators.running_job.BEST_EVERY_S", 0.0)
+    best_lines = []
     for progress in job:
         running.progress = progress
         running._show_search()
+        best_lines += [running.text] if progress.stage == "optimizing" else []
     shown = searches[car.name]
-    assert shown.points == tuple((row.evaluation, row.entropy) for row in job.history)
+    assert shown.points == job.curve
+    assert f"best \N{ALMOST EQUAL TO} {job.curve[-1][1]:.3f}" in best_lines[-1]
     assert shown.sensors == tuple(job.best.rig) != tuple(job.study.rig)
     search_curve.drop(car.name)
 

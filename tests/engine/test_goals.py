@@ -1,6 +1,7 @@
 """What is asked of a search: when it stops, which sensors stay, from where it starts; the file."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 
@@ -10,7 +11,7 @@ from pe_core.study import load_study_data, study_from_dict, study_to_dict
 from pe_tools.cli.command import with_options
 from pe_tools.cli.terminal import summary
 from pe_tools.cli.verbs import parser
-from pe_tools.jobs import result_dict
+from pe_tools.jobs import HistoryRow, best_so_far, result_dict
 from tests.engine import shapes
 
 
@@ -105,6 +106,28 @@ def test_several_starts_share_the_budget_and_the_best_end_is_the_result(plain):
     assert "the start high ended at" in summary(outcome)
     again = finished(study(Goals(starts=[Start("high", poses)])), journal=journal_of(outcome, 40))
     assert result_dict(again)["placements"] == result_dict(outcome)["placements"]
+
+
+def test_the_curve_of_a_search_never_rises_and_ends_at_its_last_value(plain):
+    """Neither with a further start, nor where the best is evaluated again with more samples."""
+    poses = {"roof": pe.Pose((0.0, 0.0, 2.2))}
+    several = pe.OptimizeJob(study(Goals(starts=[Start("high", poses)])), 1)
+    last = []
+    for _ in several:
+        values = [value for _, value in several.curve]
+        assert all(after < before for before, after in pairwise(values))
+        last += values[-1:]
+    assert all(after <= before for before, after in pairwise(last))
+    assert last[-1] == min(end.entropy for end in several.outcome.starts)
+
+
+def test_values_of_fewer_samples_are_shifted_to_those_of_more():
+    rigs = [pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(4, 90), (x, 0, 2))]) for x in range(4)]
+    given = [(1, 100.5, 0), (2, 4.0, 1), (5, 3.0, 2), (6, 3.4, 2), (9, 2.9, 3)]
+    rows = [HistoryRow(count, 0, value, rigs[k]) for count, value, k in given]
+    assert best_so_far(rows) == ((2, 4.4), (5, 3.4), (9, 2.9))
+    assert best_so_far(rows, [HistoryRow(11, 0, 3.2, rigs[0])]) == best_so_far(rows)
+    assert best_so_far(rows[:1]) == ((1, 100.5),), "as long as nothing keeps the requirements"
 
 
 def journal_of(outcome, count):

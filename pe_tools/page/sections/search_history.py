@@ -58,7 +58,8 @@ def _curve(context: ReportContext) -> str:
     if len(context.history) < 2:
         return ""
     figure = jobs.searched_figure(context.start)
-    points = [(row.evaluation, figure.to_figure(row.entropy)) for row in context.history]
+    found = jobs.best_so_far(context.history)
+    points = [(evaluation, figure.to_figure(value)) for evaluation, value in found]
     by_ap = figure.higher_is_better
     unit, digits = (figure.label, 3) if by_ap else ("nats", 2)
     curve = step_curve(points, context.outcome.evaluations, "placements evaluated", unit)

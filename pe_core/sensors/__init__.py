@@ -7,7 +7,12 @@ from .kernels import GridKernel, Measured, Occlusion, SampleKernel, Voxels
 from .kind import KINDS, Kind, derived_object_curves, kind_named, kind_of, register, unregister
 from .lidar import LIDAR, BeamField, Lidar, RangePicture, beam_field, range_picture
 from .measure import measure, measure_objects
-from .measurement_cache import MeasurementCache, ObjectMeasurementCache, VisibleGroundCache
+from .measurement_cache import (
+    MeasurementCache,
+    ObjectMeasurementCache,
+    PartMeasurementCache,
+    VisibleGroundCache,
+)
 from .object_kernel import ObjectKernel, ObjectView
 from .perception import BLIND_RULES, PerceptionModel
 from .radar import RADAR, Radar, RadarMode
@@ -21,6 +26,7 @@ __all__ = ["BLIND_RULES", "CURVE_MODELS", "KINDS", "SCANS", "BeamField", "BrownC
 __all__ += ["EgoMask", "FTheta", "FieldPicture", "GridKernel", "GroundKernel", "GroundView"]
 __all__ += ["KannalaBrandt", "Kind", "Lens", "Lidar", "Measured", "MeasurementCache"]
 __all__ += ["ObjectKernel", "ObjectMeasurementCache", "ObjectView", "Occlusion", "PerceptionModel"]
+__all__ += ["PartMeasurementCache"]
 __all__ += ["Pinhole", "Radar", "RadarMode", "RangePicture", "SampleKernel", "Ultrasonic"]
 __all__ += ["ViewPatch", "VisibleGround", "VisibleGroundCache", "Voxels", "Weather", "beam_field"]
 __all__ += ["derived_object_curves", "kind_named", "kind_of", "measure", "measure_objects"]

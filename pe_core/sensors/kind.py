@@ -23,6 +23,7 @@ from ..metric.entropy import ApCurve
 from ..scene.objects import Objects
 from ..scene.rig import Sensor, SensorModel
 from ..scene.vehicle import Vehicle
+from .body_parts import BodyParts
 from .field_of_view import EgoMask, ViewPatch
 from .ground_kernel import DefinedGround, GroundKernel, GroundView
 from .kernels import DefinedGrid, DefinedSample, Floats, GridKernel, SampleKernel, Voxels
@@ -91,6 +92,10 @@ class Kind(ABC):
         Whether m of an object is a number of points on it.
     point : float
         m that is one point to a requirement: below 1 where m is an expected number.
+    shows_parts : bool
+        Whether its rays end on bodies, so that it tells which part of one it sees: `measure_parts`.
+    lowest_m : float
+        A body on the ground that is lower is not seen by it, to a requirement [m].
     has_top : bool
         Whether it matters which side of the sensor is up, as for a picture.
     occlusion_text : str
@@ -107,6 +112,8 @@ class Kind(ABC):
     object_curves: Mapping[str, ApCurve] = MappingProxyType({})
     counts_points: bool = False
     point: float = 1.0
+    shows_parts: bool = False
+    lowest_m: float = 0.0
     has_top: bool = False
     occlusion_text: str = "beams stopped"
     weather_limits_range: bool = False
@@ -130,6 +137,25 @@ class Kind(ABC):
         """
         expected = "a kind of sensor that measures objects"
         raise InputError(sensor.name, "kind", expected, repr(self.name))
+
+    def measure_parts(self, sensor: Sensor, parts: BodyParts, vehicle: Vehicle | None) -> Floats:
+        """Return m (N,) of the cells of bodies by definition.
+
+        A point is counted in the cells that its ray meets in the band in which it surely ends.
+
+        Raises
+        ------
+        InputError
+            When no ray of the kind ends on bodies: the default.
+        """
+        raise InputError(sensor.name, "kind", "a kind whose rays end on bodies", repr(self.name))
+
+    def cautious(self, model: Any) -> Any:
+        """Return a sensor's intrinsics as requirements take them: the same object by default.
+
+        What it knows of bodies is then what nearly all of them have, not what half of them have.
+        """
+        return model
 
     def image_widths(self, sensor: Sensor, objects: Objects) -> Floats:
         """Return the widths (N,) of objects' images [px]; `InputError` without pictures."""

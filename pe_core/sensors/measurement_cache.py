@@ -7,7 +7,7 @@ one for squares of the ground.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from types import MappingProxyType
 from typing import Any
 
@@ -19,9 +19,10 @@ from ..metric.fusion import CurveOf
 from ..scene.objects import Objects
 from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
+from .body_parts import BodyParts
 from .ground_kernel import Flags, GroundKernel, GroundView, VisibleGround
 from .kernels import Measured, Occlusion, SampleKernel, Voxels
-from .kind import kind_of
+from .kind import Kind, kind_of
 from .object_kernel import ObjectKernel, ObjectView
 from .weather_rig import clear_air, within_range
 
@@ -177,11 +178,11 @@ class ObjectMeasurementCache:
         self._kernels: dict[str, ObjectKernel] = {}
         self._measured: dict[str, tuple[Sensor, Floats]] = {}
 
-    def measure(self, rig: Rig) -> Mapping[str, Floats]:
-        """Return m (N,) of the sensors of a rig, by name; read-only."""
-        self._measured = {s.name: (s, self._one(s)) for s in rig}
+    def measure(self, sensors: Iterable[Sensor]) -> Mapping[str, Floats]:
+        """Return m (N,) of the sensors of a rig, or of some of them, by name; read-only."""
+        self._measured = {s.name: (s, self._one(s)) for s in sensors}
         for kernel in self._kernels.values():
-            kernel.keep_only(rig.sensors)
+            kernel.keep_only([s for s, _ in self._measured.values()])
         return MappingProxyType({name: m for name, (_, m) in self._measured.items()})
 
     def cached(self, sensor: Sensor) -> Floats | None:
@@ -210,17 +211,50 @@ class ObjectMeasurementCache:
         cached = self.cached(sensor)
         if cached is not None:
             return cached
-        m = self._kernel(sensor).measure(sensor)
+        m = self._measure(self._kernel(sensor), sensor)
         m.flags.writeable = False
         return m
+
+    def _measure(self, kernel: ObjectKernel, sensor: Sensor) -> Floats:
+        return kernel.measure(sensor)
+
+    def _view_for(self, kind: Kind) -> ObjectView:
+        return self._view
 
     def _kernel(self, sensor: Sensor) -> ObjectKernel:
         kind = kind_of(sensor)
         if kind.name not in self._kernels:
-            kernel = self._kernels[kind.name] = kind.on_objects(self._view)
+            kernel = self._kernels[kind.name] = kind.on_objects(self._view_for(kind))
             if kernel.cache is not None:
                 kernel.share_cache(self._kernel_caches.setdefault(kind.name, kernel.cache))
         return self._kernels[kind.name]
+
+
+class PartMeasurementCache(ObjectMeasurementCache):
+    """Measures sensors that show parts of bodies on the cells of bodies.
+
+    Parameters
+    ----------
+    parts : BodyParts
+    vehicle : Vehicle, optional
+    kernel_caches : dict, optional
+        As of `ObjectMeasurementCache`.
+    """
+
+    def __init__(
+        self,
+        parts: BodyParts,
+        vehicle: Vehicle | None = None,
+        kernel_caches: dict[str, Any] | None = None,
+    ) -> None:
+        super().__init__(parts.cells, vehicle, kernel_caches=kernel_caches)
+        self._parts, self._whole = parts, ObjectView(parts.objects, vehicle)
+
+    def _measure(self, kernel: ObjectKernel, sensor: Sensor) -> Floats:
+        return kernel.measure_parts(sensor, self._parts)
+
+    def _view_for(self, kind: Kind) -> ObjectView:
+        return self._whole if kind.counts_points else self._view
 
 
 class VisibleGroundCache:

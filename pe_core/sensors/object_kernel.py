@@ -16,9 +16,11 @@ from numpy.typing import NDArray
 from ..scene.objects import Objects
 from ..scene.rig import Sensor
 from ..scene.vehicle import Vehicle
+from .body_parts import BodyParts
 from .kernels import CachingKernel
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 ObjectDefinition = Callable[[Sensor, Objects, Vehicle | None, bool], Floats]
 
 
@@ -37,6 +39,10 @@ class ObjectKernel(CachingKernel, ABC):
     @abstractmethod
     def measure(self, sensor: Sensor) -> Floats:
         """Return m (N,) of a sensor, equal to the definition of its kind."""
+
+    def measure_parts(self, sensor: Sensor, parts: BodyParts) -> Floats:
+        """Return m (N,) of the cells of bodies, equal to `Kind.measure_parts`; else `measure`."""
+        return self.measure(sensor)
 
     def unoccluded(self, sensor: Sensor) -> Floats | None:
         """Return m (N,) where nothing occludes an object; None: as expensive as `measure`.
@@ -59,8 +65,6 @@ class DefinedObjects(ObjectKernel):
             self._measure(sensor, view.objects, view.vehicle, view.traffic), dtype=float
         )
 
-
-Ints = NDArray[np.int64]
 
 NUDGE_M = np.array([1.97, 3.02, 4.98]) * 1e-8
 """A sensor is moved by this, ground frame [m]: a beam that would run exactly along a face of a box

@@ -2,6 +2,7 @@
 
 import math
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import pytest
 import pe_core as pe
 from pe_core import catalog
 from pe_core import sensors as kinds
+from pe_core.scoring.requirements import BODIES, Body, Criterion, sees
 from pe_core.sensors.radar import Reflectivity, detection_probability, signal_to_noise, snr_for
 from pe_tools.advice.mount_checks import SensorAtBody, odd_mounting
 from pe_tools.advice.vehicle_checks import Bodywork
@@ -43,6 +45,30 @@ def objects(seed=3, count=60, names=tuple(SIZES), ground=30.0):
     x, y = rng.uniform(6, 6 + 2 * ground, count), rng.uniform(-ground, ground, count)
     centers = np.column_stack([x, y, sizes[:, 2] / 2])
     return pe.Objects(centers, sizes, rng.uniform(-3, 3, count), labels, names)
+
+
+def test_a_requirement_takes_the_rcs_that_nearly_all_bodies_exceed():
+    """An ARS408's 250 m for 10 dBsm: a pedestrian of -20.7 dBsm at 42.7 m, of -11.1 at 74.2.
+
+    What the user states is taken where it is less; a body without a class sends no echo.
+    """
+    far, model = 250.0 * 10 ** ((-20.7 - 10.0) / 40.0), catalog.load(ARS)
+    assert far == pytest.approx(42.7, abs=0.01)
+
+    def seen(x, model=model, body="adult"):
+        body = body if isinstance(body, Body) else BODIES[body]
+        sensor = radar(model, position=(0.0, 0.0, 0.85))
+        return sees(sensor, body, (x + body.size[0] / 2.0, 0.0, 0.0), 0.0, None, Criterion())
+
+    assert seen(far - 0.05) and not seen(far + 0.05)
+    strong = replace(model, rcs={"pedestrian": Reflectivity((0.0,))})
+    weak = replace(model, rcs={"pedestrian": Reflectivity((-30.0,))})
+    assert seen(far - 0.05, strong) and not seen(far + 0.05, strong)
+    assert not seen(far - 0.05, weak) and seen(0.55 * far, weak)
+    own = Body("post", (0.3, 0.3, 1.7))
+    assert not seen(10.0, body=own) and not seen(10.0, body="patch")
+    assert seen(10.0, replace(model, rcs={"post": Reflectivity((-20.0,))}), own)
+    assert model.cautious is model.cautious and not model.is_cautious  # caches hold on to it
 
 
 def test_formulas_at_round_numbers():

@@ -16,7 +16,8 @@ from pe_core.scoring.requirements import (
     body_met,
     sees,
 )
-from pe_core.scoring.requirements.definition import largest_solid_angle, visible_share
+from pe_core.scoring.requirements.definition import largest_solid_angle, parts_of, visible_share
+from pe_core.sensors import PartMeasurementCache, kind_of
 from tests.engine import oracle, shapes
 from tests.engine.requirement_scene import AHEAD, check, rig, van
 from tests.thorough import tries
@@ -174,6 +175,84 @@ def test_a_share_of_a_cylinder_is_never_too_high():
         assert (verdict.passed & verdict.samples.inside).sum() > 20
     assert (touched & (truth < 0.8)).sum() > 5  # cut at the side, which a point would not tell
     assert (verdicts[1].passed & ~verdicts[2].passed).any()
+
+
+def box_entries(start, way, foot, heading, low, high):
+    """Distance (B,) at which lines enter a box turned by a heading; inf: they do not."""
+    turn = oracle.rotation(0.0, 0.0, heading)
+    own, offset = way @ turn, (start - [*foot, 0.0]) @ turn
+    with np.errstate(divide="ignore"):
+        t = np.sort([(np.array(s) - offset) / own for s in (low, high)], axis=0)
+    enter, leave = np.maximum(t[0].max(axis=1), 0.0), t[1].min(axis=1)
+    return np.where(enter < leave, enter, np.inf)
+
+
+LOW_LIDARS = {
+    "upright": shapes.lidar_on_roof(
+        shapes.small_lidar(20, 367), (2.6, 0.107, 0.433), (0, 0, 0), "l"
+    ),
+    "tilted": shapes.lidar_on_roof(shapes.small_lidar(17, 367), (2.6, 0.107, 1.9), (4, 38, 3), "l"),
+}
+
+
+@pytest.mark.parametrize("lidar", LOW_LIDARS.values(), ids=LOW_LIDARS)
+def test_beams_are_shared_out_among_bands_by_where_they_end(lidar):
+    """Brute force: each beam's end on a box, its band, and the columns that it meets there.
+
+    A beam that ends in one band and would enter the next is not in that; so the bands' beams are
+    together those of the box, where it has one column.
+    """
+    vehicle, start = van(), np.array(lidar.pose.position)
+    way = lidar.model.directions @ oracle.rotation(*lidar.pose.rpy).T
+    ends = np.minimum(oracle.first_hits(start, way, vehicle.triangles)[0], lidar.model.max_range)
+    feet = [(3.312, 0.413, 0.0), (4.127, -0.731, 0.0), (5.618, 2.239, 0.0)]
+    passed_on = 0
+    for body in (Body("bin", (0.45, 0.3, 0.9)), BODIES["car"]):
+        away = (0.0, 0.0, 0.0) if body.size[0] < 1.0 else (2.5, 0.0, 0.0)
+        places = [tuple(np.add(foot, away)) for foot in feet]
+        parts, headings = parts_of(body, places, (0.0, 0.6)), (0.0, 0.6)
+        found = kind_of(lidar).measure_parts(lidar, parts, vehicle)
+        kernel = PartMeasurementCache(parts, vehicle).measure([lidar])["l"]
+        assert kernel.tolist() == found.tolist()
+        (bands, posts), (centers, sizes) = body.cell_bands(), body.boxes(True)
+        found = found.reshape(len(places), 2, -1)
+        half, tall = np.array(body.size) / 2.0, body.size[2] / body.bands
+        for place, heading in np.ndindex(len(places), 2):
+            at = places[place][:2], headings[heading]
+            enter = box_entries(start, way, *at, [*-half[:2], 0.0], [*half[:2], body.size[2]])
+            hit = enter <= ends
+            z = start[2] + enter[hit] * way[hit, 2]
+            end = np.clip(np.floor(z / tall).astype(int), 0, body.bands - 1)
+            for cell in np.flatnonzero(~posts):
+                low, high = centers[cell] - sizes[cell] / 2.0, centers[cell] + sizes[cell] / 2.0
+                meets = np.isfinite(box_entries(start, way[hit], *at, low, high))
+                assert found[place, heading, cell] == (meets & (end == bands[cell])).sum()
+                passed_on += int((meets & (end != bands[cell])).sum())
+            if body.columns == (1, 1):
+                assert found[place, heading, ~posts].sum() == hit.sum()
+    assert passed_on > 50
+
+
+@pytest.mark.parametrize("lidar", LOW_LIDARS.values(), ids=LOW_LIDARS)
+def test_a_share_by_a_lidar_is_never_too_high(lidar):
+    """Bands of real cylinders on which a beam ends, by lines: no verdict counts another."""
+    zone = Zone(x=("front + 0.4", "front + 3"), y=(-1.0, 1.2), step=0.2)
+    body, shares = Body("cylinder", (0.3, 0.3, 0.8), is_round=True), (0.2, 0.5, 1.0)
+    vehicle, start = van(), np.array(lidar.pose.position)
+    verdicts = check(
+        *(Requirement(f"{s}", zone, (body,), Criterion(share=s)) for s in shares),
+        of=pe.Rig([lidar]),
+    )
+    way = lidar.model.directions @ oracle.rotation(*lidar.pose.rpy).T
+    ends = oracle.first_hits(start, way, vehicle.triangles)[0]
+    truth = []
+    for foot in verdicts[0].samples.points:
+        t = cylinder_hits(start, way, foot, 0.15, 0.0, 0.8)
+        z = start[2] + t[t < ends] * way[t < ends, 2]
+        truth.append(len(np.unique(np.clip(np.floor(z / 0.1), 0, 7))) / 8.0)
+    for share, verdict in zip(shares, verdicts, strict=True):
+        assert not (verdict.passed & (np.array(truth) < share - 1e-9)).any(), share
+    assert verdicts[0].passed.any()
 
 
 def test_a_body_of_several_columns_is_visible_in_part():

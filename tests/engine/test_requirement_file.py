@@ -3,6 +3,10 @@
 import math
 import re
 from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
 
 import pe_core as pe
 from pe_core.base.degrees import as_in_file
@@ -15,10 +19,14 @@ from pe_core.scoring.requirements import (
     Requirement,
     Under,
     Zone,
+    checkable,
 )
 from pe_core.study.requirement_file import presets, read_requirement, requirement_table
 from pe_core.study.study_file import study_from_dict, study_to_dict
+from tests.engine import shapes
 from tests.engine.requirement_scene import AHEAD, check, rig, van
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def test_presets_have_sources_and_come_back_from_a_file_the_same():
@@ -33,6 +41,92 @@ def test_presets_have_sources_and_come_back_from_a_file_the_same():
             if again != changed:
                 found.append(f"{key}: {requirement_table(changed)}")
     assert not found and len(presets()) > 20
+
+
+ARS = "Continental ARS408-21"
+SIGHT = {"r159_annex3", "r158_camera", "fmvss111_rear", "r46_class_I", "r46_class_III"}
+SIGHT |= {"iso5006_ring", "perceptor_ground"}
+
+
+def test_what_asks_for_sight_is_met_by_no_radar_and_no_ultrasonic_sensor():
+    """Each preset says which kinds may meet it; the sedan with a radar behind has no verdict."""
+    vehicle = pe.load_study(EXAMPLES / "robotaxi_sedan" / "decided.toml").vehicle
+    behind = pe.Pose.from_degrees((-2.3, 0.0, 0.5), (0.0, 0.0, 180.0))
+    sonar = pe.catalog.names("ultrasonic")[0]
+    wanted = [
+        replace(e.requirement(), zone=e.requirement(eyes=0.4).zone) for e in presets().values()
+    ]
+    assert all(each.criterion.of for each in wanted)
+    for model in (ARS, sonar):
+        alone = pe.Rig([pe.Sensor("behind", pe.catalog.load(model), behind)])
+        fitting, reasons = checkable(wanted, alone, vehicle)
+        assert not SIGHT & {each.name for each in fitting}
+        assert all("camera" in reasons[name] for name in SIGHT)
+        if model == sonar:
+            assert {e.name for e in fitting} == {
+                "r158_detection",
+                "park_aid_front",
+                "park_aid_rear",
+            }
+
+
+def test_a_share_is_refused_to_kinds_whose_rays_end_on_no_body():
+    """Alone in one line; beside a camera the radar sees no body of which a share is asked for."""
+    ahead = pe.Sensor("radar", pe.catalog.load(ARS), pe.Pose((2.55, 0.0, 0.6)))
+    for criterion in (Criterion(share=0.5), Criterion(per_degree=1.0)):
+        own = Requirement("own", AHEAD, (BODIES["cylinder"],), criterion)
+        with pytest.raises(pe.InputError, match="rays end on bodies") as caught:
+            check(own, of=pe.Rig([ahead]))
+        assert "\n" not in str(caught.value)
+        (both,) = check(own, of=pe.Rig([ahead, rig()["front"]]))
+        (camera,) = check(own, of=pe.Rig([rig()["front"]]))
+        assert both.passed.tolist() == camera.passed.tolist() and both.sensors == camera.sensors
+        assert both.hidden.get("radar", "") in ("", "of a kind that does not count")
+        two = replace(own, criterion=replace(criterion, kinds=2))
+        with pytest.raises(pe.InputError, match="the number of kinds"):
+            check(two, of=pe.Rig([ahead, rig()["front"]]))
+
+
+def test_derived_distances_are_on_the_side_of_the_larger_zone():
+    """Speeds and times of the sources: no zone ends nearer than their product."""
+
+    def km_h(speed, seconds):
+        return speed / 3.6 * seconds
+
+    rows = {
+        "ncap26_reverse_static": ("x", [-2.5 - km_h(4, 2), -2.5 - km_h(8, 2)], 0.01),
+        "ncap26_start_crossing": ("y", [-km_h(60, 3.5), km_h(60, 3.5)], 0.01),
+        "ncap26_frontal_pedestrian": ("x", [2.5 + km_h(10, 4), 2.5 + km_h(60, 4)], 0.1),
+        "ncap26_frontal_cyclist": ("y", [-1.0 - km_h(15, 4), 1.0 + km_h(20, 4)], 0.1),
+        "stop_highway": ("x", [12.5, 2.5 + (120 / 3.6) ** 2 / (2 * 5)], 0.1),
+    }
+    for name, (axis, (first, last), most) in rows.items():
+        corners = presets()[name].requirement().zone.placed(van(), None, name).corners
+        values = corners[:, "xy".index(axis)]
+        low, high = (min, max) if first < last else (max, min)
+        sign = 1.0 if first < last else -1.0
+        beyond = [sign * (first - low(values)), sign * (high(values) - last)]
+        if name == "ncap26_reverse_static":  # spots: both are farther away
+            beyond[0] = -beyond[0]
+        assert all(0.0 <= v < most for v in beyond), (name, beyond)
+    sides = presets()["ncap26_frontal_pedestrian"].requirement().zone.placed(van(), None, "y")
+    assert sides.corners[:, 1].min() <= -1.0 - km_h(5, 4)
+    assert sides.corners[:, 1].max() >= 1.0 + km_h(8, 4)
+    x = presets()["ncap26_frontal_cyclist"].requirement().zone.placed(van(), None, "x").corners
+    assert x[:, 0].min() <= 2.5 + km_h(10, 4) and x[:, 0].max() >= 2.5 + km_h(60, 4)
+
+
+def test_r151_leaves_out_what_is_above_two_metres():
+    """As R159: a spoiler that sticks out above 2.0 m moves no zone outwards."""
+    plain = van()
+    top = shapes.box((-2.5, -1.4, 2.2), (2.9, 1.4, 2.4))
+    wide = pe.Vehicle(np.concatenate([plain.triangles, top]), clearance=0.0)
+    axles = pe.Reference(-1.4, 0.3, 2.8)
+    for name, each in presets().items():
+        if name.startswith(("r151", "r159")):
+            zone = each.requirement().zone
+            spoiled, own = (zone.placed(v, axles, name).corners.tolist() for v in (wide, plain))
+            assert spoiled == own, name
 
 
 def test_a_preset_whose_keys_are_changed_is_said_to_be_changed():
@@ -103,6 +197,12 @@ BAD = {
     "of": ({"criterion": {"of": ["lidar", "sonar"]}}, "sonar"),
     "lacking": ({"criterion": {"of": ["camera"]}}, "that the rig has (lidar)"),
     "rows": ({"criterion": {"pixels_high": 9}}, "a kind that counts pixels"),
+    "share": ({"criterion": {"of": ["radar"], "share": 1.0}}, "that the rig has (lidar)"),
+    "of ground": ({"criterion": {"blind_m2": 1.0, "share": 0.5}}, "of ground"),
+    "beyond": (
+        {"criterion": {"blind_m2": 1.0}, "zone": {"ring": [0.0, 99.0]}},
+        "no other is searched",
+    ),
     "no row": ({"criterion": {"pixels_high": 0}}, "above 0"),
     "key": ({"zone": {"x": [3, 4], "y": [0, 1], "stepp": 1}}, "unknown key"),
     "preset": ({"preset": "r000"}, "pe requirements"),

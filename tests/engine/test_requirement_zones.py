@@ -1,6 +1,7 @@
 """Planes of a vehicle, samples of zones and their margins, held to figures by hand."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,9 +10,11 @@ import pe_core as pe
 from pe_core.scoring.requirements import (
     VehiclePlanes,
     Zone,
+    checkable,
     margin_of,
     signed_distance,
 )
+from pe_core.study.requirement_file import preset
 from tests.engine import shapes
 from tests.engine.requirement_scene import van
 
@@ -87,6 +90,58 @@ def test_features_by_shape_are_told_as_missing_where_they_are_not_clear():
         ~((one_side[..., 1].min(axis=1) > 0.9) & (one_side[..., 2].min(axis=1) > 0.9))
     ]
     assert VehiclePlanes.of(pe.Vehicle(one_side)).across["right"] == pytest.approx(-1.11)
+
+
+def with_doors(doors, axles=True):
+    """A van with more boxes by name, and where its axles are."""
+    boxes = [van().triangles, *(shapes.box(*corners) for corners in doors.values())]
+    parts = np.repeat(np.arange(len(boxes)), [len(b) for b in boxes]).astype(np.int32)
+    vehicle = pe.Vehicle(np.concatenate(boxes), parts, ("body", *doors), clearance=0.0)
+    return vehicle, pe.Reference(-1.4, 0.3, 2.8) if axles else None
+
+
+LEFT = ((0.2, 0.97, 0.4), (1.3, 1.0, 2.0))
+DOORS = {
+    "driver's": ({"door_front_left": LEFT}, 0.2),
+    "the foremost": (
+        {"door_rear_left": ((-0.9, 0.97, 0.4), (0.15, 1.0, 2.0)), "door_l": LEFT},
+        0.2,
+    ),
+    "both sides in one part": ({"doors_front": ((0.2, -1.0, 0.4), (1.3, 1.0, 2.0))}, 0.2),
+    "passengers' side": ({"door_front": ((0.2, -1.0, 0.4), (1.3, -0.97, 2.0))}, None),
+    "at the rear": ({"trailer_door_left": ((-2.5, 0.1, 0.5), (-2.45, 1.0, 2.3))}, None),
+    "behind the axle": ({"door_side": ((-2.4, 0.97, 0.4), (-1.5, 1.0, 2.0))}, None),
+    "all in one part": ({"doors_left": ((-1.0, 0.97, 0.4), (1.3, 1.0, 2.0))}, None),
+}
+
+
+@pytest.mark.parametrize("name", DOORS)
+def test_the_door_is_the_drivers(name):
+    """A side door on his side, ahead of the rear axle; else what is needed is said."""
+    doors, x = DOORS[name]
+    planes = VehiclePlanes.of(*with_doors(doors))
+    assert planes.along.get("door") == x
+    if x is None:
+        assert (
+            all(part in planes.missing["door"] for part in doors)
+            and "left" in planes.missing["door"]
+        )
+        return
+    assert planes.found["door"] == f"rear edge of {[*doors][-1]}"
+    kerb_left = VehiclePlanes.of(*with_doors(doors), near_side="left")
+    assert kerb_left.along.get("door") == (x if "both" in name else None)
+    assert "rear axle" in VehiclePlanes.of(*with_doors(doors, axles=False)).missing["door"]
+
+
+@pytest.mark.parametrize(
+    "example", ["city_bus", "delivery_shuttle", "robotaxi_sedan", "truck_trailer"]
+)
+def test_no_shipped_vehicle_has_a_drivers_door_and_dooring_is_not_checked(example):
+    """The bus and the shuttle have passengers' doors, the truck those of its trailer."""
+    study = pe.load_study(Path(__file__).parents[2] / "examples" / example / "decided.toml")
+    wanted = [preset("ncap26_dooring").requirement()]
+    fitting, reasons = checkable(wanted, study.rig, study.vehicle, study.reference, study.space)
+    assert not fitting and "door" in reasons["ncap26_dooring"]
 
 
 def test_places_are_measured_outwards_from_outer_planes():

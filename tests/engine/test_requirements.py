@@ -33,6 +33,37 @@ def test_blind_ground_of_a_zone_is_that_of_sight():
     assert not tight.met
 
 
+def test_blind_ground_counts_the_kinds_that_are_asked_for():
+    """`of` is of ground, too; a radar sees neither flat ground nor what is lower than a child."""
+    zone, space = (
+        Zone(x=("front + 1", "front + 4"), y=(-1, 1)),
+        pe.PerceptionSpace((-9, 9), (-6, 6)),
+    )
+    radar = pe.Sensor("radar", pe.catalog.load("Continental ARS408-21"), pe.Pose((2.55, 0, 0.6)))
+    whole = pe.Rig([*rig(), radar])
+
+    def blind(rig, height=0.8, **asked):
+        own = Requirement("g", zone, (), Criterion(blind_m2=0.1, blind_height=height, **asked))
+        return RequirementChecker([own], van(), space=space).check(rig)[0].blind_m2
+
+    cameras = pe.Rig([s for s in rig() if s.kind == "camera"])
+    for height in (0.0, 0.4, 0.8):
+        assert blind(whole, height, of=("camera",)) == blind(cameras, height)
+    alone = pe.Rig([radar])
+    assert blind(alone) < 0.1
+    for height in (0.0, 0.4):
+        with pytest.raises(pe.InputError, match="blind_height"):
+            blind(alone, height)
+
+
+def test_ap_is_fused_from_the_kinds_that_are_asked_for():
+    """A camera that sees the body well lends nothing to a criterion of LiDARs."""
+    lidars = pe.Rig([rig()["top"]])
+    for ap in (0.2, 0.4):
+        own = Requirement("ap", AHEAD, (BODIES["child"],), Criterion(ap=ap, of=("lidar",)))
+        assert check(own)[0].passed.tolist() == check(own, of=lidars)[0].passed.tolist()
+
+
 def test_margins_beyond_the_first_samples_are_those_of_zones_that_are_larger():
     """A zone grown by its margin is met, and one grown a step beyond what fails is not."""
     body, step = (BODIES["adult"],), 0.3

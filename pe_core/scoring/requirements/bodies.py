@@ -18,9 +18,11 @@ from numpy.typing import NDArray
 
 from ...base.errors import InputError, shown
 from ...base.values import A_NAME, Angle, Number
+from ...sensors.body_parts import INSIDE, ROUND
 from .mesh_shape import MeshShape
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 LENGTH = Number(1e-3, 100.0, unit="m", noun="length")
@@ -38,6 +40,8 @@ DIAGONALS = ((_BEFORE, _BEFORE), (_BEFORE, _AFTER), (_AFTER, _BEFORE), (_AFTER, 
 POST_EVERY = 4
 POST_SHARE = 0.25
 """Side of the posts beside a body, as a share of its shorter horizontal side."""
+THIN_M = 1e-6
+"""A slice of a box that is thinner is none."""
 FLAT_M = 1e-3
 """Thickness of a patch of ground."""
 
@@ -128,6 +132,38 @@ class Body:
         thick = np.full(len(k), height / self.bands)
         sizes = np.stack([along[i, 1], across[j, 1], thick], axis=1)
         return np.stack([along[i, 0], across[j, 0], z], axis=1), sizes
+
+    def cell_bands(self) -> tuple[Ints, Flags]:
+        """Return the band of each of `boxes(True)` (K,), and whether it is a post."""
+        if self.is_ring:
+            return np.zeros(RING_CELLS, np.int64), np.zeros(RING_CELLS, bool)
+        k, i, j = np.nonzero(cell_plan(self.bands, *self.columns))
+        (along, across), inner = self.columns, np.ones(len(k), bool)
+        inner &= (i > 0) & (i <= along) & (j > 0) & (j <= across)
+        return k, ~inner
+
+    def shells(self) -> tuple[int, Floats, Floats, Ints]:
+        """Return boxes that tell where a ray ends on a body that is not what its cells fill.
+
+        Layer (`ROUND` or `INSIDE`), centres (S, 3) from the foot, sizes (S, 3) [m], and bands (S,).
+        Of a cylinder the boxes round it, of a mesh what is inside it; none of a box.
+        """
+        tall = self.size[2] / self.bands
+        if self.shape is None:
+            count = self.bands if self.is_round and not self.is_ring else 0
+            bands = np.arange(count)
+            centers = np.zeros((count, 3))
+            centers[:, 2] = self.low + (bands + 0.5) * tall
+            return ROUND, centers, np.tile([*self.size[:2], tall], (count, 1)), bands
+        middles, sizes = self.boxes(False)
+        own, bands = np.nonzero(np.ones((len(sizes), self.bands), bool))
+        floor = self.low + bands * tall
+        low = np.maximum(middles[own, 2] - sizes[own, 2] / 2.0, floor)
+        high = np.minimum(middles[own, 2] + sizes[own, 2] / 2.0, floor + tall)
+        kept = high - low > THIN_M
+        centers, sizes = middles[own[kept]].copy(), sizes[own[kept]].copy()
+        centers[:, 2], sizes[:, 2] = ((low + high) / 2.0)[kept], (high - low)[kept]
+        return INSIDE, centers, sizes, bands[kept]
 
     @property
     def box_count(self) -> int:

@@ -7,7 +7,7 @@ with the kernels of objects. What follows, for every requirement and every lost 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,16 +17,20 @@ from ...metric.entropy import ap_of_entropy
 from ...scene.objects import Objects
 from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
-from ...sensors import ObjectMeasurementCache, PerceptionModel
+from ...sensors import ObjectMeasurementCache, PartMeasurementCache, PerceptionModel
+from ...sensors.body_parts import BodyParts
 from ..targets.object_metric import FusedObjects
 from .bodies import Body
 from .criteria import Criterion, Requirement, levels_of
-from .definition import body_has_enough, placed, visible_share
+from .definition import body_has_enough, parts_of, placed, visible_share
+from .reasons import columns_of
 from .verdict import Judged, Samples
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 CountsBySensor = Mapping[str, Floats]
+NOTHING = np.zeros(0)
+PART = ("part",)
 
 
 class SceneCaches:
@@ -54,6 +58,14 @@ class _BodySet:
     cells: slice | None
 
 
+@dataclass(frozen=True, slots=True)
+class _Measured:
+    """m by sensor: (N,) of all bodies, and (C,) of their cells where the sensor shows parts."""
+
+    m: CountsBySensor
+    parts: CountsBySensor
+
+
 class BodyChecks:
     """The bodies of some requirements at samples of their zones, and the sensors measured on them.
 
@@ -73,10 +85,13 @@ class BodyChecks:
     ) -> None:
         self._wanted, self._caches = wanted, caches
         self._objects: list[Objects] = []
-        self._count = 0
+        self._all_parts: list[BodyParts] = []
+        self._count = self._cell_count = 0
         self._bodies = [self._placed(*pair) for pair in wanted]
         self._joined = _joined(self._objects)
+        self._parts = _joined_parts(self._all_parts)
         self._measurers: dict[int, ObjectMeasurementCache] = {}
+        self._part_measurers: dict[int, PartMeasurementCache] = {}
         weights = None if self._joined is None else self._asked(len(self._joined))
         self._fused = None
         if self._joined is not None and weights is not None and weights.any():
@@ -87,8 +102,8 @@ class BodyChecks:
 
         `cases` are the rig with mounting errors, for requirements that ask for them.
         """
-        m = self._measured(0, rig)
-        found = [self._judged(k, rig, m) for k in range(len(self._wanted))]
+        measured = self._measured(0, rig)
+        found = [self._judged(k, rig, measured) for k in range(len(self._wanted))]
         asking = [k for k, (own, _) in enumerate(self._wanted) if own.under.mounting]
         for number, case in enumerate(cases if asking else (), start=1):
             measured = self._measured(number, case)
@@ -96,13 +111,13 @@ class BodyChecks:
                 found[k].passed[:] &= self._judged(k, case, measured).passed
         return found
 
-    def _judged(self, number: int, rig: Rig, m: CountsBySensor) -> Judged:
+    def _judged(self, number: int, rig: Rig, measured: _Measured) -> Judged:
         requirement, _ = self._wanted[number]
         names = [s.name for s in rig]
-        seen = {s.name: self._seen(number, s, m[s.name]) for s in rig}
-        whole = self._enough(number, rig, seen, m, names)
+        seen = {s.name: self._seen(number, s, measured) for s in rig}
+        whole = self._enough(number, rig, seen, measured.m, names)
         without = {
-            lost: self._enough(number, rig, seen, m, [n for n in names if n != lost])
+            lost: self._enough(number, rig, seen, measured.m, [n for n in names if n != lost])
             for lost in names
         }
         passed = whole.copy()
@@ -110,26 +125,38 @@ class BodyChecks:
             passed &= np.logical_and.reduce(list(without.values()))
         return Judged(passed, whole, without, seen)
 
-    def _measured(self, number: int, rig: Rig) -> CountsBySensor:
-        """Return m (N,) of all bodies by sensor, in a scene."""
+    def _measured(self, number: int, rig: Rig) -> _Measured:
+        """Return m of all bodies, and of their cells where a share is asked for, in a scene."""
         if self._joined is None:
-            return {}
+            return _Measured({}, {})
+        vehicle, caches = self._caches.vehicle, self._caches.by_kernel(number)
         if number not in self._measurers:
-            vehicle, caches = self._caches.vehicle, self._caches.by_kernel(number)
             self._measurers[number] = ObjectMeasurementCache(
                 self._joined, vehicle, kernel_caches=caches
             )
-        return self._measurers[number].measure(rig)
+            if self._parts is not None:
+                self._part_measurers[number] = PartMeasurementCache(self._parts, vehicle, caches)
+        m = self._measurers[number].measure(rig)
+        parts: CountsBySensor = {}
+        if number in self._part_measurers:
+            asking = [own.criterion for own, _ in self._wanted if own.criterion.share is not None]
+            counting = [s for s in rig if any(each.counts(s.kind) for each in asking)]
+            parts = self._part_measurers[number].measure(counting)
+        return _Measured(m, parts)
 
-    def _seen(self, number: int, sensor: Sensor, m: Floats) -> Flags:
+    def _seen(self, number: int, sensor: Sensor, measured: _Measured) -> Flags:
         """Return the samples and bodies (N, bodies * headings) that a sensor sees."""
         requirement, samples = self._wanted[number]
         criterion, columns = requirement.criterion, []
+        if not criterion.counts(sensor.kind):
+            width = len(columns_of(requirement))
+            return np.zeros((len(samples.points), width), bool)
+        m, parts = measured.m[sensor.name], measured.parts.get(sensor.name, NOTHING)
         for each in self._bodies[number]:
             objects = self._objects[each.number]
             seen = body_has_enough(each.body, sensor, objects, m[each.box], criterion)
             if each.cells is not None and criterion.share is not None and seen.any():
-                cells = (m[each.cells] > 0.0).reshape(len(seen), -1)
+                cells = (parts[each.cells] > 0.0).reshape(len(seen), -1)
                 seen[seen] = visible_share(each.body, cells[seen]) >= criterion.share
             columns.append(seen.reshape(len(samples.points), -1))
         return np.concatenate(columns, axis=1)
@@ -147,7 +174,8 @@ class BodyChecks:
         counts, kinds = counted(rig, seen, criterion, members)
         enough = (counts >= criterion.sensors) & (kinds >= criterion.kinds)
         if criterion.ap is not None and self._fused is not None:
-            entropies, _ = self._fused.entropies(rig, m, members)
+            counting = [s.name for s in rig if s.name in members and criterion.counts(s.kind)]
+            entropies, _ = self._fused.entropies(rig, m, counting)
             ap, columns = ap_of_entropy(entropies), []
             for each in self._bodies[number]:
                 best = ap[each.box].reshape(-1, each.body.box_count).max(axis=1)
@@ -166,8 +194,12 @@ class BodyChecks:
     def _body_set(self, body: Body, feet: Floats, requirement: Requirement) -> _BodySet:
         number = len(self._objects)
         box = self._added(placed(body, feet, body.headings, False))
-        with_cells = requirement.criterion.share is not None
-        cells = self._added(placed(body, feet, body.headings, True)) if with_cells else None
+        cells = None
+        if requirement.criterion.share is not None:
+            parts = parts_of(body, feet, body.headings)
+            self._all_parts.append(parts)
+            self._cell_count += len(parts.cells)
+            cells = slice(self._cell_count - len(parts.cells), self._cell_count)
         return _BodySet(body, number, box, cells)
 
     def _added(self, objects: Objects) -> slice:
@@ -195,7 +227,7 @@ def counted(
     first = next(iter(seen.values()))
     counts, by_kind = np.zeros(first.shape, np.int64), dict[str, Flags]()
     for sensor in rig:
-        if sensor.name not in members or (criterion.of and sensor.kind not in criterion.of):
+        if sensor.name not in members or not criterion.counts(sensor.kind):
             continue
         counts += seen[sensor.name]
         none = np.zeros(first.shape, bool)
@@ -219,3 +251,33 @@ def _joined(parts: Sequence[Objects]) -> Objects | None:
         np.concatenate(labels),
         tuple(names),
     )
+
+
+def _joined_parts(parts: Sequence[BodyParts]) -> BodyParts | None:
+    """Return all parts as one set; None without any."""
+    if not parts:
+        return None
+    cells, shells, first = list[Objects](), list[Objects](), 0
+    for each in parts:
+        for own, objects in ((cells, each.cells), (shells, each.shells)):
+            if objects is not None:
+                own.append(replace(objects, scenes=objects.scenes + first, class_names=PART))
+        first += int(each.cells.scenes.max()) + 1
+    split = [len(each.cells) for each in parts]
+    bands, layers = (
+        np.concatenate(
+            [w[:n] for w, n in zip(of_parts, split, strict=True)]
+            + [w[n:] for w, n in zip(of_parts, split, strict=True)]
+        )
+        for of_parts in ([p.bands for p in parts], [p.layers for p in parts])
+    )
+    return BodyParts(_appended(cells), _appended(shells) if shells else None, bands, layers)
+
+
+def _appended(parts: Sequence[Objects]) -> Objects:
+    """Return objects of the same classes as one set, with their scenes."""
+    keys = ("centers", "sizes", "yaws", "labels", "scenes")
+    centers, sizes, yaws, labels, scenes = (
+        np.concatenate([getattr(part, key) for part in parts]) for key in keys
+    )
+    return Objects(centers, sizes, yaws, labels, parts[0].class_names, scenes)

@@ -18,6 +18,7 @@ from ...scene.vehicle_description import Reference
 from ...sensors import PerceptionModel
 from .body_checks import BodyChecks, SceneCaches
 from .criteria import Requirement, checked_requirements, levels_of
+from .definition import cautious
 from .ground import GroundCheck
 from .margins import growth, margin_of
 from .planes import VehiclePlanes
@@ -119,9 +120,9 @@ class RequirementChecker:
         self.check_rig(rig)
         if not self.requirements:
             return ()
+        rig, cases = cautious(rig), [] if preview else [cautious(case) for case in cases]
         with self._lock:
-            samples = self._set(PREVIEW if preview else FULL)
-            return samples.verdicts(rig, () if preview else cases)
+            return self._set(PREVIEW if preview else FULL).verdicts(rig, cases)
 
     def shortfalls(self, rig: Rig, cases: Sequence[Rig] = ()) -> tuple[float, ...]:
         """Return for each requirement 0 where it is met, else how far it is off, above 0 to 1.
@@ -131,6 +132,7 @@ class RequirementChecker:
         how far the nearest boresight is turned away from those that fail (0.1): it leads a search
         in where no sensor sees anything yet.
         """
+        rig, cases = cautious(rig), [cautious(case) for case in cases]
         with self._lock:
             return self._set(INSIDE).shortfalls(rig, cases) if self.requirements else ()
 
@@ -288,12 +290,19 @@ def checkable(
 
 
 def check_extent(requirement: Requirement, zone: PlacedZone, space: PerceptionSpace) -> None:
-    """Raise `InputError` for a zone outside of the space, or narrower than a body."""
+    """Raise `InputError` for a zone outside of the space, or narrower than a body.
+
+    A zone whose blind ground is asked for is wholly in the space.
+    """
     who = f"requirement {requirement.name!r}"
     low, high = zone.bounds
     (x0, y0), (x1, y1) = low.tolist(), high.tolist()
     if x1 < space.x[0] or x0 > space.x[1] or y1 < space.y[0] or y0 > space.y[1]:
         expected = f"a zone in the space, x = {list(space.x)}, y = {list(space.y)}"
+        raise InputError(who, "zone", expected, f"x = {[x0, x1]}, y = {[y0, y1]}")
+    is_of_ground, (x, y) = requirement.criterion.is_of_ground, (space.x, space.y)
+    if is_of_ground and not (x[0] <= x0 and x1 <= x[1] and y[0] <= y0 and y1 <= y[1]):
+        expected = f"ground in the space, x = {list(x)}, y = {list(y)}: no other is searched"
         raise InputError(who, "zone", expected, f"x = {[x0, x1]}, y = {[y0, y1]}")
     for body in requirement.bodies:
         if zone.kind == "area" and min(body.size[:2]) > min(x1 - x0, y1 - y0) + INSIDE_M:

@@ -7,16 +7,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from ...base.errors import InputError, shown
-from ...base.setting import FLAG, check_settings, setting
+from ...base.setting import FLAG, check_settings, setting, settings_of
 from ...base.values import A_NAME, A_TEXT, SHARE, Number, Whole
 from ...scene.rig import Rig
-from ...sensors import kind_named
+from ...sensors import KINDS, kind_named
 from .bodies import Body
 from .zones import Zone
 
 COUNT = Whole(1, 1000)
 POSITIVE_SHARE = Number(0.0, 1.0, above=True)
 AREA = Number(0.0, 1e6, unit="m2", noun="area")
+OF_BODIES = (
+    *("sensors", "kinds", "points", "pixels", "pixels_high", "per_degree", "share", "ap"),
+    "zone_share",
+)
 DISTANCE = Number(0.0, 100.0, unit="m", noun="length")
 
 
@@ -32,7 +36,7 @@ class Criterion:
     sensors, kinds : int
         At least so many sensors, of at least so many kinds, see the body.
     of : sequence of str
-        Only these kinds of sensors count; all by default.
+        Only these kinds of sensors count; all by default. The rig has to have one of them.
     points, pixels : float
         At least so many beams end on the body, or so many pixels show it.
     pixels_high : float, optional
@@ -43,6 +47,7 @@ class Criterion:
         root of m over its solid angle, which errs high.
     share : float, optional
         At least this share of the body is visible, of its height (bands of 0.1 m) and its width.
+        Only kinds whose rays end on bodies count then (`Kind.shows_parts`), as with `per_degree`.
     ap : float, optional
         The AP of the body's class, all sensors fused, is at least this.
     zone_share : float
@@ -101,6 +106,10 @@ class Criterion:
         for kind in self.of:
             kind_named(kind, "criterion", "of")
         object.__setattr__(self, "of", tuple(self.of))
+        changed = [k for k in OF_BODIES if getattr(self, k) != settings_of(Criterion)[k].default]
+        if self.is_of_ground and changed:
+            expected = "no key of bodies: blind_m2 and blind_out are of ground"
+            raise InputError("criterion", changed[0], expected, getattr(self, changed[0]))
         if self.kinds > self.sensors:
             object.__setattr__(self, "sensors", self.kinds)
 
@@ -109,14 +118,36 @@ class Criterion:
         """Whether the criterion is on blind ground, not on test bodies."""
         return self.blind_m2 is not None or self.blind_out is not None
 
+    @property
+    def asks_for_parts(self) -> bool:
+        """Whether only sensors count whose rays end on bodies."""
+        return self.share is not None or self.per_degree is not None
+
+    def counts(self, kind: str) -> bool:
+        """Whether sensors of a kind can meet the criterion."""
+        if self.of and kind not in self.of:
+            return False
+        own = kind_named(kind, "criterion", "of")
+        if self.is_of_ground:
+            return own.lowest_m <= self.blind_height
+        return own.shows_parts or not self.asks_for_parts
+
     def check_rig(self, rig: Rig, who: str) -> None:
         """Raise `InputError` where the rig has not the kinds that are asked for."""
         kinds = {sensor.kind for sensor in rig}
-        for kind in self.of:
-            if kind not in kinds:
-                expected = f"kinds of sensors that the rig has ({', '.join(sorted(kinds))})"
-                raise InputError(who, "criterion.of", expected, kind)
         eligible = kinds & set(self.of) if self.of else kinds
+        if not eligible:
+            expected = f"a kind of sensor that the rig has ({', '.join(sorted(kinds))})"
+            raise InputError(who, "criterion.of", expected, ", ".join(self.of))
+        alone, eligible = ", ".join(sorted(eligible)), set(filter(self.counts, eligible))
+        if not eligible and self.is_of_ground:
+            expected = f"a sensor that sees what is {self.blind_height:g} m tall on the ground"
+            raise InputError(who, "criterion.blind_height", expected, f"{alone} alone")
+        if not eligible:
+            key = "share" if self.share is not None else "per_degree"
+            showing = ", ".join(name for name, kind in KINDS.items() if kind.shows_parts)
+            expected = f"a sensor whose rays end on bodies ({showing})"
+            raise InputError(who, f"criterion.{key}", expected, f"{alone} alone")
         count = len(eligible)
         counted = [kind_named(kind, who, "criterion.of").counts_points for kind in eligible]
         if self.pixels_high is not None and all(counted):

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from ...scene.objects import Objects
 from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...sensors import kind_of
+from ...sensors.body_parts import CELLS, BodyParts
 from ...sensors.object_kernel import PlacedBoxes
 from .bodies import DIAGONALS, Body, cell_plan, post_bands
 from .criteria import Criterion
@@ -35,20 +37,31 @@ def sees(
 ) -> bool:
     """Whether a sensor sees a body that stands alone at a place: the definition.
 
-    m of the body's box (of one of the boxes inside a mesh), by the definition of the sensor's kind,
-    reaches the threshold; with a share, so much of the body is visible: `visible_share` of the
-    cells that have an m above 0. What is beside a cell that is not seen does not count: it may be
-    seen in part.
+    The sensor is of a kind that counts. m of the body's box (of one of the boxes inside a mesh), by
+    the definition of its kind, reaches the threshold; with a share, so much of the body is visible:
+    `visible_share` of the cells that have an m above 0. What is beside a cell that is not seen does
+    not count: it may be seen in part.
     """
-    measure = kind_of(sensor).measure_objects
+    kind = kind_of(sensor)
+    if not criterion.counts(kind.name):
+        return False
+    (sensor,) = cautious(Rig([sensor]))
     objects = placed(body, [foot], [heading], False)
-    m = measure(sensor, objects, vehicle, False)
+    m = kind.measure_objects(sensor, objects, vehicle, False)
     if not has_enough(sensor, objects, m, criterion).any():
         return False
     if criterion.share is None:
         return True
-    cells = measure(sensor, placed(body, [foot], [heading], True), vehicle, False) > 0.0
+    cells = kind.measure_parts(sensor, parts_of(body, [foot], [heading]), vehicle) > 0.0
     return bool(visible_share(body, cells[None])[0] >= criterion.share)
+
+
+def cautious(rig: Rig) -> Rig:
+    """Return a rig as requirements take it: see `Kind.cautious`; the same rig where all stay."""
+    models = [kind_of(sensor).cautious(sensor.model) for sensor in rig]
+    if all(model is s.model for s, model in zip(rig, models, strict=True)):
+        return rig
+    return Rig([replace(s, model=model) for s, model in zip(rig, models, strict=True)])
 
 
 def has_enough(
@@ -129,7 +142,7 @@ def visible_share(body: Body, cells: NDArray[np.bool_]) -> Floats:
 
 def body_met(seen: Mapping[str, bool], rig: Rig, criterion: Criterion) -> bool:
     """Whether sensors that see a body, by name, are enough: the definition."""
-    eligible = [s for s in rig if seen.get(s.name) and (not criterion.of or s.kind in criterion.of)]
+    eligible = [s for s in rig if seen.get(s.name) and criterion.counts(s.kind)]
     kinds = {sensor.kind for sensor in eligible}
     return len(eligible) >= criterion.sensors and len(kinds) >= criterion.kinds
 
@@ -141,7 +154,39 @@ def placed(
 
     Foot after foot, heading after heading, cell after cell.
     """
-    centers, sizes = body.boxes(cells)
+    return _objects(body, *body.boxes(cells), feet, headings)
+
+
+def parts_of(
+    body: Body, feet: Sequence[Sequence[float]] | Floats, headings: Sequence[float]
+) -> BodyParts:
+    """Return a body's cells and shells at all feet (N, 3) and headings, as `placed` does."""
+    cells, (bands, posts) = placed(body, feet, headings, True), body.cell_bands()
+    layer, centers, sizes, shell_bands = body.shells()
+    count = len(cells) // len(bands)
+    bodies = np.arange(count)[:, None] * (1 + int(posts.sum()))  # a post is a body of its own
+    scenes = bodies + np.where(posts, np.cumsum(posts), 0)
+    cells = replace(cells, scenes=scenes.reshape(-1))
+    shells = None
+    if len(shell_bands):
+        shells = _objects(body, centers, sizes, feet, headings)
+        shells = replace(shells, scenes=np.repeat(bodies[:, 0], len(shell_bands)))
+    return BodyParts(
+        cells,
+        shells,
+        np.concatenate([np.tile(own, count) for own in (bands, shell_bands)]),
+        np.repeat([CELLS, layer], [len(cells), count * len(shell_bands)]),
+    )
+
+
+def _objects(
+    body: Body,
+    centers: Floats,
+    sizes: Floats,
+    feet: Sequence[Sequence[float]] | Floats,
+    headings: Sequence[float],
+) -> Objects:
+    """Return boxes (K, 3), from the foot, at all feet and headings."""
     at = np.asarray(feet, dtype=float).reshape(-1, 1, 1, 3)
     turns = [(math.cos(h), math.sin(h)) for h in headings]
     x, y, z = centers.T

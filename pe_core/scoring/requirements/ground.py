@@ -232,7 +232,11 @@ class _ZoneGround:
             self._searches[number] = BlindSearch.of(self.cells, height, check._vehicle, caches)
         search = self._searches[number]
         search.squares.marked(rig, approximate)
-        return {name: marked & ~search.own for name, marked in search.squares.by_sensor.items()}
+        counting = {s.name for s in rig if check.requirement.criterion.counts(s.kind)}
+        return {
+            name: marked & ~search.own & (name in counting)
+            for name, marked in search.squares.by_sensor.items()
+        }
 
     def blind(self, marks: Iterable[Flags]) -> Flags:
         """Return the blind squares (NX, NY) of the grown zone."""

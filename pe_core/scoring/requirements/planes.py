@@ -31,6 +31,8 @@ Place = float | str
 MIRRORS = ("mirror", "antenna", "aerial", "wiper")
 """Beginnings of words in the names of parts that the planes leave out, as UN R159 does."""
 DOORS, NO_DOORS = ("door",), ("window", "windows", "handle", "mirror")
+LONGEST_DOOR_M = 1.8
+"""A longer part is several doors, of which the rear edge is not that of the first."""
 SIDES = ("left", "right")
 OUTWARD = {"front": 1.0, "rear": -1.0, "left": 1.0, "right": -1.0}
 X_PLANES = ("front", "rear", "front_axle", "rear_axle", "door", "eyes", "center", "origin")
@@ -97,7 +99,8 @@ class VehiclePlanes:
         )
         found = dict.fromkeys((*OUTWARD, "near", "off", "center"), how)
         missing = _add_axles(along, found, vehicle, reference)
-        missing |= _add_door(along, found, vehicle)
+        driver = SIDES[near_side == SIDES[0]]
+        missing |= _add_door(along, found, vehicle, driver, across["center"])
         if eyes is None:
             missing["eyes"] = "eyes = x of the driver's eyes"
         else:
@@ -226,16 +229,34 @@ def _add_axles(
     return {}
 
 
-def _add_door(along: dict[str, float], found: dict[str, str], vehicle: Vehicle) -> dict[str, str]:
-    """Add the rear edge of the foremost door to the planes; return what is missing."""
-    doors = {
-        name: (float(x.min()), float(x.max()))
-        for k, name in enumerate(vehicle.part_names)
-        if is_called(name, DOORS, NO_DOORS)
-        and (x := vehicle.triangles[vehicle.parts == k][..., 0]).size
-    }
-    if not doors:
+def _add_door(
+    along: dict[str, float], found: dict[str, str], vehicle: Vehicle, side: str, middle: float
+) -> dict[str, str]:
+    """Add the rear edge of the driver's door to the planes; return what is missing.
+
+    It is the foremost part named door that lies along the driver's side and ahead of the rear axle:
+    doors of the other side, of a trailer and at the rear are none. `middle` is y of the vehicle's.
+    """
+    named = [k for k, name in enumerate(vehicle.part_names) if is_called(name, DOORS, NO_DOORS)]
+    named = [k for k in named if (vehicle.parts == k).any()]
+    if not named:
         return {"door": "a part whose name has the word door"}
+    if "rear_axle" not in along:
+        return {"door": "[reference] with the rear axle: the driver's door is ahead of it"}
+    doors: dict[str, tuple[float, float]] = {}
+    for k in named:
+        corners = vehicle.triangles[vehicle.parts == k]
+        beside = (OUTWARD[side] * (corners[..., 1] - middle)).min(axis=1) > 0.0
+        if not beside.any():
+            continue
+        low, high = corners[beside].min(axis=(0, 1)), corners[beside].max(axis=(0, 1))
+        length, depth = (high - low)[:2].tolist()
+        if depth < length <= LONGEST_DOOR_M and low[0] > along["rear_axle"]:
+            doors[vehicle.part_names[k]] = float(low[0]), float(high[0])
+    if not doors:
+        names = ", ".join(vehicle.part_names[k] for k in named)
+        needed = f"a door on the driver's side ({side}), ahead of the rear axle, at most "
+        return {"door": f"{needed}{LONGEST_DOOR_M:g} m long; not {names}"}
     foremost = max(doors, key=lambda name: sum(doors[name]))
     along["door"], found["door"] = doors[foremost][0], f"rear edge of {foremost}"
     return {}

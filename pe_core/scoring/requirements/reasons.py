@@ -18,6 +18,7 @@ Flags = NDArray[np.bool_]
 Ints = NDArray[np.int64]
 
 TOO_FEW, IN_PART = "too few on it", "seen in part at most"
+NO_COUNT = "of a kind that does not count"
 CUBE_M = 0.1
 """Side of the cubes by which it is told why a sensor does not see a body."""
 

@@ -1,7 +1,8 @@
 """Redundancy: by how many sensors and kinds each place is seen, and what is left of them.
 
-At every place of a grid on the ground a test body stands alone: an upright cylinder 0.3 m wide and
-as tall as stated. The map errs to the safe side as verdicts do.
+At every place of a grid on the ground a test body stands alone: an upright cylinder as wide as
+those of FMVSS 111 and UN R158 and as tall as stated. A radar sees it as a pedestrian, if it is no
+lower than these. The map errs to the safe side as verdicts do.
 """
 
 from __future__ import annotations
@@ -20,8 +21,8 @@ from ...scene.vehicle import Vehicle
 from ...sensors import ObjectMeasurementCache, kind_of
 from ..sight.blind_ground import body_rectangle
 from ..sight.ground_cells import GroundCells, widened
-from .bodies import Body
-from .definition import placed
+from .bodies import BODIES, Body
+from .definition import cautious, placed
 from .planes import VehiclePlanes
 from .zones import INSIDE_M, signed_distance
 
@@ -29,8 +30,6 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 HEIGHT = Number(0.01, 5.0, unit="m", noun="length")
-WIDE_M = 0.3
-"""Diameter of the body, as of the test cylinders of FMVSS 111 and UN R158."""
 NO_GROUND = -1
 """Value of places that the vehicle takes."""
 
@@ -124,7 +123,10 @@ class Redundancy:
         if vehicle is not None:
             free = signed_distance(points, VehiclePlanes.of(vehicle).outline) > INSIDE_M
         self._free = free
-        body = Body("body", (WIDE_M, WIDE_M, self.height), is_round=True)
+        cylinder = BODIES["cylinder"]
+        size = (*cylinder.size[:2], self.height)
+        known = cylinder.class_name if self.height >= cylinder.size[2] else None
+        body = Body("body", size, is_round=True, class_name=known)
         feet = np.column_stack([points[free], np.zeros(int(free.sum()))])
         objects = placed(body, feet, body.headings, False)
         self._sensors, self._lock = ObjectMeasurementCache(objects, vehicle), RLock()
@@ -132,8 +134,8 @@ class Redundancy:
     def map(self, rig: Rig) -> RedundancyMap:
         """Return the redundancy map of a rig."""
         with self._lock:
-            m = self._sensors.measure(rig)
-        seen = {s.name: m[s.name] >= 1.0 for s in rig}  # a beam, or a pixel
+            m = self._sensors.measure(cautious(rig))
+        seen = {s.name: m[s.name] >= kind_of(s).point for s in rig}  # a beam, a pixel, a detection
         kinds = {kind_of(s).name: np.zeros(int(self._free.sum()), np.int64) for s in rig}
         for sensor in rig:
             kinds[sensor.kind] += seen[sensor.name]

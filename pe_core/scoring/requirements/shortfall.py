@@ -37,8 +37,7 @@ def _turned_away(
     requirement: Requirement, samples: Samples, rig: Rig, failing: NDArray[np.bool_]
 ) -> float:
     """Return the mean angle between failing samples and the nearest boresight, 1 for 180 deg."""
-    kinds = requirement.criterion.of
-    sensors = [s for s in rig if not kinds or s.kind in kinds]
+    sensors = [s for s in rig if requirement.criterion.counts(s.kind)]
     if not sensors or not failing.any():
         return 1.0
     body, points = requirement.bodies[0], samples.points[failing]

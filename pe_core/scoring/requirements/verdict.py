@@ -15,7 +15,7 @@ from ...scene.vehicle import Vehicle
 from ..sight.ground_cells import GroundCells
 from .criteria import Requirement
 from .margins import margin_of
-from .reasons import IN_PART, TOO_FEW, columns_of, why_not, worst_sample
+from .reasons import IN_PART, NO_COUNT, TOO_FEW, columns_of, why_not, worst_sample
 from .zones import INSIDE_M, PlacedZone
 
 Floats = NDArray[np.float64]
@@ -156,7 +156,8 @@ class Verdict:
         """Why each other sensor does not see that body, by name; computed when asked.
 
         A part of the vehicle, or "out of view", "out of range", "between beams", "too few on it";
-        where a share has to be visible also "seen in part at most".
+        where a share has to be visible also "seen in part at most"; of a sensor that the criterion
+        leaves out "of a kind that does not count".
         """
         return self.why()
 
@@ -284,7 +285,10 @@ def _worst_place(
     def why() -> dict[str, str]:
         foot = (x, y, requirement.zone.z[0])
         blind = [s for s in rig if not judged.seen[s.name][worst, column]]
-        reasons = {s.name: why_not(s, body, foot, vehicle) for s in blind}
+        counts = requirement.criterion.counts
+        reasons = {
+            s.name: why_not(s, body, foot, vehicle) if counts(s.kind) else NO_COUNT for s in blind
+        }
         if requirement.criterion.share is None:
             return reasons
         return {name: IN_PART if r == TOO_FEW else r for name, r in reasons.items()}

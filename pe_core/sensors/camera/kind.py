@@ -14,6 +14,7 @@ from ...metric.entropy import RTM3D
 from ...scene.objects import Objects
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
+from ..body_parts import BodyParts
 from ..field_of_view import EgoMask, ViewPatch
 from ..ground_kernel import GroundView
 from ..kernels import Floats, Voxels
@@ -79,6 +80,7 @@ class CameraKind(Kind):
     object_curves = derived_object_curves(RTM3D)
     keys = sensor_table.KEYS
     has_top = True
+    shows_parts = True
     occlusion_text = "picture hidden"
 
     def measure(
@@ -92,6 +94,10 @@ class CameraKind(Kind):
     ) -> Floats:
         """Measure what is seen of each object's image."""
         return count_object_pixels(sensor, objects, vehicle, traffic)
+
+    def measure_parts(self, sensor: Sensor, parts: BodyParts, vehicle: Vehicle | None) -> Floats:
+        """Measure what is seen of each cell's image, of each alone."""
+        return count_object_pixels(sensor, parts.cells, vehicle, False)
 
     def image_widths(self, sensor: Sensor, objects: Objects) -> Floats:
         """Measure how wide the images are in the picture, whatever hides them."""

@@ -15,6 +15,7 @@ from ...geometry.poses import dot, rotate
 from ...scene.objects import Objects
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
+from ..body_parts import CELLS, LAYERS, NO_END, BodyParts
 from ..object_kernel import PlacedBoxes
 from .model import lidar_of
 from .tie_rules import offsets_in_voxels, without_zeros
@@ -114,6 +115,43 @@ def count_on_objects(
         hits = first_of_scene(hits, objects.scenes)
     in_range = hits.enter >= lidar_of(sensor).min_range
     return np.bincount(hits.box[in_range], minlength=len(objects)).astype(float)
+
+
+def count_on_parts(sensor: Sensor, parts: BodyParts, vehicle: Vehicle | None) -> Floats:
+    """Count the beams that meet cells of bodies (N,) in the band in which they surely end.
+
+    A beam ends between where it enters the shell round the body and where it enters a box inside
+    it. Where both are in one band, the beam counts in every cell of that band that it meets; in
+    other bands, which it would enter farther on if the body were hollow, it does not.
+    """
+    directions = beam_directions(sensor)
+    ends = beam_ends(sensor, directions, vehicle)
+    hits = _box_hits(PlacedBoxes.of(parts.objects, sensor.pose.position), directions, ends)
+    return counts_in_bands(hits, parts, lidar_of(sensor).min_range)
+
+
+def counts_in_bands(hits: BoxHits, parts: BodyParts, min_range: float) -> Floats:
+    """Return the number (N,) of the hits of each cell that are in the band of the beam's end.
+
+    Without beams that may end below the minimum range [m].
+    """
+    body, layer, band = (w[hits.box] for w in (parts.objects.scenes, parts.layers, parts.bands))
+    order = np.lexsort((hits.box, hits.enter, layer, hits.beam, body))
+    body, beam = body[order], hits.beam[order]
+    layer, band, enter, box = layer[order], band[order], hits.enter[order], hits.box[order]
+    is_ray, is_layer = np.ones(len(order), bool), np.ones(len(order), bool)
+    is_ray[1:] = (beam[1:] != beam[:-1]) | (body[1:] != body[:-1])
+    is_layer[1:] = is_ray[1:] | (layer[1:] != layer[:-1])
+    ray = np.cumsum(is_ray) - 1
+    count = int(is_ray.sum())
+    ends = np.full((LAYERS, count), NO_END)  # the band in which the ray enters each layer
+    ends[layer[is_layer], ray[is_layer]] = band[is_layer]
+    nearest = np.full(count, np.inf)
+    np.minimum.at(nearest, ray, enter)
+    wanted = parts.has_layer[:, body]
+    kept = (layer == CELLS) & (nearest[ray] >= min_range)
+    kept &= (~wanted | (ends[:, ray] == band)).all(axis=0)
+    return np.bincount(box[kept], minlength=len(parts.cells)).astype(float)
 
 
 def first_of_scene(hits: BoxHits, scenes: Ints) -> BoxHits:

@@ -20,12 +20,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...scene.rig import Sensor
+from ..body_parts import BodyParts
 from ..object_kernel import ObjectKernel, ObjectView, PlacedBoxes
 from .beams import BeamCache
 from .box_hits import BoxTester, FanBeams, azimuth_spans, candidate_hits, concatenated, nearest_hits
-from .definition import BoxHits
+from .definition import BoxHits, counts_in_bands
 from .fan_runs import ChannelRuns, Fan, RotatedFan, RunBlock, fans_of
 from .lattice import lattice_of
+from .model import lidar_of
 from .planar_clip import PlanarBoxes, TiltedBoxes, tilted_runs, upright_runs
 
 Floats = NDArray[np.float64]
@@ -56,12 +58,18 @@ class LidarObjects(ObjectKernel):
 
     def measure(self, sensor: Sensor) -> Floats:
         """Count the beams (N,) that end on each object; equal to the definition."""
-        cache, view = self.cache, self._view
-        boxes = PlacedBoxes.of(view.objects, sensor.pose.position)
-        ends = cache.cast(sensor, approximate=False).ends
-        tester = BoxTester(sensor, boxes, cache.rotated(sensor), ends)
-        scenes = view.objects.scenes if view.traffic else None
-        return _count(tester, scenes).astype(float)
+        scenes = self._view.objects.scenes if self._view.traffic else None
+        return _count(self._tester(sensor), scenes).astype(float)
+
+    def measure_parts(self, sensor: Sensor, parts: BodyParts) -> Floats:
+        """Count the beams that meet cells of bodies (N,) in the band in which they surely end."""
+        hits = concatenated(list(candidate_hits(self._tester(sensor))))
+        return counts_in_bands(hits, parts, lidar_of(sensor).min_range)
+
+    def _tester(self, sensor: Sensor) -> BoxTester:
+        boxes = PlacedBoxes.of(self._view.objects, sensor.pose.position)
+        ends = self.cache.cast(sensor, approximate=False).ends
+        return BoxTester(sensor, boxes, self.cache.rotated(sensor), ends)
 
     def unoccluded(self, sensor: Sensor) -> Floats:
         """Count the beams (N,) that pass through each object."""

@@ -14,6 +14,7 @@ from ...metric.entropy import POINTPILLARS, ApCurve
 from ...scene.objects import Objects
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
+from ..body_parts import BodyParts
 from ..field_of_view import EgoMask, ViewPatch
 from ..ground_kernel import GroundView
 from ..kernels import Floats, Voxels
@@ -21,7 +22,7 @@ from ..kind import Kind, derived_object_curves
 from ..object_kernel import ObjectView
 from ..weather import Weather, lidar_range, limited
 from . import sensor_table
-from .definition import count_beams, count_on_objects
+from .definition import count_beams, count_on_objects, count_on_parts
 from .field_of_view import beam_patch, revolution_mask
 from .kernel_ground import LidarGround
 from .kernel_objects import LidarObjects
@@ -51,6 +52,7 @@ class LidarKind(Kind):
     weather_limits_range = True
     object_curves = OBJECT_CURVES
     counts_points = True
+    shows_parts = True
     keys = sensor_table.KEYS
 
     def measure(
@@ -64,6 +66,10 @@ class LidarKind(Kind):
     ) -> Floats:
         """Count the beams that end on each object."""
         return count_on_objects(sensor, objects, vehicle, traffic)
+
+    def measure_parts(self, sensor: Sensor, parts: BodyParts, vehicle: Vehicle | None) -> Floats:
+        """Count the beams that meet each cell in the band in which they surely end."""
+        return count_on_parts(sensor, parts, vehicle)
 
     def read(self, name: str, table: Mapping[str, Any], folder: Path) -> Lidar:
         """Build a LiDAR from its table."""

@@ -36,7 +36,6 @@ from ..ray_fan import RayFan, angles_of, cast_fan
 from ..ray_fan_boxes import side_points
 from .detection import counted, detection_probability, signal_to_noise
 from .model import Radar, RadarMode, radar_of
-from .reflectivity import reflectivity_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -125,7 +124,7 @@ def target_detections(
     length, width, height = SIZES[TARGET]
     across = 2.0 * (length + width) / math.pi
     sizes = np.full(1, length * width / across), np.full(1, across), np.full(1, height)
-    rcs = float(reflectivity_of(TARGET, radar.rcs).square_metres(ASPECTS).mean())
+    rcs = float(radar.reflectivity(TARGET).square_metres(ASPECTS).mean())
     m = np.zeros(distance.shape)
     for mode in radar.modes:
         ahead = mode.faces(angles[0])
@@ -229,6 +228,6 @@ def _rcs(radar: Radar, objects: Objects, own: Ints, aspect: Floats) -> Floats:
     labels = objects.labels[own]
     for number in np.unique(labels).tolist():
         some = labels == number
-        reflectivity = reflectivity_of(objects.class_names[number], radar.rcs)
+        reflectivity = radar.reflectivity(objects.class_names[number])
         rcs[some] = reflectivity.square_metres(aspect[some])
     return rcs

@@ -21,7 +21,7 @@ from .definition import (
     seen_through,
 )
 from .model import radar_of
-from .reflectivity import UNKNOWN_DBSM
+from .reflectivity import LOW_DBSM
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -67,14 +67,14 @@ def measure_columns(
 def detects_points(sensor: Sensor, points: Floats, fan: RayFan) -> Flags:
     """Whether points (N, 3) of posts are detected with the probability of the data sheet.
 
-    A post has the RCS of a pedestrian in one cell, that of the weakest class.
+    A post has the RCS in one cell that 95 % of all pedestrians exceed, the weakest class.
     """
     radar = radar_of(sensor)
     offsets = points - (np.asarray(sensor.pose.position) + NUDGE_M)
     distance = np.maximum(np.sqrt(dot(offsets, offsets)), NEAR_M)
     angles = angles_of(sensor, offsets)
     free, loss = seen_through(fan, angles, distance)
-    rcs = np.full(len(points), 10.0 ** (UNKNOWN_DBSM / 10.0))
+    rcs = np.full(len(points), 10.0 ** (LOW_DBSM["pedestrian"] / 10.0))
     found = np.zeros(len(points), bool)
     for mode in radar.modes:
         pd = mode_signal(radar, mode, angles, distance, rcs, loss)

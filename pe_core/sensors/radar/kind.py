@@ -66,6 +66,9 @@ class RadarKind(FanKind):
     object_curves = OBJECT_CURVES
     counts_points = True
     point = 0.9
+    lowest_m = 0.8
+    """Its figure for what stands on the ground is that of a pedestrian: the cylinder of UN R158 and
+    FMVSS 111, which stands for a small child, is the lowest."""
     keys = sensor_table.KEYS
     rules = RULES
     occlusion_text = "field hidden"
@@ -88,6 +91,10 @@ class RadarKind(FanKind):
         """Add the attenuation of rain, ITU-R P.838-3; fog and snow leave it as it is."""
         rain = rain_db_per_km(weather.rain_mm_h)
         return replace(model, attenuation_db_km=model.attenuation_db_km + rain) if rain else model
+
+    def cautious(self, model: Radar) -> Radar:
+        """Return the radar with the RCS that 95 % of the bodies exceed."""
+        return model if model.is_cautious else model.cautious
 
     def data_sheet(self, model: Radar) -> list[str]:
         """Return the figures of each mode, and those of the radar, a line each."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import ClassVar, cast
 
@@ -20,7 +20,7 @@ from ..field_of_view import MIN_RANGE
 from ..ray_fan import AngleWindow
 from ..weather import LIGHT_M_S
 from .detection import ratio_of_db, snr_for
-from .reflectivity import DBSM, Reflectivity
+from .reflectivity import DBSM, Reflectivity, cautious_reflectivity, reflectivity_of
 
 Floats = NDArray[np.float64]
 
@@ -157,6 +157,8 @@ class Radar(SensorModel):
         Attenuation of the air, one way [dB/km]: 0 in clear air.
     rcs : mapping of str to Reflectivity
         RCS of classes, in place of those of `reflectivity`.
+    is_cautious : bool
+        Whether classes have the RCS of `cautious_reflectivity`.
 
     Raises
     ------
@@ -176,6 +178,7 @@ class Radar(SensorModel):
     cover_loss_db: float = 0.0
     attenuation_db_km: float = 0.0
     rcs: Mapping[str, Reflectivity] = field(default_factory=dict)
+    is_cautious: bool = False
 
     def __post_init__(self) -> None:
         name, put = A_NAME.checked("radar", "name", self.name), object.__setattr__
@@ -200,6 +203,16 @@ class Radar(SensorModel):
         if self.list_length is not None:
             put(self, "list_length", LIST.checked(name, "list_length", self.list_length))
         put(self, "rcs", dict(self.rcs))
+
+    @cached_property
+    def cautious(self) -> Radar:
+        """The radar as requirements take it: what most bodies return, not what half of them do."""
+        return replace(self, is_cautious=True)
+
+    def reflectivity(self, name: str) -> Reflectivity:
+        """Return the RCS of a class of objects."""
+        known = cautious_reflectivity if self.is_cautious else reflectivity_of
+        return known(name, self.rcs)
 
     @cached_property
     def anchor(self) -> tuple[float, float]:

@@ -26,10 +26,15 @@ MEDIAN_DBSM = {
     "bus": 12.0,
     "truck": 15.0,
 }
-"""Medians of measurements at 77 to 79 GHz [dBsm], as surveys quote them; a pedestrian's RCS is
-within -20.7 to -4.8 dBsm in 90 % of them. A cyclist is taken as the bicycle."""
+"""Medians of measurements at 77 to 79 GHz [dBsm], as surveys quote them. A cyclist is taken as the
+bicycle."""
+LOW_DBSM = {"pedestrian": -20.7}
+"""What 95 % of the measurements exceed [dBsm]: a pedestrian's RCS is within -20.7 to -4.8 dBsm in
+90 % of them. Of other classes no spread was found."""
 UNKNOWN_DBSM = MEDIAN_DBSM["pedestrian"]
 """Of a class without a figure: the weakest of the table, on the safe side."""
+NO_ECHO = -math.inf
+"""Of a class without a figure to a requirement [dBsm]."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +63,17 @@ class Reflectivity:
 def reflectivity_of(name: str, own: Mapping[str, Reflectivity]) -> Reflectivity:
     """Return the RCS of a class: the sensor's own figure, that of the table, or the weakest."""
     return own.get(name) or Reflectivity((MEDIAN_DBSM.get(name, UNKNOWN_DBSM),))
+
+
+def cautious_reflectivity(name: str, own: Mapping[str, Reflectivity]) -> Reflectivity:
+    """Return the RCS of a class to a requirement.
+
+    The sensor's own figure or the median, or what 95 % of the measurements exceed where that is
+    less. A class without a figure sends no echo: nobody knows its RCS.
+    """
+    found = own.get(name) or Reflectivity((MEDIAN_DBSM.get(name, NO_ECHO),))
+    most = LOW_DBSM.get(name, math.inf)
+    return Reflectivity(tuple(min(level, most) for level in found.dbsm), found.aspects)
 
 
 def read_reflectivity(source: str, tables: Any) -> dict[str, Reflectivity]:

@@ -53,6 +53,8 @@ class UltrasonicKind(FanKind):
     curve = NO_AP
     object_curves = _AnyClass()
     counts_points = True
+    lowest_m = 0.01
+    """Flat ground returns no echo."""
     keys = frozenset({"hfov_deg", "vfov_deg", "max_range_m", "min_range_m", "max_incidence_deg"})
     occlusion_text = "cone hidden"
     rules = RULES

@@ -17,24 +17,23 @@ from .scores import BODY_M, CANDIDATES
 TITLE = "# Do the scores rank placements as detectors do?"
 
 
-def page(results: ValidityResults) -> str:
-    """Return the page as Markdown."""
-    return wrapped(section(results) for section in SECTIONS)
+def page(results: ValidityResults, own: str) -> str:
+    """Return the page as Markdown; `own` is the answer of our own study."""
+    return wrapped([_head(results, own), *(section(results) for section in SECTIONS)])
 
 
-def head(results: ValidityResults) -> str:
-    """Return the title, and the answer in short."""
+def _head(results: ValidityResults, own: str) -> str:
+    """Return the title, and the answers in short."""
     counts = joined([f"{len(p.placements)} placements in {p.short}" for p in papers()])
     return f"""
 {TITLE}
 
+[Our own study](own/README.md), with detectors trained at placements that it draws itself: {own}
+
 A score of sensor placements is useful if detectors find more when they are trained and tested with the
 better-scored placement. Such results are published for few placements: {counts}, each
-with four detectors. This page compares the scores of this project with those results. `pe validate`
+with four detectors. The rest of this page compares the scores of this project with those results. `pe validate`
 writes it; every figure is in [results.json](results.json), and every verdict follows from the figures.
-
-[A study of our own](own/README.md) trains detectors at placements that it draws itself, with a bounded look at
-[cameras](own/README.md#cameras).
 
 In short: {_significant(results)} {_opposite(results)} {_height(results)}
 """
@@ -229,7 +228,6 @@ figures are in `pe_tools/validity/data/published_placements.json`.
 
 
 SECTIONS = (
-    head,
     evidence,
     comparison,
     over_both_papers,

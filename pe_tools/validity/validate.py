@@ -25,6 +25,7 @@ from ..reproduction.results_file import (
     checked_entries,
     named_items,
     read_complete,
+    read_json,
 )
 from ..reproduction.task_runner import compute
 from ..reproduction.wording import PAGE, check_page
@@ -47,7 +48,7 @@ def validate(args: argparse.Namespace, folder: Path) -> Answer:
         check_matplotlib()  # complains now, not after the scores
     data = _results(args, folder)
     results = ValidityResults(data)
-    write_bytes(folder / PAGE, page(results).encode())
+    write_bytes(folder / PAGE, page(results, own_answer(folder)).encode())
     if has_matplotlib():
         from .plots import draw_all
 
@@ -55,6 +56,12 @@ def validate(args: argparse.Namespace, folder: Path) -> Answer:
     else:
         tell(f"no plots, as matplotlib is missing: {EXTRA}")
     return dump_json(data) if args.json else summary(results), DONE
+
+
+def own_answer(folder: Path) -> str:
+    """Return the answer of our own study, whose results are in a folder of its own within."""
+    path = folder / "own" / RESULTS
+    return str(read_json(path)["answer"]) if path.exists() else "it is not done here."
 
 
 def _results(args: argparse.Namespace, folder: Path) -> dict[str, Any]:

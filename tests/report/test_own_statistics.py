@@ -8,23 +8,34 @@ import numpy as np
 import pytest
 
 from pe_tools.validity import ranks
-from pe_tools.validity.own.analysis import HOLDS, OPEN, REFUTED, analysis, step_title
+from pe_tools.validity.own.afterwards import afterwards
+from pe_tools.validity.own.afterwards_section import afterwards_section, short_answer
+from pe_tools.validity.own.analysis import (
+    HOLDS,
+    OPEN,
+    REFUTED,
+    UNDECIDED,
+    analysis,
+    step_title,
+)
 from pe_tools.validity.own.placements import placements
 from pe_tools.validity.own.plan import FIXED, full_plan, quick_plan
 from pe_tools.validity.own.rank_tests import (
     PlacementSamples,
+    bca_interval,
     better_half,
     interval,
     ordered_share,
     partial_rho,
     permutation_p,
     pooled_noise,
+    power,
     ranks_of,
     resamples,
     rho_within,
 )
 from pe_tools.validity.own.runs import runs
-from pe_tools.validity.own.scores import PRIMARY
+from pe_tools.validity.own.scores import COVERAGE, PRIMARY
 from pe_tools.validity.own.study_page import page
 
 RULE = replace(full_plan().statistics, permutations=9_999, resamples=500)
@@ -120,6 +131,31 @@ def test_intervals_hold_the_true_rho_about_as_often_as_they_say():
     assert 0.85 * tries <= held <= tries
 
 
+def percentiles(values, samples):
+    return interval(samples, RULE, 1, lambda s: rho_within(values[s.index], s.ap, samples.members))
+
+
+def test_bca_takes_back_the_bias_of_ties_and_power_rises_with_rho():
+    """With few placements, those drawn twice pull rho of the bootstraps towards 0."""
+    rng = np.random.default_rng(4)
+    off, shifts, above = [], [], 0
+    for _ in range(30):
+        score = rng.normal(size=16)
+        samples = samples_of(score + 0.7 * rng.normal(size=16), [0] * 8 + [1] * 8)
+        rho = float(rho_within(score, samples.ap, samples.members))
+        corrected, mean = bca_interval(score, samples, RULE, 1)
+        off.append(mean - rho)
+        shifts.append(np.subtract(corrected, percentiles(score, samples)).mean())
+        above += corrected[0] < rho < corrected[1]
+    assert np.mean(off) < -0.03 and np.mean(shifts) > 0.02 and above == 30
+    many = samples_of(np.append(score, score + rng.normal(size=16)))
+    (low, high), mean = bca_interval(many.ap, many, RULE, 1)
+    assert [low, mean, high] == pytest.approx([1.0] * 3)
+    seeds = samples_of(samples.ap[:, None] + 0.1 * rng.normal(size=(16, 2)), samples.groups)
+    found = [power(rho, seeds, RULE, 1, 100) for rho in (0.0, 0.6, 0.99)]
+    assert found[0] < 0.1 < found[1] < 0.9 < found[2]
+
+
 def test_pairs_of_different_hardware_by_hand():
     ap = np.array([0.1, 0.2, 0.3, 0.9])
     hardware, vehicle = np.array(["a", "a", "b", "b"]), np.zeros(4)
@@ -148,7 +184,11 @@ def made_up(plan, missing=0):
     done = {}
     for run in runs(plan)[: len(runs(plan)) - missing]:
         tested = {n: {"ap": ap(n), "trained_with": n.startswith("mixed")} for n in chosen}
-        done[run.name] = {"ap": ap(run.placement.name)} if run.placement else {"placements": tested}
+        found = ap(run.placement.name if run.placement else "fixed-sedan-01")
+        by_ring = {ring: {"car": found, "truck": found} for ring in plan.precision.rings}
+        done[run.name] = (
+            {"ap": found, "by_ring": by_ring} if run.placement else {"placements": tested}
+        )
     part = {"entropy": 1.0, "ap": 0.5}
     scores = {
         name: {
@@ -196,8 +236,71 @@ def test_a_step_decides_nothing_and_marks_the_statements_whose_sign_it_changes()
     assert step["order"]["rho"] == pytest.approx(-1.0) and step["placements"] == 12
     row = step["scores"][PRIMARY]
     assert row["rho"] == pytest.approx(-1.0) and row["plain"]["rho"] == pytest.approx(1.0)
-    text = page(plan, turned, {})
+    text = page(plan, {**turned, "answer": "", "afterwards": {}}, {})
     assert f"| holds; sign changes: {title} |" in text and "is above 0 in 3 of 4 steps" in text
+
+
+@pytest.mark.parametrize(("sign", "verdict"), [(0.0, UNDECIDED), (-1.0, REFUTED)])
+def test_a_sign_that_is_left_open_refutes_nothing(sign, verdict):
+    """The better half has its AP at random, or against the score."""
+    plan = replace(full_plan(), statistics=replace(RULE, permutations=99))
+    done, scores = made_up(plan)
+    best = max(found["ap"] for name, found in done.items() if name.startswith("fixed"))
+    rng = np.random.default_rng(11)
+    for name, found in done.items():
+        if name.startswith("fixed") and int(name.split("-")[2]) > 8:
+            found["ap"] = best + 0.3 + sign * 0.01 * int(name.split("-")[2])
+            found["ap"] += 0.001 * float(rng.uniform())
+    row = analysis(plan, done, scores)["statements"][2]
+    assert row["verdict"] == verdict
+    assert (row["figures"]["interval"][1] < 0.0) is (verdict == REFUTED)
+
+
+def test_what_was_looked_for_afterwards_by_hand():
+    """One rig of one beam finds most and has the lowest score but for the sedan's first one."""
+    plan = replace(full_plan(), statistics=replace(RULE, permutations=99, resamples=60))
+    done, scores = made_up(plan)
+    few = next(p for p in placements(plan) if p.name == "across-sedan-02")
+    first = next(p for p in placements(plan) if p.name == "fixed-sedan-01")
+    for name, found in done.items():
+        if name.startswith(few.name):
+            found["ap"] = 0.99
+    scores[few.name] |= {"beams": 1, "road": {"entropy": 0.5, "coverage": 0.1}}
+    scores[first.name]["road"]["entropy"] = 1.0
+    found = analysis(plan, done, scores)
+    found["afterwards"] = after = afterwards(plan, done, scores, {"classes": {}})
+    others = [
+        p
+        for p in placements(plan)
+        if p.design in ("fixed", "across") and p.vehicle == "sedan" and p.hardware != few.hardware
+    ]
+    pairs = after["fewer_beams"]
+    assert pairs["pairs"] == pairs["others"] == len(others)
+    assert pairs["blind"] == sum(not p.all_round for p in others) == 4
+    assert pairs["wrong"][PRIMARY] == len(others) - 1 and pairs["wrong"]["mean height"] > 0
+    assert after["all_round"]["placements"] == 24
+    assert after["all_round"]["scores"][PRIMARY]["by_vehicle"]["bus"] == pytest.approx(1.0)
+    assert [part["scores"][PRIMARY]["rho"] > 0.9 for part in after["rings"].values()] == [True] * 3
+    assert not afterwards(plan, *made_up(plan, missing=100), {"classes": {}})
+    # the answer follows
+    searched, cameras = {"rigs": {}}, {"verdict": UNDECIDED}
+    told = short_answer(plan, found, searched, cameras)
+    assert "over 32 placements" in told and "the 24 that see all round" in told
+    assert "blind sector" in told and "Real roads and cameras are not shown" in told
+    assert "Coverage does as well" not in told and "beyond" not in told
+    found["designs"][FIXED]["scores"][COVERAGE]["rho"] = 1.0
+    rings = {ring: {"interval": [0.1, 0.2]} for ring in plan.precision.rings}
+    rings[next(iter(rings))] = {"interval": [-0.2, -0.1]}
+    searched["rigs"] = {"one": {"by_ring": rings}, "other": {"by_ring": rings}}
+    pairs["wrong"][PRIMARY] = 0
+    told = short_answer(plan, found, searched, {"verdict": HOLDS})
+    assert "Coverage does as well" in told and "blind sector" not in told
+    assert "found more beyond 30 m, entropy within 15." in told and "Real roads are not" in told
+    found["statements"][0]["verdict"] = REFUTED
+    assert "were not shown to find more" in short_answer(plan, found, searched, cameras)
+    found["statements"][0]["verdict"] = OPEN
+    assert "is open" in short_answer(plan, found, searched, cameras)
+    assert "exploratory" in afterwards_section(found)
 
 
 def test_few_placements_give_no_figures():

@@ -3,6 +3,7 @@
 import hashlib
 import importlib.util
 import json
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -14,11 +15,13 @@ from benchmarks.embree import Embree
 from pe_core import InputError
 from pe_core.geometry.raycast import VisibleTriangles
 from pe_core.geometry.triangle_tree import TriangleTree
-from pe_tools.validity.own import shapes
+from pe_tools.validity.own import result_files, shapes
 from pe_tools.validity.own.after_search.plan import full_after_search_plan
 from pe_tools.validity.own.after_search.searches import searched_placements
 from pe_tools.validity.own.after_search.section import after_search_section
 from pe_tools.validity.own.after_search.study import AfterSearchFiles
+from pe_tools.validity.own.afterwards_section import afterwards_section, short_answer
+from pe_tools.validity.own.analysis import UNDECIDED
 from pe_tools.validity.own.batches import NEITHER, detections, inputs, targets
 from pe_tools.validity.own.cameras.plan import full_camera_plan
 from pe_tools.validity.own.cameras.section import camera_section
@@ -26,13 +29,16 @@ from pe_tools.validity.own.cameras.study import CameraFiles, camera_analysis
 from pe_tools.validity.own.cast_cache import FIELDS, cached
 from pe_tools.validity.own.casting import GROUND_M, MAX_POINTS, Caster, FreeBeams
 from pe_tools.validity.own.curve_section import curve_section
+from pe_tools.validity.own.history import history, history_section
 from pe_tools.validity.own.placements import placements
 from pe_tools.validity.own.plan import PLAIN, TOWN, full_plan, quick_plan
 from pe_tools.validity.own.precision import ClassScene, average_precision, in_ring
+from pe_tools.validity.own.result_files import digest_of_files, run_digest
 from pe_tools.validity.own.runs import RunFiles, runs
 from pe_tools.validity.own.scenes import CLASSES, NOBODY, scene
+from pe_tools.validity.own.scores import PRIMARY
 from pe_tools.validity.own.segmentation import section
-from pe_tools.validity.own.study_page import answer, page
+from pe_tools.validity.own.study_page import page
 from tests.report.conftest import ROOT, pe
 from tests.thorough import THOROUGH
 
@@ -260,6 +266,8 @@ def test_the_steps_run_with_their_world_and_detector():
     assert answer.returncode == 0, answer.stderr
     data = json.loads(answer.stdout)
     assert data["training"]["epochs"] == 2 and 0.0 <= data["ap"] <= 1.0
+    made = {k: data["made"][k] for k in ("python", "numpy", "tensorflow")}
+    assert data["made"]["digest"] == run_digest(quick_plan().digest, made)
 
 
 def test_processes_that_share_a_folder_do_different_runs(tmp_path):
@@ -293,10 +301,75 @@ def test_the_page_is_that_of_the_saved_results():
     placements = searched_placements(searches, folder)
     done_after = AfterSearchFiles(folder, searches, placements).read()
     after = after_search_section(searches, searched, done_after)
-    more = curves, after, camera_section(cameras, found, done_with_cameras), outside
+    groups = {".": done, "after_search": done_after, "cameras": done_with_cameras}
+    happened = history(folder, groups)
+    assert saved["history"] == happened, "no result was replaced since the page was written"
+    more = (
+        *(afterwards_section(saved), curves, after),
+        *(camera_section(cameras, found, done_with_cameras), outside, history_section(happened)),
+    )
     assert (folder / "README.md").read_text("utf-8") == page(PLAN, saved, done, *more)
-    readme = (ROOT / "README.md").read_text("utf-8")
-    assert answer(saved) in " ".join(readme.split()), "the README tells the answer of the page"
+    assert saved["answer"] == short_answer(PLAN, saved, searched, found)
+
+
+def test_other_pages_give_the_answer_of_the_study_and_the_readme_in_seventy_words():
+    answer = json.loads((ROOT / "docs/validity/own/results.json").read_text("utf-8"))["answer"]
+    for page_of_it in ("README.md", "docs/howto/compare.md", "docs/validity/README.md"):
+        blocks = (ROOT / page_of_it).read_text("utf-8").split("\n\n")
+        (told,) = (text for b in blocks if answer in (text := " ".join(b.split())))
+        study, published = told.find("ur own study]"), told.find("ublished")
+        assert study >= 0 and (published < 0 or study < published), "our own study comes first"
+        if page_of_it == "README.md":
+            assert len(re.sub(r"\]\([^)]*\)", "]", told).split()) <= 70
+
+
+def test_the_better_half_is_not_decided_and_other_methods_lean_to_it():
+    """As others computed it from the same runs, with code of their own."""
+    saved = json.loads((ROOT / "docs/validity/own/results.json").read_text("utf-8"))
+    half = saved["afterwards"]["better_half"]
+    assert saved["statements"][2]["verdict"] == UNDECIDED
+    assert half["p"] == pytest.approx(0.017, abs=1e-3)
+    assert half["bca"] == pytest.approx([0.18, 0.88], abs=0.01)
+    assert half["bootstrap_mean"] == pytest.approx(0.53, abs=0.005)
+    assert 0.25 < half["power"][0]["share"] < half["power"][1]["share"] < 0.52
+    rows = saved["afterwards"]
+    assert rows["minus_beams"]["interval"] == pytest.approx([-0.006, 0.11], abs=0.005)
+    assert (rows["fewer_beams"]["pairs"], rows["fewer_beams"]["wrong"][PRIMARY]) == (10, 10)
+    assert rows["curves_across"]["rmse"] == pytest.approx(0.020, abs=5e-4)
+
+
+def test_the_page_tells_which_results_were_replaced_and_which_commits_are_lost():
+    happened = json.loads((ROOT / "docs/validity/own/results.json").read_text("utf-8"))["history"]
+    changes = [row["after"] - row["before"] for row in happened["replaced"].values()]
+    assert [round(f(changes), 3) for f in (min, max)] == [0.003, 0.025] and len(changes) == 4
+    lost = {name: sum(group["lost"].values()) for name, group in happened["groups"].items()}
+    assert lost == {".": 8, "after_search": 0, "cameras": 3}
+    assert all(group["plan_alone"] == group["runs"] for group in happened["groups"].values())
+
+
+def test_a_run_s_digest_covers_plan_code_prior_and_versions(tmp_path, monkeypatch):
+    versions = {"python": "3.11", "numpy": "1.26.4", "tensorflow": "2.21.0"}
+    first = run_digest("plan", versions)
+    assert first == run_digest("plan", versions)
+    assert first != run_digest("other", versions)
+    assert first != run_digest("plan", {**versions, "numpy": "2.0.0"})
+    roots = {"pe_core": tmp_path / "core", "pe_tools.validity.own": tmp_path / "own"}
+    for root in roots.values():
+        (root / "prior").mkdir(parents=True)
+        (root / "prior" / "classes.py").write_text("x = 1")
+    monkeypatch.setattr(result_files.resources, "files", lambda package: roots[package])
+    one = run_digest("plan", versions)
+    for root in roots.values():
+        (root / "prior" / "classes.py").write_text("x = 2")
+        assert one != (one := run_digest("plan", versions))
+
+
+def test_a_replaced_result_changes_the_digest_of_the_files(tmp_path):
+    files = RunFiles(tmp_path, quick_plan())
+    files.write(files.all[0], {"ap": 0.5})
+    before = digest_of_files(tmp_path / "runs")
+    files.write(files.all[0], {"ap": 0.6})
+    assert digest_of_files(tmp_path / "runs") != before
 
 
 def test_the_command_refuses_to_mix_results_and_says_what_is_missing(tmp_path):

@@ -105,41 +105,52 @@ def analysis(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, 
 
 def designs_of(plan: StudyPlan, results: Mapping[str, Json]) -> list[DesignResults]:
     """Return the finished parts of all designs."""
-    own = [_design(plan, name, results) for name in (FIXED, ACROSS)]
+    own = [plain_design(plan, [name], results) for name in (FIXED, ACROSS)]
     return own + [_mixed(plan, results, name) for name in (MIXED, FRESH)]
 
 
-def _design(
-    plan: StudyPlan, name: str, results: Mapping[str, Json], of_class: str | None = None
-) -> DesignResults:
-    """Return the finished part of a design with a detector a placement."""
-    wanted = [r for r in runs(plan) if r.design == name and (r.world, r.detector) == (PLAIN, GRID)]
-    return of_runs(name, wanted, results, of_class)
+def mean_ap(found: Json) -> float:
+    """Return the mean AP of the classes that a run has found."""
+    return float(found["ap"])
 
 
-def fixed_design(
-    plan: StudyPlan, results: Mapping[str, Json], of_class: str | None = None
+def mean_ap_in(ring: str) -> Callable[[Json], float]:
+    """Return what takes the mean AP of the classes in a ring from what a run has found."""
+    return lambda found: float(np.mean(list(found["by_ring"][ring].values())))
+
+
+def plain_design(
+    plan: StudyPlan,
+    names: Sequence[str],
+    results: Mapping[str, Json],
+    ap_of: Callable[[Json], float] = mean_ap,
 ) -> DesignResults:
-    """Return the finished part of the fixed design: mean AP of the classes, or the AP of one."""
-    return _design(plan, FIXED, results, of_class=of_class)
+    """Return the finished part of designs with a detector a placement, in the plain world.
+
+    Parameters
+    ----------
+    plan : StudyPlan
+    names : sequence of str
+        Of the designs; the first one is that of the results.
+    results : mapping
+    ap_of : callable
+        Returns the AP of a run's results.
+    """
+    wanted = [r for r in runs(plan) if r.design in names and (r.world, r.detector) == (PLAIN, GRID)]
+    return of_runs(names[0], wanted, results, ap_of)
 
 
 def of_runs(
     name: str,
     wanted: Sequence[PlacementRun],
     results: Mapping[str, Json],
-    of_class: str | None = None,
+    ap_of: Callable[[Json], float] = mean_ap,
 ) -> DesignResults:
-    """Return what runs with a detector a placement have found, as far as they are done.
-
-    Their AP is the mean of the classes, or that of the class `of_class`.
-    """
+    """Return what runs with a detector a placement have found, as far as they are done."""
     aps: dict[PosedSensors, list[float]] = {}
     for run in wanted:
         if run.name in results and run.placement is not None:
-            found = results[run.name]
-            ap = found["ap"] if of_class is None else found["by_class"][of_class]
-            aps.setdefault(run.placement, []).append(ap)
+            aps.setdefault(run.placement, []).append(ap_of(results[run.name]))
     done = sum(map(len, aps.values()))
     return DesignResults(name, list(aps), _samples(aps), done, len(wanted))
 
@@ -165,9 +176,10 @@ def _samples(aps: Mapping[PosedSensors, Sequence[float]]) -> PlacementSamples:
     return PlacementSamples(values, groups, np.array([p.hardware for p in aps]))
 
 
-def _values(
+def values_of(
     score: ComparedScore, chosen: Sequence[PosedSensors], scores: Mapping[str, Json]
 ) -> Floats:
+    """Return a score's value at each placement, (P,)."""
     return np.array([score.value(p, scores[p.name]) for p in chosen])
 
 
@@ -189,8 +201,8 @@ def design_table(plan: StudyPlan, design: DesignResults, scores: Mapping[str, Js
     return {
         **head,
         "seeds": design.samples.aps.shape[1],
-        "ap": [_rounded(float(v)) for v in (ap.min(), np.median(ap), ap.max())],
-        "noise": _rounded(pooled_noise(design.samples)),
+        "ap": [rounded(float(v)) for v in (ap.min(), np.median(ap), ap.max())],
+        "noise": rounded(pooled_noise(design.samples)),
         "scores": rows,
     }
 
@@ -198,19 +210,19 @@ def design_table(plan: StudyPlan, design: DesignResults, scores: Mapping[str, Js
 def _row(
     plan: StudyPlan, design: DesignResults, score: ComparedScore, scores: Mapping[str, Json]
 ) -> Json:
-    values, samples = _values(score, design.chosen, scores), design.samples
+    values, samples = values_of(score, design.chosen, scores), design.samples
     heights = np.array([p.mean_height for p in design.chosen])
-    row = _rho(plan, samples, values)
+    row = rho_of(plan, samples, values)
     row["p"] = permutation_p(values, samples, plan.statistics, plan.seed)
     if score.name != HEIGHT:
-        row["given_height"] = _partial(plan, samples, values, heights)
-        row["height_given"] = _partial(plan, samples, heights, values)
+        row["given_height"] = partial_of(plan, samples, values, heights)
+        row["height_given"] = partial_of(plan, samples, heights, values)
     if samples.aps.shape[1] > 1:
         row["better_half"] = _better_half(plan, samples, values)
     return row
 
 
-def _rho(plan: StudyPlan, samples: PlacementSamples, values: Floats) -> Json:
+def rho_of(plan: StudyPlan, samples: PlacementSamples, values: Floats) -> Json:
     """Return the rank correlation of values with AP, and its interval."""
     members = samples.members
 
@@ -218,12 +230,13 @@ def _rho(plan: StudyPlan, samples: PlacementSamples, values: Floats) -> Json:
         return rho_within(values[resample.index], resample.ap, members)
 
     return {
-        "rho": _rounded(float(rho_within(values, samples.ap, members))),
-        "interval": _interval(plan, samples, rho),
+        "rho": rounded(float(rho_within(values, samples.ap, members))),
+        "interval": interval_of(plan, samples, rho),
     }
 
 
-def _partial(plan: StudyPlan, samples: PlacementSamples, values: Floats, given: Floats) -> Json:
+def partial_of(plan: StudyPlan, samples: PlacementSamples, values: Floats, given: Floats) -> Json:
+    """Return the partial rank correlation of values with AP, given others, and its interval."""
     members = samples.members
 
     def partial(resample: Resample) -> Floats:
@@ -231,36 +244,38 @@ def _partial(plan: StudyPlan, samples: PlacementSamples, values: Floats, given: 
         return partial_rho(values[index], resample.ap, given[index], members)
 
     return {
-        "rho": _rounded(float(partial_rho(values, samples.ap, given, members))),
-        "interval": _interval(plan, samples, partial),
+        "rho": rounded(float(partial_rho(values, samples.ap, given, members))),
+        "interval": interval_of(plan, samples, partial),
     }
 
 
 def _better_half(plan: StudyPlan, samples: PlacementSamples, values: Floats) -> Json | None:
+    of_half, half = better_half_of(samples, values)
+    return rho_of(plan, half, of_half) if half.members else None
+
+
+def better_half_of(samples: PlacementSamples, values: Floats) -> tuple[Floats, PlacementSamples]:
+    """Return the values of the better half of each vehicle's placements, and their samples."""
     index, half = better_half(samples)
-    return _rho(plan, half, values[index]) if half.members else None
+    return values[index], half
 
 
-def _interval(
+def interval_of(
     plan: StudyPlan, samples: PlacementSamples, statistic: Callable[[Resample], Floats]
 ) -> list[float | None]:
-    return [_rounded(v) for v in interval(samples, plan.statistics, plan.seed, statistic)]
+    """Return the interval that the plan names, of any statistic."""
+    return [rounded(v) for v in interval(samples, plan.statistics, plan.seed, statistic)]
 
 
 def _pairs(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, Json]) -> Json:
     """Return how many pairs of placements with different hardware each score orders rightly."""
-    parts = [_design(plan, name, results) for name in (FIXED, ACROSS)]
-    both = [
-        run
-        for run in runs(plan)
-        if run.placement is not None and (run.world, run.detector) == (PLAIN, GRID)
-    ]
-    design = of_runs("pairs", both, results)
+    parts = [plain_design(plan, [name], results) for name in (FIXED, ACROSS)]
+    design = plain_design(plan, (FIXED, ACROSS), results)
     head = {"done": sum(p.done for p in parts), "planned": sum(p.planned for p in parts)}
     if not all(part.has_figures for part in parts):
         return {**head, "scores": {}}
     samples, tie = design.samples, plan.statistics.tie_ap
-    values = {s.name: _values(s, design.chosen, scores) for s in COMPARED}
+    values = {s.name: values_of(s, design.chosen, scores) for s in COMPARED}
 
     def share(name: str) -> Callable[[Resample], Floats]:
         def statistic(resample: Resample) -> Floats:
@@ -276,12 +291,12 @@ def _pairs(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, Js
         return ordered_share(values[name], samples.ap, samples.hardware, samples.groups, tie)
 
     rows = {
-        name: {"share": _rounded(of_all(name)), "interval": _interval(plan, samples, share(name))}
+        name: {"share": rounded(of_all(name)), "interval": interval_of(plan, samples, share(name))}
         for name in values
     }
     difference = {
-        "share": _rounded(of_all(EXPECTED_AP) - of_all(PRIMARY)),
-        "interval": _interval(plan, samples, lambda r: share(EXPECTED_AP)(r) - share(PRIMARY)(r)),
+        "share": rounded(of_all(EXPECTED_AP) - of_all(PRIMARY)),
+        "interval": interval_of(plan, samples, lambda r: share(EXPECTED_AP)(r) - share(PRIMARY)(r)),
     }
     return {**head, "scores": rows, "expected_ap_minus_primary": difference}
 
@@ -295,15 +310,15 @@ def _steps(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, Js
             design = of_runs(name, [r for r in wanted if r.design == name], results)
             entry: Json = {"world": step.world, "detector": step.detector, "design": name}
             entry |= {"done": design.done, "planned": design.planned, "scores": {}}
-            plain = _design(plan, name, results)
+            plain = plain_design(plan, [name], results)
             if design.has_figures and set(design.chosen) <= set(plain.chosen):
                 index = np.array([plain.chosen.index(p) for p in design.chosen])
                 same = plain.samples.subset(index)
                 entry |= {"placements": len(design.chosen), "seeds": design.samples.aps.shape[1]}
-                entry["order"] = _rho(plan, same, design.samples.ap)
+                entry["order"] = rho_of(plan, same, design.samples.ap)
                 for score in _of_design(name):
-                    values = _values(score, design.chosen, scores)
-                    here, there = (_rho(plan, s, values) for s in (design.samples, same))
+                    values = values_of(score, design.chosen, scores)
+                    here, there = (rho_of(plan, s, values) for s in (design.samples, same))
                     entry["scores"][score.name] = {**here, "plain": there}
             found.append(entry)
     return found
@@ -329,8 +344,8 @@ def _statements(
             _beside(primary, rule.useful_rho),
             fixed,
         ),
-        ("It still ranks among good placements", half, _above(half), fixed),
-        ("It says more than height", given, _above(given), fixed),
+        ("It still ranks among good placements", half, _beside(half, 0.0), fixed),
+        ("It says more than height", given, _beside(given, 0.0), fixed),
         ("It may be compared across hardware", share, _beside(share, MOSTLY_RIGHT), pairs),
         (
             "Expected AP in traffic is better across hardware",
@@ -377,10 +392,6 @@ def _beside(figures: Json, edge: float) -> str:
     return HOLDS if low > edge else REFUTED if high < edge else UNDECIDED
 
 
-def _above(figures: Json) -> str:
-    """Return `HOLDS` if the interval is above 0, else `REFUTED`."""
-    return HOLDS if _beside(figures, 0.0) == HOLDS else REFUTED
-
-
-def _rounded(value: float) -> float | None:
+def rounded(value: float) -> float | None:
+    """Return a figure as results have it; None for one that is not there."""
     return None if math.isnan(value) else round(value, 4)

@@ -21,15 +21,19 @@ from .after_search.plan import (
     full_after_search_plan,
     quick_after_search_plan,
 )
+from .after_search.searches import FOLDER as AFTER_SEARCH
 from .after_search.searches import searched_placements
 from .after_search.section import after_search_section, answer
 from .after_search.study import AfterSearchFiles, after_search_analysis
+from .afterwards import afterwards
+from .afterwards_section import afterwards_section, short_answer
 from .analysis import CAMERAS, analysis, designs_of
 from .cameras.plan import CameraPlan, full_camera_plan, quick_camera_plan
 from .cameras.section import PICTURES, SHOWN_SCENE, camera_section
 from .cameras.study import CameraFiles, camera_analysis, design_of_cameras
 from .curve_section import PLOT as CURVE_PLOT
 from .curve_section import curve_section, write_curves
+from .history import history, history_section
 from .placements import Placement, placements
 from .plan import StudyPlan, full_plan, quick_plan
 from .result_files import R, ResultFiles
@@ -64,16 +68,23 @@ def validate_own(args: argparse.Namespace, folder: Path) -> Answer:
         do_runs(args, files, DETECTOR, lambda compute, run: compute(plan, run, folder / CAST))
     results = files.read()
     cameras, section_of_cameras = _of_cameras(of_cameras, camera_files)
-    searched, section_of_searches = _of_searches(after_search, folder)
+    searched, done_after, section_of_searches = _of_searches(after_search, folder)
     rigs = [(p, p.rig(plan)) for p in _scored(plan, results)]
     scores = placement_scores(plan, rigs, folder, print_progress)
     outside = "" if args.quick else _from_outside(plan, folder)
     found = analysis(plan, results, scores) | {"ap_curves": scan_curves(plan, results)}
+    found["afterwards"] = afterwards(plan, results, scores, found["ap_curves"])
+    found["answer"] = short_answer(plan, found, searched, cameras)
+    groups = {".": results, AFTER_SEARCH: done_after, CAMERAS: camera_files.read()}
+    found["history"] = history(folder, groups)
     write_bytes(folder / CONCLUSIONS, dump_json(found).encode())
     if args.curves:
         write_curves(Path(args.curves), found["ap_curves"])
     curves = curve_section(found["ap_curves"])
-    more = curves, section_of_searches, section_of_cameras, outside
+    more = (
+        *(afterwards_section(found), curves, section_of_searches, section_of_cameras, outside),
+        history_section(found["history"]),
+    )
     text = page(plan, found, results, *more)
     write_bytes(folder / PAGE, text.encode())
     if has_matplotlib():
@@ -96,17 +107,19 @@ def _do_after_search(args: argparse.Namespace, plan: AfterSearchPlan, folder: Pa
     do_runs(args, files, DETECTOR, lambda compute, run: compute(plan.study, run, folder / CAST))
 
 
-def _of_searches(plan: AfterSearchPlan, folder: Path) -> tuple[Mapping[str, Any], str]:
-    """Return what the runs before and after the searches say, and their section of the page."""
+def _of_searches(
+    plan: AfterSearchPlan, folder: Path
+) -> tuple[Mapping[str, Any], dict[str, Any], str]:
+    """Return what the runs before and after the searches say, them, and their section."""
     placements = searched_placements(plan, folder)
     files = AfterSearchFiles(folder, plan, placements)
     if len(placements) == len(plan.rigs):  # no search is done
-        return after_search_analysis(plan, {}, {}), ""
+        return after_search_analysis(plan, {}, {}), {}, ""
     results, rigs = files.read(), [(p, p.rig(plan.study)) for p in placements]
     scores = placement_scores(plan.study, rigs, files.folder, print_progress)
     found = after_search_analysis(plan, results, scores)
     write_bytes(files.folder / CONCLUSIONS, dump_json(found).encode())
-    return found, after_search_section(plan, found, results)
+    return found, results, after_search_section(plan, found, results)
 
 
 def _of_cameras(plan: CameraPlan, files: CameraFiles) -> tuple[Mapping[str, Any], str]:

@@ -15,6 +15,7 @@ from .casting import Caster, RegionObjects, RegionVoxels
 from .detector import Detector, Network, grid_network, points_network, versions
 from .placements import Placement, placements
 from .plan import FIXED, MIXED, POINTS, SPLITS, StudyPlan
+from .result_files import run_digest
 from .runs import Run
 from .scenes import CLASSES
 from .training import results, test_scenes, timed_training
@@ -59,9 +60,10 @@ def with_origin(data: Json, name: str, digest: str, started: float) -> Json:
     started : float
         Processor time at its beginning [s].
     """
-    made = made_by(RunIdentity(name, digest))
+    made = {**made_by(RunIdentity(name, digest)), **versions()}
+    made["digest"] = run_digest(digest, {k: made[k] for k in ("python", "numpy", "tensorflow")})
     seconds = round(time.process_time() - started, 1)
-    return {**data, "seconds": seconds, "made": {**made, **versions()}}
+    return {**data, "seconds": seconds, "made": made}
 
 
 def _network(plan: StudyPlan, name: str) -> Network:

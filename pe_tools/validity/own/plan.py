@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
+from itertools import pairwise
 from typing import Any
 
 from pe_core.base import Table
@@ -83,6 +84,11 @@ class PrecisionRule:
 
     distances_m: tuple[float, ...]
     rings_m: tuple[float, ...]
+
+    @property
+    def rings(self) -> dict[str, tuple[float, float]]:
+        """Inner and outer distance [m] of each ring by its name in the results."""
+        return {f"{a:g} to {b:g} m": (a, b) for a, b in pairwise(self.rings_m)}
 
 
 @dataclass(frozen=True, slots=True)

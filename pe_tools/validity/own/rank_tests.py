@@ -6,9 +6,11 @@ groups, so that a difference between vehicles is no correlation.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from statistics import NormalDist
 
 import numpy as np
 from numpy.typing import NDArray
@@ -151,6 +153,70 @@ def interval(
     return float(low), float(high)
 
 
+def bca_interval(
+    values: Floats, samples: PlacementSamples, rule: StatisticsRule, seed: int
+) -> tuple[Interval, float]:
+    """Return the interval of rho, corrected for bias and skewness, and the mean of the bootstraps.
+
+    BCa: Efron, Better bootstrap confidence intervals, JASA 82 (1987). The bootstraps are those of
+    `interval`; the acceleration is the jackknife's, a placement left out at a time.
+    """
+    rhos = np.concatenate(
+        [
+            rho_within(values[portion.index], portion.ap, samples.members)
+            for portion in resamples(samples, rule, seed)
+        ]
+    )
+    rho = float(rho_within(values, samples.ap, samples.members))
+    normal = NormalDist()
+    below = float((rhos < rho - SAME).mean() + 0.5 * (np.abs(rhos - rho) <= SAME).mean())
+    bias = normal.inv_cdf(min(max(below, 1.0 / len(rhos)), 1.0 - 1.0 / len(rhos)))
+    kept = [np.delete(np.arange(len(values)), k) for k in range(len(values))]
+    parts = [(values[index], samples.subset(index)) for index in kept]
+    left_out = np.array([float(rho_within(v, part.ap, part.members)) for v, part in parts])
+    off = left_out.mean() - left_out
+    acceleration = float((off**3).sum() / (6.0 * max((off**2).sum(), SAME) ** 1.5))
+    levels = []
+    for p in (0.025, 0.975):
+        shifted = bias + normal.inv_cdf(p)
+        levels.append(100.0 * normal.cdf(bias + shifted / (1.0 - acceleration * shifted)))
+    low, high = np.percentile(rhos, levels)
+    return (float(low), float(high)), float(rhos.mean())
+
+
+def power(
+    rho: float, samples: PlacementSamples, rule: StatisticsRule, seed: int, studies: int
+) -> float:
+    """Return in which share of studies the percentile interval of rho would be above 0.
+
+    The studies have the vehicles and placements of `samples`, and normal pairs whose Spearman's rho
+    is `rho`; the seeds of a placement differ as much as here, beside what placements differ by.
+    """
+    rng = np.random.default_rng([seed, 4])
+    r = 2.0 * math.sin(math.pi * rho / 6.0)
+    spread = float(np.mean([samples.ap[index].std(ddof=1) for index in samples.members]))
+    noise = pooled_noise(samples) / spread
+
+    def is_above() -> bool:
+        score, other = rng.normal(size=(2, len(samples.ap)))
+        seeds = noise * rng.normal(size=samples.aps.shape)
+        ap = r * score + math.sqrt(1.0 - r * r) * other
+        study = replace(samples, aps=ap[:, None] + seeds - seeds.mean(axis=1, keepdims=True))
+
+        def of(resample: Resample) -> Floats:
+            return rho_within(score[resample.index], resample.ap, study.members)
+
+        return interval(study, rule, seed, of)[0] > 0.0
+
+    return sum(is_above() for _ in range(studies)) / studies
+
+
+def better_ones(ap: Floats, hardware: NDArray, groups: NDArray, tie: float) -> NDArray[np.bool_]:
+    """Return the pairs of a group with different hardware, (P, P), each once: row finds more."""
+    counted = (groups[:, None] == groups) & (hardware[:, None] != hardware)
+    return np.asarray(counted & (ap[:, None] - ap >= tie))
+
+
 def ordered_share(
     score: Floats, ap: Floats, hardware: NDArray, groups: NDArray, tie: float
 ) -> float:
@@ -165,9 +231,7 @@ def ordered_share(
     hardware, groups : (P,)
     tie : float
     """
-    counted = (groups[:, None] == groups) & (hardware[:, None] != hardware)
-    difference = ap[:, None] - ap
-    counted &= difference >= tie  # each pair once, the better one first
+    counted = better_ones(ap, hardware, groups, tie)
     if not counted.any():
         return float("nan")
     of_score = (score[:, None] - score)[counted]

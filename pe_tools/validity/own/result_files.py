@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
+import itertools
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from importlib import resources
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -24,7 +27,43 @@ Json = dict[str, Any]
 RUNS = "runs"
 """Folder of the results."""
 SCHEMA = 1
+CODE = ("pe_core", "pe_tools.validity.own")
+"""Packages of which a run is made; they have the prior, the catalogue and the plans, too."""
+DIGITS = 16
 SHARE = Number(0.0, 1.0)
+
+
+def digest_of_files(folder: Path) -> str:
+    """Return the SHA-256 of the results in a folder, 16 digits: of their names and contents."""
+    return _digest_of((path.name, path.read_bytes()) for path in sorted(folder.glob("*.json")))
+
+
+def run_digest(plan: str, versions: Mapping[str, str]) -> str:
+    """Return the digest of what makes a run: plan, code with prior and catalogue, and versions.
+
+    Parameters
+    ----------
+    plan : str
+        Digest of the plan.
+    versions : mapping
+        Of Python and the libraries, by name.
+    """
+    code = sorted(
+        (f"{package}/{path.relative_to(root).as_posix()}", path)
+        for package in CODE
+        for root in [Path(str(resources.files(package)))]
+        for path in root.rglob("*")
+        if path.suffix in (".py", ".toml")
+    )
+    parts = [("plan", plan.encode()), ("versions", dump_json(dict(versions)).encode())]
+    return _digest_of(itertools.chain(parts, ((name, path.read_bytes()) for name, path in code)))
+
+
+def _digest_of(parts: Iterable[tuple[str, bytes]]) -> str:
+    total = hashlib.sha256()
+    for name, content in parts:
+        total.update(f"{name} {len(content)}\n".encode() + content)
+    return total.hexdigest()[:DIGITS]
 
 
 class NamedRun(Protocol):

@@ -19,9 +19,9 @@ from pe_core.metric.fusion import early_fusion
 from pe_core.sensors import ObjectMeasurementCache
 from pe_core.sensors.lidar import LIDAR
 
-from .analysis import DesignResults, fixed_design
+from .analysis import DesignResults, plain_design
 from .placements import Placement, vehicle
-from .plan import StudyPlan
+from .plan import FIXED, StudyPlan
 from .rank_tests import PlacementSamples, resamples
 from .scores import scored_objects
 
@@ -156,7 +156,7 @@ def scan_curves(plan: StudyPlan, results: Mapping[str, Json]) -> Json:
     results : mapping
         Results by the name of the run.
     """
-    whole = fixed_design(plan, results)
+    whole = plain_design(plan, [FIXED], results)
     chosen = [p for p in whole.chosen if isinstance(p, Placement)]
     odd, even = (
         np.array([k for k, p in enumerate(chosen) if _number(p) % 2 == rest], np.int64)
@@ -167,7 +167,10 @@ def scan_curves(plan: StudyPlan, results: Mapping[str, Json]) -> Json:
     if min(len(odd), len(even)) < MIN_HALF:
         return found
     beams = beam_counts(plan, chosen)
-    designs = {name: fixed_design(plan, results, name) for name in beams}
+    designs = {
+        name: plain_design(plan, [FIXED], results, lambda found, of=name: found["by_class"][of])  # type: ignore[misc]
+        for name in beams
+    }
     found["seeds"] = whole.samples.aps.shape[1]
     classes = {name: _of_class(plan, name, beams[name], designs[name], odd, even) for name in beams}
     return {**found, "placements": [chosen[k].name for k in even], "classes": classes}

@@ -26,6 +26,7 @@ SPACE = pe.PerceptionSpace()
 ALONE, TRAFFIC = "alone", "traffic"
 PRIMARY = "perception entropy, road prior"
 EXPECTED_AP = "expected AP, in traffic"
+COVERAGE = "coverage"
 HEIGHT, BEAMS = "mean height", "number of beams"
 
 
@@ -50,7 +51,7 @@ class ComparedScore:
 COMPARED = (
     ComparedScore(PRIMARY, lambda _, s: -float(s["road"]["entropy"])),
     ComparedScore("perception entropy, uniform prior", lambda _, s: -float(s["uniform"])),
-    ComparedScore("coverage", lambda _, s: float(s["road"]["coverage"])),
+    ComparedScore(COVERAGE, lambda _, s: float(s["road"]["coverage"])),
     ComparedScore("object entropy", lambda _, s: -float(s[ALONE]["entropy"])),
     ComparedScore("object entropy, in traffic", lambda _, s: -float(s[TRAFFIC]["entropy"])),
     ComparedScore("expected AP", lambda _, s: float(s[ALONE]["ap"])),

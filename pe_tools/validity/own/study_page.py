@@ -64,24 +64,32 @@ on each other; shapes of a few solids; a small detector, trained with hundreds o
 not for sizes. In the plain world the ground is flat and there are no houses, which favours height. Absolute AP is
 no prediction for a product.
 
-**The answer.** {answer(results)}
+**The answer.** {results["answer"]} {_by_the_plan(results)}
 
 {done} of {planned} runs are done. The study was fixed before the first of them: [plan](plan.md). `pe validate --own
 --resume` does the next ones and writes this page; every figure is computed from the files in the folder `runs`.
 """
 
 
-def answer(results: Json) -> str:
-    """Return the answer in three sentences, also for the README; open until the runs are done."""
+def _by_the_plan(results: Json) -> str:
+    """Return the verdicts of the plan in three sentences; open until the runs are done."""
     verdicts = [row["verdict"] for row in results["statements"]]
-    return f"{_within(verdicts[0])} {_good(verdicts[2:4])} {_across(verdicts[4:])}"
+    return f"By the plan: {_within(verdicts[0])} {_good(verdicts[2:4])} {_across(verdicts[4:])}{_beams(results)}"
+
+
+def _beams(results: Json) -> str:
+    """Return that the number of beams does as well, unless more was shown; or nothing."""
+    gain = results["afterwards"].get("minus_beams")
+    if not gain or gain["interval"][0] > 0.0:
+        return ""
+    return " That it orders other hardware better than the number of beams does was not shown."
 
 
 def _within(verdict: str) -> str:
     return {
-        HOLDS: "Within one rig, placements with a lower perception entropy find more.",
-        REFUTED: "Within one rig, perception entropy does not say which placement finds more.",
-        OPEN: "Whether placements of one rig with a lower perception entropy find more is open: "
+        HOLDS: "within one rig, placements with a lower perception entropy find more.",
+        REFUTED: "within one rig, perception entropy does not say which placement finds more.",
+        OPEN: "whether placements of one rig with a lower perception entropy find more is open: "
         "not all runs of this design are done.",
     }[verdict]
 
@@ -89,7 +97,9 @@ def _within(verdict: str) -> str:
 def _good(verdicts: Sequence[str]) -> str:
     if OPEN in verdicts:
         return "Whether it still does among good placements, and beyond height, is open, too."
-    shown = "still holds" if verdicts[0] == HOLDS else "was not shown"
+    shown = {HOLDS: "still holds", REFUTED: "does not hold", UNDECIDED: "is not decided"}[
+        verdicts[0]
+    ]
     says = "says" if verdicts[1] == HOLDS else "was not shown to say"
     return (
         f"Among the better half of the placements this {shown}; entropy {says} more than the "
@@ -123,6 +133,9 @@ def _statements(results: Json) -> str:
 The plan says when each holds and when it is refuted. *Open*: runs are missing, and figures are those so far.
 
 {table(["statement", "figures", "verdict"], lines)}
+
+Statements 3 and 4 have another rule than in the plan since the results are known: an interval that contains 0
+refutes neither of them any more. It changes the verdict of statement 3 ([why](#looked-for-afterwards)).
 """
 
 
@@ -147,6 +160,11 @@ def _value(value: float | None, is_share: bool = False) -> str:
     if is_share:
         return "-" if value is None else f"{value:.2f}"
     return rho_text(value)
+
+
+def rho_with_interval(figures: Json) -> str:
+    """Return a rank correlation and its interval."""
+    return f"{rho_text(figures['rho'])} {_interval(figures)}"
 
 
 def _interval(figures: Json | None, is_share: bool = False) -> str:
@@ -196,13 +214,10 @@ def _line(score: str, row: Json) -> list[str]:
     holm = row.get("holm")
     return [
         f"**{score}**" if score == PRIMARY else score,
-        f"{rho_text(row['rho'])} {_interval(row)}",
+        rho_with_interval(row),
         p_text(row["p"]),
         "-" if holm is None else p_text(holm),
-        *(
-            f"{rho_text(part['rho'])} {_interval(part)}" if part else "-"
-            for part in (given, height, half)
-        ),
+        *(rho_with_interval(part) if part else "-" for part in (given, height, half)),
     ]
 
 
@@ -265,7 +280,7 @@ def _step(step: Json) -> str:
     lines = [
         [
             f"**{score}**" if score == PRIMARY else score,
-            *(f"{rho_text(part['rho'])} {_interval(part)}" for part in (row, row["plain"])),
+            *(rho_with_interval(part) for part in (row, row["plain"])),
         ]
         for score, row in step["scores"].items()
     ]
@@ -276,7 +291,7 @@ def _step(step: Json) -> str:
 ### {title[0].upper()}{title[1:]}
 
 {state}{"" if done else f"; figures {SO_FAR}"}, {step["placements"]} placements, seeds averaged: {step["seeds"]}. Rho of the
-AP here and the AP of the same placements in the plain world with the grid detector: {rho_text(order["rho"])} {_interval(order)}.
+AP here and the AP of the same placements in the plain world with the grid detector: {rho_with_interval(order)}.
 
 {table(titles, lines)}"""
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -129,12 +128,11 @@ def results(
     plan: StudyPlan, scenes: Sequence[RegionObjects], tested: list[list[ClassScene]]
 ) -> Json:
     """Return the results of a test: AP of all classes, by class, by ring, of objects with beams."""
-    rings = plan.precision.rings_m
     by_ring = {
-        f"{inner:g} to {outer:g} m": _class_aps(
+        ring: _class_aps(
             plan, [[in_ring(s, inner, outer) for s in of_class] for of_class in tested]
         )
-        for inner, outer in pairwise(rings)
+        for ring, (inner, outer) in plan.precision.rings.items()
     }
     met = [
         [

@@ -46,6 +46,8 @@ better.*
 {_comparisons(plan, found)}
 
 *After minus before, of the same seed; Student's interval over the seeds, 95 %.*
+
+{_by_ring(plan, found)}
 {told}"""
 
 
@@ -100,6 +102,28 @@ def _comparisons(plan: AfterSearchPlan, found: Json) -> str:
         for objective, row in found["rigs"][rig.name]["after"].items()
     ]
     return table(["rig", "search by", "difference of AP (95 %)", "the optimum"], lines)
+
+
+def rings_found(found: Mapping[str, Any]) -> list[Json]:
+    """Return by rig and ring how much more is found after the one search than after the other."""
+    return [rig["by_ring"] for rig in found["rigs"].values() if "by_ring" in rig]
+
+
+def _by_ring(plan: AfterSearchPlan, found: Json) -> str:
+    """Return the differences between the searches by ring, which no plan asked for."""
+    rows = rings_found(found)
+    if not rows:
+        return ""
+    first, last = (WORDS[plan.objectives[k]] for k in (0, -1))
+    rings = list(plan.study.precision.rings)
+    lines = [
+        [TITLES[rig.name], *(_difference(row[ring]) for ring in rings)]
+        for rig, row in zip(plan.rigs, rows, strict=True)
+    ]
+    return (
+        f"Looked for afterwards, by distance: AP after the search by {last} minus AP after that by {first}.\n\n"
+        f"{table(['rig', *rings], lines)}"
+    )
 
 
 def _difference(row: Json) -> str:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..analysis import HOLDS, OPEN, REFUTED
+from ..analysis import HOLDS, OPEN, REFUTED, mean_ap, mean_ap_in
 from ..plan import GRID, PLAIN
 from ..result_files import ResultFiles
 from ..runs import Run
@@ -57,6 +57,9 @@ def after_search_analysis(
         Scores by the name of the placement.
     """
     rigs = {rig.name: _of_rig(plan, rig, results, scores) for rig in plan.rigs}
+    if len(results) == planned_runs(plan):
+        for rig in plan.rigs:
+            rigs[rig.name]["by_ring"] = _by_ring(plan, rig, results)
     return {
         "done": len(results),
         "planned": planned_runs(plan),
@@ -88,10 +91,25 @@ def _of_rig(
     }
 
 
-def _aps(plan: AfterSearchPlan, name: str, results: Mapping[str, Json]) -> list[float | None]:
+def _by_ring(plan: AfterSearchPlan, rig: SearchedRig, results: Mapping[str, Json]) -> Json:
+    """Return by ring how much more is found after the last objective's search than the first's."""
+    first, *_, last = (placement_name(rig, objective) for objective in plan.objectives)
+    found = {}
+    for ring in plan.study.precision.rings:
+        aps = [_aps(plan, name, results, mean_ap_in(ring)) for name in (first, last)]
+        found[ring] = _difference(plan, *aps)
+    return found
+
+
+def _aps(
+    plan: AfterSearchPlan,
+    name: str,
+    results: Mapping[str, Json],
+    ap_of: Callable[[Json], float] = mean_ap,
+) -> list[float | None]:
     """Return the AP of a placement by seed; None for a run that is missing."""
     runs = [f"{name}-s{seed}" for seed in plan.study.training.seeds]
-    return [results[run]["ap"] if run in results else None for run in runs]
+    return [ap_of(results[run]) if run in results else None for run in runs]
 
 
 def _scores(scores: Json | None) -> Json:
@@ -105,15 +123,24 @@ def _comparison(
     plan: AfterSearchPlan, before: Sequence[float | None], after: Sequence[float | None]
 ) -> Json:
     """Return the differences of AP by seed, their mean and interval, and the verdict."""
+    found = _difference(plan, before, after)
+    if found["interval"] is None:
+        return {**found, "verdict": OPEN}
+    return {**found, "verdict": HOLDS if found["interval"][0] > 0.0 else REFUTED}
+
+
+def _difference(
+    plan: AfterSearchPlan, before: Sequence[float | None], after: Sequence[float | None]
+) -> Json:
+    """Return the differences of AP by seed, their mean, and its interval if all seeds are there."""
     pairs = zip(before, after, strict=True)
     found = [b - a for a, b in pairs if a is not None and b is not None]
     mean = round(float(np.mean(found)), 4) if found else None
     data: Json = {"differences": [round(d, 4) for d in found], "mean": mean, "interval": None}
     if len(found) < len(before) or len(found) != INTERVAL_SEEDS:
-        return {**data, "verdict": OPEN}
+        return data
     low, high = student_interval(found, plan.confidence)
-    verdict = HOLDS if low > 0.0 else REFUTED
-    return {**data, "interval": [round(low, 4), round(high, 4)], "verdict": verdict}
+    return {**data, "interval": [round(low, 4), round(high, 4)]}
 
 
 def student_interval(values: Sequence[float], confidence: float) -> tuple[float, float]:

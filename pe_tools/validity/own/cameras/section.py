@@ -10,7 +10,7 @@ from ....reproduction.wording import table
 from ...correlations import min_significant_rho
 from ...findings import p_text, rho_text
 from ..analysis import CAMERAS, HOLDS, OPEN, REFUTED, UNDECIDED
-from ..study_page import plot_name, trainings_text
+from ..study_page import plot_name, rho_with_interval, trainings_text
 from .plan import CameraPlan
 from .study import is_too_noisy
 
@@ -89,7 +89,13 @@ def _figures(found: Json) -> str:
     so_far = "" if found["done"] == found["planned"] else " These are figures so far."
     noise = "-" if found["noise"] is None else f"{found['noise']:.4f}"
     lines = [
-        [score, _rho(row), p_text(row["p"]), _holm(row), rho_text(found["all_round"].get(score))]
+        [
+            score,
+            rho_with_interval(row),
+            p_text(row["p"]),
+            _holm(row),
+            rho_text(found["all_round"].get(score)),
+        ]
         for score, row in found["scores"].items()
     ]
     titles = ["score", "rho (95 %)", "p", "p after Holm", "rho, all round only"]
@@ -103,11 +109,6 @@ AP from {lowest:.3f} by {middle:.3f} (median) to {highest:.3f}, seeds averaged: 
 
 *A dot is a placement; a bar reaches from its lowest to its highest seed.*
 """
-
-
-def _rho(row: Json) -> str:
-    low, high = (rho_text(v) for v in row["interval"])
-    return f"{rho_text(row['rho'])} ({low} to {high})"
 
 
 def _holm(row: Json) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
@@ -106,9 +107,8 @@ class Rig:
         for sensor in self.sensors:
             if not isinstance(sensor, Sensor):
                 raise InputError("rig", "sensors", "sensors", type(sensor).__name__)
-        names = [s.name for s in self.sensors]
-        twice = sorted({n for n in names if names.count(n) > 1})
-        if twice:
+        names = Counter(s.name for s in self.sensors)
+        if twice := sorted(name for name, count in names.items() if count > 1):
             raise InputError("rig", "sensor name", "a name used once", repr(twice[0]))
         for group, members in self.groups.items():
             if len({s.kind for s in members}) > 1:

@@ -97,8 +97,8 @@ class Evaluator:
             and not ray cast. `Score.draft` is then set. The next score without it is exact.
             Sampled scores only.
         watch : callable, optional
-            Called repeatedly with the completed share, 0 to 1, while a grid is scored (a
-            sample is scored too quickly). When it returns False, the score is stopped.
+            Called repeatedly with the completed share, 0 to 1. When it returns False, the
+            score is stopped.
 
         Raises
         ------

@@ -15,7 +15,7 @@ from ..scene.rig import Sensor
 from ..scene.vehicle import Vehicle
 from ..sensors import GridKernel
 from ..sensors.kernels import block_voxels
-from .sampling import MIN_SAMPLES
+from .sampling import FIRST_SAMPLES, MIN_SAMPLES
 
 Grouped = Sequence[Sequence[Sensor]]
 """Sensors whose measurements are summed, and kept, together."""
@@ -28,8 +28,6 @@ TREE_BYTES = 300
 """Memory of a triangle of the vehicle, once rays are cast (measured)."""
 PLANE_BYTES = 24
 """Memory of a voxel of a thread's planes: counts, sums, precision, entropy, weights."""
-SAMPLES = 262_144
-"""Number of samples that a message suggests instead of the grid."""
 SAMPLE_BYTES = 600
 """Memory of a sampled voxel (measured: 270 to 420 while sampling, 590 with 32 sensors)."""
 COARSER = (2, 4, 5, 10, 20)
@@ -79,7 +77,7 @@ def require_room_for(space: PerceptionSpace, needed: Callable[[PerceptionSpace],
     fitting = next(
         (f"interval = {s.interval:g}" for s in _coarser(space) if needed(s) <= there), ""
     )
-    ways = " or ".join(filter(None, (f"samples = {SAMPLES}", fitting)))
+    ways = " or ".join(filter(None, (f"samples = {FIRST_SAMPLES}", fitting)))
     expected = f"what fits in the {size_text(there)} of memory that are free; try {ways}"
     raise InputError("score", "memory", expected, f"about {size_text(amount)}")
 

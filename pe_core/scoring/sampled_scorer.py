@@ -21,9 +21,48 @@ from .protocol import Judgement
 from .sampling import BLOCKS, CENTERED, VoxelSample, draw
 from .scatter import ALIKE, RULE_OF_THREE, FigureKey, Scatter, residuals, sample_digest
 from .scenarios import Scenarios, fused_early, mean_or_worst
-from .score import Glance, PartScore, Score, SensorScore, Watch, rounded, sensor_score, zone_masks
+from .score import (
+    Glance,
+    PartScore,
+    Score,
+    ScoreStopped,
+    SensorScore,
+    Watch,
+    rounded,
+    sensor_score,
+    zone_masks,
+)
 
 Floats = NDArray[np.float64]
+
+
+SENSORS_FUSED = 80
+"""Sensors that are fused in the time in which one is measured (measured: 40 to 100)."""
+
+
+class _SampleProgress:
+    """Reports the share of a score to a `Watch`, and raises `ScoreStopped` when it returns False.
+
+    The work is to measure each of `count` sensors, and to fuse all others without it.
+    """
+
+    def __init__(self, watch: Watch | None, count: int) -> None:
+        self._watch, self._fusing = watch, count / SENSORS_FUSED
+        self._total, self._done = count * (1.0 + self._fusing), 0.0
+        self._report(0.0)
+
+    def measured(self) -> None:
+        """Count a sensor as measured."""
+        self._report(1.0)
+
+    def fused_without_it(self) -> None:
+        """Count the loss of a sensor as computed."""
+        self._report(self._fusing)
+
+    def _report(self, work: float) -> None:
+        self._done += work
+        if self._watch is not None and not self._watch(min(self._done / self._total, 1.0)):
+            raise ScoreStopped
 
 
 class SampledScorer:
@@ -135,9 +174,10 @@ class SampledScorer:
             return self._summary(rig, *self._entropies(rig, [s.name for s in rig]))
 
     def score(self, rig: Rig, preview: bool = False, watch: Watch | None = None) -> Score:
-        """Return the full score; it is computed too quickly to be watched."""
+        """Return the full score; `watch` gets the share that is done after each sensor."""
+        progress = _SampleProgress(watch, len(rig.sensors))
         with self._lock:
-            self._sensors.measure(rig, preview)
+            self._sensors.measure(rig, preview, progress.measured)
             values = self._entropies(rig, [s.name for s in rig])
             whole = self._summary(rig, *values)
             return Score(
@@ -146,7 +186,7 @@ class SampledScorer:
                 whole.stderr,
                 whole.per_class,
                 whole.per_zone,
-                {s.name: self._sensor(s, rig, whole.entropy) for s in rig},
+                {s.name: self._sensor(s, rig, whole.entropy, progress) for s in rig},
                 whole.voxels,
                 draft=whole.draft,
                 scatter=self._scatter(*values),
@@ -210,11 +250,14 @@ class SampledScorer:
                     by_figure["class", name, measure] = by_batch
         return Scatter(self._digest, by_figure)
 
-    def _sensor(self, sensor: Sensor, rig: Rig, entropy: float) -> SensorScore:
+    def _sensor(
+        self, sensor: Sensor, rig: Rig, entropy: float, progress: _SampleProgress
+    ) -> SensorScore:
         alone, coverage = self._whole(*self._entropies(rig, [sensor.name]))
         remaining = [s.name for s in rig if s.name != sensor.name]
         failed = self._whole(*self._entropies(rig, remaining))[0] if remaining else H_BLIND
         stopped = self._sensors.occlusion(sensor)
+        progress.fused_without_it()
         return sensor_score(alone, coverage, rounded(failed - entropy), stopped)
 
     def _standard_error(self, entropies: Floats, groups: int) -> float:

@@ -102,12 +102,13 @@ class SearchSpace:
 
     def checked(self, rig: Rig) -> SearchSpace:
         """Return itself, or raise `InputError` when a name, an axis or a start is not possible."""
+        sensors = {sensor.name: sensor for sensor in rig}
         for name, axes in self.bounds.items():
-            if name not in [s.name for s in rig]:
+            if name not in sensors:
                 raise InputError("search space", "sensor", "a sensor of the rig", shown(name))
             if self.mounting.mount_of(name) is not None:
                 continue  # its angles are relative to its mount, whose domain checks them
-            start = pose_values(rig[name].pose)
+            start = pose_values(sensors[name].pose)
             for axis, bounds in axes.items():
                 low, high = checked_bounds(name, axis, bounds)
                 rounding = ROUNDING_M if axis in POSITION_AXES else ROUNDING_RAD

@@ -68,12 +68,20 @@ class MeasurementCache:
         """m (V,) of the sensors of the last rig."""
         return {name: measured.m for name, measured in self._measured.items()}
 
-    def measure(self, rig: Rig, approximate: bool = False) -> None:
-        """Measure the sensors that are not cached; without `approximate` exactly."""
+    def measure(
+        self, rig: Rig, approximate: bool = False, done: Callable[[], None] | None = None
+    ) -> None:
+        """Measure the sensors that are not cached; without `approximate` exactly.
+
+        `done` is called after each sensor; if it raises, the cache stays as it was.
+        """
         before, stayed = self._measured, self._stayed
-        self._measured = {
-            s.name: self.cached(s, approximate) or self._one(s, approximate) for s in rig
-        }
+        measured = {}
+        for s in rig:
+            measured[s.name] = self.cached(s, approximate) or self._one(s, approximate)
+            if done is not None:
+                done()
+        self._measured = measured
         used = {s.name: _key(clear_air(s) or s) for s in rig}
         moved = {n for n, m in self._measured.items() if before.get(n) is not m}
         self._stayed = {n: stayed.get(n) if n in moved else key for n, key in used.items()}

@@ -25,7 +25,7 @@ from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference, vehicle_line
 from ..scoring import Evaluator, RigJudge
 from ..scoring.requirements import Requirement, RequirementChecker, Verdict, checked_requirements
-from ..scoring.sampling import SAMPLES_OR_GRID
+from ..scoring.sampling import FIRST_SAMPLES, SAMPLES_OR_GRID
 from ..scoring.sight import Sight
 from ..scoring.targets import ObjectEvaluator, TargetRule
 from ..search import (
@@ -173,7 +173,7 @@ class Study:
         0,
         SAMPLES_OR_GRID,
         "Voxels on which a score is evaluated; 0: all, 64 million",
-        Panel("score_samples", "Score Voxels"),
+        Panel("score_samples", "Score Voxels", default=FIRST_SAMPLES),
         scored=True,
     )
     mesh: str | None = None

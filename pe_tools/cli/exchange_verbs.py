@@ -13,6 +13,7 @@ from pe_core.base.errors import InputError
 from pe_core.base.files import quoted, require_new
 from pe_core.catalog import KnownRig
 from pe_core.scene import Pose, Reference, Vehicle, guessed_reference
+from pe_core.scoring.sampling import FIRST_SAMPLES
 from pe_core.study import Study, save_study
 
 from ..exchange import (
@@ -68,7 +69,8 @@ def study_of_rig(
     rig: KnownRig, vehicle: Vehicle | None = None, mesh: str | None = None, *, stretched: bool
 ) -> Study:
     """Return a study of a known rig: scaled to a vehicle, or as it was published."""
-    return Study(catalog.rig_on(rig, vehicle if stretched else None), vehicle, mesh=mesh)
+    placed = catalog.rig_on(rig, vehicle if stretched else None)
+    return Study(placed, vehicle, samples=FIRST_SAMPLES, mesh=mesh)
 
 
 def _standing(rig: KnownRig, vehicle: Vehicle | None, as_published: bool) -> str:
@@ -205,8 +207,14 @@ def import_study(args: argparse.Namespace) -> Answer:
     placed = None if args.at is None else Pose.from_degrees(args.at[:3], args.at[3:])
     models = chosen_models(args.model)
     found = import_rig(args.file, args.format, reference, models, placed)
-    kept = found.passthrough
-    study = Study(found.rig, vehicle, mesh=args.mesh, reference=reference, passthrough=kept)
+    study = Study(
+        found.rig,
+        vehicle,
+        samples=FIRST_SAMPLES,
+        mesh=args.mesh,
+        reference=reference,
+        passthrough=found.passthrough,
+    )
     save_study(study, output)
     return "\n".join(_report_lines(found, output)), DONE
 

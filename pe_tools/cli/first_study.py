@@ -11,14 +11,13 @@ from typing import Any
 from pe_core.base.serialization import dumps
 from pe_core.scene import Rig, Vehicle, vehicle_line
 from pe_core.scene.mesh import MeshAxes
+from pe_core.scoring.sampling import FIRST_SAMPLES
 from pe_core.search import SurfaceMount
 from pe_core.study import Study
 
 from ..formats import axes_in_text
 from .roof import MOUNT, RoofSensor, find_roof
 
-SAMPLES = 262_144
-"""Voxels that the score of a first study evaluates: seconds instead of minutes."""
 CAMERA, CAMERA_ABOVE_M = "Camera 60 deg", 0.1
 """Model of the camera that is proposed as a comment, and its height above the roof."""
 PITCH_DEG = (-10.0, 10.0)
@@ -74,7 +73,7 @@ class FirstStudy:
             Rig([self.roof.sensor]),
             self.vehicle,
             search=replace(search, limits=limits),
-            samples=SAMPLES,
+            samples=FIRST_SAMPLES,
             mesh=self.mesh,
             axes=self.axes,
         )
@@ -113,7 +112,7 @@ def _head(first: FirstStudy) -> Iterator[str]:
     yield "# Lengths in metres, angles in degrees; x forward, y left, z up; the origin is on the"
     yield "# ground under the vehicle. Keys that are left out have their defaults: docs/study.md"
     yield ""
-    yield _row("samples", SAMPLES, "voxels that a score evaluates; 0: all, exact and slower")
+    yield _row("samples", FIRST_SAMPLES, "voxels that a score evaluates; 0: all, exact and slower")
 
 
 def _space(first: FirstStudy) -> Iterator[str]:

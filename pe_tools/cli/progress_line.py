@@ -1,4 +1,7 @@
-"""Progress of a job on stderr: a bar with the time left on a terminal, lines in a log."""
+"""Progress of a job on stderr: a bar with the time left on a terminal, lines in a log.
+
+Of a stage that takes long, one line tells the time left, as soon as its progress shows it.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,8 @@ from .terminal import is_terminal, show
 
 REPORT_EVERY_S = {True: 0.2, False: 5.0}
 """How often progress is shown: on a terminal, where it overwrites itself, and in a log."""
+ESTIMATE_AFTER_S, LONG_S = 3.0, 20.0
+"""How long a stage runs before its time is estimated; more time left than that is told."""
 BAR = "{desc} {percentage:3.0f}% |{bar:24}| {elapsed}<{remaining}{postfix}"
 """Time gone and time left stand behind the bar."""
 
@@ -21,6 +26,9 @@ class Display(Protocol):
 
     def show(self, progress: Progress, new_stage: bool) -> None:
         """Show the progress; `new_stage` is True at the first call for a stage."""
+
+    def tell(self, line: str) -> None:
+        """Write a line that stays."""
 
     def clear(self) -> None:
         """Remove an incomplete line."""
@@ -34,18 +42,46 @@ class Reporter:
         self._pause_s = REPORT_EVERY_S[on_terminal]
         self._display = _display(Sure(stream), on_terminal)
         self._reported, self._stage = 0.0, ""
+        self._first: tuple[float, float] | None = None
+        """Time and fraction of the stage at its first progress: what is prepared before counts as
+        none."""
+        self._estimated = False
 
     def report(self, progress: Progress) -> None:
         """Show the progress for a new stage, or if the last report is old enough."""
         now, new_stage = time.monotonic(), progress.stage != self._stage
+        if new_stage:
+            self._first, self._estimated = None, False
+        self._estimate(progress, now)
         if now - self._reported < self._pause_s and not new_stage:
             return
         self._reported, self._stage = now, progress.stage
         self._display.show(progress, new_stage)
 
+    def _estimate(self, progress: Progress, now: float) -> None:
+        """Tell once how much time a stage still takes, if that is long."""
+        if self._first is None and progress.fraction > 0.0:
+            self._first = now, progress.fraction
+        if self._estimated or self._first is None:
+            return
+        passed_s, done = now - self._first[0], progress.fraction - self._first[1]
+        if passed_s < ESTIMATE_AFTER_S or done <= 0.0:
+            return
+        self._estimated = True
+        left_s = passed_s * (1.0 - progress.fraction) / done
+        if left_s > LONG_S:
+            self._display.tell(f"{progress.stage}: about {duration_text(left_s)} left")
+
     def clear(self) -> None:
         """Remove an incomplete line."""
         self._display.clear()
+
+
+def duration_text(seconds: float) -> str:
+    """Return a duration in the unit that suits it: "40 s", "7 min", "2.6 h"."""
+    if seconds < 100.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 6000.0 else f"{seconds / 3600.0:.1f} h"
 
 
 def _display(stream: Sure, on_terminal: bool) -> Display:
@@ -92,6 +128,10 @@ class LogLines:
         """Write a line."""
         self._stream.write(f"{_text(progress)}\n")
 
+    def tell(self, line: str) -> None:
+        """Write a line."""
+        self._stream.write(f"{line}\n")
+
     def clear(self) -> None:
         """Lines stay."""
 
@@ -105,6 +145,10 @@ class OneLine:
     def show(self, progress: Progress, new_stage: bool) -> None:
         """Overwrite the line."""
         self._stream.write(f"\r\x1b[K{_text(progress)}")
+
+    def tell(self, line: str) -> None:
+        """Write a line in the place of the one that overwrites itself."""
+        self._stream.write(f"\r\x1b[K{line}\n")
 
     def clear(self) -> None:
         """Remove the line."""
@@ -132,6 +176,10 @@ class Bar:
             self._bar.set_postfix_str(progress.value_text, refresh=False)
         self._bar.update(max(0.0, min(1.0, progress.fraction) - self._bar.n))
         self._bar.refresh()
+
+    def tell(self, line: str) -> None:
+        """Write a line above the bar."""
+        self._tqdm.tqdm.write(line, file=self._stream)
 
     def clear(self) -> None:
         """Remove the line."""

@@ -10,7 +10,9 @@ import pytest
 
 import pe_core as pe
 from blender_addon import bridge
+from blender_addon.bridge.scene_settings import samples_of
 from blender_addon.engine import studies
+from pe_core.scoring.sampling import FIRST_SAMPLES
 from tests.addon import scenes
 
 CORNERS = scenes.ASSETS / "examples" / "four_corners" / "four_corners.blend"
@@ -216,3 +218,8 @@ def test_an_imported_study_becomes_the_record_of_the_scene_that_holds_it(rich, t
         if not path.startswith(tuple(of_files))
     ]
     assert different == []
+
+
+def test_a_fresh_scene_is_scored_on_as_many_voxels_as_any_new_study(addon):
+    fresh = bpy.data.scenes.new("fresh")
+    assert samples_of(fresh.perception_entropy) == FIRST_SAMPLES

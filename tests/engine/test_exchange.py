@@ -10,6 +10,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.geometry.poses import rotation_matrix
+from pe_core.scoring.sampling import FIRST_SAMPLES
 from pe_tools.cli.exchange_verbs import FILE_NAMES
 from pe_tools.exchange import RIG_FORMATS, format_of_file, rig_files
 from pe_tools.exchange.frames import from_quaternion, quaternion
@@ -387,6 +388,7 @@ def test_the_command_writes_and_reads(tmp_path, capsys, monkeypatch):
     assert "side_left: 37.7 mm from its frame up to the centre of its scan" in told
     assert "no model" not in told, "comments have them"
     back = pe.load_study("back.toml")
+    assert back.samples == FIRST_SAMPLES
     assert back.reference == AXLE and len(back.rig) == len(MIXED)
     assert main(command) == 1, "a study is there"
     assert "an existing file" in capsys.readouterr().err

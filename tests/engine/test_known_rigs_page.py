@@ -8,6 +8,7 @@ import pytest
 
 import pe_core as pe
 from pe_core import catalog
+from pe_core.scoring.sampling import FIRST_SAMPLES
 from pe_tools.cli.verbs import main
 
 ROOT = Path(__file__).parents[2]
@@ -59,7 +60,9 @@ def test_its_figures_are_those_of_a_fresh_score(page, tool, key):
 def test_each_is_a_study_that_reads_back(key, tmp_path, capsys):
     assert main(["rigs", key, "-o", str(tmp_path / "study.toml")]) == 0
     assert "as published" in capsys.readouterr().err
-    found, rig = pe.load_study(tmp_path / "study.toml").rig, catalog.known_rig(key)
+    study = pe.load_study(tmp_path / "study.toml")
+    found, rig = study.rig, catalog.known_rig(key)
+    assert study.samples == FIRST_SAMPLES, "seconds, not 64 million voxels"
     assert [s.name for s in found] == [s.name for s in rig.sensors]
     for ours, theirs in zip(rig.sensors, found, strict=True):
         assert theirs.model is catalog.load(ours.model)

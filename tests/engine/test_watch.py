@@ -29,6 +29,21 @@ def test_the_share_rises_to_the_whole_and_changes_no_score():
     assert score.to_dict() == evaluator().score(rig()).to_dict()
 
 
+def test_a_sample_tells_its_share_after_each_sensor_and_ends_when_asked():
+    """Thousands of sensors take hours: how long is known after the first few."""
+    told, some = [], evaluator(4096)
+    score = some.score(rig(), watch=lambda share: told.append(share) or True)
+    assert len(told) == 5 and told == sorted(told) and told[0] == 0.0
+    assert told[-1] == pytest.approx(1.0)
+    moved = pe.Rig([sensor.moved(pe.Pose((0.2, 0.0, 1.9))) for sensor in rig()])
+    for calls in (1, 2, 4):
+        left = iter([True] * calls)
+        with pytest.raises(ScoreStopped):
+            some.score(moved, watch=lambda _, left=left: next(left, False))
+    assert some.score(rig()).to_dict() == score.to_dict()
+    assert some.score(moved).to_dict() == evaluator(4096).score(moved).to_dict()
+
+
 @pytest.mark.parametrize("at", [0.0, 0.4, 1.0])
 def test_a_score_ends_when_it_is_reported_and_the_next_is_sound(at):
     own = evaluator()

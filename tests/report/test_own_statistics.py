@@ -243,7 +243,7 @@ def test_a_step_decides_nothing_and_marks_the_statements_whose_sign_it_changes()
 @pytest.mark.parametrize(("sign", "verdict"), [(0.0, UNDECIDED), (-1.0, REFUTED)])
 def test_a_sign_that_is_left_open_refutes_nothing(sign, verdict):
     """The better half has its AP at random, or against the score."""
-    plan = replace(full_plan(), statistics=replace(RULE, permutations=99))
+    plan = replace(full_plan(), statistics=replace(RULE, permutations=99, resamples=150))
     done, scores = made_up(plan)
     best = max(found["ap"] for name, found in done.items() if name.startswith("fixed"))
     rng = np.random.default_rng(11)

@@ -1,5 +1,6 @@
 """Values and files: checks of input values, files read and written whole, TOML, JSON, XML, YAML."""
 
+from .csv_text import csv_text
 from .files import decode_text, read_bytes, require_new, write_bytes
 from .memory import available_bytes, require_memory
 from .serialization import dump_json, dumps
@@ -11,6 +12,7 @@ __all__ = [
     "Number",
     "Table",
     "available_bytes",
+    "csv_text",
     "decode_text",
     "dump_json",
     "dumps",

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import csv
-import io
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from pe_core.base import dump_json
+from pe_core.base.csv_text import csv_text
 from pe_core.base.errors import InputError
 from pe_core.base.files import require_new, write_bytes
 from pe_core.base.serialization import finite
@@ -200,9 +199,7 @@ def _reason(verdict: Verdict) -> str:
 
 def verdicts_csv(verdicts: Sequence[Verdict]) -> str:
     """Return verdicts as CSV, a row each."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    rows: list[list[object]] = [[*COLUMNS]]
     for verdict in verdicts:
         x, y = verdict.worst or ("", "")
         data = verdict.to_dict()
@@ -213,8 +210,8 @@ def verdicts_csv(verdicts: Sequence[Verdict]) -> str:
             "hidden": "; ".join(f"{k}: {v}" for k, v in verdict.hidden.items()),
             "breaks_without": "; ".join(verdict.breaks_without),
         }
-        writer.writerow(["" if (v := (data | listed)[c]) is None else v for c in COLUMNS])
-    return text.getvalue()
+        rows.append([(data | listed)[c] for c in COLUMNS])
+    return csv_text(rows)
 
 
 def _preset_dict(each: Preset) -> dict[str, Any]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import csv
-import io
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
+from pe_core.base.csv_text import csv_text, unmarked
 from pe_core.base.errors import InputError
 from pe_core.base.values import Number, choice
 from pe_core.sensors.camera.lens_models import LENSES
@@ -55,12 +56,8 @@ def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
         for sensor in sensors
     ]
     columns = COLUMNS if not any(row.get(PARAMETERS) for row in rows) else (*COLUMNS, PARAMETERS)
-    out = io.StringIO()
-    out.write(HEAD)
-    table = csv.DictWriter(out, columns, extrasaction="ignore", lineterminator="\n")
-    table.writeheader()
-    table.writerows(rows)
-    return {FILE: out.getvalue().encode()}, []
+    cells = ([row.get(column, "") for column in columns] for row in rows)
+    return {FILE: (HEAD + csv_text([columns, *cells])).encode()}, []
 
 
 def _row(sensor: PortableSensor) -> dict[str, str]:
@@ -111,9 +108,15 @@ def read(path: Path) -> tuple[PortableSensor, ...]:
         if missing:
             expected = f"the columns {', '.join(COLUMNS)}"
             raise InputError(path, missing[0], expected, "none of that name")
-        return tuple(_read_row(path, k, row) for k, row in enumerate(rows))
+        texts = ({key: _text(cell) for key, cell in row.items()} for row in rows)
+        return tuple(_read_row(path, k, row) for k, row in enumerate(texts))
     except csv.Error as error:
         raise InputError(path, "file", "a table (CSV)", error) from None
+
+
+def _text(cell: Any) -> Any:
+    """Return a cell's text; cells that a row lacks or has too many stay what the reader makes."""
+    return unmarked(cell) if isinstance(cell, str) else cell
 
 
 def _read_row(path: Path, number: int, row: dict[str, str]) -> PortableSensor:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 
 from pe_core.base.errors import InputError
+from pe_core.base.file_stem import is_reserved
 from pe_core.geometry.poses import Pose
 
 from .foreign_values import MAX_FRAMES, require_at_most
@@ -73,10 +74,12 @@ ILLEGAL, ILLEGAL_IN_TF = (re.compile(f"[^A-Za-z0-9_{more}]+") for more in ("", "
 def legal_frame(name: str, *, slashes: bool = False) -> str:
     """Return a frame name of letters, digits and underscores that begins with a letter.
 
-    With `slashes`, the name may also contain ``/``, as frame names of tf2 may.
+    With `slashes`, the name may also contain ``/``, as frame names of tf2 may. Files are named
+    after frames: no part of the name is one that Windows keeps for a device.
     """
     plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
     legal = (ILLEGAL_IN_TF if slashes else ILLEGAL).sub("_", plain).strip("_/")
+    legal = "/".join(f"sensor_{p}" if is_reserved(p) else p for p in legal.split("/"))
     return legal if legal[:1].isalpha() else f"sensor_{legal}".rstrip("_")
 
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import io
-
+from pe_core.base import csv_text
 from pe_core.study.condition_table import ConditionScore, ConditionTable
 
 FIGURES = ("entropy", "stderr", "coverage")
@@ -15,8 +13,6 @@ def conditions_csv(table: ConditionTable) -> str:
 
     In a study on objects the figures are AP and the reach ahead of lone objects [m], too.
     """
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
     classes = list(dict.fromkeys(name for row in table.rows for name in row.per_class))
     with_ap = any(row.ap is not None for row in table.rows)
     heads = ["state", "weather", "weight", *FIGURES, *["ap"] * with_ap]
@@ -24,17 +20,17 @@ def conditions_csv(table: ConditionTable) -> str:
     heads += [f"entropy of {name}" for name in classes]
     for figure in ("ap of", "reach ahead for") if with_ap else ():
         heads += [f"{figure} {name}" for name in classes]
-    writer.writerow(heads)
+    lines: list[list[object]] = [[*heads]]
     for row in table.rows:
         figures = [getattr(row, key) for key in FIGURES] + [row.ap] * with_ap
         without = [row.without[name] for name in table.sensors]
         by_class = [row.per_class.get(name, "") for name in classes]
-        line = [row.state, row.weather, row.weight, *figures, *without, *by_class]
+        line: list[object] = [row.state, row.weather, row.weight, *figures, *without, *by_class]
         if with_ap:
             line += [(row.ap_per_class or {}).get(name, "") for name in classes]
             line += [(row.reach or {}).get(name, {}).get("front", "") for name in classes]
-        writer.writerow(line)
-    return text.getvalue()
+        lines.append(line)
+    return csv_text(lines)
 
 
 def condition_lines(table: ConditionTable) -> list[str]:

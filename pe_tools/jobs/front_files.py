@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
-import re
-import unicodedata
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from pe_core.base.csv_text import csv_text
+from pe_core.base.file_stem import file_stem
 from pe_core.base.serialization import dump_json, finite
 from pe_core.scene.rig import SensorModel
 from pe_core.study.file_names import STUDY
@@ -96,14 +94,12 @@ def write_front(
 
 def front_csv(chosen: TradeOff) -> str:
     """Return all designs as CSV, cheapest first: price, entropy, and the model of each sensor."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
     sensors = [sensor.name for sensor in chosen.study.rig]
     head = ["design", "on_front", "price", "entropy", "coverage", "searched"]
     asked = bool(chosen.study.requirements)
     more = ["requirements_met"] if asked else []
     more += [f"objective.{name}" for name in chosen.objectives]
-    writer.writerow([*head, *more, *(f"{name}.model" for name in sensors)])
+    rows: list[list[object]] = [[*head, *more, *(f"{name}.model" for name in sensors)]]
     for design in chosen.designs:
         models_by_sensor = {sensor.name: sensor.model.name for sensor in design.study.rig}
         figures = (design.price, _entropy(design), _coverage(design), int(design.score is not None))
@@ -111,25 +107,20 @@ def front_csv(chosen: TradeOff) -> str:
         met += [design.figures.get(name) for name in chosen.objectives]
         on_front = int(design in chosen.front)
         models = (models_by_sensor.get(name, "") for name in sensors)
-        writer.writerow([design.name, on_front, *figures, *met, *models])
-    return text.getvalue()
+        rows.append([design.name, on_front, *figures, *met, *models])
+    return csv_text(rows)
 
 
 def design_files(chosen: TradeOff) -> dict[str, str]:
     """Return the name of the study file of each design on the front, by design name."""
     files: dict[str, str] = {}
     for design in chosen.front:
-        stem, number = _stem(design.name), 1
+        stem = file_stem(design.name.lower(), "design", joint="-", max_length=MAX_STEM_LENGTH)
+        number = 1
         while (file := f"{stem}{f'-{number}' if number > 1 else ''}.toml") in files.values():
             number += 1
         files[design.name] = file
     return files
-
-
-def _stem(name: str) -> str:
-    """Return a name in ASCII letters, digits and hyphens, which every file system allows."""
-    plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode().lower()
-    return re.sub(r"[^a-z0-9]+", "-", plain).strip("-")[:MAX_STEM_LENGTH].strip("-") or "design"
 
 
 def _writers(chosen: TradeOff) -> dict[str, Write | bytes]:

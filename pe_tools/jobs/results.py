@@ -6,8 +6,6 @@ lists the SHA-256 of each other file.
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import platform
 from collections.abc import Collection, Mapping
@@ -17,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from pe_core.base.csv_text import csv_text
 from pe_core.base.files import read_bytes
 from pe_core.base.serialization import dump_json, finite
 from pe_core.scene.rig import Rig
@@ -260,17 +259,15 @@ def set_aside_files_of_other_runs(folder: Path) -> dict[str, str]:
 
 def history_csv(history: tuple[HistoryRow, ...], figure: SearchedFigure = IN_NATS) -> str:
     """Return the history as CSV: one row each time a better placement was found."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
     names = [s.name for s in history[0].rig] if history else []
     units = {a: "m" if a in "xyz" else "deg" for a in AXES}
     columns = [f"{name}.{axis}_{units[axis]}" for name in names for axis in AXES]
-    writer.writerow(["evaluation", "round", figure.key, *columns])
+    rows: list[list[object]] = [["evaluation", "round", figure.key, *columns]]
     for row in history:
         poses = [(*s.pose.position, *s.pose.rotation_deg) for s in row.rig]
         best = figure.to_figure(row.entropy)
-        writer.writerow([row.evaluation, row.round, best, *(v for p in poses for v in p)])
-    return text.getvalue()
+        rows.append([row.evaluation, row.round, best, *(v for p in poses for v in p)])
+    return csv_text(rows)
 
 
 def _robustness(outcome: Outcome) -> dict[str, Any]:

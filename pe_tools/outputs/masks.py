@@ -8,12 +8,11 @@ outside the image circle of a lens are black, too.
 
 from __future__ import annotations
 
-import csv
-import io
 from typing import Any
 
 import numpy as np
 
+from pe_core.base.csv_text import csv_text
 from pe_core.base.serialization import dump_json
 from pe_core.scene.rig import Sensor
 from pe_core.scene.vehicle import Vehicle
@@ -75,13 +74,11 @@ def _shares(sensor: Sensor, mask: EgoMask, vehicle: Vehicle | None, file: str) -
 
 def _by_part(summaries: list[dict[str, Any]]) -> bytes:
     """All sensors' shares by part as one table."""
-    text = io.StringIO()
-    lines = csv.writer(text, lineterminator="\n")
-    lines.writerow(["sensor", "part", "rays", "share"])
+    rows: list[list[object]] = [["sensor", "part", "rays", "share"]]
     for summary in summaries:
         for part, rays in summary["rays_by_part"].items():
-            lines.writerow([summary["sensor"], part, rays, f"{summary['by_part'][part]:.6f}"])
-    return text.getvalue().encode()
+            rows.append([summary["sensor"], part, rays, f"{summary['by_part'][part]:.6f}"])
+    return csv_text(rows).encode()
 
 
 def _table(mask: EgoMask) -> bytes:

@@ -3,28 +3,24 @@
 from __future__ import annotations
 
 import math
-import re
-import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from pe_core.base.file_stem import file_stem
 from pe_core.base.values import LENGTH
 from pe_core.scene.rig import Sensor
 from pe_core.study import Study
 
-ODD = re.compile("[^A-Za-z0-9_-]+")
-
 
 def plain_names(names: Sequence[str]) -> tuple[dict[str, str], list[str]]:
-    """Return a plain name for each name, and a message for each name that changed.
+    """Return a name of files for each name, and a message for each name that changed.
 
     Plain names have letters, digits, ``_`` and ``-``; they differ also without regard to case.
     """
     plain_by_name: dict[str, str] = {}
     for name in names:
-        plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
-        plain = ODD.sub("_", plain).strip("_") or "sensor"
-        plain_by_name[name] = _apart(plain, {used.lower() for used in plain_by_name.values()})
+        taken = {used.lower() for used in plain_by_name.values()}
+        plain_by_name[name] = _apart(file_stem(name, "sensor"), taken)
     return plain_by_name, [
         f"{a}: called {b} in names of files" for a, b in plain_by_name.items() if a != b
     ]

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from pe_core.base.errors import InputError, shown
+from pe_core.base.file_stem import is_reserved
 from pe_core.scene import Vehicle
 from pe_core.study import Study, load_study_data, study_from_dict
 
@@ -26,8 +27,6 @@ from .sweep_runner import SweepRun
 UNSAFE = re.compile(r"[^A-Za-z0-9._=+-]+")
 MAX_NAME_LENGTH = 100
 """Characters of a name; a longer one is cut and gets a hash."""
-RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
-"""Names that Windows does not allow for files."""
 HASH_BYTES = 4
 
 
@@ -48,10 +47,11 @@ def folder_names(runs: Sequence[tuple[str, Mapping[str, str]]]) -> list[str]:
 
 def _name(plain: str, words: tuple[str, ...], alike: bool) -> str:
     short = plain[:MAX_NAME_LENGTH].strip("-.") or "run"
-    if short == ",".join(words) and not alike and not RESERVED.fullmatch(short):
+    if short == ",".join(words) and not alike and not is_reserved(short):
         return short
     content = "\0".join(words).encode("utf-8", "surrogatepass")
     digest = hashlib.blake2b(content, digest_size=HASH_BYTES)
+    short = f"run-{short}" if is_reserved(short) else short  # as con.toml is, con.2-1f is one, too
     return f"{short}-{digest.hexdigest()}"
 
 

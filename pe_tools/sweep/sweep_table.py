@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pe_core.base.csv_text import csv_text
 from pe_core.base.errors import InputError
 from pe_core.base.files import read_bytes
 from pe_core.base.serialization import dump_json, finite
@@ -160,14 +159,13 @@ def _dict(row: SweepRow) -> dict[str, Any]:
 
 
 def _csv(rows: Sequence[SweepRow]) -> str:
-    text, keys = io.StringIO(), _keys(rows)
-    writer = csv.writer(text, lineterminator="\n")
+    keys = _keys(rows)
     figures = ["status", "entropy_before", "entropy", "coverage", "message"]
     if any(row.ap is not None for row in rows):
         figures += [f"{EXPECTED_AP}_before", EXPECTED_AP]
-    writer.writerow(["run", "study", *keys, *figures])
+    lines: list[list[object]] = [["run", "study", *keys, *figures]]
     for row in rows:
         data, changes = _dict(row), row.run.changes
         named = [data["run"], data["study"], *(changes.get(key, "") for key in keys)]
-        writer.writerow([*named, *("" if data.get(f) is None else data[f] for f in figures)])
-    return text.getvalue()
+        lines.append([*named, *(data.get(f) for f in figures)])
+    return csv_text(lines)

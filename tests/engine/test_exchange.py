@@ -1,5 +1,6 @@
 """Rigs go out in other programs' formats and come back; and known files of these are read right."""
 
+import csv
 import json
 import math
 import re
@@ -9,11 +10,14 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.base.csv_text import marked
+from pe_core.base.file_stem import is_reserved
 from pe_core.geometry.poses import rotation_matrix
 from pe_core.scoring.sampling import FIRST_SAMPLES
 from pe_tools.cli.exchange_verbs import FILE_NAMES
 from pe_tools.exchange import RIG_FORMATS, format_of_file, rig_files
 from pe_tools.exchange.frames import from_quaternion, quaternion
+from tests.engine.test_files import FORMULAS
 
 AXLE = pe.Reference(-1.31, 0.33)
 WITHIN = 1e-6
@@ -291,6 +295,30 @@ def test_names_become_legal_frames_and_stay_apart():
     links = re.findall('<link name="(.*?)"', files["rig.urdf"].decode())
     assert links == ["base_link", "Dach_vorn", "Dach_vorn_2", "sensor_2nd", "groe"]
     assert len(lines) == 4
+
+
+DEVICES = ("CON", "nul", "com1", "Aux", "lpt9/x")
+
+
+@pytest.mark.parametrize("format_name", ["ros", "autoware"])
+def test_no_file_has_a_name_that_windows_keeps_for_itself(tmp_path, format_name):
+    rig = pe.Rig([sensor(name, "KITTI cam2", (0, 0, 2)) for name in DEVICES])
+    paths, _ = pe.export_rig(rig, format_name, tmp_path / "rig", AXLE)
+    names = [name for path in paths for name in path.relative_to(tmp_path).parts]
+    assert len(paths) > len(DEVICES) and not [*filter(is_reserved, names)]
+    assert len(pe.import_rig(tmp_path / "rig", format_name, AXLE).rig) == len(DEVICES)
+
+
+@pytest.mark.parametrize("name", FORMULAS)
+def test_a_table_is_read_back_whatever_the_names(tmp_path, name):
+    rig = pe.Rig([sensor(name.replace("\t", ""), PUCK, (0, 0, 2))])
+    pe.export_rig(rig, "csv", tmp_path / "rig.csv")
+    with (tmp_path / "rig.csv").open(encoding="utf-8") as file:
+        cells = [cell for row in csv.reader(file) for cell in row if not cell.startswith("#")]
+    assert not [cell for cell in cells if marked(cell) != cell and cell[0] != "'"]
+    assert [each.name for each in pe.import_rig(tmp_path / "rig.csv").rig] == [
+        each.name for each in rig
+    ]
 
 
 JOINT = '<joint name="{0}{1}" type="fixed"><parent link="{0}"/><child link="{1}"/></joint>'

@@ -1,14 +1,18 @@
 """Reading and writing whole files, and how much memory there is: the rules that readers share."""
 
+import csv
 import errno
 import os
+import re
 import sys
 from pathlib import Path
 
 import pytest
 
 from pe_core.base import files, memory
+from pe_core.base.csv_text import csv_text, unmarked
 from pe_core.base.errors import InputError
+from pe_core.base.file_stem import file_stem, is_reserved
 from pe_core.base.files import read_bytes, require_new, write_all_bytes, write_bytes
 from pe_core.base.memory import available_bytes, report_memory_errors, require_memory, size_text
 
@@ -156,6 +160,7 @@ def test_several_files_are_written_together_or_not_at_all(tmp_path):
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == new
 
 
+ROOT = Path(files.__file__).parents[2]
 FAULTS = ("ENOSPC", "EDQUOT", "EIO")
 
 
@@ -208,3 +213,34 @@ def test_the_rule_for_outputs(tmp_path):
     (tmp_path / "also").symlink_to("mine")
     with pytest.raises(InputError, match="another file than the input"):
         require_new(tmp_path / "also", replace=True, inputs=[path])
+
+
+FORMULAS = ('=HYPERLINK("http://a.b","c")', "+cmd", "-1+A1", "@SUM(A1)", "'=1", "\t=1", "＝1")
+PLAIN = ("front", "-1.5", "+1e-3", "-0.33 0.11 -2", "a=b", "'twas", "", "3,5", 'say "so"')
+
+
+@pytest.mark.parametrize("text", [*FORMULAS, *PLAIN])
+def test_no_cell_of_a_table_is_a_formula_and_ours_are_read_back(text):
+    ((cell, number, empty),) = csv.reader([csv_text([[text, -1.5, None]])])
+    assert (cell == text) == (text in PLAIN) and (number, empty) == ("-1.5", "")
+    assert cell == text or cell[0] == "'"
+    assert unmarked(cell) == text
+
+
+def test_every_table_goes_through_the_one_writer():
+    writers = [
+        path.relative_to(ROOT)
+        for package in ("pe_core", "pe_tools", "blender_addon")
+        for path in (ROOT / package).rglob("*.py")
+        if re.search(r"csv\.(Dict)?[wW]riter", path.read_text("utf-8"))
+    ]
+    assert writers == [Path("pe_core/base/csv_text.py")]
+
+
+@pytest.mark.parametrize("joint", ["_", "-"])
+@pytest.mark.parametrize(
+    "name", ["CON", "nul.toml", "a.", "..", 'a<b>:"c|?*', "ü", "雷达", "x" * 300]
+)
+def test_every_file_system_takes_the_names_of_files(name, joint):
+    stem = file_stem(name, "sensor", joint=joint)
+    assert re.fullmatch("[A-Za-z0-9_-]{1,107}", stem) and not is_reserved(stem)

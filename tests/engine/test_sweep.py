@@ -14,6 +14,7 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
+from pe_core.base.file_stem import is_reserved
 from pe_core.search import Journal
 from pe_core.study import SEARCH
 from pe_tools import advice, jobs
@@ -154,11 +155,11 @@ def test_files_of_somebody_s_own_are_refused_before_the_work(study, out, capsys)
 def test_names_are_safe_short_and_of_one_run_each():
     changes = [{"m": "a/b"}, {"m": "a b"}, {"m": "X"}, {"m": "x"}, {"m": "y" * 300}, {"m": "../é"}]
     names = folder_names([("car", each) for each in changes])
-    names += folder_names([("con", {}), ("..", {}), ("plain", {})])
+    names += folder_names([("con", {}), ("con.v2", {}), ("..", {}), ("plain", {})])
     assert len({name.casefold() for name in names}) == len(names)
     for name in names:
         assert name.isascii() and not set(name) & set('/\\:*?"<>| ') and name[0] not in ".-"
-        assert len(name) <= MAX_NAME_LENGTH + 9 and name.casefold() != "con"
+        assert len(name) <= MAX_NAME_LENGTH + 9 and not is_reserved(name)
     assert names[-1] == "plain" and names[0].startswith("car,m=a-b-")
     assert folder_names([("car", {"m": "x"})]) == ["car,m=x"]
 

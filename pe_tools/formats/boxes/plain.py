@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import csv
-import io
 import math
 import re
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 
+from pe_core.base.csv_text import csv_text, unmarked
 from pe_core.base.errors import InputError
 from pe_core.base.files import MAX_QUOTE, parse_number, quoted, write_bytes
 from pe_core.prior.boxes import COLUMNS, Boxes, degrees_of
@@ -43,7 +43,7 @@ def read_csv(source: str, lines: Sequence[tuple[int, str]]) -> Labels:
         if len(cells) != len(header):
             expected = f"as many columns as the header, {len(header)}"
             raise InputError(source, where, expected, len(cells))
-        labels.add(where, cells[where_is[CLASS]], _row(source, where, cells, where_is))
+        labels.add(where, unmarked(cells[where_is[CLASS]]), _row(source, where, cells, where_is))
     return labels
 
 
@@ -58,12 +58,9 @@ def _csv_bytes(boxes: Boxes) -> bytes:
 
     The cache is valid because boxes do not change.
     """
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC)
-    text.write(",".join((CLASS, *COLUMNS)) + "\n")
     columns = [getattr(boxes, c) for c in COLUMNS[:-1]] + [degrees_of(boxes.yaw)]
-    writer.writerows(zip(boxes.names.tolist(), *(c.tolist() for c in columns), strict=True))
-    return text.getvalue().encode()
+    rows = zip(boxes.names.tolist(), *(c.tolist() for c in columns), strict=True)
+    return (",".join((CLASS, *COLUMNS)) + "\n" + csv_text(rows, quote_texts=True)).encode()
 
 
 def _header(source: str, line: tuple[int, str], separator: str) -> list[str]:

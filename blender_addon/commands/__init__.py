@@ -47,6 +47,9 @@ def main(argv: Sequence[str], prog: str, out: TextIO) -> int:
         args.command_line = app.as_typed(prog.replace("FILE.blend", file), argv)
     except SystemExit as stop:  # help was asked for, or the usage was wrong
         return int(stop.code or 0)
+    except pe.InputError as error:
+        app.tell(str(error))
+        return app.BAD_INPUT
     return app.run(lambda: args.function(args), out)
 
 

@@ -249,6 +249,9 @@ class PE_OT_search_sensor(bpy.types.Operator):
         return {"FINISHED"}
 
     def execute(self, _context: bpy.types.Context) -> OperatorResult:
+        if not self.model:
+            expected, found = "the name of a sensor of the catalogue", "an empty text"
+            return report_error(self, pe.InputError("search", "model", expected, found))
         return bpy.ops.pe.place_sensor("INVOKE_DEFAULT", True, model=self.model)
 
 

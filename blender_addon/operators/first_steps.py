@@ -133,7 +133,11 @@ class PE_OT_open_example(bpy.types.Operator):
                 report(self, "WARNING", "Save this file under a name, then open the example again")
                 bpy.ops.wm.save_as_mainfile("INVOKE_DEFAULT")
                 return {"CANCELLED"}
-            bpy.ops.wm.save_mainfile()
+            try:
+                bpy.ops.wm.save_mainfile()
+            except RuntimeError as error:  # a path that cannot be written: Blender's own line
+                report(self, "ERROR", str(error).strip().removeprefix("Error: "))
+                return {"CANCELLED"}
         # As a start-up file it has no name: Save never writes into the extension's folder.
         return bpy.ops.wm.read_homefile(filepath=str(example), load_ui=False)
 

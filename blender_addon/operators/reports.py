@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import bpy
 
 from .. import language, preferences
-from ..engine import pe
+from ..engine import pe, text
 
 USER_ERRORS = (pe.InputError, MemoryError)
 """Errors that end an operator with one line: wrong input, and too little memory."""
@@ -74,9 +74,9 @@ def chosen_file(filepath: str) -> Path:
     Raises
     ------
     InputError
-        When no file was chosen.
+        When no file was chosen, or its name cannot be one.
     """
-    path = Path(bpy.path.abspath(filepath))
+    path = text.named_path("export", "file", bpy.path.abspath(filepath))
     if not path.name:
         raise pe.InputError("export", "file", "the name of a file", repr(filepath))
     return path

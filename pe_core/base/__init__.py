@@ -1,9 +1,9 @@
 """Values and files: checks of input values, files read and written whole, TOML, JSON, XML, YAML."""
 
 from .csv_text import csv_text
-from .files import decode_text, read_bytes, require_new, write_bytes
+from .files import decode_text, named_path, read_bytes, require_new, write_bytes
 from .memory import available_bytes, require_memory
-from .serialization import dump_json, dumps
+from .serialization import dump_json, dumps, parse_json
 from .table_reader import Table
 from .values import Name, Number
 
@@ -16,6 +16,8 @@ __all__ = [
     "decode_text",
     "dump_json",
     "dumps",
+    "named_path",
+    "parse_json",
     "read_bytes",
     "require_memory",
     "require_new",

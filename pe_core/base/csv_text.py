@@ -30,8 +30,10 @@ def csv_text(rows: Iterable[Iterable[object]], *, quote_texts: bool = False) -> 
         Whether every text is in quotes, not only those that need them.
     """
     text = io.StringIO()
-    quoting = csv.QUOTE_NONNUMERIC if quote_texts else csv.QUOTE_MINIMAL
-    writer = csv.writer(text, lineterminator="\n", quoting=quoting)
+    if quote_texts:
+        writer = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC)
+    else:
+        writer = csv.writer(text, lineterminator="\n")
     writer.writerows([marked(c) if isinstance(c, str) else c for c in row] for row in rows)
     return text.getvalue()
 

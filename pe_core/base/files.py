@@ -20,6 +20,9 @@ LABEL_BYTES = 2 << 30
 TEXT_BYTES = 16 << 20
 """Maximum size of a study, a file of channel angles or a table."""
 
+MAX_NAME_BYTES = 255
+"""Most bytes of a name of a file or folder on the usual file systems."""
+
 CHUNK = 1 << 20
 BINARY = getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
 """Flags of every file that is opened: no line ends changed, no child process inherits it."""
@@ -53,6 +56,23 @@ def read_bytes(path: Path, max_bytes: int = TEXT_BYTES) -> bytes:
         raise
     except (OSError, ValueError) as error:  # ValueError: no path may hold a NUL
         raise InputError(str(path), "file", "a readable file", reason_of(error)) from error
+
+
+def named_path(source: object, field: str, text: str) -> Path:
+    """Return the path of a file or folder that somebody named, in a name that can be.
+
+    Raises
+    ------
+    InputError
+        When the text is empty, has a NUL, or a name in it has more bytes than file systems take.
+    """
+    if not text:
+        raise InputError(source, field, "the name of a file or folder", "an empty text")
+    longest = max(len(part.encode("utf-8", "surrogatepass")) for part in text.split("/"))
+    if longest > MAX_NAME_BYTES or "\0" in text:
+        expected = f"names of at most {MAX_NAME_BYTES} bytes, without NUL"
+        raise InputError(source, field, expected, f"one of {longest:,} bytes")
+    return Path(text)
 
 
 def require_new(path: Path, *, replace: bool, inputs: Iterable[Path] = ()) -> None:

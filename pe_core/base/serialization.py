@@ -18,6 +18,8 @@ MAX_KEY_PARTS = 30
 """Maximum parts of a dotted key. The library's time and memory grow with their square: 17 s and
 1.7 GB for a key of 40 kB."""
 PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+"""
+HALF = re.compile("[\ud800-\udfff]|" + r"\\u[dD][89a-fA-F]")
+"""What may be half a surrogate pair in a JSON text."""
 LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-])(?:{PART}){{{MAX_KEY_PARTS},}}+")
 
 
@@ -113,9 +115,37 @@ def finite(value: Any) -> Any:
     return value
 
 
-def parse_json(source: object, text: str) -> Any:
-    """Return the data of a JSON text, or raise `InputError` for what is none."""
+def parse_json(source: object, text: str | bytes, *, infinite: bool = False) -> Any:
+    """Return the data of a JSON text; bytes are in UTF-8.
+
+    What Python takes but no file could be written of is refused: NaN, infinity (unless `infinite`
+    allows it), numbers beyond those of 64 bits, halves of surrogate pairs.
+
+    Raises
+    ------
+    InputError
+    """
+
+    def constant(word: str) -> float:
+        if infinite and word.endswith("Infinity"):
+            return float(word)
+        raise ValueError(f"{word}, which is no JSON")
+
+    def number(digits: str) -> float:
+        value = float(digits)
+        if math.isinf(value):
+            raise ValueError(f"{digits[:20]}, which is too large")
+        return value
+
     try:
-        return json.loads(text)
-    except (ValueError, RecursionError) as error:
+        text = text if isinstance(text, str) else text.decode("utf-8-sig")
+        data = json.loads(text, parse_constant=constant, parse_float=number)
+        if HALF.search(text):
+            json.dumps(data, ensure_ascii=False).encode()
+        return data
+    except RecursionError:
+        raise InputError(source, "file", "valid JSON", "too many nested brackets") from None
+    except UnicodeEncodeError:
+        raise InputError(source, "file", "valid JSON", "half a surrogate pair") from None
+    except ValueError as error:
         raise InputError(source, "file", "valid JSON", error) from None

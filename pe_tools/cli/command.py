@@ -15,7 +15,7 @@ from typing import Any, NoReturn, TextIO
 
 from pe_core import catalog
 from pe_core.base.errors import InputError
-from pe_core.base.files import quoted
+from pe_core.base.files import named_path, quoted, reason_of
 from pe_core.sensors import CURVE_MODELS, kind_of
 from pe_core.study import METHODS, OBJECTIVES, SCHEDULED_METHOD, Study, under
 
@@ -24,12 +24,28 @@ from .interrupts import FATAL, signals_interrupt
 from .run_job import print_answer
 from .terminal import BAD_INPUT, DONE, Answer, one_line, printable, show, tell
 
+NO_THREAD = "can't start new thread"
+"""Python's `RuntimeError` where no memory is left for the stack of a thread."""
 MAX_WORKERS, MAX_VOXELS, LAST_SEED = 1024, 10**9, 2**64 - 1
 """Greatest values of options: more threads or voxels than anyone has a use for."""
 
 
+FILES, FOLDERS = ("STUDY", "FILE", "MESH", "PATH", "TABLE"), ("DIR",)
+"""Metavars of arguments that are files, and of those that are folders."""
+
+
 class Parser(argparse.ArgumentParser):
     """A parser whose messages are printable text, and whose printing never fails."""
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Parse arguments; raise `InputError` for a path that no file can have."""
+        found, rest = super().parse_known_args(args, namespace)
+        for action in self._actions:
+            if (where := action.metavar) in (*FILES, *FOLDERS):
+                given = getattr(found, action.dest, None)
+                for path in [given] if isinstance(given, str) else given or ():
+                    named_path("command line", "/".join(action.option_strings) or where, path)
+        return found, rest
 
     def error(self, message: str) -> NoReturn:
         """Print the usage and the error, and exit with status 2."""
@@ -171,9 +187,15 @@ def run(main: Callable[[], Answer], out: TextIO | None = None) -> int:
         note = getattr(error, "note", "")
         tell(f"interrupted; {note}" if note else "interrupted")
         return FATAL + getattr(error, "signum", signal.SIGINT)
-    except MemoryError:
+    except (MemoryError, RuntimeError) as error:
+        if isinstance(error, RuntimeError) and str(error) != NO_THREAD:
+            raise
         tell("not enough memory: close other programs, or ask for fewer voxels (--grid-samples)")
         return BAD_INPUT
     except BrokenPipeError as error:  # from a stream that a verb writes to directly
         tell(str(error))
+        return BAD_INPUT
+    except OSError as error:  # from a question to the system about a file
+        where = error.filename or "system"
+        tell(str(InputError(where, "file", "one that can be used", reason_of(error))))
         return BAD_INPUT

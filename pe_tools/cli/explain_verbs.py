@@ -188,7 +188,8 @@ def _beside(studies: Mapping[str, Study], key: str | None) -> dict[str, Study]:
 def named_by_file(paths: list[str]) -> dict[str, str]:
     """Return study files by short, different names: the file's, with its folder's if needed."""
     for depth in (1, 2):
-        names = ["/".join(Path(path).with_suffix("").parts[-depth:]) for path in paths]
+        parts = [(*Path(path).parts[:-1], Path(path).stem)[-depth:] for path in paths]
+        names = ["/".join(each) for each in parts]
         if len(set(names)) == len(names):
             return dict(zip(names, paths, strict=True))
     return dict(zip(paths, paths, strict=False))

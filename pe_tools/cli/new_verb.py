@@ -51,8 +51,8 @@ def add_new_verb(verbs: Any) -> None:
 def new_study(args: argparse.Namespace) -> Answer:
     """Write the study of a mesh, and tell what was found in the mesh."""
     mesh_path, output = Path(args.file), Path(args.output)
-    area_path = output.with_name(f"{output.stem}_roof.npz")
     require_new(output, replace=args.replace, inputs=[mesh_path])
+    area_path = output.parent / f"{output.stem}_roof.npz"
     model = catalog.load(args.sensor)
     mesh, scale, unit = read_in_metres(mesh_path, args.up, args.forward, args.scale)
     vehicle = Vehicle(mesh.triangles, mesh.parts, mesh.part_names, glass_parts(mesh.part_names))

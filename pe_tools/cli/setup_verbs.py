@@ -24,6 +24,7 @@ from pe_core.base.memory import available_bytes, size_text
 from pe_core.base.plugins import EXTRAS, optional_package
 from pe_core.version import __version__
 
+from .command import FILES, FOLDERS
 from .terminal import DONE, Answer
 
 PACKAGES: Mapping[str, tuple[str, ...]] = {
@@ -42,8 +43,6 @@ PACKAGES: Mapping[str, tuple[str, ...]] = {
 VERSION_TIMEOUT_S = 30
 BLENDER, COMMAND = "BLENDER", "blender"
 SHELLS = ("bash", "zsh", "fish")
-FILES, FOLDERS = ("STUDY", "FILE", "MESH", "PATH", "TABLE"), ("DIR",)
-"""Metavars of arguments that shells complete with files, and with folders."""
 
 
 def add_setup_verbs(verbs: Any, top: Callable[[], argparse.ArgumentParser]) -> None:

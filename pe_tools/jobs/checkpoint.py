@@ -12,7 +12,7 @@ from typing import Any
 
 from pe_core.base.errors import InputError, shown
 from pe_core.base.files import read_bytes
-from pe_core.base.serialization import load_toml
+from pe_core.base.serialization import load_toml, parse_json
 from pe_core.search import EvaluatedRig, Journal
 from pe_core.study.file_names import SEARCH, STUDY
 from pe_core.study.study import Study
@@ -147,11 +147,11 @@ def read_search(folder: str | Path) -> BegunSearch:
 
 def _data_of(path: Path) -> dict[str, Any]:
     try:
-        data: Any = json.loads(read_bytes(path, STATE_BYTES))
+        data: Any = parse_json(path, read_bytes(path, STATE_BYTES), infinite=True)
         typed = isinstance(data["study"], str) and isinstance(data["inputs"], dict)
         if data[PROGRAM] == KIND and typed:
             return {key: data[key] for key in KEYS}
-    except (KeyError, RecursionError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError) as error:
         if isinstance(error, InputError):
             raise
     raise InputError(path, "file", A_STATE, "another file")

@@ -7,7 +7,6 @@ is not listed, or was changed since, belongs to the user and stays unchanged.
 from __future__ import annotations
 
 import hashlib
-import json
 import os
 import secrets
 import time
@@ -26,7 +25,7 @@ from pe_core.base.files import (
     write_bytes,
     write_synced,
 )
-from pe_core.base.serialization import dump_json
+from pe_core.base.serialization import dump_json, parse_json
 
 try:
     import fcntl
@@ -242,10 +241,10 @@ def _listed(folder: Path) -> Listed:
     if not os.path.lexists(path):
         return {}
     try:
-        data: Any = json.loads(read_bytes(path))
+        data: Any = parse_json(path, read_bytes(path))
         if data[PROGRAM] == VERSION:
             return {str(name): [str(d) for d in digests] for name, digests in data["files"].items()}
-    except (AttributeError, KeyError, RecursionError, TypeError, ValueError):
+    except (AttributeError, KeyError, TypeError, ValueError):
         pass
     expected = "this program's list of the files it wrote here"
     raise InputError(path, "file", expected, "another; remove it, or choose another folder")

@@ -13,6 +13,7 @@ from typing import Any
 
 from pe_core.base.errors import InputError, shown
 from pe_core.base.files import read_bytes
+from pe_core.base.serialization import parse_json
 from pe_core.search import EvaluatedRig, Journal
 from pe_core.study.study import Study
 from pe_core.version import __version__
@@ -83,7 +84,7 @@ def read_front_search(study: Study, folder: Path) -> FrontJournals:
     """
     path = folder / FRONT_SEARCH
     try:
-        data: Any = json.loads(read_bytes(path, STATE_BYTES))
+        data: Any = parse_json(path, read_bytes(path, STATE_BYTES), infinite=True)
         if data[PROGRAM] != KIND:
             raise ValueError
         version, digest = str(data["version"]), str(data["study_sha256"])
@@ -91,7 +92,7 @@ def read_front_search(study: Study, folder: Path) -> FrontJournals:
             str(name): [EvaluatedRig(float(e), bool(b), str(d)) for e, b, d in rows]
             for name, rows in data["journals"].items()
         }
-    except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError(path, "file", A_STATE, "another file") from None

@@ -6,7 +6,6 @@ lists the SHA-256 of each other file.
 
 from __future__ import annotations
 
-import json
 import platform
 from collections.abc import Collection, Mapping
 from contextlib import suppress
@@ -17,7 +16,7 @@ import numpy as np
 
 from pe_core.base.csv_text import csv_text
 from pe_core.base.files import read_bytes
-from pe_core.base.serialization import dump_json, finite
+from pe_core.base.serialization import dump_json, finite, parse_json
 from pe_core.scene.rig import Rig
 from pe_core.search import AXES
 from pe_core.study.catalog_lookup import mounts_table
@@ -226,12 +225,12 @@ def files_of_other_runs(folder: Path) -> list[str]:
     They were written by an earlier run or an interrupted later run, or were changed by hand.
     """
     try:
-        named = json.loads(read_bytes(folder / RESULT))["run"]["files"]
+        named = parse_json(RESULT, read_bytes(folder / RESULT))["run"]["files"]
         ours = set(our_files(folder))
         present = [n for n in BESIDE_RESULT if n in ours or n in named]
         digests = {n: sha256_of(folder / n) for n in present}
         return [n for n, digest in digests.items() if digest and digest != named.get(n)]
-    except (AttributeError, KeyError, RecursionError, TypeError, ValueError):
+    except (AttributeError, KeyError, TypeError, ValueError):
         return []
 
 

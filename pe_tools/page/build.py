@@ -6,7 +6,6 @@ A folder of search results is read back to the outcome that the search had.
 from __future__ import annotations
 
 import argparse
-import json
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -27,6 +26,7 @@ from .report_context import MAX_STUDIES, About, ReportContext
 INTERRUPTED = "no page was written"
 OWN_VERSIONS = ("perception-entropy", "numpy", "python")
 """Programs whose versions the page lists by itself."""
+A_RESULT = "the result of a search by this version"
 MAX_RESULT_BYTES = 1 << 28
 """Size limit of a result.json that is read."""
 
@@ -156,7 +156,7 @@ def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> 
     start = checkpoint.study
     best = start.with_rig(pe.load_study(folder / studies.STUDY).rig)
     try:
-        result = json.loads(text.read_bytes(path, MAX_RESULT_BYTES))
+        result = _result_of(folder)
         figure = jobs.searched_figure(start)
         history = tuple(_history_row(start.rig, row, figure) for row in result["history"])
         robustness = _robustness(result.get("robustness"))
@@ -168,11 +168,10 @@ def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> 
         blind = result["blind_ground_m2"]
         blind_m2 = float(blind["before"]), float(blind["after"])
         evaluations, stopped = int(result["evaluations"]), bool(result["stopped"])
-    except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
         if isinstance(error, pe.InputError):
             raise
-        expected = "the result of a search by this version"
-        raise pe.InputError(path, "file", expected, "another file") from None
+        raise pe.InputError(path, "file", A_RESULT, "another file") from None
     first = score(start)
     last = first if best.rig == start.rig else score(best)
     scores = first.after, last.after
@@ -194,8 +193,16 @@ def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> 
 
 def command_of_folder(folder: Path) -> str:
     """Return the command line that produced a folder of results; empty if it is not recorded."""
-    result = json.loads(text.read_bytes(folder / studies.RESULT, MAX_RESULT_BYTES))
-    return str(result.get("run", {}).get("command", ""))
+    run = _result_of(folder).get("run")
+    return str(run.get("command", "")) if isinstance(run, dict) else ""
+
+
+def _result_of(folder: Path) -> dict[str, Any]:
+    path = folder / studies.RESULT
+    result = text.parse_json(path, text.read_bytes(path, MAX_RESULT_BYTES))
+    if not isinstance(result, dict):
+        raise pe.InputError(path, "file", A_RESULT, "another file")
+    return result
 
 
 def _in_traffic(table: Any) -> tuple[pe.ObjectScore, pe.ObjectScore] | None:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import argparse
 import functools
 import io
-import json
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from importlib.util import find_spec
@@ -18,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pe_core import InputError
-from pe_core.base import decode_text, read_bytes, write_bytes
+from pe_core.base import parse_json, read_bytes, write_bytes
 
 from ..cli import DONE, Answer
 from ..jobs import FRONT_JSON, FRONT_PLOT, FileSet
@@ -146,7 +145,7 @@ def write_front_plot(data: Mapping[str, Any], folder: Path) -> None:
 def read_front(path: Path) -> dict[str, Any]:
     """Return currency and designs of a front.json; `InputError` for any other file."""
     try:
-        data = json.loads(decode_text(read_bytes(path)))
+        data = parse_json(path, read_bytes(path))
         rows = [{key: row[key] for key in FRONT_KEYS} for row in data["designs"]]
         if not any(row["on_front"] for row in rows):
             raise ValueError
@@ -154,7 +153,7 @@ def read_front(path: Path) -> dict[str, Any]:
             row |= {"price": float(row["price"]), "entropy": float(row["entropy"])}
             row["name"] = str(row["name"])
         return {"currency": str(data["currency"]), "designs": rows}
-    except (KeyError, RecursionError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError(path, "file", "the front that `pe optimize` wrote", "another") from None

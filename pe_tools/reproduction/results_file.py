@@ -22,7 +22,7 @@ import numpy as np
 
 import pe_core as pe
 from pe_core import InputError
-from pe_core.base import Name, Number, Table, dump_json, read_bytes, write_bytes
+from pe_core.base import Name, Number, Table, dump_json, parse_json, read_bytes, write_bytes
 
 RESULTS = "results.json"
 SCHEMA = 1
@@ -129,13 +129,7 @@ def read_json(path: Path) -> dict[str, Any]:
     InputError
         When the file cannot be read, or holds something else.
     """
-    text = read_bytes(path)
-    try:
-        data = json.loads(text, parse_constant=_refuse)
-    except RecursionError:
-        raise InputError(path, "file", "valid JSON", "too many nested brackets") from None
-    except ValueError as error:
-        raise InputError(path, "file", "valid JSON", error) from None
+    data = parse_json(path, read_bytes(path))
     if not isinstance(data, dict):
         raise InputError(path, "file", "a JSON object", type(data).__name__)
     return data
@@ -230,10 +224,6 @@ def check_same_length(table: Table, *keys: str) -> None:
     """Check that lists that belong together are equally long."""
     if len({len(table.raw(key)) for key in keys}) > 1:
         raise table.error(keys[0], f"as many items as in {', '.join(keys[1:])}", "another number")
-
-
-def _refuse(constant: str) -> float:
-    raise ValueError(f"{constant}, which is no JSON")
 
 
 def _unused_name(folder: Path, made: object) -> Path:

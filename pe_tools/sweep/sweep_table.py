@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import Any
 from pe_core.base.csv_text import csv_text
 from pe_core.base.errors import InputError
 from pe_core.base.files import read_bytes
-from pe_core.base.serialization import dump_json, finite
+from pe_core.base.serialization import dump_json, finite, parse_json
 from pe_core.study import RESULT
 from pe_core.study.objective_setting import EXPECTED_AP
 from pe_core.version import __version__
@@ -72,7 +71,7 @@ def row_of_result(run: SweepRun, folder: Path, kind: str) -> SweepRow | None:
     The result must be complete, of this study and kind, and of this version.
     """
     try:
-        data: Any = json.loads(read_bytes(folder / RESULT))
+        data: Any = parse_json(RESULT, read_bytes(folder / RESULT))
         made = (data["kind"], data["stopped"], data["run"]["versions"]["perception-entropy"])
         same = data["inputs"]["study_sha256"] == fingerprint(run.study)
         if made != (kind, False, __version__) or not same or files_of_other_runs(folder):
@@ -81,7 +80,7 @@ def row_of_result(run: SweepRun, folder: Path, kind: str) -> SweepRow | None:
         found = data.get(EXPECTED_AP)
         aps = () if found is None else [float(found[k]["ap"]) for k in ("before", "after")]
         return SweepRow(run, DONE, before, entropy, float(data["coverage"]), "", *aps)
-    except (KeyError, RecursionError, TypeError, ValueError):
+    except (KeyError, TypeError, ValueError):
         return None
 
 

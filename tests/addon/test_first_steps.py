@@ -199,3 +199,21 @@ def test_the_tab_names_the_next_step_until_there_is_a_sensor(scene):
     assert not {"pe.use_selected", "pe.open_example"} & set(shown.texts("operator"))
     scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))
     assert headings()[0] == []
+
+
+def test_a_file_that_cannot_be_saved_is_one_line_and_stays_open(scene, tmp_path):
+    path = tmp_path / "mine.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    bpy.ops.object.empty_add()
+    path.unlink()
+    path.mkdir()
+    assert bpy.data.is_dirty
+    with pytest.raises(RuntimeError, match="Error: Cannot save blend file") as caught:
+        bpy.ops.pe.open_example(changes="SAVE")
+    assert "Traceback" not in str(caught.value) and bpy.data.filepath == str(path)
+
+
+def test_a_search_without_a_sensor_is_one_line(scene):
+    with pytest.raises(RuntimeError, match="search: model: expected") as caught:
+        bpy.ops.pe.search_sensor("EXEC_DEFAULT", kind="none of these")
+    assert "Traceback" not in str(caught.value)

@@ -136,6 +136,43 @@ def test_interrupt_keeps_the_best_so_far(study, tmp_path):
     assert best.evaluator().score(best.rig).to_dict() == data["after"]
 
 
+PATHS = (
+    *("compare {}", "review {} -o r", "score {}", "check {}", "optimize {}", "explain {}"),
+    *("sweep {} -o s", "sweep car.toml -o {}", "score car.toml -o {}", "optimize --resume {}"),
+    *("import {} -o x", "import car.toml -o {}", "export car.toml --to csv -o {}"),
+    *("export car.toml --to ros -o {}", "new {} -o x", "new car.npz -o {}", "rigs kitti -o {}"),
+    *("check car.toml --csv {}", "review car.toml -o {}", "fit {}", "front {}"),
+    *("rigs kitti --mesh {} -o x", "reproduce --page-only -o {}", "validate --page-only -o {}"),
+)
+"""Every path on the command line."""
+
+
+@pytest.mark.parametrize("argv", PATHS)
+@pytest.mark.parametrize("path", ["", "x" * 300, f"a/{'ü' * 200}/b", "a\0b"])
+def test_a_path_that_cannot_be_is_one_line(study, tmp_path, monkeypatch, capsys, argv, path):
+    monkeypatch.chdir(tmp_path)
+    before = sorted(tmp_path.iterdir())
+    assert main([part.format(path) for part in argv.split()]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("pe: command line: ") and sorted(tmp_path.iterdir()) == before
+
+
+def test_folders_in_place_of_files_are_one_line(study, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for argv in ("compare . ..", "new car.npz -o .", "sweep / -o s", "rigs kitti -o /"):
+        assert main(argv.split()) == 1
+        assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+def test_no_memory_for_a_thread_is_one_line(study, monkeypatch, capsys):
+    def start(_):
+        raise RuntimeError("can't start new thread")
+
+    monkeypatch.setattr("threading.Thread.start", start)
+    assert main(["score", str(study)]) == 1
+    assert capsys.readouterr().err.splitlines()[-1].startswith("pe: not enough memory: ")
+
+
 OUTPUTS = {
     "check": "check car.toml --preset all --csv {}",
     "export a rig": "export car.toml --to csv -o {}",

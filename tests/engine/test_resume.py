@@ -1,6 +1,7 @@
 """A search goes on from the state in its folder, to the bits of one that was never broken off."""
 
 import json
+import math
 import pickle
 import signal
 import subprocess
@@ -213,6 +214,9 @@ def begun_in(folder, **changes):
             {"judged": [[1.0, False, "a"], [1, 2]]},
             "judged[1]: expected an entropy, a truth value, a digest",
         ),
+        ({"judged": [[math.nan, False, "a"]]}, "file: expected valid JSON, found NaN"),
+        ({"judged": [[1.0, False, "\ud800"]]}, "file: expected valid JSON, found half a"),
+        ({"inputs": {"study": "\udfff"}}, "file: expected valid JSON, found half a surrogate"),
         ({"judged": None}, "judged[0]: expected an entropy, a truth value, a digest, found None"),
     ],
 )

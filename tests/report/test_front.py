@@ -1,6 +1,7 @@
 """The plot of a front: drawn from front.json, again and again the same."""
 
 import json
+import math
 
 import pytest
 
@@ -39,10 +40,23 @@ def test_designs_of_the_front_are_numbered_and_named(monkeypatch, tmp_path):
     assert plot.get_xlabel() == "price [EUR]"
 
 
-@pytest.mark.parametrize("text", ["{}", '{"currency": "", "designs": []}', "[", '{"designs": 3}'])
-def test_another_file_is_refused_in_one_line(folder, text):
+NO_FRONT = "the front that `pe optimize` wrote"
+OF_NAN = json.dumps({"currency": "", "designs": [ROWS[0] | {"entropy": math.nan}]})
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("{}", NO_FRONT),
+        ('{"currency": "", "designs": []}', NO_FRONT),
+        ('{"designs": 3}', NO_FRONT),
+        ("[", "valid JSON"),
+        (OF_NAN, "valid JSON, found NaN"),
+    ],
+)
+def test_another_file_is_refused_in_one_line(folder, text, expected):
     (folder / "front.json").write_text(text)
     run = pe("front", folder)
     assert run.returncode == 1
     assert run.stderr.count("\n") == 1
-    assert "front.json: file: expected the front that `pe optimize` wrote" in run.stderr
+    assert f"front.json: file: expected {expected}" in run.stderr

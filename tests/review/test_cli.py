@@ -104,6 +104,31 @@ def test_a_study_that_cannot_be_read_leaves_no_folder(study, tmp_path, capsys, m
     assert given[-1] in capsys.readouterr().err and not Path("new").exists()
 
 
+@pytest.mark.parametrize(
+    ("key", "value", "message"),
+    [
+        ("evaluations", "NaN", "NaN, which is no JSON"),
+        ("entropy", "-Infinity", "-Infinity, which is no JSON"),
+        ("evaluations", "1e999", "1e999, which is too large"),
+        ("seed", '"\\ud800"', "half a surrogate pair"),
+        ("run", "null", None),
+        ("run", "[1]", None),
+        ("history", "3", "the result of a search"),
+        ("warnings", "null", "the result of a search"),
+    ],
+)
+def test_a_result_that_is_none_is_one_line(study, tmp_path, capsys, key, value, message):
+    out = tmp_path / "out"
+    assert main(["optimize", str(study), "-o", str(out), "--no-review", "--evaluations", "20"]) == 0
+    path = out / "result.json"
+    data = json.loads(path.read_text("utf-8")) | {key: "HERE"}
+    path.write_text(json.dumps(data).replace('"HERE"', value))
+    capsys.readouterr()
+    assert main(["review", str(out), "-o", str(tmp_path / "page")]) == (message is not None)
+    if message is not None:
+        assert message in capsys.readouterr().err.splitlines()[-1]
+
+
 def test_a_folder_that_cannot_be_is_one_line(study, capsys):
     assert main(["review", str(study), "-o", str(study)]) == 1
     said = capsys.readouterr().err

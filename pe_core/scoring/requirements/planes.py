@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ...base.errors import InputError, shown
 from ...base.read_only import read_only
-from ...base.values import FINITE, real
+from ...base.values import FINITE, LENGTH, real
 from ...scene.orientation import is_called
 from ...scene.vehicle import Vehicle
 from ...scene.vehicle_description import Reference, guessed_reference
@@ -141,7 +141,8 @@ def parsed(
     match = PLACE.fullmatch(place.strip())
     name, share, sign, offset = match.groups() if match else (None, None, None, None)
     numbers = [real_text(share), real_text(offset)]
-    wrong = match is None or any(n != n for n in numbers) or numbers[0] > MAX_SHARE
+    far = any(not number <= LENGTH.cap for number in numbers)  # NaN, too
+    wrong = match is None or far or numbers[0] > MAX_SHARE
     if wrong or (name is not None and name not in known):
         expected = f"metres, or a plane and an offset (front + 0.8), planes {', '.join(known)}, N %"
         raise InputError(source, field, expected, shown(place))

@@ -32,7 +32,12 @@ from .overlay import draw_handler, scheduler
 
 Function = Callable[..., None]
 
-AFTER_STEP = (sensor_cache.invalidate, vehicle_cache.invalidate, change_events.note_change)
+AFTER_STEP = (
+    sensor_cache.invalidate,
+    vehicle_cache.invalidate,
+    session.on_restored,
+    change_events.note_change,
+)
 """After a step of undo or redo: any object may be another one."""
 EVENTS: dict[str, tuple[Function, ...]] = {
     "depsgraph_update_post": (

@@ -10,6 +10,7 @@ from __future__ import annotations
 import bpy
 
 from . import background_figures, readout, readout_text, session
+from .readout_text import nats_text
 from .state import FinishedScore, ShownScore, live_state, shown_score
 
 __all__ = [
@@ -17,6 +18,7 @@ __all__ = [
     "ShownScore",
     "live_lines",
     "live_state",
+    "nats_text",
     "register",
     "shown_score",
     "unregister",

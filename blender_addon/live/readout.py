@@ -94,7 +94,7 @@ def rows_of(
     figures: Sequence[TextRow] = (),
 ) -> list[TextRow]:
     """Return rows from the top down: the score, rows of figures, and why there is no newer one."""
-    rows = [] if score is None or shown is None else _rows_of_score(score, shown, figures)
+    rows = [] if shown is None else _rows_of_score(score, shown, figures)
     if note:
         rows += [
             TextRow(SMALL, ((line, ALERT),))
@@ -104,12 +104,13 @@ def rows_of(
 
 
 def _rows_of_score(
-    score: LiveScore, shown: ShownScore, figures: Sequence[TextRow]
+    score: LiveScore | None, shown: ShownScore, figures: Sequence[TextRow]
 ) -> list[TextRow]:
     text = readout_of(score, shown)
     arrow, color = ARROWS.get(text.sense, ""), SENSE_COLORS.get(text.sense, FAINT)
     change = ((f"{arrow} {text.change}".strip(), color),) if text.change else ()
-    reserved = () if score.before is None else ("",) * (ZONE_ROWS + 1 - len(text.lines))
+    has_zones = score is not None and score.before is not None
+    reserved = ("",) * (ZONE_ROWS + 1 - len(text.lines)) if has_zones else ()
     coverage, *zones = (TextRow(SMALL, ((line, INK),)) for line in (*text.lines, *reserved))
     return [
         TextRow(LARGE, ((text.headline, INK), *change)),

@@ -16,6 +16,7 @@ BETTER, SAME, WORSE = -1, 0, 1
 MAX_LABEL_LETTERS = 32
 """Letters of a variant's name that the read-out has room for."""
 MINUS = "\N{MINUS SIGN}"
+BEFORE_SEARCH = "before the search"
 PENDING = "Blind ground, reach, AP: being computed"
 BEFORE = "Before this move: "
 
@@ -31,23 +32,31 @@ class ReadoutText(NamedTuple):
     lines: tuple[str, ...]
 
 
-def readout_of(score: LiveScore, shown: ShownScore) -> ReadoutText:
+def nats_text(entropy: float, change: float | None = None) -> str:
+    """Return an entropy, and its change where there is one, as panel and read-out show them."""
+    return f"{entropy:.3f}" if change is None else f"{entropy:.3f}  ({change:+.3f})"
+
+
+def readout_of(score: LiveScore | None, shown: ShownScore) -> ReadoutText:
     """Return the text of the score that is shown: a preview, an exact or a stored one.
 
-    Changes are those of the live score, from sample to sample.
+    Changes are those of the live score, from sample to sample; of a stored search, its own.
     """
-    now, before = score.summary, score.before
-    change, sense = entropy_change(now.entropy, before.entropy) if before else ("", SAME)
-    what = "Coverage" if now.voxels else "Objects visible:"
-    coverage = f"{what} {shown.coverage:.1%}{coverage_change(now, before)}"
-    return ReadoutText(
-        f"{shown.entropy:.3f} nats",
-        state_of(shown),
-        change,
-        sense,
-        f"compared with {shortened(score.baseline.label)}" if score.baseline and before else "",
-        (coverage, *ap_lines(now, before), *zone_lines(now, before)),
-    )
+    change, sense, against = "", SAME, ""
+    lines: tuple[str, ...] = (f"Coverage {shown.coverage:.1%}",)
+    if score is not None:
+        now, before = score.summary, score.before
+        what = "Coverage" if now.voxels else "Objects visible:"
+        coverage = f"{what} {shown.coverage:.1%}{coverage_change(now, before)}"
+        lines = coverage, *ap_lines(now, before), *zone_lines(now, before)
+        if before is not None and score.baseline is not None:
+            change, sense = entropy_change(now.entropy, before.entropy)
+            against = f"compared with {shortened(score.baseline.label)}"
+    if shown.before is not None:
+        change, sense = entropy_change(shown.entropy, shown.before)
+        against = f"compared with {BEFORE_SEARCH}"
+    headline = f"{nats_text(shown.entropy)} nats"
+    return ReadoutText(headline, state_of(shown), change, sense, against, lines)
 
 
 def state_of(shown: ShownScore) -> str:

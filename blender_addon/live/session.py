@@ -5,7 +5,7 @@ preferences. Otherwise its score is a preview.
 
 A request is read inside Blender's own update, which costs a fraction of a millisecond, and scored
 on the interactive worker's thread at once, while Blender draws; only the latest request waits. The
-score is shown by the redraw that is in progress, or by the next one.
+score is stored on the main thread between two redraws: panel and read-out show the same one.
 """
 
 from __future__ import annotations
@@ -37,8 +37,6 @@ MOVING = "TRANSFORM_OT_"
 """How the names of Blender's operators begin that move things."""
 
 _evaluators = EvaluatorCache()
-_generation = 0
-"""Increases when no request in progress may be shown any more."""
 
 
 def follow_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
@@ -50,12 +48,21 @@ def follow_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Non
     if last is None or last.changes == change_events.change_count():
         return
     if last.vehicle_version != vehicle_cache.shared.version:
+        state.next_request()
         if operator := _moving_operator():  # the vehicle is dragged; an undo is no move
             note_move(state, operator, None)
-        state.next_request()
-        state.note = VEHICLE_MOVES
+            state.note = VEHICLE_MOVES
         return
     request_score(scene, depsgraph, moving=True)
+
+
+def on_restored(*_: object) -> None:
+    """After undo or redo: the scores are of another scene than the one that came back."""
+    for name, state in states.items():
+        cancel(name)
+        state.next_request()
+        state.score = state.exact = None
+        state.note = ""
 
 
 def on_idle() -> None:
@@ -87,18 +94,17 @@ def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, mov
     counts = change_events.change_count(), vehicle_cache.shared.version
     state.last_read = LastRead(*counts, request.prior_key, request.rig, request.problem.key)
     baseline = baseline_of(scene, request)
-    job = partial(score_in_thread, name, request, number, baseline, _generation)
-    worker.interactive_worker.ask(
-        name, job, lambda _: signals.live_score_changed.emit(), partial(report_failure, name)
-    )
+    job = partial(score_in_thread, name, request, number, baseline)
+    deliver, fail = partial(show_score, name), partial(report_failure, name)
+    worker.interactive_worker.ask(name, job, deliver, fail)
     if not moving:
         background_figures.request(scene, request, baseline)
 
 
 def score_in_thread(
-    name: str, request: ScoreRequest, number: int, baseline: Baseline | None, generation: int
-) -> None:
-    """On the worker's thread: score, and store the score where the next redraw reads it."""
+    name: str, request: ScoreRequest, number: int, baseline: Baseline | None
+) -> LiveScore:
+    """On the worker's thread: score a request."""
     idle, state, problem = not request.moving, live_state(name), request.problem.key
     if idle and baseline is not None and baseline.summary is None and baseline.rig is not None:
         baseline.summary = _evaluators.summary(name, replace(request, rig=baseline.rig))
@@ -106,9 +112,14 @@ def score_in_thread(
     summary = _evaluators.summary(name, request)
     if not request.draft:
         state.note_cost(problem, request.rig, time.perf_counter() - begun)
-    if generation == _generation:
-        scored = request.rig, number, problem, idle
-        live_state(name).put(LiveScore(summary, baseline, not request.draft, *scored))
+    scored = request.rig, number, problem, idle
+    return LiveScore(summary, baseline, not request.draft, *scored)
+
+
+def show_score(name: str, score: LiveScore) -> None:
+    """Store a new score, and have it drawn."""
+    live_state(name).put(score)
+    signals.live_score_changed.emit()
 
 
 def report_failure(name: str, error: Exception) -> None:
@@ -127,8 +138,6 @@ def show_note(name: str, line: str) -> None:
 
 def cancel(name: str) -> None:
     """Drop the request of a scene; one that is in progress will not be shown."""
-    global _generation
-    _generation += 1
     worker.interactive_worker.drop(name)
 
 

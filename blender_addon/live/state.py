@@ -1,7 +1,7 @@
 """What is known of the live score, one state a scene: plain data, dropped with the file.
 
-A state is made when its scene is first asked for. It holds no object of Blender's. The interactive
-worker's thread writes `LiveState.score` by `put`; everything else is written on the main thread.
+A state is made when its scene is first asked for. It holds no object of Blender's. It is written on
+the main thread, but for `exact_cost`.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import bpy
 
 from .. import bridge
+from ..choices import BEFORE_MOVE
 from ..engine import pe
 
 if TYPE_CHECKING:
@@ -239,6 +240,8 @@ class ShownScore(NamedTuple):
         Whether beams and maps in the 3D view are still those of before the last move.
     state : str
         The state of the vehicle that the score is of; empty: as drawn.
+    before : float or None
+        Of the stored result of a search: the entropy before the search [nats].
     """
 
     entropy: float
@@ -248,23 +251,31 @@ class ShownScore(NamedTuple):
     stored: bool
     view_outdated: bool = False
     state: str = ""
+    before: float | None = None
 
 
 def shown_score(scene: bpy.types.Scene) -> ShownScore | None:
     """Return the score that is shown of a scene with *Live* on; None while there is none yet.
 
     That is the live score; or the stored result, where the scene is idle and the result is that of
-    the scene as it is now: it is of more voxels. With *Live* off the panel shows the stored result.
+    the scene as it is now: it is of more voxels. After undo and redo there is no live score yet,
+    and the stored result came back with the scene. With *Live* off the panel shows the stored one.
     A stored result is never that of another state than as drawn.
     """
     settings, state = scene.perception_entropy, live_state(scene.name)
-    if state.score is None or not settings.live.on:
+    if not settings.live.on:
         return None
-    exact, other = state.is_current(state.score), bridge.shown_state(scene)
-    idle = state.score.idle  # while something moves it is not known yet whether a result is stale
-    if exact and idle and settings.has_result and not (settings.result_stale or other):
+    other, score = bridge.shown_state(scene), state.score
+    is_stored = settings.has_result and not (settings.result_stale or other)
+    exact = score is None or state.is_current(score)
+    # While something moves it is not known yet whether a result is stale.
+    if is_stored and exact and (score is None or score.idle):
         stored = settings.result_entropy, settings.result_coverage, settings.result_stderr
-        return ShownScore(*stored, exact=True, stored=True)
-    summary = state.score.summary
+        is_search = settings.result_kind == "optimize" and settings.live.against == BEFORE_MOVE
+        before = settings.result_before if is_search else None
+        return ShownScore(*stored, exact=True, stored=True, before=before)
+    if score is None:
+        return None
+    summary = score.summary
     figures = summary.entropy, summary.coverage, summary.stderr
     return ShownScore(*figures, exact, stored=False, state=other)

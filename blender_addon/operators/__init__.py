@@ -5,7 +5,7 @@ Panels take from here the operators, and what menus list.
 
 from ..bridge import shown_state
 from ..diagnostics import warnings_outdated
-from ..live import ShownScore, live_lines, shown_score
+from ..live import ShownScore, live_lines, nats_text, shown_score
 from ..sensor_kinds import kind_label
 from . import (
     add_sensor,
@@ -66,6 +66,7 @@ __all__ = [
     "known_makers",
     "known_rigs",
     "listed_sensors",
+    "nats_text",
     "live_lines",
     "makers",
     "models",

@@ -10,6 +10,7 @@ from ..operators import (
     ShownScore,
     export_job,
     listed_sensors,
+    nats_text,
     offers,
     running_job,
     shown_score,
@@ -69,7 +70,8 @@ def draw_live(
 ) -> None:
     """Draw the live score, as in the corner of the 3D view."""
     column = layout.box().column(align=True)
-    draw_figure(column, "Entropy", f"{live.entropy:.3f} ± {max(live.stderr, 1e-3):.3f} nats")
+    error = max(live.stderr, 1e-3)
+    draw_figure(column, "Entropy", f"{nats_text(live.entropy)} ± {error:.3f} nats")
     draw_figure(column, "Coverage", f"{live.coverage:.1%}")
     state = "Live: exact, on a sample" if live.exact else "Live: a preview, on a sample"
     draw_label(column, state, "REC")
@@ -84,11 +86,11 @@ def draw_stored(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     column.active = not settings.result_stale
     if settings.result_in_traffic:
         draw_figure(column, "AP in Traffic", settings.result_in_traffic)
-    error = f" ± {max(settings.result_stderr, 1e-4):.4f}" if settings.result_stderr else ""
-    draw_figure(column, "Entropy", f"{settings.result_entropy:.4f}{error} nats")
+    error = f" ± {max(settings.result_stderr, 1e-3):.3f}" if settings.result_stderr else ""
+    draw_figure(column, "Entropy", f"{nats_text(settings.result_entropy)}{error} nats")
     if settings.result_kind == "optimize":
         gain = settings.result_entropy - settings.result_before
-        draw_figure(column, "Before", f"{settings.result_before:.4f}  ({gain:+.4f})")
+        draw_figure(column, "Before", nats_text(settings.result_before, gain))
     draw_figure(column, "Coverage", f"{settings.result_coverage:.1%}")
     if settings.result_ap:
         draw_figure(column, "Expected AP", settings.result_ap)

@@ -2,6 +2,7 @@
 
 import threading
 from dataclasses import replace
+from functools import partial
 
 import bpy
 import numpy as np
@@ -257,6 +258,40 @@ def test_one_score_is_shown_at_a_time(live, monkeypatch):
     assert state.shown_score(live) is None, "the panel draws the stored result, which is marked"
 
 
+def test_after_undo_and_redo_the_result_that_came_back_is_shown(live):
+    """The live score of before would stand beside it until the scene is idle."""
+    bpy.ops.pe.score()
+    rest()
+    bpy.ops.ed.undo_push(message="scored")
+    drag(live.objects["roof"], 0.3)
+    live.perception_entropy.result_stale = True
+    rest()
+    moved = reading(live).summary.entropy
+    bpy.ops.ed.undo_push(message="moved")
+    bpy.ops.ed.undo()
+    scene = bpy.context.scene
+    shown = state.shown_score(scene)
+    assert shown.stored and shown.entropy == scene.perception_entropy.result_entropy != moved
+    assert state.live_state(scene.name).note == ""
+    rows = readout.rows_of(reading(scene), "", shown)
+    assert rows[0].words[0][0] == f"{readout_text.nats_text(shown.entropy)} nats"
+    bpy.ops.ed.redo()
+    assert state.shown_score(bpy.context.scene) is None, "it was stale: nothing is known yet"
+    rest()
+    assert state.shown_score(bpy.context.scene).entropy == moved
+
+
+def test_a_search_s_gain_is_that_of_its_result(live):
+    bpy.ops.pe.score()
+    settings = live.perception_entropy
+    settings.result_kind, settings.result_before = "optimize", settings.result_entropy + 0.25
+    rest()
+    text = readout_text.readout_of(reading(live), state.shown_score(live))
+    assert (text.change, text.against) == ("0.250 better", "compared with before the search")
+    bpy.ops.pe.live_against(key=PINNED)
+    assert state.shown_score(live).before is None, "compared with something else"
+
+
 def lines(scene):
     return blender_addon.live.live_lines(scene)
 
@@ -334,6 +369,10 @@ def test_a_vehicle_that_moves_is_read_once_it_rests(live, monkeypatch):
         read = "vehicle_from_collection"
         while_it_moves.setattr(bridge, read, lambda *_: pytest.fail("read while it moves"))
         drag(live.objects["cabin"])
+        assert state.live_state(live.name).note == "", "a step of undo or a script moves nothing"
+        assert not is_exact(live)
+        while_it_moves.setattr(session, "_moving_operator", lambda: 1)
+        drag(live.objects["cabin"])
         assert state.live_state(live.name).note == session.VEHICLE_MOVES
     rest()
     assert state.live_state(live.name).note == "" and reading(live).summary != before.summary
@@ -345,7 +384,7 @@ def test_points_that_move_count(live):
     live.objects["cabin"].data.vertices[6].co.z += 1.0
     live.objects["cabin"].data.update()
     bpy.context.view_layer.update()
-    assert state.live_state(live.name).note == session.VEHICLE_MOVES
+    assert not is_exact(live)
     rest()
     assert told(reading(live).summary) == told(exact()) != told(before)
 
@@ -453,12 +492,27 @@ def test_the_extension_disabled_in_the_middle_of_a_drag(live):
 def test_what_is_dropped_while_it_is_worked_out_is_never_shown(live):
     wish = evaluation.read_request(live, bpy.context.evaluated_depsgraph_get(), moving=False)
     state.live_state(live.name).switch_off()
-    asked_at = session._generation
-    session.cancel(live.name)
-    session.score_in_thread(live.name, wish, 1, None, asked_at)
-    assert reading(live) is None
-    session.score_in_thread(live.name, wish, 1, None, session._generation)
-    assert reading(live) is not None
+    began, goes_on = threading.Event(), threading.Event()
+
+    def work():
+        began.set()
+        goes_on.wait(10.0)
+        return session.score_in_thread(live.name, wish, 1, None)
+
+    thread = worker.Worker()
+    with pytest.MonkeyPatch.context() as window:
+        window.setattr(worker, "bpy", Window)
+        for dropped in (True, False):
+            thread.ask("score", work, partial(session.show_score, live.name), pytest.fail)
+            assert began.wait(10.0)
+            assert reading(live) is None, "a thread stores nothing: a redraw may be under way"
+            if dropped:
+                thread.drop("score")
+            goes_on.set()
+            while thread.busy():
+                thread._deliver_all()
+            assert (reading(live) is None) == dropped
+        thread.stop()
 
 
 def test_a_mistake_of_ours_is_shown_and_told(live, monkeypatch):

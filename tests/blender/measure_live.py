@@ -53,9 +53,10 @@ def asked(*given, **options):
 
 def worked(*given):
     cpu = time.thread_time()
-    work(*given)
+    found = work(*given)
     STAMPS.append(("there", time.perf_counter()))
     STAMPS.append(("cpu", time.thread_time() - cpu))
+    return found
 
 def drawn(*given):
     STAMPS.append(("drawn", time.perf_counter()))

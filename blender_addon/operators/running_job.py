@@ -120,7 +120,7 @@ class RunningJob:
         self._seen, self._best = time.monotonic(), curve[-1:]
         figure = jobs.searched_figure(self.job.study)
         points = tuple((evaluation, figure.to_figure(value)) for evaluation, value in curve)
-        sensors = tuple(self.job.best.rig) if len(curve) > 1 else ()
+        sensors = tuple(cast(Any, self.job).best.rig) if len(curve) > 1 else ()
         sampled = bool(self.job.study.search.samples)
         count = cast(Any, self.job).evaluations  # a job with a history searches
         seen = search_curve.SearchProgress(

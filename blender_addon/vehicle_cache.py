@@ -70,6 +70,10 @@ class VehicleCache:
             cached = self._vehicles[scene.name] = CachedVehicle(vehicle, key)
         return cached
 
+    def last_read(self, scene_name: str) -> pe.Vehicle | None:
+        """Return a scene's vehicle as it was read last; None where it was not."""
+        return self._vehicles.get(scene_name, NO_VEHICLE).vehicle
+
     def digest(self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> str:
         """Return a digest of the scene's vehicle: another text where any bit of it differs."""
         cached = self.read(scene, depsgraph)

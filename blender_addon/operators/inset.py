@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable
+from functools import partial
 from typing import NamedTuple
 
 import bpy
@@ -18,6 +19,7 @@ from mathutils import Matrix
 
 from .. import bridge, vehicle_cache, viewport
 from ..engine import catalog, pe
+from ..overlay import surroundings
 from ..sensor_kinds import Pixels, row_of
 from ..worker import background_worker
 from . import sensor_pictures
@@ -205,7 +207,9 @@ def _render(
     before, _rendering = overlay.show_overlays, True
     overlay.show_overlays = False
     try:
-        camera.render(view, size, camera_from_ground, projection(model))
+        given = view.window.scene, pose, size, not sensor_pictures.TAKES_SRGB
+        around = partial(surroundings.draw_around, *given)
+        camera.render(view, size, camera_from_ground, projection(model), around)
     finally:
         overlay.show_overlays, _rendering = before, False
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple, cast
 
 import bpy
@@ -11,7 +12,7 @@ from gpu_extras.presets import draw_texture_2d
 from mathutils import Matrix
 
 from .. import viewport
-from ..engine import pe
+from ..engine import graphics, pe
 from ..sensor_kinds import PIXELS_PER_DEG, Pixels, row_of
 from ..worker import background_worker
 
@@ -48,8 +49,12 @@ class InsetCamera:
         size: tuple[int, int],
         camera_from_ground: Matrix,
         projection: Matrix,
+        around: Callable[[], None],
     ) -> None:
-        """Have a viewport draw its scene from a camera; not while that viewport is drawn."""
+        """Have a viewport draw its scene from a camera; not while that viewport is drawn.
+
+        `around` draws what is added to the scene, with the camera's matrices.
+        """
         if size != self.size:
             self.free()
             self._offscreen, self.size = gpu.types.GPUOffScreen(*size), size
@@ -63,6 +68,10 @@ class InsetCamera:
             do_color_management=TAKES_SRGB,
             draw_background=True,
         )
+        with self._offscreen.bind(), gpu.matrix.push_pop(), gpu.matrix.push_pop_projection():
+            gpu.matrix.load_matrix(camera_from_ground)
+            gpu.matrix.load_projection_matrix(projection)
+            around()
 
     def free(self) -> None:
         """Let go of the memory."""
@@ -77,7 +86,9 @@ class PixelImage:
     def __init__(self, pixels: Pixels) -> None:
         self.height, self.width = pixels.shape[:2]
         upwards = pixels[::-1]
-        self._pixels = np.ascontiguousarray(upwards if TAKES_SRGB else linear(upwards), np.float32)
+        self._pixels = np.ascontiguousarray(
+            upwards if TAKES_SRGB else graphics.linear(upwards), np.float32
+        )
         self._texture: gpu.types.GPUTexture | None = None
 
     @property
@@ -88,13 +99,6 @@ class PixelImage:
             size = (self.width, self.height)
             self._texture = gpu.types.GPUTexture(size, format="RGBA16F", data=data)
         return self._texture
-
-
-def linear(pixels: Pixels) -> Pixels:
-    """Return sRGB as linear light; alpha stays (IEC 61966-2-1)."""
-    rgb = pixels[..., :3]
-    low, high = rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4
-    return np.concatenate([np.where(rgb <= 0.04045, low, high), pixels[..., 3:]], axis=-1)
 
 
 def draw_picture(

@@ -7,92 +7,19 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import bpy
 import gpu
-from gpu_extras.batch import batch_for_shader
+import numpy as np
 from mathutils import Matrix
 
-from .. import viewport
-from ..engine import graphics
-from ..viewport import shader
-from . import labels, scheduler
+from .. import bridge, viewport
+from ..engine import graphics, pe
+from . import labels, scheduler, surroundings
+from .batches import Batches
 from .layer_cache import shown
 from .layers import LAYERS, WHOLE_RIG, Layer
-
-THIN_PX = 1.0
-EDGE_PX, EDGE = 2.0, (0.05, 0.05, 0.05, 0.35)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Batches:
-    """The batches of one shape: triangles, lines and a sheet; None for an empty one."""
-
-    shape: graphics.LayerShape
-    lines: gpu.types.GPUBatch | None
-    through: gpu.types.GPUBatch | None
-    thin: gpu.types.GPUBatch | None
-    faces: gpu.types.GPUBatch | None
-    sheet: gpu.types.GPUBatch | None
-
-    @classmethod
-    def of(cls, shape: graphics.LayerShape) -> Batches:
-        """Upload a shape."""
-        wide = shader("POLYLINE_SMOOTH_COLOR")
-        sorts = (shape.lines, shape.through, shape.thin)
-        lines, through, thin = (_batch(wide, "LINES", primitives) for primitives in sorts)
-        faces = _batch(shader("SMOOTH_COLOR"), "TRIS", shape.faces)
-        sheet = None if shape.sheet is None else _sheet(shape.sheet)
-        return cls(shape, lines, through, thin, faces, sheet)
-
-    def draw_areas(self) -> None:
-        """Draw sheet and triangles."""
-        for batch in (self.sheet, self.faces):
-            if batch is not None:
-                batch.draw(shader("SMOOTH_COLOR"))
-
-    def draw_lines(self, region: bpy.types.Region, width_px: float, *, edged: bool) -> None:
-        """Draw the lines in that width on the screen; with a dark edge where `edged`."""
-        if self.through is not None:
-            gpu.state.depth_test_set("NONE")
-            self.through.draw(_line_shader("POLYLINE_SMOOTH_COLOR", region, width_px))
-            gpu.state.depth_test_set("LESS_EQUAL")
-        if self.thin is not None:
-            self.thin.draw(_line_shader("POLYLINE_SMOOTH_COLOR", region, THIN_PX))
-        if self.lines is None:
-            return
-        if edged:
-            dark = _line_shader("POLYLINE_UNIFORM_COLOR", region, width_px + EDGE_PX)
-            dark.uniform_float("color", EDGE)
-            self.lines.draw(dark)
-        self.lines.draw(_line_shader("POLYLINE_SMOOTH_COLOR", region, width_px))
-
-
-def _line_shader(name: str, region: bpy.types.Region, width_px: float) -> gpu.types.GPUShader:
-    """Return a shader of lines, bound, for a width in a region."""
-    wide = shader(name)
-    wide.bind()
-    wide.uniform_float("viewportSize", (region.width, region.height))
-    wide.uniform_float("lineWidth", width_px * bpy.context.preferences.system.pixel_size)
-    return wide
-
-
-def _batch(
-    of: gpu.types.GPUShader, kind: str, primitives: graphics.Primitives
-) -> gpu.types.GPUBatch | None:
-    if not len(primitives.points):
-        return None
-    arrays = {"pos": primitives.points, "color": primitives.colors}
-    return batch_for_shader(of, kind, arrays)
-
-
-def _sheet(sheet: graphics.GroundSheet) -> gpu.types.GPUBatch:
-    """Upload a sheet as triangles: versions of Blender differ in the colours of an image."""
-    points, colors, triangles = sheet.mesh
-    arrays = {"pos": points, "color": colors}
-    return batch_for_shader(shader("SMOOTH_COLOR"), "TRIS", arrays, indices=triangles)
-
 
 OFFSET_SHARE = 0.002
 """Share of its distance from the eye by which a thing is drawn nearer."""
@@ -147,6 +74,7 @@ def unregister() -> None:
 def clear(*_: object) -> None:
     """Drop everything that belongs to the file that was open."""
     _batches.clear()
+    surroundings.clear()
 
 
 def draw() -> None:
@@ -155,6 +83,9 @@ def draw() -> None:
     if not _overlays_shown(context):
         return
     scene = context.scene.name
+    eye = _eye(context)
+    if eye is not None:
+        surroundings.draw_around(context.scene, eye, context.region)
     wanted = [(layer, uploaded(scene, layer, names)) for layer, names in _visible(context)]
     _drop_removed(scene)
     before = gpu.state.blend_get(), gpu.state.depth_test_get(), gpu.state.depth_mask_get()
@@ -179,7 +110,11 @@ def draw_text() -> None:
     scene = context.scene.name
     visible = [(layer.name, name) for layer, names in _visible(context) for name in names]
     shapes = [shown.items(scene, layer)[name].shape for layer, name in visible]
-    labels.draw_labels(context, [label for shape in shapes for label in shape.labels])
+    written = [label for shape in shapes for label in shape.labels]
+    eye = _eye(context)
+    if eye is not None:
+        written += surroundings.labels_around(context.scene, eye)
+    labels.draw_labels(context, written)
     if context.scene.perception_entropy.view.show_legend:
         legends = (_legend(scene, layer, name) for layer, name in visible)
         labels.draw_legends(context, list(dict.fromkeys(k for k in legends if k is not None)))
@@ -265,3 +200,10 @@ def _sensor_looked_through(context: bpy.types.Context) -> str | None:
     while eye is not None and not eye.perception_entropy.is_sensor:
         eye = eye.parent
     return None if eye is None else eye.name
+
+
+def _eye(context: bpy.types.Context) -> pe.Pose | None:
+    """Return the pose of the sensor that the view looks through."""
+    name = _sensor_looked_through(context)
+    sensor = context.scene.objects.get(name) if name else None
+    return None if sensor is None else bridge.pose_of_matrix(np.array(sensor.matrix_world))

@@ -25,6 +25,7 @@ from .colors import (
     VIRIDIS,
     Palette,
     Rgba,
+    linear,
     on_scale,
     sensor_color,
     sensor_color_on_paper,
@@ -80,6 +81,7 @@ from .sensor_images import (
     range_share,
 )
 from .simplify import simplified
+from .surroundings import Surroundings, surroundings
 from .verdicts import painted_samples
 
 __all__ = [
@@ -118,6 +120,7 @@ __all__ = [
     "Primitives",
     "Rgba",
     "Sketch",
+    "Surroundings",
     "Tag",
     "as_bytes",
     "as_scored",
@@ -143,6 +146,7 @@ __all__ = [
     "ground_map",
     "ground_rings",
     "hidden_lines",
+    "linear",
     "on_scale",
     "outline",
     "painted_samples",
@@ -157,5 +161,6 @@ __all__ = [
     "shown_beams",
     "simplified",
     "stopped_lines",
+    "surroundings",
     "with_alpha",
 ]

@@ -116,6 +116,13 @@ def on_scale(shares: ArrayLike, scale: Scale) -> NDArray[np.float32]:
     return table[below] * (1.0 - part) + table[below + 1] * part
 
 
+def linear(colors: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return sRGB colours (..., 4) as linear light; alpha stays (IEC 61966-2-1)."""
+    rgb = colors[..., :3]
+    low, high = rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4
+    return np.concatenate([np.where(rgb <= 0.04045, low, high), colors[..., 3:]], axis=-1)
+
+
 def with_alpha(color: tuple[float, ...], alpha: float) -> Rgba:
     """Return a colour with another alpha."""
     return (color[0], color[1], color[2], alpha)

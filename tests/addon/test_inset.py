@@ -8,8 +8,8 @@ import pytest
 from mathutils import Vector
 
 from blender_addon import bridge
-from blender_addon.engine import catalog, pe
-from blender_addon.operators import inset, sensor_pictures
+from blender_addon.engine import catalog, graphics, pe
+from blender_addon.operators import inset
 from tests.addon import scenes
 
 
@@ -78,5 +78,5 @@ def test_a_bent_lens_is_reported_in_the_title(car):
 
 def test_pixels_are_linear_light_again_where_a_view_encodes_them():
     pixels = np.array([[[0.0, 0.5, 1.0, 0.25]]], np.float32)
-    found = sensor_pictures.linear(pixels)[0, 0]
+    found = graphics.linear(pixels)[0, 0]
     assert found == pytest.approx([0.0, 0.21404, 1.0, 0.25], abs=1e-4)

@@ -8,7 +8,7 @@ import pytest
 
 from blender_addon import bridge, vehicle_cache, worker
 from blender_addon.engine import graphics, pe, sight
-from blender_addon.overlay import draw_handler, scheduler
+from blender_addon.overlay import draw_handler, scheduler, surroundings
 from blender_addon.overlay.layer_cache import shown
 from tests.addon import scenes
 
@@ -56,6 +56,8 @@ def window(rig, monkeypatch):
     monkeypatch.setattr(draw_handler, "gpu", card)
     monkeypatch.setattr(draw_handler, "Batches", card)
     monkeypatch.setattr(draw_handler, "labels", card)
+    monkeypatch.setattr(surroundings, "gpu", card)
+    monkeypatch.setattr(surroundings, "Batches", card)
     monkeypatch.setattr(draw_handler, "depth_offset", lambda *_: contextlib.nullcontext())
     visible = {"roof": True, "eye": True}
     monkeypatch.setattr(draw_handler, "_sensor_visible", lambda _context, name: visible[name])
@@ -123,5 +125,13 @@ def test_hidden_sensors_local_view_and_the_eye_looked_through(window, rig):
     assert len(window.card.drawn) == 2, "the rig's own layers belong to no local view"
     window.look.view_perspective, window.space.camera = "CAMERA", rig.objects["eye"]
     window.card.drawn.clear()
+    window.card.written.clear()
+    objects = set(bpy.data.objects)
     redraw()
-    assert not window.card.drawn
+    ground, bodies = window.card.drawn
+    assert len(ground.faces.points) and len(ground.thin.points), "not a grey box"
+    assert window.card.written == [tag.text for tag in bodies.labels]
+    assert len(window.card.written) == len(graphics.surroundings(pe.Pose((0, 0, 1))).bodies.labels)
+    assert set(bpy.data.objects) == objects, "it is drawn, and nothing of the file"
+    redraw()
+    assert window.card.drawn[2:] == [ground, bodies], "made once for a pose"

@@ -184,6 +184,7 @@ def test_each_event_has_one_handler_and_a_written_order(car):
     after_step = [
         "sensor_cache.invalidate",
         "vehicle_cache.invalidate",
+        "live.session.on_restored",
         "change_events.note_change",
     ]
     assert {event: names_of(functions) for event, functions in wiring.EVENTS.items()} == {

@@ -71,6 +71,23 @@ def test_a_requirement_takes_the_rcs_that_nearly_all_bodies_exceed():
     assert model.cautious is model.cautious and not model.is_cautious  # caches hold on to it
 
 
+def test_rare_detections_in_many_cells_are_no_point():
+    """Of a car in 8.2 cells of range: the probability of any detection, by the cells alike."""
+    mode = {"name": "a", "azimuth_deg": [-9, 9], "range_m": 100, "elevation_deg": [-9, 9]}
+    mode |= {"range_resolution_m": 0.5, "max_range_m": 300}
+    sensor = radar({"kind": "radar", "mode": [mode]}, position=(0.0, 0.0, 0.65))
+    snr, count = snr_for(0.9, 1e-6) * 10 ** ((7.0 - 10.0) / 10.0), 4.1 / 0.5
+    seen, sure, expected = [], [], []
+    for x in np.arange(30.0, 120.0, 0.5):
+        seen.append(sees(sensor, BODIES["car"], (x, 0.0, 0.0), 0.0, None, Criterion()))
+        pd = detection_probability(snr / count * (100.0 / (x - 2.05)) ** 4, 1e-6)
+        pd = pd * (pd >= 0.1)
+        sure.append(1.0 - (1.0 - pd) ** count >= 0.9)
+        expected.append(count * pd >= 0.9)
+    assert all(truth for is_seen, truth in zip(seen, sure, strict=True) if is_seen)
+    assert 0 <= sum(sure) - sum(seen) <= 5 and sum(seen) + 10 < sum(expected) < len(seen)
+
+
 def test_formulas_at_round_numbers():
     """21.1 dB for Pd 0.9 at Pfa 1e-6; twice the range is 12 dB; 6 dB of cover both ways, too."""
     snr = snr_for(0.9, 1e-6)

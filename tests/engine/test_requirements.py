@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import pe_core as pe
@@ -15,6 +16,7 @@ from pe_core.scoring.requirements import (
 )
 from pe_core.scoring.sight import Sight
 from pe_core.sensors import ObjectMeasurementCache
+from tests.engine import shapes
 from tests.engine.requirement_scene import AHEAD, MIDDLE, check, rig, van
 
 
@@ -54,6 +56,40 @@ def test_blind_ground_counts_the_kinds_that_are_asked_for():
     for height in (0.0, 0.4):
         with pytest.raises(pe.InputError, match="blind_height"):
             blind(alone, height)
+
+
+def test_blind_ground_with_the_only_sensor_lost_is_all_of_it():
+    """As of bodies; with two sensors the one that is left counts."""
+    zone, space = (
+        Zone(x=("front + 1", "front + 3"), y=(-1, 1)),
+        pe.PerceptionSpace((-9, 9), (-6, 6)),
+    )
+    for under in (Under(), Under(one_lost=True)):
+        own = Requirement("g", zone, (), Criterion(blind_m2=0.5, blind_height=0.8), under)
+        checker = RequirementChecker([own], van(), space=space)
+        (found,) = checker.check(pe.Rig([rig()["front"]]))
+        assert found.met_whole and found.breaks_without == ("front",)
+        assert found.met is not under.one_lost
+        assert (checker.shortfalls(pe.Rig([rig()["front"]]))[0] == 0.0) is found.met
+
+
+def test_blind_ground_is_as_far_out_from_the_vehicle_as_drawn_in_every_state():
+    """Of a vehicle that an open door makes wider the same ground is no nearer."""
+    zone, space = (
+        Zone(x=(-1, 1), y=("left + 0.5", "left + 3")),
+        pe.PerceptionSpace((-9, 9), (-6, 6)),
+    )
+    own = Requirement("g", zone, (), Criterion(blind_out=0.5, blind_height=0.8))
+    door = shapes.box((0.9, 1.0, 0.9), (1.0, 3.0, 2.0))
+    opened = pe.Vehicle(np.concatenate([van().triangles, door]), clearance=0.0)
+    front = pe.Rig([rig()["front"]])
+    out = [
+        RequirementChecker([own], vehicle, space=space, anchor=van())
+        .check(front)[0]
+        .ground.blind_out
+        for vehicle in (van(), opened)
+    ]
+    assert out[0] == out[1] > 2.5
 
 
 def test_ap_is_fused_from_the_kinds_that_are_asked_for():

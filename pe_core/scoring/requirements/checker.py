@@ -74,10 +74,10 @@ class RequirementChecker:
         self.requirements = checked_requirements(requirements)
         self.vehicle, self._model = vehicle, model or PerceptionModel()
         self._reference, self._space = reference, space or PerceptionSpace()
-        self._anchor = anchor
+        self.anchor = anchor or vehicle
         planes: dict[tuple[Any, ...], VehiclePlanes] = {}
         self.zones: tuple[PlacedZone, ...] = tuple(
-            each.zone.placed(anchor or vehicle, reference, each.name, planes)
+            each.zone.placed(self.anchor, reference, each.name, planes)
             for each in self.requirements
         )
         for requirement, zone in zip(self.requirements, self.zones, strict=True):
@@ -90,7 +90,7 @@ class RequirementChecker:
         """Pickle the arguments: another process makes a checker of its own from them."""
         return _checker_again, (
             *(self.requirements, self.vehicle, self._model),
-            *(self._reference, self._space, self._anchor),
+            *(self._reference, self._space, self.anchor),
         )
 
     def check_rig(self, rig: Rig) -> None:
@@ -173,7 +173,8 @@ class _CheckedSet:
         for number, own in enumerate(checker.requirements):
             zone = checker.zones[number]
             if own.criterion.is_of_ground:
-                self._grounds[number] = GroundCheck(own, zone, space, self._vehicle, caches)
+                anchor = checker.anchor
+                self._grounds[number] = GroundCheck(own, zone, space, self._vehicle, anchor, caches)
             else:
                 self._numbers.append(number)
                 pairs.append((own, _samples(own, zone, which)))

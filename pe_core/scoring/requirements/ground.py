@@ -45,6 +45,9 @@ class GroundCheck:
     space : PerceptionSpace
         Ground outside of it is not looked at.
     vehicle : Vehicle or None
+        It occludes.
+    anchor : Vehicle or None
+        The vehicle as drawn: distances are from its rectangle.
     caches : SceneCaches
         Shared by several of these, and by checks of bodies.
     """
@@ -55,10 +58,11 @@ class GroundCheck:
         zone: PlacedZone,
         space: PerceptionSpace,
         vehicle: Vehicle | None,
+        anchor: Vehicle | None,
         caches: SceneCaches,
     ) -> None:
         self.requirement, self._zone, self._space = requirement, zone, space
-        self._vehicle, self._caches = vehicle, caches
+        self._vehicle, self._anchor, self._caches = vehicle, anchor, caches
         self._own = _ZoneGround(self, 0.0)
         self._grown: dict[float, _ZoneGround | None] = {}
 
@@ -70,7 +74,7 @@ class GroundCheck:
         marks = ground.marks(rig, preview)
         blind = ground.blind(marks.values())
         lost = {}
-        if len(marks) > 1 and (own.under.one_lost or not preview):
+        if own.under.one_lost or not preview:
             lost = {name: ground.blind_without(marks, name) for name in marks}
         counted = [blind, *(lost.values() if own.under.one_lost else ())]
         for number, case in self._asked(cases):
@@ -116,7 +120,7 @@ class GroundCheck:
     def _blinds(self, ground: _ZoneGround, marks: Mapping[str, Flags]) -> list[Flags]:
         """Return all blind squares that count: of a whole rig, and with each sensor lost."""
         found = [ground.blind(marks.values())]
-        if self.requirement.under.one_lost and len(marks) > 1:
+        if self.requirement.under.one_lost:
             found += [ground.blind_without(marks, name) for name in marks]
         return found
 
@@ -211,7 +215,7 @@ class _ZoneGround:
     @cached_property
     def out(self) -> Floats:
         """How far from the vehicle's rectangle (NX, NY) each square ends [m]."""
-        (x0, x1), (y0, y1) = body_rectangle(self.check._vehicle)
+        (x0, x1), (y0, y1) = body_rectangle(self.check._anchor)
         cells = self.cells
         dx = np.maximum(np.maximum(cells.x1 - x1, x0 - cells.x0), 0.0)
         dy = np.maximum(np.maximum(cells.y1 - y1, y0 - cells.y0), 0.0)
@@ -241,7 +245,9 @@ class _ZoneGround:
     def blind(self, marks: Iterable[Flags]) -> Flags:
         """Return the blind squares (NX, NY) of the grown zone."""
         search = self._searches[0]
-        marked = np.logical_or.reduce(list(marks))
+        marked = np.zeros(search.own.shape, bool)
+        for each in marks:
+            marked |= each
         blind = blind_squares(marked, search.own, self.cells.step)
         inner = tuple(slice(search.margin, n - search.margin) for n in blind.shape)
         found: Flags = blind[inner] & self.mask

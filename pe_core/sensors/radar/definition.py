@@ -8,8 +8,10 @@ by the cells, and a cell is detected with the probability Pd of `detection`.
 
 **Objects.** m is the sum over modes of N times the mean of Pd over the object's silhouette: 0 for
 the part that the mode does not reach, that the vehicle or, in traffic, another object hides. It is
-at most the length of the list. Points on the sides of the box that face the radar stand for the
-silhouette, each with the solid angle of its piece of the side.
+at most the length of the list. Of a cautious radar (a requirement's) it is no more than the
+probability of any detection, until that is `SURE`: rare detections in many cells are none. Points
+on the sides of the box that face the radar stand for the silhouette, each with the solid angle of
+its piece of the side.
 
 **Voxels.** A voxel has the share of its silhouette in that of a reference car with the same centre,
 seen from all headings alike: m = m of the car, divided by k = (l + w) h / (2 s^2) (as in
@@ -49,6 +51,8 @@ ASPECTS = np.radians(np.arange(2.5, 180.0, 5.0))
 SIDE_POINTS = 55, 34
 """Points of a side of a box: neighbouring Fibonacci numbers."""
 OBJECTS_AT_ONCE = 1024
+SURE = 0.9
+"""Probability of a detection from which an object counts as one point to a requirement."""
 CONE_MARGIN = 1e-6
 """Of the cosine and of the angle of the cone round the field of view."""
 NEAR_M = 1e-6
@@ -201,11 +205,15 @@ def _block(
     free, loss = seen_through(fan, angles, sides.distance)
     free &= ~behind_others(boxes, near, sides)
     whole = np.maximum(np.bincount(sides.item, solid, len(own)), np.finfo(float).tiny)
-    m = np.zeros(len(own))
+    m, missed = np.zeros(len(own)), np.ones(len(own))
     for mode in radar.modes:
         cells = cells_of(mode, sizes, far)
         pd = mode_signal(radar, mode, angles, sides.distance, (rcs / cells)[sides.item], loss)
-        m += cells * np.bincount(sides.item, solid * free * pd, len(own)) / whole
+        mean = np.bincount(sides.item, solid * free * pd, len(own)) / whole
+        m += cells * mean
+        missed *= np.maximum(1.0 - mean, 0.0) ** cells  # at most so often no cell detects it
+    if radar.is_cautious:
+        m = np.where(1.0 - missed >= SURE, m, np.minimum(m, 1.0 - missed))
     return m if radar.list_length is None else np.minimum(m, radar.list_length)
 
 

@@ -21,7 +21,7 @@ from ..ray_fan_kind import FanKind
 from ..ray_fan_view import FieldPicture, field_picture_of
 from ..weather import Weather, rain_db_per_km
 from . import sensor_table
-from .definition import TARGET, fan_of, measure_objects, seen_through, target_detections
+from .definition import SURE, TARGET, fan_of, measure_objects, seen_through, target_detections
 from .kernels import RULES, field_of
 from .model import Radar, RadarMode, radar_of
 
@@ -65,7 +65,7 @@ class RadarKind(FanKind):
     curve = _voxel_curve(OBJECT_CURVES[TARGET])
     object_curves = OBJECT_CURVES
     counts_points = True
-    point = 0.9
+    point = SURE
     lowest_m = 0.8
     """Its figure for what stands on the ground is that of a pedestrian: the cylinder of UN R158 and
     FMVSS 111, which stands for a small child, is the lowest."""

@@ -1,6 +1,7 @@
 """Keeps the sensors of scenes consistent, whatever was done outside the add-on's operators.
 
-A duplicated, copied or appended sensor is a new one: the result it brought is dropped. Sensors that
+A duplicated, copied or appended sensor is a new one: the result it brought is dropped, and it gets
+a colour of its own. Sensors that
 are linked to mirror images move with them, and a view camera goes with its sensor. Sensors of older
 files may be linked twice. All this happens on the moving signal, after a file was opened and before
 one is saved: at these times data may be written.
@@ -43,6 +44,7 @@ def repair_scenes() -> None:
     for scene in bpy.data.scenes:
         sensors = sensor_cache.sensors(scene)
         bridge.drop_foreign_results(scene, sensors)
+        bridge.assign_colors(scene, sensors)
         bridge.update_view_cameras(scene, sensors)
     if bpy.context.view_layer is not None:  # other scenes are not evaluated
         scene = bpy.context.scene

@@ -37,6 +37,7 @@ from .requirements import (
     write_row,
 )
 from .rig import (
+    color_of,
     last_written_pose,
     mounted_on_sensor,
     place_at,
@@ -72,6 +73,7 @@ from .scene_settings import (
     write_passthrough,
     write_reference,
 )
+from .sensor_colors import assign_colors
 from .sensor_records import (
     SensorRecord,
     records_of,
@@ -138,6 +140,7 @@ __all__ = [
     "after_of",
     "apply_records",
     "as_drawn",
+    "assign_colors",
     "blender_version",
     "bounds_box",
     "check_choosable",
@@ -146,6 +149,7 @@ __all__ = [
     "check_variants",
     "clear_mirrors",
     "clearance_of",
+    "color_of",
     "conditions_of",
     "copy_scene_score",
     "copy_score",

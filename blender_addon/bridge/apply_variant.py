@@ -11,8 +11,9 @@ from collections.abc import Iterator, Sequence
 
 import bpy
 
+from ..engine import graphics
 from .mirroring import SENSORS
-from .rig import place_poses, put_curve, sensor_objects, view_layer_of
+from .rig import color_of, place_poses, put_curve, sensor_objects, view_layer_of
 from .sensor_records import SensorRecord
 
 PARKED = "Sensors of Other Variants"
@@ -96,6 +97,8 @@ def _write_settings(obj: bpy.types.Object, record: SensorRecord) -> None:
     settings.bounds_low, settings.bounds_high = record.low, record.high
     settings.rack = record.rack
     settings.stays = record.stays
+    if record.color is not None and record.color != color_of(obj):
+        settings.color = graphics.rgb_of(record.color)
     if settings.mount != record.mount:
         settings.mount = record.mount
     if not settings.is_sensor:

@@ -166,6 +166,7 @@ def _sensor_records(study: pe.Study) -> tuple[SensorRecord, ...]:
                 rack=racks.get(name, ""),
                 curve=sensor.curve,
                 stays=name in study.search.goals.fixed,
+                color=sensor.color,
                 **_options(study.selection, name, mount),
             )
         )

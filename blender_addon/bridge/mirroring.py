@@ -170,7 +170,8 @@ def drop_foreign_results(
     wrong = []
     for obj in holding:
         settings = obj.perception_entropy
-        if not _of_the_last_result(settings, scene) or _is_copy(obj, sensors):
+        copied = is_copy(settings.result_of, obj, sensors)
+        if copied or not _of_the_last_result(settings, scene):
             settings.has_result = False
             wrong.append(obj.name)
         elif settings.result_of != obj.name:
@@ -184,9 +185,8 @@ def _of_the_last_result(settings: bpy.types.PropertyGroup, scene: bpy.types.Scen
     return last.has_result and settings.result_run in ("", last.result_signature)
 
 
-def _is_copy(obj: bpy.types.Object, sensors: Sequence[bpy.types.Object]) -> bool:
-    """Whether a sensor's result is stored under the name of another sensor."""
-    whose = obj.perception_entropy.result_of
+def is_copy(whose: str, obj: bpy.types.Object, sensors: Sequence[bpy.types.Object]) -> bool:
+    """Whether what a sensor stores under the name `whose` belongs to another sensor."""
     return whose not in ("", obj.name) and any(other.name == whose for other in sensors)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 
 import bpy
@@ -35,7 +36,8 @@ def store_outcome(
     settings.result_kind = outcome.kind
     settings.result_entropy = outcome.after.entropy
     settings.result_before = outcome.before.entropy
-    settings.result_cost = outcome.cost
+    settings.result_cost, settings.result_coverage_before = outcome.cost, outcome.before.coverage
+    settings.result_blind = [math.ceil(10.0 * m2) / 10.0 for m2 in outcome.blind_m2 or (0.0, 0.0)]
     settings.result_coverage = outcome.after.coverage
     settings.result_stderr = outcome.after.stderr
     result = pe.result_dict(outcome, blender_version())

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ..engine import catalog, geometry, pe, search
+from ..engine import catalog, geometry, graphics, pe, search
 from .scene_settings import as_typed
 
 SCALE_TOLERANCE = 1e-4
@@ -57,10 +57,17 @@ def sensor_from_object(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) ->
     settings = obj.perception_entropy
     try:
         model, pose = catalog.load(settings.model), pose_of(obj, depsgraph)
-        return pe.Sensor(obj.name, model, pose, settings.fusion or None, curve_of(settings))
+        fusion, color = settings.fusion or None, color_of(obj)
+        return pe.Sensor(obj.name, model, pose, fusion, curve_of(settings), color)
     except pe.InputError as error:
         field = f"sensor {obj.name!r}: {error.field}"
         raise pe.InputError("scene", field, error.expected, error.found) from None
+
+
+def color_of(obj: bpy.types.Object) -> str | None:
+    """Return the colour of a sensor, such as "#5fb8f7"; None before it has one."""
+    settings = obj.perception_entropy
+    return graphics.color_text(settings.color) if settings.color_of else None
 
 
 def possible_sensors(

@@ -16,6 +16,7 @@ import numpy as np
 
 from ..engine import catalog, pe, search
 from .rig import (
+    color_of,
     curve_of,
     last_written_pose,
     pose_from_numbers,
@@ -51,7 +52,7 @@ class SensorRecord:
     record takes them from the object that the variant would use if it were applied. `locked` axes
     and `constraints` restrict the search, `parent_rack` is a parent that is a rack, `options` are
     the models to choose from, `may_be_left_out` allows designs without the sensor, and one that
-    `stays` is moved by no search.
+    `stays` is moved by no search. `color` is the sensor's own.
     """
 
     name: str
@@ -77,6 +78,7 @@ class SensorRecord:
     options: tuple[ModelOption, ...] = ()
     may_be_left_out: bool = False
     stays: bool = False
+    color: str | None = None
 
     @property
     def numbers(self) -> tuple[float, ...]:
@@ -168,6 +170,7 @@ def _object_fields(obj: bpy.types.Object | None) -> dict[str, Any]:
         "options": tuple(ModelOption(o.model, as_typed(o.price)) for o in settings.options),
         "may_be_left_out": settings.may_be_left_out,
         "stays": settings.stays,
+        "color": color_of(obj),
     }
 
 
@@ -255,6 +258,7 @@ def record_of_sensor(sensor: pe.Sensor) -> SensorRecord:
         fusion=sensor.fusion or "",
         curve=sensor.curve,
         intrinsics=sensor.model,
+        color=sensor.color,
     )
 
 
@@ -289,7 +293,8 @@ def sensor_of(record: SensorRecord, source: str = "variant") -> pe.Sensor:
     """
     try:
         model = record.intrinsics or catalog.load(record.model)
-        return pe.Sensor(record.name, model, record.pose, record.fusion or None, record.curve)
+        fusion, color = record.fusion or None, record.color
+        return pe.Sensor(record.name, model, record.pose, fusion, record.curve, color)
     except pe.InputError as error:
         raise _of_sensor(source, record.name, error) from None
 

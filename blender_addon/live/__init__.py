@@ -9,40 +9,49 @@ from __future__ import annotations
 
 import bpy
 
-from . import background_figures, readout, readout_text, session
-from .readout_text import nats_text
+from . import background_figures, readout, readout_text, sense_icons, session
+from .readout_text import BETTER, SAME, WORSE, Line, nats_text, sense_of, text_of
+from .sense_icons import sense_icon
 from .state import FinishedScore, ShownScore, live_state, shown_score
 
 __all__ = [
+    "BETTER",
+    "SAME",
+    "WORSE",
     "FinishedScore",
     "ShownScore",
     "live_lines",
     "live_state",
     "nats_text",
     "register",
+    "sense_icon",
+    "sense_of",
     "shown_score",
+    "text_of",
     "unregister",
 ]
 
 
-def live_lines(scene: bpy.types.Scene) -> list[str]:
+def live_lines(scene: bpy.types.Scene) -> list[Line]:
     """Return the lines below a live score, for the panel: those of the read-out."""
     score, shown = live_state(scene.name).score, shown_score(scene)
     if score is None or shown is None:
         return []
     figures = background_figures.figures_of(scene.name, score, shown.exact)
     known_rig = background_figures.known_rig_score(scene.name)
-    lines = [] if figures is None else [*readout_text.figure_lines(figures)]
+    lines: list[Line] = [] if figures is None else [*readout_text.figure_lines(figures)]
     lines += [] if known_rig is None else [readout_text.known_rig_line(known_rig, score.summary)]
     return [line for line in lines if line]
 
 
 def register() -> None:
-    """Start drawing."""
+    """Start drawing, and make the icons."""
     readout.register()
+    sense_icons.register()
 
 
 def unregister() -> None:
     """Stop drawing, and drop everything; the worker has ended before."""
+    sense_icons.unregister()
     readout.unregister()
     session.unregister()

@@ -16,7 +16,7 @@ from .. import viewport, worker
 from ..language import shown as in_language
 from ..viewport import FAINT, INK, PLATE, SMALL, Rgba
 from . import background_figures
-from .readout_text import BETTER, WORSE, figure_lines, known_rig_line, readout_of
+from .readout_text import BETTER, WORSE, Line, Piece, figure_lines, known_rig_line, readout_of
 from .state import LiveScore, ShownScore, live_state, shown_score
 
 LARGE = 17.0
@@ -81,10 +81,15 @@ def figure_rows(scene_name: str, score: LiveScore, shown: ShownScore | None) -> 
     rows = []
     if figures is not None:
         color = INK if figures.current else FAINT
-        rows += [TextRow(SMALL, ((text, color),)) for text in figure_lines(figures)]
-    if known_rig is not None:
-        rows.append(TextRow(SMALL, ((known_rig_line(known_rig, score.summary), FAINT),)))
+        rows += [row_of(line, color) for line in figure_lines(figures) if line]
+    if known_rig is not None and (line := known_rig_line(known_rig, score.summary)):
+        rows.append(row_of(line, FAINT))
     return rows
+
+
+def row_of(line: Line, color: Rgba = INK) -> TextRow:
+    """Return a line as a row: gains and losses in their colours."""
+    return TextRow(SMALL, tuple((text, SENSE_COLORS.get(sense, color)) for text, sense in line))
 
 
 def rows_of(
@@ -110,13 +115,13 @@ def _rows_of_score(
     arrow, color = ARROWS.get(text.sense, ""), SENSE_COLORS.get(text.sense, FAINT)
     change = ((f"{arrow} {text.change}".strip(), color),) if text.change else ()
     has_zones = score is not None and score.before is not None
-    reserved = ("",) * (ZONE_ROWS + 1 - len(text.lines)) if has_zones else ()
-    coverage, *zones = (TextRow(SMALL, ((line, INK),)) for line in (*text.lines, *reserved))
+    reserved = ((Piece(""),),) * (ZONE_ROWS + 1 - len(text.lines)) if has_zones else ()
+    coverage, *zones = (row_of(line) for line in (*text.lines, *reserved))
     return [
         TextRow(LARGE, ((text.headline, INK), *change)),
         TextRow(SMALL, tuple((part, FAINT) for part in (text.error, text.against) if part)),
         coverage,
-        *(row for row in figures if row.words[0][0]),
+        *figures,
         *zones,
     ]
 

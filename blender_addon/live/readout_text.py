@@ -21,6 +21,27 @@ PENDING = "Blind ground, reach, AP: being computed"
 BEFORE = "Before this move: "
 
 
+class Piece(NamedTuple):
+    """A piece of a line, and whether it tells a gain or a loss."""
+
+    text: str
+    sense: int = SAME
+
+
+Line = tuple[Piece, ...]
+"""Pieces that are drawn beside each other; empty for no line."""
+
+
+def text_of(line: Line) -> str:
+    """Return a line as plain text."""
+    return " ".join(piece.text for piece in line)
+
+
+def sense_of(line: Line) -> int:
+    """Return whether a line tells a loss, or else a gain."""
+    return max((piece.sense for piece in line if piece.sense), default=SAME)
+
+
 class ReadoutText(NamedTuple):
     """The text of a score: headline, error, change, reference of the change, and further lines."""
 
@@ -29,7 +50,7 @@ class ReadoutText(NamedTuple):
     change: str
     sense: int
     against: str
-    lines: tuple[str, ...]
+    lines: tuple[Line, ...]
 
 
 def nats_text(entropy: float, change: float | None = None) -> str:
@@ -43,11 +64,11 @@ def readout_of(score: LiveScore | None, shown: ShownScore) -> ReadoutText:
     Changes are those of the live score, from sample to sample; of a stored search, its own.
     """
     change, sense, against = "", SAME, ""
-    lines: tuple[str, ...] = (f"Coverage {shown.coverage:.1%}",)
+    lines: tuple[Line, ...] = ((Piece(f"Coverage {shown.coverage:.1%}"),),)
     if score is not None:
         now, before = score.summary, score.before
         what = "Coverage" if now.voxels else "Objects visible:"
-        coverage = f"{what} {shown.coverage:.1%}{coverage_change(now, before)}"
+        coverage = Piece(f"{what} {shown.coverage:.1%}"), *coverage_change(now, before)
         lines = coverage, *ap_lines(now, before), *zone_lines(now, before)
         if before is not None and score.baseline is not None:
             change, sense = entropy_change(now.entropy, before.entropy)
@@ -85,80 +106,85 @@ def entropy_change(now: float, before: float) -> tuple[str, int]:
     return f"{abs(by):.3f} {'worse' if by > 0.0 else 'better'}", WORSE if by > 0.0 else BETTER
 
 
-def coverage_change(now: pe.Glance, before: pe.Glance | None) -> str:
+def coverage_change(now: pe.Glance, before: pe.Glance | None) -> Line:
     """Return how the coverage changed, in percentage points; nothing where it did not."""
-    by = 0.0 if before is None else round(100.0 * (now.coverage - before.coverage), 1)
-    return f" ({by:+.1f})".replace("-", MINUS) if by else ""
+    return change_of(None if before is None else 100.0 * (now.coverage - before.coverage), 1)
 
 
-def ap_lines(now: pe.Glance, before: pe.Glance | None) -> list[str]:
+def ap_lines(now: pe.Glance, before: pe.Glance | None) -> list[Line]:
     """Return "Expected AP 0.653 (+0.012)" where objects are scored; nothing for voxels."""
     if now.ap is None:
         return []
     by = None if before is None or before.ap is None else now.ap - before.ap
-    return [f"Expected AP {now.ap:.3f}{change_text(by, 3)}"]
+    return [(Piece(f"Expected AP {now.ap:.3f}"), *change_of(by, 3))]
 
 
-def zone_lines(now: pe.Glance, before: pe.Glance | None) -> list[str]:
+def zone_lines(now: pe.Glance, before: pe.Glance | None) -> list[Line]:
     """Return the zone that improved most, and the one that worsened most: at most a line each."""
     if before is None:
         return []
     common = [name for name in now.per_zone if name in before.per_zone]
     by = {name: now.per_zone[name].entropy - before.per_zone[name].entropy for name in common}
-    lines = []
-    for word, sign in (("Better", -1.0), ("Worse", 1.0)):
-        name = max(common, key=lambda zone: sign * by[zone], default=None)
-        if name is not None and sign * by[name] >= MIN_ZONE_CHANGE:
-            lines.append(f"{word} {advice.WHERE.get(name, name)} by {abs(by[name]):.2f} nats")
+    lines: list[Line] = []
+    for word, sense in (("Better", BETTER), ("Worse", WORSE)):
+        name = max(common, key=lambda zone: sense * by[zone], default=None)
+        if name is not None and sense * by[name] >= MIN_ZONE_CHANGE:
+            where = advice.WHERE.get(name, name)
+            lines.append((Piece(f"{word} {where} by {abs(by[name]):.2f} nats", sense),))
     return lines
 
 
-def figure_lines(figures: ShownFigures) -> tuple[str, str]:
+def figure_lines(figures: ShownFigures) -> tuple[Line, Line]:
     """Return two lines: blind ground; reach and AP. Earlier figures are marked as such."""
     now, before = figures.now, figures.before
     if now is None:
-        return PENDING, ""
+        return (Piece(PENDING),), ()
     lines = blind_line(now, before), reach_line(now, before)
     if figures.current:
         return lines
-    blind, reach = (f"{BEFORE}{line}" if line else "" for line in lines)
+    blind, reach = ((Piece(f"{BEFORE}{text_of(line)}"),) if line else () for line in lines)
     return blind, reach
 
 
-def blind_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> str:
+def blind_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> Line:
     """Return "81.2 m² blind to what is 0.5 m tall (−3.1)"."""
     what = f"blind to what is {now.height:g} m tall" if now.height else "blind to what lies flat"
     by = None if before is None else now.blind_m2 - before.blind_m2
-    return f"{now.blind_m2:.1f} m² {what}{change_text(by, 1)}"
+    return Piece(f"{now.blind_m2:.1f} m² {what}"), *change_of(by, 1, lower_is_better=True)
 
 
-def reach_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> str:
+def reach_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> Line:
     """Return "Pedestrian detected to 47 m ahead (+2), AP 0.62"; empty without a class."""
     if now.class_name is None or now.reach_m is None:
-        return ""
+        return ()
     by = None if before is None or before.reach_m is None else now.reach_m - before.reach_m
     sign = "\N{GREATER-THAN OR EQUAL TO} " if now.at_least else ""
     to = f"to {sign}{now.reach_m:.0f} m ahead" if now.reach_m else "nowhere ahead"
-    line = f"{now.class_name.capitalize()} detected {to}{change_text(by, 0)}"
+    line = Piece(f"{now.class_name.capitalize()} detected {to}"), *change_of(by, 0)
     if now.expected_ap is None:
         return line
     earlier_ap = None if before is None else before.expected_ap
     by = None if earlier_ap is None else now.expected_ap - earlier_ap
-    return f"{line}, AP {now.expected_ap:.2f}{change_text(by, 2)}"
+    *first, last = line
+    comma = last._replace(text=f"{last.text},")
+    return *first, comma, Piece(f"AP {now.expected_ap:.2f}"), *change_of(by, 2)
 
 
-def change_text(by: float | None, digits: int) -> str:
-    """Return " (+1.2)"; nothing where the change is 0 in these digits."""
+def change_of(by: float | None, digits: int, *, lower_is_better: bool = False) -> Line:
+    """Return "(+1.2)" as a gain or a loss; nothing where the change is 0 in these digits."""
     text = "" if by is None else f"{by:+.{digits}f}"
-    return f" ({text.replace('-', MINUS)})" if text.strip("+-0.") else ""
+    if by is None or not text.strip("+-0."):
+        return ()
+    sense = BETTER if (by < 0.0) == lower_is_better else WORSE
+    return (Piece(f"({text.replace('-', MINUS)})", sense),)
 
 
-def known_rig_line(known_rig: KnownRigScore, now: pe.Glance) -> str:
+def known_rig_line(known_rig: KnownRigScore, now: pe.Glance) -> Line:
     """Return "nuScenes here: 2.867 nats; this is 0.229 worse"; empty until it is scored."""
     summary = known_rig.summary
     if summary is None:
-        return ""
-    by = now.entropy - summary.entropy
-    same = abs(by) < MIN_CHANGE
-    word = "alike" if same else f"{abs(by):.3f} {'worse' if by > 0.0 else 'better'}"
-    return f"{known_rig.title} here: {summary.entropy:.3f} nats; this is {word}"
+        return ()
+    change, sense = entropy_change(now.entropy, summary.entropy)
+    word = "alike" if sense == SAME else change
+    here = Piece(f"{known_rig.title} here: {summary.entropy:.3f} nats; this is")
+    return here, Piece(word, sense)

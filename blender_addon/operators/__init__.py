@@ -5,7 +5,18 @@ Panels take from here the operators, and what menus list.
 
 from ..bridge import shown_state
 from ..diagnostics import warnings_outdated
-from ..live import ShownScore, live_lines, nats_text, shown_score
+from ..live import (
+    BETTER,
+    SAME,
+    WORSE,
+    ShownScore,
+    live_lines,
+    nats_text,
+    sense_icon,
+    sense_of,
+    shown_score,
+    text_of,
+)
 from ..sensor_kinds import kind_label
 from . import (
     add_sensor,
@@ -34,7 +45,6 @@ from . import (
     variants,
 )
 from .add_sensor import (
-    SENSOR_COLORS,
     Offer,
     brief,
     holder_of,
@@ -49,17 +59,21 @@ from .panel_rows import own_fields, reference_label
 from .query_location import answer
 from .replace_sensors import known_rigs
 from .requirements import ShownSource, ShownVerdict, shown_verdicts, source_of
+from .score_jobs import costs_nothing
 
 __all__ = [
+    "BETTER",
     "CLASSES",
     "FIX_LABELS",
-    "SENSOR_COLORS",
+    "SAME",
+    "WORSE",
     "Offer",
     "ShownScore",
     "ShownSource",
     "ShownVerdict",
     "answer",
     "brief",
+    "costs_nothing",
     "export_job",
     "holder_of",
     "kind_label",
@@ -75,10 +89,13 @@ __all__ = [
     "reference_label",
     "register",
     "running_job",
+    "sense_icon",
+    "sense_of",
     "shown_score",
     "shown_state",
     "shown_verdicts",
     "source_of",
+    "text_of",
     "unregister",
     "warnings_outdated",
 ]

@@ -11,7 +11,7 @@ from bpy.props import BoolProperty, EnumProperty, StringProperty
 from mathutils import Vector
 
 from .. import bridge, preferences
-from ..engine import catalog, graphics, kinds, pe
+from ..engine import catalog, kinds, pe
 from ..housing import measured_housing
 from ..language import shown
 from ..properties import DEFAULT_MODEL, model_suggestions
@@ -64,10 +64,6 @@ def roof_location(vehicle: pe.Vehicle, mount: Mount) -> tuple[float, float, floa
     surface = top + 1.0 - depth if np.isfinite(depth) else top  # there may be a hole
     x, y, z = np.round((x, y, surface + mount.stand_off_m), 2).tolist()
     return x, y, z
-
-
-SENSOR_COLORS = graphics.SENSOR_COLORS
-"""Colours of sensors in the 3D view, in the order of the list, again from the first."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ import bpy
 from .. import bridge, result_staleness
 from ..engine import advice, pe
 from ..language import draw_label, shown
+from ..live import SAME, sense_icon
 from .reports import OperatorResult, report
 from .score_jobs import JobOperator, SceneJob
 
@@ -192,12 +193,24 @@ class PE_OT_show_comparison(bpy.types.Operator):
         figures = split.row()
         for column in columns:
             draw_column(figures.column(align=True), column, "RIGHT")
-        text = f"A star marks the best; in brackets: the difference to {self.names[0]}"
+        text = (
+            f"A star marks the best; in brackets: the difference to {self.names[0]}, "
+            "blue for a gain, orange for a loss"
+        )
         draw_label(self.layout, text)
 
 
-TableCell = tuple[str, bool] | None
-"""Text of a cell and whether it is the best; None for a gap."""
+class TextCell(NamedTuple):
+    """Text of a cell, whether it is the best, and the change from the first column."""
+
+    text: str
+    best: bool = False
+    change: str = ""
+    sense: int = SAME
+
+
+TableCell = TextCell | None
+"""None is a gap."""
 
 
 def draw_column(column: bpy.types.UILayout, cells: list[TableCell], alignment: str) -> None:
@@ -207,10 +220,11 @@ def draw_column(column: bpy.types.UILayout, cells: list[TableCell], alignment: s
         if cell is None:
             column.separator(factor=0.6)
             continue
-        text, best = cell
-        row = column.row()
+        row = column.row(align=True)
         row.alignment = alignment
-        draw_label(row, text, "SOLO_ON" if best else other)
+        if cell.change:
+            row.label(text=cell.change, icon_value=sense_icon(cell.sense), translate=False)
+        draw_label(row, cell.text, "SOLO_ON" if cell.best else other)
 
 
 def open_table() -> OperatorResult:
@@ -274,11 +288,11 @@ def sentences(names: list[str], rows: tuple[advice.ComparedRow, ...], letters: i
 
 def columns_of(names: list[str], rows: tuple[advice.ComparedRow, ...]) -> list[list[TableCell]]:
     """Return the table by columns; the first column holds the names of the rows."""
-    columns: list[list[TableCell]] = [[(name, False)] for name in ("", *names)]
+    columns: list[list[TableCell]] = [[TextCell(name)] for name in ("", *names)]
     for measure, title in TITLES.items():
         if not any(row.measure == measure for row in rows):
             continue
-        _add(columns, [(title, False)])
+        _add(columns, [TextCell(title)])
         group = "rig"
         for row in rows:
             if row.measure != measure:
@@ -287,25 +301,26 @@ def columns_of(names: list[str], rows: tuple[advice.ComparedRow, ...]) -> list[l
                 _add(columns, [None] * len(columns))
                 group = row.group
             label = f"    {row.name.capitalize() or WHOLE_RIG}"
-            _add(columns, [(label, False), *(_cell(row, k) for k in range(len(names)))])
+            _add(columns, [TextCell(label), *(_cell(row, k) for k in range(len(names)))])
     return columns
 
 
 def _add(columns: list[list[TableCell]], cells: list[TableCell]) -> None:
     """Append a row to the table; missing cells at its end are empty."""
     for k, column in enumerate(columns):
-        column.append(cells[k] if k < len(cells) else ("", False))
+        column.append(cells[k] if k < len(cells) else TextCell(""))
 
 
-def _cell(row: advice.ComparedRow, k: int) -> TableCell:
+def _cell(row: advice.ComparedRow, k: int) -> TextCell:
     """Return a figure, with its difference to the first variant's if that is not 0."""
     value, less = row.values[k], row.differences[k]
     if value is None:
-        return "–", False
+        return TextCell("–")
     way = FORMATS[row.measure]
     change = "" if less is None else f"{less:+{way}}".removesuffix("%")
     is_visible = bool(change.strip("+-0."))
-    return f"({change})  {value:{way}}" if is_visible else f"{value:{way}}", row.best[k]
+    change = f"({change})" if is_visible else ""
+    return TextCell(f"{value:{way}}", row.best[k], change, row.sense(k))
 
 
 CLASSES = (

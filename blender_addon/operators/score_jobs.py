@@ -11,7 +11,7 @@ import bpy
 from bpy.props import IntProperty
 
 from .. import bridge, diagnostics, result_staleness, sensor_cache, signals, vehicle_cache
-from ..engine import app, pe
+from ..engine import advice, app, pe
 from ..language import shown
 from ..live import FinishedScore, live_state
 from . import running_job
@@ -210,10 +210,16 @@ class PE_OT_optimize(JobOperator, bpy.types.Operator):
         if bpy.ops.ed.undo_push.poll():  # a script without a window has no undo
             bpy.ops.ed.undo_push(message="Optimize: Keep Variant")
         goes_on = settings.has_result and settings.result_signature == taken.text
-        first = settings.result_before if goes_on else outcome.before.entropy
+        first = (
+            (settings.result_before, settings.result_coverage_before, settings.result_blind[0])
+            if goes_on and settings.result_kind == "optimize"
+            else None
+        )
         gone = bridge.place_rig(scene, outcome.study.rig, outcome.start.rig)
         store_result(scene, outcome, taken.with_rig(outcome.study.rig).text)
-        settings.result_before = first  # of searches in a row: where the first began
+        if first is not None:  # of searches in a row: where the first began
+            before, settings.result_coverage_before, settings.result_blind[0] = first
+            settings.result_before = before
         bridge.mark_active(scene, result_key)
         return gone
 
@@ -226,6 +232,11 @@ class PE_OT_optimize(JobOperator, bpy.types.Operator):
             nats = f"perception entropy {before:.4f} to {after:.4f} nats"
             return f"Expected AP in traffic {first:.4f} to {last:.4f}, {nats} ({best})"
         return f"Perception entropy {before:.4f} to {after:.4f} nats ({best})"
+
+
+def costs_nothing(settings: bpy.types.PropertyGroup) -> bool:
+    """Whether the last search made nothing worse."""
+    return advice.costs_nothing(settings.result_cost)
 
 
 def store_result(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) -> None:

@@ -280,11 +280,11 @@ def reach_of_rig(
     )
 
 
-def reach_of_sensors(found: sight.Reach, numbers: dict[str, int]) -> graphics.LayerShape:
-    """Return the reach of each sensor in its colour; `numbers` are their positions in the list."""
+def reach_of_sensors(found: sight.Reach, colors: dict[str, graphics.Rgb]) -> graphics.LayerShape:
+    """Return the reach of each sensor in its colour, by name."""
     lines, classes = [], []
-    for name, number in numbers.items():
-        color = (*graphics.sensor_color(number), 0.75)
+    for name, own in colors.items():
+        color = (*own, 0.75)
         lines.append(reach_lines(found, found.per_sensor[name], color))
         classes.append((color, name))
     legend = graphics.ColorKey(_reach_title(found), classes=tuple(classes))

@@ -114,7 +114,7 @@ def _reach(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.Laye
     if view.reach_of == RIG:
         return whole
     everyone = view.reach_of == ALL
-    named = {e.sensor.name: e.number for e in request.counted if everyone or e.selected}
+    named = {e.sensor.name: e.color for e in request.counted if everyone or e.selected}
     alone = ground_layers.reach_of_sensors(found, named)
     keys = [shape.legend for shape in (whole, alone) if shape.legend is not None]
     legend = graphics.ColorKey(keys[0].title, classes=tuple(c for k in keys for c in k.classes))
@@ -159,7 +159,7 @@ def _beam_colors(
 ) -> NDArray[np.float32]:
     """(N, 4) colours of beams of these channels."""
     by_sensor = view.beam_colors == BY_SENSOR
-    palette = graphics.sensor_palette(of.number, view.palette) if by_sensor else view.palette
+    palette = graphics.sensor_palette(of.color, view.palette) if by_sensor else view.palette
     free, hit = (np.asarray(c, np.float32) for c in (palette.free, palette.stopped))
     colors = np.where(stopped[:, None], hit, free)
     if view.beam_colors == BY_CHANNEL:
@@ -205,7 +205,7 @@ def _views(request: ViewRequest, _cache: LayerCache, name: str) -> graphics.Laye
     of = next(each for each in request.sensors if each.sensor.name == name)
     drawing = graphics.drawing_of(of.sensor.kind)
     sketch = drawing.sketch(of.sensor, None, graphics.BeamChoice(1))
-    palette = graphics.sensor_palette(of.number)
+    palette = graphics.sensor_palette(of.color)
     lines, faces = [sketch.lines(FRUSTUM_M, palette)], [sketch.faces(FRUSTUM_M, palette)]
     if drawing.footprint is not None and request.view.footprints:
         outline = drawing.footprint(of.sensor, request.view.view_range)
@@ -223,7 +223,7 @@ def _label_keys(request: ViewRequest) -> dict[str, Hashable]:
 
 def _label(request: ViewRequest, _cache: LayerCache, name: str) -> graphics.LayerShape:
     of = next(each for each in request.sensors if each.sensor.name == name)
-    color = graphics.with_alpha(graphics.sensor_color(of.number), 1.0)
+    color = graphics.with_alpha(of.color, 1.0)
     return graphics.LayerShape(
         labels=(graphics.Tag(name, of.sensor.pose.position, color, strong=of.selected),)
     )

@@ -62,12 +62,11 @@ class ViewSettings:
 class SceneSensor:
     """A sensor of the scene, and its state there.
 
-    `number` is its position in the list of all sensors; `drawn` whether its own layers are shown,
-    `counted` whether it is scored.
+    `color` is its colour; `drawn` whether its own layers are shown, `counted` whether it is scored.
     """
 
     sensor: pe.Sensor
-    number: int = 0
+    color: graphics.Rgb
     selected: bool = False
     drawn: bool = True
     counted: bool = True
@@ -77,7 +76,7 @@ class SceneSensor:
         """Identifies the sensor with its pose and model."""
         sensor = self.sensor
         of = sensor.name, id(sensor.model), sensor.pose
-        return *of, sensor.group, sensor.curve, self.number
+        return *of, sensor.group, sensor.curve, self.color
 
 
 @dataclass(frozen=True, slots=True, eq=False)

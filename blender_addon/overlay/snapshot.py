@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 
 from .. import bridge, location_query, preferences, search_curve, sensor_cache, vehicle_cache
-from ..engine import pe
+from ..engine import graphics, pe
 from ..live import live_state
 from .layers import LAYERS
 from .request import (
@@ -167,14 +167,17 @@ def view_of(scene: bpy.types.Scene) -> ViewSettings:
 
 def _sensors(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> tuple[SceneSensor, ...]:
     """Return the possible sensors; a score reports what is wrong with others."""
-    layer, found = depsgraph.view_layer, []
+    layer, possible = depsgraph.view_layer, []
     active = layer.objects.active
-    for number, obj in enumerate(sensor_cache.sensors(scene)):
+    for obj in sensor_cache.sensors(scene):
         with contextlib.suppress(pe.InputError):
-            sensor = bridge.sensor_from_object(obj, depsgraph)
-            selected = obj == active or obj.select_get(view_layer=layer)
-            drawn, counted = obj.perception_entropy.show, obj.visible_get(view_layer=layer)
-            found.append(SceneSensor(sensor, number, selected, drawn, counted))
+            possible.append((obj, bridge.sensor_from_object(obj, depsgraph)))
+    colors = graphics.sensor_colors(sensor for _, sensor in possible)
+    found = []
+    for obj, sensor in possible:
+        selected = obj == active or obj.select_get(view_layer=layer)
+        drawn, counted = obj.perception_entropy.show, obj.visible_get(view_layer=layer)
+        found.append(SceneSensor(sensor, colors[sensor.name], selected, drawn, counted))
     return tuple(found)
 
 

@@ -5,7 +5,6 @@ Panels appear in the order of CLASSES; a parent is registered before its childre
 
 from . import (
     condition_panel,
-    layout,
     main,
     menus,
     overlay_popover,
@@ -38,7 +37,6 @@ CLASSES = (
 
 def register() -> None:
     """Add icons, and entries in Blender's own headers and menus."""
-    layout.register()
     overlay_popover.register()
     main.register()
     sensor_menus.register()
@@ -51,4 +49,3 @@ def unregister() -> None:
     sensor_menus.unregister()
     main.unregister()
     overlay_popover.unregister()
-    layout.unregister()

@@ -9,11 +9,9 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import blf
 import bpy
-import bpy.utils.previews
-import numpy as np
 
 from ..language import draw_label, shown
-from ..operators import FIX_LABELS, SENSOR_COLORS, warnings_outdated
+from ..operators import FIX_LABELS, SAME, sense_icon, warnings_outdated
 
 # Blender registers the subclasses of Panel alone; for the checker of types this is one.
 if TYPE_CHECKING:
@@ -160,20 +158,26 @@ def draw_sentence(
     text: str,
     icon: str = "NONE",
     beside_px: float = 0.0,
+    sense: int = SAME,
 ) -> None:
     """Draw a sentence in as many lines as it needs; the icon is before the first.
 
-    A sentence that begins with a space continues the one before, and has no icon. `beside_px` is
-    the width of what is beside the sentence, at a scale of 1.
+    A gain or a loss (`sense`) has its own icon. A sentence that begins with a space continues the
+    one before, and has no icon. `beside_px` is the width of what is beside the sentence, at a scale
+    of 1.
     """
     if text.startswith(" "):
         text, icon = text.strip(), "BLANK1"
     column = layout.column(align=True)
     column.scale_y = 0.8
-    rest = "NONE" if icon == "NONE" else "BLANK1"
-    beside_px += 0.0 if icon == "NONE" else ICON_PX
+    has_icon = icon != "NONE" or sense != SAME
+    rest = "BLANK1" if has_icon else "NONE"
+    beside_px += ICON_PX if has_icon else 0.0
     for k, line in enumerate(wrapped(context, shown(text), beside_px)):
-        column.label(text=line, icon=rest if k else icon, translate=False)
+        if not k and sense != SAME:
+            column.label(text=line, icon_value=sense_icon(sense), translate=False)
+        else:
+            column.label(text=line, icon=rest if k else icon, translate=False)
 
 
 def draw_warning(
@@ -203,37 +207,3 @@ def draw_warning(
             "pe.mend", text=shown(FIX_LABELS[warning.fix]), icon="TOOL_SETTINGS", translate=False
         )
         mend.fix, mend.subject, mend.amount = warning.fix, warning.subject, warning.amount
-
-
-SIDE_PX, MARGIN_PX = 32, 5
-
-_icons: list[bpy.utils.previews.ImagePreviewCollection] = []
-
-
-def swatch(number: int) -> int:
-    """Return the icon of a sensor by its position in the list of all sensors."""
-    return _icons[0][str(number % len(SENSOR_COLORS))].icon_id
-
-
-def pixels(color: tuple[float, float, float]) -> np.ndarray:
-    """Return a filled square with a transparent margin, (SIDE_PX * SIDE_PX * 4,)."""
-    image = np.zeros((SIDE_PX, SIDE_PX, 4), np.float32)
-    inner = slice(MARGIN_PX, SIDE_PX - MARGIN_PX)
-    image[inner, inner] = (*color, 1.0)
-    return image.reshape(-1)
-
-
-def register() -> None:
-    """Create an icon for each colour."""
-    icons = bpy.utils.previews.new()
-    for number, color in enumerate(SENSOR_COLORS):
-        made = icons.new(str(number))
-        made.icon_size = made.image_size = (SIDE_PX, SIDE_PX)
-        made.icon_pixels_float = made.image_pixels_float = pixels(color)  # type: ignore[assignment]
-    _icons.append(icons)
-
-
-def unregister() -> None:
-    """Remove the icons."""
-    while _icons:
-        bpy.utils.previews.remove(_icons.pop())

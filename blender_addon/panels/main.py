@@ -7,16 +7,28 @@ import bpy
 from ..choices import VERSION
 from ..language import draw_label, shown
 from ..operators import (
+    BETTER,
+    SAME,
+    WORSE,
     ShownScore,
+    costs_nothing,
     export_job,
     listed_sensors,
     nats_text,
     offers,
     running_job,
+    sense_icon,
     shown_score,
     shown_state,
 )
-from .layout import BUTTON_PX, Tab, columns, draw_properties, draw_sentence, draw_warning
+from .layout import (
+    BUTTON_PX,
+    Tab,
+    columns,
+    draw_properties,
+    draw_sentence,
+    draw_warning,
+)
 from .sensor_lists import draw_sensors
 from .sensor_menus import KIND, PE_MT_add_sensor
 
@@ -89,9 +101,9 @@ def draw_stored(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     error = f" ± {max(settings.result_stderr, 1e-3):.3f}" if settings.result_stderr else ""
     draw_figure(column, "Entropy", f"{nats_text(settings.result_entropy)}{error} nats")
     if settings.result_kind == "optimize":
-        gain = settings.result_entropy - settings.result_before
-        draw_figure(column, "Before", nats_text(settings.result_before, gain))
-    draw_figure(column, "Coverage", f"{settings.result_coverage:.1%}")
+        draw_changes(column, context, settings)
+    else:
+        draw_figure(column, "Coverage", f"{settings.result_coverage:.1%}")
     if settings.result_ap:
         draw_figure(column, "Expected AP", settings.result_ap)
     for name in ("mounted_off", "sensor_lost"):
@@ -107,11 +119,40 @@ def draw_stored(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         draw_label(state, "Changed since this was scored", "FILE_REFRESH")
 
 
-def draw_figure(layout: bpy.types.UILayout, name: str, value: str) -> None:
-    """Draw a figure with its name."""
+def draw_changes(
+    layout: bpy.types.UILayout, context: bpy.types.Context, settings: bpy.types.PropertyGroup
+) -> None:
+    """Draw what the last search changed, gains and losses marked, and what it cost."""
+    by = settings.result_entropy - settings.result_before
+    text = nats_text(settings.result_before, by)
+    draw_figure(layout, "Before", text, sense_of_change(by, MIN_NATS))
+    by = 100.0 * (settings.result_coverage - settings.result_coverage_before)
+    text = f"{settings.result_coverage:.1%}  ({by:+.1f})"
+    draw_figure(layout, "Coverage", text, sense_of_change(-by, MIN_POINTS))
+    before, after = settings.result_blind
+    text = f"{before:.1f} \N{RIGHTWARDS ARROW} {after:.1f} m²"
+    draw_figure(layout, "Blind Ground", text, sense_of_change(after - before, MIN_AREA_M2))
+    sense = BETTER if costs_nothing(settings) else WORSE
+    draw_sentence(layout, context, settings.result_cost, sense=sense)
+
+
+MIN_NATS, MIN_POINTS, MIN_AREA_M2 = 5e-4, 0.05, 0.05
+"""Smaller changes are 0 in the digits that are shown."""
+
+
+def sense_of_change(by: float, least: float) -> int:
+    """Return whether a change of something that is to be low is a gain or a loss."""
+    return SAME if abs(by) < least else WORSE if by > 0.0 else BETTER
+
+
+def draw_figure(layout: bpy.types.UILayout, name: str, value: str, sense: int = SAME) -> None:
+    """Draw a figure with its name; a gain or a loss is marked."""
     left, right = columns(layout, 0.34)
     draw_label(left, name)
-    draw_label(right, value)
+    if sense == SAME:
+        draw_label(right, value)
+    else:
+        right.label(text=value, icon_value=sense_icon(sense), translate=False)
 
 
 def draw_vehicle_warnings(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

@@ -6,7 +6,7 @@ import bpy
 
 from ..choices import BEFORE_MOVE, PINNED
 from ..language import draw_label, shown
-from ..operators import answer, live_lines, reference_label
+from ..operators import answer, live_lines, reference_label, sense_of, text_of
 from .layout import BUTTON_PX, Tab, columns, draw_sentence, draw_stale_mark
 from .sensor_lists import draw_sensor_table
 
@@ -50,7 +50,7 @@ class PE_PT_live(Tab, bpy.types.Panel):
         field.prop(live, "anchor", text="")
         self.layout.prop(live, "figures")
         for line in live_lines(context.scene):
-            draw_sentence(self.layout, context, line)
+            draw_sentence(self.layout, context, text_of(line), sense=sense_of(line))
 
 
 class PE_PT_explain(Tab, bpy.types.Panel):

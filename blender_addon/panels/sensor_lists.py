@@ -6,12 +6,14 @@ import bpy
 
 from ..language import draw_label
 from ..operators import listed_sensors
-from .layout import draw_warning, letters_per_line, swatch
+from .layout import draw_warning, letters_per_line
 
 MIN_NAME_SHARE = 0.34
 """Smallest share of a row for the name."""
 BESIDE_LETTERS = 9
 """Width of switches and the figure in a row, in letters."""
+SWATCH_UNITS = 0.8
+"""Width of a colour, in widths of an icon."""
 FIGURE_SHARE = 0.26
 """Room for a loss of two digits before the point: "10.37"."""
 
@@ -26,8 +28,8 @@ def draw_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     share = name_share(objects, letters_per_line(context) - BESIDE_LETTERS)
     draw_header(box, share)
     warnings = list(context.scene.perception_entropy.result_warnings)
-    for number, obj in enumerate(objects):
-        draw_sensor(box, context, obj, share, number)
+    for obj in objects:
+        draw_sensor(box, context, obj, share)
         for warning in warnings:
             if warning.subject == obj.name:
                 draw_warning(box, context, warning)
@@ -62,16 +64,15 @@ def draw_sensor(
     context: bpy.types.Context,
     obj: bpy.types.Object,
     share: float,
-    number: int,
 ) -> None:
-    """Draw a sensor's row: the Outliner's eye, the switch of its beams, and their colour."""
+    """Draw a sensor's row: the Outliner's eye, the switch of its beams, and its colour."""
     settings, counts = obj.perception_entropy, obj.visible_get()
     row = layout.row(align=True)
     eye = "HIDE_OFF" if counts else "HIDE_ON"
     row.operator("pe.toggle_sensor", text="", icon=eye, emboss=False).name = obj.name
     rays = "LIGHT_SUN" if settings.show else "DOT"
     row.prop(settings, "show", text="", icon=rays, emboss=False)
-    row.label(text="", icon_value=swatch(number))
+    draw_swatch(row, settings)
     name, model, figure = row_cells(row, share)
     row.active = counts  # a hidden sensor is not scored
     active = obj == context.active_object
@@ -81,6 +82,13 @@ def draw_sensor(
     if model is not None:
         model.label(text=settings.model, translate=False)
     draw_label(figure, loss_text(settings))
+
+
+def draw_swatch(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw a sensor's colour: a click chooses another one."""
+    swatch = layout.row(align=True)
+    swatch.ui_units_x = SWATCH_UNITS
+    swatch.prop(settings, "color", text="")
 
 
 def loss_text(settings: bpy.types.PropertyGroup) -> str:
@@ -120,16 +128,16 @@ def draw_sensor_table(layout: bpy.types.UILayout, context: bpy.types.Context) ->
     for cell, text in zip(header, HEADER, strict=False):
         cell.active = False
         draw_label(cell, text)
-    for number, obj in enumerate(listed_sensors(context.scene)):
-        _draw_row(table, obj, wide, number, active=obj == context.active_object)
+    for obj in listed_sensors(context.scene):
+        _draw_row(table, obj, wide, active=obj == context.active_object)
 
 
 def _draw_row(
-    layout: bpy.types.UILayout, obj: bpy.types.Object, wide: bool, number: int, *, active: bool
+    layout: bpy.types.UILayout, obj: bpy.types.Object, wide: bool, *, active: bool
 ) -> None:
     settings = obj.perception_entropy
     name, loss, where, *rest = _cells(layout, wide)
-    name.label(text="", icon_value=swatch(number))
+    draw_swatch(name, settings)
     name.operator(
         "pe.select_sensor", text=obj.name, depress=active, translate=False
     ).name = obj.name

@@ -13,6 +13,12 @@ def redraw(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> N
     signals.view_changed.emit()
 
 
+def recolored(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    """Update callback of a sensor's colour: from now on it is this sensor's own."""
+    settings.color_of = settings.id_data.name
+    signals.view_changed.emit()
+
+
 def changed(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
     """Update callback of properties that change the score."""
     signals.study_changed.emit()

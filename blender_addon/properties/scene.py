@@ -333,6 +333,12 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
     result_coverage: FloatProperty(
         name="Coverage", description="Share of the prior that is visible to a sensor, 0 to 1"
     )
+    result_coverage_before: FloatProperty(
+        name="Coverage Before", description="Coverage at the start of the search, 0 to 1"
+    )
+    result_blind: FloatVectorProperty(
+        name="Blind Ground", description="Before and after a search [m2], rounded up", size=2
+    )
     result_stderr: FloatProperty(
         name="Standard Error",
         description="Standard error of the perception entropy; 0 if all voxels were evaluated",

@@ -23,7 +23,14 @@ from bpy.props import (
 from .. import bridge
 from ..engine import pe, search
 from ..sensor_kinds import DEFAULT_MODEL
-from .callbacks import changed, model_chosen, models_of_a_kind, own_curve_switched, redraw
+from .callbacks import (
+    changed,
+    model_chosen,
+    models_of_a_kind,
+    own_curve_switched,
+    recolored,
+    redraw,
+)
 from .list_rows import PE_SensorOption
 from .results import PE_StoppingPart
 
@@ -127,6 +134,20 @@ class PE_ObjectSettings(GroundPose, bpy.types.PropertyGroup):
         search=models_of_a_kind,
         search_options={"SUGGESTION"},  # the typed text is kept; a message reports an unknown name
         update=model_chosen,
+    )
+    color: FloatVectorProperty(
+        name="Color",
+        description="Colour of this sensor in the panel, the 3D view, pictures, pages and exports",
+        subtype="COLOR_GAMMA",
+        size=3,
+        min=0.0,
+        max=1.0,
+        update=recolored,
+    )
+    color_of: StringProperty(
+        name="Color Of",
+        description="Name of the sensor that has got this colour: a copy gets another one",
+        options={"HIDDEN"},
     )
     fusion: StringProperty(
         name="Fusion",

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
-from ..base.errors import InputError
+from ..base.errors import InputError, shown
 from ..base.values import A_NAME
 from ..geometry.poses import Pose
 from ..metric.entropy import ApCurve
+
+COLOR = re.compile("#[0-9a-f]{6}")
+"""sRGB, two hexadecimal digits for red, green and blue."""
 
 
 class SensorModel:
@@ -43,11 +47,14 @@ class Sensor:
         "lidar" by default; a camera has a group of its own.
     curve : ApCurve, optional
         Eq. 4 of this sensor's detector, in place of its kind's; the same in a fusion group.
+    color : str, optional
+        Its colour in pictures, such as "#5fb8f7" (sRGB). It changes no score.
 
     Raises
     ------
     InputError
-        When a value has another type, or a name is not one line of printable letters.
+        When a value has another type, a name is not one line of printable letters, or the colour
+        is none.
     """
 
     name: str
@@ -55,6 +62,7 @@ class Sensor:
     pose: Pose = field(default_factory=lambda: Pose((0.0, 0.0, 0.0)))
     fusion: str | None = None
     curve: ApCurve | None = None
+    color: str | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", A_NAME.checked("sensor", "name", self.name))
@@ -67,6 +75,10 @@ class Sensor:
         object.__setattr__(self, "fusion", fusion)
         if not isinstance(self.curve, ApCurve | None):
             raise InputError(who, "curve", "an ApCurve", type(self.curve).__name__)
+        if self.color is not None and not (
+            isinstance(self.color, str) and COLOR.fullmatch(self.color)
+        ):
+            raise InputError(who, "color", 'a colour such as "#5fb8f7"', shown(self.color))
 
     @property
     def kind(self) -> str:

@@ -204,7 +204,9 @@ def _read_sensor(table: Table, folder: Path) -> Sensor:
     with table.naming():
         pose = Pose.from_degrees(position, rotation)
         intrinsics = _read_intrinsics(table, name, folder)
-    return Sensor(name, intrinsics, pose, fusion, _own_curve(table))
+    curve, color = _own_curve(table), table.text("color", None)
+    with table.naming():
+        return Sensor(name, intrinsics, pose, fusion, curve, color)
 
 
 def _own_curve(table: Table) -> ApCurve | None:
@@ -254,6 +256,7 @@ def _sensor_table(sensor: Sensor, search: Search) -> dict[str, Any]:
         "rotation": list(sensor.pose.rotation_deg),
         "fusion": sensor.fusion,
         "ap": None if sensor.curve is None else {"a": sensor.curve.a, "b": sensor.curve.b},
+        "color": sensor.color,
         "free": list(search.free.get(sensor.name, PAPER_FREE)),
         "bounds": limits or None,
         "mount": search.mounting.on.get(sensor.name),

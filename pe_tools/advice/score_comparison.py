@@ -166,6 +166,13 @@ class ComparedRow:
         present = [(sign * v, k) for k, v in enumerate(self.values) if v is not None]
         return tuple(k for _, k in sorted(present))
 
+    def sense(self, k: int) -> int:
+        """Return -1 if a value is better than the first one, 1 if it is worse, else 0."""
+        less = self.differences[k]
+        if less is None or abs(less) <= MIN_CHANGE[self.measure]:
+            return 0
+        return -1 if (less < 0.0) == self.lower_is_better else 1
+
     @property
     def winner(self) -> int | None:
         """Index of the value that is significantly better than all others, if there is one."""

@@ -20,16 +20,13 @@ from .colors import (
     COUNTS,
     DIFFERENCE,
     PAPER,
-    SENSOR_COLORS,
     VIEWPORT,
     VIRIDIS,
     Palette,
+    Rgb,
     Rgba,
     linear,
     on_scale,
-    sensor_color,
-    sensor_color_on_paper,
-    sensor_palette,
     with_alpha,
 )
 from .fields import FieldSketch, field_colors
@@ -82,6 +79,16 @@ from .sensor_images import (
 )
 from .simplify import simplified
 from .surroundings import Surroundings, surroundings
+from .tints import (
+    color_text,
+    free_tint,
+    is_foreign_tint,
+    on_paper,
+    rgb_of,
+    sensor_colors,
+    sensor_colors_on_paper,
+    sensor_palette,
+)
 from .verdicts import painted_samples
 
 __all__ = [
@@ -102,7 +109,6 @@ __all__ = [
     "RANGES",
     "RING_FAR_M",
     "SENSORS",
-    "SENSOR_COLORS",
     "SWATCHES",
     "VIEWPORT",
     "VIRIDIS",
@@ -118,6 +124,7 @@ __all__ = [
     "Look",
     "Palette",
     "Primitives",
+    "Rgb",
     "Rgba",
     "Sketch",
     "Surroundings",
@@ -128,6 +135,7 @@ __all__ = [
     "boxes_overlap",
     "cast",
     "channels_of",
+    "color_text",
     "difference_map",
     "drawing_of",
     "even_angles",
@@ -139,6 +147,7 @@ __all__ = [
     "footprint_faces",
     "footprint_lines",
     "free_lines",
+    "free_tint",
     "frustum_faces",
     "frustum_lines",
     "frustum_points",
@@ -146,7 +155,9 @@ __all__ = [
     "ground_map",
     "ground_rings",
     "hidden_lines",
+    "is_foreign_tint",
     "linear",
+    "on_paper",
     "on_scale",
     "outline",
     "painted_samples",
@@ -154,9 +165,10 @@ __all__ = [
     "polyline",
     "range_colors",
     "range_share",
+    "rgb_of",
     "ring_lines",
-    "sensor_color",
-    "sensor_color_on_paper",
+    "sensor_colors",
+    "sensor_colors_on_paper",
     "sensor_palette",
     "shown_beams",
     "simplified",

@@ -1,6 +1,6 @@
-"""Colours of all graphics: palettes, colours of sensors, and colour scales.
+"""Colours of all graphics: palettes and colour scales.
 
-The colours of beams, cameras and sensors differ for any kind of colour vision (Okabe and
+The colours of beams and cameras differ for any kind of colour vision (Okabe and
 Ito, "Color Universal Design", 2008). Scales rise evenly in lightness: cividis, which looks much the
 same to all eyes (Nunez, Anderton and Renslow, PLoS ONE 13(7), 2018, table of its supplement), and
 viridis (van der Walt and Smith, 2015; CC0), each at thirteen even places. Values are sRGB, most of
@@ -9,7 +9,7 @@ them with alpha.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -55,33 +55,6 @@ PAPER = Palette(
 )
 """For a light page."""
 
-SENSOR_COLORS: tuple[Rgb, ...] = (
-    (0.63, 0.77, 0.99),
-    (0.70, 0.42, 0.66),
-    (0.06, 0.70, 0.37),
-    (0.62, 0.38, 1.0),
-    (0.94, 1.0, 0.0),
-    (0.56, 1.0, 1.0),
-    (0.71, 0.70, 0.68),
-)
-"""One a sensor, in the order of a rig, again from the first when they are more: for a dark ground.
-
-Blue, purple, green, violet, yellow, ice, grey. Any two, and each and what is `stopped`, are far
-apart in CIE Lab to all eyes, those without one kind of cone included (Machado, Oliveira and
-Fernandes, IEEE TVCG 15(6), 2009): a test measures it.
-"""
-
-SENSOR_COLORS_ON_PAPER: tuple[Rgb, ...] = (
-    (0.01, 0.17, 0.44),
-    (0.44, 0.02, 0.19),
-    (0.09, 0.63, 0.35),
-    (0.46, 0.19, 0.85),
-    (0.44, 0.34, 0.12),
-    (0.12, 0.41, 0.59),
-    (0.56, 0.55, 0.55),
-)
-"""The same hues for a light ground, as far apart."""
-
 CIVIDIS = (
     *((0.0, 0.135, 0.305), (0.0, 0.191, 0.441), (0.165, 0.248, 0.429), (0.264, 0.308, 0.423)),
     *((0.342, 0.365, 0.429), (0.415, 0.423, 0.445), (0.489, 0.485, 0.471), (0.567, 0.547, 0.47)),
@@ -126,30 +99,3 @@ def linear(colors: NDArray[np.float32]) -> NDArray[np.float32]:
 def with_alpha(color: tuple[float, ...], alpha: float) -> Rgba:
     """Return a colour with another alpha."""
     return (color[0], color[1], color[2], alpha)
-
-
-def sensor_color(number: int) -> Rgb:
-    """Return the colour of a sensor by its position in the rig, for a dark background."""
-    return SENSOR_COLORS[number % len(SENSOR_COLORS)]
-
-
-def sensor_color_on_paper(number: int) -> Rgb:
-    """Return the colour of a sensor by its position in the rig, for a light background."""
-    return SENSOR_COLORS_ON_PAPER[number % len(SENSOR_COLORS_ON_PAPER)]
-
-
-FACE_SHARE = 0.6
-
-
-def sensor_palette(number: int, palette: Palette = VIEWPORT) -> Palette:
-    """Return a palette in which all lines of one sensor have that sensor's colour.
-
-    Opacities stay those of the palette, but for sides of views: sensors' colours are light, and
-    `FACE_SHARE` of them hides as much. `stopped`, `blind` and the rig's own colours are kept.
-    """
-    color = sensor_color(number)
-    hues = {
-        name: with_alpha(color, getattr(palette, name)[3]) for name in ("free", "camera", "other")
-    }
-    face = with_alpha(color, palette.camera_face[3] * FACE_SHARE)
-    return replace(palette, **hues, camera_face=face)

@@ -16,7 +16,7 @@ from pe_core.scene import PerceptionSpace, Pose, Sensor, Vehicle
 from pe_core.scoring.sight.grid_regions import outlines
 from pe_core.sensors import kind_of
 
-from ..graphics import sensor_color_on_paper
+from ..graphics import sensor_colors_on_paper
 from .blind_volume import level_outlines
 from .request import OutputRequest, Rgb, plain_names
 from .solid import Floats, free_solid, mounted_view
@@ -64,8 +64,9 @@ def ground_plan(request: OutputRequest) -> tuple[GroundPlan, list[str]]:
     names, _ = plain_names([sensor.name for sensor in study.rig])
     footprints: list[GroundFootprint] = []
     lines: list[str] = []
-    for number, sensor in enumerate(study.rig):
-        footprint = _footprint(request, sensor, names[sensor.name], sensor_color_on_paper(number))
+    colors = sensor_colors_on_paper(study.rig)
+    for sensor in study.rig:
+        footprint = _footprint(request, sensor, names[sensor.name], colors[sensor.name])
         if not footprint.outlines:
             lines.append(f"{sensor.name}: sees no ground within {footprint.reach:g} m")
         footprints.append(footprint)

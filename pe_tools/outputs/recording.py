@@ -25,7 +25,7 @@ from ..exchange import (
     straight,
     with_pictures,
 )
-from ..graphics import COVERAGE, ENTROPY, drawing_of, ground_map, sensor_color
+from ..graphics import COVERAGE, ENTROPY, drawing_of, ground_map, sensor_colors
 from . import (
     BLIND,
     BODY,
@@ -77,9 +77,10 @@ def recording_bytes(request: OutputRequest) -> tuple[bytes, list[str]]:
     stream.log("/", rr.ViewCoordinates.FLU, static=True)
     _log_vehicle(stream, request)
     names, _ = plain_names([sensor.name for sensor in study.rig])
-    for number, (sensor, portable_sensor) in enumerate(zip(study.rig, portable, strict=True)):
+    colors = sensor_colors(study.rig)
+    for sensor, portable_sensor in zip(study.rig, portable, strict=True):
         entity = [SENSORS, names[sensor.name]]
-        _log_sensor(stream, request, sensor, entity, sensor_color(number))
+        _log_sensor(stream, request, sensor, entity, colors[sensor.name])
         if portable_sensor.picture is not None:
             _log(stream, [*entity, "picture"], _pinhole(portable_sensor.picture))
         if drawing_of(sensor.kind).beams:

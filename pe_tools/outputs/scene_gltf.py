@@ -19,7 +19,7 @@ from ..exchange.frames import quaternion
 from ..exchange.lens_pictures import centred
 from ..exchange.portable import PortableSensor, with_pictures
 from ..exchange.portable_kinds import portable_sensors
-from ..graphics import sensor_color_on_paper
+from ..graphics import Rgb, sensor_colors_on_paper
 from .glb import LINES, GlbScene, add_vehicle, view_wires, y_up
 from .request import OutputRequest
 from .solid import Floats, free_solid, mounted_view
@@ -41,8 +41,9 @@ def write(request: OutputRequest) -> tuple[Written, list[str]]:
     sensors, left_out = with_pictures(portable_sensors(study.rig), centred, TITLE)
     names = {sensor.name for sensor in study.rig}
     nodes = add_vehicle(scene, study.vehicle, study.reference, names)
-    for number, (sensor, portable) in enumerate(zip(study.rig, sensors, strict=True)):
-        parts = [*_camera(scene, portable), *_view(scene, request, sensor, number)]
+    colors = sensor_colors_on_paper(study.rig)
+    for sensor, portable in zip(study.rig, sensors, strict=True):
+        parts = [*_camera(scene, portable), *_view(scene, request, sensor, colors[sensor.name])]
         position = y_up(np.asarray(sensor.pose.position)).tolist()
         extras = {"kind": sensor.kind, "model": sensor.model.name}
         rotation = _turn(sensor)
@@ -75,12 +76,12 @@ def _camera(scene: GlbScene, portable: PortableSensor) -> list[int]:
     return [scene.add_node(name, rotation=LOOKING_ALONG_X, camera=number)]
 
 
-def _view(scene: GlbScene, request: OutputRequest, sensor: Sensor, number: int) -> list[int]:
+def _view(scene: GlbScene, request: OutputRequest, sensor: Sensor, color: Rgb) -> list[int]:
     """Add a sensor's visible field of view in its own axes: the sides and their edges."""
     view = mounted_view(sensor, request.study.vehicle, request.reach(sensor, REACH_M), STEP)
     if view is None:
         return []
-    name, color = f"{sensor.name} field of view", sensor_color_on_paper(number)
+    name = f"{sensor.name} field of view"
     solid = free_solid(name, view)
     lines = view_wires(view)
     ends = np.cumsum([len(line) for line in lines])

@@ -10,7 +10,7 @@ import numpy as np
 from pe_core.sensors import kind_of
 
 from ..exchange import Written
-from ..graphics import sensor_color_on_paper
+from ..graphics import sensor_colors_on_paper
 from .blind_volume import blind_volume
 from .glb import GlbScene, add_vehicle
 from .request import BLIND, HIDDEN, NO_RANGE_M, OutputRequest, Rgb, plain_names
@@ -49,7 +49,8 @@ def write(request: OutputRequest) -> tuple[Written, list[str]]:
     names, lines = plain_names([sensor.name for sensor in request.study.rig])
     files: dict[str, bytes] = {}
     shown: list[Coloured] = []
-    for number, sensor in enumerate(request.study.rig):
+    colors = sensor_colors_on_paper(request.study.rig)
+    for sensor in request.study.rig:
         reach, plain = request.reach(sensor), names[sensor.name]
         view = mounted_view(sensor, request.study.vehicle, reach, STEP)
         if view is None:
@@ -58,7 +59,7 @@ def write(request: OutputRequest) -> tuple[Written, list[str]]:
         lines += _end(request, sensor.name, sensor.model)
         files[f"{plain}_field.stl"] = stl_bytes(whole_solid(f"{plain}_field", view))
         free, hidden = free_solid(f"{plain}_free", view), hidden_solid(f"{plain}_hidden", view)
-        shown.append((free, sensor_color_on_paper(number), FREE_ALPHA))
+        shown.append((free, colors[sensor.name], FREE_ALPHA))
         shown += [(hidden, HIDDEN, HIDDEN_ALPHA)] if hidden is not None else []
     blind, blind_lines = _near(request)
     shown += [(blind, BLIND, BLIND_ALPHA)] if blind is not None else []

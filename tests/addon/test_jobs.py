@@ -10,7 +10,8 @@ from blender_addon import bridge, result_staleness
 from blender_addon.engine import pe, text
 from blender_addon.live import state
 from blender_addon.operators import running_job, score_jobs
-from tests.addon import scenes
+from blender_addon.panels import main
+from tests.addon import layouts, scenes
 
 
 def finished(work):
@@ -92,6 +93,12 @@ def test_optimize_is_the_engines_and_stays_so(car):
     study = scenes.study()
     assert [s.pose for s in study.rig] == [s.pose for s in expected.study.rig]
     assert expected.study.rig["roof"].pose != expected.start.rig["roof"].pose
+    settings = car.perception_entropy
+    assert settings.result_cost == expected.cost and expected.cost.startswith("It cost ")
+    shown, told = expected.blind_m2, settings.result_blind
+    assert all(m2 <= up <= m2 + 0.1001 for m2, up in zip(shown, told, strict=True)), "rounded up"
+    labels = " ".join(layouts.drawn(main.PE_PT_main, **vars(layouts.Window(car))).texts("label"))
+    assert "Blind Ground" in labels and expected.cost.split("(")[0].strip() in labels
     assert finished(pe.ScoreJob(study)).after == expected.after
 
 

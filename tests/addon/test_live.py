@@ -293,7 +293,11 @@ def test_a_search_s_gain_is_that_of_its_result(live):
 
 
 def lines(scene):
-    return blender_addon.live.live_lines(scene)
+    return [readout_text.text_of(line) for line in blender_addon.live.live_lines(scene)]
+
+
+def figure_texts(shown):
+    return [readout_text.text_of(line) for line in readout_text.figure_lines(shown)]
 
 
 def test_figures_below_the_score_are_the_engine_s_and_of_before_while_it_moves(live, monkeypatch):
@@ -301,19 +305,19 @@ def test_figures_below_the_score_are_the_engine_s_and_of_before_while_it_moves(l
     settings.live.figures = True
     looking, of = scenes.study().sight(), {"height": 0.5, "class_name": "pedestrian"}
     first = advice.key_figures(looking, reading(live).rig, **of)
-    assert lines(live) == list(readout_text.figure_lines(ShownFigures(first, None, True)))
+    assert lines(live) == figure_texts(ShownFigures(first, None, True))
     monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
     drag(live.objects["roof"], 0.6)
-    told = list(readout_text.figure_lines(ShownFigures(first)))
+    told = figure_texts(ShownFigures(first))
     assert lines(live) == told and all(line.startswith("Before this move: ") for line in told)
     rest()
     second = advice.key_figures(looking, reading(live).rig, **of)
     assert second != first
-    assert lines(live) == list(readout_text.figure_lines(ShownFigures(second, first, True)))
+    assert lines(live) == figure_texts(ShownFigures(second, first, True))
     settings.view.blind_height, settings.view.reach_class = "H100", "car"
     second = advice.key_figures(looking, reading(live).rig, 1.0, "car")
     first = advice.key_figures(looking, reading(live).baseline.rig, 1.0, "car")
-    assert lines(live) == list(readout_text.figure_lines(ShownFigures(second, first, True)))
+    assert lines(live) == figure_texts(ShownFigures(second, first, True))
     settings.targets = "objects"
     rest()
     assert [line for line in lines(live) if "ahead" in line] == [], "those are in the score"

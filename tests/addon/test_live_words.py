@@ -7,6 +7,7 @@ import pytest
 from blender_addon.engine import advice, pe
 from blender_addon.live import readout, readout_text, state
 from blender_addon.live.background_figures import ShownFigures
+from blender_addon.live.readout_text import BETTER, SAME, WORSE
 from blender_addon.live.state import Baseline, ShownScore
 
 
@@ -32,13 +33,14 @@ def test_the_first_reading_has_nothing_to_compare_with():
     found = said(glance())
     assert found.headline == "3.000 nats" and found.error == "± 0.022  exact"
     assert (found.change, found.sense, found.against) == ("", readout_text.SAME, "")
-    assert found.lines == ("Coverage 85.0%",)
+    assert [readout_text.text_of(line) for line in found.lines] == ["Coverage 85.0%"]
 
 
 def test_a_score_on_objects_has_its_expected_ap_beside_it():
     now, before = (replace(glance(), voxels=0, ap=ap) for ap in (0.653, 0.641))
-    assert said(now).lines == ("Objects visible: 85.0%", "Expected AP 0.653")
-    assert said(now, before).lines[1] == "Expected AP 0.653 (+0.012)"
+    lines = map(readout_text.text_of, said(now).lines)
+    assert list(lines) == ["Objects visible: 85.0%", "Expected AP 0.653"]
+    assert said(now, before).lines[1] == (("Expected AP 0.653", SAME), ("(+0.012)", BETTER))
 
 
 def test_a_draft_says_so():
@@ -86,17 +88,23 @@ def test_lower_is_better(before, change, sense):
 
 
 def test_coverage_changes_in_points():
-    assert said(glance(), glance(coverage=0.838)).lines[0] == "Coverage 85.0% (+1.2)"
-    assert said(glance(), glance(coverage=0.862)).lines[0] == "Coverage 85.0% (\N{MINUS SIGN}1.2)"
-    assert said(glance(), glance(coverage=0.8502)).lines[0] == "Coverage 85.0%"
+    assert said(glance(), glance(coverage=0.838)).lines[0] == (
+        ("Coverage 85.0%", SAME),
+        ("(+1.2)", BETTER),
+    )
+    assert said(glance(), glance(coverage=0.862)).lines[0] == (
+        ("Coverage 85.0%", SAME),
+        ("(\N{MINUS SIGN}1.2)", WORSE),
+    )
+    assert said(glance(), glance(coverage=0.8502)).lines[0] == (("Coverage 85.0%", SAME),)
 
 
 def test_the_zones_that_changed_most_are_named():
     before = glance(zones=[("front", 3.0, 0.9), ("left", 2.0, 0.8), ("far", 5.0, 0.7)])
     now = glance(zones=[("front", 2.8, 0.94), ("left", 2.3, 0.72), ("far", 4.99, 0.7)])
     assert said(now, before).lines[1:] == (
-        "Better ahead by 0.20 nats",
-        "Worse on the left by 0.30 nats",
+        (("Better ahead by 0.20 nats", BETTER),),
+        (("Worse on the left by 0.30 nats", WORSE),),
     )
     assert said(before, before).lines[1:] == ()
 
@@ -132,6 +140,27 @@ def figures(**changed):
     told = {"blind_m2": 81.24, "height": 0.5, "within": 10.0, "class_name": "pedestrian"}
     told |= {"reach_m": 47.2, "at_least": False, "expected_ap": 0.617}
     return advice.KeyFigures(**told | changed)
+
+
+def texts(shown):
+    return tuple(map(readout_text.text_of, readout_text.figure_lines(shown)))
+
+
+def test_each_gain_and_each_loss_of_the_figures_has_its_colour():
+    """More blind ground is a loss, however much farther objects are detected."""
+    before = figures(blind_m2=24.0, reach_m=45.0, expected_ap=0.7)
+    blind, reach = readout_text.figure_lines(ShownFigures(figures(blind_m2=53.0), before, True))
+    assert [piece.sense for piece in blind] == [SAME, WORSE]
+    assert [piece.sense for piece in reach] == [SAME, BETTER, SAME, WORSE]
+    rows = [readout.row_of(line) for line in (blind, reach)]
+    assert rows[0].words[1][1] == readout.SENSE_COLORS[WORSE]
+    assert [color for _, color in rows[1].words] == [
+        readout.INK,
+        readout.SENSE_COLORS[BETTER],
+        readout.INK,
+        readout.SENSE_COLORS[WORSE],
+    ]
+    assert readout_text.sense_of(reach) == WORSE and readout_text.sense_of(blind[:1]) == SAME
 
 
 @pytest.mark.parametrize(
@@ -174,10 +203,10 @@ def figures(**changed):
     ],
 )
 def test_figures_in_words(now, before, lines):
-    assert readout_text.figure_lines(ShownFigures(now, before, True)) == lines
+    assert texts(ShownFigures(now, before, True)) == lines
     of_before = tuple(f"Before this move: {line}" if line else "" for line in lines)
-    assert before or readout_text.figure_lines(ShownFigures(now)) == of_before
+    assert before or texts(ShownFigures(now)) == of_before
 
 
 def test_figures_that_are_not_there_yet_say_so():
-    assert readout_text.figure_lines(ShownFigures())[0] == readout_text.PENDING
+    assert texts(ShownFigures())[0] == readout_text.PENDING

@@ -189,10 +189,10 @@ def test_a_rig_that_finds_nothing_has_no_figures():
 
 
 def test_sensors_have_their_own_line_and_colour():
-    shape = ground_layers.reach_of_sensors(found_reach(30.0), {"roof": 2})
+    shape = ground_layers.reach_of_sensors(found_reach(30.0), {"roof": (0.1, 0.2, 0.3)})
     np.testing.assert_allclose(np.linalg.norm(shape.lines.points, axis=1), 15.0, rtol=1e-6)
     assert shape.legend.classes[0][1] == "roof"
-    assert shape.legend.classes[0][0][:3] == colors.SENSOR_COLORS[2]
+    assert shape.legend.classes[0][0][:3] == (0.1, 0.2, 0.3)
 
 
 def test_another_rig_has_its_line_in_another_palette():

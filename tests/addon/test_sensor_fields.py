@@ -1,16 +1,17 @@
 """What a sensor is, as fields and in one colour; focus and no-go areas where they are meant."""
 
 import math
+from pathlib import Path
 
 import bpy
 import numpy as np
 import pytest
 
-from blender_addon import bridge
+from blender_addon import bridge, consistency
 from blender_addon.engine import graphics
 from blender_addon.overlay import layers
-from blender_addon.panels import layout as panel_layout
 from blender_addon.panels import selected_object as sensor_panel
+from pe_tools.graphics import tints
 from tests.addon import scenes
 from tests.addon.layouts import Layout, Window
 
@@ -55,18 +56,27 @@ def test_what_is_held_is_reported_and_not_typed(car):
     assert "to the mast" in " ".join(layout.texts("label"))
 
 
-def test_a_sensor_has_one_colour_in_every_layer_and_in_the_list(car):
+def colors_of(scene):
+    """Return the stored colours by name, once the add-on had its turn."""
+    bpy.context.view_layer.update()
+    consistency.repair_scenes()
+    return {obj.name: bridge.color_of(obj) for obj in bridge.sensor_objects(scene)}
+
+
+def test_a_sensor_has_one_colour_in_every_layer_the_list_and_the_study(car):
     for number in range(3):
         scenes.add_sensor(f"eye {number}", "Camera 60 deg", location=(2.0, number - 1.0, 1.0))
     car.perception_entropy.view.beams_of = "ALL"
-    drawn, wanted = scenes.drawn(car), {}
-    names = sorted(["roof", *(f"eye {k}" for k in range(3))])
-    for number, name in enumerate(names):
-        wanted[name] = np.float32(graphics.sensor_color(number))
+    stored = colors_of(car)
+    assert len(set(stored.values())) == 4
+    wanted = {name: np.float32(graphics.rgb_of(color)) for name, color in stored.items()}
+    drawn, study = scenes.drawn(car), scenes.study()
+    assert {sensor.name: sensor.color for sensor in study.rig} == stored
+    for name, color in graphics.sensor_colors(study.rig).items():
         (label,) = drawn["labels"][name].labels
         assert np.float32(label.color[:3]) == pytest.approx(wanted[name])
-        icon = panel_layout.pixels(graphics.SENSOR_COLORS[number]).reshape(-1, 4)
-        assert icon[icon[:, 3] > 0.0, :3] == pytest.approx(np.broadcast_to(wanted[name], (484, 3)))
+        assert color == pytest.approx(wanted[name])
+        assert tuple(car.objects[name].perception_entropy.color) == pytest.approx(wanted[name])
     for name, shape in drawn["frustums"].items():
         for part in (shape.lines, shape.faces):
             assert len(part.colors) and (part.colors[:, :3] == wanted[name]).all()
@@ -74,6 +84,40 @@ def test_a_sensor_has_one_colour_in_every_layer_and_in_the_list(car):
     stopped = np.float32(graphics.VIEWPORT.stopped[:3])
     own, hit = ((beams == color).all(axis=1) for color in (wanted["roof"], stopped))
     assert own.any() and hit.any() and (own | hit).all()
+
+
+def test_a_sensor_keeps_its_colour_whatever_becomes_of_others(car):
+    for name in ("b", "c"):
+        scenes.add_sensor(name, "Camera 60 deg", location=(2.0, 0.5, 1.0))
+    before = colors_of(car)
+    scenes.add_sensor("a first of all", "Camera 60 deg", location=(2.0, -0.5, 1.0))
+    assert colors_of(car) | before == colors_of(car), "one was added"
+    car.objects["c"].name = "0 renamed"
+    assert colors_of(car)["0 renamed"] == before["c"]
+    bpy.data.objects.remove(car.objects["b"])
+    left = colors_of(car)
+    assert left["0 renamed"] == before["c"] and left["roof"] == before["roof"]
+    copied = car.objects["0 renamed"].copy()
+    car.collection.objects.link(copied)
+    found = colors_of(car)
+    assert found["0 renamed"] == before["c"] and len(set(found.values())) == len(found)
+    assert bpy.ops.pe.save_variant() == {"FINISHED"}
+    bpy.ops.wm.save_as_mainfile(filepath=str(Path(bpy.app.tempdir) / "kept.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(Path(bpy.app.tempdir) / "kept.blend"))
+    assert colors_of(bpy.context.scene) == found
+
+
+def test_a_colour_that_is_picked_stays_and_a_new_kind_gets_its_hue(car):
+    eye = scenes.add_sensor("eye", "Camera 60 deg", location=(2.0, 0.0, 1.0))
+    first = colors_of(car)["eye"]
+    assert first in tints.TINTS["camera"]
+    eye.perception_entropy.model = "Pandar64"
+    assert colors_of(car)["eye"] in tints.TINTS["lidar"]
+    eye.perception_entropy.color = (1.0, 0.5, 0.0)
+    assert colors_of(car)["eye"] == "#ff8000"
+    eye.perception_entropy.model = "Camera 60 deg"
+    assert colors_of(car)["eye"] == "#ff8000"
+    assert not car.perception_entropy.result_stale
 
 
 def test_focus_regions_are_boxes_with_their_factors(car):

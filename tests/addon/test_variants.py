@@ -9,6 +9,7 @@ import pytest
 from blender_addon import bridge, result_staleness
 from blender_addon.bridge import apply_variant
 from blender_addon.engine import pe
+from blender_addon.live import BETTER, SAME, WORSE
 from blender_addon.operators import compare_variants
 from tests.addon import scenes
 
@@ -336,7 +337,9 @@ def test_comparing_scores_what_has_no_score_as_if_it_stood_there(ideas):
     columns = compare_variants.columns_of(names, table)
     assert [column[0][0] for column in columns] == ["", *names]
     assert columns[1][2][0] == f"{whole.values[0]:.3f}"
-    assert f"({whole.differences[1]:+.3f})" in columns[2][2][0]
+    assert columns[2][2].change == f"({whole.differences[1]:+.3f})"
+    assert columns[2][2].sense == (BETTER if whole.differences[1] < 0.0 else WORSE)
+    assert (columns[1][2].change, columns[1][2].sense) == ("", SAME)
     assert [columns[1][2][1], columns[2][2][1]] == list(whole.best)
     assert bridge.score_of(second).scatter == higher.evaluator().score(higher.rig).scatter
     said = compare_variants.sentences(names, table, 40)

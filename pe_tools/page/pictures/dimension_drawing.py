@@ -49,6 +49,8 @@ class ViewPlane:
         Positions of the sensors in that plane [m].
     coordinates : (S, 2) float
         Coordinates that are written along the lower and the left edge [m].
+    colors : sequence of str
+        Colours of the sensors.
     below, left : str
         Names of these coordinates.
     ground : bool
@@ -60,6 +62,7 @@ class ViewPlane:
     up: Extent1d
     sensors: Floats
     coordinates: Floats
+    colors: Sequence[str]
     below: str
     left: str
     ground: bool = False
@@ -76,6 +79,7 @@ def side_view(rig: pe.Rig, vehicle: pe.Vehicle, alt: str) -> Markup:
         (min(float(low[2]), 0.0), float(high[2])),
         positions[:, [0, 2]],
         np.stack([float(high[0]) - positions[:, 0], positions[:, 2]], axis=1),
+        _colors(rig),
         "from the foremost point [m]",
         "height [m]",
         ground=True,
@@ -93,10 +97,15 @@ def top_view(rig: pe.Rig, vehicle: pe.Vehicle, axle_x: float | None, alt: str) -
         (float(low[1]), float(high[1])),
         positions[:, :2],
         positions[:, :2] - [axle_x or 0.0, 0.0],
+        _colors(rig),
         "forward of the centre [m]" if axle_x is None else "forward of the rear axle [m]",
         "to the left [m]",
     )
     return _drawing(plane, alt)
+
+
+def _colors(rig: pe.Rig) -> list[str]:
+    return [hexadecimal(color) for color in graphics.sensor_colors_on_paper(rig).values()]
 
 
 def spread_labels(positions: Sequence[float], gap: float, low: float, high: float) -> list[float]:
@@ -225,8 +234,7 @@ class _DimensionDrawing:
                 groups.append([k])
             else:
                 group.append(k)
-        for k, (x, y) in enumerate(positions.tolist()):
-            color = hexadecimal(graphics.sensor_color_on_paper(k))
+        for (x, y), color in zip(positions.tolist(), self.plane.colors, strict=True):
             self.canvas.add("circle", cx=x, cy=y, r=3.6, fill=color, stroke="#fff")
         taken = [(x - 5.0, y - 5.0, x + 5.0, y + 5.0) for x, y in positions.tolist()]
         for group in groups:

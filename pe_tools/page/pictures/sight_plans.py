@@ -140,8 +140,9 @@ def reach_plan(
     for radius in (20.0, 40.0, 60.0, 80.0):
         plan.ring(radius, color=GRID)
     size: dict[str, Any] = {"fill": "none", "stroke_linejoin": "round"}
-    for number, sensor in enumerate(rig):
-        color = hexadecimal(graphics.sensor_color_on_paper(number))
+    colors = graphics.sensor_colors_on_paper(rig)
+    for sensor in rig:
+        color = hexadecimal(colors[sensor.name])
         line = plan.points(_reach_outline(reach, reach.per_sensor[sensor.name], bounds))
         plan.canvas.path([line], stroke=color, stroke_width=1.2, stroke_opacity="0.85", **size)
     if before is not None:
@@ -152,7 +153,7 @@ def reach_plan(
     plan.vehicle(vehicle)
     _write_distances(plan, reach)
     plan.frame()
-    _draw_key(plan, before is not None)
+    _draw_key(plan, before is not None, hexadecimal(next(iter(colors.values()))))
     return plan.canvas.svg()
 
 
@@ -168,8 +169,7 @@ def reach_text(reach: sight.Reach, bearing_deg: float) -> str:
 
 def reach_key(rig: pe.Rig) -> list[tuple[str, str]]:
     """Return each sensor's colour and name."""
-    colors = (hexadecimal(graphics.sensor_color_on_paper(k)) for k in range(len(rig)))
-    return [(color, sensor.name) for color, sensor in zip(colors, rig, strict=True)]
+    return [(hexadecimal(c), name) for name, c in graphics.sensor_colors_on_paper(rig).items()]
 
 
 def _reach_outline(reach: sight.Reach, distance: Floats, bounds: PlanBounds) -> Floats:
@@ -196,12 +196,12 @@ def _ends_at_space(reach: sight.Reach, k: int) -> bool:
     return bool(sight.ends_with_space(reach, reach.distance)[k])
 
 
-def _draw_key(plan: PlanDrawing, has_before: bool) -> None:
+def _draw_key(plan: PlanDrawing, has_before: bool, color: str) -> None:
     lines: Mapping[str, dict[str, object]] = {
         "whole rig": {"stroke": RIG, "stroke_width": 2.2},
         **({"before": {"stroke": BEFORE, "stroke_dasharray": "5 4"}} if has_before else {}),
         "sensor alone": {
-            "stroke": hexadecimal(graphics.sensor_color_on_paper(0)),
+            "stroke": color,
             "stroke_width": 1.2,
         },
     }

@@ -146,16 +146,18 @@ def labelled_picture(
     ends = np.stack(view.project(positions, *SIZE), axis=1)
     hidden = _behind_vehicle(vehicle, view, positions)
     discs = spread_apart(ends - [0.0, LABEL_RISE])
-    for number, (end, disc) in enumerate(zip(ends, discs, strict=True)):
-        _draw_number(canvas, number, end, disc, bool(hidden[number]))
+    colors = map(hexadecimal, graphics.sensor_colors_on_paper(rig).values())
+    for number, (end, disc, color) in enumerate(zip(ends, discs, colors, strict=True)):
+        _draw_number(canvas, number, end, disc, color, bool(hidden[number]))
     return figure(canvas.svg(), sensor_key(rig))
 
 
 def sensor_key(rig: pe.Rig) -> Markup:
     """Return a list of the sensors' numbers, colours and names."""
+    colors = graphics.sensor_colors_on_paper(rig)
     items = "".join(
         '<li><span class="swatch" '
-        f'style="background:{hexadecimal(graphics.sensor_color_on_paper(k))}"></span>'
+        f'style="background:{hexadecimal(colors[sensor.name])}"></span>'
         f"{k + 1} {escaped(sensor.name)} <small>({escaped(sensor.model.name)})</small></li>"
         for k, sensor in enumerate(rig)
     )
@@ -178,9 +180,10 @@ def spread_apart(positions: Floats) -> Floats:
     return moved
 
 
-def _draw_number(canvas: Canvas, number: int, end: Floats, disc: Floats, hidden: bool) -> None:
+def _draw_number(
+    canvas: Canvas, number: int, end: Floats, disc: Floats, color: str, hidden: bool
+) -> None:
     """Draw a disc with a number, and a line to its sensor: dashed if the vehicle hides it."""
-    color = hexadecimal(graphics.sensor_color_on_paper(number))
     line = f"M{disc[0]:.1f} {disc[1]:.1f}L{end[0]:.1f} {end[1]:.1f}"
     dashes = "4 4" if hidden else "none"
     canvas.add("path", d=line, stroke="#1b1f24", stroke_width=1.5, stroke_dasharray=dashes)
@@ -204,8 +207,8 @@ def _behind_vehicle(
 
 def sensor_solids(rig: pe.Rig) -> list[PaintedMesh]:
     """Return a solid for each sensor, in its colour."""
-    colors = map(graphics.sensor_color_on_paper, range(len(rig)))
-    return [_solid(sensor, color) for sensor, color in zip(rig, colors, strict=True)]
+    colors = graphics.sensor_colors_on_paper(rig)
+    return [_solid(sensor, colors[sensor.name]) for sensor in rig]
 
 
 def housing_of(sensor: pe.Sensor) -> scene.Housing:

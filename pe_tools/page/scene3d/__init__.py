@@ -73,11 +73,12 @@ def view3d(context: ReportContext) -> Section:
 def scene_data(context: ReportContext) -> dict[str, Any]:
     """Return everything that the view shows of a study, as plain data."""
     scores = context.after.per_sensor
+    colors = graphics.sensor_colors_on_paper(context.rig)
     return {
         "vehicle": vehicle_data(context.vehicle, context.display_vehicle),
         "sensors": [
-            sensor_data(number, sensor, scores.get(sensor.name), context.vehicle)
-            for number, sensor in enumerate(context.rig)
+            sensor_data(sensor, colors[sensor.name], scores.get(sensor.name), context.vehicle)
+            for sensor in context.rig
         ],
         "maps": maps_data(context.sight, context.rig),
         "texts": TEXTS,
@@ -225,11 +226,10 @@ NOTHING = graphics.Primitives.empty()
 
 
 def sensor_data(
-    number: int, sensor: pe.Sensor, score: Any, vehicle: pe.Vehicle | None
+    sensor: pe.Sensor, color: graphics.Rgb, score: Any, vehicle: pe.Vehicle | None
 ) -> dict[str, Any]:
-    """Return a sensor by its number in the rig; `score` is its `SensorScore` or None."""
+    """Return a sensor in its colour; `score` is its `SensorScore` or None."""
     drawing = graphics.drawing_of(sensor.kind)
-    color = graphics.sensor_color_on_paper(number)
     layers = _beam_layers if drawing.beams else _view_layers
     field = sensor_view(sensor.kind).image_field(sensor.model)
     return {

@@ -173,13 +173,14 @@ def _cell(contexts: Sequence[ReportContext], row: advice.ComparedRow, k: int) ->
     value, difference = row.values[k], row.differences[k]
     if value is None:
         return "none"
-    text = _value_text(row.measure, value)
+    text = escaped(_value_text(row.measure, value))
+    if row.best[k]:
+        best = '<span class="hidden"> best</span>'
+        text = f'<span class="wins whose-{contexts[k].key}-ink">{text}{best}</span>'
     if k and difference is not None:
-        text = f"{text} ({_signed_text(row.measure, difference)})"
-    if not row.best[k]:
-        return text
-    best = '<span class="hidden"> best</span>'
-    return Markup(f'<span class="wins whose-{contexts[k].key}-ink">{escaped(text)}{best}</span>')
+        css = {-1: "better", 1: "worse"}.get(row.sense(k), "noise")
+        text += f' <span class="{css}">({escaped(_signed_text(row.measure, difference))})</span>'
+    return Markup(text)
 
 
 def _value_text(measure: str, value: float) -> str:

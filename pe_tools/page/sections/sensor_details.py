@@ -146,12 +146,15 @@ def _occluding_parts(score: pe.SensorScore) -> str:
 
 def _views(context: ReportContext) -> str:
     """Return a figure of what each sensor sees."""
-    views = "".join(_view(context, number, sensor) for number, sensor in enumerate(context.rig))
+    colors = graphics.sensor_colors_on_paper(context.rig)
+    views = "".join(
+        _view(context, number, sensor, hexadecimal(colors[sensor.name]))
+        for number, sensor in enumerate(context.rig)
+    )
     return f'<h3>Sensor views</h3><p>{FIGURE_SIZES}</p><div class="views">{views}</div>'
 
 
-def _view(context: ReportContext, number: int, sensor: pe.Sensor) -> str:
-    color = hexadecimal(graphics.sensor_color_on_paper(number))
+def _view(context: ReportContext, number: int, sensor: pe.Sensor, color: str) -> str:
     head = (
         f'<h3><span class="swatch" style="background:{color}"></span> {number + 1} '
         f"{escaped(sensor.name)} <small>{escaped(sensor.model.name)}</small></h3>"

@@ -20,12 +20,12 @@ from ..jobs import (
     SAVE_EVERY_S,
     ChoiceJob,
     Design,
+    FrontCheckpoint,
     FrontJob,
     TradeOff,
     front_dict,
     prepare_folder,
     read_front_search,
-    save_front_search,
     write_front,
 )
 from .executors import evaluated_by
@@ -203,12 +203,13 @@ def choose(
 def _drive(job: ChoiceJob | FrontJob, output: Path | None, host: Mapping[str, str] | None) -> None:
     """Run a job to its end with progress; save the front so far every few seconds."""
     reporter, saved, kept = Reporter(sys.stderr), time.monotonic(), 0
+    checkpoint = FrontCheckpoint(job.study)
     try:
         for progress in job:
             reporter.report(progress)
             if output is None or time.monotonic() - saved < SAVE_EVERY_S:
                 continue
-            _try_to_save(job, output)
+            _try_to_save(checkpoint, job, output)
             saved, chosen = time.monotonic(), job.trade_off
             if chosen is not None and chosen.searched > kept:
                 kept = chosen.searched
@@ -216,12 +217,12 @@ def _drive(job: ChoiceJob | FrontJob, output: Path | None, host: Mapping[str, st
     finally:
         reporter.clear()
         if output is not None and job.journals.count:
-            _try_to_save(job, output)
+            _try_to_save(checkpoint, job, output)
 
 
-def _try_to_save(job: ChoiceJob | FrontJob, output: Path) -> None:
+def _try_to_save(checkpoint: FrontCheckpoint, job: ChoiceJob | FrontJob, output: Path) -> None:
     try:
-        save_front_search(job.study, job.journals, output)
+        checkpoint.save(job.journals, output)
     except InputError as error:
         tell(f"{error}; the search goes on")
 

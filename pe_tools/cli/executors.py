@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import os
 import queue
@@ -143,7 +144,7 @@ def _entries_in(folder: Path, study: Study) -> list[EvaluatedRig]:
         return []
 
 
-ADDRESS = re.compile(r"((tcp|tls)://)?[^/\s]+:[0-9]{1,5}")
+ADDRESS = re.compile(r"((tcp|tls)://)?[^/@\s]+:[0-9]{1,5}")
 """Address with a protocol that Dask supports without further libraries."""
 CONNECT_S = 5.0
 """Time limit for the scheduler's answer [s]."""
@@ -281,11 +282,40 @@ def _client_of(address: str) -> Any:
         )
     _hush()
     try:
+        _require_scheduler(distributed, address)
         return distributed.Client(address, timeout=CONNECT_S, set_as_default=False)
-    except Exception as error:  # an invalid address, an unknown name, or a closed port
+    except Exception as error:  # an unknown name, a closed port, tls without certificates
         told = str(error).splitlines() or [type(error).__name__]
         expected = f"a scheduler that answers within {CONNECT_S:g} s"
         raise InputError(address, "scheduler", expected, told[0]) from None
+
+
+def _require_scheduler(distributed: Any, address: str) -> None:
+    """Raise an error unless a scheduler answers in time.
+
+    A client waits ten minutes for a peer that is none, without an ear for signals, and one that
+    failed to connect reports that once more when it is deleted. So it is made for a scheduler only.
+    """
+
+    async def kind_of_peer() -> str:
+        security = distributed.Security().get_connection_args("client")
+        comm = await distributed.comm.connect(address, timeout=CONNECT_S, **security)
+        try:
+            await comm.write({"op": "identity", "reply": True})
+            answer = await comm.read()
+        finally:
+            comm.abort()
+        return str(answer.get("type")) if isinstance(answer, Mapping) else ""
+
+    loop = asyncio.new_event_loop()
+    try:
+        kind = loop.run_until_complete(asyncio.wait_for(kind_of_peer(), CONNECT_S))
+    except TimeoutError as error:
+        raise TimeoutError(str(error) or "no answer") from None
+    finally:
+        loop.close()
+    if kind != "Scheduler":
+        raise ValueError(f"a {kind}" if kind.isidentifier() else "another program")
 
 
 def _hush() -> None:

@@ -15,7 +15,7 @@ from pe_core.search.processes import keep_freed_memory
 from pe_core.study import STUDY, Study, load_study
 from pe_core.version import __version__
 
-from ..jobs import OptimizeJob, ScoreJob, prepare_folder, result_names
+from ..jobs import OptimizeJob, ScoreJob, front_study, prepare_folder, result_names
 from .check_verb import add_check_options, add_requirements_verb, check
 from .choose_verb import choose, front_job, has_front, resumed
 from .command import Parser, add_run_options, add_sensors_verb, as_typed, run, with_options
@@ -123,7 +123,8 @@ def _add_plugin_verbs(point: EntryPoint, verbs: Any) -> None:
 
 
 def _run_job(args: argparse.Namespace) -> Answer:
-    given = None if args.study is None else with_options(load_study(args.study), args)
+    given = load_study(args.study) if args.study is not None else _front_begun(args)
+    given = None if given is None else with_options(given, args)
     if given is not None and args.kind == "optimize" and has_front(given):
         return _choose(given, args)
     begun = begun_search(args)
@@ -141,6 +142,12 @@ def _run_job(args: argparse.Namespace) -> Answer:
     folder = None if output is None else Path(output)
     scheduler = getattr(args, "scheduler", None)
     return carry_out(job, folder, as_json=args.json, more=more, scheduler=scheduler)
+
+
+def _front_begun(args: argparse.Namespace) -> Study | None:
+    """Return the study of the front that ``--resume`` names; None without one."""
+    folder = getattr(args, "resume", None)
+    return None if folder is None else front_study(folder)
 
 
 def _choose(study: Study, args: argparse.Namespace) -> Answer:

@@ -13,6 +13,7 @@ from typing import Any
 
 from pe_core.base.errors import InputError
 from pe_core.base.files import read_bytes
+from pe_core.base.memory import size_text
 from pe_core.base.plugins import install_hint, required_plugin
 from pe_core.base.table_reader import Table
 from pe_core.base.values import vector
@@ -24,6 +25,8 @@ from .lens_pictures import Picture, pinhole_picture
 from .portable import PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
+MAX_TABLE_BYTES = 64_000_000
+"""Maximum size of a table's values: a few kB that are compressed may be gigabytes."""
 POSES, INTRINSICS = "egovehicle_SE3_sensor.feather", "intrinsics.feather"
 TITLE, NAME = "Argoverse 2", "sensor_name"
 TURN, SHIFT = ("qw", "qx", "qy", "qz"), ("tx_m", "ty_m", "tz_m")
@@ -94,10 +97,15 @@ def read(path: Path) -> tuple[PortableSensor, ...]:
 
 def _rows(path: Path) -> list[Table]:
     """Return the rows of a feather table; each row maps column names to values."""
-    data = _feather().rows_of(read_bytes(path))
-    if data is None:
+    feather, data = _feather(), read_bytes(path)
+    size = feather.unpacked_bytes(data)
+    if size is not None and size > MAX_TABLE_BYTES:
+        expected = f"a feather table of at most {size_text(MAX_TABLE_BYTES)} unpacked"
+        raise InputError(path, "file", expected, size_text(size))
+    rows = None if size is None else feather.rows_of(data)
+    if rows is None:
         raise InputError(path, "file", "a feather table", "something else")
-    return [Table(row, str(path), f"row {k}") for k, row in enumerate(data, 1)]
+    return [Table(row, str(path), f"row {k}") for k, row in enumerate(rows, 1)]
 
 
 def _sensor(path: Path, row: Table, cameras: Mapping[str, Table]) -> PortableSensor:

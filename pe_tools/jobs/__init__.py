@@ -5,7 +5,13 @@ from .choice_job import ChoiceJob, Design, TradeOff
 from .condition_files import condition_lines, conditions_csv
 from .designed import design_study
 from .folder import FileSet, check_files, prepare_folder
-from .front_checkpoint import FRONT_SEARCH, FrontJournals, read_front_search, save_front_search
+from .front_checkpoint import (
+    FRONT_SEARCH,
+    FrontCheckpoint,
+    FrontJournals,
+    front_study,
+    read_front_search,
+)
 from .front_files import (
     DESIGNS,
     FRONT_CSV,
@@ -49,6 +55,7 @@ __all__ = [
     "ChoiceJob",
     "Design",
     "FileSet",
+    "FrontCheckpoint",
     "FrontJob",
     "FrontJournals",
     "HistoryRow",
@@ -71,6 +78,7 @@ __all__ = [
     "files_of_other_runs",
     "fingerprint",
     "front_dict",
+    "front_study",
     "placements",
     "prepare_folder",
     "read_front_search",
@@ -78,7 +86,6 @@ __all__ = [
     "result_dict",
     "result_names",
     "runners_up",
-    "save_front_search",
     "searched_figure",
     "searched_on",
     "set_aside_files_of_other_runs",

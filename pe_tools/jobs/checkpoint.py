@@ -30,6 +30,18 @@ KEYS = ("version", "inputs", "study", "study_sha256", "judged")
 A_STATE = "the state of a search, as this program writes it"
 
 
+def state_head(kind: str, study: Study) -> dict[str, Any]:
+    """Return what the state files of all kinds begin with: program, version, and the study."""
+    written = study_writers(study, STUDY)[STUDY]
+    assert isinstance(written, bytes)
+    return {
+        PROGRAM: kind,
+        "version": __version__,
+        "study_sha256": fingerprint(study),
+        "study": written.decode(),
+    }
+
+
 class SearchState:
     """The state of a search, which is saved in its folder while the search runs.
 
@@ -47,15 +59,8 @@ class SearchState:
     @cached_property
     def _head(self) -> dict[str, Any]:
         """The constant part of the state: cached, because it is expensive for a large mesh."""
-        written = study_writers(self._study, STUDY)[STUDY]
-        assert isinstance(written, bytes)
-        return {
-            PROGRAM: KIND,
-            "version": __version__,
-            "study_sha256": fingerprint(self._study),
-            "inputs": self._inputs or inputs_of(self._study),
-            "study": written.decode(),
-        }
+        inputs = self._inputs or inputs_of(self._study)
+        return {**state_head(KIND, self._study), "inputs": inputs}
 
     def to_bytes(self, entries: Iterable[EvaluatedRig]) -> bytes:
         """Return the content of the state file."""

@@ -67,7 +67,8 @@ def test_the_plots_that_others_add_are_drawn_of_what_is_kept(file, tmp_path, mon
     assert data == json.loads((folder / "front.json").read_text())
 
 
-def test_an_interrupted_front_goes_on_to_the_same_bits(tmp_path, capsys):
+@pytest.mark.parametrize("names_study", [True, False])
+def test_an_interrupted_front_goes_on_to_the_same_bits(names_study, tmp_path, capsys):
     """Journals of half of the searches are lost, and half of the entries of another."""
     given = study([pe.Choice(options(), ["roof"])], free=("pitch",))
     pe.export_study(given, tmp_path / "car.toml")
@@ -78,14 +79,15 @@ def test_an_interrupted_front_goes_on_to_the_same_bits(tmp_path, capsys):
     names = list(state["journals"])
     cut = {n: rows[: len(rows) // (k + 1)] for k, (n, rows) in enumerate(state["journals"].items())}
     assert len(names) == 3 and all(cut.values())
-    jobs.save_front_search(
-        given,
-        jobs.FrontJournals({n: [EvaluatedRig(*row) for row in cut[n]] for n in names[:2]}),
-        out,
-    )
-    assert verbs.main(["optimize", file, "--json", "--resume", str(out)]) == 0
+    journals = jobs.FrontJournals({n: [EvaluatedRig(*row) for row in cut[n]] for n in names[:2]})
+    jobs.FrontCheckpoint(given).save(journals, out)
+    named = [file] if names_study else []
+    assert verbs.main(["optimize", *named, "--json", "--resume", str(out)]) == 0
     told = capsys.readouterr()
-    assert {**json.loads(told.out), "run": 0} == {**whole, "run": 0}
+    resumed = json.loads(told.out)
+    if not names_study:  # the files of the study are those beside the checkpoint
+        resumed["inputs"]["study"]["vehicle"] = whole["inputs"]["study"]["vehicle"]
+    assert {**resumed, "run": 0} == {**whole, "run": 0}
     assert "going on after" in told.err
     assert json.loads((out / jobs.FRONT_SEARCH).read_text()) == state
     assert verbs.main(["optimize", file, "--seed", "5", "--resume", str(out)]) == 1

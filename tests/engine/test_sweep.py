@@ -5,11 +5,14 @@ import json
 import multiprocessing
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
 from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import replace
+from threading import Thread
 
 import pytest
 
@@ -118,6 +121,8 @@ def test_what_fits_no_study_is_one_line_before_any_work(study, out, setting, com
         (["--set", "samples=0", "--set", "samples=2048"], "--set: samples: expected each key once"),
         (["--scheduler", "foo"], "command line: scheduler: expected HOST:PORT, tcp://HOST:PORT or"),
         (["--scheduler", "ws://a:1"], "command line: scheduler: expected HOST:PORT, tcp://HOST:"),
+        (["--scheduler", "tcp://u:p@127.0.0.1:1"], "command line: scheduler: expected HOST:PORT"),
+        (["--scheduler", "tls://127.0.0.1:1"], "tls://127.0.0.1:1: scheduler: expected a"),
         (
             ["--scheduler", "tcp://127.0.0.1:1"],
             "tcp://127.0.0.1:1: scheduler: expected a",
@@ -133,6 +138,31 @@ def test_sweeps_that_cannot_be_are_one_line(study, out, more, complaint, capsys,
     assert main(["sweep", str(study), "-o", str(out), *more]) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"pe: {complaint}"), line
+
+
+@pytest.mark.parametrize("greeting", [b"", b"\0" * 64, b"SSH-2.0-OpenSSH_9.2\r\n" * 9])
+def test_a_peer_that_is_no_scheduler_ends_in_time(greeting, study, out, capsys, monkeypatch):
+    """It accepts the connection and says nothing, or something else."""
+    pytest.importorskip("distributed", reason="of the extra cluster")
+    monkeypatch.setattr("pe_tools.cli.executors.CONNECT_S", 1.0)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        peers = []
+
+        def answer():
+            with suppress(OSError):
+                while True:
+                    peers.append(server.accept()[0])
+                    peers[-1].sendall(greeting)
+
+        Thread(target=answer, daemon=True).start()
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        begun = time.monotonic()
+        assert main(["sweep", str(study), "-o", str(out), "--scheduler", address]) == 1
+        assert time.monotonic() - begun < GUARD_S
+        for peer in peers:
+            peer.close()
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"pe: {address}: scheduler: expected a scheduler that answers within")
 
 
 def test_a_cluster_without_its_package_says_what_to_install(study, out, capsys, monkeypatch):

@@ -201,6 +201,31 @@ def test_a_damaged_feather_table_is_refused_in_a_line(tmp_path, damage):
         pe.import_rig(tmp_path, None, AXLE)
 
 
+@pytest.mark.parametrize("compression", ["zstd", "lz4"])
+def test_a_compressed_table_is_read_and_one_that_would_fill_memory_is_refused(
+    compression, tmp_path, monkeypatch
+):
+    """400 MB of zeros in a file of some hundred kB: refused by its own figures, not unpacked."""
+    feather = pytest.importorskip("pyarrow.feather", reason="of the extra argoverse")
+    import pyarrow
+
+    pe.export_rig(RIG, "argoverse2", tmp_path, AXLE)
+    path = tmp_path / "egovehicle_SE3_sensor.feather"
+    table = feather.read_table(path)
+    feather.write_feather(table, path, compression=compression)
+    assert [s.name for s in pe.import_rig(tmp_path, None, AXLE).rig] == [s.name for s in RIG]
+    zeros = pyarrow.array(np.zeros(50_000_000))
+    feather.write_feather(pyarrow.table({"qw": zeros}), path, compression=compression)
+    assert path.stat().st_size < 4_000_000
+    before = pyarrow.total_allocated_bytes()
+    with pytest.raises(pe.InputError, match=r"at most 64\.0 MB unpacked, found 400\.0 MB$"):
+        pe.import_rig(tmp_path, None, AXLE)
+    assert pyarrow.total_allocated_bytes() - before < 1_000_000
+    feather.write_feather(pyarrow.table({"qw": pyarrow.nulls(10**6)}), path)
+    with pytest.raises(pe.InputError, match="expected a feather table, found something else"):
+        pe.import_rig(tmp_path, None, AXLE)
+
+
 def test_offsets_that_lie_and_feather_s_first_version_are_refused_before_a_value_is_read(tmp_path):
     """A text that would begin before the table's own memory: reading it ended the process."""
     feather = pytest.importorskip("pyarrow.feather", reason="of the extra argoverse")

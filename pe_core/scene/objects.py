@@ -87,6 +87,13 @@ class Objects:
         directions[np.abs(directions) < STRAIGHT] = 0.0
         return read_only(directions)
 
+    @classmethod
+    def joined(cls, parts: Sequence[Objects]) -> Objects:
+        """Return objects of the same classes as one set, with their scenes."""
+        keys = ("centers", "sizes", "yaws", "labels", "scenes")
+        c, s, y, n, own = (np.concatenate([getattr(p, key) for p in parts]) for key in keys)
+        return cls(c, s, y, n, parts[0].class_names, own)
+
     def some(self, which: NDArray) -> Objects:
         """Return the objects that `which` selects, by indices or flags (N,)."""
         c, s, y, n = (w[which] for w in (self.centers, self.sizes, self.yaws, self.labels))

@@ -48,15 +48,8 @@ class BodyParts:
     @cached_property
     def objects(self) -> Objects:
         """The cells, then the shells."""
-        own = self.cells
-        if self.shells is None:
-            return own
-        pairs = [
-            np.concatenate([getattr(part, key) for part in (own, self.shells)])
-            for key in ("centers", "sizes", "yaws", "labels", "scenes")
-        ]
-        centers, sizes, yaws, labels, scenes = pairs
-        return Objects(centers, sizes, yaws, labels, own.class_names, scenes)
+        shells = () if self.shells is None else (self.shells,)
+        return Objects.joined([self.cells, *shells])
 
     @cached_property
     def has_layer(self) -> Flags:

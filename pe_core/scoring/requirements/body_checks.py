@@ -242,19 +242,17 @@ def _joined(parts: Sequence[Objects]) -> Objects | None:
     """Return all objects as one set; None without any."""
     if not parts:
         return None
-    names = sorted({part.class_names[0] for part in parts})
-    labels = [np.full(len(part), names.index(part.class_names[0])) for part in parts]
-    return Objects(
-        np.concatenate([part.centers for part in parts]),
-        np.concatenate([part.sizes for part in parts]),
-        np.concatenate([part.yaws for part in parts]),
-        np.concatenate(labels),
-        tuple(names),
+    names = tuple(sorted({part.class_names[0] for part in parts}))
+    return Objects.joined(
+        [
+            replace(part, labels=part.labels + names.index(part.class_names[0]), class_names=names)
+            for part in parts
+        ]
     )
 
 
 def _joined_parts(parts: Sequence[BodyParts]) -> BodyParts | None:
-    """Return all parts as one set; None without any."""
+    """Return all parts as one set, first the cells, then the shells; None without any."""
     if not parts:
         return None
     cells, shells, first = list[Objects](), list[Objects](), 0
@@ -263,21 +261,12 @@ def _joined_parts(parts: Sequence[BodyParts]) -> BodyParts | None:
             if objects is not None:
                 own.append(replace(objects, scenes=objects.scenes + first, class_names=PART))
         first += int(each.cells.scenes.max()) + 1
-    split = [len(each.cells) for each in parts]
+    order = np.argsort(
+        np.concatenate([np.arange(len(p.bands)) >= len(p.cells) for p in parts]), kind="stable"
+    )
     bands, layers = (
-        np.concatenate(
-            [w[:n] for w, n in zip(of_parts, split, strict=True)]
-            + [w[n:] for w, n in zip(of_parts, split, strict=True)]
-        )
-        for of_parts in ([p.bands for p in parts], [p.layers for p in parts])
+        np.concatenate([getattr(p, key) for p in parts])[order] for key in ("bands", "layers")
     )
-    return BodyParts(_appended(cells), _appended(shells) if shells else None, bands, layers)
-
-
-def _appended(parts: Sequence[Objects]) -> Objects:
-    """Return objects of the same classes as one set, with their scenes."""
-    keys = ("centers", "sizes", "yaws", "labels", "scenes")
-    centers, sizes, yaws, labels, scenes = (
-        np.concatenate([getattr(part, key) for part in parts]) for key in keys
+    return BodyParts(
+        Objects.joined(cells), Objects.joined(shells) if shells else None, bands, layers
     )
-    return Objects(centers, sizes, yaws, labels, parts[0].class_names, scenes)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import bpy
 
-from ..engine import pe
+from ..engine import advice, pe
 from .rig import place_poses, pose_of, sensor_objects
 
 SIDES = (("left", "right"), ("l", "r"))
@@ -26,14 +26,17 @@ def mirrored_pose(pose: pe.Pose) -> pe.Pose:
     return pe.Pose.from_degrees((x, 0.0 - y, z), (0.0 - roll, pitch, 0.0 - yaw))
 
 
-def mirrored_name(name: str) -> str:
-    """Return the name of the mirrored sensor: front_left gives front_right, A.L gives A.R."""
+def mirrored_name(name: str, side: str) -> str:
+    """Return the name of a mirrored sensor on a `side`: front_left gives front_right, A.L A.R.
+
+    A name that only says the sensor's kind stays: labels say its place.
+    """
     for pair in SIDES:
         for one, other in (pair, pair[::-1]):
             match = re.search(rf"(?:(?<=^)|(?<=[^A-Za-z]))({one})(?=[^A-Za-z]|$)", name, re.I)
             if match:
                 return name[: match.start()] + _cased(other, match[0]) + name[match.end() :]
-    return f"{name} mirrored"
+    return advice.plain_name(name) or f"{name} {side}"
 
 
 def in_the_middle(pose: pe.Pose) -> bool:

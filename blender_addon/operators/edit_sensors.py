@@ -160,7 +160,7 @@ def mirrored_copy(context: bpy.types.Context, obj: bpy.types.Object) -> bpy.type
     if vehicle is not None:
         advice.check_mirror_image(vehicle, sensor, image)
     made = obj.copy()
-    made.name = bridge.mirrored_name(obj.name)
+    made.name = bridge.mirrored_name(obj.name, "right" if pose.position[1] > 0.0 else "left")
     made.perception_entropy.has_result, made.perception_entropy.mirror_of = False, ""
     for collection in obj.users_collection:
         collection.objects.link(made)

@@ -14,7 +14,7 @@ import gpu
 import numpy as np
 from mathutils import Matrix
 
-from .. import bridge, viewport
+from .. import bridge, vehicle_cache, viewport
 from ..engine import graphics, pe
 from . import labels, scheduler, surroundings
 from .batches import Batches
@@ -114,10 +114,14 @@ def draw_text() -> None:
     eye = _eye(context)
     if eye is not None:
         written += surroundings.labels_around(context.scene, eye)
-    labels.draw_labels(context, written)
+    taken: list[viewport.PlateBox] = []
     if context.scene.perception_entropy.view.show_legend:
-        legends = (_legend(scene, layer, name) for layer, name in visible)
-        labels.draw_legends(context, list(dict.fromkeys(k for k in legends if k is not None)))
+        found = (_legend(scene, layer, name) for layer, name in visible)
+        legends = list(dict.fromkeys(each for each in found if each is not None))
+        vehicle = vehicle_cache.shared.last_read(scene)
+        bounds = None if vehicle is None or eye is not None else vehicle.bounds
+        taken = labels.draw_legends(context, legends, bounds)
+    labels.draw_labels(context, written, taken)
 
 
 def _legend(scene: str, layer: str, name: str) -> graphics.ColorKey | None:

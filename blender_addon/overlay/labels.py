@@ -1,11 +1,13 @@
-"""Text of the overlay: labels at positions in the 3D view, legends in its lower right corner."""
+"""Text of the overlay: labels at positions in the 3D view, and legends beside the vehicle."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 import bpy
+import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
+from numpy.typing import NDArray
 
 from .. import viewport
 from ..engine import graphics
@@ -14,20 +16,31 @@ from ..viewport import SMALL, PlateBox
 STRONG_SIZE = 12.5
 RISE, PADDING = 10.0, 4.0
 MARGIN, GAP = 16.0, 12.0
-GIZMOS = 330.0
-"""Room for Blender's own gizmos, from the top."""
-BESIDE_GIZMOS = 48.0
-"""What they take from the right, where a legend is as high up as they are."""
+GIZMOS, BESIDE_GIZMOS = 330.0, 48.0
+"""Height and width of Blender's own gizmos, from the upper right corner."""
+HEADER = 110.0
+"""Height of the headers and of Blender's own text, from the top."""
 MIN_WIDTH, BAR, ROW = 150.0, 10.0, 17.0
 INK: graphics.Rgba = (0.92, 0.92, 0.92, 1.0)
 FAINT_INK: graphics.Rgba = (0.72, 0.72, 0.72, 1.0)
 PLATE: graphics.Rgba = (0.10, 0.10, 0.10, 0.78)
 LABEL_PLATE: graphics.Rgba = (0.08, 0.08, 0.08, 0.55)
 
+Bounds = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""Lowest and highest corner [m]."""
 
-def draw_labels(context: bpy.types.Context, labels: Sequence[graphics.Tag]) -> None:
-    """Draw labels above their positions, without those that would cover a label or a plate."""
-    scale, taken = viewport.ui_scale(), list(viewport.plate_boxes(context.region.as_pointer()))
+
+def draw_labels(
+    context: bpy.types.Context,
+    labels: Sequence[graphics.Tag],
+    taken: Sequence[PlateBox] = (),
+) -> None:
+    """Draw labels above their positions, without those that would cover a label or a plate.
+
+    `taken` are boxes that are covered beside the plates.
+    """
+    scale = viewport.ui_scale()
+    taken = [*taken, *viewport.plate_boxes(context.region.as_pointer())]
     pad = PADDING * scale
     for label in sorted(labels, key=lambda tag: not tag.strong):
         place = location_3d_to_region_2d(context.region, context.region_data, label.place)
@@ -44,37 +57,109 @@ def draw_labels(context: bpy.types.Context, labels: Sequence[graphics.Tag]) -> N
         viewport.draw_text(label.text, x, y, size, label.color)
 
 
-def draw_legends(context: bpy.types.Context, legends: Sequence[graphics.ColorKey]) -> None:
-    """Draw legends one above the other in the lower right corner, beside the sidebar.
+def draw_legends(
+    context: bpy.types.Context, legends: Sequence[graphics.ColorKey], vehicle: Bounds | None
+) -> list[PlateBox]:
+    """Draw legends: in the lower right corner, or where they cover no plate and not the vehicle.
 
-    Where the view is too narrow for them beside the read-out, they are put above it.
+    Return the boxes that are covered: those of the legends, and those of Blender's own.
     """
     scale = viewport.ui_scale()
     if _is_fixed_quad_view(context):
-        return
-    right = context.region.width - _sidebar_width(context) - MARGIN * scale
-    width = max((_width(legend, scale) for legend in legends), default=0.0)
-    region, sides = context.region.as_pointer(), (right - width, right)
-    bottom = viewport.free_bottom(region, sides, MARGIN * scale, GAP * scale / 2.0)
-    room = context.region.height - GIZMOS * scale - (bottom - MARGIN * scale)
-    if legends and room < _height(legends[0], scale):
-        sides = (sides[0] - BESIDE_GIZMOS * scale, sides[1] - BESIDE_GIZMOS * scale)
-    for legend in reversed(_fitting(legends, room, scale)):
-        top = bottom + _height(legend, scale)
-        _draw_legend(legend, (sides[0], bottom, sides[1], top), scale)
-        bottom = top + GAP * scale / 2.0
+        return []
+    region = context.region
+    right = region.width - _sidebar_width(context)
+    height = float(region.height)
+    blenders = [
+        (right - BESIDE_GIZMOS * scale, height - GIZMOS * scale, right, height),
+        (right, 0.0, float(region.width), height),
+    ]
+    margin = MARGIN * scale
+    room = viewport.beside_toolbar(context), margin, right - margin, height - HEADER * scale
+    taken = [*blenders, *viewport.plate_boxes(region.as_pointer())]
+    sizes = [(_width(legend, scale), _height(legend, scale)) for legend in legends]
+    if sizes:
+        widest = max(width for width, _ in sizes)
+        sizes = [(widest, height) for _, height in sizes]
+    boxes = arranged(sizes, room, taken, _box_of(context, vehicle), GAP * scale / 2.0)
+    for legend, box in zip(legends, boxes, strict=True):
+        if box is not None:
+            _draw_legend(legend, box, scale)
+    return [*blenders, *(box for box in boxes if box is not None)]
 
 
-def _fitting(
-    legends: Sequence[graphics.ColorKey], height: float, scale: float
-) -> list[graphics.ColorKey]:
-    """Return as many of the first legends as there is room for, at least one."""
-    fitting: list[graphics.ColorKey] = []
-    for legend in legends:
-        height -= _height(legend, scale) + GAP * scale / 2.0
-        if height >= 0.0 or not fitting:
-            fitting.append(legend)
-    return fitting
+def arranged(
+    sizes: Sequence[tuple[float, float]],
+    room: PlateBox,
+    taken: Sequence[PlateBox],
+    vehicle: PlateBox | None,
+    gap: float,
+) -> list[PlateBox | None]:
+    """Return where plates of some sizes go; None for one that fits nowhere.
+
+    Each covers none of the plates and the least of the vehicle; of such places it takes one at the
+    right edge, the lowest, then the one farthest left.
+
+    Parameters
+    ----------
+    sizes : sequence of (width, height)
+        [px], the first plate is the most important one.
+    room : PlateBox
+        Where plates may be.
+    taken : sequence of PlateBox
+        Plates that are there.
+    vehicle : PlateBox or None
+        The vehicle in the picture.
+    gap : float
+        Left free between plates [px].
+    """
+    left, bottom, right, top = room
+    covered, placed = list(taken), []
+    for width, height in sizes:
+        corners = [*covered, *([] if vehicle is None else [vehicle])]
+        across = {left, right - width, *(b[2] + gap for b in corners)}
+        across |= {b[0] - gap - width for b in corners}
+        up = {bottom, *(b[3] + gap for b in corners), *(b[1] - gap - height for b in corners)}
+        found = [
+            (x, y, x + width, y + height)
+            for x in across
+            for y in up
+            if x >= left and y >= bottom and x + width <= right and y + height <= top
+        ]
+        free = [b for b in found if not any(graphics.boxes_overlap(b, each) for each in covered)]
+        at_right = right - width
+        box = min(
+            free,
+            key=lambda b: (_overlap(b, vehicle), b[0] != at_right, b[1], b[0]),
+            default=None,
+        )
+        placed.append(box)
+        covered += [] if box is None else [box]
+    return placed
+
+
+def _overlap(box: PlateBox, vehicle: PlateBox | None) -> float:
+    """Return how much of a box lies over the vehicle [px²]."""
+    if vehicle is None:
+        return 0.0
+    width = min(box[2], vehicle[2]) - max(box[0], vehicle[0])
+    height = min(box[3], vehicle[3]) - max(box[1], vehicle[1])
+    return max(width, 0.0) * max(height, 0.0)
+
+
+def _box_of(context: bpy.types.Context, vehicle: Bounds | None) -> PlateBox | None:
+    """Return the box of the vehicle in the view; None without one, or where the eye is in it."""
+    if vehicle is None:
+        return None
+    ends = np.array(vehicle)
+    corners = [(ends[i, 0], ends[j, 1], ends[k, 2]) for i, j, k in np.ndindex(2, 2, 2)]
+    places = [
+        location_3d_to_region_2d(context.region, context.region_data, corner) for corner in corners
+    ]
+    if any(place is None for place in places):
+        return None
+    x, y = zip(*((place.x, place.y) for place in places), strict=True)
+    return min(x), min(y), max(x), max(y)
 
 
 def _height(legend: graphics.ColorKey, scale: float) -> float:

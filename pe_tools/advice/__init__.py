@@ -22,6 +22,7 @@ from .key_figures import (
 )
 from .location import AskedPlace, SensorAtPlace, ask_place
 from .mount_checks import check_mirror_image, stopped_shares
+from .mounting_places import place_name, plain_name, sensor_labels
 from .ranking import Notation, ranking, win_words
 from .score_comparison import ComparedRow, compare, compare_figures
 from .search_cost import costs_nothing, search_cost
@@ -76,9 +77,12 @@ __all__ = [
     "off_by",
     "outlook",
     "percent",
+    "place_name",
+    "plain_name",
     "ranking",
     "rig_words",
     "search_cost",
+    "sensor_labels",
     "sensor_rows",
     "sensor_table",
     "sensor_words",

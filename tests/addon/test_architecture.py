@@ -102,6 +102,7 @@ ALLOWED = {
         "overlay",
         "overlay.scheduler",
         "overlay.surroundings",
+        "vehicle_cache",
         "viewport",
     },
     "review": {"bridge", "engine"},

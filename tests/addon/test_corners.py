@@ -3,6 +3,8 @@
 import pytest
 
 from blender_addon import viewport
+from blender_addon.engine import graphics
+from blender_addon.overlay.labels import arranged
 
 READOUT = (20.0, 40.0, 320.0, 240.0)
 
@@ -33,3 +35,29 @@ def test_what_is_not_drawn_any_more_leaves_its_room(shown):
     assert viewport.free_bottom(7, (0.0, 100.0), 16.0, 6.0) == 406.0
     viewport.reserve_plate(7, "search", None)
     assert viewport.free_bottom(7, (0.0, 100.0), 16.0, 6.0) == 246.0
+
+
+CAR = (500.0, 150.0, 900.0, 560.0)
+GIZMOS, SIDEBAR = (940.0, 200.0, 1040.0, 860.0), (1040.0, 0.0, 1600.0, 860.0)
+ROOM = (130.0, 32.0, 1008.0, 640.0)
+LEGENDS = [(350.0, 158.0), (350.0, 88.0), (350.0, 88.0)]
+
+
+@pytest.mark.parametrize("readout", [[], [(130.0, 70.0, 620.0, 330.0)]])
+def test_in_a_narrow_view_no_legend_is_lost_or_over_the_car(readout):
+    """At a scale of 2 the first was over the car, and two of three were not drawn."""
+    taken = [GIZMOS, SIDEBAR, *readout]
+    boxes = arranged(LEGENDS, ROOM, taken, CAR, 12.0)
+    for k, box in enumerate(boxes):
+        assert (box[2] - box[0], box[3] - box[1]) == LEGENDS[k]
+        assert box[0] >= ROOM[0] and box[1] >= ROOM[1] and box[2] <= ROOM[2] and box[3] <= ROOM[3]
+        others = [*taken, *boxes[:k]]
+        assert not any(graphics.boxes_overlap(box, other) for other in others)
+        if not readout:
+            assert not graphics.boxes_overlap(box, CAR)
+
+
+def test_in_a_wide_view_they_stand_in_the_lower_right_corner():
+    clear = arranged(LEGENDS, (60.0, 16.0, 1300.0, 640.0), [], CAR, 6.0)
+    assert [(box[0], box[1]) for box in clear] == [(950.0, 16.0), (950.0, 180.0), (950.0, 274.0)]
+    assert arranged(LEGENDS, (60.0, 16.0, 300.0, 640.0), [], None, 6.0) == [None] * 3

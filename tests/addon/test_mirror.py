@@ -83,13 +83,14 @@ def test_a_rig_and_its_mirror_image_score_the_same_on_a_mirrored_vehicle(left):
         ("cam.L", "cam.R"),
         ("side_r.001", "side_l.001"),
         ("LEFT", "RIGHT"),
-        ("LiDAR", "LiDAR mirrored"),
-        ("curl", "curl mirrored"),
-        ("leftover", "leftover mirrored"),
+        ("LiDAR", "LiDAR"),
+        ("Camera.001", "Camera"),
+        ("curl", "curl right"),
+        ("leftover", "leftover right"),
     ],
 )
 def test_names_by_left_and_right(name, other):
-    assert bridge.mirrored_name(name) == other
+    assert bridge.mirrored_name(name, "right") == other
 
 
 def test_a_sensor_in_the_middle_has_no_other_side(car):

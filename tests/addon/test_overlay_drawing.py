@@ -37,11 +37,12 @@ class Gpu:
             draw_lines=lambda *_, **__: None,
         )
 
-    def draw_labels(self, _context, labels):
+    def draw_labels(self, _context, labels, _taken):
         self.written += [label.text for label in labels]
 
-    def draw_legends(self, _context, legends):
+    def draw_legends(self, _context, legends, _vehicle):
         self.written += [legend.title for legend in legends]
+        return []
 
 
 @pytest.fixture

@@ -187,6 +187,20 @@ class PE_OT_fix_colors(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class PE_OT_fit_colors(bpy.types.Operator):
+    """Fit the range of the ground map's colours to what is shown now"""
+
+    bl_idname = "pe.fit_colors"
+    bl_label = "Fit Colors"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        view = context.scene.perception_entropy.view
+        view.ground_range = "FITTED"
+        view.ground_fits += 1
+        return {"FINISHED"}
+
+
 REFERENCE_LABELS = {BEFORE_MOVE: "Before the Last Move", PINNED: "Pinned Sensors"}
 
 
@@ -241,6 +255,7 @@ CLASSES = (
     PE_OT_own_curves,
     PE_OT_bound_axis,
     PE_OT_guess_axles,
+    PE_OT_fit_colors,
     PE_OT_fix_colors,
     PE_OT_live_against,
 )

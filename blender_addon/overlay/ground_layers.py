@@ -123,7 +123,7 @@ def _difference(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
 def _bounds(
     request: ViewRequest, cache: LayerCache, seen: sight.GroundSight | graphics.AsScored
 ) -> tuple[float, float] | None:
-    """Return the values at the ends of the colours; they are constant while a sensor moves."""
+    """Return the values at the ends of the colours: kept while a sensor moves, and once scored."""
     view = request.view
     if view.ground_quantity in COUNTED or view.ground_range == WHOLE:
         return None
@@ -134,9 +134,12 @@ def _bounds(
             else (view.coverage_range[0], view.coverage_range[1])
         )
         return fixed if fixed[0] != fixed[1] else None
-    of = view.ground_quantity, view.ground_height, request.prior_key
+    of = view.ground_quantity, view.ground_height, request.prior_key, view.ground_fits
     return cache.fitted(
-        of, lambda: graphics.fitted_bounds(seen, view.ground_quantity), anew=not request.moving
+        of,
+        lambda: graphics.fitted_bounds(seen, view.ground_quantity),
+        anew=not request.moving,
+        scored=request.has_result,
     )
 
 

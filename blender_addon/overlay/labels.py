@@ -21,6 +21,8 @@ GIZMOS, BESIDE_GIZMOS = 330.0, 48.0
 HEADER = 110.0
 """Height of the headers and of Blender's own text, from the top."""
 MIN_WIDTH, BAR, ROW = 150.0, 10.0, 17.0
+VALUES = 0.8
+"""Size of the values below a scale, as a share of its words."""
 INK: graphics.Rgba = (0.92, 0.92, 0.92, 1.0)
 FAINT_INK: graphics.Rgba = (0.72, 0.72, 0.72, 1.0)
 PLATE: graphics.Rgba = (0.10, 0.10, 0.10, 0.78)
@@ -163,7 +165,7 @@ def _box_of(context: bpy.types.Context, vehicle: Bounds | None) -> PlateBox | No
 
 
 def _height(legend: graphics.ColorKey, scale: float) -> float:
-    rows = len(legend.classes) + (2 if legend.scale else 0)
+    rows = len(legend.classes) + (2 if legend.scale else 0) + (VALUES if legend.values else 0.0)
     return (rows + 1) * ROW * scale + PADDING * 2.0 * scale
 
 
@@ -186,6 +188,9 @@ def _draw_legend(legend: graphics.ColorKey, box: PlateBox, scale: float) -> None
         viewport.fill_gradient((left + pad, y, right - pad, y + BAR * scale), legend.scale)
         y -= ROW * scale
         _draw_ticks(legend.ticks, (left + pad, right - pad), y + 3.0 * scale, size)
+        if legend.values:
+            y -= VALUES * ROW * scale
+            _draw_ticks(legend.values, (left + pad, right - pad), y + 3.0 * scale, VALUES * size)
     for color, name in legend.classes:
         y -= ROW * scale
         viewport.fill_box((left + pad, y, left + pad + 1.4 * BAR * scale, y + BAR * scale), color)

@@ -64,7 +64,7 @@ T = TypeVar("T")
 
 STEPS_M, WITHIN_M = {False: 0.5, True: 1.0}, 20.0
 """Distance of the places of redundancy maps by whether something moves, and their extent [m]."""
-MAX_KEPT = {"casts": 24, "compared": 2}
+MAX_KEPT = {"casts": 24, "compared": 2, "scale": 16}
 """How many results of a sort are kept, those used last; otherwise one."""
 
 
@@ -128,9 +128,15 @@ class LayerCache:
         return self._keep("compared", key, make)
 
     def fitted(
-        self, key: Hashable, fit: Callable[[], tuple[float, float]], *, anew: bool
+        self, key: Hashable, fit: Callable[[], tuple[float, float]], *, anew: bool, scored: bool
     ) -> tuple[float, float]:
-        """Return the cached range of colours; with `anew`, a newly fitted one."""
+        """Return the cached range of colours; with `anew`, a newly fitted one.
+
+        The range that was first needed once there was a score is kept: later scores are then
+        shown in the same colours.
+        """
+        if scored:
+            return self._keep("scale", key, fit)
         if anew:
             self._kept.get("fitted", {}).pop(key, None)
         return self._keep("fitted", key, fit)

@@ -40,6 +40,7 @@ class ViewSettings:
     redundancy_of: str = SENSORS_LEFT
     redundancy_height: float = 0.8
     ground_range: str = FITTED
+    ground_fits: int = 0
     entropy_range: tuple[float, float] = (0.0, 0.0)
     coverage_range: tuple[float, float] = (0.0, 1.0)
     ground_difference: bool = False
@@ -139,6 +140,7 @@ class ViewRequest:
     focus: tuple[FocusRegion, ...] = ()
     compared: tuple[pe.Sensor, ...] = ()
     compared_name: str = ""
+    has_result: bool = False
     reference: pe.Reference | None = None
     requirements: tuple[requirements.Requirement, ...] = ()
     requirements_key: Hashable = None

@@ -79,6 +79,7 @@ class SnapshotReader:
             boxes=_boxes(scene, sensors, vehicle, mounts),
             compared=compared,
             compared_name=compared_name,
+            has_result=scene.perception_entropy.has_result,
             focus=tuple(FocusRegion(*row) for row in bridge.focus_rows(scene)),
             reference=bridge.reference_of(scene.perception_entropy),
             **_requirements(scene),
@@ -146,7 +147,7 @@ def view_of(scene: bpy.types.Scene) -> ViewSettings:
     on = settings.show_overlay
     layers = (each.name for each in LAYERS if on and getattr(view, f"show_{each.name}"))
     same = (
-        *("ground_quantity", "ground_opacity", "ground_range", "ground_difference"),
+        *("ground_quantity", "ground_opacity", "ground_range", "ground_fits", "ground_difference"),
         *("redundancy_of", "redundancy_height"),
         *("reach_class", "reach_of", "beams_of", "channels"),
         *("beam_colors", "rings", "footprints", "view_range"),

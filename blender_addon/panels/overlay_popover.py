@@ -70,6 +70,7 @@ def _ground_colors(layout: UILayout, settings: OverlaySettings) -> None:
         if view.ground_range == "FIXED":
             for index in (0, 1):
                 row.prop(view, RANGES[view.ground_quantity], index=index, text="")
+        row.operator("pe.fit_colors", text="", icon="FILE_REFRESH")
         row.operator("pe.fix_colors", text="", icon="PINNED")
     row = layout.row(align=True)
     row.prop(view, "ground_difference", toggle=True)

@@ -116,8 +116,8 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
             (
                 "FITTED",
                 "Fitted",
-                "Colours are spread over what this scene shows: all but the "
-                "lowest and the highest 2 % of its places",
+                "Colours are spread over what this scene shows: all but the lowest and the "
+                "highest 2 % of its places. Kept from the first score on, until it is fitted again",
             ),
             (
                 "WHOLE",
@@ -129,6 +129,12 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
         ),
         name="Range",
         description="Range of values of the ground map's colours; the bright end is good",
+        update=redraw,
+    )
+    ground_fits: IntProperty(
+        name="Fits",
+        description="How often the range of the colours was fitted again",
+        options={"HIDDEN"},
         update=redraw,
     )
     entropy_range: FloatVectorProperty(

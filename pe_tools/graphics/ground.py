@@ -17,6 +17,8 @@ from .primitives import ColorKey, GroundSheet, LayerShape
 
 Floats = NDArray[np.float64]
 
+BADLY_SEEN = "badly seen"
+"""The dark end of colours that begin above what nobody sees."""
 ENTROPY, COVERAGE, SENSORS = "ENTROPY", "COVERAGE", "SENSORS"
 BEST_NATS, UNSEEN_NATS = -10.976, 16.651
 """H of a place that is seen as well as can be, and of one that nobody sees: equations 4, 5, 8."""
@@ -40,7 +42,7 @@ FADE_M = 8.0
 class Quantity:
     """A quantity of a ground map: its scale of colours from `low`, dark, to `high`, bright.
 
-    Bright is good. `shares`: values are shares, 0 to 1.
+    Bright is good; `ticks` are the words for the ends. `shares`: values are shares, 0 to 1.
     """
 
     title: str
@@ -52,9 +54,15 @@ class Quantity:
 
     def within(self, low: float, high: float) -> Quantity:
         """Return the quantity with its colours spread from `low` to `high` alone."""
-        middle = (low + high) / 2.0
-        ticks = tuple(self.text(value) for value in (low, middle, high))
-        return replace(self, low=low, high=high, ticks=ticks)
+        dark = self.ticks[0] if low == self.low else BADLY_SEEN
+        return replace(self, low=low, high=high, ticks=(dark, *self.ticks[1:]))
+
+    @property
+    def values(self) -> tuple[str, ...]:
+        """The values at the ends and in the middle, as texts."""
+        unit = "" if self.shares else " nats"
+        ends = (self.low, (self.low + self.high) / 2.0, self.high)
+        return tuple(f"{self.text(value)}{unit}" for value in ends)
 
     def text(self, value: float) -> str:
         """Return a value as a legend has it: "1.5", or "85 %"."""
@@ -86,10 +94,8 @@ class AsScored:
 
 
 QUANTITIES = {
-    ENTROPY: Quantity(
-        "Entropy, nats", VIRIDIS, UNSEEN_NATS, BEST_NATS, ("16.7 unseen", "−11 sure")
-    ),
-    COVERAGE: Quantity("Coverage", CIVIDIS, 0.0, 1.0, ("0 %", "50 %", "100 %"), True),
+    ENTROPY: Quantity("Entropy", VIRIDIS, UNSEEN_NATS, BEST_NATS, ("unseen", "well seen")),
+    COVERAGE: Quantity("Coverage", CIVIDIS, 0.0, 1.0, ("unseen", "all seen"), True),
 }
 
 
@@ -130,7 +136,11 @@ def ground_map(
         is_known = np.isfinite(values)
         rgb = kind.colors(np.where(is_known, values, kind.low))
         legend = ColorKey(
-            f"{kind.title}, {where}", kind.swatches, kind.ticks, bounds=(kind.low, kind.high)
+            f"{kind.title}, {where}",
+            kind.swatches,
+            kind.ticks,
+            bounds=(kind.low, kind.high),
+            values=kind.values,
         )
     return _shape(seen, rgb, np.where(is_known, opacity, 0.0), faded, legend)
 
@@ -170,9 +180,9 @@ def difference_map(
     row = on_scale(np.linspace(0.0, 1.0, SWATCHES), DIFFERENCE_ON_DARK)
     swatches = tuple((float(r), float(g), float(b), 1.0) for r, g, b in row)
     unit = " nats" if quantity == ENTROPY else ""
-    ticks = (f"{kind.text(end)}{unit} worse", "better")
-    title = f"{kind.title.split(',')[0]} against {name or 'before'}, {_where(seen.height)}"
-    legend = ColorKey(title, swatches, ticks, bounds=(-end, end))
+    values = (f"{kind.text(end)}{unit}", f"{kind.text(end)}{unit}")
+    title = f"{kind.title} against {name or 'before'}, {_where(seen.height)}"
+    legend = ColorKey(title, swatches, ("worse", "better"), bounds=(-end, end), values=values)
     alpha = np.where(is_known, np.minimum(1.0, DIFFERENCE_GAIN * opacity) * strength, 0.0)
     return _shape(seen, rgb, alpha, True, legend)
 

@@ -100,8 +100,9 @@ class Tag:
 class ColorKey:
     """Legend of colours: a title, and a scale or classes.
 
-    `scale` is a row of colours from the low end to the high one with `ticks` evenly below it;
-    `classes` are colours with a name each. `bounds` are the values of the scale's ends.
+    `scale` is a row of colours from the low end to the high one, with `ticks` evenly below it, and
+    small `values` below these; `classes` are colours with a name each. `bounds` are the values of
+    the scale's ends.
     """
 
     title: str
@@ -109,6 +110,7 @@ class ColorKey:
     ticks: tuple[str, ...] = ()
     classes: tuple[tuple[Rgba, str], ...] = ()
     bounds: tuple[float, float] | None = None
+    values: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -51,7 +51,8 @@ def test_the_map_lies_where_it_was_looked_and_is_clear_in_the_vehicle():
     assert (sheet.image[9:11, 14:16, 3] == 0.0).all() and sheet.image[0, 0, 3] == 0.5
     np.testing.assert_allclose(sheet.image[3, 2, :3], colors.VIRIDIS[-1], atol=1e-4)
     np.testing.assert_allclose(sheet.image[3, 27, :3], colors.VIRIDIS[0], atol=1e-4)
-    assert "nats" in shape.legend.title and "16.7" in shape.legend.ticks[0]
+    assert shape.legend.ticks == ("unseen", "well seen")
+    assert shape.legend.values == ("16.7 nats", "2.8 nats", "−11.0 nats"), "small, below the words"
     assert shape.legend.scale[0][:3] == pytest.approx(colors.VIRIDIS[0], abs=1e-6)
 
 
@@ -60,7 +61,9 @@ def test_colours_fit_what_is_shown_and_the_bright_end_is_good():
     entropy[0, 0], entropy[-1, -1], entropy[5, 5] = -10.9, 16.6, np.nan  # a few do not count
     assert ground.fitted_bounds(seen(entropy), ground.ENTROPY) == (2.0, -4.0)
     shape = ground.ground_map(seen(entropy), ground.ENTROPY, 1.0, faded=False, bounds=(2.0, -4.0))
-    assert shape.legend.ticks == ("2.0", "−1.0", "−4.0") and shape.legend.bounds == (2.0, -4.0)
+    assert shape.legend.values == ("2.0 nats", "−1.0 nats", "−4.0 nats")
+    assert shape.legend.ticks == ("badly seen", "well seen")
+    assert shape.legend.bounds == (2.0, -4.0)
     image = shape.sheet.image.transpose(1, 0, 2)
     np.testing.assert_allclose(image[0, 0, :3], colors.VIRIDIS[-1], atol=1e-6)
     np.testing.assert_allclose(image[-1, -1, :3], colors.VIRIDIS[0], atol=1e-6)

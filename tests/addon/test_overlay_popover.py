@@ -34,7 +34,7 @@ def test_every_setting_of_the_view_is_offered(car):
     for view.ground_quantity in ("ENTROPY", "COVERAGE", "REDUNDANCY"):
         shown |= set(offered(car))
     of_group = {p.identifier for p in view.bl_rna.properties} - {"rna_type", "name"}
-    of_group -= {"ghost_key"}  # by the button in the list of variants
+    of_group -= {"ghost_key", "ground_fits"}  # by buttons: in the list of variants, Fit Colors
     assert of_group <= shown
     assert {"beam_length", "beam_limit"} <= shown
 

@@ -193,6 +193,30 @@ def test_after_a_score_its_own_map_is_shown_until_something_moves(rig):
     assert "as scored" not in scenes.drawn(rig)["ground"][""].legend.title
 
 
+@pytest.mark.parametrize("quantity", ["ENTROPY", "COVERAGE"])
+def test_the_map_keeps_its_scale_from_the_first_score_until_it_is_fitted_again(rig, quantity):
+    def ends():
+        scenes.drawn(rig)
+        return shown.items(rig.name, "ground")[""].shape.legend.bounds
+
+    rig.perception_entropy.view.ground_quantity = quantity
+    bpy.ops.pe.score()
+    first = ends()
+    for place in ((0.0, 0.0, 0.7), (1.9, 0.0, 1.3)):
+        rig.objects["roof"].location = place
+        bpy.context.view_layer.update()
+        assert ends() == first, "what was not scored yet"
+        bpy.ops.pe.score()
+        assert ends() == first
+    assert bpy.ops.pe.fit_colors() == {"FINISHED"}
+    again = ends()
+    assert again != first
+    rig.objects["roof"].location = (-0.43, 0.0, 1.8)
+    bpy.context.view_layer.update()
+    bpy.ops.pe.score()
+    assert ends() == again
+
+
 def test_colours_are_fitted_at_rest_kept_while_moving_and_fixed_at_will(rig):
     def ends():
         return shown.items(rig.name, "ground")[""].shape.legend.bounds

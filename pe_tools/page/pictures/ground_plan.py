@@ -174,7 +174,7 @@ COVERAGE = MapLayer(
     "share of the height that at least one sensor sees",
     lambda ground: ground.coverage,
     _quantity_colors(graphics.COVERAGE),
-    graphics.QUANTITIES[graphics.COVERAGE].ticks,
+    graphics.QUANTITIES[graphics.COVERAGE].values,
     tuple(graphics.QUANTITIES[graphics.COVERAGE].swatches),
 )
 SENSORS = MapLayer(

@@ -72,7 +72,9 @@ function legendOf(legend) {
     bar.style.background = `linear-gradient(to right, ${legend.scale.join(", ")})`;
     const ticks = element("span", "v3-ticks");
     ticks.append(...legend.ticks.map((tick) => element("span", "", tick)));
-    box.append(bar, ticks);
+    const values = element("span", "v3-ticks v3-values");
+    values.append(...legend.values.map((value) => element("span", "", value)));
+    box.append(bar, ticks, values);
   }
   for (const [color, words] of legend.classes) {
     const row = element("span", "v3-class", words);

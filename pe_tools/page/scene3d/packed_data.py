@@ -169,6 +169,7 @@ def _map(shape: graphics.LayerShape, name: str, label: str) -> dict[str, Any]:
             "title": legend.title,
             "scale": [css_color(color) for color in legend.scale],
             "ticks": list(legend.ticks),
+            "values": list(legend.values),
             "classes": [[css_color(color), name] for color, name in legend.classes],
         },
     }

@@ -12,6 +12,7 @@ from pe_core.scene.housing import hull_of
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigJudge
 from pe_core.scoring.protocol import Judgement
+from pe_core.scoring.requirements import FARTHEST_M, Verdict
 from pe_core.scoring.score import Score, rounded
 from pe_core.search import objective_of
 from pe_core.search.goals import (
@@ -29,6 +30,7 @@ from pe_core.search.tolerance import without_each
 from pe_core.study.blind_ground_search import blind_area
 from pe_core.study.objective_search import is_by_ap
 from pe_core.study.objective_setting import EXPECTED_AP
+from pe_core.study.requirement_check import verdicts_of
 from pe_core.study.study import Study
 
 AUGMENTED = 0.05
@@ -147,9 +149,16 @@ class FrontFigures:
     def _zones(self, rig: Rig) -> tuple[float, float]:
         """Return the worst margin of all requirements [m], and their blind ground [m2]."""
         assert self._checker is not None
-        verdicts = self._checker.check(rig)
-        margins = [v.margin for v in verdicts if v.margin is not None]
-        return min(margins, default=0.0), sum(v.blind_m2 or 0.0 for v in verdicts)
+        verdicts = verdicts_of(self._study, rig, self._checker)
+        worst = min(map(_margin, verdicts), default=0.0)
+        return worst, sum(v.blind_m2 or 0.0 for v in verdicts)
+
+
+def _margin(verdict: Verdict) -> float:
+    """Return a verdict's margin [m]; of a path or spots that fail, which have none, the worst."""
+    if verdict.margin is not None:
+        return verdict.margin
+    return -FARTHEST_M * (2.0 - verdict.share)
 
 
 def height_of(rig: Rig) -> float:

@@ -102,6 +102,24 @@ def test_margins_and_blind_zones_are_those_of_the_verdicts():
     assert figures.costs(given.rig)[0] == pytest.approx(-verdict.margin)
 
 
+def test_a_path_that_fails_and_mounting_errors_count_in_the_margin():
+    """A requirement that is not met never leaves the margin at what the others have."""
+    body, of = pe.requirements.Body("post", (0.3, 0.3, 0.5)), pe.requirements.Requirement
+    ahead = of("ahead", pe.requirements.Zone(x=(4.0, 5.0), y=(-1.0, 1.0)), [body])
+    spots = pe.requirements.Zone(spots=((1.0, 70.0), (5.0, 0.0)))
+    names = ("margin", "entropy")
+
+    def margin(*requirements, **keys):
+        given = study(names, requirements=requirements)
+        given = replace(given, search=replace(given.search, **keys))
+        return FrontFigures(given, names, given.evaluator(1024))(given.rig)["margin"]
+
+    assert margin(ahead, of("far", spots, [body])) == pytest.approx(-15.0)
+    off = replace(ahead, under=pe.requirements.Under(mounting=True))
+    loose = pe.Tolerance(angle=math.radians(40.0), draws=4)
+    assert margin(off, tolerance=loose) < margin(ahead, tolerance=loose)
+
+
 def test_weights_are_on_the_simplex_and_each_objective_comes_first_alone():
     for objectives in (2, 3, 4):
         weights = weights_of(9, objectives)

@@ -4,7 +4,7 @@ from .bodies import BODIES, Body
 from .checker import RequirementChecker, checkable
 from .criteria import Criterion, Requirement, Under, checked_requirements
 from .definition import body_met, sees
-from .margins import margin_of
+from .margins import FARTHEST_M, margin_of
 from .mesh_shape import MeshShape
 from .planes import VehiclePlanes
 from .redundancy import Redundancy, RedundancyMap
@@ -13,6 +13,7 @@ from .zones import PlacedZone, Zone, signed_distance
 
 __all__ = [
     "BODIES",
+    "FARTHEST_M",
     "Body",
     "Criterion",
     "GroundFigures",

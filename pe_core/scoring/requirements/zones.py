@@ -35,7 +35,9 @@ RING = Number(0.0, 100.0, unit="m", noun="length")
 MAX_SAMPLES = 20_000
 """Samples of one zone at most."""
 MAX_GRID = 60_000
-"""Places of a grid on which a zone is grown at most."""
+"""Places of a grid on which a zone is grown at most, and samples with the ground round them."""
+MAX_PLACES = 2_000_000
+"""Places of the grid at most from which the ground round a path or spots is taken."""
 GROWN_M = 0.6
 """How far round a zone samples are taken to find how far it could grow [m]."""
 INSIDE_M = 1e-6
@@ -200,10 +202,13 @@ class PlacedZone:
     corners: Floats
     who: str
 
-    def distance(self, points: Floats) -> Floats:
-        """Return the distance (N,) of points (N, 2) to the zone, negative inside [m]."""
+    def distance(self, points: Floats, within: float = math.inf) -> Floats:
+        """Return the distance (N,) of points (N, 2) to the zone, negative inside [m].
+
+        A distance that is not `within` so many metres may be infinite.
+        """
         if self.kind == "spots":
-            return _nearest(points, self.corners)
+            return _nearest(points, self.corners, within)
         if self.kind == "path":
             return _to_lines(points, self.corners[:-1], self.corners[1:])
         if self.kind == "area":
@@ -250,10 +255,14 @@ class PlacedZone:
         InputError
             When there are too many samples, or all of them are inside the vehicle.
         """
+        most = (self.grow if grown else 0.0) + INSIDE_M
         points = self._lattice(self.zone.step * coarser, self.grow if grown else 0.0)
-        distance = self.distance(points)
-        kept = distance <= (self.grow if grown else 0.0) + INSIDE_M
+        distance = self.distance(points, most)
+        kept = distance <= most
         points, distance = points[kept], distance[kept]
+        if len(points) > MAX_GRID:
+            found = f"{len(points):,} with the ground round it"
+            raise InputError(self.who, "zone.step", f"at most {MAX_GRID:,} samples", found)
         outside = signed_distance(points, self.planes.outline) > INSIDE_M
         points, distance = points[outside], distance[outside]
         if not (distance <= INSIDE_M).any():
@@ -290,6 +299,9 @@ class PlacedZone:
         counts = np.maximum(np.ceil((high - low) / step - INSIDE_M), 1.0).astype(np.int64)
         steps = np.where(high > low, (high - low) / counts, step)
         extra = np.ceil(grow / steps - INSIDE_M).astype(np.int64)
+        if (places := math.prod((counts + 1 + 2 * extra).tolist())) > MAX_PLACES and not is_area:
+            found = f"{places:,} in the rectangle round it"
+            raise InputError(self.who, "zone.step", f"at most {MAX_PLACES:,} places", found)
         if is_area and math.prod((counts + 1).tolist()) > MAX_SAMPLES:
             found = f"{math.prod((counts + 1).tolist()):,} with a step of {step:g} m"
             raise InputError(self.who, "zone.step", f"at most {MAX_SAMPLES:,} samples", found)
@@ -337,8 +349,18 @@ def _to_lines(points: Floats, starts: Floats, ends: Floats) -> Floats:
     return np.sqrt(best)
 
 
-def _nearest(points: Floats, spots: Floats) -> Floats:
-    return np.min([np.hypot(*(points - spot).T) for spot in spots], axis=0)
+def _nearest(points: Floats, spots: Floats, within: float) -> Floats:
+    """Return the distance (N,) of points to the nearest of some spots; inf where none is within."""
+    order = np.argsort(points[:, 0], kind="stable")
+    x, y = points[order].T
+    first = np.searchsorted(x, spots[:, 0] - within, "left").tolist()
+    last = np.searchsorted(x, spots[:, 0] + within, "right").tolist()
+    best = np.full(len(points), np.inf)
+    for (at_x, at_y), a, b in zip(spots.tolist(), first, last, strict=True):
+        np.minimum(best[a:b], np.hypot(x[a:b] - at_x, y[a:b] - at_y), out=best[a:b])
+    distance = np.empty_like(best)
+    distance[order] = best
+    return distance
 
 
 def _along(start: Floats, end: Floats, step: float) -> Floats:

@@ -24,6 +24,7 @@ LARGE = 17.0
 ROW, PAD = 17.0, 10.0
 ZONE_ROWS = 2
 """Rows that are reserved for zones, so that the plate does not jump with every move."""
+WORD_GAP = 0.3
 MIN_WIDTH, MAX_COLUMNS = 236.0, 64
 ALERT: Rgba = (1.0, 0.84, 0.35, 1.0)
 SENSE_COLORS = {BETTER: (0.42, 0.75, 1.0, 1.0), WORSE: (1.0, 0.62, 0.25, 1.0)}
@@ -35,10 +36,11 @@ VIEW_TOPICS = "overlay "
 
 
 class TextRow(NamedTuple):
-    """Text in a row: its size, and pieces with their colours."""
+    """Text in a row: its size, pieces with their colours, and the gap between them, in sizes."""
 
     size: float
     words: tuple[tuple[str, Rgba], ...]
+    gap: float = 1.0
 
 
 _handlers = viewport.DrawHandlers()
@@ -89,7 +91,8 @@ def figure_rows(scene_name: str, score: LiveScore, shown: ShownScore | None) -> 
 
 def row_of(line: Line, color: Rgba = INK) -> TextRow:
     """Return a line as a row: gains and losses in their colours."""
-    return TextRow(SMALL, tuple((text, SENSE_COLORS.get(sense, color)) for text, sense in line))
+    words = tuple((text, SENSE_COLORS.get(sense, color)) for text, sense in line)
+    return TextRow(SMALL, words, WORD_GAP)
 
 
 def rows_of(
@@ -138,13 +141,13 @@ def draw_rows(rows: list[TextRow], left: float, bottom: float, scale: float) -> 
         y -= _height(row) * scale
         x, size = left + pad, row.size * scale
         for text, color in row.words:
-            x += viewport.draw_text(text, x, y + 0.3 * size, size, color) + size
+            x += viewport.draw_text(text, x, y + 0.3 * size, size, color) + row.gap * size
     return box
 
 
 def _width(row: TextRow, scale: float) -> float:
     size = row.size * scale
-    gaps = (len(row.words) - 1) * size
+    gaps = (len(row.words) - 1) * row.gap * size
     return gaps + sum(viewport.text_size(text, size)[0] for text, _ in row.words)
 
 

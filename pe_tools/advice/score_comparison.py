@@ -167,11 +167,16 @@ class ComparedRow:
         return tuple(k for _, k in sorted(present))
 
     def sense(self, k: int) -> int:
-        """Return -1 if a value is better than the first one, 1 if it is worse, else 0."""
+        """Return -1 if a value is clearly better than the first one, 1 if it is worse, else 0.
+
+        A loss counts also within the error, a gain does not.
+        """
         less = self.differences[k]
         if less is None or abs(less) <= MIN_CHANGE[self.measure]:
             return 0
-        return -1 if (less < 0.0) == self.lower_is_better else 1
+        if (less < 0.0) != self.lower_is_better:
+            return 1
+        return -1 if self.differ(0, k) else 0
 
     @property
     def winner(self) -> int | None:

@@ -338,7 +338,8 @@ def test_comparing_scores_what_has_no_score_as_if_it_stood_there(ideas):
     assert [column[0][0] for column in columns] == ["", *names]
     assert columns[1][2][0] == f"{whole.values[0]:.3f}"
     assert columns[2][2].change == f"({whole.differences[1]:+.3f})"
-    assert columns[2][2].sense == (BETTER if whole.differences[1] < 0.0 else WORSE)
+    gain = BETTER if whole.differ(0, 1) else SAME
+    assert columns[2][2].sense == (gain if whole.differences[1] < 0.0 else WORSE)
     assert (columns[1][2].change, columns[1][2].sense) == ("", SAME)
     assert [columns[1][2][1], columns[2][2][1]] == list(whole.best)
     assert bridge.score_of(second).scatter == higher.evaluator().score(higher.rig).scatter

@@ -211,6 +211,15 @@ def test_objects_are_paired_by_scene():
     assert difference_errors([a, b], ENTROPY)[0][1] < 0.9 * math.hypot(own, own)
 
 
+def test_a_gain_counts_when_it_is_clear_and_a_loss_always():
+    """The error of a difference is 0.02: 2.13 times that is clear."""
+    scores = [score(h, own=NOISE[k]) for k, h in enumerate((2.0, 1.98, 2.02, 1.9, 2.001))]
+    for first, second in (0, 1), (0, 2), (0, 3), (0, 4):
+        row = advice.compare({"a": scores[first], "b": scores[second]})[0]
+        assert row.sense(0) == 0
+        assert row.sense(1) == {1: 0, 2: 1, 3: -1, 4: 0}[second]
+
+
 def test_key_figures_side_by_side():
     """Without an error, and no AP is the best: what chance it has is not known."""
     figures = {

@@ -206,11 +206,11 @@ class Schedule:
     )
     floor_m: float = setting(
         0.01,
-        Number(0.0, above=True, cap=FARTHEST_M, unit="m", noun="length"),
+        Number(1e-6, cap=FARTHEST_M, unit="m", noun="length"),
         "The search ends when a round looks no farther than this round the best placement",
     )
     floor_rad: float = setting(
-        math.radians(0.3), Angle(0.0, above=True, cap=360.0), "The same for angles, in degrees"
+        math.radians(0.3), Angle(1e-6, cap=360.0), "The same for angles, in degrees"
     )
     decay: float = setting(
         0.5,

@@ -13,6 +13,8 @@ from ..base.values import Number
 
 NEAREST = 0.0
 """Default minimum range [m]."""
+SHORTEST_RANGE_M = 0.001
+"""Least maximum range: what reaches less far is a typing error, and its square is 0."""
 MIN_RANGE = Number(0.0, cap=1e5, unit="m", noun="length")
 
 

@@ -123,7 +123,7 @@ class PlacedBoxes:
         """
         enter, leave = np.zeros(len(which)), np.full(len(which), np.inf)
         for k, speed in enumerate(self.along(which, directions)):
-            speed = np.where(speed == 0.0, NO_SPEED, speed)
+            speed = np.where(np.abs(speed) < NO_SPEED, NO_SPEED, speed)
             offset, half = self.offsets[which, k], self.halves[which, k]
             t0, t1 = (offset - half) / speed, (offset + half) / speed
             np.maximum(enter, np.minimum(t0, t1), out=enter)

@@ -227,7 +227,11 @@ def _read_intrinsics(table: Table, sensor: str, folder: Path) -> SensorModel:
     if not isinstance(model, Mapping):
         raise table.error("model", "a catalogue name or a table", shown(model))
     own = dict(model)
-    return catalog.from_table(own.pop("name", sensor), own, folder)
+    name = own.pop("name", sensor)
+    try:
+        return catalog.from_table(name, own, folder)
+    except InputError as error:
+        raise table.error(f"model.{error.field}", error.expected, error.found) from None
 
 
 def _axes(table: Table, key: str, default: tuple[str, ...]) -> tuple[str, ...]:

@@ -115,8 +115,8 @@ REFUSED = [
         r"at most 65\.\d, found it folds 32\.\d+ deg from the axis, 172 px from the centre",
     ),
     ({"fov_deg": 230}, "fov_deg: expected an angle from 0.001 to 220 degrees, found 230"),
-    ({"min_range_m": 8, "max_range_m": 6}, "min_range: expected a length below max_range, 6 m"),
-    ({"max_range_m": 0}, "max_range: expected a length above 0 m, found 0"),
+    ({"min_range_m": 8, "max_range_m": 6}, "min_range_m: expected a length below max_range, 6 m"),
+    ({"max_range_m": 0}, "max_range_m: expected a length >= 0.001 m, found 0"),
 ]
 
 

@@ -107,11 +107,11 @@ def test_it_is_in_no_entropy_until_a_curve_is_given():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"max_range_m": 0}, "max_range_m: expected a .*length above 0 m"),
-        ({"min_range_m": 3.0}, "min_range: expected a length below max_range, 2 m"),
+        ({"max_range_m": 0}, "max_range_m: expected a .*length >= 0.001 m"),
+        ({"min_range_m": 3.0}, "min_range_m: expected a length below max_range, 2 m"),
         ({"hfov_deg": 0}, "hfov_deg: expected an angle above 0"),
-        ({"vfov_deg": 179}, "vfov: expected an angle"),
-        ({"max_incidence_deg": 100}, "max_incidence: expected an angle"),
+        ({"vfov_deg": 179}, "vfov_deg: expected an angle"),
+        ({"max_incidence_deg": 100}, "max_incidence_deg: expected an angle"),
     ],
 )
 def test_bad_tables_are_one_line(change, message):

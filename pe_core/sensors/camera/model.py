@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from ...base.errors import InputError
 from ...base.values import A_NAME, Angle, Number, Whole
 from ...scene.rig import SensorModel
-from ..field_of_view import NEAREST, checked_ranges
+from ..field_of_view import NEAREST, SHORTEST_RANGE_M, checked_ranges
 from .lens import Lens, field_outline, reaching
 from .lens_models import Pinhole
 
 PIXELS = Whole(1, 1_000_000, "pixels")
 FOV = Angle(0.001, 180.0, below=True)
-FARTHEST = Number(0.0, above=True, cap=1e9, unit="m", noun="length", infinite=True)
+FARTHEST = Number(SHORTEST_RANGE_M, cap=1e9, unit="m", noun="length", infinite=True)
 """Maximum range; a camera as a rule has none."""
 
 

@@ -15,13 +15,13 @@ from ...base.errors import InputError, shown
 from ...base.read_only import read_only
 from ...base.values import A_NAME, Angle, Number, Whole, numbers, pair
 from ...scene.rig import Sensor, SensorModel
-from ..field_of_view import NEAREST, checked_ranges
+from ..field_of_view import NEAREST, SHORTEST_RANGE_M, checked_ranges
 
 Floats = NDArray[np.float64]
 
 FULL_CIRCLE = (-math.pi, math.pi)
 STEPS = Whole(1, 360_000, "azimuths")
-RANGE = Number(0.0, above=True, cap=1e5, unit="m", noun="length")
+RANGE = Number(SHORTEST_RANGE_M, cap=1e5, unit="m", noun="length")
 FOV = Angle(-720.0, 720.0)
 MAX_BEAMS = 10_000_000
 """A frame of more is a typing error: it has sixty times the beams of the catalogue's largest."""

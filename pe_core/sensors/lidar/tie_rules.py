@@ -44,5 +44,8 @@ def position_in_voxels(position: Sequence[float], origin: Sequence[float], side:
 
 
 def without_zeros(directions: Floats) -> Floats:
-    """Return directions with components of exactly 0 replaced by `ZERO_COMPONENT`."""
-    return np.where(directions == 0.0, ZERO_COMPONENT, directions)
+    """Return directions with components of 0, or of less, replaced by `ZERO_COMPONENT`.
+
+    What is nearer to 0 than that (an angle of 1e-320 degrees) would overflow where it divides.
+    """
+    return np.where(np.abs(directions) < ZERO_COMPONENT, ZERO_COMPONENT, directions)

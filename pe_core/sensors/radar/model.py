@@ -16,7 +16,7 @@ from ...base.errors import InputError, shown
 from ...base.read_only import read_only
 from ...base.values import A_NAME, Angle, Number, Whole, numbers
 from ...scene.rig import Sensor, SensorModel
-from ..field_of_view import MIN_RANGE
+from ..field_of_view import MIN_RANGE, SHORTEST_RANGE_M
 from ..ray_fan import AngleWindow
 from ..weather import LIGHT_M_S
 from .detection import ratio_of_db, snr_for
@@ -24,14 +24,15 @@ from .reflectivity import DBSM, Reflectivity, cautious_reflectivity, reflectivit
 
 Floats = NDArray[np.float64]
 
-RANGE = Number(0.0, above=True, cap=1e5, unit="m", noun="length")
+RANGE = Number(SHORTEST_RANGE_M, cap=1e5, unit="m", noun="length")
 SCALE = Number(0.0, 1.0)
-RESOLUTION = Number(0.0, above=True, cap=1e5, unit="m", noun="length")
-ANGLE_RESOLUTION = Angle(0.0, 180.0, above=True)
+RESOLUTION = Number(0.001, cap=1e5, unit="m", noun="length")
+ANGLE_RESOLUTION = Angle(0.001, 180.0)
 PROBABILITY = Number(0.0, 1.0, above=True, below=True)
+DETECTION = Number(0.01, 1.0, below=True)
 LOSS = Number(0.0, 100.0, unit="dB")
 ATTENUATION = Number(0.0, 1e4, unit="dB/km")
-BANDWIDTH = Number(0.0, above=True, cap=1e6, unit="MHz", noun="bandwidth")
+BANDWIDTH = Number(0.1, cap=1e6, unit="MHz", noun="bandwidth")
 LIST = Whole(1, 1_000_000, "detections")
 MAX_AZIMUTH_DEG, MAX_ELEVATION_DEG = 180.0, 89.0
 
@@ -191,7 +192,7 @@ class Radar(SensorModel):
         put(self, "modes", modes)
         for key, rule in (
             ("reference_rcs_dbsm", DBSM),
-            ("detection_probability", PROBABILITY),
+            ("detection_probability", DETECTION),
             ("false_alarm", PROBABILITY),
             ("cover_loss_db", LOSS),
             ("attenuation_db_km", ATTENUATION),

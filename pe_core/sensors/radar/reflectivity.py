@@ -95,15 +95,21 @@ def read_reflectivity(source: str, tables: Any) -> dict[str, Reflectivity]:
 def _read_one(source: str, field: str, value: Any) -> Reflectivity:
     if not isinstance(value, Mapping):
         return Reflectivity((DBSM.checked(source, field, value),))
-    angles, levels = (listed(value.get(key)) for key in ("aspect_deg", "dbsm"))
-    if set(value) != {"aspect_deg", "dbsm"} or not angles or not levels:
+    if set(value) != {"aspect_deg", "dbsm"}:
         raise InputError(source, field, "a number, or aspect_deg and dbsm", shown(dict(value)))
+    angles, levels = (_listed(source, f"{field}.{k}", value[k]) for k in ("aspect_deg", "dbsm"))
     degrees = [ASPECT_DEG.checked(source, f"{field}.aspect_deg", a) for a in angles]
     if sorted(set(degrees)) != degrees or len(degrees) != len(levels):
         expected = f"{len(levels)} ascending angles, one for each of dbsm"
         raise InputError(source, f"{field}.aspect_deg", expected, shown(angles))
     dbsm = tuple(DBSM.checked(source, f"{field}.dbsm", v) for v in levels)
     return Reflectivity(dbsm, tuple(math.radians(d) for d in degrees))
+
+
+def _listed(source: str, field: str, value: Any) -> list[Any]:
+    if not (values := listed(value)):
+        raise InputError(source, field, "a list of numbers", shown(value))
+    return values
 
 
 def write_reflectivity(own: Mapping[str, Reflectivity]) -> dict[str, Any]:

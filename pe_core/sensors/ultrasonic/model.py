@@ -8,12 +8,12 @@ from typing import ClassVar, cast
 
 from ...base.values import A_NAME, Angle, Number
 from ...scene.rig import Sensor, SensorModel
-from ..field_of_view import NEAREST, checked_ranges
+from ..field_of_view import NEAREST, SHORTEST_RANGE_M, checked_ranges
 from ..ray_fan import AngleWindow
 
-RANGE = Number(0.0, above=True, cap=1e3, unit="m", noun="length")
-CONE = Angle(0.0, 178.0, above=True)
-INCIDENCE = Angle(0.0, 90.0, above=True)
+RANGE = Number(SHORTEST_RANGE_M, cap=1e3, unit="m", noun="length")
+CONE = Angle(0.01, 178.0)
+INCIDENCE = Angle(0.01, 90.0)
 RIGHT_ANGLE = math.pi / 2.0
 
 

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..base.errors import InputError
+from ..prior import HIGHWAY_CLASSES, ROAD_CLASSES
 from ..scene.rig import Rig
-from ..scoring.requirements import Requirement, RequirementChecker, Verdict
+from ..scoring.requirements import BODIES, Requirement, RequirementChecker, Verdict
 from ..search import Tolerance, mounted_off
 from .condition_check import ConditionedChecker
 
@@ -24,6 +25,7 @@ def checker_of(study: Study) -> RequirementChecker:
         When a zone cannot be placed round the vehicle, the rig lacks a kind of sensor, or mounting
         errors are asked for that the study does not state.
     """
+    _check_classes(study)
     if any(each.under.states or each.under.weathers for each in study.requirements):
         checker: RequirementChecker = ConditionedChecker(study)
     else:
@@ -40,6 +42,23 @@ def checker_of(study: Study) -> RequirementChecker:
             who = f"requirement {each.name!r}"
             raise InputError(who, "under.mounting", "errors in [optimize.tolerance]", "none")
     return checker
+
+
+def _check_classes(study: Study) -> None:
+    """Raise `InputError` for a body of a class that nothing is known of: a typing error."""
+    known = {
+        *study.prior.class_names,
+        *(each.name for each in (*ROAD_CLASSES, *HIGHWAY_CLASSES)),
+        *(body.class_name for body in BODIES.values()),
+        *(name for curves in study.model.objects.values() for name in curves),
+        *(name for sensor in study.rig for name in getattr(sensor.model, "rcs", ())),
+    }
+    for each in study.requirements:
+        for body in each.bodies:
+            if body.class_name is not None and body.class_name not in known:
+                listed = ", ".join(sorted(filter(None, known)))
+                who = f"requirement {each.name!r}"
+                raise InputError(who, "body.class", f"one of {listed}", repr(body.class_name))
 
 
 def verdicts_of(

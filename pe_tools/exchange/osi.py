@@ -45,13 +45,17 @@ from .portable_kinds import CAMERA, LIDAR, RADAR, ULTRASONIC
 FILE = "sensor_view_configuration.json"
 OTHER_KINDS = (RADAR, ULTRASONIC)
 """Kinds whose entries an export keeps: OSI has fields of theirs that are not read."""
+COUNTS = ("number_of_rays_horizontal", "number_of_rays_vertical", "max_number_of_interactions")
 FIGURES = ("field_of_view_horizontal", "field_of_view_vertical")
 LISTS = {k: f"{k}_sensor_view_configuration" for k in (CAMERA, LIDAR, *OTHER_KINDS)}
 DIGITS = 9
 """Decimals of a beam's direction; a LiDAR has up to 240,000 beams."""
 OTHER = "generic_sensor_view_configuration"
 POSITION_KEYS, ROTATION_KEYS = ("x", "y", "z"), ("roll", "pitch", "yaw")
-WIDEST = Number(0.0, 2.0 * math.pi, above=True, unit="rad", noun="angle")
+WIDEST = Number(1e-4, 2.0 * math.pi, unit="rad", noun="angle")
+DIRECTION = (1e-6, 1e6)
+"""Lengths of vectors that may be directions; OSI has them of length 1."""
+COUNT = Whole(0, 1_000_000_000)
 """Field of view, fisheyes included; that of a pinhole is below pi."""
 IDENTIFIER = Whole(0, (1 << 64) - 1)
 STAND_IN_RANGE_M = 100.0
@@ -185,6 +189,11 @@ def _sensor(
     if kind in OTHER_KINDS:
         seen = _field(row, row.figure("range", RANGE) or max_range)
         return replace(sensor, entry=json_entry(row.data), field=seen)
+    row.figure("range", RANGE)
+    for key in FIGURES:
+        row.figure(key, WIDEST)
+    for key in COUNTS:
+        row.whole_figure(key, COUNT)
     if kind == CAMERA:
         return _camera(row, sensor)
     return _lidar(path, row, sensor, max_range) if kind == LIDAR and "directions" in row else sensor
@@ -243,8 +252,8 @@ def _scan(path: Path, row: Message, max_range: float) -> Scan:
         if are_tables
         else None
     )
-    if directions is None or not len(directions) or not np.isfinite(directions).all():
-        raise InputError(path, field, "a list of vectors {x, y, z}", shown(beams))
+    if directions is None or not len(directions) or not _are_directions(directions):
+        raise InputError(path, field, "a list of vectors {x, y, z} of length 1", shown(beams))
     count = row.whole_figure("num_of_pixels", Whole(1))
     if count is not None and count != len(directions):
         raise InputError(
@@ -253,6 +262,14 @@ def _scan(path: Path, row: Message, max_range: float) -> Scan:
     elevations = np.arctan2(directions[:, 2], np.hypot(directions[:, 0], directions[:, 1]))
     fov, ends = (-math.pi, math.pi), (float(elevations.min()), float(elevations.max()))
     return Scan(len(directions), *ends, 1, fov, max_range, False, directions)
+
+
+def _are_directions(vectors: np.ndarray) -> bool:
+    """Whether vectors (B, 3) are finite, and neither 0 nor huge."""
+    low, high = DIRECTION
+    if not (np.abs(vectors) <= high).all():  # NaN, too
+        return False
+    return bool((np.abs(vectors).max(axis=1) >= low).all())
 
 
 CAPITAL = re.compile(r"(?<=[a-z0-9])([A-Z])")

@@ -87,6 +87,17 @@ def test_one_range_is_there_for_all_lidars_and_others_are_reported(tmp_path):
         ({"sensorId": {"value": "x"}}, "sensor_id: expected a field once"),
         ({"sensor_id": {"value": "x"}}, "sensor_id.value: expected a whole number"),
         ({"sensor_id": {"value": 0}}, "sensor_id: expected an id used once, found 0"),
+        (
+            {"directions": [{"x": 1e308}], "num_of_pixels": 1},
+            "directions: expected a list of vectors",
+        ),
+        (
+            {"directions": [{"x": 0.0}], "num_of_pixels": 1},
+            "directions: expected a list of vectors",
+        ),
+        ({"field_of_view_vertical": 1e308}, "field_of_view_vertical: expected an angle"),
+        ({"number_of_rays_horizontal": 1e308}, "number_of_rays_horizontal: expected a whole"),
+        ({"range": 1e308}, "range: expected a length"),
         ({"directions": [{"x": "east"}]}, "directions: expected a list of vectors"),
         (
             {"mounting_position": {"position": {"x": "far"}}},

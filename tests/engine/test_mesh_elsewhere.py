@@ -142,6 +142,9 @@ def instanced(levels, innermost='<instance_geometry url="#g"/>'):
     [
         ("<COLLADA>", "expected Collada, found"),
         (DAE.replace("0 1 2 3</p>", "0 1 2 7</p>"), "vertex indices within the 4|expected Collada"),
+        (DAE.replace("2 3</p>", "2 4000000000</p>"), "p: expected whole numbers of up to 9 digits"),
+        (DAE.replace("2 3</p>", "2 4294967297</p>"), "p: expected whole numbers of up to 9 digits"),
+        (DAE.replace("2 3</p>", "2 2.5</p>"), "p: expected whole numbers of up to 9 digits"),
         (DAE.replace("?>", "?><!DOCTYPE a [<!ENTITY b 'c'>]>"), "found <!DOCTYPE"),
         (DAE.replace('meter="0.0254"', 'meter="0"'), "unit: expected a length"),
         (DAE.replace('meter="0.0254"', 'meter="inch"'), "unit: expected its length in metres"),

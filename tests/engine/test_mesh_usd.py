@@ -7,6 +7,8 @@ import pytest
 import pe_core as pe
 
 pytest.importorskip("pxr", reason="of the extra meshes")
+from pxr import UsdUtils  # where it is installed
+
 if os.name == "nt":
     pytest.skip("POSIX files", allow_module_level=True)
 
@@ -44,7 +46,17 @@ def pipe(folder):
     return layer(folder, "main", MESH + reference("pipe.usda"))
 
 
+def cut_short(folder, lost):
+    """A package that lacks its last bytes: its first layer would still be read."""
+    UsdUtils.CreateNewUsdzPackage(str(layer(folder, "inner", MESH)), str(folder / "car.usdz"))
+    data = (folder / "car.usdz").read_bytes()
+    (folder / "car.usdz").write_bytes(data[: len(data) - lost])
+    return folder / "car.usdz"
+
+
 BAD = {
+    "cut by a byte": (lambda f: cut_short(f, 1), "car.usdz: file: expected a whole package"),
+    "cut by a list": (lambda f: cut_short(f, 100), "car.usdz: file: expected a whole package"),
     "a pipe": (pipe, "pipe.usda: file: expected a regular file"),
     "missing": (
         lambda folder: layer(folder, "main", MESH + reference("none.usda")),

@@ -188,6 +188,7 @@ BAD = {
     "inside": ({"zone": {"x": [-1, 1], "y": [-0.5, 0.5]}}, "inside the vehicle"),
     "outside": ({"zone": {"x": [500, 501], "y": [0, 1]}}, "in the space"),
     "step": ({"zone": {"x": [0, 90], "y": [2, 40], "step": 0.02}}, "at most 20,000 samples"),
+    "class": ({"body": {"size": [0.3, 0.3, 1], "class": "pedestrain"}}, "one of "),
     "5000 digits": ({"zone": {"x": ["front", f"front + {'1' * 5000}"], "y": [-1, 1]}}, "an offset"),
     "anchor": ({"zone": {"x": ["bow", 1], "y": [0, 1]}}, "planes front"),
     "door": ({"zone": {"x": ["door", 9], "y": [2, 3]}}, "word door"),

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import re
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -18,6 +20,10 @@ from .mesh import Piece, cut, found, placed
 UP = {"X_UP": "+x", "Y_UP": "+y", "Z_UP": "+z"}
 MAX_NODES = 200_000
 """Maximum nodes of a scene; repeated instances count each time."""
+
+
+NO_INDEX = re.compile(r"[^\d\s]\S{0,20}|\d{10,30}")
+"""What is no index. The library would cut it: 2.5 to 2, 4294967297 to 1."""
 
 
 def check_document(source: str, root: Any) -> None:
@@ -38,6 +44,10 @@ def check_document(source: str, root: Any) -> None:
             raise InputError(source, "unit", "its length in metres", shown(metres))
     for geometry in _each(root, "geometry"):
         _check_accessors(source, geometry)
+    for name in ("p", "v", "vcount"):
+        for element in _each(root, name):
+            if wrong := NO_INDEX.search(element.text or ""):
+                raise InputError(source, name, "whole numbers of up to 9 digits", shown(wrong[0]))
     _check_nodes(source, root)
 
 
@@ -131,7 +141,10 @@ def read_dae(path: Path, data: bytes) -> FoundMesh:
     if b"<!DOCTYPE" in data[:PROLOGUE_BYTES] or b"<!ENTITY" in data[:PROLOGUE_BYTES]:
         raise InputError(source, "XML", "Collada without definitions", "<!DOCTYPE")
     try:
-        document = collada.Collada(io.BytesIO(data), ignore=[collada.common.DaeUnsupportedError])
+        with warnings.catch_warnings():  # of indices that `check_document` refuses
+            warnings.filterwarnings("ignore", "string or file could not be read")
+            unsupported = [collada.common.DaeUnsupportedError]
+            document = collada.Collada(io.BytesIO(data), ignore=unsupported)
         check_document(source, document.xmlnode.getroot())
         nodes = [] if document.scene is None else document.scene.nodes
         pieces = [piece for node in nodes for piece in _pieces(node)]

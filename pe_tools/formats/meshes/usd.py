@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,7 @@ MAX_PRIMS = 200_000
 """Maximum prims of a stage; repeated instances count each time."""
 MAX_DEPTH = 1_000
 """Maximum nesting of brackets in a text layer."""
-TEXT_MAGIC = b"#usda"
+PACKAGE, TEXT_MAGIC = ".usdz", b"#usda"
 CHUNK_BYTES = 1 << 24
 STEPS = np.zeros(256, np.int8)
 for _open, _close in ("()", "[]", "{}"):
@@ -125,6 +126,8 @@ def _check_file(source: str, path: Path) -> None:
         raise InputError(path, "file", "a regular file", "something else")
     if path.stat().st_size > MESH_BYTES:
         raise InputError(path, "size", f"at most {MESH_BYTES:,} bytes", f"{path.stat().st_size:,}")
+    if path.suffix.lower() == PACKAGE and not zipfile.is_zipfile(path):
+        raise InputError(path, "file", "a whole package (.usdz)", "one that is cut short")
     with path.open("rb") as file:
         if file.read(len(TEXT_MAGIC)) != TEXT_MAGIC:
             return

@@ -19,7 +19,7 @@ import numpy as np
 
 import pe_core as pe
 from pe_core.search import METHODS, mounted_off, objective_of
-from pe_tools.reproduction.paper import study_of
+from studies.paper.paper import study_of
 
 OFF_DEG = (0.1, 0.3)
 """1 sigma of roll, pitch and yaw."""

@@ -8,10 +8,11 @@ from xdist.scheduler import LoadScopeScheduling
 WINDOWS = "tests/blender/"
 """The folder whose tests open a real Blender's window: one at a time, and begun first."""
 QUICK = dict.fromkeys(
-    ("tests/report/test_reproduce.py", "tests/report/test_results_file.py"), "pe reproduce --quick"
+    ("tests/studies/test_reproduce.py", "tests/studies/test_results_file.py"),
+    "python -m studies.paper --quick",
 )
 """Files that share one run of 40 s of a processor: they have one process."""
-ORDER = (WINDOWS, "tests/review/", "tests/report/", "tests/addon/", "tests/engine/")
+ORDER = (WINDOWS, "tests/review/", "tests/studies/", "tests/addon/", "tests/engine/")
 """Folders whose files take long come first; the many short files at the end level the load."""
 
 

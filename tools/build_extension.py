@@ -23,7 +23,7 @@ ENGINE = ROOT / "pe_core"
 TOOLS = ROOT / "pe_tools"
 MANIFEST = ADDON / "blender_manifest.toml"
 PACKED = (ENGINE.name, TOOLS.name)
-REPORTS = ("reproduction", "validity")
+REPORTS = ("plots",)
 """Rooms of the tools that the extension has no use for: they plot with Matplotlib."""
 EXAMPLE = "assets/examples/sedan.blend"
 """What the button *Open an Example* opens; a copy of that in `blend_assets`."""

@@ -31,10 +31,7 @@ SHIPPED = {
     "library.dxf": "pe_tools.outputs.dxf:dxf_bytes",
     "library.rerun": "pe_tools.outputs.recording:recording_bytes",
     "library.feather": "pe_tools.exchange.feather",
-    "library.detector": "pe_tools.validity.own.one_run:run_one",
-    "library.camera_detector": "pe_tools.validity.own.cameras.one_run:run_camera",
-    "verb.reproduce": "pe_tools.reproduction.verbs:add_verbs",
-    "verb.validate": "pe_tools.validity:add_verb",
+    "verb.plots": "pe_tools.plots.verbs:add_verbs",
     "verb.review": "pe_tools.page:add_verbs",
 }
 """Plugins of this distribution: module and attribute, by the plugin's name."""
@@ -43,8 +40,6 @@ EXTRAS = {
     "library.dxf": "cad",
     "library.rerun": "rerun",
     "library.feather": "argoverse",
-    "library.detector": "validate",
-    "library.camera_detector": "validate",
     "tqdm": "progress",
     "distributed": "cluster",
     "shtab": "completion",

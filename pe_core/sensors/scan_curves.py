@@ -1,7 +1,7 @@
 """Which AP curves whole objects have: `[ap] model = "paper"`, or `"scans"`.
 
-The curves from scans are fitted to the detectors of our own study, docs/validity/own, which
-`pe validate --own --curves` writes. They are of LiDARs alone: other kinds keep the paper's.
+The curves from scans are fitted to the detectors of our own study, docs/validity/own; `python -m
+studies.detectors --curves` writes them. They are of LiDARs alone: other kinds keep the paper's.
 """
 
 from __future__ import annotations

@@ -35,7 +35,7 @@ PACKAGES: Mapping[str, tuple[str, ...]] = {
     "cad": ("ezdxf",),
     "rerun": ("rerun-sdk", "pyarrow"),
     "argoverse": ("pyarrow",),
-    "validate": ("tensorflow",),
+    "studies": ("matplotlib", "tensorflow"),
     "completion": ("shtab",),
     "blender": ("bpy",),
 }

@@ -1,13 +1,18 @@
-"""The command in a process of its own, watched line by line: signals at known places."""
+"""The command in this process, or in its own and watched line by line: signals at known places."""
 
+import contextlib
+import io
 import subprocess
 import sys
 import threading
+import warnings
 from pathlib import Path
+from types import SimpleNamespace
 
-import pe_core as pe
+import pe_core
+from pe_tools.cli.verbs import main
 
-ROOT = Path(pe.__file__).parent.parent
+ROOT = Path(pe_core.__file__).parent.parent
 GUARD_S = 120
 FEW_ERRORS = (
     "import dataclasses, importlib\n"
@@ -33,6 +38,29 @@ Evaluator.score = score
 """
 """The n-th full score never ends."""
 RUN = "from pe_tools.__main__ import main; main()"
+
+
+def pe(*arguments):
+    """Run the command in this process: what it would print, warnings too, and its status."""
+    out, err = io.StringIO(), io.StringIO()
+    streams = contextlib.redirect_stdout(out), contextlib.redirect_stderr(err)
+    with streams[0], streams[1], warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("default")
+        try:
+            status = main([str(argument) for argument in arguments])
+        except SystemExit as ended:  # wrong usage
+            status = ended.code
+    said = "".join(f"{each.category.__name__}: {each.message}\n" for each in warned)
+    return SimpleNamespace(returncode=status, stdout=out.getvalue(), stderr=err.getvalue() + said)
+
+
+def pe_without_matplotlib(*arguments):
+    """Run the command where matplotlib cannot be imported."""
+    code = (
+        "import sys; sys.modules['matplotlib'] = None; from pe_tools.cli.verbs import main; "
+        f"sys.exit(main({[str(a) for a in arguments]!r}))"
+    )
+    return subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
 
 
 class Command:

@@ -142,7 +142,7 @@ PATHS = (
     *("import {} -o x", "import car.toml -o {}", "export car.toml --to csv -o {}"),
     *("export car.toml --to ros -o {}", "new {} -o x", "new car.npz -o {}", "rigs kitti -o {}"),
     *("check car.toml --csv {}", "review car.toml -o {}", "fit {}", "front {}"),
-    *("rigs kitti --mesh {} -o x", "reproduce --page-only -o {}", "validate --page-only -o {}"),
+    "rigs kitti --mesh {} -o x",
 )
 """Every path on the command line."""
 

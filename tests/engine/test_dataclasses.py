@@ -9,9 +9,6 @@ import pkgutil
 import pe_core
 import pe_tools
 
-WITH_LIBRARIES = "pe_tools.validity.own"
-"""Imports libraries that a user need not have."""
-
 BUILT_UP = {
     "pe_tools.formats.boxes.labels.Labels",
     "pe_tools.cli.interrupts.Received",
@@ -27,7 +24,7 @@ def classes():
         importlib.import_module(found.name)
         for package in (pe_core, pe_tools)
         for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
-        if not found.name.endswith("__main__") and not found.name.startswith(WITH_LIBRARIES)
+        if not found.name.endswith("__main__")
     ]
     return {
         f"{module.__name__}.{name}": cls

@@ -16,8 +16,8 @@ PAGES = {
 }
 """Pages that stand beside the code, and where the site has them."""
 FILES = {
-    "pe_tools/validity/own/plan.toml": "validity/own/plan.toml",
-    "pe_tools/validity/own/cameras/plan.toml": "validity/own/cameras/plan.toml",
+    "studies/detectors/plan.toml": "validity/own/plan.toml",
+    "studies/detectors/cameras/plan.toml": "validity/own/cameras/plan.toml",
 }
 """Other files outside of docs/ that pages link to, and where the site has them."""
 _LINK = re.compile(r"\[([^][]*)\]\(([^)\s#]+)(#[^)\s]*)?\)")

@@ -1,0 +1,60 @@
+"""What the commands of the studies share: options, exit status, signals."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import NoReturn
+
+from pe_core import InputError
+from pe_tools.cli import Answer, Parser, count_up_to, leave, run
+
+MAX_WORKERS = 1024
+
+
+def page_parser(
+    name: str, about: str, folders: tuple[str, str], quick: str
+) -> tuple[argparse.ArgumentParser, argparse._MutuallyExclusiveGroup]:
+    """Return the parser of a study, and the group of what it can do instead of a full run.
+
+    Parameters
+    ----------
+    name, about : str
+        The study, and what it does.
+    folders : tuple of str
+        Default folders of a full and of a quick run.
+    quick : str
+        What a quick run does, for the help.
+    """
+    parser = Parser(prog=f"python -m studies.{name}", description=about)
+    about = f"folder for page, plots and results.json (default {folders[0]}, or {folders[1]})"
+    parser.add_argument("-o", "--output", metavar="DIR", help=about)
+    parser.set_defaults(default_folders=folders)
+    parser.add_argument("--quick", action="store_true", help=quick)
+    alternatives = parser.add_mutually_exclusive_group()
+    about = "write page and plots from the results that the folder has"
+    alternatives.add_argument("--page-only", action="store_true", help=about)
+    parser.add_argument("--json", action="store_true", help="print results.json on stdout")
+    about = "number of processes (default and maximum: one per processor)"
+    parser.add_argument("--workers", type=count_up_to(MAX_WORKERS), metavar="N", help=about)
+    return parser, alternatives
+
+
+def main(
+    parser: argparse.ArgumentParser, study: Callable[[argparse.Namespace, Path], Answer]
+) -> NoReturn:
+    """Run a study with the options of the command line, and exit with its status."""
+    args = parser.parse_args()
+    folder = Path(args.output or args.default_folders[args.quick])
+    leave(run(lambda: _answer(study, args, folder)))
+
+
+def _answer(
+    study: Callable[[argparse.Namespace, Path], Answer], args: argparse.Namespace, folder: Path
+) -> Answer:
+    try:
+        return study(args, folder)
+    except ImportError as error:
+        hint = "pip install -e '.[studies]'"
+        raise InputError("studies", "package", hint, " ".join(str(error).split())) from error

@@ -1,0 +1,120 @@
+"""The plots of our own study: AP against scores, drawn from saved results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from pe_tools.plots.plotting import BLUE, GREY, ORANGE, remove_frame, save_plot, styled
+
+from .analysis import DesignResults
+from .plan import StudyPlan
+from .scores import COMPARED, EXPECTED_AP, HEIGHT, PRIMARY
+
+DISTANCE_BINS = 6
+"""Bins of pairs by how much they differ in AP, with about as many pairs each."""
+PAIR_COLORS = (BLUE, ORANGE, GREY)
+SHOWN = (PRIMARY, EXPECTED_AP, HEIGHT)
+LABELS = ("perception entropy [nats]", "expected AP in traffic", "mean height [m]")
+PAIR_LABELS = ("perception entropy", "expected AP in traffic", "mean height")
+COLORS = (BLUE, ORANGE)
+CURVES, CURVE_LABELS = ("shipped", "scans"), ("shipped curves", "from scans")
+
+
+@styled
+def ap_against_scores(
+    path: Path, plan: StudyPlan, design: DesignResults, scores: Mapping[str, dict[str, Any]]
+) -> None:
+    """Draw AP against three scores: a dot a placement, a bar from lowest to highest seed."""
+    figure, axes = plt.subplots(1, 3, figsize=(9.4, 3.3), sharey=True, layout="constrained")
+    chosen = {s.name: s for s in COMPARED}
+    for panel, name, label in zip(axes, SHOWN, LABELS, strict=True):
+        sign = -1.0 if name == PRIMARY else 1.0
+        values = [sign * chosen[name].value(p, scores[p.name]) for p in design.chosen]
+        _panel(panel, plan, design, np.array(values))
+        panel.set_xlabel(label)
+    axes[0].invert_xaxis()  # the better, the further right, as in the other panels
+    axes[0].set_ylabel("mean AP of five classes")
+    axes[0].legend(loc="best", frameon=False, handletextpad=0.1)
+    save_plot(figure, path)
+
+
+def _panel(panel: Axes, plan: StudyPlan, design: DesignResults, values: np.ndarray) -> None:
+    aps, mean = design.samples.aps, design.samples.ap
+    for vehicle, color in zip(plan.vehicles, COLORS, strict=False):
+        index = np.flatnonzero(design.samples.groups == vehicle)
+        low, high = aps[index].min(axis=1), aps[index].max(axis=1)
+        panel.vlines(values[index], low, high, color=color, lw=1.0, alpha=0.5)
+        panel.plot(values[index], mean[index], "o", color=color, ms=4.5, label=vehicle)
+    remove_frame(panel)
+
+
+@styled
+def pictures_of_scene(path: Path, pictures: NDArray[np.uint8]) -> None:
+    """Draw the pictures (S, W, H, 3) of a scene, two beside each other."""
+    count, width, height, _ = pictures.shape
+    rows = -(-count // 2)
+    size = 9.4, rows * 9.4 / 2.0 * height / width + 0.1
+    figure, axes = plt.subplots(rows, 2, figsize=size, layout="constrained", squeeze=False)
+    for panel, picture in zip(axes.flat, pictures, strict=True):
+        panel.imshow(picture.transpose(1, 0, 2), interpolation="nearest")
+        panel.set_axis_off()
+    save_plot(figure, path)
+
+
+@styled
+def expected_against_found(path: Path, classes: Mapping[str, dict[str, Any]]) -> None:
+    """Draw expected AP against the AP found, by class, with the shipped and the fitted curves."""
+    size = 9.4, 2.4
+    figure, axes = plt.subplots(1, len(classes), figsize=size, sharey=True, layout="constrained")
+    for panel, (name, row) in zip(axes, classes.items(), strict=True):
+        panel.plot([0.0, 1.0], [0.0, 1.0], color=GREY, lw=0.8, ls="--")
+        for model, color, label in zip(CURVES, (GREY, BLUE), CURVE_LABELS, strict=True):
+            panel.plot(row["found"], row["expected"][model], "o", color=color, ms=4, label=label)
+        panel.set_title(name)
+        panel.set_xlim(0.0, 1.0)
+        panel.set_ylim(0.0, 1.0)
+        remove_frame(panel)
+    axes[0].set_ylabel("expected AP in traffic")
+    axes[-1].legend(loc="lower right", frameon=False, handletextpad=0.1)
+    axes[len(axes) // 2].set_xlabel("AP found")
+    save_plot(figure, path)
+
+
+@styled
+def pairs_by_distance(
+    path: Path, design: DesignResults, scores: Mapping[str, dict[str, Any]]
+) -> None:
+    """Draw the share of pairs on one vehicle that a score orders rightly, by their distance."""
+    first, second = np.triu_indices(len(design.chosen), 1)
+    same = design.samples.groups[first] == design.samples.groups[second]
+    first, second = first[same], second[same]
+    distance = design.samples.ap[first] - design.samples.ap[second]
+    edges = np.quantile(np.abs(distance), np.linspace(0.0, 1.0, DISTANCE_BINS + 1))
+    bins = np.clip(np.searchsorted(edges, np.abs(distance), side="right") - 1, 0, DISTANCE_BINS - 1)
+    figure, axes = plt.subplots(figsize=(5.6, 3.3), layout="constrained")
+    axes.axhline(0.5, color=GREY, lw=0.8, ls="--")
+    chosen = {s.name: s for s in COMPARED}
+    for name, label, color in zip(SHOWN, PAIR_LABELS, PAIR_COLORS, strict=True):
+        values = np.array([chosen[name].value(p, scores[p.name]) for p in design.chosen])
+        right = (values[first] - values[second]) * distance > 0.0
+        filled = [k for k in range(DISTANCE_BINS) if (bins == k).any()]
+        middles = [np.median(np.abs(distance)[bins == k]) for k in filled]
+        shares = [right[bins == k].mean() for k in filled]
+        axes.plot(middles, shares, "o-", color=color, ms=4.5, lw=1.2, label=label)
+    axes.set_ylim(0.0, 1.05)
+    axes.set_xlabel("difference of the pair in mean AP")
+    axes.set_ylabel("share of pairs ordered rightly")
+    axes.legend(loc="lower right", frameon=False)
+    remove_frame(axes)
+    save_plot(figure, path)

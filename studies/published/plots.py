@@ -1,0 +1,146 @@
+"""The plots of the comparison: drawn from its results and the published table alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from pe_tools.plots.plotting import BLUE, GREY, ORANGE, remove_frame, save_plot, styled
+
+from .correlations import (
+    MAIN_CLASS,
+    Record,
+    ValidityResults,
+    detectors_disagree,
+    min_significant_rho,
+)
+from .findings import rho_text
+from .published import CLEAN, Paper, papers
+
+PAPER_COLORS = (BLUE, ORANGE)
+MAX_BLACK_TEXT_RHO = 0.7
+"""The cell of a larger rho is too dark for black text."""
+DISAGREEMENT_COLOR = "#dddddd"
+DOT_OFFSET = 0.13
+"""Dots of the two papers are this far above and below their line."""
+
+
+def draw_all(data: Mapping[str, Any], folder: Path) -> None:
+    """Draw every plot of the page."""
+    results = ValidityResults(data)
+    height(folder / "height.png")
+    over_papers(folder / "over_papers.png", results)
+    by_class(folder / "by_class.png", results)
+
+
+@styled
+def height(path: Path) -> None:
+    """Draw AP of cars against the mean height of the LiDARs, a panel for each paper."""
+    figure, axes = plt.subplots(1, 2, figsize=(8.6, 3.6), sharey=True, layout="constrained")
+    for panel, paper, color in zip(axes, papers(), PAPER_COLORS, strict=True):
+        _heights(panel, paper, color)
+    axes[0].set_ylabel("AP of cars, each detector's\nworst 0, best 1; mean of four")
+    save_plot(figure, path)
+
+
+def _heights(panel: Axes, paper: Paper, color: str) -> None:
+    names = list(paper.placements)
+    mean = _scaled_ap(paper, names)
+    for name, ap in zip(names, mean, strict=True):
+        face = "white" if paper.rolled(name) else color
+        panel.plot(paper.height(name), ap, "o", ms=6, mec=color, mfc=face, mew=1.2)
+    for name, x, y in _labels(paper, names, mean):
+        panel.annotate(name, (x, y), (6, 0), textcoords="offset points", fontsize=7.5, va="center")
+    panel.set_title(paper.short, loc="left")
+    panel.set_xlabel("mean height of the LiDARs [m]")
+    panel.set_ylim(-0.08, 1.1)
+    panel.set_xlim(2.15, 2.86)
+    remove_frame(panel)
+
+
+def _scaled_ap(paper: Paper, names: Sequence[str]) -> np.ndarray:
+    ap = np.array([[row[MAIN_CLASS][n] for n in names] for row in paper.ap[CLEAN].values()])
+    low, high = ap.min(axis=1, keepdims=True), ap.max(axis=1, keepdims=True)
+    mean: np.ndarray = ((ap - low) / (high - low)).mean(axis=0)
+    return mean
+
+
+def _labels(paper: Paper, names: Sequence[str], mean: np.ndarray) -> list[tuple[str, float, float]]:
+    """Return name, x and y of the labels; those of nearly the same height do not overlap."""
+    labels: list[tuple[str, float, float]] = []
+    for k in np.argsort(mean):
+        x, y = paper.height(names[k]), float(mean[k])
+        below = [q for _, p, q in labels if abs(p - x) < 0.1]
+        labels.append((names[k].replace("_", " "), x, max(y, *(q + 0.05 for q in below), -1.0)))
+    return labels
+
+
+@styled
+def over_papers(path: Path, results: ValidityResults) -> None:
+    """Draw rho of every score with cars, a dot for each paper, and the range over the choices."""
+    rows = results.main_tests
+    figure, axes = plt.subplots(figsize=(8.6, 0.42 * len(rows) + 1.3), layout="constrained")
+    significant = min_significant_rho(len(papers()[0].placements)) or 1.0
+    for edge in (-significant, significant):
+        axes.axvline(edge, color=GREY, lw=0.8, ls="--")
+    axes.axvline(0.0, color=GREY, lw=0.8)
+    offsets = (-DOT_OFFSET, DOT_OFFSET)
+    for line, row in enumerate(rows):
+        for paper, color, offset in zip(papers(), PAPER_COLORS, offsets, strict=True):
+            correlation = results.correlation_of(paper, MAIN_CLASS, row["score"])
+            _dot(axes, correlation, line + offset, color)
+    axes.set_yticks(range(len(rows)), [row["score"] for row in rows])
+    axes.set_ylim(len(rows) - 0.5, -0.5)
+    axes.set_xlim(-1.02, 1.02)
+    axes.set_xlabel("Spearman's rho with the AP of cars, mean over four detectors")
+    marks = [Line2D([], [], marker="o", ls="", color=c) for c in PAPER_COLORS]
+    names = [p.short for p in papers()]
+    axes.legend(marks, names, loc="lower left", bbox_to_anchor=(0, 1), ncols=2, frameon=False)
+    remove_frame(axes)
+    save_plot(figure, path)
+
+
+def _dot(axes: Axes, row: Record, y: float, color: str) -> None:
+    if row["mean"] is not None:
+        axes.plot([row["lowest"], row["highest"]], [y, y], color=color, lw=2.5, alpha=0.35)
+        axes.plot(row["mean"], y, "o", color=color, ms=6)
+
+
+@styled
+def by_class(path: Path, results: ValidityResults) -> None:
+    """Draw rho of every score with every class; grey where the detectors do not agree."""
+    columns = [(paper, cls) for paper in papers() for cls in paper.classes]
+    names = list(dict.fromkeys(r["score"] for c in columns for r in results.correlations_of(*c)))
+    size = (1.15 * len(columns) + 3.2, 0.36 * len(names) + 1.4)
+    figure, axes = plt.subplots(figsize=size, layout="constrained")
+    for x, column in enumerate(columns):
+        for row in results.correlations_of(*column):
+            _cell(axes, x, names.index(row["score"]), row["mean"], detectors_disagree(row))
+    titles = [f"{paper.short}\n{paper.classes[cls]}" for paper, cls in columns]
+    axes.set_xticks(range(len(columns)), titles)
+    axes.set_yticks(range(len(names)), names)
+    axes.tick_params(length=0, top=False, labeltop=True, bottom=False, labelbottom=False)
+    axes.set_xlim(-0.5, len(columns) - 0.5)
+    axes.set_ylim(len(names) - 0.5, -0.5)
+    axes.spines[:].set_visible(False)
+    save_plot(figure, path)
+
+
+def _cell(axes: Axes, x: int, y: int, rho: float | None, disagree: bool) -> None:
+    color = (
+        DISAGREEMENT_COLOR if disagree or rho is None else plt.get_cmap("PuOr")(0.5 - 0.42 * rho)
+    )
+    axes.add_patch(plt.Rectangle((x - 0.48, y - 0.46), 0.96, 0.92, color=color, lw=0))
+    is_dark = abs(rho or 0.0) > MAX_BLACK_TEXT_RHO
+    text_color = GREY if disagree else "white" if is_dark else "black"
+    axes.text(x, y, rho_text(rho), ha="center", va="center", fontsize=8.5, color=text_color)

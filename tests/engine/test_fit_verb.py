@@ -1,0 +1,155 @@
+"""``pe fit``: what it prints, writes and refuses."""
+
+import json
+import math
+import tomllib
+
+import numpy as np
+import pytest
+
+from pe_core import catalog
+from pe_tools.formats import m_by_range
+from tests.engine.processes import ROOT, pe, pe_without_matplotlib
+
+TABLE = ROOT / "studies" / "paper" / "data" / "paper_lidar.csv"
+LINE = """m,ap
+0.01,0.001
+1,0.2
+2.718281828459045,0.3
+7.38905609893065,0.5
+"""
+"""AP 0.2, 0.3, 0.5 at ln m = 0, 1, 2, and a point at the clip: the line has a slope of 0.15 and is
+0.55 / 3 at 0. Residuals 1/60, -2/60, 1/60: errors sqrt(1 / 1200) and sqrt(1 / 720)."""
+
+
+def test_it_prints_the_curve_what_was_left_out_and_the_snippet(tmp_path):
+    (tmp_path / "line.csv").write_text(LINE)
+    run = pe("fit", tmp_path / "line.csv")
+    assert run.returncode == 0 and not run.stderr
+    assert "a  0.1500 +- 0.0289" in run.stdout and "b  0.1833 +- 0.0373" in run.stdout
+    assert "points  3 of 4; left out: 1 at the clip" in run.stdout
+    assert "[ap.lidar]" in run.stdout
+
+
+def test_it_writes_a_snippet_and_a_plot(tmp_path):
+    (tmp_path / "line.csv").write_text(LINE)
+    run = pe("fit", tmp_path / "line.csv", "--kind", "camera", "--output", tmp_path / "new")
+    assert run.returncode == 0
+    curve = tomllib.loads((tmp_path / "new" / "ap.toml").read_text("utf-8"))["ap"]["camera"]
+    assert curve == {"a": 0.15, "b": 0.183333}
+    assert (tmp_path / "new" / "ap.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_json_is_all_there_is_on_stdout():
+    data = json.loads(pe("fit", TABLE, "--json").stdout)
+    assert data["a"] > 0.0 and len(data["left_out"]) == len(data["m"]) == 12
+
+
+@pytest.mark.parametrize("name", ["car", "pedestrian", "cyclist"])
+def test_public_detections_have_a_curve(name):
+    data = json.loads(pe("fit", TABLE.with_name(f"kitti_{name}.csv"), "--json").stdout)
+    assert 0.1 < data["a"] < 0.3 and data["a_error"] < data["a"] / 2
+
+
+RADAR, RANGES = "Continental ARS408-21", (60.0, 80.0, 100.0, 120.0)
+
+
+def test_a_table_by_range_gives_the_curve_of_what_the_model_measures(tmp_path):
+    """AP made of a known curve at the radar's own m by range: the fit finds the curve again."""
+    m = m_by_range(catalog.load(RADAR), np.array(RANGES), "car")
+    assert (np.diff(m) < 0.0).all() and m[-1] > 1.0
+    rows = [f"{r},{0.3 * math.log(v) + 0.1}" for r, v in zip(RANGES, m.tolist(), strict=True)]
+    (tmp_path / "radar.csv").write_text("\n".join(["range_m,ap", *rows]) + "\n")
+    run = pe("fit", tmp_path / "radar.csv", "--model", RADAR, "--object", "car")
+    assert run.returncode == 0 and not run.stderr
+    curve = tomllib.loads(run.stdout[run.stdout.index("#") :])["ap"]["radar"]["objects"]["car"]
+    assert (curve["a"], curve["b"]) == pytest.approx((0.3, 0.1), abs=1e-5)
+    plain = pe("fit", tmp_path / "radar.csv", "--model", RADAR)
+    of_voxels = tomllib.loads(plain.stdout[plain.stdout.index("#") :])["ap"]["radar"]
+    times = (4.6 + 1.9) * 1.7 / (2.0 * 0.1**2)
+    assert of_voxels["b"] == pytest.approx(0.1 + 0.3 * math.log(times), abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("options", "line"),
+    [
+        ((), "one column named m, found 'range_m, ap'"),
+        (("--model", "no such"), "a name such as"),
+        (("--model", RADAR, "--kind", "camera"), "kind: expected radar, the kind of Continental"),
+        (("--model", RADAR, "--object", "dog"), "object: expected one of car, pedestrian"),
+    ],
+)
+def test_wrong_options_of_a_table_by_range_are_one_line(tmp_path, options, line):
+    (tmp_path / "r.csv").write_text("range_m,ap\n10,0.5\n20,0.4\n30,0.3\n")
+    run = pe("fit", tmp_path / "r.csv", *options)
+    assert run.returncode == 1 and line in run.stderr and run.stderr.count("\n") == 1
+
+
+def test_a_wrong_table_is_one_line_and_status_1(tmp_path):
+    table = tmp_path / "ap.csv"
+    table.write_text("m,ap\n1,0.5\n2,60\n")
+    run = pe("fit", table)
+    assert run.returncode == 1 and not run.stdout
+    assert run.stderr == f"pe: {table}: line 3: expected ap between 0 and 1, found 60.0\n"
+
+
+def test_without_matplotlib_the_line_says_what_to_install(tmp_path):
+    run = pe_without_matplotlib("fit", TABLE, "-o", tmp_path)
+    assert run.returncode == 1 and not run.stdout
+    assert "matplotlib" in run.stderr and "[report]" in run.stderr and run.stderr.count("\n") == 1
+    assert run.stderr.count("pe:") == 1
+
+
+def test_without_a_folder_nothing_is_drawn_and_matplotlib_is_not_needed():
+    run = pe_without_matplotlib("fit", TABLE)
+    assert run.returncode == 0 and "a  0.1520" in run.stdout and not run.stderr
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "$\\frac{$",
+        "$a^{$",
+        "a_b^c",
+        "costs $5 or $6",
+        "\x1b[31m\x07",
+        "two\nlines",
+        "\u4e2d\U0001f697",
+        "n" * 200,
+    ],
+)
+def test_a_name_is_drawn_as_it_is_never_as_a_formula(tmp_path, name):
+    """What matplotlib cannot show is replaced; it neither fails nor warns."""
+    table = tmp_path / f"{name}.csv"
+    table.write_bytes(TABLE.read_bytes())
+    run = pe("fit", table, "--output", tmp_path / "new")
+    assert run.returncode == 0 and not run.stderr
+    assert (tmp_path / "new" / "ap.png").read_bytes().startswith(b"\x89PNG")
+    snippet = (tmp_path / "new" / "ap.toml").read_text("utf-8")
+    assert list(tomllib.loads(snippet)) == ["ap"] and snippet in run.stdout
+
+
+def test_a_dollar_is_drawn_as_a_dollar(tmp_path):
+    """Read as formulas, both of these would draw nothing but an x."""
+    pictures = []
+    for name in ("$x$", "$ x $"):
+        table = tmp_path / f"{name}.csv"
+        table.write_bytes(TABLE.read_bytes())
+        pe("fit", table, "--output", tmp_path / name)
+        pictures.append((tmp_path / name / "ap.png").read_bytes())
+    assert pictures[0] != pictures[1]
+
+
+def test_a_folder_in_the_place_of_the_plot_is_one_line(tmp_path):
+    (tmp_path / "ap.png").mkdir()
+    run = pe("fit", TABLE, "--output", tmp_path)
+    assert run.returncode == 1 and not run.stdout and run.stderr.count("\n") == 1
+    assert run.stderr.startswith(f"pe: {tmp_path / 'ap.png'}: output: expected no file, or one ")
+
+
+def test_a_file_of_the_users_own_is_not_written_over(tmp_path):
+    (tmp_path / "ap.toml").write_text("mine")
+    run = pe("fit", TABLE, "--output", tmp_path)
+    assert run.returncode == 1 and run.stderr.count("\n") == 1 and "ap.toml" in run.stderr
+    assert [p.name for p in tmp_path.iterdir()] == ["ap.toml"]
+    assert (tmp_path / "ap.toml").read_text() == "mine"

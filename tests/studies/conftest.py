@@ -1,0 +1,56 @@
+"""The studies' commands, and one quick reproduction for all tests that look at it."""
+
+import contextlib
+import io
+import json
+import runpy
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+from types import SimpleNamespace
+from unittest import mock
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+def study(name, *arguments):
+    """Run a study's command in this process: what it prints, warnings too, and its status."""
+    out, err = io.StringIO(), io.StringIO()
+    streams = contextlib.redirect_stdout(out), contextlib.redirect_stderr(err)
+    argv = [name, *map(str, arguments)]
+    with streams[0], streams[1], warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("default")
+        with mock.patch.object(sys, "argv", argv), pytest.raises(SystemExit) as ended:
+            runpy.run_module(f"studies.{name}", run_name="__main__")
+    said = "".join(f"{each.category.__name__}: {each.message}\n" for each in warned)
+    text = err.getvalue() + said
+    return SimpleNamespace(returncode=ended.value.code, stdout=out.getvalue(), stderr=text)
+
+
+def study_in_a_process(name, *arguments, **options):
+    """Run a study's command in a process of its own: where nothing of this one's may take part."""
+    command = [sys.executable, "-m", f"studies.{name}", *map(str, arguments)]
+    options = {"cwd": ROOT, "capture_output": True, "text": True, "timeout": 600, **options}
+    return subprocess.run(command, **options)
+
+
+def numbers(data):
+    """All numbers of JSON data."""
+    if isinstance(data, dict):
+        data = list(data.values())
+    if isinstance(data, list):
+        return [n for value in data for n in numbers(value)]
+    return [data] if isinstance(data, (int, float)) and not isinstance(data, bool) else []
+
+
+@pytest.fixture(scope="session")
+def quick(tmp_path_factory):
+    """The folder, the data and the run of ``python -m studies.paper --quick``."""
+    folder = tmp_path_factory.mktemp("reproduction")
+    run = study("paper", "--quick", "--output", folder)
+    assert run.returncode == 0, run.stdout + run.stderr
+    data = json.loads((folder / "results.json").read_text("utf-8"))
+    return SimpleNamespace(folder=folder, data=data, run=run)

@@ -1,0 +1,199 @@
+"""Detectors before and after a search: what is searched, what is compared, what is said."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks.search_problems import PROBLEMS
+from pe_core import InputError
+from pe_core.study import load_study
+from studies.detectors.after_search.plan import (
+    START,
+    full_after_search_plan,
+    quick_after_search_plan,
+)
+from studies.detectors.after_search.searches import (
+    FOLDER,
+    PLACEMENTS,
+    placement_name,
+    searched_placements,
+    study_of,
+)
+from studies.detectors.after_search.section import after_search_section, answer
+from studies.detectors.after_search.study import (
+    AfterSearchFiles,
+    after_search_analysis,
+    after_search_runs,
+    planned_runs,
+    student_interval,
+)
+from studies.detectors.analysis import HOLDS, OPEN, REFUTED
+from studies.detectors.casting import Caster
+from studies.detectors.placements import SHUTTLE
+from studies.detectors.plan import PLAIN, full_plan
+from studies.detectors.scenes import scene
+from studies.paper.paper import STUDIES
+from tests.studies.conftest import ROOT, study
+from tests.studies.test_own_study import in_a_process
+from tests.thorough import THOROUGH
+
+PLAN = full_after_search_plan()
+DIGEST = "21f71ed6d5e047cc"
+"""Of the plan as it was before its first run."""
+FOLDER_OF_DOCS = ROOT / "docs" / "validity" / "own"
+
+
+def results_of(gain, seeds=3, noise=0.003):
+    """Results of runs in which each search gains AP; `gain` by rig and objective."""
+    found = {}
+    for k, rig in enumerate(PLAN.rigs):
+        for what in (START, *PLAN.objectives):
+            for seed in PLAN.study.training.seeds[:seeds]:
+                more = gain.get((rig.name, what), 0.0)
+                ap = 0.5 + 0.1 * k + more + noise * math.sin(7.0 * seed + len(what))
+                rings = {ring: {"car": ap, "cone": ap} for ring in PLAN.study.precision.rings}
+                found[f"{placement_name(rig, what)}-s{seed}"] = {"ap": ap, "by_ring": rings}
+    return found
+
+
+def test_the_plan_is_the_one_before_the_first_run():
+    assert PLAN.digest == DIGEST != full_plan().digest
+    assert planned_runs(PLAN) == 18 and PLAN.study.training.seeds == (1, 2, 3)
+
+
+def test_rigs_are_the_lidars_of_the_studies_that_the_plan_names():
+    """Poses and bounds of experiment 4, and of the benchmark's shuttle with its body."""
+    paper, bench = load_study(STUDIES / "4_cameras.toml"), PROBLEMS["shuttle of eight"].make()
+    for rig, other in zip(PLAN.rigs, (paper, bench), strict=True):
+        ours = study_of(PLAN, rig, "entropy")
+        lidars = [s for s in other.rig if s.kind == "lidar"]
+        assert [s.pose for s in ours.rig] == [s.pose for s in lidars]
+        assert [s.model for s in ours.rig] == [s.model for s in lidars]
+        own, theirs = ours.search, other.search
+        for sensor, lidar in zip(ours.rig, lidars, strict=True):
+            assert own.free[sensor.name] == theirs.free[lidar.name]
+            assert own.limits.get(sensor.name, {}) == theirs.limits.get(lidar.name, {})
+        constraints = own.mounting.constraints, theirs.mounting.constraints
+        assert len({each.clear_housings for each in constraints}) == 1
+        assert np.allclose(ours.vehicle.bounds, other.vehicle.bounds)
+        assert (own.seed, own.method, own.evaluations) == (1, "portfolio", 0)
+    assert len({study_of(PLAN, PLAN.rigs[0], o).search.objective for o in PLAN.objectives}) == 2
+
+
+def test_scenes_of_the_bus_are_those_of_the_study_and_the_shuttle_has_its_own():
+    one, other = (scene(plan, "bus", "test", PLAIN, 3) for plan in (full_plan(), PLAN.study))
+    assert (one.triangles == other.triangles).all()
+    assert len(scene(PLAN.study, SHUTTLE, "test", PLAIN, 3).labels)
+
+
+def test_a_short_search_is_kept_and_repeated_alike(tmp_path):
+    """It ends within its bounds, and its file is not searched again."""
+    plan, said = quick_after_search_plan(), []
+    assert [p.what for p in searched_placements(plan, tmp_path)] == [START]
+    found = searched_placements(plan, tmp_path, said.append)
+    assert len(said) == 2 and [p.what for p in found] == [START, *plan.objectives]
+    again = searched_placements(plan, tmp_path, lambda line: pytest.fail(line))
+    assert again == found
+    other = searched_placements(plan, tmp_path / "other", said.append)
+    assert [p.poses for p in other] == [p.poses for p in found]
+    kept = json.loads((tmp_path / FOLDER / PLACEMENTS).read_text("utf-8"))["searches"]
+    by_ap = kept["shuttle, expected_ap"]
+    assert by_ap["evaluations"] == 6 and by_ap["expected_ap"][1] >= by_ap["expected_ap"][0]
+    (x, y, z, _, pitch, _), *_ = found[1].poses
+    assert abs(x) <= 3.4 and abs(y) <= 1.4 and 0.4 <= z <= 2.9 and abs(pitch) <= 15.0
+    with pytest.raises(InputError, match="plan"):
+        changed = replace(plan, study=replace(plan.study, digest="other"))
+        searched_placements(changed, tmp_path)
+
+
+def test_its_lidars_are_cast(tmp_path):
+    plan = quick_after_search_plan()
+    (start,) = searched_placements(plan, tmp_path)
+    assert start.lidars == 4 and start.channels == 16
+    voxels = Caster(plan.study, start, PLAIN).voxels("test", 0)
+    assert voxels.counts.sum() > 5000 and voxels.beams.sum() > 100
+
+
+def test_runs_come_seed_by_seed():
+    placements = searched_placements(PLAN, FOLDER_OF_DOCS)
+    names = [run.name for run in after_search_runs(PLAN, placements)]
+    assert len(set(names)) == planned_runs(PLAN)
+    assert names[0] == "after-experiment-4-start-s1" and names[-1] == "after-shuttle-expected-ap-s3"
+    assert [name[-1] for name in names] == sorted(name[-1] for name in names)
+
+
+def test_student_s_interval_by_hand():
+    low, high = student_interval([1.0, 2.0, 3.0], 0.95)  # t = 4.3027 with two degrees
+    assert (low, high) == pytest.approx((2.0 - 4.302653 / 3**0.5, 2.0 + 4.302653 / 3**0.5))
+
+
+def test_a_verdict_needs_all_seeds_of_its_comparison_and_a_sentence_both_rigs():
+    gains = {(rig.name, "entropy"): 0.05 for rig in PLAN.rigs}
+    gains["shuttle", "expected_ap"] = 0.05
+    found = after_search_analysis(PLAN, results_of(gains), {})
+    verdicts = {
+        (name, objective): row["verdict"]
+        for name, rig in found["rigs"].items()
+        for objective, row in rig["after"].items()
+    }
+    assert verdicts == {
+        ("experiment_4", "entropy"): HOLDS,
+        ("experiment_4", "expected_ap"): REFUTED,
+        ("shuttle", "entropy"): HOLDS,
+        ("shuttle", "expected_ap"): HOLDS,
+    }
+    assert found["answers"] == {"entropy": HOLDS, "expected_ap": REFUTED}
+    all_rigs, one_rig = answer(found).split(". ")
+    assert all_rigs == (
+        "After a search by perception entropy a detector finds more than at the start on "
+        "2 of 2 rigs (experiment 4 and shuttle)"
+    )
+    assert one_rig == (
+        "After a search by expected AP in traffic a detector finds more than at the start on "
+        "1 of 2 rigs (shown: shuttle; not shown: experiment 4)."
+    )
+    partly = after_search_analysis(PLAN, results_of(gains, seeds=2), {})
+    assert set(partly["answers"].values()) == {OPEN} and "is open" in answer(partly)
+    assert partly["rigs"]["shuttle"]["after"]["entropy"]["mean"] == pytest.approx(0.05, abs=0.01)
+    worse = results_of({(rig.name, "entropy"): -0.05 for rig in PLAN.rigs})
+    told = answer(after_search_analysis(PLAN, worse, {}))
+    assert "It was not shown that a detector finds more" in told
+
+
+def test_the_committed_placements_are_of_this_plan_and_the_section_is_that_of_the_results():
+    placements = searched_placements(PLAN, FOLDER_OF_DOCS)
+    assert len(placements) == 6
+    results = AfterSearchFiles(FOLDER_OF_DOCS, PLAN, placements).read()
+    saved = json.loads((FOLDER_OF_DOCS / FOLDER / "results.json").read_text("utf-8"))
+    assert saved["done"] == len(results) and saved["planned"] == planned_runs(PLAN)
+    section = after_search_section(PLAN, saved, {})
+    assert "experiment 4" in section and answer(saved) in section
+    means = {
+        rig: [v["mean"] for v in row["by_ring"].values()] for rig, row in saved["rigs"].items()
+    }
+    assert [v[0] for v in means.values()] == pytest.approx([-0.0475, -0.0306], abs=1e-4)
+    assert [v[-1] for v in means.values()] == pytest.approx([0.0859, 0.1139], abs=1e-4)
+    assert "| shuttle | -0.031 (-0.051 to -0.011) |" in section
+    told = (ROOT / "docs" / "optimize.md").read_text("utf-8")
+    gains = [row["mean"] for rig in saved["rigs"].values() for row in rig["after"].values()]
+    assert all(f"{gain:+.3f}" in told for gain in gains), "and the documentation its figures"
+
+
+def test_the_command_goes_on_with_what_is_there_by_resume_alone(tmp_path):
+    plan = quick_after_search_plan()
+    files = AfterSearchFiles(tmp_path, plan, searched_placements(plan, tmp_path, print))
+    files.write(files.all[0], {"ap": 0.5})
+    run = study("detectors", "--after-search", "--quick", "--output", tmp_path)
+    assert run.returncode == 1 and "1 of 3 runs; pass --resume" in run.stderr
+
+
+@pytest.mark.skipif(not THOROUGH, reason="three detectors are trained: with CI=true")
+def test_the_quick_study_runs_whole(tmp_path):
+    quick = ("studies.detectors", "--quick", "--after-search", "--output", tmp_path)
+    answer = in_a_process("-m", *quick)
+    assert answer.returncode == 0, answer.stderr
+    assert "3 of 3 runs before and after a search are done" in answer.stdout
+    assert "## After a search" in (tmp_path / "README.md").read_text("utf-8")

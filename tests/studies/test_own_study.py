@@ -1,0 +1,381 @@
+"""Our own study: scenes, points, targets of the detector, average precision, order of runs."""
+
+import hashlib
+import importlib.util
+import json
+import re
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks.embree import Embree
+from pe_core import InputError
+from pe_core.geometry.raycast import VisibleTriangles
+from pe_core.geometry.triangle_tree import TriangleTree
+from studies.detectors import result_files, shapes
+from studies.detectors.after_search.plan import full_after_search_plan
+from studies.detectors.after_search.searches import searched_placements
+from studies.detectors.after_search.section import after_search_section
+from studies.detectors.after_search.study import AfterSearchFiles
+from studies.detectors.afterwards_section import afterwards_section, short_answer
+from studies.detectors.analysis import UNDECIDED
+from studies.detectors.batches import NEITHER, detections, inputs, targets
+from studies.detectors.cameras.plan import full_camera_plan
+from studies.detectors.cameras.section import camera_section
+from studies.detectors.cameras.study import CameraFiles, camera_analysis
+from studies.detectors.cast_cache import FIELDS, cached
+from studies.detectors.casting import GROUND_M, MAX_POINTS, Caster, FreeBeams
+from studies.detectors.curve_section import curve_section
+from studies.detectors.history import history, history_section
+from studies.detectors.placements import placements
+from studies.detectors.plan import PLAIN, TOWN, full_plan, quick_plan
+from studies.detectors.precision import ClassScene, average_precision, in_ring
+from studies.detectors.result_files import digest_of_files, run_digest
+from studies.detectors.runs import RunFiles, runs
+from studies.detectors.scenes import CLASSES, NOBODY, scene
+from studies.detectors.scores import PRIMARY
+from studies.detectors.segmentation import section
+from studies.detectors.study_page import page
+from tests.studies.conftest import ROOT, study
+from tests.thorough import THOROUGH
+
+PLAN = full_plan()
+PLACEMENT = placements(PLAN)[0]
+SCENE = "bdedc09a393d7688"
+"""Digest of what a placement sees in a scene: results of several sessions belong together."""
+TOWN_RUN = """
+import json
+from dataclasses import replace
+from studies.detectors.one_run import run_one
+from studies.detectors.placements import placements
+from studies.detectors.plan import POINTS, TOWN, quick_plan
+from studies.detectors.runs import Run
+plan = quick_plan()
+counts = {"train": 4, "validation": 4, "test": 4}
+plan = replace(plan, scenes=replace(plan.scenes, counts=counts))
+print(json.dumps(run_one(plan, Run(placements(plan)[0], TOWN, POINTS, 1), None)))
+"""
+
+
+@pytest.fixture(scope="module")
+def caster():
+    return Caster(PLAN, PLACEMENT, PLAIN)
+
+
+@pytest.fixture(scope="module")
+def voxels(caster):
+    return [caster.voxels("test", number) for number in range(4)]
+
+
+def test_scenes_and_their_noise_are_the_same_in_every_session(voxels):
+    digest = hashlib.sha256(voxels[0].cells.tobytes() + voxels[0].counts.tobytes())
+    digest.update(voxels[0].beams.tobytes() + voxels[0].centers.tobytes())
+    assert digest.hexdigest()[:16] == SCENE
+
+
+def test_training_and_test_have_scenes_of_their_own():
+    centers = [scene(PLAN, "sedan", split, PLAIN, 3).centers for split in ("train", "test")]
+    assert not set(map(tuple, centers[0])) & set(map(tuple, centers[1]))
+
+
+@pytest.mark.parametrize("name", [*CLASSES, *shapes.DISTRACTORS])
+def test_shapes_fill_their_box_and_stand_on_the_ground(name):
+    mesh = shapes.placed_mesh(name, np.array([3.0, 2.0, 0.0]), np.array([4.0, 2.0, 1.5]), 0.0)
+    low, high = mesh.reshape(-1, 3).min(axis=0), mesh.reshape(-1, 3).max(axis=0)
+    assert low == pytest.approx([1.0, 1.0, 0.0]) and high == pytest.approx([5.0, 3.0, 1.5])
+    across = np.cross(mesh[:, 1] - mesh[:, 0], mesh[:, 2] - mesh[:, 0])
+    assert (across * (mesh[:, 0] - [3.0, 2.0, 0.75])).sum() > 0.0  # normals point outward
+
+
+def test_nothing_overlaps_in_a_scene():
+    content = scene(PLAN, "bus", "train", PLAIN, 5)
+    gaps = np.linalg.norm(content.centers[:, None] - content.centers[None], axis=2)
+    assert gaps[~np.eye(len(gaps), dtype=bool)].min() > 0.5
+    assert len(content.owners) == len(content.triangles) and NOBODY in content.owners
+
+
+@pytest.mark.parametrize("world", [PLAIN, TOWN])
+def test_beams_end_where_embree_says(world):
+    content = scene(PLAN, "sedan", "train", world, 1)
+    embree = Embree.of(content.triangles)
+    if embree is None:
+        pytest.skip("embreex is not installed")
+    lidar = FreeBeams(PLAN, PLACEMENT, 0)
+    hits = VisibleTriangles(TriangleTree(content.triangles), lidar.origin)
+    face = hits.first_hit(lidar.directions).face
+    expected = embree.first_hit(lidar.origin, lidar.directions)
+    owners, named = (np.where(f >= 0, content.owners[f], f) for f in (face, expected))
+    assert (owners >= 0).sum() > 500
+    assert ((owners != named) | ((face < 0) != (expected < 0))).mean() < 2e-4  # along an edge
+
+
+def test_points_on_flat_ground_lie_on_it(caster):
+    _, points = caster.points("test", 0)
+    assert np.abs(points.positions[:, 2]).min() < 0.01
+    assert points.positions[:, 2].min() > -0.1
+    assert points.beams.sum() > 0
+
+
+def test_a_cache_gives_what_was_cast(tmp_path, voxels):
+    path = tmp_path / "cast.npz"
+    first = cached(path, 4, lambda k: voxels[k])
+    again = cached(path, 4, lambda k: pytest.fail("cast again"))
+    for a, b in zip(first, again, strict=True):
+        assert all((getattr(a, name) == getattr(b, name)).all() for name in FIELDS)
+
+
+@pytest.mark.parametrize("mirror", [NEITHER, (True, False), (False, True), (True, True)])
+def test_a_perfect_heat_map_gives_the_objects_back(voxels, mirror):
+    """Targets as outputs: every object that a beam meets is found where it is, mirrored alike."""
+    heat, offsets, _ = targets(voxels, PLAN.region, [mirror] * len(voxels))
+    signs = np.where(mirror, -1.0, 1.0)
+    for k, each in enumerate(voxels):
+        for c, (_, centers) in enumerate(detections(heat[k], offsets[k], PLAN.region)):
+            objects = each.centers[(each.labels == c) & (each.beams > 0)] * signs
+            tops = centers[: len(objects)]
+            gaps = np.linalg.norm(objects[:, None] - tops[None], axis=2).min(axis=1, initial=9.0)
+            assert (gaps < 1.2).all()  # two in one cell are one peak
+            assert len(objects) == 0 or np.median(gaps) < 1e-4
+
+
+def test_a_mirrored_input_has_its_points_at_the_mirrored_places(voxels):
+    plain = inputs(voxels[:1], PLAN.region, [NEITHER])[0]
+    mirrored = inputs(voxels[:1], PLAN.region, [(True, False)])[0]
+    assert plain.sum() > 0 and (mirrored == plain[::-1]).all()
+
+
+def test_points_are_in_their_pillars_and_those_of_objects_come_first(caster):
+    cloud = caster.cloud("test", 0)
+    assert len(cloud.points) == MAX_POINTS
+    heights = cloud.points[:, 2] > GROUND_M
+    assert heights.any() and (heights == np.sort(heights)[::-1]).all()
+    (features, pillars), (mirrored, others) = (
+        inputs([cloud], PLAN.region, [mirror]) for mirror in (NEITHER, (True, False))
+    )
+    nx, ny = PLAN.region.shape
+    i, j = np.divmod(pillars[0], ny)
+    x = (i + 0.5 + features[0, :, 0]) * PLAN.region.cell_m - PLAN.region.x_m
+    y = (j + 0.5 + features[0, :, 1]) * PLAN.region.cell_m - PLAN.region.y_m
+    assert np.abs(np.stack([x, y], axis=1) - cloud.points[:, :2]).max() < 1e-4
+    same = (nx - 1 - others[0] // ny == i) & (others[0] % ny == j)
+    assert same.mean() > 0.999  # but for points on an edge
+    assert np.abs(mirrored[0, same, 1:] - features[0, same, 1:]).max() == 0.0
+
+
+def scenes_of(*rows):
+    """Scenes of a class, each with (scores, detected x, objects' x)."""
+    return [
+        ClassScene(np.array(s, float), on_axis(detected), on_axis(objects))
+        for s, detected, objects in rows
+    ]
+
+
+def on_axis(x):
+    return np.column_stack([x, np.zeros(len(x))]).astype(float).reshape(-1, 2)
+
+
+def test_average_precision_by_hand():
+    scenes = scenes_of(([0.9, 0.6], [10.3, 30.0], [10.0, 20.0]), ([0.8], [5.0], [5.1]))
+    # right, right, wrong; three objects: precision 1 to a recall of 2/3
+    assert average_precision(scenes, 0.5) == pytest.approx(2 / 3)
+    assert average_precision(scenes, 0.2) == pytest.approx(
+        (1 / 2) / 3
+    )  # the second of two is right
+    assert average_precision(scenes_of(([0.9], [1.0], [])), 1.0) is None
+    assert average_precision(scenes_of(([], [], [1.0])), 1.0) == 0.0
+
+
+def test_an_object_is_found_once_and_rings_cut_both():
+    twice = scenes_of(([0.9, 0.8], [10.0, 10.1], [10.0, 40.0]))
+    assert average_precision(twice, 1.0) == pytest.approx(1 / 2)
+    assert average_precision([in_ring(twice[0], 0.0, 15.0)], 1.0) == 1.0
+    assert average_precision([in_ring(twice[0], 30.0, 60.0)], 1.0) == 0.0
+
+
+def test_runs_come_seed_by_seed_and_designs_by_turns():
+    ordered = runs(PLAN)
+    assert len({run.name for run in ordered}) == len(ordered)
+    seeds = [run.seed for run in ordered if not run.name.startswith(("town", "plain"))]
+    assert seeds == sorted(seeds) and seeds.count(1) == 32 + 18 + 1
+    assert [run.name for run in ordered[:4]] == [
+        *("across-sedan-01-s1", "fixed-sedan-01-s1"),
+        *("fixed-bus-01-s1", "across-bus-01-s1"),
+    ]
+
+
+def test_files_of_another_plan_are_refused(tmp_path):
+    files = RunFiles(tmp_path, quick_plan())
+    first, second = files.all[:2]
+    files.write(first, {"ap": 0.5})
+    assert files.missing()[0] == second and files.read() == {
+        first.name: {
+            "schema": 1,
+            "plan": quick_plan().digest,
+            "run": first.name,
+            "ap": 0.5,
+        }
+    }
+    other = RunFiles(tmp_path, replace(quick_plan(), digest="other"))
+    with pytest.raises(InputError, match="plan"):
+        other.read()
+    files.write(first, {"ap": 1.5})
+    with pytest.raises(InputError, match="ap"):
+        files.read()
+
+
+def in_a_process(*command):
+    """Run Python beside this one: what TensorFlow loads would end a later picture of bpy's."""
+    if importlib.util.find_spec("tensorflow") is None:
+        pytest.skip("tensorflow is not installed")
+    return subprocess.run(
+        [sys.executable, *map(str, command)], cwd=ROOT, capture_output=True, text=True, timeout=600
+    )
+
+
+@pytest.mark.skipif(not THOROUGH, reason="six detectors are trained: with CI=true")
+@pytest.mark.parametrize(
+    ("option", "run", "count"),
+    [
+        (("--runs", "4"), "runs/fixed-sedan-01-s1.json", "4 of 4 runs are done"),
+        (("--cameras",), "cameras/runs/cameras-sedan-01-s1.json", "2 of 2 runs of cameras"),
+    ],
+)
+def test_the_quick_study_runs_whole_and_a_repeated_run_has_the_same_results(
+    tmp_path, option, run, count
+):
+    quick = ("studies.detectors", "--quick", "--resume", "--output", tmp_path, *option)
+    answer = in_a_process("-m", *quick)
+    assert answer.returncode == 0, answer.stderr
+    assert count in answer.stdout
+    again = tmp_path / run
+    first = json.loads(again.read_text("utf-8"))
+    again.unlink()
+    assert in_a_process("-m", *quick).returncode == 0
+    second = json.loads(again.read_text("utf-8"))
+    for data in (first, second):
+        del data["seconds"], data["training"]["training_seconds"]
+    assert first == second and 0.0 < first["ap"] < 1.0
+
+
+@pytest.mark.skipif(not THOROUGH, reason="a detector is trained: with CI=true")
+def test_the_steps_run_with_their_world_and_detector():
+    answer = in_a_process("-c", TOWN_RUN)
+    assert answer.returncode == 0, answer.stderr
+    data = json.loads(answer.stdout)
+    assert data["training"]["epochs"] == 2 and 0.0 <= data["ap"] <= 1.0
+    made = {k: data["made"][k] for k in ("python", "numpy", "tensorflow")}
+    assert data["made"]["digest"] == run_digest(quick_plan().digest, made)
+
+
+def test_processes_that_share_a_folder_do_different_runs(tmp_path):
+    """A run is claimed until the next one is asked for; a claim leaves no file."""
+    one, other = (RunFiles(tmp_path, quick_plan()) for _ in range(2))
+    mine, theirs = one.claimed(one.missing()), other.claimed(other.missing())
+    taken = [next(mine), next(theirs), next(mine)]
+    other.write(taken[1], {"ap": 0.5})
+    assert [*taken, *theirs] == one.all
+    mine.close()
+    assert not list(tmp_path.rglob("*.lock"))
+
+
+def test_the_page_is_that_of_the_saved_results():
+    folder = ROOT / "docs" / "validity" / "own"
+    done = RunFiles(folder, PLAN).read()
+    saved = json.loads((folder / "results.json").read_text("utf-8"))
+    assert saved["runs"]["done"] == len(done) == len(list((folder / "runs").glob("*.json")))
+    outside = section(
+        json.loads((folder / "segmentation.json").read_text("utf-8")), PLAN.statistics, PLAN.seed
+    )
+    cameras = full_camera_plan()
+    done_with_cameras = CameraFiles(folder, cameras).read()
+    found = camera_analysis(cameras, {}, {})
+    if done_with_cameras:
+        found = json.loads((folder / "cameras" / "results.json").read_text("utf-8"))
+    assert found["done"] == len(done_with_cameras)
+    curves = curve_section(saved["ap_curves"])
+    searches = full_after_search_plan()
+    searched = json.loads((folder / "after_search" / "results.json").read_text("utf-8"))
+    placements = searched_placements(searches, folder)
+    done_after = AfterSearchFiles(folder, searches, placements).read()
+    after = after_search_section(searches, searched, done_after)
+    groups = {".": done, "after_search": done_after, "cameras": done_with_cameras}
+    happened = history(folder, groups)
+    assert saved["history"] == happened, "no result was replaced since the page was written"
+    more = (
+        *(afterwards_section(saved), curves, after),
+        *(camera_section(cameras, found, done_with_cameras), outside, history_section(happened)),
+    )
+    assert (folder / "README.md").read_text("utf-8") == page(PLAN, saved, done, *more)
+    assert saved["answer"] == short_answer(PLAN, saved, searched, found)
+
+
+def test_other_pages_give_the_answer_of_the_study_and_the_readme_in_seventy_words():
+    answer = json.loads((ROOT / "docs/validity/own/results.json").read_text("utf-8"))["answer"]
+    for page_of_it in ("README.md", "docs/howto/compare.md", "docs/validity/README.md"):
+        blocks = (ROOT / page_of_it).read_text("utf-8").split("\n\n")
+        (told,) = (text for b in blocks if answer in (text := " ".join(b.split())))
+        study, published = told.find("ur own study]"), told.find("ublished")
+        assert study >= 0 and (published < 0 or study < published), "our own study comes first"
+        if page_of_it == "README.md":
+            assert len(re.sub(r"\]\([^)]*\)", "]", told).split()) <= 70
+
+
+def test_the_better_half_is_not_decided_and_other_methods_lean_to_it():
+    """As others computed it from the same runs, with code of their own."""
+    saved = json.loads((ROOT / "docs/validity/own/results.json").read_text("utf-8"))
+    half = saved["afterwards"]["better_half"]
+    assert saved["statements"][2]["verdict"] == UNDECIDED
+    assert half["p"] == pytest.approx(0.017, abs=1e-3)
+    assert half["bca"] == pytest.approx([0.18, 0.88], abs=0.01)
+    assert half["bootstrap_mean"] == pytest.approx(0.53, abs=0.005)
+    assert 0.25 < half["power"][0]["share"] < half["power"][1]["share"] < 0.52
+    rows = saved["afterwards"]
+    assert rows["minus_beams"]["interval"] == pytest.approx([-0.006, 0.11], abs=0.005)
+    assert (rows["fewer_beams"]["pairs"], rows["fewer_beams"]["wrong"][PRIMARY]) == (10, 10)
+    assert rows["curves_across"]["rmse"] == pytest.approx(0.020, abs=5e-4)
+
+
+def test_the_page_tells_which_results_were_replaced_and_which_commits_are_lost():
+    happened = json.loads((ROOT / "docs/validity/own/results.json").read_text("utf-8"))["history"]
+    changes = [row["after"] - row["before"] for row in happened["replaced"].values()]
+    assert [round(f(changes), 3) for f in (min, max)] == [0.003, 0.025] and len(changes) == 4
+    lost = {name: sum(group["lost"].values()) for name, group in happened["groups"].items()}
+    assert lost == {".": 8, "after_search": 0, "cameras": 3}
+    assert all(group["plan_alone"] == group["runs"] for group in happened["groups"].values())
+
+
+def test_a_run_s_digest_covers_plan_code_prior_and_versions(tmp_path, monkeypatch):
+    versions = {"python": "3.11", "numpy": "1.26.4", "tensorflow": "2.21.0"}
+    first = run_digest("plan", versions)
+    assert first == run_digest("plan", versions)
+    assert first != run_digest("other", versions)
+    assert first != run_digest("plan", {**versions, "numpy": "2.0.0"})
+    roots = {"pe_core": tmp_path / "core", "studies.detectors": tmp_path / "own"}
+    for root in roots.values():
+        (root / "prior").mkdir(parents=True)
+        (root / "prior" / "classes.py").write_text("x = 1")
+    monkeypatch.setattr(result_files.resources, "files", lambda package: roots[package])
+    one = run_digest("plan", versions)
+    for root in roots.values():
+        (root / "prior" / "classes.py").write_text("x = 2")
+        assert one != (one := run_digest("plan", versions))
+
+
+def test_a_replaced_result_changes_the_digest_of_the_files(tmp_path):
+    files = RunFiles(tmp_path, quick_plan())
+    files.write(files.all[0], {"ap": 0.5})
+    before = digest_of_files(tmp_path / "runs")
+    files.write(files.all[0], {"ap": 0.6})
+    assert digest_of_files(tmp_path / "runs") != before
+
+
+def test_the_command_refuses_to_mix_results_and_says_what_is_missing(tmp_path):
+    """Results that are there are gone on with by --resume alone."""
+    plan = quick_plan()
+    files = RunFiles(tmp_path, plan)
+    files.write(files.all[0], {"ap": 0.5})
+    run = study("detectors", "--quick", "--output", tmp_path)
+    assert run.returncode == 1 and "1 of 4 runs; pass --resume" in run.stderr

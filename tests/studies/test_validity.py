@@ -1,0 +1,185 @@
+"""The published studies: the published placements, the fixed choices, the page and its numbers."""
+
+import json
+import math
+import re
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from studies.published import correlations, scores
+from studies.published.correlations import (
+    LAYOUTS,
+    LEVEL,
+    RankComparison,
+    ValidityResults,
+    comparisons,
+)
+from studies.published.page import page, placements_for
+from studies.published.published import CLEAN, DEGREES, RADIANS, paper_of, papers
+from studies.published.scores import BASE, BODY_M, body_of, box_triangles, variants
+from studies.published.tasks import FULL, QUICK, names, plan
+from studies.published.validate import own_answer, read_results
+from tests.studies.conftest import ROOT, numbers, study
+
+
+@pytest.fixture(scope="session")
+def quick(tmp_path_factory):
+    """The folder, the data and the run of ``python -m studies.published --quick``."""
+    folder = tmp_path_factory.mktemp("validity")
+    run = study("published", "--quick", "--output", folder)
+    assert run.returncode == 0, run.stdout + run.stderr
+    data = json.loads((folder / "results.json").read_text("utf-8"))
+    return SimpleNamespace(folder=folder, data=data, run=run)
+
+
+def test_placements_are_the_published_ones():
+    place3d, icra = papers()
+    assert list(place3d.placements)[-1] == "ours_det" and len(place3d.placements) == 8
+    assert place3d.height("ours_det") == pytest.approx((2.5 + 2.6 + 2.8 + 2.7) / 4)
+    assert [s.kind for s in icra.rig("wide+line", DEGREES)] == ["lidar"] * 4 + ["camera"] * 6
+    assert place3d.ap[CLEAN]["CenterPoint"]["car"]["trapezoid"] == 55.4
+
+
+def test_rolls_are_read_both_ways():
+    paper = paper_of("place3d")
+    assert [n for n in paper.placements if paper.rolled(n)] == [
+        "line_roll",
+        "pyramid_roll",
+        "ours_det",
+    ]
+    roll = {r: paper.rig("line_roll", r)["lidar_1"].pose.rpy[0] for r in (DEGREES, RADIANS)}
+    assert math.degrees(roll[DEGREES]) == pytest.approx(-0.3)
+    assert roll[RADIANS] == pytest.approx(-0.3)
+
+
+def test_lidars_have_their_channels_and_beams():
+    lidar = paper_of("icra2024").rig("wide+line", DEGREES)["lidar_0"].model
+    assert np.degrees(lidar.elevations[[0, -1]]).tolist() == pytest.approx([-25.0, 5.0])
+    assert lidar.beam_count == 16 * 250  # 80,000 points a second at 20 Hz
+
+
+def test_every_comparison_has_all_its_placements():
+    place3d, icra = papers()
+    found = comparisons(place3d)
+    assert {c.cls for c in found if c.condition == CLEAN} == {"car", "pedestrian", "cyclist"}
+    assert {len(c.placements) for c in found} == {8, 5}
+    assert len({c.condition for c in found}) == 7
+    assert {len(c.placements) for c in comparisons(icra)} == {8, 4}
+
+
+def test_the_box_is_closed_and_stands_on_the_ground():
+    triangles = body_of("box").triangles
+    assert triangles.min(axis=(0, 1)).tolist() == pytest.approx([-BODY_M[0] / 2, -BODY_M[1] / 2, 0])
+    across = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    volume = (across * triangles[:, 0]).sum() / 6.0
+    assert volume == pytest.approx(math.prod(BODY_M))
+
+
+def test_a_box_is_turned_counter_clockwise():
+    front = box_triangles((1.0, 2.0, 0.5), (4.0, 2.0, 1.0), math.pi / 2)
+    assert front.max(axis=(0, 1)).tolist() == pytest.approx([2.0, 4.0, 1.0])
+
+
+def test_each_choice_is_varied_alone():
+    for choice in variants(True):
+        fields = ("body", "density", "curves", "part")
+        assert sum(getattr(choice, f) != getattr(BASE, f) for f in fields) <= 1
+    assert len({choice.name for choice in variants(True)}) == len(list(variants(True)))
+
+
+def test_what_variants_share_is_computed_once():
+    base = replace(FULL, all_variants=False)
+    assert len(names(base)) == 4 * (8 + 3 + 8)
+    assert set(names(base)) < set(names(FULL))
+
+
+def test_the_quick_run_is_complete(quick):
+    values = {name: entry["value"] for name, entry in quick.data["results"].items()}
+    assert plan(QUICK, values) == []
+    assert all(row["score"] in quick.run.stdout for row in quick.data["over_papers"])
+
+
+def test_height_is_what_the_papers_disagree_on(quick):
+    """Independent of any score: 0.88 and -0.69, as a table of both papers' cars gives by hand."""
+    reading, selection = correlations.TREATMENTS[0]
+    rows = [row for row in quick.data["over_papers"] if row["score"] == "mean height"]
+    found = {(row["reading"], row["placements"]): row["rho"] for row in rows}
+    assert found[reading, selection] == pytest.approx([0.877, -0.694], abs=1e-3)
+
+
+def test_scores_are_turned_so_that_higher_is_better(quick):
+    values = {name: entry["value"] for name, entry in quick.data["results"].items()}
+    paper = paper_of("place3d")
+    by_name = {c.name: c for c in scores.CANDIDATES}
+    rating = scores.Rating(paper, "center", DEGREES, "car")
+    entropy = values["voxels/alone/place3d/center/degrees/box"]["road"]["per_class"]["car"][
+        "entropy"
+    ]
+    assert by_name["perception entropy, road prior"].value(rating, values) == -entropy
+    ap = values["objects/alone/place3d/center/degrees/box/1/fitted"]["per_class"]["car"]["ap"]
+    assert by_name["expected AP"].value(rating, values) == ap
+
+
+def test_without_the_rolled_placements_there_are_five():
+    paper = paper_of("place3d")
+    comparison = RankComparison(paper, CLEAN, "car", DEGREES, LEVEL)
+    level = ["center", "line", "pyramid", "square", "trapezoid"]
+    assert [name for (name,) in comparison.placements] == level
+    assert all(len(ap) == 5 for ap in comparison.ap.values())
+
+
+def test_layouts_average_what_differs_in_cameras_alone():
+    comparison = RankComparison(paper_of("icra2024"), CLEAN, "car", DEGREES, LAYOUTS)
+    assert comparison.placements[0] == ("wide+center", "narrow+center")
+    assert comparison.ap["BEVFusion/VoxelNet"][0] == pytest.approx((88.65 + 87.49) / 2)
+
+
+def test_holm_is_over_all_scores_compared(quick):
+    for treatment in correlations.TREATMENTS:
+        rows = [
+            r for r in quick.data["over_papers"] if (r["reading"], r["placements"]) == treatment
+        ]
+        assert [row["score"] for row in rows] == [c.name for c in scores.CANDIDATES]
+        least = min(row["p"] for row in rows)
+        assert min(row["holm"] for row in rows) == pytest.approx(min(1.0, least * len(rows)))
+
+
+def test_every_rho_of_the_page_is_in_the_results(quick):
+    page = (quick.folder / "README.md").read_text("utf-8")
+    allowed = {f"{v + 0.0:+.2f}" for v in numbers(quick.data)}
+    found = set(re.findall(r"(?<![\d.])[+-]\d\.\d\d(?!\d)", page))
+    assert len(found) > 30 and found <= allowed
+
+
+def test_every_picture_of_the_page_is_there(quick):
+    page = (quick.folder / "README.md").read_text("utf-8")
+    pictures = re.findall(r"!\[[^]]+\]\(([^)]+)\)", page)
+    assert len(pictures) == 3
+    for name in pictures:
+        assert (quick.folder / name).read_bytes().startswith(b"\x89PNG"), name
+
+
+def test_a_changed_score_is_noticed(quick, tmp_path):
+    data = json.loads(json.dumps(quick.data))
+    value = data["results"]["objects/alone/place3d/center/degrees/box/1/fitted"]["value"]
+    value["per_class"]["car"]["ap"] = 0.999
+    (tmp_path / "results.json").write_text(json.dumps(data))
+    run = study("published", "--page-only", "--output", tmp_path)
+    assert run.returncode != 0 and run.stderr.count("\n") == 1 and "correlations" in run.stderr
+
+
+def test_the_page_of_the_docs_is_that_of_its_results():
+    """Whole: correlations are worked out again from the scores, and every word from them."""
+    data = read_results(ROOT / "docs" / "validity" / "results.json")
+    results = ValidityResults(data)
+    assert (ROOT / "docs" / "validity" / "README.md").read_text("utf-8") == page(
+        results, own_answer(ROOT / "docs" / "validity")
+    )
+
+
+def test_placements_needed_are_those_of_fishers_z():
+    """By hand: 3 + 1.06 (2.8016 / atanh 0.5)^2 = 30.6."""
+    assert placements_for(0.5) == 31 and placements_for(0.9) < placements_for(0.7) < 31

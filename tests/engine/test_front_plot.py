@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from studies.paper import plotting
+from pe_tools.plots import plotting
 from tests.engine.processes import pe
 
 ROWS = [

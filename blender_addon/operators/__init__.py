@@ -3,7 +3,7 @@
 Panels take from here the operators, and what menus list.
 """
 
-from ..bridge import shown_state
+from ..bridge import after_of, shown_state
 from ..diagnostics import warnings_outdated
 from ..live import (
     BETTER,
@@ -71,6 +71,7 @@ __all__ = [
     "ShownScore",
     "ShownSource",
     "ShownVerdict",
+    "after_of",
     "answer",
     "brief",
     "costs_nothing",

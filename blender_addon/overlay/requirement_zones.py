@@ -13,10 +13,11 @@ from ..engine import graphics, requirements
 Floats = NDArray[np.float64]
 Verdict = requirements.Verdict
 
-MET: graphics.Rgba = (0.20, 0.72, 0.42, 1.0)
+MET: graphics.Rgba = (0.5, 1.0, 0.95, 1.0)
+"""A light blue-green: told from every colour of the ground map below it, as a test measures."""
 NOT_MET: graphics.Rgba = (0.95, 0.36, 0.16, 1.0)
 NOT_CHECKED: graphics.Rgba = (0.6, 0.6, 0.6, 1.0)
-FILL_ALPHA, FAINT_ALPHA = 0.22, 0.5
+FILL_ALPHA, FAINT_ALPHA = 0.5, 0.5
 """Opacity of filled samples, and of the outlines of zones that are not selected."""
 ON_GROUND_M = 0.015
 """Zones are drawn a little above the ground."""

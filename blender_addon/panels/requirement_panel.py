@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 
 from ..language import draw_label
-from ..operators import ShownSource, ShownVerdict, shown_verdicts, source_of
+from ..operators import ShownSource, after_of, shown_verdicts, source_of
 from ..properties.requirement_fields import (
     AREA,
     BODIES_ASKED,
@@ -18,12 +18,14 @@ from .layout import Tab, columns, draw_list, draw_properties, draw_sentence
 
 ADD_REMOVE = ("pe.add_requirement", "pe.remove_requirement")
 
+BELOW_SCALE = 0.75
+"""Height of a requirement's second line, with its regulation and its figure."""
 ICONS = {True: "CHECKMARK", False: "CANCEL", None: "QUESTION"}
 """By what is known of a requirement: met, not met, not checked."""
 
 
 class PE_UL_requirements(bpy.types.UIList):
-    """The requirements: verdict, name, margin"""
+    """The requirements: verdict and name, and below them the regulation and the margin"""
 
     def draw_item(
         self,
@@ -36,28 +38,21 @@ class PE_UL_requirements(bpy.types.UIList):
         _active_property: str,
     ) -> None:
         verdict = shown_verdicts(context.scene).get(item.name)
-        row = layout.row(align=True)
+        lines = layout.column(align=True)
+        row = lines.row(align=True)
         row.prop(item, "enabled", text="")
-        text = _short_margin(verdict)
-        name, margin = columns(row, 0.66 if text else 0.98)
+        name = row.row(align=True)
         name.active = item.enabled
         icon = "BLANK1" if verdict is None else ICONS[verdict.met]
         name.alert = verdict is not None and verdict.met is False
         name.prop(item, "name", text="", emboss=False, icon=icon)
+        below = lines.row(align=True)
+        below.scale_y = BELOW_SCALE
+        after, margin = columns(below, 0.5)
+        after.active = False
+        after.label(text=after_of(item), icon="BLANK1", translate=False)
         margin.alignment = "RIGHT"
-        draw_label(margin, text)
-
-
-def _short_margin(verdict: ShownVerdict | None) -> str:
-    """Return the margin without its words, for a narrow column."""
-    if verdict is None:
-        return ""
-    text = verdict.margin.removeprefix("margin ").replace(
-        "at least", "\N{GREATER-THAN OR EQUAL TO}"
-    )
-    if text.startswith("fails "):
-        text = f"\N{MINUS SIGN}{text.removeprefix('fails ').removesuffix(' inside')}"
-    return text
+        draw_label(margin, "" if verdict is None else verdict.margin.removeprefix("margin "))
 
 
 class PE_PT_requirements(Tab, bpy.types.Panel):
@@ -80,7 +75,7 @@ class PE_PT_requirements(Tab, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         settings, layout = context.scene.perception_entropy, self.layout
         names, operators = ("requirements", "requirement_index"), ADD_REMOVE
-        buttons = draw_list(layout, PE_UL_requirements, settings, names, operators, rows=5)
+        buttons = draw_list(layout, PE_UL_requirements, settings, names, operators, rows=4)
         buttons.operator("pe.copy_requirement", text="", icon="DUPLICATE")
         for step, icon in ((-1, "TRIA_UP"), (1, "TRIA_DOWN")):
             buttons.operator("pe.move_requirement", text="", icon=icon).step = step

@@ -9,12 +9,13 @@ import pytest
 import pe_core as pe
 from blender_addon import bridge
 from blender_addon.operators import requirements as operators
-from blender_addon.overlay.requirement_zones import MET, NOT_MET
+from blender_addon.overlay.requirement_zones import FILL_ALPHA, MET, NOT_MET
 from pe_core.study import requirement_file
 from pe_tools import graphics
 from tests.addon import scenes
 from tests.addon.command_line import pe_here, run_here
 from tests.engine.shapes import box
+from tests.engine.test_sensor_colors import EYES, lab
 
 
 @pytest.fixture
@@ -433,3 +434,14 @@ def test_the_ground_map_of_redundancy_has_the_engine_s_numbers(held):
         shown = shape.sheet.image[..., :3].transpose(1, 0, 2)
         assert np.allclose(shown[known], counts[values[known]], atol=1e-6), name
         assert "1 m tall" in shape.legend.title
+
+
+@pytest.mark.parametrize("eyes", EYES)
+@pytest.mark.parametrize("scale", [graphics.VIRIDIS, graphics.CIVIDIS, graphics.COUNTS])
+@pytest.mark.parametrize("opacity", [0.5, 1.0])
+def test_zones_that_are_met_can_be_told_from_the_map_below(scale, eyes, opacity):
+    """A green at 22 % was lost on the greens of the map."""
+    for color in graphics.on_scale(np.linspace(0.0, 1.0, 13), scale):
+        ground = 0.24 + opacity * (color - 0.24)
+        zone = ground + FILL_ALPHA * (np.array(MET[:3]) - ground)
+        assert np.linalg.norm(lab(zone, EYES[eyes]) - lab(ground, EYES[eyes])) > 10.0

@@ -336,12 +336,16 @@ def test_comparing_scores_what_has_no_score_as_if_it_stood_there(ideas):
     assert whole.values == (bridge.score_of(first).entropy, bridge.score_of(second).entropy)
     columns = compare_variants.columns_of(names, table)
     assert [column[0][0] for column in columns] == ["", *names]
-    assert columns[1][2][0] == f"{whole.values[0]:.3f}"
-    assert columns[2][2].change == f"({whole.differences[1]:+.3f})"
+    order = [cell[0] for cell in columns[0] if cell is not None]
+    titles = [order.index(compare_variants.TITLES[each]) for each in ("blind", "reach", "entropy")]
+    assert titles[0] == 1 and titles == sorted(titles), "what a designer asks for comes first"
+    at = [cell and cell[0] for cell in columns[0]].index(compare_variants.TITLES["entropy"]) + 1
+    assert columns[1][at][0] == f"{whole.values[0]:.3f}"
+    assert columns[2][at].change == f"({whole.differences[1]:+.3f})"
     gain = BETTER if whole.differ(0, 1) else SAME
-    assert columns[2][2].sense == (gain if whole.differences[1] < 0.0 else WORSE)
-    assert (columns[1][2].change, columns[1][2].sense) == ("", SAME)
-    assert [columns[1][2][1], columns[2][2][1]] == list(whole.best)
+    assert columns[2][at].sense == (gain if whole.differences[1] < 0.0 else WORSE)
+    assert (columns[1][at].change, columns[1][at].sense) == ("", SAME)
+    assert [columns[1][at][1], columns[2][at][1]] == list(whole.best)
     assert bridge.score_of(second).scatter == higher.evaluator().score(higher.rig).scatter
     said = compare_variants.sentences(names, table, 40)
     scored = table[:-3]
@@ -366,7 +370,7 @@ def test_comparing_tells_blind_ground_reach_and_ap_for_the_height_and_class_show
         own = pe.advice.key_figures(study.sight(), study.rig, height, name)
         names, table = compare_variants.comparison_of(ideas)
         assert table[-3:] == pe.advice.compare_figures({"Variant": own})
-    assert [column[-1][0] for column in compare_variants.columns_of(names, table)] == [
+    assert [column[2][0] for column in compare_variants.columns_of(names, table)] == [
         "    1 m tall, within 10 m",
         f"{own.blind_m2:.1f}",
     ]

@@ -180,8 +180,9 @@ class PE_OT_show_comparison(bpy.types.Operator):
         letters = width // LETTER_PX
         self.said = sentences(self.names, self.rows, letters)
         self.said += wrap(shown(hardware_note(context.scene)), letters)
+        title, close = shown(self.bl_label), shown("Close")
         return context.window_manager.invoke_props_dialog(
-            self, width=width, title=self.bl_label, confirm_text="Close"
+            self, width=width, title=title, confirm_text=close, translate=False
         )
 
     def draw(self, _context: bpy.types.Context) -> None:

@@ -13,15 +13,18 @@ from . import (
     scoring_panels,
     search_panels,
     selected_object,
+    sensor_lists,
     sensor_menus,
     variant_panels,
 )
 
 CLASSES = (
     *sensor_menus.CLASSES,
+    *sensor_lists.CLASSES,
     *main.CLASSES,
     *score_details.LIVE_CLASSES,
     *selected_object.CLASSES,
+    *main.WARNING_CLASSES,
     *score_details.CLASSES,
     *variant_panels.CLASSES,
     *scoring_panels.CLASSES,

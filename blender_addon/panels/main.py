@@ -57,22 +57,29 @@ def draw_actions(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) 
         row.operator("pe.optimize", icon="ORIENTATION_GIMBAL")
         return
     row.progress(
-        text=shown(running_job.current.text),
+        text=shown(running_job.current.notice or running_job.current.text),
         factor=running_job.current.progress.fraction,
         translate=False,
     )
     row.operator("pe.cancel", text="", icon="CANCEL")
-    if running_job.current.notice:
-        draw_label(layout, running_job.current.notice, "INFO")
 
 
 def draw_result(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw the live score; or the stored one, if it is current or Live is off."""
+    """Draw the live score; or the stored one, if it is current or Live is off.
+
+    Each takes the same rows, those that come late included: what is below stays where it is.
+    """
     settings, live = context.scene.perception_entropy, shown_score(context.scene)
     if live is not None and not live.stored:
         draw_live(layout, settings, live)
     elif settings.has_result:
         draw_stored(layout, context)
+    elif listed_sensors(context.scene):
+        column = layout.box().column(align=True)
+        for name in ("Entropy", "Coverage"):
+            draw_figure(column, name, "\N{EN DASH}")
+        draw_label(column, "Not scored yet", "BLANK1")
+        draw_changed(layout, is_changed=False)
     if settings.has_result and (state := shown_state(context.scene)):
         draw_sentence(layout, context, f"Shown: state {state}. Scored: as drawn", icon="INFO")
 
@@ -87,8 +94,14 @@ def draw_live(
     draw_figure(column, "Coverage", f"{live.coverage:.1%}")
     state = "Live: exact, on a sample" if live.exact else "Live: a preview, on a sample"
     draw_label(column, state, "REC")
-    if settings.has_result and (settings.result_stale or not live.state):
-        draw_label(layout, "Changed since it was scored", "FILE_REFRESH")
+    is_changed = settings.has_result and (settings.result_stale or not live.state)
+    draw_changed(layout, is_changed=is_changed)
+
+
+def draw_changed(layout: bpy.types.UILayout, *, is_changed: bool) -> None:
+    """Draw that the scene has changed since its score; else room for that line."""
+    text, icon = ("Changed since it was scored", "FILE_REFRESH") if is_changed else ("", "BLANK1")
+    draw_label(layout, text, icon)
 
 
 def draw_stored(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -104,6 +117,9 @@ def draw_stored(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         draw_changes(column, context, settings)
     else:
         draw_figure(column, "Coverage", f"{settings.result_coverage:.1%}")
+    samples = "On all voxels" if not settings.result_stderr else "On a sample"
+    draw_label(column, f"{samples}, as scored", "CHECKMARK")
+    draw_changed(layout, is_changed=settings.result_stale)
     if settings.result_ap:
         draw_figure(column, "Expected AP", settings.result_ap)
     for name in ("mounted_off", "sensor_lost"):
@@ -115,8 +131,6 @@ def draw_stored(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         draw_sentence(state, context, text[:1].upper() + text[1:], icon="ERROR")
     for line in settings.result_missing.splitlines():
         draw_sentence(state, context, f"Scored without it: {line}", icon="ERROR")
-    if settings.result_stale:
-        draw_label(state, "Changed since this was scored", "FILE_REFRESH")
 
 
 def draw_changes(
@@ -155,15 +169,24 @@ def draw_figure(layout: bpy.types.UILayout, name: str, value: str, sense: int = 
         right.label(text=value, icon_value=sense_icon(sense), translate=False)
 
 
-def draw_vehicle_warnings(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw a line on the vehicle, and warnings about it, below its field."""
+def draw_vehicle_line(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw a line on the vehicle below its field."""
     settings = context.scene.perception_entropy
     if settings.vehicle is not None and settings.vehicle_line:
         draw_sentence(layout, context, settings.vehicle_line)
-    warnings = [w for w in settings.result_warnings if not w.subject]
-    if warnings:
+
+
+def draw_warnings(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the warnings: those of the vehicle, then those of each sensor."""
+    warnings = list(context.scene.perception_entropy.result_warnings)
+    for subject in dict.fromkeys(["", *(warning.subject for warning in warnings)]):
+        own = [warning for warning in warnings if warning.subject == subject]
+        if not own:
+            continue
         box = layout.box().column(align=True)
-        for warning in warnings:
+        if subject:
+            box.operator("pe.select_sensor", text=subject, translate=False).name = subject
+        for warning in own:
             draw_warning(box, context, warning)
 
 
@@ -202,7 +225,7 @@ def draw_vehicle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
         column = layout.column(align=True)
         column.operator("pe.use_selected", icon="RESTRICT_SELECT_OFF")
         column.operator("pe.open_example", icon="FILE_BLEND")
-    draw_vehicle_warnings(layout, context)
+    draw_vehicle_line(layout, context)
     if step == 2:
         asked, button = columns(layout, 0.5)
         draw_label(asked, "Front at the arrow?")
@@ -220,13 +243,31 @@ class PE_PT_main(Tab, bpy.types.Panel):
         if settings.version > VERSION:
             newer = "Saved by a newer version of the extension: its new settings are not shown"
             draw_sentence(self.layout, context, newer, icon="ERROR")
+        draw_actions(self.layout, settings)  # first: nothing that comes late moves them
         draw_vehicle(self.layout, context)
         draw_step(self.layout, context, 2)
         draw_add(self.layout, settings)
         draw_sensors(self.layout, context)
-        draw_actions(self.layout, settings)
-        draw_written(self.layout, context)
         draw_result(self.layout, context)
+        draw_written(self.layout, context)
+
+
+class PE_PT_warnings(Tab, bpy.types.Panel):
+    """What is wrong with the vehicle and the sensors, and buttons that correct it"""
+
+    bl_idname = "PE_PT_warnings"
+    bl_label = "Warnings"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return bool(context.scene.perception_entropy.result_warnings)
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        count = len(context.scene.perception_entropy.result_warnings)
+        self.layout.label(text=str(count), translate=False)  # visible also when closed
+
+    def draw(self, context: bpy.types.Context) -> None:
+        draw_warnings(self.layout, context)
 
 
 def draw_add(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
@@ -310,5 +351,7 @@ def unregister() -> None:
 
 
 CLASSES = (PE_PT_main,)
+
+WARNING_CLASSES = (PE_PT_warnings,)  # below the selected sensor's panel, which they would move
 
 EXPORT_CLASSES = (PE_PT_export,)  # below all other panels

@@ -6,12 +6,16 @@ import bpy
 
 from ..language import draw_label
 from ..operators import listed_sensors
-from .layout import draw_warning, letters_per_line
+from .layout import letters_per_line
 
 MIN_NAME_SHARE = 0.34
 """Smallest share of a row for the name."""
 BESIDE_LETTERS = 9
 """Width of switches and the figure in a row, in letters."""
+MAX_ROWS = 7
+"""More sensors are a list that scrolls: the panel stays as long as it is."""
+SHOWN_ITEM = 1 << 30
+"""`UIList.bitflag_filter_item`, which only its instances have."""
 SWATCH_UNITS = 0.8
 """Width of a colour, in widths of an icon."""
 FIGURE_SHARE = 0.26
@@ -19,7 +23,7 @@ FIGURE_SHARE = 0.26
 
 
 def draw_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw a row for each sensor under a header, and its warnings below it."""
+    """Draw a row for each sensor under a header; of many, a list that scrolls."""
     objects = listed_sensors(context.scene)
     box = layout.box().column(align=True)
     if not objects:
@@ -27,12 +31,46 @@ def draw_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
         return
     share = name_share(objects, letters_per_line(context) - BESIDE_LETTERS)
     draw_header(box, share)
-    warnings = list(context.scene.perception_entropy.result_warnings)
+    if len(objects) > MAX_ROWS:
+        given = context.scene, "objects", context.scene.perception_entropy, "selected_sensor"
+        box.template_list(PE_UL_sensors.__name__, "", *given, rows=MAX_ROWS, maxrows=MAX_ROWS)
+        return
     for obj in objects:
         draw_sensor(box, context, obj, share)
-        for warning in warnings:
-            if warning.subject == obj.name:
-                draw_warning(box, context, warning)
+
+
+class PE_UL_sensors(bpy.types.UIList):
+    """The sensors of the scene, without its other objects"""
+
+    def draw_item(
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        _scene: bpy.types.Scene,
+        item: bpy.types.Object,
+        _icon: int,
+        _active_data: bpy.types.PropertyGroup,
+        _active_property: str,
+    ) -> None:
+        objects = listed_sensors(context.scene)
+        share = name_share(objects, letters_per_line(context) - BESIDE_LETTERS)
+        draw_sensor(layout, context, item, share)
+
+    def filter_items(
+        self, context: bpy.types.Context, data: bpy.types.Scene, name: str
+    ) -> tuple[list[int], list[int]]:
+        """Show the sensors alone, in the order of the list."""
+        return shown_rows(list(getattr(data, name)), listed_sensors(context.scene))
+
+
+def shown_rows(
+    objects: list[bpy.types.Object], sensors: list[bpy.types.Object]
+) -> tuple[list[int], list[int]]:
+    """Return Blender's filter flags of objects, and their places: sensors first, as listed."""
+    order = {sensor.name: place for place, sensor in enumerate(sensors)}
+    flags = [SHOWN_ITEM if o.name in order else 0 for o in objects]
+    rest = iter(range(len(order), len(objects)))
+    return flags, [order[o.name] if o.name in order else next(rest) for o in objects]
 
 
 def name_share(objects: list[bpy.types.Object], room: int) -> float:
@@ -76,8 +114,10 @@ def draw_sensor(
     name, model, figure = row_cells(row, share)
     row.active = counts  # a hidden sensor is not scored
     active = obj == context.active_object
+    warned = any(w.subject == obj.name for w in context.scene.perception_entropy.result_warnings)
+    icon = "ERROR" if warned else "NONE"
     name.operator(
-        "pe.select_sensor", text=obj.name, depress=active, translate=False
+        "pe.select_sensor", text=obj.name, depress=active, icon=icon, translate=False
     ).name = obj.name
     if model is not None:
         model.label(text=settings.model, translate=False)
@@ -177,3 +217,6 @@ def _cells(layout: bpy.types.UILayout, wide: bool) -> list[bpy.types.UILayout]:
     loss, where = figures.row(align=True), figures.row(align=True)
     loss.alignment = "RIGHT"
     return [name, loss, where] if half is None else [name, loss, where, half.row(align=True)]
+
+
+CLASSES = (PE_UL_sensors,)

@@ -24,6 +24,22 @@ def changed(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> 
     signals.study_changed.emit()
 
 
+def selected_object_index(_settings: bpy.types.PropertyGroup) -> int:
+    """Return the place of the active object among the scene's objects, for a list of them."""
+    active = bpy.context.view_layer.objects.active
+    return -1 if active is None else bpy.context.scene.objects.find(active.name)
+
+
+def select_object_by_index(_settings: bpy.types.PropertyGroup, number: int) -> None:
+    """Select the object at a place among the scene's objects, and nothing else."""
+    objects, layer = bpy.context.scene.objects, bpy.context.view_layer
+    if 0 <= number < len(objects) and objects[number].visible_get():
+        for other in layer.objects.selected[:]:
+            other.select_set(False)
+        objects[number].select_set(True)
+        layer.objects.active = objects[number]
+
+
 def requirement_chosen(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
     """Update callback of the list of requirements: the view goes to the chosen one."""
     signals.requirement_chosen.emit()

@@ -20,7 +20,14 @@ from bpy.props import (
 
 from ..choices import PRIORS
 from ..engine import search, studies
-from .callbacks import changed, kinds_to_add, redraw, requirement_chosen
+from .callbacks import (
+    changed,
+    kinds_to_add,
+    redraw,
+    requirement_chosen,
+    select_object_by_index,
+    selected_object_index,
+)
 from .condition import PE_State, PE_Weather
 from .list_rows import PE_CurveSettings, PE_FocusSettings, PE_MountSettings, PE_OwnSensorSettings
 from .requirement import PE_Requirement
@@ -167,6 +174,12 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
     )
     mounts: CollectionProperty(
         type=PE_MountSettings, name="Mounts", description="Surfaces or slots for sensors"
+    )
+    selected_sensor: IntProperty(
+        name="Selected Sensor",
+        description="Place of the selected sensor among the scene's objects",
+        get=selected_object_index,
+        set=select_object_by_index,
     )
     mount_index: IntProperty(
         name="Selected Mount", description="Row of the list whose settings are shown", min=0

@@ -246,7 +246,7 @@ def test_warnings_of_before_a_move_say_so_until_it_is_looked_over(car, monkeypat
     window = Window(car, car.objects["roof"])
 
     def line():
-        panels.sensor_lists.draw_sensors(shown := Layout(), window)
+        panels.main.draw_warnings(shown := Layout(), window)
         return " ".join(shown.texts("label"))
 
     assert "Before this move" not in line()
@@ -271,7 +271,7 @@ def test_panels_show_words_warnings_and_the_place(car):
     bpy.ops.pe.score()
     bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0))
     window, layout = Window(car, car.objects["roof"]), Layout()
-    panels.sensor_lists.draw_sensors(layout, window)
+    panels.main.draw_warnings(layout, window)
     assert "clear of the vehicle" in " ".join(layout.texts("label"))
     explain = type("Explain", (), {"layout": (shown := Layout())})
     panels.score_details.PE_PT_explain.draw(explain, window)

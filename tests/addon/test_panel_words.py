@@ -5,7 +5,8 @@ import itertools
 import bpy
 import pytest
 
-from blender_addon.panels import CLASSES, layout
+from blender_addon.panels import CLASSES, layout, main, sensor_lists
+from tests.addon import layouts, scenes
 
 SENTENCE = "the vehicle collection Sedan is excluded from the view layer: nothing of it is scored"
 
@@ -32,3 +33,55 @@ def test_sections_are_root_panels_that_can_be_moved_and_pinned(addon):
     assert {"PE_PT_prior", "PE_PT_targets", "PE_PT_search", "PE_PT_export"} <= roots
     for cls in panels.values():
         assert getattr(cls, "bl_parent_id", "PE_PT_main") in panels
+
+
+def drawn_of(scene):
+    """What the first panel shows, in its order."""
+    return layouts.drawn(main.PE_PT_main, **vars(layouts.Window(scene)))
+
+
+def test_score_live_and_optimize_stand_first_and_late_lines_have_their_room(car):
+    settings = car.perception_entropy
+    before = drawn_of(car)
+    assert [text for kind, text in before.notes if kind in ("operator", "prop")][:3] == [
+        "pe.score",
+        "on",
+        "pe.optimize",
+    ]
+    counts = [len(before.texts("label"))]
+    bpy.ops.pe.score()
+    settings.result_stale = False
+    counts.append(len(drawn_of(car).texts("label")))
+    settings.result_stale = True
+    shown = drawn_of(car).texts("label")
+    assert "Changed since it was scored" in shown
+    assert {*counts, len(shown)} == {counts[0]}, "as many lines before, after and when it is stale"
+    row = settings.result_warnings.add()
+    row.subject, row.text = "roof", "it is clear of the vehicle"
+    assert len(drawn_of(car).texts("label")) == counts[0], "warnings move nothing"
+    assert main.PE_PT_warnings.poll(layouts.Window(car))
+
+
+def test_many_sensors_are_a_list_that_scrolls(car):
+    class Listed(layouts.Layout):
+        """Takes Blender's own list as well."""
+
+        def template_list(self, name, _id, data, listed, settings, index, **more):
+            assert more["maxrows"] == sensor_lists.MAX_ROWS
+            self.shown = name, list(getattr(data, listed)), getattr(settings, index)
+
+    for k in range(sensor_lists.MAX_ROWS):
+        scenes.add_sensor(f"more {k}", "Camera 60 deg", location=(0.1 * k, 0.0, 2.0))
+    car.view_layers[0].objects.active = car.objects["more 2"]
+    layout = Listed()
+    layout._inner = lambda **_: layout
+    layout.row = layout.column = layout.split = layout.box = layout._inner
+    sensor_lists.draw_sensors(layout, layouts.Window(car))
+    _, objects, index = layout.shown
+    assert objects[index].name == "more 2"
+    flags, places = sensor_lists.shown_rows(objects, sensor_lists.listed_sensors(car))
+    sensors = {o.name for o, flag in zip(objects, flags, strict=True) if flag}
+    assert sensors == {o.name for o in objects if o.perception_entropy.is_sensor}
+    assert sorted(places) == list(range(len(objects)))
+    car.perception_entropy.selected_sensor = objects.index(car.objects["more 5"])
+    assert bpy.context.object.name == "more 5" and not car.objects["more 2"].select_get()

@@ -298,7 +298,7 @@ class OptimizeJob(Job):
 
         def work() -> Sensitivity | None:
             samples = FreshSamples(best, best.rig, self._fresh_objectives, self._helpers)
-            given = (self.study, best, self._evaluators[-1], self._archive, self.evaluations)
+            given = (self.study, best, self._archive, self.evaluations)
             return analyse(*given, samples, lambda: not self.stopped)
 
         return (yield from self._beside(work, lambda: waiting, to_the_end=True))

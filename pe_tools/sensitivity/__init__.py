@@ -1,41 +1,29 @@
-"""How sure a search is of its result: flatness, shadow prices, other optima, flattery.
+"""How sure a search is of its result: flatness, active constraints, other optima.
 
 All of it is evaluated on voxels that the search has not seen. Nothing here changes a result.
 """
 
-from .analysis import Flattery, Sensitivity, analyse, budget_of, is_analysed
+from .analysis import Sensitivity, analyse, budget_of, is_analysed
 from .archive import Archive
-from .flatness import FAR, FLAT, NEAR, STEEP, AxisCost
+from .constraints import ActiveConstraint
+from .flatness import NEAR, AxisCost
 from .fresh_samples import Difference, FreshSamples, fresh_objectives
-from .moves import PoseStep
-from .optima import Endings, RunnerUp
 from .reading import sensitivity_from_dict
-from .shadow_prices import ShadowPrice
-from .sizes import SizeGain
-from .wording import sensitivity_lines, size_gain_text, size_text
+from .wording import gain_text, sensitivity_lines
 
 __all__ = [
-    "FAR",
-    "FLAT",
     "NEAR",
-    "STEEP",
+    "ActiveConstraint",
     "Archive",
     "AxisCost",
     "Difference",
-    "Endings",
-    "Flattery",
     "FreshSamples",
-    "PoseStep",
-    "RunnerUp",
     "Sensitivity",
-    "ShadowPrice",
-    "SizeGain",
     "analyse",
     "budget_of",
     "fresh_objectives",
+    "gain_text",
     "is_analysed",
     "sensitivity_from_dict",
     "sensitivity_lines",
-    "size_gain_text",
-    "size_text",
 ]

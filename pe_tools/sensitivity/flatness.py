@@ -2,18 +2,57 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
-from pe_core.search import AXES
+from pe_core.geometry.poses import Pose
+from pe_core.scene.rig import Rig
+from pe_core.search import AXES, POSITION_AXES, pose_from_values, pose_values
 
 from .fresh_samples import STEEP_NATS, Difference, FreshSamples
-from .moves import Neighbourhood, PoseStep, lone_move
+
+UNIT_M, UNIT_RAD = 0.01, math.radians(1.0)
+"""One unit: 1 cm along x, y and z of the ground frame, 1 deg of roll, pitch and yaw."""
 
 NEAR, FAR = 1.0, 5.0
 """Steps to both sides [cm or deg]."""
 FLAT, STEEP = "flat", "steep"
+
+
+class PoseStep(NamedTuple):
+    """A number of units along an axis of a sensor."""
+
+    sensor: str
+    axis: str
+    units: float
+
+    @property
+    def text(self) -> str:
+        """The step: "roof z +1 cm", "front pitch -1 deg"."""
+        return f"{self.sensor} {self.axis} {self.units:+g} {self.unit}"
+
+    @property
+    def unit(self) -> str:
+        """The unit of the step: "cm" or "deg"."""
+        return "cm" if self.axis in POSITION_AXES else "deg"
+
+
+def unit_of_axis(axis: str) -> float:
+    """Return one unit of a step along an axis [m or rad]."""
+    return UNIT_M if axis in POSITION_AXES else UNIT_RAD
+
+
+def lone_move(rig: Rig, step: PoseStep) -> Rig:
+    """Return the rig with one sensor moved, all others as they are."""
+    return rig.with_poses([_moved(s.pose, step) if s.name == step.sensor else s.pose for s in rig])
+
+
+def _moved(pose: Pose, step: PoseStep) -> Pose:
+    values = pose_values(pose)
+    values[step.axis] += step.units * unit_of_axis(step.axis)
+    return pose_from_values(values)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,9 +96,20 @@ class AxisCost:
 
 
 def flatness(
-    samples: FreshSamples, neighbourhood: Neighbourhood, steps: tuple[float, ...] = (NEAR, FAR)
+    samples: FreshSamples,
+    status: Callable[[str, str], str],
+    steps: tuple[float, ...] = (NEAR, FAR),
 ) -> Iterator[AxisCost]:
-    """Yield the costs of each axis of each sensor, in the rig's order."""
+    """Yield the costs of each axis of each sensor, in the rig's order.
+
+    Parameters
+    ----------
+    samples : FreshSamples
+    status : callable
+        Returns what the search does with an axis of a sensor.
+    steps : tuple of float
+        Units to both sides.
+    """
     both = (*(-each for each in steps), *steps)
     for sensor in samples.reference:
         moved = {
@@ -70,5 +120,5 @@ def flatness(
         samples.evaluate([samples.reference, *moved.values()])
         for axis in AXES:
             cost = {units: samples.change(moved[axis, units]) for units in both}
-            status = neighbourhood.status(sensor.name, axis)
-            yield AxisCost(sensor.name, axis, status, cost, samples.steep)
+            own = status(sensor.name, axis)
+            yield AxisCost(sensor.name, axis, own, cost, samples.steep)

@@ -9,13 +9,11 @@ from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig
 from pe_core.study.objective_setting import EXPECTED_AP
 
-from .analysis import Flattery, Sensitivity
-from .flatness import AxisCost
+from .analysis import Sensitivity
+from .constraints import ActiveConstraint
+from .flatness import AxisCost, PoseStep
 from .fresh_samples import STEEP_AP, STEEP_NATS, Difference
-from .moves import PoseStep
 from .optima import Endings, RunnerUp
-from .shadow_prices import ShadowPrice
-from .sizes import SizeGain
 
 
 def sensitivity_from_dict(table: Mapping[str, Any] | None, rig: Rig) -> Sensitivity | None:
@@ -34,15 +32,12 @@ def sensitivity_from_dict(table: Mapping[str, Any] | None, rig: Rig) -> Sensitiv
     """
     if table is None:
         return None
-    flattery, by_ap = table["flattery"], table.get("objective") == EXPECTED_AP
-    sign = -1.0 if by_ap else 1.0
-    on_fresh = Difference(sign * float(flattery["on_fresh"]), float(flattery["stderr"]))
+    by_ap = table.get("objective") == EXPECTED_AP
     return Sensitivity(
         int(table["voxels"]),
         int(table["evaluations"]),
         tuple(_axis(row, STEEP_AP if by_ap else STEEP_NATS) for row in table["axes"]),
-        tuple(_price(row) for row in table["constraints"]),
-        Flattery(sign * float(flattery["on_search"]), on_fresh),
+        tuple(_constraint(row) for row in table["constraints"]),
         None if table["endings"] is None else _endings(table["endings"], rig),
         by_ap,
     )
@@ -53,21 +48,10 @@ def _axis(row: Mapping[str, Any], steep: float) -> AxisCost:
     return AxisCost(str(row["sensor"]), str(row["axis"]), str(row["status"]), cost, steep)
 
 
-def _price(row: Mapping[str, Any]) -> ShadowPrice:
+def _constraint(row: Mapping[str, Any]) -> ActiveConstraint:
     step = PoseStep(str(row["sensor"]), str(row["axis"]), float(row["step"]))
     gain = Difference(-float(row["gain"]), float(row["stderr"]))
-    return ShadowPrice(
-        tuple(map(str, row["constraints"])), step, gain, _size(row.get("size"), step)
-    )
-
-
-def _size(row: Mapping[str, Any] | None, step: PoseStep) -> SizeGain | None:
-    """Return what one size gains; None also from a result of an earlier version."""
-    if row is None or "gain" not in row:
-        return None if row is None else SizeGain(str(row["size"]))
-    sized = PoseStep(step.sensor, str(row["axis"]), float(row["step"]))
-    gain = Difference(-float(row["gain"]), float(row["stderr"]))
-    return SizeGain(str(row["size"]), tuple(map(str, row["housing_of"])), sized, gain)
+    return ActiveConstraint(tuple(map(str, row["constraints"])), step, gain)
 
 
 def _endings(table: Mapping[str, Any], rig: Rig) -> Endings:

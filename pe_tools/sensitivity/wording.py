@@ -6,10 +6,8 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 
 from .analysis import Sensitivity
-from .flatness import FAR, FLAT, NEAR, AxisCost
+from .flatness import FLAT, AxisCost
 from .fresh_samples import Difference
-from .shadow_prices import ShadowPrice
-from .sizes import A_SLOT, SizeGain
 
 NAMED = 4
 """How many axes, constraints or runners-up a line names."""
@@ -21,11 +19,10 @@ def nats(change: Difference) -> str:
 
 
 def sensitivity_lines(found: Sensitivity) -> Iterator[str]:
-    """Yield the analysis in lines: steep and flat axes, constraints, other optima, flattery."""
+    """Yield the analysis in lines: steep and flat axes, constraints, other optima."""
     yield from _axes_lines(found.axes, unit_of(found))
     yield from _constraint_lines(found)
     yield from _ending_lines(found)
-    yield _flattery_line(found)
 
 
 def unit_of(found: Sensitivity) -> str:
@@ -52,53 +49,20 @@ def _axes_lines(axes: Sequence[AxisCost], unit: str) -> Iterator[str]:
 
 def _constraint_lines(found: Sensitivity) -> Iterator[str]:
     unit = unit_of(found)
-    for price in found.active[:NAMED]:
-        gain = f"{price.step.text} would gain {price_text(price)} {unit}"
-        yield f"held by {price.name}: {gain}{_sized(price)}"
+    for each in found.active[:NAMED]:
+        yield f"held by {each.name}: {each.step.text} would gain {gain_text(each.gain)} {unit}"
     if len(found.active) > NAMED:
         yield f"held by {len(found.active) - NAMED} more constraints"
     if not found.active:
         yield "no constraint holds it back: no step that is forbidden would gain"
     if (more := found.unfinished) is not None:
-        gain = f"{price_text(more)} {unit}"
+        gain = f"{gain_text(more.gain)} {unit}"
         yield f"not quite settled: {more.step.text} is allowed and would gain {gain}"
 
 
-def price_text(price: ShadowPrice) -> str:
+def gain_text(gain: Difference) -> str:
     """Return what a step gains, with its error."""
-    return _gain_text(price.gain)
-
-
-def size_text(size: SizeGain) -> str:
-    """Return a size and its step: "none", "roof z +5 cm", "one slot, eye x +70 cm"."""
-    if size.step is None:
-        return size.size
-    if size.sensors:
-        own = size.sensors == (size.step.sensor,)
-        of = "" if own else f" for {' and '.join(size.sensors)}"
-        return f"the housing of {size.size}{of}, {size.step.text}"
-    return f"{size.size}, {size.step.text}" if size.size == A_SLOT else size.step.text
-
-
-def size_gain_text(size: SizeGain) -> str:
-    """Return what a size gains, with its error; "nothing" where that cannot be told from 0."""
-    if size.gain is None:
-        return ""
-    return _gain_text(size.gain) if size.gain.is_gain else "nothing"
-
-
-def _gain_text(gain: Difference) -> str:
     return f"{-gain.mean:.4f} +- {max(gain.stderr, 1e-4):.4f}"
-
-
-def _sized(price: ShadowPrice) -> str:
-    """Return what one size gains, after what a step gains; empty where it was not evaluated."""
-    size = price.size
-    if size is None:
-        return ""
-    if size.gain is None:
-        return f"; sizes: {size_text(size)}"
-    return f"; one size, {size_text(size)}: {size_gain_text(size)}"
 
 
 def _ending_lines(found: Sensitivity) -> Iterator[str]:
@@ -114,16 +78,3 @@ def _ending_lines(found: Sensitivity) -> Iterator[str]:
     yield f"{count + 1} optima found; runners-up, {found.voxels:,} fresh {what}:"
     for number, each in enumerate(found.endings.runners_up, 1):
         yield f"  {number}: {nats(each.behind)} {unit}, with {', '.join(each.moved)} elsewhere"
-
-
-def _flattery_line(found: Sensitivity) -> str:
-    own = found.flattery
-    error, what = max(own.on_fresh.stderr, 1e-4), "scenes" if found.by_ap else "voxels"
-    on_search, on_fresh = (found.sign * value for value in (own.on_search, own.on_fresh.mean))
-    return (
-        f"the search's sample flatters it by {own.nats:+.4f} +- {error:.4f} {unit_of(found)}: "
-        f"{on_search:.4f} there, {on_fresh:.4f} on fresh {what}"
-    )
-
-
-STEPS_TEXT = f"{NEAR:g} and {FAR:g}"

@@ -1,6 +1,5 @@
-"""How sure a search is: costs by axis, active constraints, other optima, flattery; its limits."""
+"""How sure a search is: costs by axis, active constraints, other optima; its limits."""
 
-import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
@@ -12,6 +11,7 @@ from pe_core.search import Goals, Judgement, Parametrization
 from pe_tools.cli.terminal import summary
 from pe_tools.jobs import result_dict
 from pe_tools.sensitivity import (
+    NEAR,
     Archive,
     Difference,
     analyse,
@@ -19,12 +19,10 @@ from pe_tools.sensitivity import (
     sensitivity_from_dict,
     sensitivity_lines,
 )
+from pe_tools.sensitivity.constraints import DesignSpace, active_constraints
+from pe_tools.sensitivity.flatness import PoseStep, flatness
 from pe_tools.sensitivity.fresh_samples import SAMPLES, FreshSamples
-from pe_tools.sensitivity.moves import Neighbourhood
 from pe_tools.sensitivity.optima import Basins
-from pe_tools.sensitivity.shadow_prices import ShadowPrice, shadow_prices, with_sizes
-from pe_tools.sensitivity.sizes import NONE, SizePricing
-from pe_tools.sensitivity.wording import size_gain_text, size_text
 from tests.engine import shapes
 
 TOP_M = 1.8
@@ -96,6 +94,8 @@ def test_yaw_of_a_spinning_lidar_is_flatter_than_its_height(outcome):
 class Slope:
     """Fresh samples of a value that is known: the higher the better, the more ahead the better."""
 
+    steep = 0.01
+
     def __init__(self, rig):
         self.reference = rig
 
@@ -110,62 +110,30 @@ class Slope:
         return Difference(self.value(rig) - self.value(base or self.reference), 0.0)
 
 
-def test_shadow_prices_name_the_constraint_and_the_gain_of_a_step():
-    given = study(free={"roof": ("x", "z")})
-    search = replace(given.search, mounting=pe.Mounting(constraints=pe.Constraints(max_width=0.5)))
-    given = replace(given, search=search)
-    slope = Slope(given.rig)
-    around = Neighbourhood(given.rig, given.search_space())
-    prices = {p.constraints: p for p in shadow_prices(slope, around, ())}
-    top = prices["bounds of z of 'roof'",]
-    assert top.step.text == "roof z +1 cm" and top.gain.mean == pytest.approx(-0.03)
-    allowed = prices[()]
-    assert allowed.step.text == "roof x +1 cm" and allowed.gain.mean == pytest.approx(-0.02)
-    held = study(free={"roof": ("z",)})
-    prices = shadow_prices(slope, Neighbourhood(held.rig, held.search_space()), ())
-    assert [p.name for p in prices] == ["bounds of z of 'roof'", "x of 'roof' held"]
+def active(given):
+    """Active constraints of a study on a slope, by the text of their step."""
+    design, slope = DesignSpace(given.rig, given.search_space()), Slope(given.rig)
+    table = list(flatness(slope, design.status, (NEAR,)))
+    return {each.step.text: each for each in active_constraints(table, design)}
 
 
-def sized(given, samples=None):
-    """Active constraints of a study by their names, with what a size of each gains."""
-    around = Neighbourhood(given.rig, given.search_space())
-    samples = samples or Slope(given.rig)
-    return {
-        p.name: p
-        for p in with_sizes(shadow_prices(samples, around, ()), SizePricing(samples, around))
-    }
+def on_one_beam(**search):
+    """A sensor that may move along x and z, and a rule that it breaks nowhere."""
+    given = study(free={"roof": ("x", "z")}, **search)
+    rule = pe.Mounting(constraints=pe.Constraints(max_width=0.5))
+    return replace(given, search=replace(given.search, mounting=rule))
 
 
-def test_a_larger_step_over_a_bound_gains_five_times_as_much():
-    size = sized(study(free={"roof": ("x", "z")}))["bounds of z of 'roof'"].size
-    assert (size.size, size.step.text) == ("5 cm", "roof z +5 cm")
-    assert size.gain.mean == pytest.approx(-0.15)
-    assert size_text(size) == "roof z +5 cm" and size_gain_text(size) == "0.1500 +- 0.0001"
-
-
-def test_a_larger_step_that_another_constraint_forbids_is_not_taken():
-    """The sensor without a housing is its origin: 2 cm above it is the limit of the height."""
-    given = study(free={"roof": ("z",)})
-    limit = pe.Constraints(max_height=TOP_M + 0.02)
-    given = replace(given, search=replace(given.search, mounting=pe.Mounting(constraints=limit)))
-    size = sized(given)["bounds of z of 'roof'"].size
-    assert size.step.text == "roof z +1 cm" and size.gain.mean == pytest.approx(-0.03)
-
-
-BOX = {"kind": "lidar", "elevations_deg": [-5.0, 5.0], "azimuth_count": 36, "max_range_m": 60.0}
-
-
-@pytest.fixture
-def boxes():
-    """Three LiDARs of the catalogue that differ in the width of their housings: 20, 19, 14 cm."""
-    widths = {"wide box": 0.2, "tall box": 0.2, "small box": 0.14}
-    for name, width in widths.items():
-        size = [width, width, 0.19 if name == "tall box" else 0.2]
-        housing = {"shape": "box", "size": size, "optical_center": [0.0, 0.0, 0.1]}
-        pe.catalog.add(name, {**BOX, "source": "test", "housing": housing | {"source": "test"}})
-    yield
-    for name in widths:
-        pe.catalog.remove(name)
+def test_active_constraints_name_what_forbids_a_step_and_its_gain():
+    found = active(on_one_beam())
+    top, allowed = found["roof z +1 cm"], found["roof x +1 cm"]
+    assert top.name == "bounds of z of 'roof'" and top.gain.mean == pytest.approx(-0.03)
+    assert allowed.constraints == () and allowed.gain.mean == pytest.approx(-0.02)
+    held = active(study(free={"roof": ("z",)}))
+    assert [held[step].name for step in ("roof z +1 cm", "roof x +1 cm")] == [
+        *("bounds of z of 'roof'", "x of 'roof' held")
+    ]
+    assert next(iter(held)) == "roof z +1 cm"  # the largest gain first
 
 
 def free_study(sensors, free, vehicle=None, **mounting):
@@ -175,98 +143,37 @@ def free_study(sensors, free, vehicle=None, **mounting):
     return pe.Study(rig, vehicle, shapes.small_space(), search=settings)
 
 
-def boxed(position, name="roof"):
-    return pe.Sensor(name, pe.catalog.load("wide box"), pe.Pose(position, (0.0, 0.0, 0.0)))
-
-
-def test_a_smaller_housing_gains_the_way_that_it_frees(boxes):
-    """The front of a box 20 cm wide is at a no-go area. Half of 20 - 14 cm are 3 cm of way.
-
-    The box that is only less high is the next one by volume, but frees nothing ahead.
-    """
-    area = pe.NoGo("hatch", x=(1.1, 2.0))
-    limits = pe.Constraints(no_go=[area])
-    given = free_study([boxed((1.0, 0.0, 1.8))], ("x",), constraints=limits)
-    price = sized(given)["no_go 'hatch' for 'roof'"]
-    assert price.gain.mean == pytest.approx(-0.02)
-    assert (price.size.size, price.size.sensors) == ("small box", ("roof",))
-    assert price.size.step.text == "roof x +3 cm" and price.size.gain.mean == pytest.approx(-0.06)
-    assert size_text(price.size) == "the housing of small box, roof x +3 cm"
-    table = price.to_dict()["size"]
-    assert table["housing_of"] == ["roof"] and table["gain"] == pytest.approx(0.06)
-
-
-def test_no_smaller_housing_is_no_size(boxes):
-    """A sensor without a housing, and one above which even the smallest has no room to go."""
-    limits = pe.Constraints(no_go=[pe.NoGo("hatch", x=(1.0, 2.0))])
+def test_rules_slots_fixed_sensors_and_kept_requirements_forbid_steps():
     model = shapes.small_lidar(4, 90)
-    sensor = pe.Sensor("roof", model, pe.Pose((0.995, 0.0, 1.8), (0.0, 0.0, 0.0)))
-    given = free_study([sensor], ("x",), constraints=limits)
-    size = sized(given)["no_go 'hatch' for 'roof'"].size
-    assert size.size == NONE and size.gain is None and size_text(size) == NONE
-    assert ShadowPrice(("no_go",), None, None, size).size.to_dict() == {"size": NONE}
+    limits = pe.Constraints(no_go=[pe.NoGo("hatch", x=(1.0, 2.0))])
+    roof = pe.Sensor("roof", model, pe.Pose((0.995, 0.0, 1.8), (0.0, 0.0, 0.0)))
+    given = free_study([roof], ("x",), constraints=limits)
+    assert active(given)["roof x +1 cm"].name == "no_go 'hatch' for 'roof'"
+
+    slots = [pe.Slot(f"{x}", pe.Pose((x, 0.0, 1.8), (0.0, 0.0, 0.0))) for x in (0.0, 0.7)]
+    on = {"mounts": {"rack": pe.SlotMount(slots)}, "on": {"roof": "rack"}}
+    racked = free_study([roof.moved(slots[-1].pose)], (), **on)
+    assert active(racked)["roof z +1 cm"].name == "slots of 'rack'"
+
+    settings = replace(given.search, goals=Goals(fixed=("roof",)))
+    assert active(replace(given, search=settings))["roof x +1 cm"].constraints[0] == (
+        "x of 'roof' held"
+    )
+    design = DesignSpace(given.rig, given.search_space())
+    table = list(flatness(Slope(given.rig), design.status, (NEAR,)))
+    found = active_constraints(table, design, lambda _: ["front"])
+    assert all(each.constraints[-1] == "requirement 'front'" for each in found)
 
 
-class Inwards(Slope):
-    """The nearer the left sensor is to the middle, the better."""
-
-    def value(self, rig):
-        return rig["left"].pose.position[1]
-
-
-def test_both_sensors_of_a_pair_take_the_smaller_housing(boxes):
-    """A gap of 2 mm is there already: the box that is only less high does not bring it."""
-    sensors = [boxed((0.0, y, 1.8), n) for n, y in (("left", 0.101), ("right", -0.101))]
-    limits = pe.Constraints(clear_housings=True)
-    pairs = [("left", "right")]
-    given = free_study(sensors, ("y",), constraints=limits, pairs=pairs)
-    price = sized(given, Inwards(given.rig))["clear housings of 'left' and 'right'"]
-    assert price.size.sensors == ("left", "right") and price.size.step.text == "left y -3.1 cm"
-    assert price.size.gain.mean == pytest.approx(-0.031)
-    text = "the housing of small box for left and right, left y -3.1 cm"
-    assert size_text(price.size) == text
-
-
-def test_a_list_of_slots_is_relaxed_by_one_slot():
-    slots = [pe.Slot(f"{x}", pe.Pose((x, 0.0, 1.8), (0.0, 0.0, 0.0))) for x in (0.0, 0.7, 1.5)]
-    sensor = pe.Sensor("roof", shapes.small_lidar(4, 90), slots[-1].pose)
-    mounts = {"rack": pe.SlotMount(slots)}
-    given = free_study([sensor], (), mounts=mounts, on={"roof": "rack"})
-    sizes = {p.step.text: p.size for p in sized(given).values()}
-    around = Neighbourhood(given.rig, given.search_space())
-    sizes = SizePricing(Slope(given.rig), around)
-    ahead = next(m for m in around.design_moves() if m.step.text == "roof x +1 cm")
-    size = sizes.gain(ahead.forbidden_by, ahead.step)
-    assert size_text(size) == "one slot, roof x +70 cm" and size.gain.mean == pytest.approx(-1.4)
-    up = next(m for m in around.design_moves() if m.step.text == "roof z +1 cm")
-    assert sizes.gain(up.forbidden_by, up.step).size == NONE  # all slots are at one height
-
-
-def test_what_has_no_sizes_says_so_and_a_spent_budget_is_told_apart():
-    given = study(free={"roof": ("z",)})
-    around = Neighbourhood(given.rig, given.search_space())
-    sizes, slope = SizePricing(Slope(given.rig), around), Slope(given.rig)
-    step = next(around.design_moves()).step
-    assert sizes.gain(("bounds of z of 'roof'", "requirement 'front'"), step).size == NONE
-    assert sizes.gain(("standoff of 'roof'",), step).size == NONE
-    prices = with_sizes(shadow_prices(slope, around, ()), sizes, lambda: False)
-    assert prices and all(price.size is None for price in prices)
-
-
-def test_moves_of_a_rig_with_a_fixed_sensor():
-    """What stays has no variables, whatever axes were free; the others keep theirs."""
-    sensors = [
-        shapes.lidar_on_roof(shapes.small_lidar(4, 90), (0.0, y, 1.7), name=n)
-        for n, y in (("a", 0.4), ("b", -0.4))
-    ]
-    given = free_study(sensors, ("x",))
-    goals = Goals(fixed=("a",))
-    given = replace(given, search=replace(given.search, goals=goals))
-    around = Neighbourhood(given.rig, given.search_space())
-    moves = {m.step.text: m for m in around.design_moves()}
-    assert moves["b x +1 cm"].forbidden_by == ()
-    assert moves["b x +1 cm"].rig["b"].pose.position[0] == pytest.approx(0.01)
-    assert moves["a x +1 cm"].forbidden_by == ("x of 'a' held",)
+def test_a_step_along_a_surface_is_allowed_and_one_off_it_is_not():
+    mounts = {"top": pe.SurfaceMount(("body",))}
+    roof = shapes.lidar_on_roof(shapes.small_lidar(4, 90), (0.0, 0.0, 0.9))
+    given = free_study([roof], (), shapes.box_car(), mounts=mounts, on={"roof": "top"})
+    given = replace(given, rig=Parametrization(given.rig, given.search_space()).start.rig)
+    design = DesignSpace(given.rig, given.search_space())
+    assert design.status("roof", "x") == "surface"
+    assert design.forbidding(PoseStep("roof", "x", 1.0)) == ()
+    assert design.forbidding(PoseStep("roof", "z", 1.0)) == ("mount 'top'",)
 
 
 class Wells:
@@ -321,30 +228,26 @@ def test_it_is_in_result_json_on_the_terminal_and_read_back(outcome):
     text = summary(outcome)
     for line in sensitivity_lines(outcome.sensitivity):
         assert line in text
-    assert "1 cm or 1 deg" in text and "fresh voxels" in text
 
 
 def test_a_short_search_is_not_outlasted_by_its_analysis():
     auto = study(None)
-    assert budget_of(auto, 100) is None and budget_of(study("off"), 10**6) is None
-    assert budget_of(auto, 200) == ((1.0,), False)
-    assert budget_of(auto, 300) == ((1.0, 5.0), False)
+    assert budget_of(auto, 50) is None and budget_of(study("off"), 10**6) is None
+    assert budget_of(auto, 100) == ((1.0,), False)
+    assert budget_of(auto, 200) == ((1.0, 5.0), False)
     assert budget_of(auto, 2000) == ((1.0, 5.0), True)
-    evaluator = auto.evaluator(2048)
-    given = (auto, auto, evaluator, Archive(), 10**6, FreshSamples(auto, auto.rig))
+    given = (auto, auto, Archive(), 10**6, FreshSamples(auto, auto.rig))
     assert analyse(*given, lambda: False) is None
 
 
-def test_linked_sensors_move_together_and_the_price_of_the_link_is_told():
+def test_a_link_forbids_steps_of_one_of_the_linked_sensors():
     model = shapes.small_lidar(4, 90)
     names = {"left": 0.4, "right": -0.4}
     rig = pe.Rig([shapes.lidar_on_roof(model, (0.0, y, 1.7), name=n) for n, y in names.items()])
     mounting = pe.Mounting(pairs=[("left", "right")])
     settings = pe.Search(free={"left": ("x",)}, mounting=mounting)
     given = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=settings)
-    around = Neighbourhood(rig, given.search_space())
-    assert around.leaders == ("left",) and around.status("right", "x") == "linked"
-    move = next(m for m in around.design_moves() if m.step.text == "left x +1 cm")
-    assert [s.pose.position[0] for s in move.rig] == [0.01, 0.01] and not move.forbidden_by
-    assert len(Parametrization(rig, given.search_space()).variables) == 1
-    assert math.isclose(around.rig["left"].pose.position[1], 0.4)
+    design = DesignSpace(rig, given.search_space())
+    assert [design.status(name, "x") for name in names] == ["free", "linked"]
+    for name in names:
+        assert design.forbidding(PoseStep(name, "x", 1.0)) == ("link of 'right' to 'left'",)

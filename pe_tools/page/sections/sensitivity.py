@@ -1,4 +1,4 @@
-"""How sure the search is: what steps cost (SVG and table), constraints, other optima, flattery."""
+"""How sure the search is: what steps cost (SVG and table), constraints, other optima."""
 
 from __future__ import annotations
 
@@ -23,11 +23,6 @@ STATUS = {
     "linked": "linked",
 }
 """What the search does with an axis, in the table."""
-SIZES_NOTE = (
-    "<p>One size: where a housing touches, the next smaller housing of the catalogue, of the same "
-    "kind, with which the sensor can go on; it measures as before. Where bounds or a mount end: "
-    "5 cm or 5&deg;. In a list of slots: one slot more.</p>"
-)
 STYLE = """
 .flatness { max-width: 100%; height: auto; }
 .flatness text { font-size: 12px; fill: var(--soft); }
@@ -58,21 +53,10 @@ def sensitivity(context: ReportContext) -> Section:
 
 
 def _lead(found: sure.Sensitivity, context: ReportContext) -> str:
-    own = found.flattery
-    error = number(max(own.on_fresh.stderr, 1e-4), 4)
     _, what = jobs.searched_on(context.start)
-    if found.by_ap:
-        on_search, on_fresh = (number(-v, 4) for v in (own.on_search, own.on_fresh.mean))
-        return (
-            f"<p>Everything here is evaluated on {found.voxels:,} {what} that the search has not "
-            f"seen. On its own scenes the result has an expected AP of {on_search}, on fresh ones "
-            f"{on_fresh} &plusmn; {error}: the sample flatters it by {signed(own.nats, 4)}.</p>"
-        )
     return (
-        f"<p>Everything here is evaluated on {found.voxels:,} {what} that the search "
-        f"has not seen. On its own sample the result has {number(own.on_search, 4)} nats, on fresh "
-        f"ones {number(own.on_fresh.mean, 4)} &plusmn; {error}: the sample flatters it by "
-        f"{signed(own.nats, 4)} nats.</p>"
+        f"<p>Everything here is evaluated on {found.voxels:,} {what} that the search has not "
+        "seen.</p>"
     )
 
 
@@ -198,34 +182,22 @@ def _cost(cost: sure.Difference) -> Markup:
 
 
 def _constraints(found: sure.Sensitivity) -> str:
-    if not found.prices:
+    if not found.constraints:
         return (
             "<p>No constraint is active: no step of 1 cm or 1&deg; that is forbidden would "
             f"{'raise the expected AP' if found.by_ap else 'lower the entropy'}.</p>"
         )
     rows = [
         [
-            price.name or "none: a longer search would take it",
-            price.step.text,
-            f"{number(-price.gain.mean, 4)} \N{PLUS-MINUS SIGN} "
-            f"{number(max(price.gain.stderr, 1e-4), 4)}",
-            *_size_cells(price.size),
+            each.name or "none: a longer search would take it",
+            each.step.text,
+            sure.gain_text(each.gain).replace("+-", "\N{PLUS-MINUS SIGN}"),
         ]
-        for price in found.prices
+        for each in found.constraints
     ]
-    gain = f"gain [{'expected AP' if found.by_ap else 'nats'}], at least"
-    heads = ("constraint", "step that gains most", gain, "one size", gain)
-    title = (
-        "Active constraints, and what relaxing each by 1 cm or 1 degree, or by one size, gains "
-        "(shadow prices)"
-    )
-    return table(title, heads, rows) + SIZES_NOTE
-
-
-def _size_cells(size: sure.SizeGain | None) -> tuple[str, str]:
-    if size is None:
-        return "", ""
-    return sure.size_text(size), sure.size_gain_text(size).replace("+-", "\N{PLUS-MINUS SIGN}")
+    gain = f"gain [{'expected AP' if found.by_ap else 'nats'}]"
+    heads = ("constraint", "step that gains most", gain)
+    return table("Active constraints: steps of one sensor that would gain", heads, rows)
 
 
 def _endings(found: sure.Sensitivity, context: ReportContext) -> str:

@@ -11,11 +11,13 @@ from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, StringPr
 from mathutils import Euler, Matrix, Vector
 
 from .. import bridge, signals
-from ..engine import geometry, pe
+from ..engine import geometry, pe, text
 from ..language import shown
 from .reports import USER_ERRORS, OperatorResult, report, report_error
 
 AdviceAmount = tuple[float, float, float]
+AMOUNT, FACTOR = text.Number(cap=1e6), text.Number(1e-6, 1e6)
+"""Amounts of a correction, and of a scale. Beyond single precision Blender ends at an undo."""
 ON_VEHICLE_M = 0.5
 """A sensor this near to the vehicle's box goes with it when that is turned or moved."""
 
@@ -56,7 +58,8 @@ class PE_OT_mend(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         try:
-            FIXES[self.fix](context, self.subject, tuple(self.amount))
+            amount = tuple(AMOUNT.checked("mend", "amount", each) for each in self.amount)
+            FIXES[self.fix](context, self.subject, amount)
         except USER_ERRORS as error:
             return report_error(self, error)
         context.view_layer.update()
@@ -89,7 +92,8 @@ def move_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount
 
 def scale_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount) -> None:
     """Scale the vehicle about the origin; the sensors keep their size."""
-    _transform_vehicle(context, Matrix.Scale(amount[0], 4))
+    factor = FACTOR.checked("mend", "amount", amount[0])
+    _transform_vehicle(context, Matrix.Scale(factor, 4))
 
 
 def roll_sensor(context: bpy.types.Context, subject: str, amount: AdviceAmount) -> None:

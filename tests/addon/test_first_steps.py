@@ -217,3 +217,12 @@ def test_a_search_without_a_sensor_is_one_line(scene):
     with pytest.raises(RuntimeError, match="search: model: expected") as caught:
         bpy.ops.pe.search_sensor("EXEC_DEFAULT", kind="none of these")
     assert "Traceback" not in str(caught.value)
+
+
+@pytest.mark.parametrize("factor", [1e30, -1e30, 1e-30, 0.0, -1.0, math.nan, math.inf])
+def test_a_scale_that_no_file_can_have_is_refused(car, factor):
+    before = [obj.matrix_world.copy() for obj in bpy.data.objects]
+    with pytest.raises(RuntimeError, match="mend: amount: expected a"):
+        bpy.ops.pe.mend(fix="scale_vehicle", amount=(factor, 0.0, 0.0))
+    bpy.context.view_layer.update()
+    assert [obj.matrix_world for obj in bpy.data.objects] == before

@@ -35,7 +35,7 @@ def test_the_table_tells_price_entropy_and_where_each_sensor_sits(file, tmp_path
     assert out[-2] == f"{count} on the front; 3 searched of 3 looked at (all that the limits allow)"
     assert out[-1] == advice.OTHER_HARDWARE and data["notes"] == [advice.OTHER_HARDWARE]
     page = (tmp_path / "out" / "front.html").read_text("utf-8")
-    assert "for cameras and radars that has not been shown" in page
+    assert "cameras and radars were not tested" in page
     study = tmp_path / "out" / first["study"]
     assert verbs.main(["score", str(study)]) == 0
     assert f"{first['entropy']:.4f}" in capsys.readouterr().out

@@ -80,9 +80,9 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
     runs = sweep_runs(files, settings, lambda study: with_options(study, args))
     folder = prepare_folder(args.output, [SWEEP_CSV, SWEEP_JSON])
     _refuse_folders(runs, files, folder, kind)
-    with ExitStack() as places, stop_at_first(lambda: None) as received:
+    with ExitStack() as places:
         work = _SweepVerb(runs, kind, folder, places)
-        work.run(args, received)
+        received = work.run(args)
         if received.signum is not None:
             raise Interrupted(received.signum, f"{work.state}; the same command goes on")
     note = hardware_note([s.model for s in run.study.rig] for run in runs)
@@ -156,16 +156,22 @@ class _SweepVerb:
         searches = self._kind == "optimize"
         return BEGUN if searches and (self._folder / run.name / SEARCH).exists() else WAITING
 
-    def run(self, args: argparse.Namespace, received: Received) -> None:
-        """Run all runs that are not done."""
+    def run(self, args: argparse.Namespace) -> Received:
+        """Run all runs that are not done; return the signal that stopped them.
+
+        Until the workers are there, the first signal ends the sweep.
+        """
         left = [row.run.name for row in self.rows if row.status != DONE]
         if self._done or self._begun:
             going_on = f"; searches that go on: {self._begun}" if self._begun else ""
             tell(f"{self._done} of {len(self.rows)} runs are done already{going_on}")
         if not left:
-            return
+            return Received()
         try:
-            with workplace(args.workers, args.scheduler) as place:
+            with (
+                workplace(args.workers, args.scheduler) as place,
+                stop_at_first(lambda: None) as received,
+            ):
 
                 def make_task(name: str) -> RunTask:
                     return self._begin(self.rows[self._numbers[name]].run, place)
@@ -176,6 +182,7 @@ class _SweepVerb:
                     self._take(name, found)
 
                 run_all(left, make_task, place, take, lambda: self._goes_on(received))
+            return received
         finally:
             self._reporter.clear()
             self.rows = [

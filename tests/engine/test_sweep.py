@@ -165,6 +165,18 @@ def test_a_peer_that_is_no_scheduler_ends_in_time(greeting, study, out, capsys, 
     assert line.startswith(f"pe: {address}: scheduler: expected a scheduler that answers within")
 
 
+def test_the_first_signal_ends_the_wait_for_a_silent_peer(study, out):
+    pytest.importorskip("distributed", reason="of the extra cluster")
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        server.settimeout(GUARD_S)
+        with Command("sweep", study, "-o", out, "--scheduler", address) as command:
+            peer, _ = server.accept()
+            command.send(signal.SIGTERM)
+            assert command.end() == 128 + signal.SIGTERM, "".join(command.lines)
+            peer.close()
+
+
 def test_a_cluster_without_its_package_says_what_to_install(study, out, capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     assert main(["sweep", str(study), "-o", str(out), "--scheduler", "tcp://a:1"]) == 1

@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ..scene.rig import Rig
-from ..scoring.requirements import Requirement, RequirementChecker, Verdict
+from ..scoring.requirements import CheckStep, Requirement, RequirementChecker, Verdict
 from .condition_set import Conditions, StateInWeather
 
 if TYPE_CHECKING:
@@ -25,16 +25,26 @@ class ConditionedChecker(RequirementChecker):
     """Holds rigs to requirements as drawn, and under the conditions that these name.
 
     The worst verdict counts: one that is not met, or the smallest margin.
+
+    Parameters
+    ----------
+    study : Study
+    as_drawn : RequirementChecker, optional
+        What holds rigs to the same requirements as drawn and in clear air; made where it is None.
     """
 
-    def __init__(self, study: Study) -> None:
+    def __init__(self, study: Study, as_drawn: RequirementChecker | None = None) -> None:
         options: dict[str, Any] = {
             "model": study.model,
             "reference": study.reference,
             "space": study.space,
         }
-        super().__init__(study.requirements, study.vehicle, **options)
         self._study = study
+        self._as_drawn = as_drawn or RequirementChecker(
+            study.requirements, study.vehicle, **options
+        )
+        self.requirements, self.zones = self._as_drawn.requirements, self._as_drawn.zones
+        self.vehicle = study.vehicle
         by_condition: dict[StateInWeather, list[int]] = {}
         for number, requirement in enumerate(study.requirements):
             for condition in conditions_of(requirement, study.conditions):
@@ -56,23 +66,34 @@ class ConditionedChecker(RequirementChecker):
     def __reduce__(self) -> tuple[object, ...]:
         return ConditionedChecker, (self._study,)
 
-    def check(
+    def steps(
         self, rig: Rig, *, preview: bool = False, cases: Sequence[Rig] = ()
-    ) -> tuple[Verdict, ...]:
-        """Return the worst verdict on each requirement under its conditions."""
-        worst = list(super().check(rig, preview=preview, cases=cases))
+    ) -> Iterator[CheckStep]:
+        """Yield the worst verdict on each requirement under its conditions, with steps between."""
+        drawn = self._as_drawn.steps(rig, preview=preview, cases=cases)
+        parts = []
         for condition, numbers, checker in self._parts:
             moved, others = self._under(condition, rig), [self._under(condition, c) for c in cases]
-            for n, verdict in zip(
-                numbers, checker.check(moved, preview=preview, cases=others), strict=True
-            ):
-                if _rank(verdict) < _rank(worst[n]):
-                    worst[n] = replace(verdict, condition=condition.name)
-        return tuple(worst)
+            parts.append((condition, numbers, checker.steps(moved, preview=preview, cases=others)))
+        number = 0
+        for step in drawn:
+            worst = step.verdict
+            if worst is None:
+                yield step
+                continue
+            for condition, numbers, steps in parts:
+                for other in steps if number in numbers else ():
+                    if other.verdict is not None:  # the next one is of another requirement
+                        if _rank(other.verdict) < _rank(worst):
+                            worst = replace(other.verdict, condition=condition.name)
+                        break
+                    yield CheckStep(step.fraction)
+            number += 1
+            yield CheckStep(step.fraction, worst)
 
     def shortfalls(self, rig: Rig, cases: Sequence[Rig] = ()) -> tuple[float, ...]:
         """Return for each requirement the largest shortfall under its conditions."""
-        largest = list(super().shortfalls(rig, cases))
+        largest = list(self._as_drawn.shortfalls(rig, cases))
         for condition, numbers, checker in self._parts:
             moved, others = self._under(condition, rig), [self._under(condition, c) for c in cases]
             for n, value in zip(numbers, checker.shortfalls(moved, others), strict=True):

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from ..base.errors import InputError
 from ..prior import HIGHWAY_CLASSES, ROAD_CLASSES
 from ..scene.rig import Rig
-from ..scoring.requirements import BODIES, Requirement, RequirementChecker, Verdict
+from ..scoring.requirements import (
+    BODIES,
+    CheckStep,
+    Requirement,
+    RequirementChecker,
+    Verdict,
+)
 from ..search import Tolerance, mounted_off
 from .condition_check import ConditionedChecker
 
@@ -16,8 +22,11 @@ if TYPE_CHECKING:
     from .study import Study
 
 
-def checker_of(study: Study) -> RequirementChecker:
+def checker_of(study: Study, as_drawn: RequirementChecker | None = None) -> RequirementChecker:
     """Return what holds rigs to a study's requirements.
+
+    `as_drawn` is one of the same requirements and vehicle, if there is one already: what it has
+    measured is not measured again.
 
     Raises
     ------
@@ -27,9 +36,9 @@ def checker_of(study: Study) -> RequirementChecker:
     """
     _check_classes(study)
     if any(each.under.states or each.under.weathers for each in study.requirements):
-        checker: RequirementChecker = ConditionedChecker(study)
+        checker: RequirementChecker = ConditionedChecker(study, as_drawn)
     else:
-        checker = RequirementChecker(
+        checker = as_drawn or RequirementChecker(
             study.requirements,
             study.vehicle,
             model=study.model,
@@ -61,15 +70,24 @@ def _check_classes(study: Study) -> None:
                 raise InputError(who, "body.class", f"one of {listed}", repr(body.class_name))
 
 
+def check_steps(
+    study: Study, rig: Rig, checker: RequirementChecker | None = None
+) -> Iterator[CheckStep]:
+    """Yield the verdicts on a rig, with each combination of the study's mounting errors, one after
+    the other, with steps in between."""
+    if not study.requirements:
+        return
+    search = study.search
+    cases = mounting_cases(study.requirements, rig, search.tolerance, search.seed)
+    yield from (checker or checker_of(study)).steps(rig, cases=cases)
+
+
 def verdicts_of(
     study: Study, rig: Rig, checker: RequirementChecker | None = None
 ) -> tuple[Verdict, ...]:
-    """Return the verdicts on a rig, with each combination of the study's mounting errors."""
-    if not study.requirements:
-        return ()
-    search = study.search
-    cases = mounting_cases(study.requirements, rig, search.tolerance, search.seed)
-    return (checker or checker_of(study)).check(rig, cases=cases)
+    """Return the verdicts of `check_steps`."""
+    steps = check_steps(study, rig, checker)
+    return tuple(step.verdict for step in steps if step.verdict is not None)
 
 
 def mounting_cases(

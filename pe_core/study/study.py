@@ -24,7 +24,13 @@ from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference, vehicle_line
 from ..scoring import Evaluator, RigJudge
-from ..scoring.requirements import Requirement, RequirementChecker, Verdict, checked_requirements
+from ..scoring.requirements import (
+    CheckStep,
+    Requirement,
+    RequirementChecker,
+    Verdict,
+    checked_requirements,
+)
 from ..scoring.sampling import FIRST_SAMPLES, SAMPLES_OR_GRID
 from ..scoring.sight import Sight
 from ..scoring.targets import ObjectEvaluator, TargetRule
@@ -49,7 +55,7 @@ from .catalog_lookup import check_pairs, housings_of
 from .condition_set import Conditions
 from .objective_setting import OBJECTIVE
 from .passthrough import Passthrough
-from .requirement_check import checker_of, verdicts_of
+from .requirement_check import check_steps, checker_of, verdicts_of
 
 DEFAULT_SEARCH_SAMPLES = 65_536
 SEED = Whole(0, 2**63 - 1)
@@ -243,13 +249,20 @@ class Study:
                 self.space, self.prior, self.vehicle, model=self.model, targets=self.targets
             )
 
-    def checker(self) -> RequirementChecker:
-        """Return what holds rigs to the requirements; `InputError` where that cannot be done."""
-        return checker_of(self)
+    def checker(self, as_drawn: RequirementChecker | None = None) -> RequirementChecker:
+        """Return what holds rigs to the requirements; `InputError` where that cannot be done.
+
+        `as_drawn` is one of the same requirements round the same vehicle, where there is one.
+        """
+        return checker_of(self, as_drawn)
 
     def verdicts(self, rig: Rig | None = None) -> tuple[Verdict, ...]:
         """Return the verdicts on a rig, the study's by default, with its mounting errors."""
         return verdicts_of(self, self.rig if rig is None else rig)
+
+    def check_steps(self, checker: RequirementChecker | None = None) -> Iterator[CheckStep]:
+        """Yield the verdicts on the study's rig one by one, with steps in between."""
+        yield from check_steps(self, self.rig, checker)
 
     @contextmanager
     def _naming_vehicle(self) -> Iterator[None]:

@@ -19,12 +19,16 @@ from pe_core.study.requirement_file import CONFIDENCE, Preset, preset, presets
 from pe_core.study.requirement_help import Suggestion, suggestions
 
 from ..advice import curve_note
+from ..jobs import CheckJob
 from .command import add_curve_option, with_curves
-from .run_job import print_vehicle
+from .interrupts import stop_at_first
+from .run_job import drive, print_vehicle
 from .terminal import DONE, Answer, tell
 
 NOT_MET = 3
 """Exit status of a check with a requirement that is not met."""
+STOPPED = "stopped before"
+"""Why a requirement has no verdict after Ctrl-C."""
 ALL = "all"
 COLUMNS = (
     *("name", "check", "met", "margin_m", "share", "worst_x", "worst_y", "worst_body"),
@@ -84,6 +88,8 @@ def check(path: str, args: argparse.Namespace) -> Answer:
 def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] = ()) -> Answer:
     """Hold a study to its requirements and to the presets that are named.
 
+    After Ctrl-C the verdicts that were found are printed, and written to the CSV file.
+
     `inputs` are files that no output replaces.
     """
     if args.csv is not None:
@@ -95,14 +101,18 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
     print_vehicle(study)
     if note := curve_note([study.model]):
         tell(note)
-    verdicts = study.verdicts()
+    job = CheckJob(study)
+    with stop_at_first(job.stop) as received:
+        drive(job)
+    verdicts = job.verdicts
     if args.csv is not None:
         write_bytes(Path(args.csv), verdicts_csv(verdicts).encode(errors="backslashreplace"))
-    status = DONE if all(v.met for v in verdicts) else NOT_MET
-    wanted = args.suggest and status != DONE
+    status = received.status(DONE if all(v.met for v in verdicts) else NOT_MET)
+    unchecked |= dict.fromkeys(job.missing, STOPPED)
+    wanted = args.suggest and status == NOT_MET
     suggested = suggestions(study) if wanted else {}
     seen = None
-    if args.redundancy is not None:
+    if args.redundancy is not None and job.complete:
         seen = Redundancy(study.vehicle, study.space, args.redundancy).map(study.rig)
     if args.json:
         data = {
@@ -113,7 +123,8 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
             "redundancy": None if seen is None else seen.to_dict(),
         }
         return dump_json(finite(data)), status
-    lines = [*verdict_lines(verdicts, unchecked), *_suggested(suggested)] if verdicts else []
+    found = verdicts or unchecked
+    lines = [*verdict_lines(verdicts, unchecked), *_suggested(suggested)] if found else []
     lines += [] if seen is None else redundancy_lines(seen)
     return "\n".join(lines), status
 

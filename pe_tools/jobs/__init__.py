@@ -1,5 +1,6 @@
 """Jobs that score and optimize studies, their checkpoints, and the files of their results."""
 
+from .check_job import CheckJob
 from .checkpoint import SAVE_EVERY_S, BegunSearch, Checkpoint, SearchState, read_search
 from .choice_job import ChoiceJob, Design, TradeOff
 from .condition_files import condition_lines, conditions_csv
@@ -51,6 +52,7 @@ __all__ = [
     "IN_NATS",
     "SAVE_EVERY_S",
     "BegunSearch",
+    "CheckJob",
     "Checkpoint",
     "ChoiceJob",
     "Design",

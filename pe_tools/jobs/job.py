@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigJudge
-from pe_core.scoring.requirements import Verdict
+from pe_core.scoring.requirements import CheckStep, RequirementChecker, Verdict
 from pe_core.scoring.score import ObjectScore, Score, ScoreStopped
 from pe_core.search import EvaluatedRig, Robustness
 from pe_core.study.condition_table import ConditionTable, condition_table
@@ -151,6 +151,7 @@ class Outcome:
 
 
 T = TypeVar("T")
+AsDrawn = Callable[[Study], RequirementChecker]
 
 WAIT_S = 0.03
 """How long a job waits for its thread before it yields: a frame of a responsive window."""
@@ -206,6 +207,8 @@ class Job:
         """Evaluates the candidates of searches; by default processes on this machine."""
         self.notes: tuple[Advice, ...] = ()
         """Warnings of the program that created the study; they precede those of the checks."""
+        self.as_drawn: AsDrawn | None = None
+        """Returns what holds rigs to a study's requirements as drawn, if others use it as well."""
         self._started = time.monotonic()
 
     def __iter__(self) -> Iterator[Progress]:
@@ -294,7 +297,23 @@ class Job:
         """Hold a study to its requirements in a thread, yielding `waiting` until it is done."""
         if not study.requirements:
             return ()
-        return (yield from self._beside(study.verdicts, lambda: waiting, to_the_end=True))
+
+        done, found = 0.0, list[Verdict]()
+
+        def work() -> tuple[Verdict, ...]:
+            nonlocal done
+            for step in self._check_steps(study):
+                if self.dropped:  # nobody waits for this thread
+                    break
+                done = step.fraction
+                found.extend([] if step.verdict is None else [step.verdict])
+            return tuple(found)
+
+        return (yield from self._beside(work, lambda: replace(waiting, fraction=done), True))
+
+    def _check_steps(self, study: Study) -> Iterator[CheckStep]:
+        """Yield the verdicts on a study one by one, with steps in between."""
+        yield from study.check_steps(study.checker(self.as_drawn and self.as_drawn(study)))
 
     def _conditions(
         self, study: Study, waiting: Progress

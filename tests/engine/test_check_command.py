@@ -2,6 +2,9 @@
 
 import csv
 import json
+import os
+import signal
+import threading
 
 import pytest
 
@@ -9,6 +12,7 @@ import pe_core as pe
 from pe_core.study.requirement_file import presets
 from pe_tools.cli.check_verb import COLUMNS, NOT_MET
 from pe_tools.cli.verbs import main
+from pe_tools.jobs import CheckJob
 from tests.engine import shapes
 
 STUDY = """
@@ -55,6 +59,29 @@ def test_the_exit_status_says_whether_all_are_met(study, capsys):
     study.write_text(STUDY.split("[[requirement]]")[0])
     assert main(["check", str(study)]) == 1
     assert "[[requirement]] in the study" in capsys.readouterr().err
+
+
+def test_ctrl_c_keeps_the_verdicts_that_were_found(study, tmp_path, monkeypatch, capsys):
+    study.write_text(STUDY + SMALL)
+    steps, ended = CheckJob._steps, threading.Event()
+
+    def interrupted(self):
+        for step in steps(self):
+            yield step
+            if step.verdict is not None:
+                os.kill(os.getpid(), signal.SIGINT)
+                ended.wait(10.0)
+
+    monkeypatch.setattr(CheckJob, "_steps", interrupted)
+    table = tmp_path / "verdicts.csv"
+    try:
+        assert main(["check", str(study), "--csv", str(table)]) == 130
+    finally:
+        ended.set()
+    shown = capsys.readouterr()
+    assert "1 of 1 met, 1 not checked" in shown.out and "bump: not checked" in shown.out
+    assert "checking" in shown.err
+    assert [row["name"] for row in csv.DictReader(table.open())] == ["adult ahead"]
 
 
 def test_all_presets_are_checked_or_said_why_not(study, tmp_path, capsys):

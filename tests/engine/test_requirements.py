@@ -11,10 +11,15 @@ from pe_core.scoring.requirements import (
     Criterion,
     Requirement,
     RequirementChecker,
+    Samples,
     Under,
     Zone,
+    margin_of,
+    zone_growth,
 )
+from pe_core.scoring.requirements.body_checks import BodyChecks, SceneCaches
 from pe_core.scoring.sight import Sight
+from pe_core.search import Tolerance, mounted_off
 from pe_core.sensors import ObjectMeasurementCache
 from tests.engine import shapes
 from tests.engine.requirement_scene import AHEAD, MIDDLE, check, rig, van
@@ -214,3 +219,73 @@ def test_mounting_errors_count_where_they_are_asked_for():
     blind = pe.Rig([replace(s, pose=pe.Pose((0.0, 0.0, 1.0))) for s in rig()])  # inside the body
     as_built, off = check(*two, cases=[blind])
     assert as_built.met and not off.met and off.met_whole
+
+
+GROWN = {
+    "one": {},
+    "two": {"criterion": Criterion(sensors=2)},
+    "most": {"criterion": Criterion(kinds=2, zone_share=0.8)},
+    "cameras": {"criterion": Criterion(of=("camera",), zone_share=0.95)},
+    "in part": {"criterion": Criterion(share=0.3, zone_share=0.9)},
+    "one lost": {"under": Under(one_lost=True)},
+    "mounted off": {"under": Under(mounting=True), "criterion": Criterion(zone_share=0.97)},
+    "by AP": {"criterion": Criterion(ap=0.5)},
+}
+
+
+@pytest.mark.parametrize("name", GROWN)
+def test_margins_are_those_of_all_sensors_on_all_the_ground_round_a_zone(name, monkeypatch):
+    """By the plain definition; asked again, after a sensor moved, and part by part as well."""
+    zone = Zone(x=("front + 3", "front + 3.6"), y=(-0.3, 0.3), step=0.3)
+    own = Requirement(name, zone, (BODIES["adult"],), **GROWN[name])
+    checker = RequirementChecker([own], van())
+    monkeypatch.setattr(zone_growth, "PART_BOXES", 60)
+    top = pe.Pose((2.2, -0.3, 2.6), (0.0, 0.2, 0.1))
+    moved = rig().with_poses([top, *(sensor.pose for sensor in list(rig())[1:])])
+    margins = set()
+    for one in (rig(), moved, rig()):
+        cases = mounted_off(one, Tolerance(position=0.1, angle=0.02), 3)[:2]
+        (verdict,) = checker.check(one, cases=cases)
+        assert (verdict.margin, verdict.at_least) == _plain_margin(own, one, cases)
+        margins.add(verdict.margin)
+    assert max(margins) > 0.0
+
+
+def _plain_margin(own, one, cases):
+    """`margin_of` all samples of rings that are grown as far as the zone does not fail."""
+    placed = own.zone.placed(van(), None, own.name)
+    points, distance = placed.samples()
+    looked, passed = placed.grow, None
+    while True:
+        checks = BodyChecks(
+            [(own, Samples(placed, points, distance))], pe.PerceptionModel(), SceneCaches(van())
+        )
+        passed = checks.judged(one, cases)[0].passed
+        margin = margin_of(distance, passed, own.criterion.zone_share, own.zone.step, looked)
+        if not margin[1] or looked >= 10.0:
+            return margin
+        wider = min(2.0 * looked, 10.0)
+        ring, away = placed.ring_of_samples(looked, wider, 30_000)
+        points, distance = np.concatenate([points, ring]), np.concatenate([distance, away])
+        looked = wider
+
+
+def test_growing_a_zone_measures_no_more_than_decides(monkeypatch):
+    """What one sensor sees round a zone is not asked of the others."""
+    zone = Zone(x=("front + 3", "front + 3.6"), y=(-0.3, 0.3), step=0.3)
+    own, boxes = Requirement("far", zone, (BODIES["adult"],)), []
+    again = ObjectMeasurementCache.measure_again
+
+    def noted(self, sensor):
+        boxes.append(len(again(self, sensor)))
+        return self.cached(sensor)
+
+    monkeypatch.setattr(ObjectMeasurementCache, "measure_again", noted)
+    top = rig()["top"]
+    (alone,) = RequirementChecker([own], van()).check(pe.Rig([top]))
+    once, in_the_zone = sum(boxes), boxes[0]
+    boxes.clear()
+    twins = pe.Rig([top, replace(top, name="second"), replace(top, name="third")])
+    (verdict,) = RequirementChecker([own], van()).check(twins)
+    assert verdict.margin == alone.margin and once > 10 * in_the_zone
+    assert sum(boxes) < 1.5 * once

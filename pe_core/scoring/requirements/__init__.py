@@ -1,7 +1,7 @@
 """Requirements with a verdict: zones round the vehicle, test bodies, criteria, margins."""
 
 from .bodies import BODIES, Body
-from .checker import RequirementChecker, checkable
+from .checker import CheckStep, RequirementChecker, checkable
 from .criteria import Criterion, Requirement, Under, checked_requirements
 from .definition import body_met, sees
 from .margins import FARTHEST_M, margin_of
@@ -15,6 +15,7 @@ __all__ = [
     "BODIES",
     "FARTHEST_M",
     "Body",
+    "CheckStep",
     "Criterion",
     "GroundFigures",
     "MeshShape",

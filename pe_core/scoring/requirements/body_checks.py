@@ -6,7 +6,7 @@ with the kernels of objects. What follows, for every requirement and every lost 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -111,6 +111,24 @@ class BodyChecks:
                 found[k].passed[:] &= self._judged(k, case, measured).passed
         return found
 
+    def measuring(self, rig: Rig, cases: Sequence[Rig] = ()) -> Iterator[None]:
+        """Measure what `judged` needs; yield after each sensor of each scene."""
+        asked = cases if any(own.under.mounting for own, _ in self._wanted) else ()
+        for number, case in enumerate((rig, *asked)):
+            for sensor in case if self._joined is not None else ():
+                for measurer in self._measurers_of(number, sensor):
+                    if measurer.cached(sensor) is None:
+                        measurer.measure_again(sensor)
+                yield
+
+    def seen_by(self, number: int, sensor: Sensor) -> Flags:
+        """Return the samples and bodies (N, bodies * headings) of the first requirement that a
+        sensor sees in a scene."""
+        found = [
+            {sensor.name: each.measure_again(sensor)} for each in self._measurers_of(number, sensor)
+        ]
+        return self._seen(0, sensor, _Measured(found[0], found[-1] if len(found) > 1 else {}))
+
     def _judged(self, number: int, rig: Rig, measured: _Measured) -> Judged:
         requirement, _ = self._wanted[number]
         names = [s.name for s in rig]
@@ -129,20 +147,35 @@ class BodyChecks:
         """Return m of all bodies, and of their cells where a share is asked for, in a scene."""
         if self._joined is None:
             return _Measured({}, {})
-        vehicle, caches = self._caches.vehicle, self._caches.by_kernel(number)
+        m = self._measurer(number).measure(rig)
+        parts: CountsBySensor = {}
+        if number in self._part_measurers:
+            parts = self._part_measurers[number].measure(filter(self._shows_parts, rig))
+        return _Measured(m, parts)
+
+    def _measurer(self, number: int) -> ObjectMeasurementCache:
+        """Return what measures bodies in a scene; what measures their cells is made, too."""
         if number not in self._measurers:
+            assert self._joined is not None
+            vehicle, caches = self._caches.vehicle, self._caches.by_kernel(number)
             self._measurers[number] = ObjectMeasurementCache(
                 self._joined, vehicle, kernel_caches=caches
             )
             if self._parts is not None:
                 self._part_measurers[number] = PartMeasurementCache(self._parts, vehicle, caches)
-        m = self._measurers[number].measure(rig)
-        parts: CountsBySensor = {}
-        if number in self._part_measurers:
-            asking = [own.criterion for own, _ in self._wanted if own.criterion.share is not None]
-            counting = [s for s in rig if any(each.counts(s.kind) for each in asking)]
-            parts = self._part_measurers[number].measure(counting)
-        return _Measured(m, parts)
+        return self._measurers[number]
+
+    def _measurers_of(self, number: int, sensor: Sensor) -> list[ObjectMeasurementCache]:
+        """Return what measures a sensor on bodies, and on their cells where it shows parts."""
+        found = [self._measurer(number)]
+        if number in self._part_measurers and self._shows_parts(sensor):
+            found.append(self._part_measurers[number])
+        return found
+
+    def _shows_parts(self, sensor: Sensor) -> bool:
+        """Whether cells of bodies are asked of a sensor."""
+        asking = (own.criterion for own, _ in self._wanted if own.criterion.share is not None)
+        return any(each.counts(sensor.kind) for each in asking)
 
     def _seen(self, number: int, sensor: Sensor, measured: _Measured) -> Flags:
         """Return the samples and bodies (N, bodies * headings) that a sensor sees."""

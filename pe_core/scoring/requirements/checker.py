@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import replace
 from threading import RLock
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +17,13 @@ from ...scene.vehicle import Vehicle
 from ...scene.vehicle_description import Reference
 from ...sensors import PerceptionModel
 from .body_checks import BodyChecks, SceneCaches
-from .criteria import Requirement, checked_requirements, levels_of
+from .criteria import Requirement, checked_requirements
 from .definition import cautious
 from .ground import GroundCheck
-from .margins import growth, margin_of
 from .planes import VehiclePlanes
 from .shortfall import shortfall
-from .verdict import Judged, Samples, Verdict, body_verdict
+from .verdict import Samples, Verdict, body_verdict
+from .zone_growth import ZoneGrowth, boxes_of
 from .zones import INSIDE_M, PlacedZone
 
 Floats = NDArray[np.float64]
@@ -33,8 +33,13 @@ COARSE = 2.0
 """Factor of the step of a preview."""
 PREVIEW_OBJECTS = 1_000
 """A zone with fewer boxes keeps its step in a preview."""
-MAX_GROWN = 30_000
-"""A zone is grown as long as no more boxes stand on the ground that is added."""
+
+
+class CheckStep(NamedTuple):
+    """A step of a check: the part that is done, 0 to 1, and the verdict that it found, if any."""
+
+    fraction: float
+    verdict: Verdict | None = None
 
 
 class RequirementChecker:
@@ -117,12 +122,29 @@ class RequirementChecker:
         InputError
             When a requirement asks for kinds of sensors that the rig lacks.
         """
+        steps = self.steps(rig, preview=preview, cases=cases)
+        return tuple(step.verdict for step in steps if step.verdict is not None)
+
+    def steps(
+        self, rig: Rig, *, preview: bool = False, cases: Sequence[Rig] = ()
+    ) -> Iterator[CheckStep]:
+        """Yield the verdicts of `check` one after the other, in its order, with steps in between.
+
+        Whoever takes no more steps ends the work. Several threads may take steps of one checker:
+        what one of them has measured, the others do not measure again.
+        """
         self.check_rig(rig)
         if not self.requirements:
-            return ()
+            return
         rig, cases = cautious(rig), [] if preview else [cautious(case) for case in cases]
         with self._lock:
-            return self._set(PREVIEW if preview else FULL).verdicts(rig, cases)
+            steps = self._set(PREVIEW if preview else FULL).steps(rig, cases)
+        while True:
+            with self._lock:  # not while others have what was yielded
+                step = next(steps, None)
+            if step is None:
+                return
+            yield step
 
     def shortfalls(self, rig: Rig, cases: Sequence[Rig] = ()) -> tuple[float, ...]:
         """Return for each requirement 0 where it is met, else how far it is off, above 0 to 1.
@@ -140,6 +162,19 @@ class RequirementChecker:
         if name not in self._sets:
             self._sets[name] = _CheckedSet(self, name, self._space, self._model, self._caches)
         return self._sets[name]
+
+
+def _at(
+    fraction: float, work: Generator[None, None, tuple[float, bool]]
+) -> Generator[CheckStep, None, tuple[float, bool]]:
+    """Yield a step whenever some work yields; return its result."""
+    try:
+        while True:
+            next(work)
+            yield CheckStep(fraction)
+    except StopIteration as end:
+        result: tuple[float, bool] = end.value
+        return result
 
 
 def _checker_again(
@@ -167,8 +202,9 @@ class _CheckedSet:
         model: PerceptionModel,
         caches: SceneCaches,
     ) -> None:
-        self._vehicle, self._which, self._model = checker.vehicle, which, model
-        self._caches, self._grounds, pairs = caches, dict[int, GroundCheck](), []
+        self._vehicle, self._which = checker.vehicle, which
+        self._grounds, self._growths = dict[int, GroundCheck](), dict[int, ZoneGrowth]()
+        pairs: list[tuple[Requirement, Samples]] = []
         self._numbers: list[int] = []
         for number, own in enumerate(checker.requirements):
             zone = checker.zones[number]
@@ -176,26 +212,35 @@ class _CheckedSet:
                 anchor = checker.anchor
                 self._grounds[number] = GroundCheck(own, zone, space, self._vehicle, anchor, caches)
             else:
+                inside, around = _samples(own, zone, which)
+                self._growths[number] = ZoneGrowth(own, inside, around, model, caches)
                 self._numbers.append(number)
-                pairs.append((own, _samples(own, zone, which)))
+                pairs.append((own, inside))
         self._pairs = pairs
         self._bodies = BodyChecks(pairs, model, caches)
-        self._grown: dict[tuple[int, float], tuple[Samples, BodyChecks] | None] = {}
 
-    def verdicts(self, rig: Rig, cases: Sequence[Rig]) -> tuple[Verdict, ...]:
-        """Return the verdicts on a rig."""
-        preview = self._which == PREVIEW
-        found: dict[int, Verdict] = {}
-        for number, judged in enumerate(self._bodies.judged(rig, cases)):
-            requirement, samples = self._pairs[number]
-            own = body_verdict(requirement, samples, judged, rig, self._vehicle, preview)
-            if own.at_least:
-                margin, at_least = self._grown_margin(number, judged, rig, cases)
-                own = replace(own, margin=margin, at_least=at_least)
-            found[self._numbers[number]] = own
-        for number, ground in self._grounds.items():
-            found[number] = ground.verdict(rig, preview, cases)
-        return tuple(found[number] for number in sorted(found))
+    def steps(self, rig: Rig, cases: Sequence[Rig]) -> Iterator[CheckStep]:
+        """Yield the verdicts on a rig, and steps without one in between."""
+        preview, done = self._which == PREVIEW, 0
+        scenes = 1 + len(cases) * any(own.under.mounting for own, _ in self._pairs)
+        total = len(self._pairs) + len(self._grounds) + len(rig) * scenes * bool(self._pairs)
+        for _ in self._bodies.measuring(rig, cases):
+            done += 1
+            yield CheckStep(done / total)
+        judged = dict(zip(self._numbers, self._bodies.judged(rig, cases), strict=True))
+        pairs = dict(zip(self._numbers, self._pairs, strict=True))
+        for number in sorted([*pairs, *self._grounds]):
+            if number in pairs:
+                given = *pairs[number], judged[number], rig, self._vehicle, preview
+                verdict = body_verdict(*given)
+                if verdict.at_least:
+                    growing = self._growths[number].margin(judged[number], rig, cases)
+                    margin, at_least = yield from _at(done / total, growing)
+                    verdict = replace(verdict, margin=margin, at_least=at_least)
+            else:
+                verdict = self._grounds[number].verdict(rig, preview, cases)
+            done += 1
+            yield CheckStep(done / total, verdict)
 
     def shortfalls(self, rig: Rig, cases: Sequence[Rig]) -> tuple[float, ...]:
         """Return how far a rig is off each requirement, 0 where it is met."""
@@ -204,66 +249,17 @@ class _CheckedSet:
             found[self._numbers[number]] = shortfall(*self._pairs[number], judged, rig)
         return tuple(found[number] for number in sorted(found))
 
-    def _grown_margin(
-        self, number: int, judged: Judged, rig: Rig, cases: Sequence[Rig]
-    ) -> tuple[float, bool]:
-        """Return the margin of a zone that could grow farther than it was sampled at first.
 
-        The zone is grown to twice as far again and again, as long as it does not fail.
-        """
-        requirement, samples = self._pairs[number]
-        distance, passed = samples.distance, judged.passed
-        wanted, step = requirement.criterion.zone_share, requirement.zone.step
-        inner = samples.zone.grow
-        margin = margin_of(distance, passed, wanted, step, inner)
-        for outer in growth(samples.zone):
-            known = self._grown_checks(number, inner, outer)
-            if known is None:
-                break
-            added, checks = known
-            if len(added.points):
-                (own,) = checks.judged(rig, cases)
-                distance = np.concatenate([distance, added.distance])
-                passed = np.concatenate([passed, own.passed])
-            margin, inner = margin_of(distance, passed, wanted, step, outer), outer
-            if not margin[1]:
-                break
-        return margin
-
-    def _grown_checks(
-        self, number: int, inner: float, outer: float
-    ) -> tuple[Samples, BodyChecks] | None:
-        """Return the samples round a zone between two distances; None where there are too many."""
-        key = number, outer
-        if key not in self._grown:
-            requirement, samples = self._pairs[number]
-            most = MAX_GROWN // _boxes_of(requirement)
-            points, distance = samples.zone.ring_of_samples(inner, outer, most)
-            added = Samples(samples.zone, points, distance)
-            checks = BodyChecks(
-                [(requirement, added)] * bool(len(points)), self._model, self._caches
-            )
-            self._grown[key] = (added, checks) if len(points) <= most else None
-        return self._grown[key]
-
-
-def _samples(requirement: Requirement, zone: PlacedZone, which: str) -> Samples:
-    """Return the samples of a zone that one of the sets has."""
+def _samples(requirement: Requirement, zone: PlacedZone, which: str) -> tuple[Samples, Samples]:
+    """Return the samples in a zone that one of the sets has, and those of the ground round it."""
     points, distance = zone.samples(grown=which == FULL)
-    if which == PREVIEW and len(points) * _boxes_of(requirement) > PREVIEW_OBJECTS:
+    if which == PREVIEW and len(points) * boxes_of(requirement) > PREVIEW_OBJECTS:
         points, distance = zone.samples(COARSE, grown=False)
-    return Samples(zone, points, distance)
-
-
-def _boxes_of(requirement: Requirement) -> int:
-    """Return how many boxes are measured at each sample."""
-    with_cells = (False, True) if requirement.criterion.share is not None else (False,)
-    boxes = sum(
-        len(body.boxes(cells)[0]) * len(body.headings)
-        for body in requirement.bodies
-        for cells in with_cells
+    inside = distance <= INSIDE_M
+    return (
+        Samples(zone, points[inside], distance[inside]),
+        Samples(zone, points[~inside], distance[~inside]),
     )
-    return boxes * levels_of(requirement)
 
 
 def checkable(

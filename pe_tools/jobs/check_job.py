@@ -1,0 +1,71 @@
+"""The job that holds a study to its requirements, verdict by verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from pe_core.scoring.requirements import CheckStep, Verdict, checkable
+from pe_core.study.study import Study
+
+from .job import Job, Progress, begun
+
+
+class CheckJob(Job):
+    """Holds the rig of a study to its requirements, with mounting errors and margins.
+
+    A job that is stopped keeps the verdicts that it has found.
+
+    Parameters
+    ----------
+    study : Study
+    fitting : bool
+        Leave out requirements that the rig cannot be held to, with the reason, instead of raising
+        `InputError`.
+
+    Attributes
+    ----------
+    verdicts : list of Verdict
+        Found so far, in the order of the requirements.
+    unchecked : dict of str
+        Why requirements were left out, by name.
+    complete : bool
+        Whether it was not stopped.
+    """
+
+    def __init__(self, study: Study, *, fitting: bool = False) -> None:
+        super().__init__(study)
+        self._fitting = fitting
+        self.verdicts: list[Verdict] = []
+        self.unchecked: dict[str, str] = {}
+        self.complete = False
+        self._progress = Progress("checking", 0.0)
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """Names of the requirements without a verdict, as the job was stopped before."""
+        known = {*self.unchecked, *(verdict.name for verdict in self.verdicts)}
+        return tuple(each.name for each in self.study.requirements if each.name not in known)
+
+    def __iter__(self) -> Iterator[Progress]:
+        yield self._progress
+        steps = self._steps()
+        while step := (yield from self._awaited(begun(lambda: next(steps, None)), self._now)):
+            self._progress = Progress("checking", step.fraction)
+            if step.verdict is not None:
+                self.verdicts.append(step.verdict)
+            yield self._progress
+        self.complete = not self.stopped
+        yield Progress("done", 1.0)
+
+    def _now(self) -> Progress:
+        return self._progress
+
+    def _steps(self) -> Iterator[CheckStep]:
+        """Yield the steps of the check; the first one takes as long as all zones to be placed."""
+        study = self.study
+        if self._fitting:
+            around = study.rig, study.vehicle, study.reference, study.space
+            fitting, self.unchecked = checkable(study.requirements, *around)
+            study = replace(study, requirements=fitting)
+        yield from self._check_steps(study)

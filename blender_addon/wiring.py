@@ -20,6 +20,7 @@ from . import (
     diagnostics,
     housing,
     location_query,
+    requirement_checkers,
     result_staleness,
     sensor_cache,
     signals,
@@ -56,6 +57,7 @@ EVENTS: dict[str, tuple[Function, ...]] = {
     "load_pre": (
         sensor_cache.invalidate,
         vehicle_cache.clear,
+        requirement_checkers.shared.clear,
         change_events.clear,
         session.clear,
         result_staleness.clear,

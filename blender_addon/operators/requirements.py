@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import bpy
@@ -11,11 +10,13 @@ from bpy.props import EnumProperty, IntProperty
 
 from .. import bridge, signals, vehicle_cache
 from ..choices import free_name
-from ..engine import pe, requirements, studies
+from ..engine import jobs, pe, requirements, studies
 from ..overlay.layer_cache import shown
 from ..overlay.requirement_zones import VerdictShape
+from . import running_job
 from .list_rows import RemoveRow, SelectedRow
 from .reports import USER_ERRORS, OperatorResult, report, report_error
+from .score_jobs import JobOperator, SceneJob
 
 OWN, ALL = "OWN", "ALL"
 LOOK_FROM_M = 9.0
@@ -146,30 +147,49 @@ class PE_OT_move_requirement(RequirementRow, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class PE_OT_check_requirements(bpy.types.Operator):
+class PE_OT_check_requirements(JobOperator, bpy.types.Operator):
     """Hold the rig to all requirements that are switched on, with mounting errors and margins"""
 
     bl_idname = "pe.check_requirements"
     bl_label = "Check Requirements"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        settings = context.scene.perception_entropy
-        try:
-            study = bridge.study_as_drawn(context.scene)
-            if not study.requirements:
-                raise pe.InputError("scene", "requirements", "at least one", "none")
-            fitting, reasons = _checkable(study, study.requirements)
-            verdicts = replace(study, requirements=fitting).verdicts()
-        except USER_ERRORS as error:
-            return report_error(self, error)
-        bridge.store_verdicts(settings, verdicts, reasons)
-        met = sum(verdict.met for verdict in verdicts)
-        missed = [verdict.name for verdict in verdicts if not verdict.met]
+    def job_of(self, scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> pe.Job:
+        """Check all that the rig can be held to; the rows have no verdicts until it found them."""
+        if not study.requirements:
+            raise pe.InputError("scene", "requirements", "at least one", "none")
+        settings = scene.perception_entropy
+        self.tables = bridge.requirements_key(settings)
+        self.stored = 0
+        bridge.store_verdicts(settings, ())
+        return jobs.CheckJob(study, fitting=True)
+
+    def progressed(self, running: running_job.RunningJob) -> None:
+        """Store the verdicts that were found since the last time."""
+        scene = bpy.data.scenes.get(running.scene_name)
+        if scene is not None and len(running.job.verdicts) > self.stored:
+            self._store(scene, running.job)
+
+    def _store(self, scene: bpy.types.Scene, job: jobs.CheckJob) -> None:
+        """Store what was found; a requirement that was changed meanwhile has no verdict."""
+        settings, self.stored = scene.perception_entropy, len(job.verdicts)
+        same = {name for name, _ in {*self.tables} & {*bridge.requirements_key(settings)}}
+        found = [each for each in job.verdicts if each.name in same]
+        bridge.store_verdicts(settings, found, job.unchecked)
+
+    def _apply(self, scene: bpy.types.Scene | None, task: SceneJob) -> OperatorResult:
+        """Keep the verdicts: after Esc those that were found before it."""
+        job = task.job
+        if scene is None or job.dropped:
+            return {"CANCELLED"}
+        self._store(scene, job)
+        met = sum(verdict.met for verdict in job.verdicts)
+        missed = [verdict.name for verdict in job.verdicts if not verdict.met]
+        unchecked = [*job.unchecked, *job.missing]
         more = f"; not met: {', '.join(missed)}" if missed else ""
-        more += f"; not checked: {', '.join(reasons)}" if reasons else ""
-        text = f"{met} of {len(verdicts)} requirements are met{more}"
-        report(self, "WARNING" if missed or reasons else "INFO", text)
+        more += f"; not checked: {', '.join(unchecked)}" if unchecked else ""
+        text = f"{met} of {len(job.verdicts)} requirements are met{more}"
+        report(self, "WARNING" if missed or unchecked else "INFO", text)
         return {"FINISHED"}
 
 

@@ -10,7 +10,15 @@ from typing import Any, NamedTuple
 import bpy
 from bpy.props import IntProperty
 
-from .. import bridge, diagnostics, result_staleness, sensor_cache, signals, vehicle_cache
+from .. import (
+    bridge,
+    diagnostics,
+    requirement_checkers,
+    result_staleness,
+    sensor_cache,
+    signals,
+    vehicle_cache,
+)
 from ..engine import advice, app, pe
 from ..language import shown
 from ..live import FinishedScore, live_state
@@ -109,6 +117,7 @@ class JobOperator(OperatorMixin):
             if not more:
                 scene = bpy.data.scenes.get(job.scene_name)
                 return self._apply(scene, SceneJob(job.job, self.taken))
+            self.progressed(job)
             job.show_soon(context)
             return {"PASS_THROUGH"}
         except USER_ERRORS as error:
@@ -116,6 +125,9 @@ class JobOperator(OperatorMixin):
         finally:
             if not more:
                 running_job.end(context)
+
+    def progressed(self, running: running_job.RunningJob) -> None:
+        """Show what a job has found so far, where that is more than its progress."""
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Called by Blender when the window or the file is closed: nothing is kept."""
@@ -134,6 +146,7 @@ class JobOperator(OperatorMixin):
         study = bridge.study_from_scene(scene, depsgraph, vehicle, sensors)
         taken = result_staleness.fingerprint(scene, depsgraph, sensors)
         job = self.job_of(scene, study, taken)
+        job.as_drawn = requirement_checkers.shared.of_study
         job.notes = bridge.missing_data(scene, sensors)  # what the scene lacks
         return SceneJob(job, taken)
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from .. import simplified_vehicles
+from .. import requirement_checkers, simplified_vehicles
 from ..engine import graphics, pe, requirements, sight
 from .request import SceneSensor, ViewRequest
 
@@ -160,11 +160,5 @@ def _checker(request: ViewRequest) -> tuple[requirements.RequirementChecker, dic
     rig = pe.Rig([each.sensor for each in request.counted])
     around = rig, request.vehicle, request.reference, request.space
     placed, unplaced = requirements.checkable(request.requirements, *around)
-    checker = requirements.RequirementChecker(
-        placed,
-        request.vehicle,
-        model=request.model,
-        reference=request.reference,
-        space=request.space,
-    )
-    return checker, unplaced
+    given = request.vehicle, request.model, request.reference, request.space
+    return requirement_checkers.shared.of(placed, *given), unplaced

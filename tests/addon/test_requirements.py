@@ -1,15 +1,18 @@
 """Requirements in the scene: one record with the study file, verdicts of the engine to the bit."""
 
 import json
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
 import pytest
 
 import pe_core as pe
-from blender_addon import bridge
+from blender_addon import bridge, requirement_checkers
 from blender_addon.operators import requirements as operators
+from blender_addon.operators import score_jobs
 from blender_addon.overlay.requirement_zones import FILL_ALPHA, MET, NOT_MET
+from pe_core.sensors import ObjectMeasurementCache
 from pe_core.study import requirement_file
 from pe_tools import graphics
 from tests.addon import scenes
@@ -317,6 +320,60 @@ def test_check_stores_the_verdicts_of_the_engine(held):
         assert tuple(row.worst) == pytest.approx(verdict.worst)
     shown = operators.shown_verdicts(held)
     assert [shown[v.name].met for v in verdicts] == [v.met for v in verdicts]
+
+
+def check_by_hand(scene, after_a_step):
+    """Step a check as a window does; return what the operator returned and reported."""
+    bases = (operators.PE_OT_check_requirements, score_jobs.JobOperator)
+    own = {name: each for base in reversed(bases) for name, each in vars(base).items()}
+    names = ("_task", "_read", "_apply", "_store", "job_of", "progressed")
+    act, told = type("Act", (), {name: own[name] for name in names})(), []
+    act.report = lambda _level, text: told.append(text)
+    task = act._task(bpy.context)
+    for _ in task.job:
+        act.progressed(SimpleNamespace(scene_name=scene.name, job=task.job))
+        after_a_step(task.job)
+    return act._apply(scene, task), told
+
+
+def test_verdicts_come_row_by_row_and_esc_keeps_those_that_are_found(held):
+    bpy.ops.pe.check_requirements()
+    whole, counts = [row.verdict for row in rows(held)], []
+
+    def note(job):
+        counts.append(sum(row.met >= 0 for row in rows(held)))
+
+    assert check_by_hand(held, note)[0] == {"FINISHED"}
+    assert counts == sorted(counts) and {*counts} == {0, 1, 2, 3}
+    assert [row.verdict for row in rows(held)] == whole
+
+    (done, told) = check_by_hand(held, lambda job: job.stop() if job.verdicts else None)
+    assert done == {"FINISHED"} and "not checked: " in told[0]
+    assert [row.verdict for row in rows(held)] == [whole[0], "", ""]
+
+
+def test_a_requirement_that_is_changed_meanwhile_gets_no_verdict(held):
+    check_by_hand(held, lambda job: setattr(rows(held)[2], "kinds", 1))
+    assert [row.met >= 0 for row in rows(held)] == [True, True, False]
+
+
+@pytest.mark.parametrize("first", ["view", "check"])
+def test_view_check_and_score_measure_nothing_twice(held, first, monkeypatch):
+    measured, again = [], ObjectMeasurementCache.measure_again
+
+    def noted(self, sensor):
+        measured.append(sensor.name)
+        return again(self, sensor)
+
+    monkeypatch.setattr(ObjectMeasurementCache, "measure_again", noted)
+    requirement_checkers.shared.clear()
+    acts = {"view": lambda: scenes.drawn(held), "check": bpy.ops.pe.check_requirements}
+    acts[first]()
+    assert measured
+    measured.clear()
+    for act in (*acts.values(), bpy.ops.pe.score):
+        act()
+    assert measured == []
 
 
 def test_a_score_stores_them_too_and_an_edit_forgets_one(held):

@@ -30,7 +30,7 @@ Ints = NDArray[np.int64]
 
 MAX_GROWN = 30_000
 """A zone is grown as long as no more boxes stand on the ground that is added."""
-PART_BOXES = 3_000
+PART_BOXES = 8_000
 """The boxes that are measured at once, about: after each part it may be clear that it fails."""
 
 
@@ -145,12 +145,20 @@ class RingPart:
         """Return those of some samples that pass in a scene."""
         counts, unsure, seen = self._requirement.criterion.counts, among, dict[str, Flags]()
         asked = [sensor for sensor in rig if counts(sensor.kind)]
-        for sensor in sorted(asked, key=lambda s: -saw.get(s.name, 0)):
+        for sensor in sorted(asked, key=lambda s: self._rank(number, s, saw)):
             if not len(unsure):
                 break
             seen[sensor.name] = self._seen(number, sensor, unsure, saw)
             unsure = unsure[~self._enough(rig, {n: flags[unsure] for n, flags in seen.items()})]
         return np.setdiff1d(among, unsure, assume_unique=True)
+
+    def _rank(self, number: int, sensor: Sensor, saw: Mapping[str, int]) -> tuple[int, int]:
+        """Return what orders sensors: known ones cost nothing, and one that moved may move on."""
+        of, known, _ = self._known.get((number, sensor.name), (sensor, None, None))
+        seen = saw.get(sensor.name, 0)
+        if of.model is not sensor.model or of.pose != sensor.pose:
+            return 2 if seen else 3, -seen
+        return 0 if known is not None else 1 if seen else 3, -seen
 
     def _enough(self, rig: Rig, seen: Mapping[str, Flags]) -> Flags:
         """Whether the sensors that were asked are enough, whatever the others see."""

@@ -17,7 +17,6 @@ from . import (
     panels,
     preferences_panel,
     properties,
-    requirement_checkers,
     search_curve,
     sensor_cache,
     vehicle_cache,
@@ -80,5 +79,4 @@ def stop() -> None:
     change_events.unregister()
     consistency.unregister()
     vehicle_cache.clear()
-    requirement_checkers.shared.clear()
     sensor_cache.invalidate()

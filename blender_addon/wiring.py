@@ -20,7 +20,6 @@ from . import (
     diagnostics,
     housing,
     location_query,
-    requirement_checkers,
     result_staleness,
     sensor_cache,
     signals,
@@ -57,7 +56,6 @@ EVENTS: dict[str, tuple[Function, ...]] = {
     "load_pre": (
         sensor_cache.invalidate,
         vehicle_cache.clear,
-        requirement_checkers.shared.clear,
         change_events.clear,
         session.clear,
         result_staleness.clear,

@@ -58,8 +58,8 @@ class PE_OT_mend(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         try:
-            amount = tuple(AMOUNT.checked("mend", "amount", each) for each in self.amount)
-            FIXES[self.fix](context, self.subject, amount)
+            x, y, z = (AMOUNT.checked("mend", "amount", each) for each in self.amount)
+            FIXES[self.fix](context, self.subject, (x, y, z))
         except USER_ERRORS as error:
             return report_error(self, error)
         context.view_layer.update()

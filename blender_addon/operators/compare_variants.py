@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from textwrap import wrap
 from typing import NamedTuple
@@ -30,6 +30,7 @@ TITLES = {
     "coverage": "Coverage",
 }
 """In the order of the table: what a designer asks for first."""
+KEY_FIGURES = ("blind", "reach", "ap")
 FORMATS = {"entropy": ".3f", "coverage": ".1%", "ap": ".3f", "reach": ".1f", "blind": ".1f"}
 """Formats of the figures by measure."""
 WHOLE_RIG = "Everywhere"
@@ -186,21 +187,27 @@ class PE_OT_show_comparison(bpy.types.Operator):
         )
 
     def draw(self, _context: bpy.types.Context) -> None:
-        """Draw the table of stored scores, with one column for each variant."""
-        said = self.layout.column(align=True)  # first: the table may be taller than the window
+        """Draw the key figures, the scores in words, and the scores, a column for each variant."""
+        self._draw_table([row for row in self.rows if row.measure in KEY_FIGURES])
+        said = self.layout.column(align=True)
         for line in self.said:
             draw_label(said, line)
-        split = self.layout.box().split(factor=LABEL_PX / (LABEL_PX + COLUMN_PX * len(self.names)))
-        names, *columns = columns_of(self.names, self.rows)
-        draw_column(split.column(align=True), names, "LEFT")
-        figures = split.row()
-        for column in columns:
-            draw_column(figures.column(align=True), column, "RIGHT")
+        self._draw_table([row for row in self.rows if row.measure not in KEY_FIGURES])
         text = (
             f"A star marks the best; in brackets: the difference to {self.names[0]}, "
             "blue for a gain, orange for a loss"
         )
         draw_label(self.layout, text)
+
+    def _draw_table(self, rows: Sequence[advice.ComparedRow]) -> None:
+        if not rows:
+            return
+        split = self.layout.box().split(factor=LABEL_PX / (LABEL_PX + COLUMN_PX * len(self.names)))
+        names, *columns = columns_of(self.names, rows)
+        draw_column(split.column(align=True), names, "LEFT")
+        figures = split.row()
+        for column in columns:
+            draw_column(figures.column(align=True), column, "RIGHT")
 
 
 class TextCell(NamedTuple):
@@ -289,7 +296,7 @@ def sentences(names: list[str], rows: tuple[advice.ComparedRow, ...], letters: i
     return [line for sentence in lines for line in wrap(sentence, letters)]
 
 
-def columns_of(names: list[str], rows: tuple[advice.ComparedRow, ...]) -> list[list[TableCell]]:
+def columns_of(names: list[str], rows: Sequence[advice.ComparedRow]) -> list[list[TableCell]]:
     """Return the table by columns; the first column holds the names of the rows."""
     columns: list[list[TableCell]] = [[TextCell(name)] for name in ("", *names)]
     for measure, title in TITLES.items():

@@ -106,7 +106,8 @@ class Outcome:
     judged : tuple of EvaluatedRig
         Journal of the search, from which a stopped search resumes.
     robustness : Robustness or None
-        Of a search: how the entropy of start and result changes under mounting errors and failures.
+        Of a search: how the entropy of start and result changes under mounting errors and failures;
+        None, as all that is analysed after a search, where it was stopped before.
     verdicts : tuple of Verdict
         On the requirements of `study`, in its order.
     conditions : ConditionTable or None
@@ -264,6 +265,8 @@ class Job:
     ) -> Generator[Progress, None, T | None]:
         """Run `work` in a thread, yielding progress; return None if the job ends before it."""
         yield waiting()
+        if not self._goes_on(to_the_end):
+            return None
         return (yield from self._awaited(begun(work), waiting, to_the_end))
 
     def _awaited(
@@ -292,7 +295,7 @@ class Job:
         return (yield from self._beside(work, lambda: waiting, to_the_end=True))
 
     def _verdicts(
-        self, study: Study, waiting: Progress
+        self, study: Study, waiting: Progress, to_the_end: bool = True
     ) -> Generator[Progress, None, tuple[Verdict, ...] | None]:
         """Hold a study to its requirements in a thread, yielding `waiting` until it is done."""
         if not study.requirements:
@@ -303,20 +306,20 @@ class Job:
         def work() -> tuple[Verdict, ...]:
             nonlocal done
             for step in self._check_steps(study):
-                if self.dropped:  # nobody waits for this thread
+                if not self._goes_on(to_the_end):  # nobody waits for this thread
                     break
                 done = step.fraction
                 found.extend([] if step.verdict is None else [step.verdict])
             return tuple(found)
 
-        return (yield from self._beside(work, lambda: replace(waiting, fraction=done), True))
+        return (yield from self._beside(work, lambda: replace(waiting, fraction=done), to_the_end))
 
     def _check_steps(self, study: Study) -> Iterator[CheckStep]:
         """Yield the verdicts on a study one by one, with steps in between."""
         yield from study.check_steps(study.checker(self.as_drawn and self.as_drawn(study)))
 
     def _conditions(
-        self, study: Study, waiting: Progress
+        self, study: Study, waiting: Progress, to_the_end: bool = True
     ) -> Generator[Progress, None, ConditionTable | None]:
         """Score a study under its conditions in a thread; None without, or where it is dropped."""
         if not study.conditions:
@@ -326,7 +329,7 @@ class Job:
         def watch(share: float) -> bool:
             nonlocal done
             done = share
-            return not self.dropped
+            return self._goes_on(to_the_end)
 
         def work() -> ConditionTable | None:
             try:
@@ -334,7 +337,7 @@ class Job:
             except ScoreStopped:
                 return None
 
-        return (yield from self._beside(work, lambda: replace(waiting, fraction=done), True))
+        return (yield from self._beside(work, lambda: replace(waiting, fraction=done), to_the_end))
 
 
 def begun(work: Callable[[], T]) -> Future[T]:

@@ -204,16 +204,18 @@ class OptimizeJob(Job):
         last, best = yield from self._better_of(first)
         before, after = first.score, last.score
         looking = self._about("scoring the result", last.value)
-        robustness_result = yield from self._robustness(best, looking)
         warnings = yield from self._warnings(best, after, looking)
-        verdicts = yield from self._verdicts(best, looking)
-        unmet_warnings = yield from self._unmet(best, verdicts or (), looking)
-        sensitivity = yield from self._sensitivity(best, replace(looking, stage="analysing"))
         blind = yield from self._beside(lambda: self._blind(best), lambda: looking, to_the_end=True)
-        if None in (warnings, robustness_result, verdicts, unmet_warnings, blind):
+        # A stop, before it or while it runs, ends what follows: the result does not wait for it.
+        analysing = replace(looking, stage="analysing")
+        robustness_result = yield from self._robustness(best, analysing)
+        verdicts = yield from self._verdicts(best, analysing, to_the_end=False)
+        unmet_warnings = yield from self._unmet(best, verdicts or (), analysing)
+        sensitivity = yield from self._sensitivity(best, analysing)
+        table = yield from self._conditions(best, analysing, to_the_end=False)
+        if self.dropped or warnings is None or blind is None:
             return
-        table = yield from self._conditions(best, looking)
-        assert warnings is not None and robustness_result is not None
+        sure = () if robustness_result is None else _fragile(best, robustness_result)
         self.outcome = Outcome(
             "optimize",
             self.study,
@@ -225,7 +227,7 @@ class OptimizeJob(Job):
             stopped,
             self.seconds,
             (
-                *(*warnings, *_fragile(best, robustness_result), *(unmet_warnings or ())),
+                *(*warnings, *sure, *(unmet_warnings or ())),
                 *condition_warnings(table),
             ),
             self.inputs,
@@ -287,7 +289,7 @@ class OptimizeJob(Job):
             sampled = last if last.samples else self._own_evaluator_of(DEFAULT_SEARCH_SAMPLES)
             return robustness(sampled, self.study.rig, best.rig, search.tolerance, search.seed)
 
-        return (yield from self._beside(work, lambda: waiting, to_the_end=True))
+        return (yield from self._beside(work, lambda: waiting))
 
     def _sensitivity(
         self, best: Study, waiting: Progress
@@ -301,7 +303,7 @@ class OptimizeJob(Job):
             given = (self.study, best, self._archive, self.evaluations)
             return analyse(*given, samples, lambda: not self.stopped)
 
-        return (yield from self._beside(work, lambda: waiting, to_the_end=True))
+        return (yield from self._beside(work, lambda: waiting))
 
     def _blind(self, best: Study) -> tuple[float, float]:
         """Return the blind ground of start and result [m2]."""
@@ -316,7 +318,7 @@ class OptimizeJob(Job):
         if not best.search.requirements or all(verdict.met for verdict in verdicts):
             return ()
         work = partial(conflicts, best, best.rig)
-        found = yield from self._beside(work, lambda: waiting, to_the_end=True)
+        found = yield from self._beside(work, lambda: waiting)
         return None if found is None else unmet(found)
 
     @property

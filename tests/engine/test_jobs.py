@@ -11,7 +11,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.base import dump_json
-from pe_tools.jobs import HistoryRow
+from pe_tools.jobs import HistoryRow, score_and_optimize
 from tests.engine import shapes
 
 
@@ -128,6 +128,22 @@ def test_stop_while_the_result_is_scored_cuts_nothing_short():
             job.stop()
     assert job.outcome.evaluations == 1 + 7 * 6 and not job.outcome.stopped
     assert job.outcome.after.entropy < job.outcome.before.entropy
+
+
+@pytest.mark.parametrize("when", ["optimizing", "analysing"])
+def test_a_stop_ends_the_analysis_and_the_result_does_not_wait_for_it(when, monkeypatch):
+    """Before it begins, or while it runs for as long as it likes."""
+    goes_on = threading.Event()
+    monkeypatch.setattr(score_and_optimize, "robustness", lambda *_: goes_on.wait(60.0))
+    job = pe.OptimizeJob(study())
+    for progress in job:
+        if progress.stage == when and progress.evaluations >= 20:
+            job.stop()
+    assert not goes_on.is_set() and job.outcome.robustness is None
+    assert job.outcome.stopped is (when == "optimizing")
+    assert job.outcome.after.entropy <= job.outcome.before.entropy
+    assert pe.result_dict(job.outcome)["entropy"] == job.outcome.after.entropy
+    goes_on.set()
 
 
 def test_an_exception_in_the_scoring_thread_is_raised():

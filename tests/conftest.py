@@ -7,11 +7,6 @@ from xdist.scheduler import LoadScopeScheduling
 
 WINDOWS = "tests/blender/"
 """The folder whose tests open a real Blender's window: one at a time, and begun first."""
-QUICK = dict.fromkeys(
-    ("tests/studies/test_reproduce.py", "tests/studies/test_results_file.py"),
-    "python -m studies.paper --quick",
-)
-"""Files that share one run of 40 s of a processor: they have one process."""
 ORDER = (WINDOWS, "tests/review/", "tests/studies/", "tests/addon/", "tests/engine/")
 """Folders whose files take long come first; the many short files at the end level the load."""
 
@@ -26,7 +21,7 @@ class Together(LoadScopeScheduling):
 
     def _split_scope(self, nodeid):
         file = nodeid.partition("::")[0]
-        return WINDOWS if nodeid.startswith(WINDOWS) else QUICK.get(file, file)
+        return WINDOWS if nodeid.startswith(WINDOWS) else file
 
     def remove_node(self, node):
         work = self.assigned_work.pop(node)

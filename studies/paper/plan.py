@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 from ..task_runner import Task, Values
@@ -94,13 +94,6 @@ def pitch_differences(effort: Effort) -> list[float]:
     return [round(k * effort.pitch_step_deg, 4) + 0.0 for k in range(-count, count + 1)]
 
 
-def effort_to_dict(effort: Effort) -> dict[str, Any]:
-    """Return an effort as results.json has it."""
-    data = asdict(effort)
-    data["rows"] = [list(pair) for pair in effort.rows]
-    return {key: list(v) if isinstance(v, tuple) else v for key, v in data.items()}
-
-
 def effort_from_dict(data: dict[str, Any]) -> Effort:
     """Return the effort that results.json names."""
     values: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in data.items()}
@@ -116,11 +109,6 @@ def plan(effort: Effort, values: Values) -> list[Task]:
     """
     can_run = [*_searches(effort, values), *scores_and_figures(effort)]
     return [task for task in can_run if task.name not in values]
-
-
-def names(effort: Effort, values: Values) -> list[str]:
-    """Return the names of all tasks of an effort; `values` must hold those of the pilots."""
-    return [task.name for task in (*_searches(effort, values), *scores_and_figures(effort))]
 
 
 def scores_and_figures(effort: Effort) -> list[Task]:

@@ -9,10 +9,15 @@ import sys
 
 import pytest
 
+from pe_core import InputError
 from studies.paper import reproduce
-from studies.paper.plan import QUICK, plan
+from studies.paper.plan import FULL, QUICK, plan, scores_and_figures
+from studies.results_file import ResultsFile
 from tests.studies.conftest import ROOT, numbers, study, study_in_a_process
+from tests.thorough import THOROUGH
 
+DOCS = ROOT / "docs" / "reproduction"
+COMMITTED = json.loads((DOCS / "results.json").read_text("utf-8"))
 KEYS = ("1", "2", "3 default", "3 front", "4")
 
 
@@ -86,8 +91,7 @@ def test_a_second_run_computes_nothing_and_prints_the_json(quick, monkeypatch):
     assert (quick.folder / "results.json").read_bytes() == before
 
 
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
-def test_what_is_done_is_kept_when_it_is_interrupted(quick, tmp_path, name):
+def test_what_is_done_is_kept_when_it_is_interrupted(quick, tmp_path):
     """A run that goes on with the pitch figure alone ends between two of its scores."""
     data = copy.deepcopy(quick.data)
     to_do = {task for task in data["results"] if task.startswith("pitch/")}
@@ -99,19 +103,12 @@ def test_what_is_done_is_kept_when_it_is_interrupted(quick, tmp_path, name):
     )
     assert "going on from" in process.stderr.readline()
     assert "] pitch/" in process.stderr.readline()
-    process.send_signal(getattr(signal, name))
+    process.send_signal(signal.SIGTERM)
     _, error = process.communicate(timeout=120)
-    assert process.returncode == 128 + getattr(signal, name)
+    assert process.returncode == 128 + signal.SIGTERM
     assert "interrupted" in error and "Traceback" not in error
     kept = json.loads((tmp_path / "results.json").read_text("utf-8"))["results"]
     assert data["results"].keys() < kept.keys() < quick.data["results"].keys()
-
-
-@pytest.mark.parametrize(("text", "found"), [("{", "valid JSON"), ("[]", "a JSON object")])
-def test_a_broken_results_file_is_one_line(tmp_path, text, found):
-    (tmp_path / "results.json").write_text(text)
-    run = study("paper", "--quick", "--output", tmp_path)
-    assert run.returncode == 1 and found in run.stderr and run.stderr.count("\n") == 1
 
 
 def test_the_page_is_written_again_from_the_results_alone(quick, tmp_path):
@@ -129,3 +126,64 @@ def test_a_page_of_incomplete_results_is_refused(tmp_path):
     run = study("paper", "--page-only", "--output", tmp_path)
     assert run.returncode == 1 and run.stderr.count("\n") == 1
     assert "complete results of schema 1" in run.stderr
+
+
+def test_a_page_of_the_users_own_is_not_written_over(tmp_path):
+    (tmp_path / "README.md").write_text("# My project")
+    (tmp_path / "results.json").write_bytes((DOCS / "results.json").read_bytes())
+    run = study("paper", "--page-only", "--json", "--output", tmp_path)
+    assert run.returncode == 1 and not run.stdout and run.stderr.count("\n") == 1
+    assert (tmp_path / "README.md").read_text() == "# My project"
+
+
+def test_the_page_is_the_committed_one(tmp_path, monkeypatch):
+    monkeypatch.setattr(reproduce, "draw_all", lambda *_: None)
+    (tmp_path / "results.json").write_bytes((DOCS / "results.json").read_bytes())
+    run = study("paper", "--page-only", "--json", "--output", tmp_path)
+    assert run.returncode == 0 and json.loads(run.stdout) == COMMITTED and not run.stderr
+    assert (tmp_path / "README.md").read_bytes() == (DOCS / "README.md").read_bytes()
+
+
+@pytest.mark.parametrize("place", ["claims/0/better_entropy", "results/pitch|0/value/entropy"])
+def test_claims_that_do_not_follow_from_the_values_are_refused(tmp_path, place):
+    data = at = copy.deepcopy(COMMITTED)
+    *folders, last = (k.replace("|", "/") for k in place.split("/"))
+    for key in folders:
+        at = at[int(key) if isinstance(at, list) else key]
+    at[last] += 1.0
+    (tmp_path / "results.json").write_text(json.dumps(data), "utf-8")
+    with pytest.raises(InputError, match="claims"):
+        reproduce.read_results(tmp_path / "results.json")
+
+
+def test_results_of_another_commit_are_kept_under_a_name_of_their_own(tmp_path):
+    results = ResultsFile(tmp_path, QUICK)
+    results.add("pitch/0", {"entropy": 1.0}, 0.1)
+    assert ResultsFile(tmp_path, QUICK).loaded == 1
+    for name in ("results-2.json", "results-3.json"):
+        assert ResultsFile(tmp_path, FULL).loaded == 0
+        assert (tmp_path / name).exists() and not results.path.exists()
+        results.save()
+
+
+def kind_of(task_name):
+    return task_name.partition("/")[0]
+
+
+def test_check_reports_what_is_not_equal(quick, tmp_path, monkeypatch):
+    """Of results with one figure changed, that one alone is not equal."""
+    tasks = scores_and_figures(QUICK)
+    if not THOROUGH:  # the first task of every kind
+        tasks = list({kind_of(task.name): task for task in reversed(tasks)}.values())
+        monkeypatch.setattr(reproduce, "scores_and_figures", lambda _: tasks)
+    data = copy.deepcopy(quick.data)
+    data["results"]["bound/2_60deg/road"]["value"]["in_view"] += 1e-15
+    (tmp_path / "results.json").write_text(json.dumps(data), "utf-8")
+    run = study("paper", "--quick", "--check", "--output", tmp_path)
+    assert run.returncode == 1
+    first, last = run.stdout.splitlines()
+    assert first == "not equal: bound/2_60deg/road"
+    checked = {name for name in data["results"] if kind_of(name) not in ("search", "pilot")}
+    assert {kind_of(task.name) for task in tasks} == {kind_of(name) for name in checked}
+    assert len(tasks) == len(checked) or not THOROUGH
+    assert last == f"{len(tasks) - 1} of {len(tasks)} scores and figures are equal"

@@ -87,3 +87,44 @@ def test_verdicts_follow_a_turned_camera_and_name_what_is_lost_and_won(stage, sc
     assert named(lines, "won: ") == LOST and not named(lines, "lost: ")
     stage.photograph(screenshots / "window_requirements_won.png")
     assert "Traceback" not in stage.log.read_text()
+
+
+CHECK = f"""
+from {NAME}.operators import running_job
+settings = window.scene.perception_entropy
+settings.view.show_requirements = False
+bpy.ops.pe.add_requirement(preset="ALL")
+kept["ticks"] = []
+def tick():
+    import time
+    kept["ticks"].append(time.monotonic())
+    return 0.01 if running_job.current is not None else None
+with bpy.context.temp_override(window=window, area=area, region=region):
+    bpy.ops.pe.check_requirements("INVOKE_DEFAULT")
+bpy.app.timers.register(tick)
+"""
+ROWS = """
+rows = window.scene.perception_entropy.requirements
+kept["met"] = [row.met for row in rows]
+gaps = [b - a for a, b in zip(kept["ticks"], kept["ticks"][1:])]
+kept["longest"] = max(gaps, default=0.0)
+"""
+
+
+def test_a_check_of_all_presets_leaves_the_window_free_and_esc_keeps_what_it_found(
+    stage, screenshots
+):
+    stage.do(HELD)
+    stage.do(CHECK)
+    running = f"__import__('{NAME}.operators.running_job', fromlist=['current']).current"
+    known = "sum(row.met >= 0 for row in window.scene.perception_entropy.requirements)"
+    stage.wait_until(f"{known} > 0 or {running} is None", EFFECT_TIMEOUT_S)
+    stage.photograph(screenshots / "window_check.png")
+    stage.point_at_view()
+    stage.key("Escape")
+    stage.wait_until(f"{running} is None", EFFECT_TIMEOUT_S)
+    found = stage.do(ROWS)
+    met = found["met"]
+    assert found["longest"] < 5.0, "the window stood still"
+    assert 0 < sum(each >= 0 for each in met) < len(met)
+    assert "Traceback" not in stage.log.read_text()

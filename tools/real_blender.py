@@ -120,7 +120,9 @@ def only_one(folder: Path) -> Iterator[int]:
 def install(suite: str) -> None:
     """Make the Debian folder of a suite: built under another name, renamed when it works."""
     if os.geteuid() != 0:
-        raise NoBlender("--install needs root (sudo tools/real_blender.py --install)")
+        again = f"tools/real_blender.py --suite {suite} --install"
+        where = f"XDG_CACHE_HOME={cache_folder().parent}"  # not root's own
+        raise NoBlender(f"installing Debian {suite}'s Blender needs root: sudo {where} {again}")
     if shutil.which("apt-get") is None:
         raise NoBlender("--install needs Debian; elsewhere install Blender and set BLENDER")
     if subprocess.run([TOOLS / "debian_libs.sh", *HOST_PACKAGES], stdout=sys.stderr).returncode:

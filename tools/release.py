@@ -25,15 +25,17 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import build_extension
+import real_blender
 from build_extension import ROOT, BuildError, agreed_version, bpy_tool, read
 
 WANTED_BLENDERS = ("4.2", "4.3", "5")
 """Versions of Blender whose own tool has to validate the extension, by their beginning."""
 BPY_4_2 = "bpy==4.2.*"
+DEBIAN_SUITES = ("trixie", "sid")
+"""Suites of Debian whose Blenders `--install` gets: 4.3 and 5.x."""
 EXTRAS = ("progress", "completion", "cluster", "report", "cad", "rerun", "argoverse", "meshes")
 """Extras of users, each of which is installed into an empty environment of its own."""
 EXAMPLE = ROOT / "examples" / "robotaxi_sedan" / "1_roof.toml"
-CACHE = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "perception-entropy"
 PAGE = ROOT / "tools" / "repository_page.html"
 TIMEOUT_S = 1200
 
@@ -80,14 +82,12 @@ def tools_of_blender() -> Iterator[tuple[str, list[str]]]:
     """Yield each Blender's version and the start of a command line of its extension tool."""
     if tool := bpy_tool():
         yield tool.parents[4].name, [sys.executable, str(tool)]
-    for suite in ((), ("--suite", "sid")):
-        finder = [sys.executable, str(ROOT / "tools" / "real_blender.py"), *suite]
-        found = subprocess.run(finder, capture_output=True, text=True, timeout=TIMEOUT_S)
-        if found.returncode == 0:
-            command = found.stdout.strip()
+    own = real_blender.from_environment() or real_blender.from_path()
+    for command in (own, *map(real_blender.from_chroot, DEBIAN_SUITES)):
+        if command is not None:
             version = re.findall(r"Blender (\S+)", run(command, "--version"))[0]
             yield version, [command, "--factory-startup", "--command", "extension"]
-    python = CACHE / "bpy-4.2" / "bin" / "python"
+    python = folder_of_bpy_4_2() / "bin" / "python"
     if python.exists():
         code = "import importlib.util as u; print(u.find_spec('bpy').origin)"
         origin = Path(run(python, "-c", code).strip())
@@ -95,12 +95,28 @@ def tools_of_blender() -> Iterator[tuple[str, list[str]]]:
         yield tool.parents[4].name, [str(python), str(tool)]
 
 
-def install_bpy_4_2() -> None:
-    """Install the oldest Blender that the extension supports, as a Python module, once."""
-    folder = CACHE / "bpy-4.2"
-    if not (folder / "bin" / "python").exists():
-        run(sys.executable, "-m", "venv", folder)
-        run(folder / "bin" / "python", "-m", "pip", "install", "-qq", BPY_4_2)
+def folder_of_bpy_4_2() -> Path:
+    """Return where the oldest Blender that the extension supports is kept, as a Python module."""
+    return real_blender.cache_folder() / "bpy-4.2"
+
+
+def install_blenders() -> None:
+    """Install the Blenders to validate with that are not there yet; later releases use them, too.
+
+    Raises
+    ------
+    real_blender.NoBlender
+        One cannot be installed here: the message says what it needs.
+    BuildError
+        pip could not install bpy.
+    """
+    for suite in DEBIAN_SUITES:  # first: they may be refused at once
+        if real_blender.from_chroot(suite) is None:
+            real_blender.install(suite)
+    python = folder_of_bpy_4_2() / "bin" / "python"
+    if not python.exists():
+        run(sys.executable, "-m", "venv", folder_of_bpy_4_2())
+    run(python, "-m", "pip", "install", "-qq", BPY_4_2)  # again where it was interrupted
 
 
 def validate(archive: Path, every_version: bool) -> list[str]:
@@ -119,7 +135,7 @@ def validate(archive: Path, every_version: bool) -> list[str]:
         if not any(version.startswith(wanted) for version in versions):
             raise BuildError(
                 f"no Blender {wanted} to validate the extension with (found:"
-                f" {', '.join(versions) or 'none'}); tools/release.py --install gets them"
+                f" {', '.join(versions) or 'none'}); `make release` as root on Debian gets it"
             )
     return versions
 
@@ -178,8 +194,8 @@ def release(arguments: argparse.Namespace) -> Path:
         check_tree()
     version = agreed_version()
     text = notes(version)
-    if arguments.install:
-        install_bpy_4_2()
+    if arguments.install and not arguments.dirty:
+        install_blenders()
     made = ROOT / "dist" / f"release-{version}"
     (ROOT / "dist").mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=".release-", dir=ROOT / "dist") as scratch:
@@ -220,11 +236,11 @@ def main() -> int:
     about = "a trial: allow changes that are not committed, and any versions of Blender"
     parser.add_argument("--dirty", action="store_true", help=about)
     parser.add_argument("--quick", action="store_true", help="try the wheel without its extras")
-    about = f"first install {BPY_4_2} to validate with (300 MB, below ~/.cache, once)"
+    about = "first install the Blenders to validate with (Debian, root; 4 GB below ~/.cache, once)"
     parser.add_argument("--install", action="store_true", help=about)
     try:
         print(release(parser.parse_args()))
-    except BuildError as problem:
+    except (BuildError, real_blender.NoBlender) as problem:
         print(f"release: {problem}", file=sys.stderr)
         return 1
     return 0

@@ -1,5 +1,6 @@
-"""`pe doctor` says what is installed; `pe completion` prints what shells complete `pe` with."""
+"""What installs and builds: `pe doctor`, `pe completion`, and the tools behind `make`."""
 
+import argparse
 import json
 import os
 import shutil
@@ -15,6 +16,9 @@ from pe_tools.cli import setup_verbs
 from pe_tools.cli.setup_verbs import PACKAGES, SHELLS, extra_text
 from pe_tools.cli.verbs import main, parser
 from tests.engine.test_docs import ROOT
+
+sys.path.insert(0, str(ROOT / "tools"))
+import release
 
 FOR_DEVELOPERS = {"test", "release", "dev", "docs", "bench"}
 
@@ -168,3 +172,16 @@ def test_without_the_library_a_line_says_what_to_install(monkeypatch, capsys):
     assert main(["completion", "fish"]) == 1
     told = capsys.readouterr()
     assert 'pip install "perception-entropy[completion]"' in told.err and not told.out
+
+
+def test_a_release_without_its_blenders_installs_them_or_says_how(tmp_path, monkeypatch):
+    """`make release` on a fresh clone: nothing is built before all Blenders are there."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(release, "check_tree", lambda: None)
+    monkeypatch.setattr(release.build_extension, "build", lambda: pytest.fail("too early"))
+    monkeypatch.setattr(release.os, "geteuid", lambda: 1000)
+    with pytest.raises(release.real_blender.NoBlender) as refused:
+        release.release(argparse.Namespace(dirty=False, install=True, quick=True))
+    assert f"sudo XDG_CACHE_HOME={tmp_path} " in str(refused.value)
+    assert "tools/real_blender.py --suite trixie --install" in str(refused.value)
+    assert not any(tmp_path.iterdir())

@@ -147,6 +147,7 @@ def record_of_scene(
     """
     check_scene(scene)
     settings = scene.perception_entropy
+    is_choice = any(record.options for record in records if record.visible)
     rig_of(records, source)  # errors of a sensor come before those of the vehicle
     return SceneRecord(
         source=source,
@@ -159,17 +160,13 @@ def record_of_scene(
         model=perception_of(settings),
         targets=targets_of(settings),
         samples=samples_of(settings),
-        search=with_starts(search_of(settings), scene),
-        selection=selection_limits(settings) if _has_options(records) else pe.Selection(),
+        search=with_starts(search_of(settings, is_choice=is_choice), scene),
+        selection=selection_limits(settings) if is_choice else pe.Selection(),
         reference=reference_of(settings),
         passthrough=passthrough_of(settings),
         requirements=requirements_of(settings),
         conditions=conditions_of(settings),
     )
-
-
-def _has_options(records: Sequence[SensorRecord]) -> bool:
-    return any(record.options for record in records if record.visible)
 
 
 def study_of(record: SceneRecord) -> pe.Study:

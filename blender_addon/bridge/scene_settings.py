@@ -138,10 +138,15 @@ def tolerance_of(settings: bpy.types.PropertyGroup) -> pe.Tolerance:
     return pe.Tolerance(**values | {"worst": values["worst"] and several})
 
 
-def search_of(settings: bpy.types.PropertyGroup) -> pe.Search:
-    """Return the settings of a scene's search, without its sensors and mounts."""
+def search_of(settings: bpy.types.PropertyGroup, *, is_choice: bool) -> pe.Search:
+    """Return the settings of a scene's search, without its sensors and mounts.
+
+    The schedule is the scene's where one is used: by the method, or to screen a choice of sensors.
+    """
+    is_scheduled = is_choice or settings.method == search.SCHEDULED_METHOD
+    schedule = pe.Schedule(**values_of(settings, pe.Schedule)) if is_scheduled else pe.Schedule()
     return pe.Search(
-        schedule=pe.Schedule(**values_of(settings, pe.Schedule)),
+        schedule=schedule,
         method=settings.method,
         tolerance=tolerance_of(settings),
         requirements=KEEP if settings.keep_requirements else None,

@@ -84,7 +84,7 @@ def optimize(
     schedule : Schedule, optional
         Of the method "random"; the paper's by default: seven rounds of 1000 candidates.
     method : str, optional
-        A name of `METHODS`; "random" if a schedule is given and no method.
+        A name of `METHODS`; needed where a schedule is given.
     evaluations : int
         How many placements are evaluated at most; 0: as many as the method takes.
     executor : concurrent.futures.Executor, or callable, optional

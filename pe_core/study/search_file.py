@@ -15,15 +15,16 @@ from ..base.table_reader import Table
 from ..scene.rig import SensorModel
 from ..search import (
     AXES,
+    DEFAULT_METHOD,
     METHODS,
     POSITION_AXES,
+    SCHEDULED_METHOD,
     Choice,
     Option,
     Schedule,
     Selection,
     Tolerance,
     checked_bounds,
-    checked_method,
 )
 from ..search.tolerance import CASES, ERRORS
 from ..sensors import KINDS
@@ -61,17 +62,21 @@ def read_search(
     limits: Mapping[str, Mapping[str, Bounds]],
     on: Mapping[str, str],
     folder: Path,
+    *,
+    is_choice: bool,
 ) -> Search:
     """Return the search of `[optimize]`.
 
-    `free`, `limits` and `on` are free axes, bounds and mounts by sensor, from `[[sensor]]`.
+    `free`, `limits` and `on` are free axes, bounds and mounts by sensor, from `[[sensor]]`;
+    `is_choice`: the study has a choice of sensors, which is screened by a schedule.
     """
+    method = table.text("method", DEFAULT_METHOD, tuple(METHODS))
     search = Search(
         free,
         limits,
-        schedule=_read_schedule(table),
+        schedule=_read_schedule(table, method == SCHEDULED_METHOD or is_choice),
         mounting=read_mounting(table, on, folder),
-        method=_read_method(table),
+        method=method,
         tolerance=_read_tolerance(table),
         goals=read_goals(table),
         **read_settings(table, Search),
@@ -80,13 +85,13 @@ def read_search(
     return search
 
 
-def _read_method(table: Table) -> str:
-    """Return the method; by default "random" where the study has keys of a schedule."""
-    scheduled = any(key_of(name) in table for name in settings_of(Schedule))
-    return table.text("method", checked_method(table.source, None, scheduled), tuple(METHODS))
-
-
-def _read_schedule(table: Table) -> Schedule:
+def _read_schedule(table: Table, is_used: bool) -> Schedule:
+    """Return the schedule; keys of one that no search would use are an error."""
+    for key in () if is_used else map(key_of, settings_of(Schedule)):
+        if key in table:
+            expected = f'method = "{SCHEDULED_METHOD}", the only method with this key'
+            found = f'method = "{table.text("method")}"' if "method" in table else "no method"
+            raise table.error(key, expected, found)
     values = read_settings(table, Schedule)
     try:
         return Schedule(**values)
@@ -111,14 +116,15 @@ def _tolerance_keys(tolerance: Tolerance) -> dict[str, Any]:
     return {"tolerance": None if is_default else errors, **cases}
 
 
-def search_table(search: Search) -> dict[str, Any]:
-    """Return the table `[optimize]` of a search."""
+def search_table(search: Search, *, is_choice: bool) -> dict[str, Any]:
+    """Return the table `[optimize]` of a search; with a schedule where one is used."""
+    is_scheduled = search.method == SCHEDULED_METHOD or is_choice
     return {
         "method": search.method,
         **settings_table(search, KEYS_FIRST),
         **settings_table(search),
         "objective": None if search.objective == ENTROPY else search.objective,
-        **settings_table(search.schedule),
+        **(settings_table(search.schedule) if is_scheduled else {}),
         **_tolerance_keys(search.tolerance),
         **goals_tables(search.goals),
         **mounting_tables(search.mounting),

@@ -78,11 +78,11 @@ class Search:
     samples : int
         Voxels a candidate is judged on; 0: all.
     schedule : Schedule
-        Of the method "random".
+        Of the method "random", and of the screening of a choice of sensors.
     mounting : Mounting
         Mounts, pairs, groups and constraints.
     method : str
-        A name of `METHODS`; without one the default, or "random" where a schedule is given.
+        A name of `METHODS`; by default `DEFAULT_METHOD`. Needed where a schedule is given.
     evaluations : int
         Placements judged at most; 0: as many as the method takes.
     tolerance : Tolerance

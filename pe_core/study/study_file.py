@@ -117,7 +117,7 @@ def study_to_dict(study: Study) -> dict[str, Any]:
         "passthrough": passthrough_table(study.passthrough),
         "requirement": [requirement_table(each) for each in study.requirements] or None,
         **condition_tables(study.conditions),
-        "optimize": search_table(study.search),
+        "optimize": search_table(study.search, is_choice=bool(study.selection.choices)),
         **selection_tables(study.selection, _model_value),
     }
     plain: dict[str, Any] = _without_none(data)
@@ -156,7 +156,7 @@ def _read_study(table: Table, folder: Path) -> Study:
         _made_of(table.table("space"), PerceptionSpace),
         read_prior(table.table("prior"), folder),
         read_model(table.table("ap"), table.table("fusion")),
-        read_search(search, free, limits, on, folder),
+        read_search(search, free, limits, on, folder, is_choice="choice" in table),
         read_settings(table, Study)["samples"],
         *file,
         _made_of(table.table("reference"), Reference) if "reference" in table else None,

@@ -16,8 +16,9 @@ from typing import Any, NoReturn, TextIO
 from pe_core import catalog
 from pe_core.base.errors import InputError
 from pe_core.base.files import named_path, quoted, reason_of
+from pe_core.search import Schedule
 from pe_core.sensors import CURVE_MODELS, kind_of
-from pe_core.study import METHODS, OBJECTIVES, SCHEDULED_METHOD, Study, under
+from pe_core.study import METHODS, OBJECTIVES, SCHEDULED_METHOD, Search, Study, under
 
 from .goal_options import add_goal_options, with_goals
 from .interrupts import FATAL, signals_interrupt
@@ -136,11 +137,21 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
     for name in ("method", "objective", "seed", "samples", "evaluations"):
         if (value := getattr(args, name, None)) is not None:
             search = replace(search, **{name: value})
-    if getattr(args, "candidates", None) is not None:
+    if not (search.method == SCHEDULED_METHOD or study.selection.choices):
+        _check_schedule(study.search, search.method, args)
+    elif getattr(args, "candidates", None) is not None:
         schedule = replace(search.schedule, candidates=args.candidates)
-        method = args.method or SCHEDULED_METHOD  # the only method with candidates
-        search = replace(search, schedule=schedule, method=method)
+        search = replace(search, schedule=schedule)
     return with_goals(replace(study, search=search), args)
+
+
+def _check_schedule(own: Search, method: str, args: argparse.Namespace) -> None:
+    """Refuse an option that the method does not have; tell where it leaves the study's schedule."""
+    if getattr(args, "candidates", None) is not None:
+        expected = f"--method {SCHEDULED_METHOD}, the only method with candidates"
+        raise InputError("command line", "--candidates", expected, method)
+    if own.method == SCHEDULED_METHOD and own.schedule != Schedule():
+        tell(f"--method {method}: the study's schedule, of {SCHEDULED_METHOD}, is not used")
 
 
 def add_sensors_verb(verbs: argparse._SubParsersAction[Any]) -> None:

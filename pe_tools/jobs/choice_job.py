@@ -11,7 +11,14 @@ from pe_core.base.errors import InputError
 from pe_core.scoring import RigJudge
 from pe_core.scoring.requirements import Verdict
 from pe_core.scoring.score import Score
-from pe_core.search import DesignSearch, Objective, Picks, above_front, pareto_front
+from pe_core.search import (
+    SCHEDULED_METHOD,
+    DesignSearch,
+    Objective,
+    Picks,
+    above_front,
+    pareto_front,
+)
 from pe_core.search.goals import AP, ENTROPY, PRICE
 from pe_core.study.objective_search import is_by_ap, search_evaluator
 from pe_core.study.requirement_search import is_infeasible
@@ -26,7 +33,6 @@ from .score_and_optimize import OptimizeJob
 
 ALL_SEARCHED_UP_TO = 16
 """Up to this number of designs, each is searched in full; more are screened first."""
-PAPER_METHOD = "random"
 FIRST_LOOK = 16
 """Screening is a search by Algorithm 1 with the number of candidates divided by this."""
 MARGIN, MARGIN_AP = 0.3, 0.05
@@ -389,4 +395,4 @@ def _fewest_broken(designs: Sequence[Design]) -> list[Design]:
 def _few_candidates(search: Search) -> Search:
     schedule = search.schedule
     fewer = replace(schedule, candidates=max(1, schedule.candidates // FIRST_LOOK))
-    return replace(search, method=PAPER_METHOD, schedule=fewer, evaluations=0)
+    return replace(search, method=SCHEDULED_METHOD, schedule=fewer, evaluations=0)

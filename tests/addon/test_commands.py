@@ -177,7 +177,7 @@ def test_sensors(blend):
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for one process on Windows")
 def test_interrupt_keeps_the_best_so_far(blend, tmp_path):
     folder = tmp_path / "result"
-    arguments = (*FAST[:4], "--candidates", 100_000, "-o", folder, "--no-render")
+    arguments = (*FAST[:6], "--candidates", 100_000, "-o", folder, "--no-render")
     with (tmp_path / "log").open("w+") as log:
         process = subprocess.Popen(
             command(blend, "optimize", "--no-review", *arguments),

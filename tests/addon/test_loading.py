@@ -112,7 +112,7 @@ def test_coordinates_in_double_precision_come_back_to_the_bit(scene):
 def test_what_a_scene_cannot_hold_is_reported(car, monkeypatch):
     study = scenes.study()
     schedule = pe.Schedule(candidates=3, decay=0.7)
-    other = pe.Study(study.rig, study.vehicle, search=pe.Search(schedule=schedule))
+    other = pe.Study(study.rig, study.vehicle, search=pe.Search(schedule=schedule, method="random"))
     assert load(other) == ["optimize.decay"]
 
 

@@ -65,7 +65,7 @@ def test_the_same_folder_again_is_one_set(blend, tmp_path, small_pictures):
 
 def test_being_told_to_end_keeps_the_best(blend, tmp_path):
     out, log = tmp_path / "out", tmp_path / "log"
-    arguments = (*FAST[:4], "--candidates", 100_000, "-o", out, "--no-render")
+    arguments = (*FAST[:6], "--candidates", 100_000, "-o", out, "--no-render")
     with log.open("w") as stderr:
         process = subprocess.Popen(
             command(blend, "optimize", "--no-review", *arguments),

@@ -4,10 +4,11 @@ import bpy
 import pytest
 
 from blender_addon import search_curve
-from blender_addon.engine import search
+from blender_addon.engine import pe, search
 from blender_addon.operators.running_job import RunningJob
+from blender_addon.panels import search_panels
 from blender_addon.search_curve import SearchProgress, searches
-from tests.addon import scenes
+from tests.addon import layouts, scenes
 
 
 def test_the_curve_is_a_staircase_from_the_start_to_now():
@@ -81,4 +82,15 @@ def test_the_method_and_the_budget_are_the_study_s(car):
         assert scenes.study().search.method == name
     settings.method, settings.evaluations = "random", 3
     assert scenes.study().search.evaluations == 3
+
+
+def test_the_schedule_is_shown_and_written_for_the_method_that_has_it(car):
+    """The candidates of one method stood beside every other, which did not use them."""
+    window, settings = layouts.Window(car), car.perception_entropy
+    for name in search.METHODS:
+        settings.method = name
+        drawn = layouts.drawn(search_panels.PE_PT_search, **vars(window)).texts("prop")
+        table = pe.study_to_dict(scenes.study())["optimize"]
+        has_schedule = name == search.SCHEDULED_METHOD
+        assert ("candidates" in drawn) == ("candidates" in table) == has_schedule, name
     assert bpy.ops.pe.optimize() == {"FINISHED"}

@@ -36,7 +36,8 @@ def test_pandar64_scores_better_than_hdl64e_in_its_place(study):
 
 
 def test_the_best_height_lies_above_the_roof_unprompted(study):
-    search = replace(study.search, samples=4096, schedule=pe.Schedule(candidates=12))
+    schedule = pe.Schedule(candidates=12)
+    search = replace(study.search, samples=4096, schedule=schedule, method="random")
     job = pe.OptimizeJob(replace(study, search=search, samples=4096), 1)
     for _ in job:
         pass

@@ -35,7 +35,7 @@ assert bpy.ops.pe.add_weather(weather="FOG") == {"FINISHED"}
 bpy.ops.wm.save_as_mainfile(filepath=saved)  # with the hood open
 assert bpy.ops.pe.export_study(filepath=folder + "/study.toml") == {"FINISHED"}
 """
-SHORT = ("--samples", 4096, "--candidates", 10)
+SHORT = ("--samples", 4096, "--method", "random", "--candidates", 10)
 
 
 def document_in(stdout: str) -> dict:

@@ -17,7 +17,7 @@ def test_a_search_on_a_painted_roof_shows_its_curve(stage, screenshots):
     stage.do("""
         settings, roof = window.scene.perception_entropy, bpy.data.objects["roof"]
         settings.score_samples = settings.search_samples = 1024
-        settings.candidates = 40
+        settings.method, settings.candidates = "random", 40
         settings.view.show_ground = False
         group = roof.vertex_groups.new(name="painted")
         group.add([v.index for v in roof.data.vertices if abs(v.co.y) < 0.5], 1.0, "REPLACE")

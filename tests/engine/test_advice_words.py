@@ -194,7 +194,8 @@ def test_warnings_are_in_the_result_and_below_the_summary():
 
 def test_a_search_warns_of_the_placement_it_found():
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(), (1.5, 0.0, 0.5))])
-    search = pe.Search({"roof": ("z",)}, {"roof": {"z": (0.5, 1.6)}}, 0, 1024, pe.Schedule(8))
+    bounds = {"roof": {"z": (0.5, 1.6)}}
+    search = pe.Search({"roof": ("z",)}, bounds, 0, 1024, pe.Schedule(8), method="random")
     study = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search, samples=1024)
     job = pe.OptimizeJob(study, 1)
     assert list(job) and job.outcome.study.rig["roof"].pose.position[2] > 0.95

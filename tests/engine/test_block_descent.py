@@ -116,10 +116,15 @@ def test_several_workers_take_the_same_steps():
         assert steps(executor) == steps(None) == steps(lambda: None)
 
 
-def test_a_schedule_and_no_method_means_the_one_that_has_schedules():
-    assert pe.Search().method == "portfolio"
-    assert pe.Search(schedule=pe.Schedule(candidates=3)).method == "random"
-    assert pe.Search(method="cma-es", schedule=pe.Schedule(candidates=3)).method == "cma-es"
+def test_a_schedule_chooses_no_method():
+    schedule = pe.Schedule(candidates=3)
+    assert pe.Search().method == pe.Search(schedule=pe.Schedule()).method == "portfolio"
+    assert pe.Search(method="cma-es", schedule=schedule).method == "cma-es"
+    with pytest.raises(pe.InputError, match="method: expected 'random' named with a schedule"):
+        pe.Search(schedule=schedule)
+    with pytest.raises(pe.InputError, match="method: expected 'random' named with a schedule"):
+        rig, space = mounting.space(can())
+        next(pe.optimize(None, rig, space, 0, schedule))
 
 
 def driven(part, landscape):

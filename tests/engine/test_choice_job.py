@@ -30,7 +30,9 @@ def study(choices, *sensors, free=("x", "pitch"), candidates=3, **limits):
         pe.Rig(sensors),
         mounting.car(),
         SPACE,
-        search=pe.Search({s.name: free for s in sensors}, samples=1024, schedule=schedule),
+        search=pe.Search(
+            {s.name: free for s in sensors}, samples=1024, schedule=schedule, method="random"
+        ),
         samples=2048,
         mesh="car.npz",
         selection=pe.Selection(choices, **limits),

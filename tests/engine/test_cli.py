@@ -1,6 +1,7 @@
 """The command line: verbs, JSON, exit status, Ctrl-C."""
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -18,7 +19,9 @@ ROOT = Path(pe.__file__).parent.parent
 @pytest.fixture
 def study(tmp_path):
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
-    search = pe.Search({"roof": ("x", "z", "pitch")}, {}, 3, 2048, pe.Schedule(candidates=5))
+    search = pe.Search(
+        {"roof": ("x", "z", "pitch")}, {}, 3, 2048, pe.Schedule(candidates=5), method="random"
+    )
     path = tmp_path / "car.toml"
     pe.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
     return path
@@ -62,6 +65,25 @@ def test_optimize_leaves_its_results(study, tmp_path, capsys):
     assert data["seed"] == 5 and data["evaluations"] == 29
     assert data["after"]["entropy"] <= data["before"]["entropy"]
     assert f"{data['after']['entropy']:.4f}" in capsys.readouterr().out
+
+
+def test_a_schedule_of_another_method_is_refused_and_one_that_is_left_out_is_told(
+    study, tmp_path, capsys
+):
+    """`--candidates` once searched by the paper's method, whatever the study's was."""
+    few = ("--evaluations", "3", "--no-review", "--sensitivity", "off")
+    by_default = tmp_path / "default.toml"
+    by_default.write_text(
+        re.sub(r"(?m)^(method|candidates|reach|floor|decay).*\n", "", study.read_text())
+    )
+    assert main(["optimize", str(by_default), "--candidates", "4", *few]) == 1
+    told = "command line: --candidates: expected --method random, the only method with candidates, "
+    assert told + "found portfolio" in capsys.readouterr().err
+    out = tmp_path / "out"
+    assert main(["optimize", str(study), "--method", "cma-es", "-o", str(out), *few]) == 0
+    assert "the study's schedule, of random, is not used" in capsys.readouterr().err
+    written = (out / "study.toml").read_text()
+    assert 'method = "cma-es"' in written and "candidates" not in written
 
 
 def test_options_change_the_study(study, capsys):
@@ -121,7 +143,10 @@ def test_interrupt_keeps_the_best_so_far(study, tmp_path):
         str(out),
     ]
     process = subprocess.Popen(
-        [*command, "--candidates", "100000"], cwd=ROOT, stderr=subprocess.PIPE, text=True
+        [*command, "--method", "random", "--candidates", "100000"],
+        cwd=ROOT,
+        stderr=subprocess.PIPE,
+        text=True,
     )
     for line in process.stderr:
         if line.startswith("optimizing"):

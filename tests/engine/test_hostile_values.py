@@ -130,6 +130,7 @@ STUDY = {
         "free": ["x"],
         "seed": 1,
         "samples": 1024,
+        "method": "random",
         "candidates": 3,
         "reach_m": 1.0,
         "reach_deg": 30.0,

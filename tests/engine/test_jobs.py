@@ -22,6 +22,7 @@ def study(candidates=6, position=(-0.43, 0.0, 1.8)):
         samples=2048,
         seed=4,
         schedule=pe.Schedule(candidates=candidates),
+        method="random",
     )
     return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search)
 

@@ -62,7 +62,9 @@ def test_the_faces_of_a_file_s_part_are_those_of_the_area(folder):
 
 def test_a_study_with_areas_is_written_with_them_and_searches_the_same(folder, tmp_path):
     rig, space = mounting.space(mounting.can(START), mount={"roof": area_mount()})
-    search = pe.Search(mounting=space.mounting, samples=1024, schedule=pe.Schedule(2))
+    search = pe.Search(
+        mounting=space.mounting, samples=1024, schedule=pe.Schedule(2), method="random"
+    )
     study = pe.Study(rig, mounting.car(), search=search, samples=1024)
     there = pe.prepare_folder(tmp_path / "out")
     pe.export_study(study, there / "study.toml")

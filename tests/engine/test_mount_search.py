@@ -25,6 +25,7 @@ model = "Pandar64"
 position = [-0.429, 0.0, 1.534]
 mount = "roof"
 [optimize]
+method = "random"
 candidates = 3
 samples = 1024
 [[optimize.mount]]
@@ -43,7 +44,8 @@ def searched(landscape, *sensors, candidates=30, seed=0, **options):
     """Parametrization, recorder and steps of a search on the box car."""
     rig, space = mounting.space(*sensors, **options)
     recorder = Recorder(landscape)
-    steps = list(pe.optimize(recorder, rig, space, seed, pe.Schedule(candidates=candidates)))
+    schedule = pe.Schedule(candidates=candidates)
+    steps = list(pe.optimize(recorder, rig, space, seed, schedule, method="random"))
     return Parametrization(rig, space), recorder, steps
 
 
@@ -94,6 +96,7 @@ def study(**limits):
         {"roof": ("z",)},
         samples=1024,
         schedule=pe.Schedule(candidates=3),
+        method="random",
         mounting=pe.Mounting(constraints=pe.Constraints(**limits)),
     )
     return pe.Study(rig, mounting.car(), shapes.small_space(), search=search, samples=1024)
@@ -167,7 +170,9 @@ def test_result_json_says_the_slot():
     slots = [pe.Slot(f"slot {x}", pe.Pose((float(x), 0.0, 2.0))) for x in range(3)]
     rig = pe.Rig([study().rig["roof"].moved(slots[1].pose)])
     rack = pe.Mounting({"rack": pe.SlotMount(slots)}, {"roof": "rack"})
-    search = pe.Search(samples=1024, schedule=pe.Schedule(candidates=2), mounting=rack)
+    search = pe.Search(
+        samples=1024, schedule=pe.Schedule(candidates=2), mounting=rack, method="random"
+    )
     space = shapes.small_space()
     told = pe.result_dict(outcome_of(pe.Study(rig, space=space, samples=1024, search=search)))
     x = told["placements"]["after"]["roof"]["position"][0]

@@ -26,7 +26,9 @@ SHORT = ("--candidates", 4)
 @pytest.fixture
 def study(tmp_path):
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
-    search = pe.Search({"roof": ("x", "z", "pitch")}, {}, 3, 2048, pe.Schedule(candidates=4))
+    search = pe.Search(
+        {"roof": ("x", "z", "pitch")}, {}, 3, 2048, pe.Schedule(candidates=4), method="random"
+    )
     path = tmp_path / "car.toml"
     pe.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
     return path

@@ -33,7 +33,7 @@ def test_the_same_seed_gives_the_same_steps_and_another_does_not():
     space = pe.SearchSpace.on_vehicle(start(), shapes.box_car())
 
     def run(seed):
-        steps = pe.optimize(evaluator(), start(), space, seed, short())
+        steps = pe.optimize(evaluator(), start(), space, seed, short(), method="random")
         return [(s.entropy, s.best.sensors[0].pose) for s in steps]
 
     assert run(1) == run(1)
@@ -42,7 +42,7 @@ def test_the_same_seed_gives_the_same_steps_and_another_does_not():
 
 def test_entropy_never_rises_and_the_count_is_exact():
     space = pe.SearchSpace.on_vehicle(start(), shapes.box_car())
-    steps = list(pe.optimize(evaluator(), start(), space, 0, short()))
+    steps = list(pe.optimize(evaluator(), start(), space, 0, short(), method="random"))
     assert len(steps) == 71
     assert [s.evaluations for s in steps] == list(range(1, 72))
     assert steps[-1].fraction == 1.0
@@ -57,7 +57,7 @@ def test_entropy_never_rises_and_the_count_is_exact():
 def test_fixed_axes_stay_and_bounds_hold():
     limits = {"roof": {"x": (-0.5, 0.0), "pitch": (math.radians(-1), math.radians(2))}}
     space = pe.SearchSpace.on_vehicle(start(), shapes.box_car(), ("x", "pitch"), limits)
-    for step in pe.optimize(evaluator(), start(), space, 3, short(20)):
+    for step in pe.optimize(evaluator(), start(), space, 3, short(20), method="random"):
         pose = step.best.sensors[0].pose
         assert -0.5 <= pose.position[0] <= 0.0
         assert pose.position[1:] == (0.0, 1.8)
@@ -67,7 +67,7 @@ def test_fixed_axes_stay_and_bounds_hold():
 
 def test_placements_are_rounded_so_that_files_hold_them():
     space = pe.SearchSpace.on_vehicle(start(), shapes.box_car())
-    *_, last = pe.optimize(evaluator(), start(), space, 0, short())
+    *_, last = pe.optimize(evaluator(), start(), space, 0, short(), method="random")
     pose = last.best.sensors[0].pose
     assert pose.position == tuple(round(v, 5) for v in pose.position)
     assert pose.rotation_deg == tuple(round(v, 4) for v in pose.rotation_deg)
@@ -87,13 +87,13 @@ def test_the_roof_is_found_unprompted():
     """From below the roof, where the body hides everything, the search climbs out of the car."""
     rig = start(position=(-0.3, 0.1, 1.1))
     space = pe.SearchSpace.on_vehicle(rig, shapes.box_car(), ("z",))
-    *_, last = pe.optimize(evaluator(), rig, space, 0, short(30))
+    *_, last = pe.optimize(evaluator(), rig, space, 0, short(30), method="random")
     assert last.best.sensors[0].pose.position[2] > 1.4
 
 
 def test_nothing_free_is_one_step():
     space = pe.SearchSpace.on_vehicle(start(), shapes.box_car(), ())
-    assert len(list(pe.optimize(evaluator(), start(), space, 0, short()))) == 1
+    assert len(list(pe.optimize(evaluator(), start(), space, 0, short(), method="random"))) == 1
 
 
 @pytest.mark.parametrize(
@@ -110,4 +110,4 @@ def test_impossible_search_spaces_are_refused(bounds, message):
             pe.SearchSpace(bounds).checked(start())
         return
     with pytest.raises(pe.InputError, match=message):
-        next(pe.optimize(evaluator(), start(), pe.SearchSpace(bounds), 0, short()))
+        next(pe.optimize(evaluator(), start(), pe.SearchSpace(bounds), 0, short(), method="random"))

@@ -18,7 +18,7 @@ from tests.engine.processes import ROOT
 
 LISTING = ".perception-entropy.json"
 NAMES = ("study.toml", "vehicle.npz", "boxes.csv", "history.csv", "result.json")
-SHORT = ("--candidates", "2", "--samples", "2048")
+SHORT = ("--method", "random", "--candidates", "2", "--samples", "2048")
 
 
 def a_study(boxes=True, x=-0.43):

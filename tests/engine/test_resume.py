@@ -111,7 +111,7 @@ def placed(rig):
 
 def search(study, objectives):
     given = (study.rig, study.search_space(), study.search.seed, study.search.schedule)
-    return pe.optimize(objectives, *given)
+    return pe.optimize(objectives, *given, method=study.search.method)
 
 
 def test_a_journal_of_other_placements_is_refused():

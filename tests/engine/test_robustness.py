@@ -29,6 +29,7 @@ def study(tolerance=OFF, samples=1024, failures=False):
         free={"roof": ("z",), "front": ("z",)},
         samples=samples,
         schedule=pe.Schedule(2, floor_m=0.3, floor_rad=1.0),
+        method="random",
         tolerance=tolerance,
     )
     return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search, samples=1024)

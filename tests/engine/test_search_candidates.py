@@ -33,7 +33,9 @@ def searched(landscape, bounds, rig=None, seed=0, **schedule):
     recorder = Recorder(landscape)
     schedule = pe.Schedule(**({"candidates": 40} | schedule))
     rig = rig or rig_of(*bounds)
-    steps = list(pe.optimize(recorder, rig, pe.SearchSpace(bounds), seed, schedule))
+    steps = list(
+        pe.optimize(recorder, rig, pe.SearchSpace(bounds), seed, schedule, method="random")
+    )
     return recorder, steps
 
 
@@ -209,7 +211,7 @@ def test_lower_bounds_in_place_of_entropies_change_nothing():
     plain, steps = searched(landscape, bounds)
     told = Recorder(landscape, bounds=True)
     space, schedule = pe.SearchSpace(bounds), pe.Schedule(candidates=40)
-    again = list(pe.optimize(told, plain.rigs[0], space, 0, schedule))
+    again = list(pe.optimize(told, plain.rigs[0], space, 0, schedule, method="random"))
     assert [(s.entropy, s.improved) for s in again] == [(s.entropy, s.improved) for s in steps]
     assert told.values == plain.values
 

@@ -64,8 +64,12 @@ position = [1.0, 0.0, 1.5]
 free = ["x"]
 seed = 7
 samples = 4096
+method = "random"
 candidates = 12
 """
+
+
+RANDOM = 'method = "random"\n'
 
 
 @pytest.fixture
@@ -149,7 +153,15 @@ def test_a_saved_study_is_the_same_study_to_the_bit(write, tmp_path, text):
         (MINIMAL + "bounds = {z = [2, 3]}\n", "bounds of z: expected bounds around the start, 1.8"),
         (MINIMAL + "bounds = {w = [2, 3]}\n", r"sensor\[0\].bounds.w: expected one of"),
         (MINIMAL + "[optimize]\nseed = -1\n", "optimize.seed: expected a whole number >= 0"),
-        (MINIMAL + "[optimize]\ncandidates = 0\n", "optimize.candidates: .*>= 1"),
+        (MINIMAL + f"[optimize]\n{RANDOM}candidates = 0\n", "optimize.candidates: .*>= 1"),
+        (
+            MINIMAL + "[optimize]\ncandidates = 9\n",
+            'optimize.candidates: expected method = "random", .* found no method',
+        ),
+        (
+            MINIMAL + '[optimize]\nmethod = "cma-es"\ndecay = 0.5\n',
+            'optimize.decay: expected method = "random", .* found method = "cma-es"',
+        ),
         (MINIMAL + "[optimize]\nseed = true\n", "optimize.seed: .*found True"),
         ("samples = 2.5\n" + MINIMAL, "samples: expected a whole number"),
     ],

@@ -161,7 +161,7 @@ def searches(draw, rig, vehicle):
     samples = draw(st.sampled_from([0, 1024, 65_536]))
     mounting = draw(mountings(rig, vehicle, limits))
     seed, tolerance = draw(st.integers(0, 2**63 - 1)), draw(tolerances(len(rig)))
-    return pe.Search(free, limits, seed, samples, schedule, mounting, tolerance=tolerance)
+    return pe.Search(free, limits, seed, samples, schedule, mounting, "random", tolerance=tolerance)
 
 
 @st.composite
@@ -368,6 +368,7 @@ def test_every_field_of_the_schedule_is_a_key_of_the_file():
         {
             "sensor": [SENSOR],
             "optimize": {
+                "method": "random",
                 "candidates": 5,
                 "reach_m": 0.5,
                 "reach_deg": 10,

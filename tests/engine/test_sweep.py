@@ -46,7 +46,7 @@ SEEDS = f"optimize.seed={','.join(map(str, range(10_001)))}"
 def study(tmp_path):
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90))])
     schedule = pe.Schedule(candidates=2)
-    search = pe.Search({"roof": ("x", "z")}, {}, 3, 1024, schedule)
+    search = pe.Search({"roof": ("x", "z")}, {}, 3, 1024, schedule, method="random")
     path = tmp_path / "car.toml"
     pe.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
     return path

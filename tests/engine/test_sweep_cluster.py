@@ -139,7 +139,8 @@ def test_searches_on_a_cluster_leave_checkpoints_here(cluster, tmp_path, monkeyp
     """Workers send what they judged; a worker that begins anew sends the same again."""
     (cluster.folder / "go").touch()
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90))])
-    search = pe.Search({"roof": ("x", "z")}, {}, 3, 1024, pe.Schedule(candidates=2))
+    schedule = pe.Schedule(candidates=2)
+    search = pe.Search({"roof": ("x", "z")}, {}, 3, 1024, schedule, method="random")
     study = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search)
     path, out = tmp_path / "car.toml", tmp_path / "out"
     pe.export_study(study, path)

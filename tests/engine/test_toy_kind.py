@@ -42,6 +42,7 @@ model = "Pandar64"
 position = [0.0, 0.0, 1.8]
 
 [optimize]
+method = "random"
 candidates = 4
 samples = 1024
 """

@@ -168,7 +168,7 @@ def asked(camera: Camera) -> None:
 def optimized(camera: Camera) -> None:
     """The search at work, then what it has found, as two variants side by side."""
     stage = camera.stage
-    stage.do(f"{SETTINGS}settings.candidates, settings.search_samples = 12, 4096")
+    stage.do(f"{SETTINGS}settings.evaluations, settings.search_samples = 90, 4096")
     stage.do("bpy.ops.pe.save_variant()")
     stage.do("bpy.ops.pe.optimize('INVOKE_DEFAULT')")
     stage.wait_until(f"{RUNNING}.current and {RUNNING}.current.progress.fraction > 0.4", 300)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ...base.errors import InputError
 from ...base.values import choice
 from . import block_descent, cma_es, portfolio, random_search
 from .method import Given, Method, Question
@@ -27,13 +28,19 @@ METHODS: dict[str, Method] = {
     ),
 }
 DEFAULT_METHOD, SCHEDULED_METHOD = "portfolio", "random"
-"""The method of a search that names none, without and with a schedule."""
+"""The method of a search that names none, and the only one with a schedule."""
 
 
 def checked_method(source: str, name: object, scheduled: bool = False) -> str:
-    """Return the name of a method, the default for None, or raise `InputError`."""
+    """Return the name of a method, the default for None, or raise `InputError`.
+
+    A schedule chooses no method: one that is `scheduled` has to be named.
+    """
+    if name is None and scheduled:
+        expected = f"{SCHEDULED_METHOD!r} named with a schedule, which it alone has"
+        raise InputError(source, "method", expected, "none named")
     if name is None:
-        return SCHEDULED_METHOD if scheduled else DEFAULT_METHOD
+        return DEFAULT_METHOD
     return choice(source, "method", name, tuple(METHODS))
 
 

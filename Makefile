@@ -9,7 +9,7 @@ ON_ALL_PROCESSORS := --numprocesses auto --dist loadscope --no-loadscope-reorder
 .DEFAULT_GOAL := help
 .PHONY: demo test properties mutants bench lint extension release site examples screenshots clean help
 
-demo: .venv/run.stamp  ## optimize the sensors of a sedan: a picture, a report, the better .blend
+demo: .venv/run.stamp  ## better places for a LiDAR and a camera on a sedan: a page to open, the better .blend
 	@tools/demo.sh $(ARGS)
 
 # Tests start more than a hundred processes: each would compile the engine anew if none may keep it.
@@ -52,23 +52,20 @@ examples: .venv/dev.stamp  ## make the projects of examples/ again, with their f
 screenshots: .venv/dev.stamp  ## make docs/images in a real window; ARGS="guide" for some, needs a Blender
 	@$(PYTHON_VENV) tools/screenshots.py $(ARGS)
 
-# run.stamp: what a user needs. dev.stamp: what a developer needs on top, in the same environment.
+# A stamp is made where nothing is missing. run.stamp: what a user needs. dev.stamp: what a developer
+# needs on top, in the same environment.
 .venv/run.stamp: pyproject.toml tools/make_venv.sh
-	@tools/make_venv.sh blender
-	@touch $@
+	@tools/make_venv.sh blender $@
 
 # The library of the detectors takes 1.6 GB: CI alone has it, and else who asks for it.
 .venv/dev.stamp: .venv/run.stamp
-	@tools/make_venv.sh blender,test,report,meshes,cad,rerun,argoverse,docs,dev$(if $(CI),$(comma)studies)
-	@touch $@
+	@tools/make_venv.sh blender,test,report,meshes,cad,rerun,argoverse,docs,dev$(if $(CI),$(comma)studies) $@
 
 .venv/docs.stamp: .venv/run.stamp
-	@tools/make_venv.sh blender,docs
-	@touch $@
+	@tools/make_venv.sh blender,docs $@
 
 .venv/release.stamp: .venv/run.stamp
-	@tools/make_venv.sh blender,release
-	@touch $@
+	@tools/make_venv.sh blender,release $@
 
 clean:  ## remove the environment and everything made
 	@rm -rf .venv build dist demo_output test_output *.egg-info

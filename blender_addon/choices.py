@@ -36,9 +36,9 @@ PRIORS = (
 """In the form of a Blender menu; a .blend file holds the numbers."""
 
 
-OBJECTS, EXPECTED_AP = "objects", "expected_ap"
-"""Targets of a score, and objective of a search, that panels treat in another way; all are declared
-by the engine."""
+OBJECTS, EXPECTED_AP, RANDOM = "objects", "expected_ap", "random"
+"""Targets of a score, objective of a search, and the method with a schedule, that panels treat in
+another way; all are declared by the engine."""
 
 
 @dataclass(frozen=True)

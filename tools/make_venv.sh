@@ -1,14 +1,17 @@
 #!/usr/bin/env bash
 # Makes .venv, with Blender as a Python module (bpy) where there is one, and installs the project.
 #
-# usage: tools/make_venv.sh EXTRAS        EXTRAS as pip takes them: blender,test
+# usage: tools/make_venv.sh EXTRAS STAMP      EXTRAS as pip takes them: blender,test
+#
+# STAMP is a file that is made when nothing is missing. Without it the next `make` comes here again.
 #
 # PYTHON=... names the interpreter. Otherwise: the first that runs, 3.11 and 3.13 before others,
 # because those are the two that bpy is published for.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-readonly extras=${1:?usage: tools/make_venv.sh EXTRAS}
+readonly extras=${1:?usage: tools/make_venv.sh EXTRAS STAMP}
+readonly stamp=${2:?usage: tools/make_venv.sh EXTRAS STAMP}
 readonly venv=.venv
 
 fail() {
@@ -73,8 +76,10 @@ install() {
         --editable ".[$1]" </dev/null
 }
 
+# Fails where bpy does not start, or a library is missing that only rendering needs: the import
+# alone would not miss it. The last line then names what to install.
 check_bpy() {
-    local version
+    local version hint reason has_libs=
     version=$(version_of "$venv/bin/python")
     case "$version" in
         3.11 | 3.13) ;;
@@ -83,12 +88,23 @@ check_bpy() {
             return
             ;;
     esac
-    # Not left to the import: a library that only rendering needs is not missed by it.
-    tools/debian_libs.sh || true
-    "$venv/bin/python" -c 'import bpy' >/dev/null 2>&1 ||
-        echo "make_venv: bpy does not start; the engine works, Blender parts do not" >&2
+    { hint=$(tools/debian_libs.sh 2>&1 >&3) && has_libs=yes; } 3>&1 || true
+    if ! reason=$("$venv/bin/python" -c 'import bpy' 2>&1 >/dev/null); then
+        echo "make_venv: bpy does not start (${reason##*$'\n'});" \
+            "the engine works, Blender parts do not" >&2
+    elif [ -n "$has_libs" ]; then
+        return
+    fi
+    [ -z "$hint" ] || echo "$hint" >&2
+    return 1
+}
+
+is_complete() {
+    case ",$extras," in
+        *,blender,*) check_bpy ;;
+    esac
 }
 
 version_of "$venv/bin/python" >/dev/null || make_environment
 install "$extras" || fail "pip could not install .[$extras]"
-case ",$extras," in *,blender,*) check_bpy ;; esac
+if is_complete; then touch "$stamp"; fi

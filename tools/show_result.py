@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Print what an optimization found: perception entropy before and after, and where the files are.
+"""Say in three lines what an optimization moved, what that is worth, and which file to open.
 
 usage: tools/show_result.py FOLDER
 """
@@ -8,16 +8,49 @@ import json
 import sys
 from pathlib import Path
 
+WAYS = (("forward", "back"), ("to the left", "to the right"), ("up", "down"))
+"""Directions of x, y and z: of positive and of negative values."""
+SMALLEST_M, SMALLEST_DEG = 0.01, 0.1
+PAGE, SCENE, RESULT = "review.html", "optimized.blend", "result.json"
+
+
+def moved(placements: dict) -> str:
+    """Return which sensor was moved how far, and tilted."""
+    sensors = []
+    for name, start in placements["before"].items():
+        end = placements["after"][name]
+        steps = [
+            f"{abs(b - a):.2f} m {ways[b < a]}"
+            for a, b, ways in zip(start["position"], end["position"], WAYS, strict=True)
+            if abs(b - a) >= SMALLEST_M
+        ]
+        tilt = end["rotation"][1] - start["rotation"][1]
+        if abs(tilt) >= SMALLEST_DEG:
+            steps.append(f"tilted {abs(tilt):.1f} degrees {'down' if tilt > 0 else 'up'}")
+        sensors.append(f"{name} {', '.join(steps) or 'stays'}")
+    return "; ".join(sensors)
+
+
+def better(result: dict) -> str:
+    """Return how much better the sensors see, and what that costs."""
+    before, after = result["before"], result["after"]
+    unseen = [100.0 * (1.0 - score["coverage"]) for score in (before, after)]
+    return (
+        f"of the places where cars, people and obstacles are expected {unseen[0]:.1f}% were"
+        f" unseen, now {unseen[1]:.1f}%; the score (perception entropy in nats, lower is better)"
+        f" was {before['entropy']:.2f}, now {after['entropy']:.2f}. {result['cost']}."
+    )
+
 
 def main() -> int:
     """Run the command line."""
     folder = Path(sys.argv[1]).resolve()
-    result = json.loads((folder / "result.json").read_text("utf-8"))
-    print(f"entropy before  {result['before']['entropy']:.4f}")
-    print(f"entropy after   {result['entropy']:.4f}   (lower is better)")
-    for name in ("review.png", "result.json", "optimized.blend"):
-        if (folder / name).exists():
-            print(folder / name)
+    result = json.loads((folder / RESULT).read_text("utf-8"))
+    print(f"Moved:   {moved(result['placements'])}")
+    print(f"Better:  {better(result)}")
+    files = {PAGE: "in a browser", SCENE: "in Blender", RESULT: "in an editor"}
+    made = [f"{folder / name} {where}" for name, where in files.items() if (folder / name).exists()]
+    print(f"Open:    {'; '.join(made[:2])}")
     return 0
 
 

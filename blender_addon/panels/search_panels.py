@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, EXPECTED_AP, OBJECTS, ON_SLOTS
-from ..engine import search
+from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, EXPECTED_AP, OBJECTS, ON_SLOTS, RANDOM
 from ..language import shown
 from .layout import Tab, columns, draw_list, draw_properties, draw_with_zero
 from .variant_panels import draw_front
@@ -23,7 +22,7 @@ class PE_PT_search(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.perception_entropy
-        own = ("candidates",) if settings.method == search.SCHEDULED_METHOD else ()
+        own = ("candidates",) if settings.method == RANDOM else ()
         names = ("objective", "keep_blind_ground", "method", *own)
         draw_properties(self.layout, settings, names)
         draw_with_zero(self.layout, settings, "evaluations", "All")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from ..engine import search
+from ..choices import RANDOM
 from ..language import draw_label, shown
 from ..operators import known_rigs
 from .layout import Tab, columns, draw_list, draw_properties, draw_sentence, draw_with_zero
@@ -148,7 +148,7 @@ def draw_options(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
 def draw_limits(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
     """Draw the limits of every design; 0 means no limit."""
     # Candidates of the screening; the method that has them, too, shows them beside itself.
-    own = () if settings.method == search.SCHEDULED_METHOD else ("candidates",)
+    own = () if settings.method == RANDOM else ("candidates",)
     draw_properties(layout, settings, (*own, "currency"))
     for name in ("max_price", "max_sensors"):
         draw_with_zero(layout, settings, name, "No Limit")

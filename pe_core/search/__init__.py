@@ -13,7 +13,7 @@ from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, Slot
 from .optimize import Step, optimize
 from .parametrization import Candidate, Parametrization, feasible_start
 from .payload import Payload, Unreadable, send_payload
-from .processes import LazyProcesses, Processes, start_processes
+from .processes import LazyProcesses, Processes, no_processes, start_processes
 from .robustness import RigRobustness, Robustness, RobustObjective, objective_of, robustness
 from .search_space import (
     PAPER_FREE,
@@ -82,6 +82,7 @@ __all__ = [
     "feasible_start",
     "mirrored",
     "mounted_off",
+    "no_processes",
     "objective_of",
     "optimize",
     "pareto_front",

@@ -19,6 +19,7 @@ from multiprocessing import resource_tracker
 from types import ModuleType
 from typing import Any, TypeVar
 
+from ..base.errors import InputError
 from .payload import Unreadable, receive, send_payload
 
 T = TypeVar("T")
@@ -60,6 +61,11 @@ class Processes(Executor):
     ----------
     count : int
         How many processes.
+
+    Raises
+    ------
+    InputError
+        When this system has nothing that processes wait for each other with (`no_processes`).
     """
 
     def __init__(self, count: int) -> None:
@@ -72,7 +78,11 @@ class Processes(Executor):
         initializer = INITIALIZER.format(packages=_packages_around(), here=__name__)
         with _signals_blocked():
             names = {"payload": self._payload or ()}
-            return ProcessPoolExecutor(self._count, context, exec, (initializer, names))
+            try:
+                return ProcessPoolExecutor(self._count, context, exec, (initializer, names))
+            except (ImportError, NotImplementedError, OSError) as error:
+                expected = "semaphores of the system, which Linux keeps in /dev/shm"
+                raise InputError("workers", "process", expected, _why(error)) from None
 
     def start_with(self, key: str, data: bytes) -> None:
         """Have all processes start with a payload; those that run without it are replaced."""
@@ -101,6 +111,25 @@ class Processes(Executor):
         self._pool.shutdown(wait, cancel_futures=cancel_futures)
 
 
+def no_processes() -> str:
+    """Return why no worker process can be started here; empty where nothing is known against it.
+
+    Processes wait for each other with semaphores. Linux keeps them in /dev/shm, which may be
+    missing in a container, or not writable.
+    """
+    if "fork" not in multiprocessing.get_all_start_methods():
+        return ""  # no semaphore is to be had without the process that tracks them
+    try:
+        multiprocessing.get_context("fork").Semaphore()
+    except (ImportError, OSError) as error:
+        return f"semaphores in /dev/shm: {_why(error)}"
+    return ""
+
+
+def _why(error: Exception) -> str:
+    return (getattr(error, "strerror", None) or str(error)).lower()
+
+
 def start_processes(count: int | None = None, common: Iterable[object] = ()) -> Processes | None:
     """Start processes and wait until they are up; None for a count of 1, or if none can be started.
 
@@ -114,6 +143,8 @@ def start_processes(count: int | None = None, common: Iterable[object] = ()) -> 
     """
     count = count or os.cpu_count() or 1
     if count < 2:
+        return None
+    if no_processes():
         return None
     processes = Processes(count)
     try:

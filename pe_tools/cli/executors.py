@@ -18,10 +18,10 @@ from typing import Any
 from pe_core.base.errors import InputError, shown
 from pe_core.base.plugins import EXTRAS, optional_package
 from pe_core.scene import Pose
-from pe_core.search import EvaluatedRig, Journal, start_processes
+from pe_core.search import EvaluatedRig, Journal, no_processes, start_processes
 from pe_core.study import Study
 
-from ..jobs import Checkpoint, Job, OptimizeJob, SearchState, read_search
+from ..jobs import Checkpoint, Job, OptimizeJob, ScoreJob, SearchState, read_search
 from ..sweep import FolderCheckpoints, RunCheckpoints, SweepRun, WorkerPool
 from .cluster_executor import ClusterExecutor
 from .terminal import tell
@@ -176,6 +176,8 @@ def evaluated_by(job: Job, scheduler: str | None) -> Iterator[None]:
         As `workplace`.
     """
     if scheduler is None:
+        if not isinstance(job, ScoreJob):
+            _tell_without_processes(job.workers)
         yield
         return
     with closing(DaskWorkers(scheduler)) as workers:
@@ -184,10 +186,17 @@ def evaluated_by(job: Job, scheduler: str | None) -> Iterator[None]:
         yield
 
 
+def _tell_without_processes(count: int | None) -> None:
+    """Print one line where several workers are wanted and this system has no processes for them."""
+    if count != 1 and (reason := no_processes()):
+        tell(f"one processor does the work of all: no worker processes here ({reason})")
+
+
 class Here:
     """A pool of processes on this machine; a single thread if no process can be started."""
 
     def __init__(self, count: int) -> None:
+        _tell_without_processes(count)
         processes = start_processes(count)
         self._count = 1 if processes is None else count
         self.executor: Executor = processes or ThreadPoolExecutor(1)

@@ -1,6 +1,7 @@
 """Dispatched candidates: the same result for all executors, whatever happens to workers."""
 
 import math
+import multiprocessing.synchronize
 import os
 import subprocess
 import sys
@@ -11,6 +12,7 @@ from concurrent.futures import (
     ProcessPoolExecutor,
     ThreadPoolExecutor,
 )
+from contextlib import closing
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -20,6 +22,7 @@ import pe_core as pe
 from pe_core.scoring import Judgement
 from pe_core.search import Processes, evaluate_all, processes, start_processes
 from pe_core.search.payload import Payload
+from pe_tools.cli.executors import Here
 from tests.engine import shapes
 
 CANDIDATES = 7
@@ -204,6 +207,22 @@ def test_where_no_process_can_be_started_there_are_none(monkeypatch):
     assert start_processes(1) is None
     monkeypatch.setattr(processes, "INITIALIZER", "raise SystemExit(1)")
     assert start_processes(2) is None
+
+
+def test_without_semaphores_there_are_no_processes_and_one_line_says_so(monkeypatch, capsys):
+    """As in a container whose /dev/shm cannot be written: a thread once ended in a traceback."""
+
+    def refuse(*_, **__):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(multiprocessing.synchronize._multiprocessing, "SemLock", refuse)
+    assert processes.no_processes() == "semaphores in /dev/shm: permission denied"
+    assert start_processes(2) is None
+    with pytest.raises(pe.InputError, match=r"semaphores .* /dev/shm, found permission denied"):
+        Processes(2)
+    with closing(Here(2)) as here:
+        assert here.width() == 1
+    assert capsys.readouterr().err.count("\n") == 1
 
 
 PACKED = """

@@ -139,7 +139,7 @@ ROWS = {
             *("channels", "elevations", "azimuths", "azimuth_step", "min_range", "max_range"),
         ),
         pixels=range_pixels,
-        legend="near is bright, far is dark by metres; orange: blocked by the vehicle; "
+        legend="near is bright, far is dark by metres; orange: occluded by the vehicle; "
         "grey: nothing in range",
     ),
     "camera": KindRow(
@@ -156,14 +156,14 @@ ROWS = {
         own_about="Modes with their azimuths and ranges, as a study's table has them",
         pixels=field_pixels,
         legend="ranges upwards, azimuths across: many detections of a car are bright; orange: "
-        "hidden by the vehicle; grey: not detected",
+        "occluded by the vehicle; grey: not detected",
     ),
     "ultrasonic": KindRow(
         Mount("Bosch Ultrasonic 3.1", 0.03, True, 0.5, True, "CIRCLE", 0.05),
         lambda _model: MEMBRANE,
         own_about="A cone and a range, as a study's table has them",
         pixels=field_pixels,
-        legend="ranges upwards, azimuths across: where a post returns an echo; orange: hidden by "
+        legend="ranges upwards, azimuths across: where a post returns an echo; orange: occluded by "
         "the vehicle; grey: no echo",
     ),
 }

@@ -45,7 +45,7 @@ kind: 2.843 ± 0.004 in the open, 2.869 ± 0.005 on the sedan. The rigs of MAN T
 radars) and of EDGAR have radars, too; no positions of theirs were found in a source that could be
 read, so neither is here. Written by `tools/known_rigs.py`; a test scores two of the rows again.
 
-| rig | LiDARs | cameras | radars | in the open | coverage | vehicle | on it | coverage | hidden |
+| rig | LiDARs | cameras | radars | in the open | coverage | vehicle | on it | coverage | occluded |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |
 """
 
@@ -96,7 +96,7 @@ def line(row: ScoredRig) -> str:
     hidden = [
         name
         for name, own in row.on_vehicle.per_sensor.items()
-        if own.stopped > HIDDEN * own.beams > 0
+        if own.occluded > HIDDEN * own.beams > 0
     ]
     counts = [str(kinds.count(kind)) for kind in ("lidar", "camera", "radar")]
     cells = [f"{rig.title} (`{row.key}`)", *counts]

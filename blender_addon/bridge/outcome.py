@@ -94,7 +94,7 @@ def _store_row(settings: bpy.types.PropertyGroup, row: advice.SensorRow) -> None
     """Store a sensor's table row: loss, the zone of the largest loss, and occluding parts."""
     _, settings.loss_text, settings.loss_where, _ = row.cells
     settings.stopped_parts.clear()
-    for name, share in list(row.hidden_by.items())[:PARTS_NAMED]:
+    for name, share in list(row.occluded_by.items())[:PARTS_NAMED]:
         part = settings.stopped_parts.add()
         part.name, part.share = name, share
 
@@ -131,13 +131,13 @@ def _store_sensor(settings: bpy.types.PropertyGroup, score: pe.SensorScore | Non
     if score is None:
         return
     settings.entropy, settings.coverage = score.entropy, score.coverage
-    settings.beams, settings.stopped = score.beams, score.stopped
+    settings.beams, settings.stopped = score.beams, score.occluded
     settings.stopped_text = _stopped_text(score)
 
 
 def _stopped_text(score: pe.SensorScore) -> str:
     """Return the parts that block most beams: "roof 7.5%, hood 1.2%"."""
-    by_count = sorted(score.stopped_by.items(), key=lambda item: (-item[1], item[0]))
+    by_count = sorted(score.occluded_by.items(), key=lambda item: (-item[1], item[0]))
     named = [f"{part} {count / score.beams:.1%}" for part, count in by_count[:PARTS_NAMED] if count]
     more = ["..."] if len(by_count) > PARTS_NAMED else []
     return ", ".join(named + more)

@@ -110,7 +110,7 @@ def _voxel_mark(center: np.ndarray) -> graphics.Primitives:
     return graphics.Primitives.of(np.vstack([*(corners[list(edge)] for edge in edges), post]), MARK)
 
 
-REASON_COLORS = {"sees": VISIBLE, "hidden": OCCLUDED}
+REASON_COLORS = {"sees": VISIBLE, "occluded": OCCLUDED}
 """By the reason that `advice.ask_place` gives."""
 
 

@@ -54,7 +54,7 @@ def hit_density(casts: Sequence[graphics.Cast], triangles: Floats) -> graphics.L
 
 
 LEGEND = graphics.ColorKey(
-    "Blocked beams per dm²",
+    "Occluded beams per dm²",
     scale=tuple(
         (float(red), float(green), float(blue), 1.0)
         for red, green, blue in graphics.on_scale(np.linspace(0.0, 1.0, 13), graphics.VIRIDIS)

@@ -175,7 +175,7 @@ def _beam_legend(view: ViewSettings) -> graphics.ColorKey:
         swatches = tuple((float(red), float(green), float(blue), 1.0) for red, green, blue in row)
         return graphics.ColorKey("Channel", swatches, ("lowest", "highest"))
     palette = view.palette
-    stopped = (graphics.with_alpha(palette.stopped, 1.0), "blocked by the vehicle")
+    stopped = (graphics.with_alpha(palette.stopped, 1.0), "occluded by the vehicle")
     if view.beam_colors == BY_SENSOR:  # free beams have the colours of the labels
         return graphics.ColorKey("Beams", classes=(stopped,))
     return graphics.ColorKey(
@@ -372,7 +372,7 @@ LAYERS = (
     Layer("focus", "Focus", _focus_keys, _focus, 1.4, edged=True),
     Layer("frustums", "Camera Views", _view_keys, _views),
     Layer("beams", "Beams", _beam_keys, _beams, rough=True),
-    Layer("heat", "Blocked Beams", _heat_keys, _heat, rough=True),
+    Layer("heat", "Occluded Beams", _heat_keys, _heat, rough=True),
     Layer("axles", "Axles", _axle_keys, _axles, 1.6, edged=True),
     Layer("front", "Front", _front_keys, _front, 2.2, edged=True),
     Layer("ghosts", "Other Variant", _ghost_keys, _ghosts, 1.6, edged=True),

@@ -273,10 +273,10 @@ class PE_ObjectSettings(GroundPose, bpy.types.PropertyGroup):
         name="Beams", description="Beams of one revolution, or positions in a camera's picture"
     )
     stopped: IntProperty(
-        name="Stopped", description="Beams, or positions in the picture, that the vehicle occludes"
+        name="Occluded", description="Beams, or positions in the picture, that the vehicle occludes"
     )
     stopped_text: StringProperty(
-        name="Stopped By",
+        name="Occluded By",
         description="Parts of the vehicle with the number of beams that they occlude",
     )
 
@@ -291,7 +291,7 @@ class PE_ObjectSettings(GroundPose, bpy.types.PropertyGroup):
     )
     stopped_parts: CollectionProperty(
         type=PE_StoppingPart,
-        name="Stopped By",
+        name="Occluded By",
         description="Parts of the vehicle that occlude the sensor",
     )
     is_view: BoolProperty(

@@ -326,7 +326,7 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
     )
 
     show_heat: BoolProperty(
-        name="Blocked Beams",
+        name="Occluded Beams",
         description="Colour the vehicle where it occludes beams, by their number",
         default=False,
         update=redraw,

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 MAX_ROWS = 6
 MAX_PARTS = 3
-HEADINGS = ("Sensor", "Model", "x, y, z [m]", "Pitch", "Yaw", "Beams blocked by the vehicle")
+HEADINGS = ("Sensor", "Model", "x, y, z [m]", "Pitch", "Yaw", "Beams occluded by the vehicle")
 START_HEADING = "Start: x, y, z [m], pitch"
 
 
@@ -61,9 +61,9 @@ def occluded_text(score: pe.SensorScore | None) -> str:
     """Return the share of occluded beams and the occluding parts: "0.5 % (hood, body)"."""
     if score is None or not score.beams:
         return "–"
-    parts = sorted(score.stopped_by, key=lambda part: -score.stopped_by[part])
+    parts = sorted(score.occluded_by, key=lambda part: -score.occluded_by[part])
     named = ", ".join(parts[:MAX_PARTS]) + (", ..." if len(parts) > MAX_PARTS else "")
-    return f"{score.stopped / score.beams:.1%}" + (f" ({named})" if named else "")
+    return f"{score.occluded / score.beams:.1%}" + (f" ({named})" if named else "")
 
 
 def _table(study: pe.Study, outcome: pe.Outcome) -> tuple[tuple[str, ...], ...]:
@@ -178,7 +178,7 @@ def legend_of(rig: pe.Rig, *, stopped: bool, moved: bool) -> Legend:
                 (drawing.look.legend or kind.label, drawing.color(graphics.PAPER), "line")
             )
             if drawing.beams and stopped:
-                entries.append(("blocked by the vehicle", graphics.PAPER.stopped, "line"))
+                entries.append(("occluded by the vehicle", graphics.PAPER.stopped, "line"))
     if moved:
         entries.append(("where it started", GHOST, "ring"))
     return entries

@@ -143,7 +143,7 @@ class SensorScore:
 
     `entropy` and `coverage` are those of a rig of this sensor alone; `lost` is the rise of the
     whole rig's entropy when the sensor fails. `beams` counts a LiDAR's beams, or pixels spread
-    evenly over a camera's image; the vehicle occludes `stopped` of them, `stopped_by` counts them
+    evenly over a camera's image; the vehicle occludes `occluded` of them, `occluded_by` counts them
     by part. All are 0 for a kind without this information.
     """
 
@@ -151,8 +151,8 @@ class SensorScore:
     coverage: float
     lost: float
     beams: int
-    stopped: int
-    stopped_by: dict[str, int]
+    occluded: int
+    occluded_by: dict[str, int]
 
 
 @dataclass(frozen=True, slots=True)

@@ -83,9 +83,9 @@ def require_mask_size(name: str, rays: int) -> None:
         raise InputError(name, "mask", f"at most {MAX_RAYS:,} pixels or beams", f"{rays:,}")
 
 
-def count_by_part(stopped_by: NDArray[np.integer], part_names: Sequence[str]) -> dict[str, int]:
+def count_by_part(occluded_by: NDArray[np.integer], part_names: Sequence[str]) -> dict[str, int]:
     """Return the number of rays that end on each part, the largest number first."""
-    counts = np.bincount(stopped_by[stopped_by >= 0])
+    counts = np.bincount(occluded_by[occluded_by >= 0])
     order = np.argsort(-counts, kind="stable").tolist()
     return {part_names[k]: int(counts[k]) for k in order if counts[k]}
 

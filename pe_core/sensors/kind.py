@@ -99,7 +99,7 @@ class Kind(ABC):
     has_top : bool
         Whether it matters which side of the sensor is up, as for a picture.
     occlusion_text : str
-        Text about its occlusion by the vehicle: "12 % of its *beams stopped*".
+        Text about its occlusion by the vehicle: "12 % of its *beams occluded*".
     """
 
     name: str
@@ -115,7 +115,7 @@ class Kind(ABC):
     shows_parts: bool = False
     lowest_m: float = 0.0
     has_top: bool = False
-    occlusion_text: str = "beams stopped"
+    occlusion_text: str = "beams occluded"
     weather_limits_range: bool = False
     """Whether weather changes `max_range` alone, beyond which m is 0."""
 

@@ -204,7 +204,7 @@ def _row(
 def _occluded(score: Score) -> dict[str, dict[str, float]]:
     """Return the share of each sensor's rays that each part occludes."""
     return {
-        name: {part: count / s.beams for part, count in s.stopped_by.items()}
+        name: {part: count / s.beams for part, count in s.occluded_by.items()}
         for name, s in score.per_sensor.items()
         if s.beams
     }

@@ -13,7 +13,7 @@ OBJECTIVE: str = setting(
         "Objective",
         menu=(
             ("Entropy", "Lower the entropy of the targets: voxels or objects"),
-            ("Expected AP in Traffic", "Raise the expected AP of objects that hide each other"),
+            ("Expected AP in Traffic", "Raise the expected AP of objects that occlude each other"),
         ),
     ),
 )

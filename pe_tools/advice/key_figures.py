@@ -15,7 +15,7 @@ from pe_tools.advice.advice import percent
 from .mount_checks import stopped_shares
 from .summary import Outlook, class_of
 
-SENSOR_COLUMNS = ("sensor", "loss [nats]", "costs most", "hidden by")
+SENSOR_COLUMNS = ("sensor", "loss [nats]", "costs most", "occluded by")
 SHORT_ZONES = {
     "front": "ahead",
     "rear": "behind",
@@ -47,7 +47,7 @@ class SensorRow:
         Zone (`scoring.zones.ZONES`) whose entropy rises most; empty where none rises, or unknown.
     zone_loss : float
         Rise of the entropy in that zone [nats], on a sample of the prior.
-    hidden_by : dict of float
+    occluded_by : dict of float
         Share of the sensor's beams or pixels that each part of the vehicle occludes, highest first.
     """
 
@@ -55,12 +55,12 @@ class SensorRow:
     loss: float | None
     zone: str
     zone_loss: float
-    hidden_by: Mapping[str, float]
+    occluded_by: Mapping[str, float]
 
     @property
     def cells(self) -> tuple[str, str, str, str]:
         """Texts of the columns `SENSOR_COLUMNS`."""
-        return self.name, loss_text(self.loss), where_text(self), hidden_text(self.hidden_by)
+        return self.name, loss_text(self.loss), where_text(self), hidden_text(self.occluded_by)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the row as plain JSON data."""
@@ -69,7 +69,7 @@ class SensorRow:
             "loss_nats": self.loss,
             "zone": self.zone or None,
             "zone_loss_nats": self.zone_loss if self.zone else None,
-            "hidden_by": dict(self.hidden_by),
+            "occluded_by": dict(self.occluded_by),
         }
 
 

@@ -27,7 +27,7 @@ from pe_tools.advice.advice import times
 
 Floats = NDArray[np.float64]
 
-SEES, HIDDEN = "sees", "hidden"
+SEES, HIDDEN = "sees", "occluded"
 """Reason of a sensor that measures the location, and of one whose view of it the vehicle blocks.
 The other reasons are those of the sensor's kind (`Kind.missed`)."""
 WAYS = (("ahead", "behind"), ("left", "right"), ("up", "down"))
@@ -47,9 +47,9 @@ class SensorAtPlace:
         The same number if the vehicle hid nothing.
     ap : float
         Average precision of m by the curve of its kind (eq. 4).
-    hidden_by : str or None
+    occluded_by : str or None
         Part of the vehicle that blocks most of the rays, if the vehicle hides the location.
-    reason : {"sees", "hidden", "out of view", "out of range", "between beams"}
+    reason : {"sees", "occluded", "out of view", "out of range", "between beams"}
         Kinds other than LiDAR and camera may have further reasons.
     """
 
@@ -58,7 +58,7 @@ class SensorAtPlace:
     m: float
     unhidden: float
     ap: float
-    hidden_by: str | None
+    occluded_by: str | None
     reason: str
 
 
@@ -249,10 +249,10 @@ def _expectation(place: AskedPlace) -> str:
 def _sensor_line(sensor: SensorAtPlace) -> str:
     unit = kind_named(sensor.kind, sensor.name).unit
     if sensor.reason == HIDDEN:
-        return f"{sensor.name}: hidden by {sensor.hidden_by or 'the vehicle'}"
+        return f"{sensor.name}: occluded by {sensor.occluded_by or 'the vehicle'}"
     if sensor.reason != SEES:
         return f"{sensor.name}: {sensor.reason}"
     count = plural(sensor.m, unit.removesuffix("s"))
     lost = sensor.unhidden - sensor.m
-    hidden = f" ({lost:.0f} more stopped)" if lost > 0.0 else ""
+    hidden = f" ({lost:.0f} more occluded)" if lost > 0.0 else ""
     return f"{sensor.name}: sees it with {count}{hidden}, AP {sensor.ap:.2f}"

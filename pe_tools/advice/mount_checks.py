@@ -65,7 +65,7 @@ def stopped_shares(
         Shares, 0 to 1, by name of the part; parts that block nothing are left out.
     """
     if own is not None and own.beams:
-        return _shares(own.beams, own.stopped_by)
+        return _shares(own.beams, own.occluded_by)
     if sensor is None or vehicle is None:
         return {}
     return _cast_shares(sensor, vehicle, _rays_met(sensor, vehicle))
@@ -102,10 +102,10 @@ class SensorAtBody:
         return _rays_met(self.sensor, self.body.vehicle)
 
     @cached_property
-    def stopped_by(self) -> dict[str, float]:
+    def occluded_by(self) -> dict[str, float]:
         """Share of the sensor's rays that each part blocks, highest first."""
         if self.own is not None and self.own.beams:
-            return _shares(self.own.beams, self.own.stopped_by)
+            return _shares(self.own.beams, self.own.occluded_by)
         return _cast_shares(self.sensor, self.body.vehicle, self.hits)
 
     @cached_property
@@ -218,21 +218,21 @@ def _housing(mounted: SensorAtBody) -> Iterator[Advice]:
 def _in_the_way(mounted: SensorAtBody) -> Iterator[Advice]:
     """Check for a sensor that looks at the body from near, or whose view is mostly blocked."""
     name, unit = mounted.sensor.name, kind_of(mounted.sensor).unit
-    if not mounted.stopped_by:
+    if not mounted.occluded_by:
         return
-    part, part_share = next(iter(mounted.stopped_by.items()))
+    part, part_share = next(iter(mounted.occluded_by.items()))
     median = float(np.median(mounted.hits.distance)) if len(mounted.hits.face) else math.inf
     if median <= LOOKS_AT_M:
         text = f"it looks at {part} from {metres(median)}"
         yield Advice(name, "looks_at", text, part=part)
         return
-    share = sum(mounted.stopped_by.values())
+    share = sum(mounted.occluded_by.values())
     if share < MAX_OCCLUDED_SHARE:
         return
-    text = f"{percent(share)} of its {unit} are stopped by {part}"
+    text = f"{percent(share)} of its {unit} are occluded by {part}"
     if share - part_share > 0.005:
-        text = f"{percent(share)} of its {unit} are stopped, {percent(part_share)} by {part}"
-    yield Advice(name, "stopped", text, part=part)
+        text = f"{percent(share)} of its {unit} are occluded, {percent(part_share)} by {part}"
+    yield Advice(name, "occluded", text, part=part)
 
 
 def _first_hits(sensor: Sensor, vehicle: Vehicle, rays: Floats) -> Hits:

@@ -27,7 +27,7 @@ def objects_looked_at(found: ObjectScore) -> str:
     """Describe the evaluated objects: their number, and whether they can hide each other."""
     if found.traffic:
         return f"{found.objects:,} objects in {found.scenes:,} scenes, in traffic"
-    return f"{found.objects:,} objects, none hides another"
+    return f"{found.objects:,} objects, none occludes another"
 
 
 def _lines(found: ObjectScore) -> Iterator[str]:

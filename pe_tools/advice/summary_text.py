@@ -174,7 +174,7 @@ def _extreme_zones(zones: Mapping[str, float]) -> str:
 def stopped_words(
     sensor: Sensor | None, own: SensorScore | None = None, vehicle: Vehicle | None = None
 ) -> str:
-    """Describe which parts block a sensor's view, as in "7.5% of its beams stopped by roof".
+    """Describe which parts block a sensor's view, as in "7.5% of its beams occluded by roof".
 
     The beams counted by the score are used where it has them, otherwise a sample of the sensor's
     rays (`stopped_shares`, which also explains the parameters).
@@ -190,7 +190,7 @@ def stopped_words(
         return ""
     unit = "beams" if sensor is None else kind_of(sensor).unit
     named = [part for part in shares if shares[part] >= LITTLE * total]
-    text = f"{percent(total)} of its {unit} stopped"
+    text = f"{percent(total)} of its {unit} occluded"
     if len(named) == 1:
         return f"{text} by {named[0]}"
     by_part = ", ".join(f"{part} {percent(shares[part])}" for part in named[:PARTS_NAMED])

@@ -77,7 +77,7 @@ class HiddenSensor:
         Share of its beams, or of its picture, that the vehicle blocks, 0 to 1; 0 for kinds that do
         not count beams.
     why : str
-        The reason as a phrase: "inside the body", "86% of its picture hidden".
+        The reason as a phrase: "inside the body", "86% of its picture occluded".
     """
 
     name: str
@@ -110,7 +110,7 @@ def hidden_sensors(
         part = score.per_sensor.get(sensor.name)
         if part is None:
             continue
-        lost = part.stopped / part.beams if part.beams else 0.0
+        lost = part.occluded / part.beams if part.beams else 0.0
         dead, enclosed = part.coverage == 0.0, sensor.name in inside
         if dead or enclosed or lost > MOSTLY:
             why = [
@@ -132,5 +132,5 @@ def hidden_words(found: Iterable[HiddenSensor]) -> tuple[str, ...]:
     if dead:
         lines.append(f"{joined(dead)} {'sees' if len(dead) == 1 else 'see'} {nothing}")
     if mostly:
-        lines.append(f"{joined(mostly)} {'is' if len(mostly) == 1 else 'are'} mostly hidden")
+        lines.append(f"{joined(mostly)} {'is' if len(mostly) == 1 else 'are'} mostly occluded")
     return tuple(lines)

@@ -168,7 +168,7 @@ def with_presets(study: Study, names: Sequence[str]) -> tuple[Study, dict[str, s
 
 def verdict_lines(verdicts: Sequence[Verdict], unchecked: dict[str, str]) -> list[str]:
     """Return verdicts as a table, with a line about each that is not met, and a summary."""
-    rows = [("", "requirement", "after", "margin", "share", "what breaks or hides it")]
+    rows = [("", "requirement", "after", "margin", "share", "what breaks or occludes it")]
     rows += [_row(v) for v in verdicts]
     widths = [max(len(row[k]) for row in rows) for k in range(5)]
     lines = [

@@ -139,7 +139,7 @@ def summary(outcome: Outcome) -> str:
         roll, pitch, yaw = sensor.pose.rotation_deg
         own = scores[sensor.name]
         what = kind_of(sensor).occlusion_text
-        stopped = f", {own.stopped / own.beams:.1%} of its {what}" if own.stopped else ""
+        stopped = f", {own.occluded / own.beams:.1%} of its {what}" if own.occluded else ""
         lines.append(
             f"{sensor.name}: {sensor.model.name} at ({x:g}, {y:g}, {z:g}) m, roll {roll:g}, "
             f"pitch {pitch:g}, yaw {yaw:g} deg; alone {own.entropy:.4f}{stopped}"

@@ -71,7 +71,7 @@ def ground_plan(request: OutputRequest) -> tuple[GroundPlan, list[str]]:
             lines.append(f"{sensor.name}: sees no ground within {footprint.reach:g} m")
         footprints.append(footprint)
     if study.vehicle is None:
-        lines.append("no vehicle: nothing is hidden, and there is no blind ground round it")
+        lines.append("no vehicle: nothing is occluded, and there is no blind ground round it")
         return GroundPlan(tuple(footprints), (), ()), lines
     blind, blind_lines = _blind(request)
     return GroundPlan(

@@ -22,7 +22,7 @@ from ..exchange import Written
 from ..graphics import png_bytes
 from .request import OutputRequest, plain_names
 
-SUMMARY, BY_PART = "masks.json", "stopped_by_part.csv"
+SUMMARY, BY_PART = "masks.json", "occluded_by_part.csv"
 DECIMALS = 6
 """Of shares and angles [deg]."""
 
@@ -64,8 +64,8 @@ def _shares(sensor: Sensor, mask: EgoMask, vehicle: Vehicle | None, file: str) -
         "width": mask.parts.shape[1],
         "height": mask.parts.shape[0],
         "rays": count,
-        "stopped": sum(by_part.values()),
-        "stopped_share": round(sum(by_part.values()) / count, DECIMALS),
+        "occluded": sum(by_part.values()),
+        "occluded_share": round(sum(by_part.values()) / count, DECIMALS),
         "outside_share": round(float(mask.outside.mean()), DECIMALS),
         "by_part": {name: round(rays / count, DECIMALS) for name, rays in by_part.items()},
         "rays_by_part": by_part,

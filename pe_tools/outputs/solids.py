@@ -78,7 +78,7 @@ def _end(request: OutputRequest, name: str, model: object) -> list[str]:
 def _near(request: OutputRequest) -> tuple[Solid | None, list[str]]:
     vehicle = request.study.vehicle
     if vehicle is None:
-        return None, ["no vehicle: nothing is hidden, and there is no blind volume near it"]
+        return None, ["no vehicle: nothing is occluded, and there is no blind volume near it"]
     solid = blind_volume(BLIND_NAME, request.study.rig, vehicle)
     return solid, [] if solid is not None else ["no blind volume: all of it is seen"]
 

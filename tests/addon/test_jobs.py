@@ -56,10 +56,10 @@ def test_result_is_shown(car):
     assert settings.result_entropy == pytest.approx(data["entropy"], abs=1e-6)
     roof = car.objects["roof"].perception_entropy
     assert roof.has_result and roof.beams == 16 * 1800
-    assert roof.stopped == data["after"]["per_sensor"]["roof"]["stopped"] > 0
+    assert roof.stopped == data["after"]["per_sensor"]["roof"]["occluded"] > 0
     assert "cabin" in roof.stopped_text
     front, told = car.objects["front"].perception_entropy, data["after"]["per_sensor"]["front"]
-    assert (front.beams, front.stopped) == (told["beams"], told["stopped"]), "rays of its picture"
+    assert (front.beams, front.stopped) == (told["beams"], told["occluded"]), "rays of its picture"
 
 
 def test_warnings_are_stored_as_the_result_has_them(car):

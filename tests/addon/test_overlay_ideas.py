@@ -53,7 +53,7 @@ def test_lines_tell_who_sees_the_place_and_from_whom_it_is_hidden():
     def told(name, m, reason):
         return advice.SensorAtPlace(name, "lidar", m, 5.0, 0.5, None, reason)
 
-    seen = (told("a", 3.0, "sees"), told("b", 0.0, "hidden"), told("c", 0.0, "out of view"))
+    seen = (told("a", 3.0, "sees"), told("b", 0.0, "occluded"), told("c", 0.0, "out of view"))
     place = advice.AskedPlace((5.0, 1.0, 0.05), 1.0, 0.5, True, 1.0, False, seen)
     shape = location_mark(place, [sensor(name, float(k)) for k, name in enumerate("abc")])
     for k, color in ((0, VISIBLE), (1, OCCLUDED)):

@@ -129,7 +129,7 @@ def test_the_review_shows_it(ring_kind, ring, tmp_path):
     for _ in job:
         pass
     names = [text for text, _, _ in legend_of(study.rig, stopped=True, moved=False)]
-    assert names == ["LiDAR beam", "blocked by the vehicle", "Toy Ring"]
+    assert names == ["LiDAR beam", "occluded by the vehicle", "Toy Ring"]
     path = tmp_path / "review.png"
     render_review(ring_kind, study, job.outcome, path, (800, 450))
     image = bpy.data.images.load(str(path))

@@ -63,7 +63,7 @@ def test_one_beam_by_hand():
     place = ask([one_beam()], (10.1, -0.1, 1.25))
     assert place.center == (10.25, -0.25, 1.25)
     own = place.sensors[0]
-    assert (own.m, own.unhidden, own.reason, own.hidden_by) == (2.0, 2.0, "sees", None)
+    assert (own.m, own.unhidden, own.reason, own.occluded_by) == (2.0, 2.0, "sees", None)
     assert own.ap == pytest.approx(0.152 * math.log(2) + 0.659)
     assert place.ap == pytest.approx(own.ap) and place.seen and not place.in_vehicle
     assert place.entropy == pytest.approx(2 * math.log(1 / own.ap - 1) + 1 + math.log(2 * math.pi))
@@ -89,7 +89,7 @@ def test_one_beam_by_hand():
 )
 def test_why_a_lidar_misses_a_place(point, reason):
     own = ask([one_beam(elevations=(0.0, 6.0))], point).sensors[0]
-    assert (own.reason, own.hidden_by) == (reason, None)
+    assert (own.reason, own.occluded_by) == (reason, None)
     assert (own.m > 0) == (reason == "sees")
 
 
@@ -141,17 +141,17 @@ def test_the_nearest_part_hides():
     lidar = one_beam(elevations=(0.0, 23.0))
     camera = shapes.camera(90.0, position=(0.0, 0.0, 1.25))
     low, high = (ask([lidar, camera], p, WALL) for p in ((10, 0, 1.25), (8, 0, 4.9)))
-    assert [(s.reason, s.hidden_by) for s in low.sensors] == [("hidden", "fence")] * 2
-    assert [(s.reason, s.hidden_by) for s in high.sensors] == [("hidden", "wall")] * 2
+    assert [(s.reason, s.occluded_by) for s in low.sensors] == [("occluded", "fence")] * 2
+    assert [(s.reason, s.occluded_by) for s in high.sensors] == [("occluded", "wall")] * 2
     assert not low.seen and low.entropy == pytest.approx(16.651, abs=1e-3)
-    assert low.text[2:] == ("beam: hidden by fence", "camera: hidden by fence")
+    assert low.text[2:] == ("beam: occluded by fence", "camera: occluded by fence")
 
 
 def test_cameras_see_through_glass():
     glass = pe.Vehicle(WALL.triangles, WALL.parts, WALL.part_names, glass=("fence", "wall"))
     camera = shapes.camera(90.0, position=(0.0, 0.0, 1.25))
     place = ask([one_beam(), camera], (10, 0, 1.25), glass)
-    assert [s.reason for s in place.sensors] == ["hidden", "sees"]
+    assert [s.reason for s in place.sensors] == ["occluded", "sees"]
 
 
 def test_in_the_vehicle_nothing_counts():
@@ -200,7 +200,7 @@ def test_m_is_the_definition_s_and_ap_and_h_are_the_equations(seed):
             assert own.unhidden == pe.measure(sensor, center, SPACE.interval)[0]
             assert own.ap == average_precision(own.m, model.curve(own.kind))
             assert (own.reason == "sees") == (own.m > 0)
-            assert (own.reason == "hidden") == (own.m == 0 < own.unhidden)
+            assert (own.reason == "occluded") == (own.m == 0 < own.unhidden)
             precisions[sensor.group] = precisions.get(sensor.group, 0.0) + own.m
         fused = late_fusion(
             [precision_of(m, model.curve(rig.groups[g][0].kind)) for g, m in precisions.items()]
@@ -231,10 +231,10 @@ def test_what_hides_from_a_camera_is_what_brute_force_meets():
         point, position = rng.uniform((-9, -9, 0), (9, 9, 1)), rng.uniform((-2, -1, 1.5), (2, 1, 2))
         yaw = math.degrees(math.atan2(point[1] - position[1], point[0] - position[0]))
         place = ask([shapes.camera(90.0, position, (0, 20, yaw))], point, car)
-        if place.sensors[0].reason == "hidden":
+        if place.sensors[0].reason == "occluded":
             ray = np.array(place.center) - position
             _, face = first_triangle(position, ray / np.linalg.norm(ray), car.triangles)
-            assert place.sensors[0].hidden_by == car.part_names[car.parts[face]]
+            assert place.sensors[0].occluded_by == car.part_names[car.parts[face]]
             tried += 1
     assert tried > 20
 
@@ -245,12 +245,12 @@ def test_what_hides_from_a_lidar_is_what_most_of_its_beams_meet():
         point, position = rng.uniform((-6, -6, 0), (6, 6, 1)), rng.uniform((-2, -1, 1.5), (2, 1, 2))
         sensor = shapes.lidar_on_roof(shapes.small_lidar(16, 180), position)
         place = ask([sensor], point, car)
-        if place.sensors[0].reason == "hidden":
+        if place.sensors[0].reason == "occluded":
             count = np.zeros(2)
             for beam in beams_near(sensor, place.center):
                 if pe.measure(one_way(sensor, beam), [place.center], SPACE.interval)[0]:
                     count[car.parts[first_triangle(position, beam, car.triangles)[1]]] += 1
-            assert place.sensors[0].hidden_by == car.part_names[int(np.argmax(count))]
+            assert place.sensors[0].occluded_by == car.part_names[int(np.argmax(count))]
             tried += 1
     assert tried > 3
 

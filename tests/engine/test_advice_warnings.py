@@ -173,30 +173,30 @@ def test_stopped_by_a_part_by_hand():
     level = pe.Lidar("ring", np.zeros(1), 3600, 50.0)
     sensor = pe.Sensor("s", level, pe.Pose((0.6, 0.0, 1.0)))
     # From x = 0.6 the wall spans 2 atan(1 / 0.4) = 136.4 of 360 degrees: 37.9 %.
-    found = told(wall, sensor)["s", "stopped"]
-    assert (found.text, found.part) == ("38% of its beams are stopped by vehicle", "vehicle")
+    found = told(wall, sensor)["s", "occluded"]
+    assert (found.text, found.part) == ("38% of its beams are occluded by vehicle", "vehicle")
     further = pe.Sensor("s", level, pe.Pose((0.1, 0.0, 1.0)))  # 2 atan(1 / 0.9) = 96 degrees
-    assert ("s", "stopped") not in told(wall, further)
+    assert ("s", "occluded") not in told(wall, further)
 
 
 def test_beyond_its_range_nothing_is_stopped():
     wall = pe.Vehicle(shapes.box((1, -9, 0), (1.1, 9, 2)))
     near = pe.Sensor("s", pe.Lidar("ring", np.zeros(1), 360, 0.5), pe.Pose((0.45, 0.0, 1.0)))
-    assert ("s", "stopped") not in told(wall, near)
+    assert ("s", "occluded") not in told(wall, near)
 
 
 def test_several_parts_that_stop_are_reported_by_the_worst():
     triangles = [shapes.box((1, -1, 0), (1.1, 1, 2)), shapes.box((0.2, 1.2, 0), (1, 1.3, 2))]
     both = pe.Vehicle(np.concatenate(triangles), np.repeat([0, 1], 12), ("wall", "post"))
     level = pe.Lidar("ring", np.zeros(1), 3600, 50.0)
-    text = told(both, pe.Sensor("s", level, pe.Pose((0.6, 0.0, 1.0))))["s", "stopped"].text
-    assert text == "48% of its beams are stopped, 38% by wall"
+    text = told(both, pe.Sensor("s", level, pe.Pose((0.6, 0.0, 1.0))))["s", "occluded"].text
+    assert text == "48% of its beams are occluded, 38% by wall"
 
 
 def test_pixels_that_are_stopped_are_reported_too():
     """The lower half of a level picture is the bonnet's."""
-    found = told(shapes.box_car(), camera_at(0.85, 0, 0.95, hfov_deg=40.0))["s", "stopped"]
-    assert found.text.endswith("of its pixels are stopped by body") and found.part == "body"
+    found = told(shapes.box_car(), camera_at(0.85, 0, 0.95, hfov_deg=40.0))["s", "occluded"]
+    assert found.text.endswith("of its pixels are occluded by body") and found.part == "body"
 
 
 def test_a_score_s_counts_are_those_that_are_reported():
@@ -204,8 +204,8 @@ def test_a_score_s_counts_are_those_that_are_reported():
     space = shapes.small_space()
     score = pe.Evaluator(space, PRIOR, car, samples=1024).score(pe.Rig([sensor]))
     own = score.per_sensor["s"]
-    text = told(car, sensor, score=score)["s", "stopped"].text
-    assert text.startswith(f"{100 * own.stopped / own.beams:.0f}% of its beams are stopped")
+    text = told(car, sensor, score=score)["s", "occluded"].text
+    assert text.startswith(f"{100 * own.occluded / own.beams:.0f}% of its beams are occluded")
 
 
 @pytest.mark.parametrize(

@@ -50,7 +50,7 @@ def test_a_score_in_words():
         "85% of where objects are is seen",
         "best ahead (1.23 nats, 98% seen), worst beyond 40 m (9.50 nats, 40% seen)",
         "roof: without it 0.42 nats worse",
-        "  7.5% of its beams stopped: roof 6.0%, hood 1.5%",
+        "  7.5% of its beams occluded: roof 6.0%, hood 1.5%",
         "spare: without it no worse",
     )
 
@@ -76,7 +76,7 @@ def test_a_sensor_in_phrases():
     assert advice.sensor_words(SENSORS["roof"], zones=zones) == (
         "without it 0.42 nats worse",
         "sees most ahead (61%), least behind (2.0%)",
-        "7.5% of its beams stopped: roof 6.0%, hood 1.5%",
+        "7.5% of its beams occluded: roof 6.0%, hood 1.5%",
     )
     blind = dict.fromkeys(zones, 0.0)
     assert advice.sensor_words(SENSORS["spare"], zones=blind, alone=True) == ("the only sensor",)
@@ -85,7 +85,7 @@ def test_a_sensor_in_phrases():
 def test_the_table_has_a_row_a_sensor():
     rows = advice.sensor_rows(score(sensors=SENSORS))
     assert advice.sensor_table(rows) == [
-        "sensor  loss [nats]  costs most  hidden by",
+        "sensor  loss [nats]  costs most  occluded by",
         "roof           0.42  -           roof 6.0%, hood 1.5%",
         "spare          none  -           -",
     ]
@@ -115,11 +115,11 @@ def test_a_loss_is_reported_where_it_costs_most():
 @pytest.mark.parametrize(
     ("by_part", "text"),
     [
-        ({"roof": 250}, "25% of its beams stopped by roof"),
-        ({"roof": 245, "mirror": 5}, "25% of its beams stopped by roof"),  # 2 % of them: not named
+        ({"roof": 250}, "25% of its beams occluded by roof"),
+        ({"roof": 245, "mirror": 5}, "25% of its beams occluded by roof"),  # 2 % of them: not named
         (
             {"a": 50, "b": 50, "c": 40, "d": 30},
-            "17% of its beams stopped: a 5.0%, b 5.0%, c 4.0%, ...",
+            "17% of its beams occluded: a 5.0%, b 5.0%, c 4.0%, ...",
         ),
         ({}, ""),
     ],
@@ -137,7 +137,7 @@ def test_pixels_are_looked_for_where_no_score_counts_them():
     edge = sensor.model.focal_px * 0.05 / 1.45  # pixels below the middle where the bonnet ends
     assert shares == {"body": pytest.approx((540 - edge) / 1080, abs=0.02)}
     words = advice.stopped_words(sensor, uncounted, shapes.box_car())
-    assert words == f"{100 * shares['body']:.0f}% of its pixels stopped by body"
+    assert words == f"{100 * shares['body']:.0f}% of its pixels occluded by body"
     assert advice.stopped_words(sensor, uncounted) == ""
 
 

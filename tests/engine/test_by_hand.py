@@ -229,7 +229,7 @@ def test_sensors_alone_and_lost(grid):
         assert own.entropy == pytest.approx(entropy, abs=LOOK_UP)
         assert own.coverage == pytest.approx(coverage, abs=1e-9)
         assert own.lost == pytest.approx(lost, abs=LOOK_UP)
-        assert (own.beams, own.stopped, own.stopped_by) == BEAMS[name]
+        assert (own.beams, own.occluded, own.occluded_by) == BEAMS[name]
 
 
 def test_the_ground_map(grid):
@@ -284,7 +284,7 @@ def test_a_sample_tells_the_same(sampled, grid):
         own = sampled.per_sensor[name]
         assert (own.entropy, own.lost) == pytest.approx((entropy, lost), abs=0.02)
         assert own.coverage == pytest.approx(coverage, abs=0.001)
-        assert (own.beams, own.stopped, own.stopped_by) == BEAMS[name]
+        assert (own.beams, own.occluded, own.occluded_by) == BEAMS[name]
 
 
 def test_one_fusion_group_sums_beams():
@@ -324,7 +324,7 @@ def test_without_a_vehicle_nothing_is_hidden_and_nothing_left_out():
         (seen + 8 * H1 + 5 * HC + (22 - 13 + 1) * H0) / 48, abs=LOOK_UP
     )
     assert score.coverage == pytest.approx((25 + 13) / 48, abs=1e-9)
-    assert {n: (s.beams, s.stopped) for n, s in score.per_sensor.items()} == {
+    assert {n: (s.beams, s.occluded) for n, s in score.per_sensor.items()} == {
         "hood": (3, 0),
         "roof": (2, 0),
         "eye": (100, 0),
@@ -336,5 +336,5 @@ def test_the_score_as_plain_data_says_the_same(grid):
     assert data["entropy"] == grid.entropy and "draft" not in data
     assert data["per_class"] == {name: asdict(part) for name, part in grid.per_class.items()}
     assert data["per_zone"]["far"] == {"entropy": H0, "coverage": 0.0, "share": round(1 / 47, 9)}
-    assert data["per_sensor"]["hood"]["stopped_by"] == {"mast": 1}
+    assert data["per_sensor"]["hood"]["occluded_by"] == {"mast": 1}
     assert (data["coverage"], data["stderr"], data["voxels"]) == (round(25 / 47, 9), 0.0, 24)

@@ -44,7 +44,7 @@ def test_budget_above_all_beams_shows_each_once(vehicle):
 def test_agrees_with_the_engine_beam_by_beam(vehicle):
     sensor = mounted(position=(-0.3, 0.2, 1.8), rotation=(0, 5, 30))
     found, field = beams.cast(sensor, vehicle), pe.beam_field(sensor, vehicle)
-    np.testing.assert_array_equal(found.stopped, field.stopped_by >= 0)
+    np.testing.assert_array_equal(found.stopped, field.occluded_by >= 0)
     np.testing.assert_array_equal(found.ends, field.ends)
     assert found.stopped.any()
 
@@ -55,7 +55,7 @@ def test_the_share_of_stopped_beams_is_the_true_one(channels, height, low, high,
     """A beam more or less: well above the roof's corner, and right on it."""
     sensor = mounted(position=(1.9, 0.9, height), rotation=(0, 10, 30))
     field = pe.beam_field(sensor, vehicle)
-    true = (field.stopped_by >= 0).mean()
+    true = (field.occluded_by >= 0).mean()
     assert low < true < high
     found = shown(sensor, vehicle, 300, channels, 2)
     assert found.share == pytest.approx(true)
@@ -66,7 +66,7 @@ def test_few_stopped_beams_are_neither_lost_nor_a_fan():
     """A post stops one beam in some hundreds: of 300 shown one or two are, never none."""
     post = box((2.0, -0.02, 0.5), (2.04, 0.02, 2.5))
     sensor = mounted(lidar(azimuths=7200))
-    true = (pe.beam_field(sensor, post).stopped_by >= 0).mean()
+    true = (pe.beam_field(sensor, post).occluded_by >= 0).mean()
     assert 0.0 < true < 0.005
     for channels in (ChannelMode.FEW, ChannelMode.ALL):
         assert 1 <= shown(sensor, post, 300, channels).stopped.sum() <= 2

@@ -78,7 +78,7 @@ def test_the_sampled_score_agrees_with_the_grid_within_its_error():
     for name, own in grid.per_sensor.items():
         other = sampled.per_sensor[name]
         assert other.entropy == pytest.approx(own.entropy, abs=0.15)
-        assert (other.beams, other.stopped_by) == (own.beams, own.stopped_by)
+        assert (other.beams, other.occluded_by) == (own.beams, own.occluded_by)
 
 
 def test_the_truth_lies_within_two_reported_errors():
@@ -179,7 +179,7 @@ def test_turning_rig_and_scene_together_changes_nothing():
     a = pe.Evaluator(space, ROAD, vehicle).score(pe.Rig([there]))
     b = pe.Evaluator(space, ROAD, turned).score(pe.Rig([back]))
     assert a.entropy == pytest.approx(b.entropy, abs=2e-3)  # beams at 0 and 180 deg swap owners
-    assert a.per_sensor["roof"].stopped == pytest.approx(b.per_sensor["roof"].stopped, abs=2)
+    assert a.per_sensor["roof"].occluded == pytest.approx(b.per_sensor["roof"].occluded, abs=2)
 
 
 def test_the_paper_s_order_pandar64_before_hdl64e():

@@ -17,6 +17,6 @@ def test_a_wall_hides_the_left_half_of_the_picture(samples):
     space = pe.PerceptionSpace((-2, 8), (-4, 4), (0, 4), 0.5)
     score = pe.Evaluator(space, pe.Prior.uniform(), wall, samples=samples).score(pe.Rig([sensor]))
     own = score.per_sensor["camera"]
-    assert own.stopped / own.beams == pytest.approx(0.5, abs=0.01)
-    assert own.stopped_by == {"wall": own.stopped}
+    assert own.occluded / own.beams == pytest.approx(0.5, abs=0.01)
+    assert own.occluded_by == {"wall": own.occluded}
     assert 16_000 < own.beams <= 16_384

@@ -1,4 +1,4 @@
-"""Sensors that see nothing, or are mostly hidden, are named first wherever a score is told."""
+"""Sensors that see nothing, or are mostly occluded, are named first wherever a score is told."""
 
 import dataclasses
 
@@ -26,15 +26,15 @@ RIG = pe.Rig([shapes.lidar_on_roof(), dataclasses.replace(shapes.camera(60.0), n
         (500, 0.5, (), 0.0, ()),  # half is the limit
         (
             *(860, 0.02, (), 0.0),
-            ("camera in the boot (86% of its picture hidden) is mostly hidden",),
+            ("camera in the boot (86% of its picture occluded) is mostly occluded",),
         ),
         (
             *(1000, 0.0, ("inside",), 0.0),
-            ("camera in the boot (inside the body, 100% of its picture hidden) sees nothing",),
+            ("camera in the boot (inside the body, 100% of its picture occluded) sees nothing",),
         ),
         (
             *(1000, 0.0, (), 0.02),
-            ("camera in the boot (100% of its picture hidden) sees nothing, or next to it",),
+            ("camera in the boot (100% of its picture occluded) sees nothing, or next to it",),
         ),
         (
             *(0, 0.0, (), 0.0),
@@ -63,8 +63,8 @@ def test_several_are_one_line_a_kind_and_the_dead_come_first():
     found = advice.hidden_sensors(rig, pe.Score(2.0, 0.1, 0.0, {}, {}, own, 9))
     assert [each.name for each in found] == ["b", "c", "a"]
     assert advice.hidden_words(found) == (
-        "b (100% of its picture hidden) and c (100% of its picture hidden) see nothing",
-        "a (70% of its picture hidden) is mostly hidden",
+        "b (100% of its picture occluded) and c (100% of its picture occluded) see nothing",
+        "a (70% of its picture occluded) is mostly occluded",
     )
 
 
@@ -75,5 +75,5 @@ def test_a_camera_inside_the_body_is_named_by_the_summary():
     job = pe.ScoreJob(study)
     for _ in job:
         pass
-    line = f"ATTENTION: {INSIDE} (inside the body, 100% of its picture hidden) sees nothing"
+    line = f"ATTENTION: {INSIDE} (inside the body, 100% of its picture occluded) sees nothing"
     assert line in summary(job.outcome).splitlines()

@@ -73,7 +73,7 @@ def some_voxels(count=3000):
 def test_every_beam_that_is_stopped_may_be(pose, vehicle):
     sensor = lidar(POSES[pose], shapes.small_lidar(40, 720))
     ends = lazy(sensor, vehicle)
-    stopped = pe.beam_field(sensor, vehicle).stopped_by >= 0
+    stopped = pe.beam_field(sensor, vehicle).occluded_by >= 0
     assert stopped.any() and not (stopped & ~ends.occludable).any()
 
 
@@ -81,7 +81,7 @@ def test_few_beams_may_be_stopped_that_are_not():
     """A map that says so of all would be right, and of no use."""
     for pose in ("roof", "tilted", "corner", "afar"):
         sensor = lidar(POSES[pose], shapes.small_lidar(40, 720))
-        stopped = int((pe.beam_field(sensor, CAR).stopped_by >= 0).sum())
+        stopped = int((pe.beam_field(sensor, CAR).occluded_by >= 0).sum())
         assert stopped <= lazy(sensor, CAR).occludable.sum() <= 1.3 * stopped + 300, pose
 
 
@@ -120,7 +120,7 @@ def test_fewer_beams_are_cast_than_there_are_and_each_once(monkeypatch):
     field, expected = ends.beam_field(), pe.beam_field(sensor, CAR)
     assert len(np.unique(np.concatenate(cast))) == len(np.concatenate(cast))
     assert np.array_equal(field.ends, expected.ends)
-    assert np.array_equal(field.stopped_by, expected.stopped_by)
+    assert np.array_equal(field.occluded_by, expected.occluded_by)
 
 
 def test_what_a_bound_took_is_not_counted_again(monkeypatch):

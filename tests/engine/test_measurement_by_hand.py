@@ -180,13 +180,13 @@ def test_beams_ask_which_part_stops_them():
     triangles = [shapes.box(*ends) for ends in walls.values()]
     vehicle = pe.Vehicle(np.concatenate(triangles), np.repeat(range(4), 12), tuple(walls))
     field = pe.beam_field(at(lidar((0.0, 0.1), max_range=7.0)), vehicle)
-    assert field.stopped_by.tolist() == [0, -1, 2, 3] * 2
+    assert field.occluded_by.tolist() == [0, -1, 2, 3] * 2
     near = [3.0, 7.0, 5.0, 6.0]
     assert field.ends.tolist() == pytest.approx(near * 2, abs=1e-4)
     counts = field.stopped_count(tuple(walls))
     assert counts == {"near": 2, "back": 2, "more": 2} and list(counts) == ["near", "back", "more"]
     free = pe.beam_field(at(lidar(max_range=7.0)), None)
-    assert free.stopped_by.tolist() == [-1] * 4 and free.ends.tolist() == [7.0] * 4
+    assert free.occluded_by.tolist() == [-1] * 4 and free.ends.tolist() == [7.0] * 4
     assert free.stopped_count(()) == {}
 
 

@@ -324,7 +324,7 @@ def test_a_class_without_objects_hides_no_other():
     score = judge(few).score(rig())
     assert list(score.objects.per_class) == ["car", "truck", "cone"]
     assert score.objects.per_class["truck"].reach["front"] > 5.0
-    assert (score.per_sensor["roof"].beams, score.per_sensor["roof"].stopped) == (0, 0)
+    assert (score.per_sensor["roof"].beams, score.per_sensor["roof"].occluded) == (0, 0)
 
 
 def test_one_scene_has_no_scatter():

@@ -33,7 +33,7 @@ def test_words_of_a_score_on_objects():
     far = replace(CAR, reach=REACH | {"front": 80.0})
     assert "up to 80 m and more ahead, 12 m left" in advice.words(scored(car=far))[2]
     assert [advice.lone_reach(m) for m in (0.2, 25.6, 80.0)] == ["nowhere", "26 m", "≥ 80 m"]
-    assert "80 objects, none hides another" in advice.words(scored(traffic=False))[0]
+    assert "80 objects, none occludes another" in advice.words(scored(traffic=False))[0]
 
 
 def test_a_score_comes_back_from_its_data():

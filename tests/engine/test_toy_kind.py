@@ -118,7 +118,7 @@ def test_the_command_scores_searches_and_leaves_results(ring_kind, tmp_path, cap
     result = json.loads(capsys.readouterr().out)
     assert result == json.loads((tmp_path / "out" / "result.json").read_text())
     bumper = result["after"]["per_sensor"]["bumper"]
-    assert math.isfinite(bumper["entropy"]) and bumper["beams"] == bumper["stopped"] == 0
+    assert math.isfinite(bumper["entropy"]) and bumper["beams"] == bumper["occluded"] == 0
     assert result["inputs"]["study"]["sensor"][0]["model"] == {"kind": "toyring", "range_m": 4.0}
     moved = {p["placements"]["bumper"]["position"][0] for p in result["history"]}
     assert len(moved) > 1, "the search never moved the ring"

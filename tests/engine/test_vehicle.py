@@ -74,13 +74,13 @@ def test_a_flush_sensor_is_not_blind(height):
     vehicle = shapes.box_car(times=1)
     proud = pe.beam_field(shapes.lidar_on_roof(position=(-0.4, 0.03, 1.4 + 0.02)), vehicle)
     flush = pe.beam_field(shapes.lidar_on_roof(position=(-0.4, 0.03, 1.4 + height)), vehicle)
-    assert (flush.stopped_by == proud.stopped_by).mean() > 0.999
-    assert (flush.stopped_by < 0).mean() > 1 / 3
+    assert (flush.occluded_by == proud.occluded_by).mean() > 0.999
+    assert (flush.occluded_by < 0).mean() > 1 / 3
 
 
 def test_a_sensor_deep_inside_is_blind():
     field = pe.beam_field(shapes.lidar_on_roof(position=(-0.4, 0.0, 1.2)), shapes.box_car())
-    assert (field.stopped_by >= 0).all()
+    assert (field.occluded_by >= 0).all()
 
 
 def test_the_height_map_needs_no_closed_mesh():

@@ -49,7 +49,7 @@ class TargetRule:
     traffic: bool = setting(
         False,
         FLAG,
-        "Objects of a scene hide each other from every sensor",
+        "Objects of a scene occlude each other from every sensor",
         Panel("traffic", "Traffic"),
         scored=True,
     )

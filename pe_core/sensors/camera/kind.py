@@ -81,7 +81,7 @@ class CameraKind(Kind):
     keys = sensor_table.KEYS
     has_top = True
     shows_parts = True
-    occlusion_text = "picture hidden"
+    occlusion_text = "picture occluded"
 
     def measure(
         self, sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None

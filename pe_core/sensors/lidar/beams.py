@@ -46,7 +46,7 @@ class BeamField:
     _vehicle: Vehicle | None = None
 
     @cached_property
-    def stopped_by(self) -> NDArray[np.int64]:
+    def occluded_by(self) -> NDArray[np.int64]:
         """(B,) index of the vehicle's part on which a beam ends within its range, -1 for none."""
         if self._hits is None or self._vehicle is None:
             return np.full(len(self.ends), -1)
@@ -55,7 +55,7 @@ class BeamField:
 
     def stopped_count(self, part_names: tuple[str, ...]) -> dict[str, int]:
         """Return the number of beams that end on each part, the largest number first."""
-        return count_by_part(self.stopped_by, part_names)
+        return count_by_part(self.occluded_by, part_names)
 
 
 def beam_field(

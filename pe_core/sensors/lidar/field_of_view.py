@@ -184,7 +184,7 @@ def columns_around(lidar: Lidar) -> Floats:
 def revolution_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
     """Return which beams end on the vehicle within their maximum range, however near."""
     lidar = lidar_of(sensor)
-    stopped, azimuths = beam_field(sensor, vehicle).stopped_by, columns_around(lidar)
+    stopped, azimuths = beam_field(sensor, vehicle).occluded_by, columns_around(lidar)
     rows, columns = (np.argsort(-angles, kind="stable") for angles in (lidar.elevations, azimuths))
     parts = stopped.reshape(len(rows), len(columns))[np.ix_(rows, columns)]
     return EgoMask(parts.astype(np.int32), lidar.elevations[rows], azimuths[columns])

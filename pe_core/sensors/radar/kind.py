@@ -71,7 +71,7 @@ class RadarKind(FanKind):
     FMVSS 111, which stands for a small child, is the lowest."""
     keys = sensor_table.KEYS
     rules = RULES
-    occlusion_text = "field hidden"
+    occlusion_text = "field occluded"
 
     def measure_objects(
         self, sensor: Sensor, objects: Objects, vehicle: Vehicle | None, traffic: bool

@@ -56,7 +56,7 @@ class UltrasonicKind(FanKind):
     lowest_m = 0.01
     """Flat ground returns no echo."""
     keys = frozenset({"hfov_deg", "vfov_deg", "max_range_m", "min_range_m", "max_incidence_deg"})
-    occlusion_text = "cone hidden"
+    occlusion_text = "cone occluded"
     rules = RULES
 
     def measure_objects(

@@ -242,7 +242,7 @@ def sensor_data(
         "axes": sensor.pose.ground_from_sensor.tolist(),
         "field": None if field is None else list(field),
         "drawn_as": "beams" if drawing.beams else "view",
-        "share": score.stopped / score.beams if score and score.beams else None,
+        "share": score.occluded / score.beams if score and score.beams else None,
         "housing": housing_data(sensor.model.name),
         "layers": layers(sensor, vehicle, color),
     }

@@ -252,7 +252,7 @@ def _contribution_table(contexts: Sequence[ReportContext]) -> str:
 
 
 def _occluded_share(score: pe.SensorScore) -> str:
-    return percent(score.stopped / score.beams, 1) if score.beams else "not known"
+    return percent(score.occluded / score.beams, 1) if score.beams else "not known"
 
 
 CONTRIBUTIONS: dict[str, Callable[[pe.SensorScore], str]] = {

@@ -156,7 +156,7 @@ def _blind_ground(context: ReportContext) -> str:
         else f"up to {number(sight.shown_end(end), 1)} m {SIDES[side]}"
         for side, end in extents.items()
     ]
-    return f"{what} are hidden next to the body: {joined(distances)}"
+    return f"{what} are not seen next to the body: {joined(distances)}"
 
 
 def _worst_loss_line(context: ReportContext) -> str:

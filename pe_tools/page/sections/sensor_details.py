@@ -126,7 +126,7 @@ def _contribution_table(context: ReportContext) -> str:
     """Return what each sensor contributes to the rig, and what the vehicle occludes of it."""
     rows = []
     for name, score in context.after.per_sensor.items():
-        occluded = f"{percent(score.stopped / score.beams, 1)}" if score.beams else "not known"
+        occluded = f"{percent(score.occluded / score.beams, 1)}" if score.beams else "not known"
         values = number(score.entropy), percent(score.coverage, 1), signed(score.lost)
         rows.append([name, *values, occluded, _occluding_parts(score)])
     note = "Occluded is the share of a sensor's beams or pixels that meet the vehicle itself."
@@ -136,9 +136,9 @@ def _contribution_table(context: ReportContext) -> str:
 
 def _occluding_parts(score: pe.SensorScore) -> str:
     """Return the parts of the vehicle that occlude most of a sensor."""
-    if not score.stopped:
+    if not score.occluded:
         return "none"
-    shares = {name: count / score.beams for name, count in score.stopped_by.items()}
+    shares = {name: count / score.beams for name, count in score.occluded_by.items()}
     names = sorted((name for name in shares if shares[name] >= MIN_SHARE), key=lambda n: -shares[n])
     parts = (f"{name} {percent(shares[name], 1)}" for name in names[:MAX_PARTS])
     return ", ".join(parts) or "little"

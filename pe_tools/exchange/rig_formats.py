@@ -237,7 +237,8 @@ def format_of_file(output: Path, files: Mapping[str, str], chosen: str | None = 
     Raises
     ------
     InputError
-        When the suffix is that of another format than `chosen`, or names no single format.
+        When the suffix is that of another format than `chosen`, or names no single format; when
+        the name has none and the format is one file.
     """
     suffix = output.suffix.lower()
     fitting = [name for name, file in files.items() if Path(file).suffix == suffix]
@@ -245,6 +246,9 @@ def format_of_file(output: Path, files: Mapping[str, str], chosen: str | None = 
         if suffix and fitting and chosen not in fitting:
             found = f"{suffix}, the suffix of {' or '.join(fitting)}"
             raise InputError(output, "format", f"a name for {chosen}", found)
+        if chosen in files and not suffix:
+            expected = f"a name for {chosen}, such as {files[chosen]}"
+            raise InputError(output, "format", expected, "no suffix")
         return chosen
     fitting = [name for name, file in files.items() if file == output.name] or fitting
     if len(fitting) != 1:

@@ -71,9 +71,8 @@ def recording_bytes(request: OutputRequest) -> tuple[bytes, list[str]]:
     )
     require_at_most("rerun", "sensors", beams, MAX_BEAMS, "beams, which its maps of the ground ask")
     stream = rr.RecordingStream(APPLICATION)
-    lines = (
-        [] if study.vehicle is not None else ["no vehicle: nothing is occluded or blind near it"]
-    )
+    none = "no vehicle: nothing is occluded or blind near it"
+    lines = [] if study.vehicle is not None else [none]
     memory = stream.memory_recording()  # the library may write an incomplete file without an error
     stream.send_blueprint(_blueprint())
     stream.log("/", rr.ViewCoordinates.FLU, static=True)

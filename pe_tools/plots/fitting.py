@@ -16,10 +16,21 @@ from pe_core.base import dump_json
 from pe_core.base.errors import InputError
 from pe_tools.formats import CurveFit, fit_ap_curve, m_by_range, study_snippet
 
-from ..cli import DONE, Answer
+from ..cli import DONE, Answer, tell
 from ..formats import read_ap_table
 from ..jobs import FileSet
-from .plotting import BLUE, GREY, ORANGE, pyplot, remove_frame, save_plot, shortened, styled
+from .plotting import (
+    BLUE,
+    EXTRA,
+    GREY,
+    ORANGE,
+    has_matplotlib,
+    pyplot,
+    remove_frame,
+    save_plot,
+    shortened,
+    styled,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,7 +56,10 @@ def fit(args: argparse.Namespace) -> Answer:
         folder = prepare_folder(args.output, (SNIPPET, PLOT))
         with FileSet(folder) as files:
             files.add(SNIPPET, snippet.encode())
-            files.add(PLOT, lambda path: draw_ap_curves(path, {table.stem: data}))
+            if has_matplotlib():
+                files.add(PLOT, lambda path: draw_ap_curves(path, {table.stem: data}))
+            else:
+                tell(f"{PLOT} is left out: it needs matplotlib; {EXTRA}")
     text = dump_json(data) if args.json else f"{_summary(curve_fit)}\n\n{snippet}"
     return text, DONE
 

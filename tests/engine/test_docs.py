@@ -135,8 +135,6 @@ def test_links_of_a_page_lead_to_a_file_and_a_heading(page):
         if re.match(r"\w+:", link):
             continue
         path, _, name = link.partition("#")
-        if "reference/" in path:
-            continue  # generated from the code: tests of the site
         target = page.parent / path if path else page
         assert target.exists(), link
         assert not name or name in anchors(target), link

@@ -133,7 +133,7 @@ def test_a_camera_in_the_body_is_named_in_the_summary(scored):
     for _ in job:
         pass
     one = ReportContext("inside", job.outcome)
-    said = f"<b>{CAMERA.replace('&', '&amp;')}</b> (inside the body, 100% of its picture hidden)"
+    said = f"<b>{CAMERA.replace('&', '&amp;')}</b> (inside the body, 100% of its picture occluded)"
     assert cautions(one).startswith(f"{said} sees nothing.")
     assert said in overview((one,)).html and "sees nothing" not in overview((scored,)).html
     named = comparison_section(keyed_contexts([scored, one])).html

@@ -331,8 +331,8 @@ def field_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Markup:
     alt = f"What {sensor.name} detects by range and azimuth"
     caption = (
         f"Range upwards, azimuth across, left is left: {kind.unit} of a {picture.target} whose "
-        f"middle is {picture.height_m:.2f} m high. Bright is many; orange: occluded by the vehicle; "
-        "grey: not detected."
+        f"middle is {picture.height_m:.2f} m high. Bright is many; orange: occluded by the "
+        "vehicle; grey: not detected."
     )
     return figure(shown.svg(alt), caption)
 

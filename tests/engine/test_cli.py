@@ -213,13 +213,13 @@ OUTPUTS = {
 def test_no_output_replaces_a_file_unasked_or_an_input(study, tmp_path, monkeypatch, capsys, argv):
     monkeypatch.chdir(tmp_path)
     assert main(["export", "car.toml", "--to", "csv", "-o", "rig.csv"]) == 0
-    Path("mine").write_text("mine")
+    Path("mine.out").write_text("mine.out")
     Path("link").symlink_to("nowhere")
     Path("loop").symlink_to("loop")
     given = argv.split()[1]
     files = {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
     capsys.readouterr()
-    for name in {"mine", "car.toml", "car.npz", "link", "loop", given} - {"kitti"}:
+    for name in {"mine.out", "car.toml", "car.npz", "link", "loop", given} - {"kitti"}:
         assert main(argv.format(name).split()) == 1
         assert name in (line := capsys.readouterr().err) and line.count("\n") == 1
     if argv != OUTPUTS["rigs"]:
@@ -227,6 +227,6 @@ def test_no_output_replaces_a_file_unasked_or_an_input(study, tmp_path, monkeypa
         assert "expected another file than the input" in capsys.readouterr().err
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == files
     assert Path("link").is_symlink() and Path("loop").is_symlink()
-    assert main(argv.format("free").split()) in (0, 3) and Path("free").exists()
-    assert main([*argv.format("mine").split(), "--replace"]) in (0, 3)
-    assert Path("mine").read_bytes() != b"mine"
+    assert main(argv.format("free.out").split()) in (0, 3) and Path("free.out").exists()
+    assert main([*argv.format("mine.out").split(), "--replace"]) in (0, 3)
+    assert Path("mine.out").read_bytes() != b"mine.out"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Mapping
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -43,8 +42,6 @@ from .study_page import TITLE, page, pairs_plot_name, plot_name
 
 CONCLUSIONS = "results.json"
 """What follows from the runs."""
-CAST = "cast"
-"""Folder of the scenes that were cast; it may be deleted."""
 
 
 def validate_own(args: argparse.Namespace, folder: Path) -> Answer:
@@ -61,7 +58,7 @@ def validate_own(args: argparse.Namespace, folder: Path) -> Answer:
     elif args.cameras:
         do_runs(args, camera_files, lambda run: _camera_run(of_cameras, run))
     else:
-        do_runs(args, files, lambda run: _run(plan, run, folder / CAST))
+        do_runs(args, files, lambda run: _run(plan, run))
     results = files.read()
     cameras, section_of_cameras = _of_cameras(of_cameras, camera_files)
     searched, done_after, section_of_searches = _of_searches(after_search, folder)
@@ -97,13 +94,13 @@ def _do_after_search(args: argparse.Namespace, plan: AfterSearchPlan, folder: Pa
     """Do the searches that are missing, then the missing runs."""
     report = None if args.page_only else print_progress
     files = AfterSearchFiles(folder, plan, searched_placements(plan, folder, report))
-    do_runs(args, files, lambda run: _run(plan.study, run, folder / CAST))
+    do_runs(args, files, lambda run: _run(plan.study, run))
 
 
-def _run(plan: StudyPlan, run: Run, cache: Path) -> dict[str, Any]:
+def _run(plan: StudyPlan, run: Run) -> dict[str, Any]:
     from .one_run import run_one  # TensorFlow is loaded when a run is missing
 
-    return run_one(plan, run, cache)
+    return run_one(plan, run)
 
 
 def _camera_run(plan: CameraPlan, run: CameraRun) -> dict[str, Any]:
@@ -237,7 +234,7 @@ def do_runs(
         raise InputError(files.folder, "folder", "a folder without results", found)
     note = f"{files.folder} keeps the finished runs; --resume goes on from them"
     with noted_when_interrupted(note):
-        for run in islice(files.claimed(missing), args.runs):
+        for run in missing[: args.runs]:
             data = result_of(run)
             files.write(run, data)
             done = total - len(files.missing())

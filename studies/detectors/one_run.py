@@ -5,12 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from ..results_file import made_by
 from .batches import FEATURES, LAYERS
-from .cast_cache import cached
 from .casting import Caster, RegionObjects, RegionVoxels
 from .detector import Detector, Network, grid_network, points_network, versions
 from .placements import Placement, placements
@@ -33,20 +31,18 @@ class RunIdentity:
     plan: str
 
 
-def run_one(plan: StudyPlan, run: Run, cache: Path | None) -> Json:
+def run_one(plan: StudyPlan, run: Run) -> Json:
     """Return the results of a run as JSON data.
 
     Parameters
     ----------
     plan : StudyPlan
     run : Run
-    cache : Path or None
-        Folder in which scenes that were cast are kept for other seeds.
     """
     started = time.process_time()
     detector = Detector(_network(plan, run.detector), plan.training.rate, plan.training.average)
     compute = _mixed if run.placement is None else _of_placement
-    return with_origin(compute(plan, run, detector, cache), run.name, plan.digest, started)
+    return with_origin(compute(plan, run, detector), run.name, plan.digest, started)
 
 
 def with_origin(data: Json, name: str, digest: str, started: float) -> Json:
@@ -72,7 +68,7 @@ def _network(plan: StudyPlan, name: str) -> Network:
     return grid_network(LAYERS, len(CLASSES))
 
 
-def _of_placement(plan: StudyPlan, run: Run, detector: Detector, cache: Path | None) -> Json:
+def _of_placement(plan: StudyPlan, run: Run, detector: Detector) -> Json:
     """Train and test a detector with one placement's points."""
     assert run.placement is not None
     placement, counts = run.placement, plan.scenes.counts
@@ -81,23 +77,21 @@ def _of_placement(plan: StudyPlan, run: Run, detector: Detector, cache: Path | N
         caster = Caster(plan, placement, run.world)
         scenes = {s: [caster.cloud(s, k) for k in range(counts[s])] for s in SPLITS}
     else:
-        scenes = {s: _cast(plan, placement, run.world, s, counts[s], cache) for s in SPLITS}
+        scenes = {s: _cast(plan, placement, run.world, s, counts[s]) for s in SPLITS}
     trained, training = timed_training(detector, plan, scenes[TRAIN], scenes[VALIDATION], run.seed)
     tested = test_scenes(detector, trained.weights, plan, scenes[TEST])
     return {**results(plan, scenes[TEST], tested), "training": training}
 
 
-def _mixed(plan: StudyPlan, run: Run, detector: Detector, cache: Path | None) -> Json:
+def _mixed(plan: StudyPlan, run: Run, detector: Detector) -> Json:
     """Train one detector with many placements, and test it with each, and with others."""
     trained_with, fresh = mixed_placements(plan)
     counts = {TRAIN: plan.mixed["scenes"], VALIDATION: plan.scenes.counts[VALIDATION]}
-    scenes = {
-        s: _cast_in_turn(plan, trained_with, run.world, s, n, cache) for s, n in counts.items()
-    }
+    scenes = {s: _cast_in_turn(plan, trained_with, run.world, s, n) for s, n in counts.items()}
     trained, training = timed_training(detector, plan, scenes[TRAIN], scenes[VALIDATION], run.seed)
     by_placement = {}
     for placement in (*trained_with, *fresh):
-        test = _cast(plan, placement, run.world, TEST, plan.mixed["test_scenes"], cache)
+        test = _cast(plan, placement, run.world, TEST, plan.mixed["test_scenes"])
         tested = test_scenes(detector, trained.weights, plan, test)
         found = results(plan, test, tested)
         kept = {key: found[key] for key in ("ap", "by_class")}
@@ -118,21 +112,14 @@ def mixed_placements(plan: StudyPlan) -> tuple[list[Placement], list[Placement]]
 
 
 def _cast(
-    plan: StudyPlan, placement: Placement, world: str, split: str, count: int, cache: Path | None
+    plan: StudyPlan, placement: Placement, world: str, split: str, count: int
 ) -> list[RegionVoxels]:
     caster = Caster(plan, placement, world)
-    name = f"{world}-{placement.name}-{split}-{count}.npz"
-    return cached(cache and cache / name, count, lambda k: caster.voxels(split, k))
+    return [caster.voxels(split, k) for k in range(count)]
 
 
 def _cast_in_turn(
-    plan: StudyPlan,
-    chosen: list[Placement],
-    world: str,
-    split: str,
-    count: int,
-    cache: Path | None,
+    plan: StudyPlan, chosen: list[Placement], world: str, split: str, count: int
 ) -> list[RegionVoxels]:
     casters = [Caster(plan, placement, world) for placement in chosen]
-    path = cache and cache / f"{world}-{MIXED}-{split}-{count}.npz"
-    return cached(path, count, lambda k: casters[k % len(casters)].voxels(split, k))
+    return [casters[k % len(casters)].voxels(split, k) for k in range(count)]

@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
 from itertools import pairwise
-from typing import Any
+from typing import Any, TypeVar
 
-from pe_core.base import Table
+T = TypeVar("T")
 
 PLAN_FILE = "plan.toml"
 FIXED, ACROSS, MIXED = "fixed", "across", "mixed"
@@ -191,129 +191,35 @@ def quick_plan() -> StudyPlan:
 
 
 def plan_of(text: str) -> StudyPlan:
-    """Return the plan of a file's text.
-
-    Raises
-    ------
-    InputError
-        When a key is missing, unknown, or has another type.
-    """
-    table = Table(tomllib.loads(text), PLAN_FILE)
-    table.whole("version")
-    plan = StudyPlan(
+    """Return the plan of a file's text; a key that is missing or unknown is an exception."""
+    data = tomllib.loads(text)
+    scenes, steps = data["scenes"], data["steps"]
+    return StudyPlan(
         digest=_digest(text),
-        seed=table.whole("seed"),
-        vehicles=table.table("vehicles").texts("names"),
-        placements=placement_rule(table.table("placements")),
-        hardware={int(k): str(v) for k, v in table.table("hardware").data.items()},
-        fixed=_whole_numbers(table.table("fixed"), "lidars", "channels", "all_round", "blind"),
-        across=tuple(tuple(map(int, row)) for row in table.table("across").raw("hardware")),  # type: ignore[misc]
-        mixed=_whole_numbers(table.table("mixed"), "trained", "fresh", "scenes", "test_scenes"),
-        scenes=_scene_rule(table.table("scenes")),
-        region=region_of(table.table("region")),
-        training=training_rule(table.table("training")),
-        precision=_precision_rule(table.table("precision")),
-        statistics=_statistics_rule(table.table("statistics")),
-        **_steps(table.table("steps")),
+        seed=data["seed"],
+        vehicles=tuple(data["vehicles"]["names"]),
+        placements=rule_of(PlacementRule, data["placements"]),
+        hardware={int(k): v for k, v in data["hardware"].items()},
+        fixed=data["fixed"],
+        across=tuple(map(tuple, data["across"]["hardware"])),
+        mixed=data["mixed"],
+        scenes=SceneRule(
+            {split: scenes[split] for split in SPLITS},
+            scenes["shifts"],
+            float(scenes["distractors"]),
+            scenes["range_noise_m"],
+            scenes["dropped"],
+        ),
+        region=rule_of(DetectionRegion, data["region"]),
+        training=rule_of(TrainingRule, data["training"]),
+        precision=rule_of(PrecisionRule, data["precision"]),
+        statistics=rule_of(StatisticsRule, data["statistics"]),
+        step_fixed=steps["fixed"],
+        step_across=tuple(steps["across"]),
+        steps=tuple(rule_of(RealismStep, row) for row in steps["runs"]),
     )
-    table.finish()
-    return plan
 
 
-def placement_rule(table: Table) -> PlacementRule:
-    """Return the rule of a table; the reader of the table has read all other keys of it."""
-    roof, side = (table.numbers(key, 2) for key in ("roof_height_m", "side_height_m"))
-    rule = PlacementRule(
-        table.number("roof_share"),
-        (roof[0], roof[1]),
-        (side[0], side[1]),
-        table.number("side_gap_m"),
-        table.number("tilt_deg"),
-        table.number("apart_m"),
-        table.whole("round_directions"),
-        table.number("round_distance_m"),
-        numbers_of(table, "round_heights_m"),
-    )
-    table.finish()
-    return rule
-
-
-def _scene_rule(table: Table) -> SceneRule:
-    shifts = table.table("shifts")
-    rule = SceneRule(
-        {split: table.whole(split) for split in SPLITS},
-        {split: shifts.number(split) for split in SPLITS},
-        table.number("distractors"),
-        table.number("range_noise_m"),
-        table.number("dropped"),
-    )
-    shifts.finish()
-    table.finish()
-    return rule
-
-
-def region_of(table: Table) -> DetectionRegion:
-    """Return the region of a table."""
-    region = DetectionRegion(table.number("x_m"), table.number("y_m"), table.number("cell_m"))
-    table.finish()
-    return region
-
-
-def training_rule(table: Table, mirrored: bool = True) -> TrainingRule:
-    """Return the rule of a table; whether scenes are mirrored follows from the inputs."""
-    rule = TrainingRule(
-        tuple(map(int, numbers_of(table, "seeds"))),
-        table.whole("batch"),
-        table.number("rate"),
-        table.number("average"),
-        table.whole("min_epochs"),
-        table.whole("max_epochs"),
-        table.whole("window"),
-        table.number("improvement"),
-        mirrored,
-    )
-    table.finish()
-    return rule
-
-
-def _precision_rule(table: Table) -> PrecisionRule:
-    rule = PrecisionRule(numbers_of(table, "distances_m"), numbers_of(table, "rings_m"))
-    table.finish()
-    return rule
-
-
-def _statistics_rule(table: Table) -> StatisticsRule:
-    rule = StatisticsRule(
-        table.text("primary"),
-        table.number("alpha"),
-        table.whole("permutations"),
-        table.whole("resamples"),
-        table.number("useful_rho"),
-        table.number("tie_ap"),
-        table.whole("scenes"),
-    )
-    table.finish()
-    return rule
-
-
-def _steps(table: Table) -> dict[str, Any]:
-    steps = []
-    for row in table.tables("runs"):
-        world = row.text("world", choices=(PLAIN, TOWN))
-        detector = row.text("detector", choices=(GRID, POINTS))
-        steps.append(RealismStep(world, detector, tuple(map(int, numbers_of(row, "seeds")))))
-        row.finish()
-    fixed, across = table.whole("fixed"), table.texts("across")
-    table.finish()
-    return {"step_fixed": fixed, "step_across": across, "steps": tuple(steps)}
-
-
-def numbers_of(table: Table, key: str) -> tuple[float, ...]:
-    """Return the numbers of a key, however many there are."""
-    return table.numbers(key, len(table.raw(key)))
-
-
-def _whole_numbers(table: Table, *keys: str) -> dict[str, int]:
-    values = {key: table.whole(key) for key in keys}
-    table.finish()
-    return values
+def rule_of(rule: type[T], table: Mapping[str, Any], **more: Any) -> T:
+    """Return a rule from the table of a plan whose keys are the rule's fields."""
+    return rule(**{k: tuple(v) if isinstance(v, list) else v for k, v in table.items()}, **more)

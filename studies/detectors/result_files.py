@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import itertools
-import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
@@ -16,11 +14,6 @@ from pe_core.base import Number, Table, dump_json, write_bytes
 
 from ..results_file import read_json
 from .posed_sensors import PosedSensors
-
-try:
-    import fcntl
-except ImportError:  # Windows
-    fcntl = None  # type: ignore[assignment]
 
 Json = dict[str, Any]
 
@@ -85,27 +78,6 @@ class PlacementRun(NamedRun, Protocol):
 R = TypeVar("R", bound=NamedRun)
 
 
-@contextmanager
-def _lock(path: Path) -> Iterator[bool]:
-    """Yield whether the file of that name could be locked; it is deleted afterwards."""
-    if fcntl is None:
-        yield True
-        return
-    number = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
-    try:
-        try:
-            fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            yield False
-            return
-        try:
-            yield True
-        finally:
-            path.unlink(missing_ok=True)
-    finally:
-        os.close(number)
-
-
 class ResultFiles(Generic[R]):
     """The results of runs in a folder.
 
@@ -136,18 +108,6 @@ class ResultFiles(Generic[R]):
     def missing(self) -> list[R]:
         """Return the runs without a file, in their order."""
         return [run for run in self.all if not self.path(run).exists()]
-
-    def claimed(self, wanted: Sequence[R]) -> Iterator[R]:
-        """Yield the runs of `wanted` that are still missing and that no other process does.
-
-        A run is locked until the next one is asked for, so that several processes may share a
-        folder. Where the system has no such locks (Windows), each process takes all runs.
-        """
-        self._folder.mkdir(parents=True, exist_ok=True)
-        for run in wanted:
-            with _lock(self._folder / f".{run.name}.lock") as is_ours:
-                if is_ours and not self.path(run).exists():
-                    yield run
 
     def write(self, run: R, data: Json) -> None:
         """Write a run's results atomically."""

@@ -4,7 +4,6 @@ import contextlib
 import io
 import json
 import runpy
-import subprocess
 import sys
 import warnings
 from pathlib import Path
@@ -28,13 +27,6 @@ def study(name, *arguments):
     said = "".join(f"{each.category.__name__}: {each.message}\n" for each in warned)
     text = err.getvalue() + said
     return SimpleNamespace(returncode=ended.value.code, stdout=out.getvalue(), stderr=text)
-
-
-def study_in_a_process(name, *arguments, **options):
-    """Run a study's command in a process of its own: where nothing of this one's may take part."""
-    command = [sys.executable, "-m", f"studies.{name}", *map(str, arguments)]
-    options = {"cwd": ROOT, "capture_output": True, "text": True, "timeout": 600, **options}
-    return subprocess.run(command, **options)
 
 
 def numbers(data):

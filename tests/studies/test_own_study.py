@@ -26,7 +26,6 @@ from studies.detectors.batches import NEITHER, detections, inputs, targets
 from studies.detectors.cameras.plan import full_camera_plan
 from studies.detectors.cameras.section import camera_section
 from studies.detectors.cameras.study import CameraFiles, camera_analysis
-from studies.detectors.cast_cache import FIELDS, cached
 from studies.detectors.casting import GROUND_M, MAX_POINTS, Caster, FreeBeams
 from studies.detectors.curve_section import curve_section
 from studies.detectors.history import history, history_section
@@ -56,7 +55,7 @@ from studies.detectors.runs import Run
 plan = quick_plan()
 counts = {"train": 4, "validation": 4, "test": 4}
 plan = replace(plan, scenes=replace(plan.scenes, counts=counts))
-print(json.dumps(run_one(plan, Run(placements(plan)[0], TOWN, POINTS, 1), None)))
+print(json.dumps(run_one(plan, Run(placements(plan)[0], TOWN, POINTS, 1))))
 """
 
 
@@ -117,14 +116,6 @@ def test_points_on_flat_ground_lie_on_it(caster):
     assert np.abs(points.positions[:, 2]).min() < 0.01
     assert points.positions[:, 2].min() > -0.1
     assert points.beams.sum() > 0
-
-
-def test_a_cache_gives_what_was_cast(tmp_path, voxels):
-    path = tmp_path / "cast.npz"
-    first = cached(path, 4, lambda k: voxels[k])
-    again = cached(path, 4, lambda k: pytest.fail("cast again"))
-    for a, b in zip(first, again, strict=True):
-        assert all((getattr(a, name) == getattr(b, name)).all() for name in FIELDS)
 
 
 @pytest.mark.parametrize("mirror", [NEITHER, (True, False), (False, True), (True, True)])
@@ -268,17 +259,6 @@ def test_the_steps_run_with_their_world_and_detector():
     assert data["training"]["epochs"] == 2 and 0.0 <= data["ap"] <= 1.0
     made = {k: data["made"][k] for k in ("python", "numpy", "tensorflow")}
     assert data["made"]["digest"] == run_digest(quick_plan().digest, made)
-
-
-def test_processes_that_share_a_folder_do_different_runs(tmp_path):
-    """A run is claimed until the next one is asked for; a claim leaves no file."""
-    one, other = (RunFiles(tmp_path, quick_plan()) for _ in range(2))
-    mine, theirs = one.claimed(one.missing()), other.claimed(other.missing())
-    taken = [next(mine), next(theirs), next(mine)]
-    other.write(taken[1], {"ap": 0.5})
-    assert [*taken, *theirs] == one.all
-    mine.close()
-    assert not list(tmp_path.rglob("*.lock"))
 
 
 def test_the_page_is_that_of_the_saved_results():

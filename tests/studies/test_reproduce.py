@@ -13,7 +13,7 @@ from pe_core import InputError
 from studies.paper import reproduce
 from studies.paper.plan import FULL, QUICK, plan, scores_and_figures
 from studies.results_file import ResultsFile
-from tests.studies.conftest import ROOT, numbers, study, study_in_a_process
+from tests.studies.conftest import ROOT, numbers, study
 from tests.thorough import THOROUGH
 
 DOCS = ROOT / "docs" / "reproduction"
@@ -109,16 +109,6 @@ def test_what_is_done_is_kept_when_it_is_interrupted(quick, tmp_path):
     assert "interrupted" in error and "Traceback" not in error
     kept = json.loads((tmp_path / "results.json").read_text("utf-8"))["results"]
     assert data["results"].keys() < kept.keys() < quick.data["results"].keys()
-
-
-def test_the_page_is_written_again_from_the_results_alone(quick, tmp_path):
-    """By another process, and over a picture of an earlier run."""
-    (tmp_path / "results.json").write_bytes((quick.folder / "results.json").read_bytes())
-    (tmp_path / "priors.png").write_bytes((quick.folder / "rows.png").read_bytes())
-    run = study_in_a_process("paper", "--page-only", "--output", tmp_path)
-    assert run.returncode == 0 and not run.stderr
-    for path in quick.folder.iterdir():
-        assert (tmp_path / path.name).read_bytes() == path.read_bytes(), path.name
 
 
 def test_a_page_of_incomplete_results_is_refused(tmp_path):

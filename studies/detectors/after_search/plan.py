@@ -7,11 +7,10 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-
-from pe_core.base import Table
+from typing import Any
 
 from ..placements import SHUTTLE
-from ..plan import PLAN_FILE, StudyPlan, full_plan, numbers_of, quick_plan, text_and_digest
+from ..plan import StudyPlan, full_plan, quick_plan, text_and_digest
 from ..posed_sensors import PoseValues
 
 START = "start"
@@ -98,52 +97,35 @@ def quick_after_search_plan() -> AfterSearchPlan:
 
 
 def after_search_plan_of(text: str, digest: str) -> AfterSearchPlan:
-    """Return the plan of a file's text.
-
-    Raises
-    ------
-    InputError
-        When a key is missing, unknown, or has another type.
-    """
-    table, shared = Table(tomllib.loads(text), PLAN_FILE), full_plan()
-    table.whole("version")
-    search = table.table("search")
-    seeds = tuple(map(int, numbers_of(table, "seeds")))
-    plan = AfterSearchPlan(
+    """Return the plan of a file's text; a key that is missing is an exception."""
+    data, shared = tomllib.loads(text), full_plan()
+    return AfterSearchPlan(
         study=replace(
             shared,
             digest=digest,
             vehicles=(*shared.vehicles, SHUTTLE),  # those before keep their scenes
-            training=replace(shared.training, seeds=seeds),
+            training=replace(shared.training, seeds=tuple(data["seeds"])),
         ),
-        rigs=tuple(_rig(name, table.table(name)) for name in RIGS),
-        objectives=search.texts("objectives"),
-        search_seed=search.whole("seed"),
-        samples=search.whole("samples"),
+        rigs=tuple(_rig(name, data[name]) for name in RIGS),
+        objectives=tuple(data["search"]["objectives"]),
+        search_seed=data["search"]["seed"],
+        samples=data["search"]["samples"],
         evaluations=0,
-        confidence=table.number("confidence"),
+        confidence=data["confidence"],
     )
-    search.finish()
-    table.finish()
-    return plan
 
 
-def _rig(name: str, table: Table) -> SearchedRig:
-    bounds = table.table("bounds")
-    rig = SearchedRig(
+def _rig(name: str, table: Mapping[str, Any]) -> SearchedRig:
+    return SearchedRig(
         name,
-        table.text("vehicle"),
-        table.text("model"),
-        tuple(tuple(map(float, pose)) for pose in table.raw("poses")),
-        dict(_bounds(bounds, key) for key in bounds.names),
-        bool(table.raw("clear_housings")),
+        table["vehicle"],
+        table["model"],
+        tuple(map(tuple, table["poses"])),
+        dict(_bounds(key, low, high) for key, (low, high) in table.get("bounds", {}).items()),
+        table["clear_housings"],
     )
-    bounds.finish()
-    table.finish()
-    return rig
 
 
-def _bounds(table: Table, key: str) -> tuple[str, tuple[float, float]]:
-    low, high = table.numbers(key, 2)
+def _bounds(key: str, low: float, high: float) -> tuple[str, tuple[float, float]]:
     axis = key.removesuffix("_deg")
     return (axis, (low, high)) if axis == key else (axis, (math.radians(low), math.radians(high)))

@@ -8,20 +8,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 
-from pe_core.base import Table
 from pe_core.sensors.camera import Camera
 
 from ..plan import (
-    PLAN_FILE,
-    SPLITS,
+    DetectionRegion,
     PlacementRule,
     StudyPlan,
+    TrainingRule,
     full_plan,
-    placement_rule,
     quick_plan,
-    region_of,
+    rule_of,
     text_and_digest,
-    training_rule,
 )
 
 
@@ -108,51 +105,29 @@ def quick_camera_plan() -> CameraPlan:
 
 
 def camera_plan_of(text: str, digest: str) -> CameraPlan:
-    """Return the plan of a file's text.
-
-    Raises
-    ------
-    InputError
-        When a key is missing, unknown, or has another type.
-    """
-    table, shared = Table(tomllib.loads(text), PLAN_FILE), full_plan()
-    table.whole("version")
-    seed, rig = table.whole("seed"), table.table("rig")
-    placements, pictures = table.table("placements"), table.table("pictures")
-    scenes, statistics = table.table("scenes"), table.table("statistics")
-    yaw_deg = placements.number("yaw_deg")
-    tested = replace(
-        shared.statistics,
-        primary=statistics.text("primary"),
-        alpha=statistics.number("alpha"),
-        permutations=statistics.whole("permutations"),
-        resamples=statistics.whole("resamples"),
-    )
-    vehicle = rig.text("vehicle", choices=shared.vehicles[:1])  # its scenes are those of the first
-    width, height = rig.whole("width_px"), rig.whole("height_px")
-    plan = CameraPlan(
+    """Return the plan of a file's text; a key that is missing or unknown is an exception."""
+    data, shared = tomllib.loads(text), full_plan()
+    rig, placements, tested = data["rig"], data["placements"], data["statistics"]
+    limits = {key: tested.pop(key) for key in ("min_seed_rho", "min_ap")}
+    return CameraPlan(
         study=replace(
             shared,
             digest=digest,
-            vehicles=(vehicle,),
-            region=region_of(table.table("region")),
-            training=training_rule(table.table("training"), mirrored=False),
-            statistics=tested,
+            vehicles=(rig["vehicle"],),  # its scenes are those of the LiDARs' first vehicle
+            region=rule_of(DetectionRegion, data["region"]),
+            training=rule_of(TrainingRule, data["training"], mirrored=False),
+            statistics=replace(shared.statistics, **tested),
         ),
-        seed=seed,
-        vehicle=vehicle,
-        cameras=rig.whole("cameras"),
-        model=Camera("study camera", width, height, math.radians(rig.number("hfov_deg"))),
-        count={True: rig.whole("all_round"), False: rig.whole("blind")},
-        placements=placement_rule(placements),
-        yaw_deg=yaw_deg,
-        scenes={split: scenes.whole(split) for split in SPLITS},
-        pictures=PictureRule(
-            *(pictures.number(key) for key in ("noise", "ambient", "ground_contrast"))
+        seed=data["seed"],
+        vehicle=rig["vehicle"],
+        cameras=rig["cameras"],
+        model=Camera(
+            "study camera", rig["width_px"], rig["height_px"], math.radians(rig["hfov_deg"])
         ),
-        min_seed_rho=statistics.number("min_seed_rho"),
-        min_ap=statistics.number("min_ap"),
+        count={True: rig["all_round"], False: rig["blind"]},
+        yaw_deg=placements.pop("yaw_deg"),
+        placements=rule_of(PlacementRule, placements),
+        scenes=data["scenes"],
+        pictures=PictureRule(**data["pictures"]),
+        **limits,
     )
-    for part in (rig, scenes, pictures, statistics, table):
-        part.finish()
-    return plan

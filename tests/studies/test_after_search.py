@@ -89,7 +89,7 @@ def test_scenes_of_the_bus_are_those_of_the_study_and_the_shuttle_has_its_own():
     assert len(scene(PLAN.study, SHUTTLE, "test", PLAIN, 3).labels)
 
 
-def test_a_short_search_is_kept_and_repeated_alike(tmp_path):
+def test_a_short_search_is_kept_and_its_runs_are_gone_on_with_by_resume_alone(tmp_path):
     """It ends within its bounds, and its file is not searched again."""
     plan, said = quick_after_search_plan(), []
     assert [p.what for p in searched_placements(plan, tmp_path)] == [START]
@@ -97,8 +97,10 @@ def test_a_short_search_is_kept_and_repeated_alike(tmp_path):
     assert len(said) == 2 and [p.what for p in found] == [START, *plan.objectives]
     again = searched_placements(plan, tmp_path, lambda line: pytest.fail(line))
     assert again == found
-    other = searched_placements(plan, tmp_path / "other", said.append)
-    assert [p.poses for p in other] == [p.poses for p in found]
+    files = AfterSearchFiles(tmp_path, plan, found)
+    files.write(files.all[0], {"ap": 0.5})
+    run = study("detectors", "--after-search", "--quick", "--output", tmp_path)
+    assert run.returncode == 1 and "1 of 3 runs; pass --resume" in run.stderr
     kept = json.loads((tmp_path / FOLDER / PLACEMENTS).read_text("utf-8"))["searches"]
     by_ap = kept["shuttle, expected_ap"]
     assert by_ap["evaluations"] == 6 and by_ap["expected_ap"][1] >= by_ap["expected_ap"][0]
@@ -180,14 +182,6 @@ def test_the_committed_placements_are_of_this_plan_and_the_section_is_that_of_th
     told = (ROOT / "docs" / "optimize.md").read_text("utf-8")
     gains = [row["mean"] for rig in saved["rigs"].values() for row in rig["after"].values()]
     assert all(f"{gain:+.3f}" in told for gain in gains), "and the documentation its figures"
-
-
-def test_the_command_goes_on_with_what_is_there_by_resume_alone(tmp_path):
-    plan = quick_after_search_plan()
-    files = AfterSearchFiles(tmp_path, plan, searched_placements(plan, tmp_path, print))
-    files.write(files.all[0], {"ap": 0.5})
-    run = study("detectors", "--after-search", "--quick", "--output", tmp_path)
-    assert run.returncode == 1 and "1 of 3 runs; pass --resume" in run.stderr
 
 
 @pytest.mark.skipif(not THOROUGH, reason="three detectors are trained: with CI=true")

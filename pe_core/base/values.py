@@ -173,6 +173,8 @@ WEIGHT = Number(0.0, cap=1e9)
 A_NAME = Name()
 A_TEXT = Name("a text", MAX_PATH)
 A_PATH = Name("the name of a file", MAX_PATH)
+DECIMALS = 9
+"""Entropies and shares are rounded to this: below it, builds of NumPy differ in the last bit."""
 
 
 def real(value: Any) -> float:
@@ -270,3 +272,8 @@ def _whole(value: Any) -> int | None:
 def _start(value: Any) -> str:
     """Return the beginning of a text in quotes; other values as `shown`."""
     return f"{shown(value[:20])[:-1]}...'" if isinstance(value, str) else shown(value)
+
+
+def rounded(value: float) -> float:
+    """Round to DECIMALS, without a negative zero."""
+    return round(float(value), DECIMALS) + 0.0

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.errors import InputError
+from ..base.values import rounded
 from ..geometry.grids import PerceptionSpace
 from ..geometry.indexing import blocks
 from ..metric.entropy import H_BLIND, ApCurve
@@ -45,7 +46,6 @@ from .score import (
     Watch,
     column_zones,
     ground_map,
-    rounded,
     sensor_score,
 )
 

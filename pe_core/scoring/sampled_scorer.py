@@ -9,6 +9,7 @@ from threading import RLock
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.values import rounded
 from ..geometry.grids import PerceptionSpace
 from ..metric.entropy import H_BEST, H_BLIND
 from ..metric.fusion import Fusion
@@ -28,7 +29,6 @@ from .score import (
     ScoreStopped,
     SensorScore,
     Watch,
-    rounded,
     sensor_score,
     zone_masks,
 )

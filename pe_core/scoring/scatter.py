@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .score import DECIMALS, rounded
+from ..base.values import DECIMALS, rounded
 
 Floats = NDArray[np.float64]
 FigureKey = tuple[str, str, str]

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.errors import InputError
+from ..base.values import rounded
 from ..geometry.poses import Pose
 from ..metric.fusion import CurveOf, group_sum
 from ..scene.rig import Rig, Sensor, SensorModel
-from .score import rounded
 
 
 class Scenarios:

@@ -117,9 +117,6 @@ def column_zones(space: PerceptionSpace) -> dict[str, NDArray[np.bool_]]:
     return zone_masks(space.centers(0)[:, None], space.centers(1)[None, :])
 
 
-DECIMALS = 9
-"""Entropies and shares are rounded to this: below it, builds of NumPy differ in the last bit."""
-
 Watch = Callable[[float], bool]
 """Called repeatedly with the completed share of a score, 0 to 1; returns whether to continue."""
 
@@ -266,8 +263,3 @@ def sensor_score(entropy: float, coverage: float, lost: float, occlusion: Occlus
     return SensorScore(
         entropy, coverage, lost, occlusion.rays, occlusion.occluded, occlusion.by_part
     )
-
-
-def rounded(value: float) -> float:
-    """Round to DECIMALS, without a negative zero."""
-    return round(float(value), DECIMALS) + 0.0

@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from ..base.degrees import degrees_in_file
+from ..base.values import rounded
 from ..scene.rig import Rig
 from ..scoring.protocol import Judgement, Objective, RigJudge
 from ..scoring.scenarios import mean_or_worst
-from ..scoring.score import rounded
 from .tolerance import FRESH, Tolerance, mounted_off, without_each
 
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ..base.values import rounded
 from ..geometry.grids import PerceptionSpace
 from ..prior.prior import Prior
 from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
-from ..scoring.score import rounded
 from ..scoring.sight import BLIND_TO_M, Sight
 
 if TYPE_CHECKING:

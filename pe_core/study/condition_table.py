@@ -14,10 +14,11 @@ from typing import Any
 
 import numpy as np
 
+from ..base.values import rounded
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_state import State
 from ..scoring import RigJudge, Score
-from ..scoring.score import Watch, rounded
+from ..scoring.score import Watch
 from .condition_set import AS_DRAWN, CLEAR, StateInWeather
 from .objective_search import search_evaluator
 from .study import DEFAULT_SEARCH_SAMPLES, Study

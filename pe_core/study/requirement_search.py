@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from ..base.values import rounded
 from ..scene.rig import Rig
 from ..scoring.protocol import Judgement, Objective
 from ..scoring.requirements import RequirementChecker
-from ..scoring.score import rounded
 from ..search import Tolerance, optimize, shared_parts
 from ..search.methods.method import sampled_candidate
 from .blind_ground_search import BlindGroundLimit

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pe_core.base.errors import InputError, plural
-from pe_core.base.values import listed, vector
+from pe_core.base.values import listed, rounded, vector
 from pe_core.geometry.grids import PerceptionSpace
 from pe_core.geometry.poses import METRES
 from pe_core.metric import average_precision
@@ -21,7 +21,6 @@ from pe_core.prior.prior import ClassDensity, Prior
 from pe_core.scene.rig import Rig, Sensor
 from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.scenarios import fused_early
-from pe_core.scoring.score import rounded
 from pe_core.sensors import PerceptionModel, kind_named, kind_of, measure
 from pe_tools.advice.advice import times
 

@@ -8,12 +8,13 @@ from itertools import pairwise
 
 from pe_core import catalog
 from pe_core.base.errors import InputError
+from pe_core.base.values import rounded
 from pe_core.scene.housing import hull_of
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigJudge
 from pe_core.scoring.protocol import Judgement
 from pe_core.scoring.requirements import FARTHEST_M, Verdict
-from pe_core.scoring.score import Score, rounded
+from pe_core.scoring.score import Score
 from pe_core.search import objective_of
 from pe_core.search.goals import (
     AP,

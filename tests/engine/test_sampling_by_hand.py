@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.base.values import rounded
 from pe_core.scoring import draw
 from pe_core.scoring.density_cache import outside_masses, outside_profile
 from pe_core.scoring.sampling import scrambled_sobol
-from pe_core.scoring.score import ZONES, column_zones, rounded, zone_masks
+from pe_core.scoring.score import ZONES, column_zones, zone_masks
 from tests.engine import shapes
 
 BITS = 32

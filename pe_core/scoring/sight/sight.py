@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.read_only import read_only
+from ...base.values import rounded
 from ...geometry.grids import PerceptionSpace
 from ...metric.entropy import H_BLIND, ap_of_entropy
 from ...metric.fusion import Fusion
@@ -19,7 +20,6 @@ from ...scene.vehicle import Vehicle
 from ...sensors import PerceptionModel
 from ..sampling import VoxelSample, draw
 from ..scenarios import fused_early
-from ..score import rounded
 from ..targets.lone_objects import LoneObjects
 from ..targets.object_sampling import sample_objects
 from ..targets.target_rule import TargetRule

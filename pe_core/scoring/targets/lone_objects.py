@@ -12,12 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.values import rounded
 from ...metric.entropy import ap_of_entropy
 from ...scene.objects import Objects
 from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
 from ...sensors import ObjectMeasurementCache, PerceptionModel
-from ..score import FARTHEST_M, rounded
+from ..score import FARTHEST_M
 from .object_metric import FusedObjects
 from .object_sampling import SampledObjects
 from .scene_layout import ground_rectangles, overlap, vehicle_rectangle

@@ -10,6 +10,7 @@ from threading import RLock
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.values import rounded
 from ...geometry.grids import PerceptionSpace
 from ...metric.entropy import H_BLIND
 from ...prior.prior import Prior
@@ -18,7 +19,7 @@ from ...scene.vehicle import Vehicle
 from ...sensors import ObjectMeasurementCache, PerceptionModel, kind_of
 from ..protocol import Judgement
 from ..scenarios import Scenarios, mean_or_worst
-from ..score import Glance, ObjectScore, Score, ScoreStopped, SensorScore, Watch, rounded
+from ..score import Glance, ObjectScore, Score, ScoreStopped, SensorScore, Watch
 from .bound_log import BoundLog
 from .lone_objects import LoneObjects
 from .object_metric import FusedObjects, ObjectSums

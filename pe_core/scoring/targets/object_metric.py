@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.errors import InputError
+from ...base.values import rounded
 from ...metric.entropy import H_BEST, H_BLIND, ap_of_entropy
 from ...metric.fusion import Fusion, early_fusion
 from ...scene.objects import Objects
 from ...scene.rig import Rig
 from ...sensors import PerceptionModel
 from ..scatter import ALIKE, RULE_OF_THREE, FigureKey, Scatter, residuals, sample_digest
-from ..score import POINTS, FoundClass, ObjectScore, PartScore, rounded, zone_masks
+from ..score import POINTS, FoundClass, ObjectScore, PartScore, zone_masks
 from .object_sampling import SampledObjects
 
 Floats = NDArray[np.float64]

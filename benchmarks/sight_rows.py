@@ -18,7 +18,7 @@ SAMPLES = 262_144
 def live_map() -> Timing:
     """The map that follows a drag."""
     return _after_a_move(
-        "ground map of 1 m, preview", lambda view, rig: view.ground(rig, draft=True), draft=True
+        "ground map of 1 m, preview", lambda view, rig: view.ground(rig, preview=True), preview=True
     )
 
 
@@ -49,18 +49,18 @@ def simplify() -> Timing:
 
 
 def _after_a_move(
-    label: str, look: Callable[[pe.Sight, pe.Rig], object], draft: bool = False
+    label: str, look: Callable[[pe.Sight, pe.Rig], object], preview: bool = False
 ) -> Timing:
     """Look again after one Pandar64 of four sensors moved."""
     study = four_on_car()
     view, evaluator = study.sight(), study.evaluator(SAMPLES)
     rigs = [moved_a_little(study.rig, along) for along in np.linspace(0.0, 0.05, 12)]
     look(view, study.rig)
-    evaluator.entropy(study.rig, draft=draft)
+    evaluator.entropy(study.rig, preview=preview)
     ours, theirs = iter(rigs), iter(rigs)
     mine, yardstick = best_in_turn(
         lambda: look(view, next(ours)),
-        lambda: evaluator.entropy(next(theirs), draft=draft),
+        lambda: evaluator.entropy(next(theirs), preview=preview),
         len(rigs),
     )
     work = f"{label}, one Pandar64 of four sensors moved"

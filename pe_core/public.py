@@ -21,7 +21,6 @@ from .scene import (
 from .scene.mesh import Mesh, MeshAxes
 from .scoring import (
     Evaluator,
-    Glance,
     GroundMap,
     ObjectScore,
     PartScore,
@@ -29,6 +28,7 @@ from .scoring import (
     Scatter,
     Score,
     SensorScore,
+    SummaryScore,
     requirements,
 )
 from .scoring.sight import BlindGround, GroundSight, Reach, Sight
@@ -80,7 +80,7 @@ from .version import __version__
 
 __all__ = ["METHODS", "ApCurve", "BeamField", "BlindGround", "BoxReport", "Boxes"]
 __all__ += ["BrownConrady", "Camera", "Choice", "Conditions", "Constraints", "Evaluator"]
-__all__ += ["FTheta", "Focus", "Glance", "GroundMap", "GroundSight", "Housing", "InputError"]
+__all__ += ["FTheta", "Focus", "GroundMap", "GroundSight", "Housing", "InputError", "SummaryScore"]
 __all__ += ["KannalaBrandt", "Lidar", "Mesh", "MeshAxes", "Method", "Motion", "MountArea"]
 __all__ += ["Mounting", "NoGo", "ObjectClass", "ObjectEvaluator", "ObjectScore", "Objective"]
 __all__ += ["Objects", "Option", "PartScore", "PerceptionModel", "PerceptionSpace", "Pinhole"]

@@ -182,13 +182,13 @@ def _request_known_rig(name: str, problem: Problem, chosen: str) -> None:
         worker.background_worker.ask(f"live anchor of {name}", work, deliver, _failed)
 
 
-def _score_known_rig(problem: Problem, known_rig: catalog.KnownRig) -> pe.Glance:
+def _score_known_rig(problem: Problem, known_rig: catalog.KnownRig) -> pe.SummaryScore:
     """On the worker's thread: score a known rig, by an evaluator of its own."""
     rig = catalog.rig_on(known_rig, problem.vehicle)
-    return EvaluatorCache().summary("", ScoreRequest(problem, rig, draft=False))
+    return EvaluatorCache().summary("", ScoreRequest(problem, rig, preview=False))
 
 
-def _deliver_known_rig(name: str, key: Hashable, summary: pe.Glance) -> None:
+def _deliver_known_rig(name: str, key: Hashable, summary: pe.SummaryScore) -> None:
     state = live_state(name)
     if state.known_rig is not None and state.known_rig.key == key:
         state.known_rig = replace(state.known_rig, summary=summary)

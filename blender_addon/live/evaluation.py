@@ -50,11 +50,11 @@ class Problem(NamedTuple):
 
 @dataclass(frozen=True)
 class ScoreRequest:
-    """A rig to be scored; approximately, as a preview, where `draft`; `moving`: not idle."""
+    """A rig to be scored; approximately, as a preview, where `preview`; `moving`: not idle."""
 
     problem: Problem
     rig: pe.Rig
-    draft: bool
+    preview: bool
     prior_key: Hashable = None
     moving: bool = False
 
@@ -105,10 +105,10 @@ class EvaluatorCache:
     def __init__(self) -> None:
         self._kept: dict[str, CachedEvaluator] = {}
 
-    def summary(self, scene_name: str, request: ScoreRequest) -> pe.Glance:
+    def summary(self, scene_name: str, request: ScoreRequest) -> pe.SummaryScore:
         """Return the summary score of a rig; only sensors that have moved are measured again."""
         evaluator = self._evaluator_of(scene_name, request.problem).evaluator
-        return evaluator.glance(request.rig, draft=request.draft)
+        return evaluator.summary(request.rig, preview=request.preview)
 
     def clear(self) -> None:
         """Drop all evaluators."""

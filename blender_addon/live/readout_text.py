@@ -106,12 +106,12 @@ def entropy_change(now: float, before: float) -> tuple[str, int]:
     return f"{abs(by):.3f} {'worse' if by > 0.0 else 'better'}", WORSE if by > 0.0 else BETTER
 
 
-def coverage_change(now: pe.Glance, before: pe.Glance | None) -> Line:
+def coverage_change(now: pe.SummaryScore, before: pe.SummaryScore | None) -> Line:
     """Return how the coverage changed, in percentage points; nothing where it did not."""
     return change_of(None if before is None else 100.0 * (now.coverage - before.coverage), 1)
 
 
-def ap_lines(now: pe.Glance, before: pe.Glance | None) -> list[Line]:
+def ap_lines(now: pe.SummaryScore, before: pe.SummaryScore | None) -> list[Line]:
     """Return "Expected AP 0.653 (+0.012)" where objects are scored; nothing for voxels."""
     if now.ap is None:
         return []
@@ -119,7 +119,7 @@ def ap_lines(now: pe.Glance, before: pe.Glance | None) -> list[Line]:
     return [(Piece(f"Expected AP {now.ap:.3f}"), *change_of(by, 3))]
 
 
-def zone_lines(now: pe.Glance, before: pe.Glance | None) -> list[Line]:
+def zone_lines(now: pe.SummaryScore, before: pe.SummaryScore | None) -> list[Line]:
     """Return the zone that improved most, and the one that worsened most: at most a line each."""
     if before is None:
         return []
@@ -179,7 +179,7 @@ def change_of(by: float | None, digits: int, *, lower_is_better: bool = False) -
     return (Piece(f"({text.replace('-', MINUS)})", sense),)
 
 
-def known_rig_line(known_rig: KnownRigScore, now: pe.Glance) -> Line:
+def known_rig_line(known_rig: KnownRigScore, now: pe.SummaryScore) -> Line:
     """Return "nuScenes here: 2.867 nats; this is 0.229 worse"; empty until it is scored."""
     summary = known_rig.summary
     if summary is None:

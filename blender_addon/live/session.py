@@ -88,7 +88,7 @@ def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, mov
     if moving:
         note_move(state, _moving_operator(), request.rig)
         exact = state.is_exact_within(preferences.live_budget_s(), request.problem.key)
-        request = replace(request, draft=not exact)
+        request = replace(request, preview=not exact)
     if state.last_read is not None and state.last_read.prior != request.prior_key:
         state.before_move = None  # entropies under two priors cannot be compared
     counts = change_events.change_count(), vehicle_cache.shared.version
@@ -110,10 +110,10 @@ def score_in_thread(
         baseline.summary = _evaluators.summary(name, replace(request, rig=baseline.rig))
     begun = time.perf_counter()
     summary = _evaluators.summary(name, request)
-    if not request.draft:
+    if not request.preview:
         state.note_cost(problem, request.rig, time.perf_counter() - begun)
     scored = request.rig, number, problem, idle
-    return LiveScore(summary, baseline, not request.draft, *scored)
+    return LiveScore(summary, baseline, not request.preview, *scored)
 
 
 def show_score(name: str, score: LiveScore) -> None:
@@ -216,7 +216,7 @@ def note_move(state: LiveState, operator: int, now: pe.Rig | None) -> None:
         state.before_move = Baseline(MOVE_LABEL, rig, summary)
 
 
-def _exact_summary(state: LiveState) -> pe.Glance | None:
+def _exact_summary(state: LiveState) -> pe.SummaryScore | None:
     """Return the exact score of the rig that was read last, where it is there already."""
     exact, last = state.exact, state.last_read
     if exact is None or last is None or exact.problem != last.problem:

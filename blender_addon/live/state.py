@@ -37,13 +37,13 @@ class Baseline:
         What it is, in words: "before this move".
     rig : Rig or None
         Its sensors. None where only its score is known: the vehicle was another one.
-    summary : Glance or None
+    summary : SummaryScore or None
         Its score, on the sample of the live score; None until it has been computed.
     """
 
     label: str
     rig: pe.Rig | None
-    summary: pe.Glance | None = None
+    summary: pe.SummaryScore | None = None
 
 
 class ChosenBaseline(NamedTuple):
@@ -68,7 +68,7 @@ class LiveScore:
 
     Attributes
     ----------
-    summary : Glance
+    summary : SummaryScore
         The whole rig's entropy and coverage, by class and by zone; approximate while it moves.
     baseline : Baseline or None
         What it is compared with; None where there is nothing to compare with yet.
@@ -84,7 +84,7 @@ class LiveScore:
         Whether the scene was idle when it was read.
     """
 
-    summary: pe.Glance
+    summary: pe.SummaryScore
     baseline: Baseline | None
     exact: bool
     rig: pe.Rig
@@ -93,7 +93,7 @@ class LiveScore:
     idle: bool = True
 
     @property
-    def before(self) -> pe.Glance | None:
+    def before(self) -> pe.SummaryScore | None:
         """The score of the baseline, once it is known."""
         return None if self.baseline is None else self.baseline.summary
 
@@ -125,7 +125,7 @@ class KnownRigScore:
 
     key: Hashable
     title: str
-    summary: pe.Glance | None = None
+    summary: pe.SummaryScore | None = None
 
 
 @dataclass(slots=True)

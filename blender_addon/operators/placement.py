@@ -54,7 +54,7 @@ class HeldSensor:
         vehicle = context.scene.perception_entropy.vehicle
         self._parts = parts_of(vehicle, depsgraph)
         self._middle = vehicle_center(vehicle)
-        self._drafts = self._study(context.scene, depsgraph)
+        self._gain_preview = self._study(context.scene, depsgraph)
         self._workspace = context.workspace.name
         self._preview.begin()
         self.show_keys()
@@ -111,7 +111,7 @@ class HeldSensor:
     def more(self, context: bpy.types.Context) -> None:
         """Hold another sensor of the same model; its score includes the sensor just placed."""
         scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
-        self._drafts, self.score = self._study(scene, depsgraph), ""
+        self._gain_preview, self.score = self._study(scene, depsgraph), ""
         self._stand(None)
 
     def show_keys(self) -> None:
@@ -123,8 +123,8 @@ class HeldSensor:
     def end(self) -> None:
         """Remove the preview, the status text and the score."""
         self._preview.end()
-        if self._drafts is not None:
-            self._drafts.end()
+        if self._gain_preview is not None:
+            self._gain_preview.end()
         for workspace in bpy.data.workspaces:
             workspace.status_text_set(None)
         self._preview.redraw()
@@ -145,8 +145,8 @@ class HeldSensor:
         stem = graphics.Primitives.of([spot.point, pose.position], STEM_COLOR)
         lines = [moved_to(self._shape[0], pose), stem]
         self._preview.show(graphics.Primitives.joined(lines), moved_to(self._shape[1], pose))
-        if self._drafts is not None:
-            self._drafts.ask(pose)
+        if self._gain_preview is not None:
+            self._gain_preview.ask(pose)
 
     def _write(self) -> None:
         if self._spot is None:

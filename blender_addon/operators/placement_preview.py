@@ -148,7 +148,7 @@ class GainPreview:
                 self._before = self._evaluator.entropy(pe.Rig(self._others))
         own = self._study.rig[self._name]
         moved = own.moved(pose)
-        score = self._evaluator.score(pe.Rig([*self._others, moved]), draft=True)
+        score = self._evaluator.score(pe.Rig([*self._others, moved]), preview=True)
         return Gain(self._before, score.entropy, score.coverage)
 
     def end(self) -> None:

@@ -86,7 +86,7 @@ def _ground(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.Lay
 def _blind(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
     height = request.view.blind_height
     found = cache.sight(request).blind(
-        _counted_rig(request), height, within=BLIND_WITHIN_M, draft=request.moving
+        _counted_rig(request), height, within=BLIND_WITHIN_M, preview=request.moving
     )
     body = None if request.vehicle is None else request.vehicle.bounds
     return ground_layers.blind_ground(found, body, height, request.view.palette)
@@ -108,7 +108,7 @@ def _reach(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.Laye
         of,
         ap=ground_layers.REACH_AP,
         bearings=ground_layers.BEARINGS,
-        draft=request.moving,
+        preview=request.moving,
     )
     whole = ground_layers.reach_of_rig(found)
     if view.reach_of == RIG:

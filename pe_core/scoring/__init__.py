@@ -6,19 +6,18 @@ from .sampling import VoxelSample, draw
 from .scatter import Scatter
 from .score import (
     FoundClass,
-    Glance,
     GroundMap,
     ObjectScore,
     PartScore,
     Score,
     ScoreStopped,
     SensorScore,
+    SummaryScore,
 )
 
 __all__ = [
     "Evaluator",
     "FoundClass",
-    "Glance",
     "GroundMap",
     "Judgement",
     "ObjectScore",
@@ -29,6 +28,7 @@ __all__ = [
     "Score",
     "ScoreStopped",
     "SensorScore",
+    "SummaryScore",
     "VoxelSample",
     "draw",
 ]

@@ -18,7 +18,7 @@ from .memory_need import columns_bytes, require_room_for, require_room_for_sampl
 from .protocol import Judgement, Scorer
 from .sampled_scorer import SampledScorer
 from .sampling import CENTERED, SAMPLES_OR_GRID
-from .score import Glance, Score, Watch
+from .score import Score, SummaryScore, Watch
 
 WORKERS = Whole(0, 1024, "threads")
 SHIFT = Number(0.0, 1.0, below=True)
@@ -85,16 +85,16 @@ class Evaluator:
         what = self.space, self.prior, self.vehicle
         return _evaluator_again, (*what, self.samples, self._shift, self._model, self._workers)
 
-    def score(self, rig: Rig, *, draft: bool = False, watch: Watch | None = None) -> Score:
+    def score(self, rig: Rig, *, preview: bool = False, watch: Watch | None = None) -> Score:
         """Score a rig in full: entropy, coverage, by class, by sensor, ground map.
 
         Parameters
         ----------
         rig : Rig
-        draft : bool
+        preview : bool
             Return an approximate preview, for use while a sensor is being moved: which LiDAR beams
             the vehicle occludes is read from a map of its top surface, if the sensor is above it,
-            and not ray cast. `Score.draft` is then set. The next score without it is exact.
+            and not ray cast. `Score.preview` is then set. The next score without it is exact.
             Sampled scores only.
         watch : callable, optional
             Called repeatedly with the completed share, 0 to 1. When it returns False, the
@@ -107,26 +107,26 @@ class Evaluator:
         ScoreStopped
             When `watch` returned False.
         """
-        return self._scorer.score(rig, draft, watch)
+        return self._scorer.score(rig, preview, watch)
 
-    def entropy(self, rig: Rig, *, draft: bool = False) -> float:
+    def entropy(self, rig: Rig, *, preview: bool = False) -> float:
         """Return the perception entropy of a rig [nats], without the other figures.
 
         Parameters
         ----------
         rig : Rig
-        draft : bool
+        preview : bool
             As in `score`, with the same error.
         """
-        return self._scorer.entropy(rig, draft)
+        return self._scorer.entropy(rig, preview)
 
-    def glance(self, rig: Rig, *, draft: bool = False) -> Glance:
+    def summary(self, rig: Rig, *, preview: bool = False) -> SummaryScore:
         """Return the score of a rig without the part by sensor, for use while one is being moved.
 
         Parameters
         ----------
         rig : Rig
-        draft : bool
+        preview : bool
             As in `score`.
 
         Raises
@@ -134,7 +134,7 @@ class Evaluator:
         InputError
             For a grid score.
         """
-        return self._scorer.summary(rig, draft)
+        return self._scorer.summary(rig, preview)
 
     def judge(self, rig: Rig, below: float = inf) -> Judgement:
         """Evaluate a rig with a cutoff, as a search does with its candidates.

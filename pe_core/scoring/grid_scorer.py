@@ -38,11 +38,11 @@ from .scenarios import (
     parts_of,
 )
 from .score import (
-    Glance,
     PartScore,
     Score,
     ScoreStopped,
     SensorScore,
+    SummaryScore,
     Watch,
     column_zones,
     ground_map,
@@ -131,9 +131,9 @@ class GridScorer:
 
             return self._mean(np.sum(list(pool.map(work, self._blocks())), axis=0))
 
-    def summary(self, rig: Rig, preview: bool = False) -> Glance:
+    def summary(self, rig: Rig, preview: bool = False) -> SummaryScore:
         """Raise `InputError`: a grid is too slow for it."""
-        raise InputError("evaluator", "glance", "a sampled score", "a grid score")
+        raise InputError("evaluator", "summary", "a sampled score", "a grid score")
 
     def evaluate(self, rig: Rig, cutoff: float) -> Judgement:
         """Return the entropy, whatever the cutoff."""
@@ -329,4 +329,4 @@ class GridScorer:
 
 def _refuse_preview(preview: bool) -> None:
     if preview:
-        raise InputError("evaluator", "draft", "a sampled score", "a grid score")
+        raise InputError("evaluator", "preview", "a sampled score", "a grid score")

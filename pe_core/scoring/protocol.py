@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 from ..scene.rig import Rig
 
 if TYPE_CHECKING:
-    from .score import Glance, Score, Watch
+    from .score import Score, SummaryScore, Watch
 
 
 class Judgement(NamedTuple):
@@ -42,7 +42,7 @@ class Scorer(Protocol):
     def score(self, rig: Rig, preview: bool = False, watch: Watch | None = None) -> Score:
         """Return the full score of a rig."""
 
-    def summary(self, rig: Rig, preview: bool = False) -> Glance:
+    def summary(self, rig: Rig, preview: bool = False) -> SummaryScore:
         """Return the score of a rig without the part by sensor."""
 
     def entropy(self, rig: Rig, preview: bool = False) -> float:
@@ -69,13 +69,13 @@ class RigJudge(Protocol):
 
     samples: int
 
-    def score(self, rig: Rig, *, draft: bool = False, watch: Watch | None = None) -> Score:
+    def score(self, rig: Rig, *, preview: bool = False, watch: Watch | None = None) -> Score:
         """Score a rig in full."""
 
-    def glance(self, rig: Rig, *, draft: bool = False) -> Glance:
+    def summary(self, rig: Rig, *, preview: bool = False) -> SummaryScore:
         """Score a rig as a whole, without the part by sensor."""
 
-    def entropy(self, rig: Rig, *, draft: bool = False) -> float:
+    def entropy(self, rig: Rig, *, preview: bool = False) -> float:
         """Return a rig's entropy [nats]."""
 
     def judge(self, rig: Rig, below: float = inf) -> Judgement:

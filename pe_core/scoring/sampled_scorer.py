@@ -23,11 +23,11 @@ from .sampling import BLOCKS, CENTERED, VoxelSample, draw
 from .scatter import ALIKE, RULE_OF_THREE, FigureKey, Scatter, residuals, sample_digest
 from .scenarios import Scenarios, fused_early, mean_or_worst
 from .score import (
-    Glance,
     PartScore,
     Score,
     ScoreStopped,
     SensorScore,
+    SummaryScore,
     Watch,
     sensor_score,
     zone_masks,
@@ -167,7 +167,7 @@ class SampledScorer:
         m |= {sensor.name: self._sensors.measure_again(sensor) for sensor in first_half}
         return mean_or_worst([self._entropy_of(part, m) for part in scenarios.parts], worst)
 
-    def summary(self, rig: Rig, preview: bool = False) -> Glance:
+    def summary(self, rig: Rig, preview: bool = False) -> SummaryScore:
         """Return the score without the part by sensor."""
         with self._lock:
             self._sensors.measure(rig, preview)
@@ -188,7 +188,7 @@ class SampledScorer:
                 whole.per_zone,
                 {s.name: self._sensor(s, rig, whole.entropy, progress) for s in rig},
                 whole.voxels,
-                draft=whole.draft,
+                preview=whole.preview,
                 scatter=self._scatter(*values),
             )
 
@@ -200,9 +200,9 @@ class SampledScorer:
         """Return entropy and visibility of every sampled voxel, for some of the rig's sensors."""
         return self._fusion.entropies(fused_early(rig, self._sensors.m, members))
 
-    def _summary(self, rig: Rig, entropies: Floats, visible: NDArray[np.bool_]) -> Glance:
+    def _summary(self, rig: Rig, entropies: Floats, visible: NDArray[np.bool_]) -> SummaryScore:
         entropy, coverage = self._whole(entropies, visible)
-        return Glance(
+        return SummaryScore(
             entropy,
             coverage,
             self._standard_error(entropies, len(rig.groups)),

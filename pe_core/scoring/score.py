@@ -185,7 +185,7 @@ def ground_map(columns: NDArray[np.float64]) -> GroundMap:
 
 
 @dataclass(frozen=True, slots=True)
-class Glance:
+class SummaryScore:
     """The summary of a sampled score: the whole rig, without the part by sensor.
 
     The fields are those of `Score`, with the same numbers to the bit; `ap` is that of its objects.
@@ -197,7 +197,7 @@ class Glance:
     per_class: dict[str, PartScore]
     per_zone: dict[str, PartScore]
     voxels: int
-    draft: bool = False
+    preview: bool = False
     ap: float | None = None
 
 
@@ -221,7 +221,7 @@ class Score:
         Number of voxels evaluated.
     ground_map : GroundMap or None
         None for a sampled score.
-    draft : bool
+    preview : bool
         Approximate preview: occlusion of a LiDAR was read from a map of the vehicle's top surface.
     objects : ObjectScore or None
         Only for a score on objects: entropy, coverage and the other figures are then weighted
@@ -238,13 +238,13 @@ class Score:
     per_sensor: dict[str, SensorScore]
     voxels: int
     ground_map: GroundMap | None = None
-    draft: bool = False
+    preview: bool = False
     objects: ObjectScore | None = None
     scatter: Scatter | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Return the score as plain JSON data, without ground map and scatter."""
-        mark = {"draft": True} if self.draft else {}
+        mark = {"preview": True} if self.preview else {}
         return {
             **mark,
             "entropy": self.entropy,

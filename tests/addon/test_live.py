@@ -1,4 +1,4 @@
-"""The live score: drafts while the hand moves, exact once it rests, and nothing left behind."""
+"""The live score: previews while the hand moves, exact once it rests, and nothing left behind."""
 
 import threading
 from dataclasses import replace
@@ -77,21 +77,21 @@ def exact():
     return study.evaluator().score(study.rig)
 
 
-def told(glance):
-    return {name: getattr(glance, name) for name in ("entropy", "coverage", "stderr", "per_zone")}
+def told(summary):
+    return {name: getattr(summary, name) for name in ("entropy", "coverage", "stderr", "per_zone")}
 
 
 def test_it_begins_with_an_exact_score(live):
     assert told(reading(live).summary) == told(exact())
-    assert reading(live).exact and not reading(live).summary.draft
+    assert reading(live).exact and not reading(live).summary.preview
     assert reading(live).before is None
 
 
-def test_a_draft_follows_and_the_rest_is_exact_to_the_bit(live):
+def test_a_preview_follows_and_the_rest_is_exact_to_the_bit(live):
     start = reading(live).summary
     for _ in range(3):
         drag(live.objects["roof"])
-        assert reading(live).summary.draft and not reading(live).exact
+        assert reading(live).summary.preview and not reading(live).exact
         assert reading(live).rig["roof"].pose == scenes.study().rig["roof"].pose
         assert reading(live).before == start
     rest()
@@ -109,12 +109,12 @@ def test_moves_are_exact_where_the_budget_allows_it(live, monkeypatch):
     monkeypatch.setattr(preferences, "LIVE_BUDGET_MS", 1e6)
     for _ in range(2):
         drag(roof)
-        assert reading(live).exact and not reading(live).idle and not reading(live).summary.draft
+        assert reading(live).exact and not reading(live).idle and not reading(live).summary.preview
         assert told(reading(live).summary) == told(exact()) and reading(live).before == start
         assert of_scene.exact.summary == start
     monkeypatch.setattr(preferences, "LIVE_BUDGET_MS", 0.0)
     drag(roof)
-    assert reading(live).summary.draft
+    assert reading(live).summary.preview
     live.perception_entropy.prior = "highway"  # another problem: its cost is not known
     rest()
     assert of_scene.exact_cost.seconds == np.inf

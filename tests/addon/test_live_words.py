@@ -11,9 +11,9 @@ from blender_addon.live.readout_text import BETTER, SAME, WORSE
 from blender_addon.live.state import Baseline, ShownScore
 
 
-def glance(entropy=3.0, coverage=0.85, zones=()):
+def summary(entropy=3.0, coverage=0.85, zones=()):
     per_zone = {name: pe.PartScore(h, c, 0.5) for name, h, c in zones}
-    return pe.Glance(entropy, coverage, 0.0224, {}, per_zone, 32768)
+    return pe.SummaryScore(entropy, coverage, 0.0224, {}, per_zone, 32768)
 
 
 def said(now, before=None, rested=True):
@@ -30,21 +30,21 @@ def reading_of(now, before=None, label="before this move"):
 
 
 def test_the_first_reading_has_nothing_to_compare_with():
-    found = said(glance())
+    found = said(summary())
     assert found.headline == "3.000 nats" and found.error == "± 0.022  exact"
     assert (found.change, found.sense, found.against) == ("", readout_text.SAME, "")
     assert [readout_text.text_of(line) for line in found.lines] == ["Coverage 85.0%"]
 
 
 def test_a_score_on_objects_has_its_expected_ap_beside_it():
-    now, before = (replace(glance(), voxels=0, ap=ap) for ap in (0.653, 0.641))
+    now, before = (replace(summary(), voxels=0, ap=ap) for ap in (0.653, 0.641))
     lines = map(readout_text.text_of, said(now).lines)
     assert list(lines) == ["Objects visible: 85.0%", "Expected AP 0.653"]
     assert said(now, before).lines[1] == (("Expected AP 0.653", SAME), ("(+0.012)", BETTER))
 
 
-def test_a_draft_says_so():
-    assert said(glance(), rested=False).error == "± 0.022  preview"
+def test_a_preview_says_so():
+    assert said(summary(), rested=False).error == "± 0.022  preview"
 
 
 @pytest.mark.parametrize(
@@ -57,17 +57,17 @@ def test_a_draft_says_so():
     ],
 )
 def test_what_a_score_is_of_is_said(told, line):
-    assert readout_text.state_of(score_of(glance())._replace(**told)) == line
+    assert readout_text.state_of(score_of(summary())._replace(**told)) == line
 
 
 def test_what_it_is_compared_with_is_said_also_where_nothing_changed():
-    assert said(glance(), glance()).against == "compared with before this move"
+    assert said(summary(), summary()).against == "compared with before this move"
     long = "A variant whose name is longer than a row of the read-out"
     found = readout_text.readout_of(
-        reading_of(glance(), glance(3.1), label=long), score_of(glance())
+        reading_of(summary(), summary(3.1), label=long), score_of(summary())
     )
     assert found.against == "compared with A variant whose name is longe..."
-    rows = readout.rows_of(reading_of(glance(), glance(3.1)), "", score_of(glance()))
+    rows = readout.rows_of(reading_of(summary(), summary(3.1)), "", score_of(summary()))
     assert [text for text, _ in rows[1].words] == [
         "± 0.022  exact",
         "compared with before this move",
@@ -83,25 +83,25 @@ def test_what_it_is_compared_with_is_said_also_where_nothing_changed():
     ],
 )
 def test_lower_is_better(before, change, sense):
-    found = said(glance(), glance(before))
+    found = said(summary(), summary(before))
     assert (found.change, found.sense) == (change, sense)
 
 
 def test_coverage_changes_in_points():
-    assert said(glance(), glance(coverage=0.838)).lines[0] == (
+    assert said(summary(), summary(coverage=0.838)).lines[0] == (
         ("Coverage 85.0%", SAME),
         ("(+1.2)", BETTER),
     )
-    assert said(glance(), glance(coverage=0.862)).lines[0] == (
+    assert said(summary(), summary(coverage=0.862)).lines[0] == (
         ("Coverage 85.0%", SAME),
         ("(\N{MINUS SIGN}1.2)", WORSE),
     )
-    assert said(glance(), glance(coverage=0.8502)).lines[0] == (("Coverage 85.0%", SAME),)
+    assert said(summary(), summary(coverage=0.8502)).lines[0] == (("Coverage 85.0%", SAME),)
 
 
 def test_the_zones_that_changed_most_are_named():
-    before = glance(zones=[("front", 3.0, 0.9), ("left", 2.0, 0.8), ("far", 5.0, 0.7)])
-    now = glance(zones=[("front", 2.8, 0.94), ("left", 2.3, 0.72), ("far", 4.99, 0.7)])
+    before = summary(zones=[("front", 3.0, 0.9), ("left", 2.0, 0.8), ("far", 5.0, 0.7)])
+    now = summary(zones=[("front", 2.8, 0.94), ("left", 2.3, 0.72), ("far", 4.99, 0.7)])
     assert said(now, before).lines[1:] == (
         (("Better ahead by 0.20 nats", BETTER),),
         (("Worse on the left by 0.30 nats", WORSE),),
@@ -111,15 +111,15 @@ def test_the_zones_that_changed_most_are_named():
 
 def test_a_zone_that_came_or_went_is_no_change():
     assert (
-        said(glance(zones=[("front", 1.0, 0.9)]), glance(zones=[("rear", 9.0, 0.1)])).lines[1:]
+        said(summary(zones=[("front", 1.0, 0.9)]), summary(zones=[("rear", 9.0, 0.1)])).lines[1:]
         == ()
     )
 
 
 def test_the_read_out_says_what_is_in_the_way_below_what_was():
-    reading = reading_of(glance())
+    reading = reading_of(summary())
     line = "scene: sensor 'roof': scale: expected 1 in each direction, found 2, 2, 2"
-    found = readout.rows_of(reading, line, score_of(glance()))
+    found = readout.rows_of(reading, line, score_of(summary()))
     rows = [text for each in found for text, color in each.words if color == readout.ALERT]
     assert " ".join(rows) == line and all(len(row) <= readout.MAX_COLUMNS for row in rows)
     assert found[0].words[0][0] == "3.000 nats"
@@ -128,7 +128,7 @@ def test_the_read_out_says_what_is_in_the_way_below_what_was():
 
 def test_better_and_worse_differ_by_arrow_and_colour():
     lines = [
-        readout.rows_of(reading_of(glance(), glance(h)), "", score_of(glance()))[0].words[1]
+        readout.rows_of(reading_of(summary(), summary(h)), "", score_of(summary()))[0].words[1]
         for h in (3.1, 2.9)
     ]
     (better, blue), (worse, orange) = lines

@@ -130,18 +130,18 @@ def test_a_sensor_s_housing_is_no_place_for_a_sensor(bare):
     assert spot_below(bare, -0.3, 0.0).part == "cabin"
 
 
-def test_its_draft_is_the_score_with_it_beside_that_without(bare):
+def test_its_preview_is_the_score_with_it_beside_that_without(bare):
     scenes.add_sensor("roof", location=(-0.43, 0.0, 1.8))
     scenes.add_sensor("front", model="Camera 60 deg", location=(0.65, 0.0, 1.55))
     study, told = scenes.study(), []
-    drafts = GainPreview(study, "front", told.append)
-    drafts.ask(study.rig["front"].pose)
+    previews = GainPreview(study, "front", told.append)
+    previews.ask(study.rig["front"].pose)
     evaluator = study.evaluator(samples=16_384)
     before, after = (
         evaluator.entropy(type(study.rig)([study.rig["roof"]])),
         evaluator.score(study.rig),
     )
-    gain = drafts.gain(study.rig["front"].pose)
+    gain = previews.gain(study.rig["front"].pose)
     assert (gain.before, gain.coverage) == (before, after.coverage)
     assert gain.after == after.entropy < gain.before
     change = f"({after.entropy - before:+.3f})"

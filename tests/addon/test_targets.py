@@ -56,9 +56,9 @@ def test_the_panel_scores_objects_as_the_command_line_does(settings, tmp_path):
 def test_the_live_score_follows_on_the_same_targets(settings):
     depsgraph = bpy.context.evaluated_depsgraph_get()
     wish = evaluation.read_request(bpy.context.scene, depsgraph, moving=True)
-    glance = evaluation.EvaluatorCache().summary("scene", wish)
+    summary = evaluation.EvaluatorCache().summary("scene", wish)
     study = scenes.study()
-    assert glance.entropy == study.evaluator().entropy(study.rig) and glance.voxels == 0
+    assert summary.entropy == study.evaluator().entropy(study.rig) and summary.voxels == 0
 
 
 def test_a_prior_without_objects_is_reported_in_a_line(settings):

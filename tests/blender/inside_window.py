@@ -129,7 +129,7 @@ def report_state():
     state |= {
         "placing": held is not None,
         "held": pose_of(held.matrix) if held and held.matrix else None,
-        "draft": held.score if held else "",
+        "preview": held.score if held else "",
         "camera": scene.camera.name if scene.camera else None,
         "perspective": view3d()[1].spaces.active.region_3d.view_perspective,
         "view": view_seen(),
@@ -148,13 +148,13 @@ def live_reading(scene):
     said = {"on": scene.perception_entropy.live.on, "note": state.live_state(scene.name).note}
     if reading is None:
         return said
-    glance = reading.summary
+    summary = reading.summary
     before = None if reading.before is None else reading.before.entropy
     return {
         **said,
-        "entropy": glance.entropy,
-        "coverage": glance.coverage,
-        "draft": glance.draft,
+        "entropy": summary.entropy,
+        "coverage": summary.coverage,
+        "preview": summary.preview,
         "rested": state.live_state(scene.name).is_current(reading),
         "number": reading.number,
         "before": before,

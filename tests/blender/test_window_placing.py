@@ -59,7 +59,7 @@ def held_at(window, condition):
 def test_hover_shows_a_score_and_a_click_places_it_in_one_undo_step(window, pointer, screenshots):
     before = sensors(window)
     start(window, pointer)
-    window.wait_for(lambda: "nats" in window.state["draft"], EFFECT_TIMEOUT_S, "a draft")
+    window.wait_for(lambda: "nats" in window.state["preview"], EFFECT_TIMEOUT_S, "a preview")
     window.screenshot(screenshots / "window_placing.png", aside=False)
     upright = window.state["held"]
     window.key("n")

@@ -120,7 +120,7 @@ def test_edges_of_a_limited_field_of_view_show():
     assert found[0] == 0 and found[-1] == len(model.azimuth_steps) - 1
 
 
-def test_a_draft_casts_few_beams_of_every_channel(vehicle):
+def test_a_preview_casts_few_beams_of_every_channel(vehicle):
     sensor = mounted(catalog.load("Pandar64"))
     found = beams.cast(sensor, vehicle, beams.PREVIEW_BEAMS)
     assert len(found.rows) == 64 and 10_000 < len(found.ends) <= beams.PREVIEW_BEAMS

@@ -117,7 +117,7 @@ def test_every_way_of_asking_gives_the_same_bits(whole):
     evaluator, score = whole
     both = rig(shapes.camera())
     moved = both.with_poses([pe.Pose((0.5, 0.0, 1.8)), both["camera"].pose])
-    assert evaluator.entropy(both) == evaluator.glance(both).entropy == score.entropy
+    assert evaluator.entropy(both) == evaluator.summary(both).entropy == score.entropy
     assert evaluator.judge(both, -99.0) == (score.entropy, False)
     together = evaluator.entropies([both, moved, pe.Rig([both["roof"]])])
     assert together == [judge().entropy(r) for r in (both, moved, pe.Rig([both["roof"]]))]
@@ -162,7 +162,7 @@ def test_sight_tells_the_same_reach_as_the_score(traffic):
 def test_the_standard_error_is_honest():
     """It is not below the scatter of other scrambles, and not three times as large."""
     evaluators = [judge(shift=k / 12 + 0.02) for k in range(12)]
-    found = [e.glance(rig()) for e in evaluators]
+    found = [e.summary(rig()) for e in evaluators]
     scatter = np.std([each.entropy for each in found], ddof=1)
     told = np.mean([each.stderr for each in found])
     assert scatter / 1.5 < told < 3.0 * scatter

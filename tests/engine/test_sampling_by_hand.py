@@ -207,7 +207,7 @@ def test_scores_are_rounded_to_nine_decimals_without_a_negative_zero():
     assert math.copysign(1.0, rounded(-1e-12)) == 1.0
 
 
-def test_drafts_and_bounds_say_what_they_are():
+def test_previews_and_bounds_say_what_they_are():
     """A grid score knows no bounds; nor does a sampled one of a rig without a vehicle."""
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
     for samples, vehicle in ((0, shapes.box_car()), (2048, None)):

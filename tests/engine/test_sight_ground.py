@@ -147,9 +147,9 @@ def measured(monkeypatch):
     """Names of the LiDARs that are measured, in order."""
     names, plain = [], LidarSample.measure
 
-    def recording(self, sensor, draft):
+    def recording(self, sensor, preview):
         names.append(sensor.name)
-        return plain(self, sensor, draft)
+        return plain(self, sensor, preview)
 
     monkeypatch.setattr(LidarSample, "measure", recording)
     return names
@@ -181,21 +181,21 @@ def test_beams_are_cast_once_for_all_that_is_looked_at(monkeypatch):
     assert len(beams) == len(np.unique(beams)) > 0
     cast.clear()
     moved = pe.Rig([lidar((0.3, 0.2, 1.7))])
-    assert own.ground(moved, draft=True).draft and own.blind(moved, draft=True).draft
+    assert own.ground(moved, preview=True).preview and own.blind(moved, preview=True).preview
     assert not cast
     exact = own.blind(moved)
-    assert not exact.draft and cast
-    assert not own.ground(moved, draft=True, step=2.0).draft  # it is known where beams end
+    assert not exact.preview and cast
+    assert not own.ground(moved, preview=True, step=2.0).preview  # it is known where beams end
     assert exact.area == sight(shapes.box_car(2)).blind(moved).area
 
 
-def test_a_draft_says_so_and_the_next_does_not(measured):
+def test_a_preview_says_so_and_the_next_does_not(measured):
     own, rig = sight(shapes.box_car(2)), pe.Rig([lidar((0.3, 0.2, 1.6))])
-    draft = own.ground(rig, 0.5, draft=True)
-    assert draft.draft
+    preview = own.ground(rig, 0.5, preview=True)
+    assert preview.preview
     exact = own.ground(rig, 0.5)
-    assert not exact.draft and measured == ["roof", "roof"]
-    assert np.nanmean(np.abs(draft.coverage - exact.coverage)) < 0.01
+    assert not exact.preview and measured == ["roof", "roof"]
+    assert np.nanmean(np.abs(preview.coverage - exact.coverage)) < 0.01
 
 
 def test_two_of_a_kind_find_the_same_bits():

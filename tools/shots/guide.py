@@ -56,7 +56,7 @@ def chosen(camera: Camera) -> None:
 
 
 def pointed(camera: Camera) -> None:
-    """A LiDAR under the mouse, on the roof, with its draft of a score."""
+    """A LiDAR under the mouse, on the roof, with its preview of a score."""
     stage = camera.stage
     stage.do("bpy.ops.object.select_all(action='DESELECT')")
     x, y = stage.place_of(ROOF)

@@ -68,7 +68,7 @@ class BlindGround:
     seen_from : dict of float or None
         By side: the distance from the body beyond which the strip has no blind location [m]; None
         where there is one at the edge of the evaluated ground.
-    draft : bool
+    preview : bool
         Approximate preview: occlusion of a LiDAR was read from a map of the vehicle's top surface.
     """
 
@@ -79,7 +79,7 @@ class BlindGround:
     nearest: Mapping[str, BlindSpot | None]
     zone: Mapping[str, float | None]
     seen_from: Mapping[str, float | None]
-    draft: bool = False
+    preview: bool = False
 
 
 def body_rectangle(vehicle: Vehicle | None) -> Rectangle:
@@ -101,7 +101,7 @@ def shown_start(distance: float) -> float:
 
 
 def blind_ground(
-    cells: GroundCells, blind: Flags, body: Rectangle, height: float, within: float, draft: bool
+    cells: GroundCells, blind: Flags, body: Rectangle, height: float, within: float, preview: bool
 ) -> BlindGround:
     """Return the figures of blind cells (NX, NY) round a body's rectangle."""
     strips = {side: _Strip.of(cells, blind, body, side) for side in SIDES}
@@ -113,7 +113,7 @@ def blind_ground(
         MappingProxyType({side: strip.nearest() for side, strip in strips.items()}),
         MappingProxyType({side: strip.zone() for side, strip in strips.items()}),
         MappingProxyType({side: strip.seen_from() for side, strip in strips.items()}),
-        draft,
+        preview,
     )
 
 

@@ -65,7 +65,7 @@ class Reach:
         The same for each sensor alone, by name.
     limit : (B,) float
         Where the space ends [m]: a reach that equals it is "at least".
-    draft : bool
+    preview : bool
         Approximate preview: occlusion of a LiDAR was read from a map of the vehicle's top surface.
     sector : float
         In a study on objects: width of the sector round each bearing [rad]; distances are those of
@@ -78,7 +78,7 @@ class Reach:
     distance: Floats
     per_sensor: Mapping[str, Floats]
     limit: Floats
-    draft: bool = False
+    preview: bool = False
     sector: float = 0.0
 
 

@@ -82,7 +82,7 @@ class Sight:
         rig: Rig,
         height: float | None = None,
         step: float = 1.0,
-        draft: bool = False,
+        preview: bool = False,
         within: float | None = None,
     ) -> GroundSight:
         """Return what is visible to the rig at every location on the ground.
@@ -95,7 +95,7 @@ class Sight:
             the prior, as in a score.
         step : float
             Side of a cell [m].
-        draft : bool
+        preview : bool
             Return an approximate preview, as in `Evaluator.score`.
         within : float, optional
             Half the side of the square round the origin that is evaluated [m]; None: all.
@@ -112,7 +112,7 @@ class Sight:
         with self._lock:
             key = "ground", layer, cells.key
             measured = self._voxel_sets.voxels(key, lambda: self._ground_voxels(layer, cells))
-            m, approximate = measured.measured(rig, draft)
+            m, approximate = measured.measured(rig, preview)
             return ground_sight(measured.voxels, rig, m, self._fusion, height, approximate)
 
     def blind(
@@ -121,7 +121,7 @@ class Sight:
         height: float = 0.0,
         within: float = 10.0,
         step: float = STEP_M,
-        draft: bool = False,
+        preview: bool = False,
     ) -> BlindGround:
         """Return the ground round the vehicle where a body is invisible to all sensors.
 
@@ -137,7 +137,7 @@ class Sight:
             How far from the rectangle of the vehicle's body the ground is evaluated [m].
         step : float
             Side of the squares [m]; squares wider than 0.1 m are divided.
-        draft : bool
+        preview : bool
             As in `ground`.
 
         Raises
@@ -147,7 +147,7 @@ class Sight:
             or no cell is within.
         """
         body = body_rectangle(self.vehicle)
-        cells, blind, approximate = self._blind_cells(rig, height, within, step, draft)
+        cells, blind, approximate = self._blind_cells(rig, height, within, step, preview)
         return blind_ground(cells, blind, body, float(height), float(within), approximate)
 
     def blind_area(
@@ -158,7 +158,7 @@ class Sight:
         return area_of(cells, blind)
 
     def _blind_cells(
-        self, rig: Rig, height: float, within: float, step: float, draft: bool
+        self, rig: Rig, height: float, within: float, step: float, preview: bool
     ) -> tuple[GroundCells, NDArray[np.bool_], bool]:
         """Return cells, which of them (NX, NY) are blind, and whether they are approximate."""
         area = widened(body_rectangle(self.vehicle), within)
@@ -171,15 +171,21 @@ class Sight:
                     cells, max(float(height), 0.0), self.vehicle, self._voxel_sets.kernel_cache
                 ),
             )
-            return (cells, *search.blind(rig, draft))
+            return (cells, *search.blind(rig, preview))
 
     def reach(
-        self, rig: Rig, class_name: str, *, ap: float = 0.5, bearings: int = 72, draft: bool = False
+        self,
+        rig: Rig,
+        class_name: str,
+        *,
+        ap: float = 0.5,
+        bearings: int = 72,
+        preview: bool = False,
     ) -> Reach:
         """Return the distance up to which objects of a class are found, in all directions.
 
         In a study on objects, the reach is that of lone objects in each eighth of the circle, as in
-        the score; `bearings` and `draft` then have no effect.
+        the score; `bearings` and `preview` then have no effect.
 
         Parameters
         ----------
@@ -189,7 +195,7 @@ class Sight:
         ap : float
             The expected AP from which an object counts as found, 0 to 1.
         bearings : int
-        draft : bool
+        preview : bool
             As in `ground`.
 
         Raises
@@ -207,7 +213,7 @@ class Sight:
                 ("reach", class_name, count),
                 lambda: Spokes.of(self.space, self._tops, density, count),
             )
-            m, approximate = measured.measured(rig, draft)
+            m, approximate = measured.measured(rig, preview)
             spokes = measured.voxels
             alone = {
                 s.name: read_only(spokes.distance(self._ap(rig, m, [s.name]), min_ap)) for s in rig
@@ -217,7 +223,7 @@ class Sight:
                 class_name, min_ap, spokes.bearings, whole, alone, spokes.limit, approximate
             )
 
-    def expected_ap(self, rig: Rig, *, draft: bool = False) -> dict[str, float]:
+    def expected_ap(self, rig: Rig, *, preview: bool = False) -> dict[str, float]:
         """Return the expected AP of the fused rig by class: the prior's mean over voxels.
 
         It is computed on a sample of the prior, as a sampled score.
@@ -225,7 +231,7 @@ class Sight:
         Parameters
         ----------
         rig : Rig
-        draft : bool
+        preview : bool
             As in `ground`.
 
         Returns
@@ -235,7 +241,7 @@ class Sight:
         """
         with self._lock:
             measured = self._voxel_sets.voxels("prior", self._sampled)
-            m, _ = measured.measured(rig, draft)
+            m, _ = measured.measured(rig, preview)
             ap = self._ap(rig, m, list(m))
             likely = measured.voxels.classes
             masses = likely.sum(axis=0)
@@ -245,14 +251,14 @@ class Sight:
                 if mass > 0.0
             }
 
-    def shares(self, rig: Rig, *, draft: bool = False) -> VisibleShares:
+    def shares(self, rig: Rig, *, preview: bool = False) -> VisibleShares:
         """Return the visible shares of the prior, and how much each sensor's failure costs by zone.
 
-        Computed on a sample of the prior, as `expected_ap`; `draft` as in `ground`.
+        Computed on a sample of the prior, as `expected_ap`; `preview` as in `ground`.
         """
         with self._lock:
             measured = self._voxel_sets.voxels("prior", self._sampled)
-            m, _ = measured.measured(rig, draft)
+            m, _ = measured.measured(rig, preview)
             return visible_shares(measured.voxels, m, self._rises(rig, m))
 
     @property

@@ -41,7 +41,7 @@ class GroundSight:
         Number of sensors that see a part of a cell; -1 where the vehicle is.
     kinds : (NX, NY) int
         Number of kinds of sensors that see a part of a cell; -1 where the vehicle is.
-    draft : bool
+    preview : bool
         Approximate preview: occlusion of a LiDAR was read from a map of the vehicle's top surface.
     """
 
@@ -53,7 +53,7 @@ class GroundSight:
     coverage: Floats
     sensors: Ints
     kinds: Ints
-    draft: bool = False
+    preview: bool = False
 
 
 def ground_sight(
@@ -62,7 +62,7 @@ def ground_sight(
     m: Mapping[str, NDArray],
     fusion: Fusion,
     height: float | None,
-    draft: bool,
+    preview: bool,
 ) -> GroundSight:
     """Combine the measurements `m` (by sensor name) on the voxels of cells."""
     entropies, visible = fusion.entropies(fused_early(rig, m, [s.name for s in rig]))
@@ -79,7 +79,7 @@ def ground_sight(
         read_only(voxels.mean(visible)),
         read_only(_number(by_sensor, voxels)),
         read_only(_number(by_kind, voxels)),
-        draft,
+        preview,
     )
 
 

@@ -19,7 +19,7 @@ from ...scene.vehicle import Vehicle
 from ...sensors import ObjectMeasurementCache, PerceptionModel, kind_of
 from ..protocol import Judgement
 from ..scenarios import Scenarios, mean_or_worst
-from ..score import Glance, ObjectScore, Score, ScoreStopped, SensorScore, Watch
+from ..score import ObjectScore, Score, ScoreStopped, SensorScore, SummaryScore, Watch
 from .bound_log import BoundLog
 from .lone_objects import LoneObjects
 from .object_metric import FusedObjects, ObjectSums
@@ -86,8 +86,8 @@ class ObjectEvaluator:
         what = self.space, self.prior, self.vehicle
         return _evaluator_again, (type(self), *what, self.targets, self._model, self._shift)
 
-    def entropy(self, rig: Rig, *, draft: bool = False) -> float:
-        """Return the object entropy of a rig [nats]; `draft` has no effect."""
+    def entropy(self, rig: Rig, *, preview: bool = False) -> float:
+        """Return the object entropy of a rig [nats]; `preview` has no effect."""
         with self._lock:
             self._fused.check(rig)
             return self._value(rig, self._sensors.measure(rig))
@@ -138,13 +138,13 @@ class ObjectEvaluator:
         """Return the mean of several rigs' entropies, or the highest, whatever the cutoff."""
         return Judgement(mean_or_worst(self.entropies(rigs), worst), False)
 
-    def glance(self, rig: Rig, *, draft: bool = False) -> Glance:
+    def summary(self, rig: Rig, *, preview: bool = False) -> SummaryScore:
         """Return the score of a rig without the part by sensor."""
         with self._lock:
             self._fused.check(rig)
             return self._summary(rig, *self._fused.entropies(rig, self._sensors.measure(rig)))
 
-    def score(self, rig: Rig, *, draft: bool = False, watch: Watch | None = None) -> Score:
+    def score(self, rig: Rig, *, preview: bool = False, watch: Watch | None = None) -> Score:
         """Score a rig in full: as `Evaluator.score`, with an `ObjectScore`."""
         with self._lock:
             _report(watch, 0.0)
@@ -167,9 +167,9 @@ class ObjectEvaluator:
                 scatter=self._sums.scatter(entropies, visible),
             )
 
-    def _summary(self, rig: Rig, entropies: Floats, visible: NDArray[np.bool_]) -> Glance:
+    def _summary(self, rig: Rig, entropies: Floats, visible: NDArray[np.bool_]) -> SummaryScore:
         whole = self._sums.part(entropies, visible)
-        return Glance(
+        return SummaryScore(
             whole.entropy,
             whole.coverage,
             self._sums.standard_error(entropies, len(rig.groups)),

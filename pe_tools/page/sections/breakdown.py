@@ -161,16 +161,16 @@ def _losses(context: ReportContext) -> tuple[SensorLoss, ...]:
     if len(context.rig) < 2:
         return ()
     evaluator = context.evaluator(LOSS_SAMPLES)
-    whole = evaluator.glance(context.rig)
+    whole = evaluator.summary(context.rig)
     losses = [_loss_of(context, sensor.name, evaluator, whole) for sensor in context.rig]
     return tuple(sorted(losses, key=lambda loss: -loss.rise))
 
 
 def _loss_of(
-    context: ReportContext, name: str, evaluator: pe.RigJudge, whole: pe.Glance
+    context: ReportContext, name: str, evaluator: pe.RigJudge, whole: pe.SummaryScore
 ) -> SensorLoss:
     remaining = pe.Rig([sensor for sensor in context.rig if sensor.name != name])
-    score = evaluator.glance(remaining)
+    score = evaluator.summary(remaining)
     rises = {
         zone: part.entropy - whole.per_zone[zone].entropy for zone, part in score.per_zone.items()
     }

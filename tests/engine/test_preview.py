@@ -25,47 +25,47 @@ def rig_at(*places):
 
 @pytest.mark.parametrize("rotation", [(0, 0, 0), (3, -8, 40)])
 @pytest.mark.parametrize("place", [(-0.43, 0.0, 1.8), (0.3, 0.2, 1.6), (1.9, 0.0, 1.4), (5, 0, 2)])
-def test_a_draft_stops_nearly_the_same_beams(place, rotation):
+def test_a_preview_stops_nearly_the_same_beams(place, rotation):
     sensor = shapes.lidar_on_roof(position=place, rotation=rotation)
     cast = pe.beam_field(sensor, CAR).ends
-    draft = ApproximateOcclusion(CAR).ends(sensor, RotatedBeams(sensor).slopes)
+    preview = ApproximateOcclusion(CAR).ends(sensor, RotatedBeams(sensor).slopes)
     stopped = cast < 200.0
-    assert np.mean(stopped != (draft < 200.0)) < 0.01
-    both = stopped & (draft < 200.0)
+    assert np.mean(stopped != (preview < 200.0)) < 0.01
+    both = stopped & (preview < 200.0)
     assert both.sum() > 100 or place[0] == 5
-    assert not both.any() or np.median(np.abs(draft - cast)[both] / cast[both]) < 0.05
+    assert not both.any() or np.median(np.abs(preview - cast)[both] / cast[both]) < 0.05
 
 
 @pytest.mark.parametrize("place", [(-0.43, 0.0, 1.8), (0.3, 0.2, 1.6), (1.9, 0.0, 1.4)])
-def test_a_draft_s_entropy_is_close(place):
+def test_a_preview_s_entropy_is_close(place):
     own = evaluator()
-    draft = own.entropy(rig_at(place), draft=True)
-    assert draft == pytest.approx(own.entropy(rig_at(place)), abs=0.06)
+    preview = own.entropy(rig_at(place), preview=True)
+    assert preview == pytest.approx(own.entropy(rig_at(place)), abs=0.06)
 
 
-def test_a_score_says_that_it_is_a_draft_and_the_next_is_not():
+def test_a_score_says_that_it_is_a_preview_and_the_next_is_not():
     own, rig = evaluator(), rig_at((0.3, 0.2, 1.6))
-    draft, exact = own.score(rig, draft=True), own.score(rig)
-    assert draft.draft and draft.to_dict()["draft"] is True
-    assert not exact.draft and "draft" not in exact.to_dict()
+    preview, exact = own.score(rig, preview=True), own.score(rig)
+    assert preview.preview and preview.to_dict()["preview"] is True
+    assert not exact.preview and "preview" not in exact.to_dict()
     assert exact.to_dict() == evaluator().score(rig).to_dict()
-    assert draft.entropy != exact.entropy
+    assert preview.entropy != exact.entropy
 
 
-def test_sensors_that_stayed_are_not_drafted():
+def test_sensors_that_stayed_are_not_previewed():
     own = evaluator()
     both, one = rig_at((0.3, 0.2, 1.6), (-1.0, 0.0, 1.7)), rig_at((0.3, 0.2, 1.6))
     own.entropy(one)
-    first = own.score(both, draft=True)
-    assert first.draft
-    assert not own.score(both).draft
-    assert not own.score(both, draft=True).draft  # nothing has moved: it is known exactly
+    first = own.score(both, preview=True)
+    assert first.preview
+    assert not own.score(both).preview
+    assert not own.score(both, preview=True).preview  # nothing has moved: it is known exactly
 
 
 def test_a_sensor_below_the_top_is_cast():
     own, rig = evaluator(), rig_at((2.31, 0.0, 0.6), (0.0, 0.0, 1.0))
-    score = own.score(rig, draft=True)
-    assert not score.draft
+    score = own.score(rig, preview=True)
+    assert not score.preview
     assert score.to_dict() == evaluator().score(rig).to_dict()
 
 
@@ -73,22 +73,22 @@ def test_a_vehicle_as_large_as_a_hall_is_cast():
     """A map of it would take longer to draw than many casts."""
     hall = pe.Vehicle(np.concatenate([CAR.triangles, shapes.box((-9, -9, 0), (9, 9, 0.1))]))
     own = pe.Evaluator(SPACE, pe.Prior.road(), hall, samples=5000)
-    assert not own.score(rig_at((0.3, 0.2, 1.6)), draft=True).draft
+    assert not own.score(rig_at((0.3, 0.2, 1.6)), preview=True).preview
     wide = pe.Vehicle(np.concatenate([CAR.triangles, shapes.box((-9, -4, 0), (9, 4, 0.1))]))
     own = pe.Evaluator(SPACE, pe.Prior.road(), wide, samples=5000)
-    assert own.score(rig_at((0.3, 0.2, 1.6)), draft=True).draft
+    assert own.score(rig_at((0.3, 0.2, 1.6)), preview=True).preview
 
 
-def test_without_a_vehicle_nothing_is_a_draft():
+def test_without_a_vehicle_nothing_is_a_preview():
     own = pe.Evaluator(SPACE, pe.Prior.road(), samples=5000)
-    assert not own.score(rig_at((0.0, 0.0, 1.8)), draft=True).draft
+    assert not own.score(rig_at((0.0, 0.0, 1.8)), preview=True).preview
 
 
-def test_a_grid_score_has_no_draft():
+def test_a_grid_score_has_no_preview():
     own = pe.Evaluator(SPACE, pe.Prior.road(), CAR)
     for ask in (own.score, own.entropy):
-        with pytest.raises(pe.InputError, match="draft: expected a sampled score"):
-            ask(rig_at((0.0, 0.0, 1.8)), draft=True)
+        with pytest.raises(pe.InputError, match="preview: expected a sampled score"):
+            ask(rig_at((0.0, 0.0, 1.8)), preview=True)
 
 
 def test_a_roof_hides_what_is_below_its_edge():

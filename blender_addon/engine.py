@@ -10,11 +10,16 @@ from pe_core import catalog, scoring, search
 from pe_core import scene as geometry
 from pe_core import sensors as kinds
 from pe_core import study as studies
+from pe_core.base import Flags, Floats, Ints, Singles
 from pe_core.scoring import requirements, sight
 from pe_tools import advice, exchange, graphics, jobs, outputs, page
 from pe_tools import cli as app
 
 __all__ = [
+    "Flags",
+    "Floats",
+    "Ints",
+    "Singles",
     "advice",
     "app",
     "catalog",

@@ -15,13 +15,10 @@ from typing import NamedTuple
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
 from . import sensor_cache
-from .engine import catalog, pe
+from .engine import Floats, catalog, pe
 from .sensor_kinds import row_of
-
-Floats = NDArray[np.float64]
 
 BODY, TRIM, GLASS, MARK = range(4)
 """What a face is made of."""

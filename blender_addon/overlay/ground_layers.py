@@ -7,9 +7,8 @@ from collections.abc import Hashable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..engine import graphics, pe, sight
+from ..engine import Floats, graphics, pe, sight
 from .request import COUNTED, FIXED, KINDS, KINDS_LEFT, REDUNDANCY, SENSORS_LEFT, WHOLE
 
 if TYPE_CHECKING:
@@ -145,7 +144,6 @@ def _bounds(
     )
 
 
-Floats = NDArray[np.float64]
 BoxBounds = tuple[Floats, Floats]
 
 HATCH_M, HATCH_ALPHA = 0.35, 0.45

@@ -8,12 +8,8 @@ from itertools import product
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..engine import graphics
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from ..engine import Floats, Ints, graphics
 
 TILE_M, DEPTH_M = 0.05, 0.20
 """Side of a tile, and how thick the layer of space is in which hits are taken together."""

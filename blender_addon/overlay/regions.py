@@ -9,14 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..engine import graphics
+from ..engine import Floats, graphics
 
 if TYPE_CHECKING:
     from ..engine import pe
     from .request import FocusRegion, MountFaces, SearchBox
 
-
-Floats = NDArray[np.float64]
 
 MOUNT: graphics.Rgba = (0.36, 0.80, 0.62, 1.0)
 """A calm green, unlike the beams' blue and orange: visible on white and on black."""

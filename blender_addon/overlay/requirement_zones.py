@@ -6,11 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..engine import graphics, requirements
+from ..engine import Floats, graphics, requirements
 
-Floats = NDArray[np.float64]
 Verdict = requirements.Verdict
 
 MET: graphics.Rgba = (0.5, 1.0, 0.95, 1.0)

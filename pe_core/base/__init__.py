@@ -1,5 +1,6 @@
 """Values and files: checks of input values, files read and written whole, TOML, JSON, XML, YAML."""
 
+from .arrays import Flags, Floats, Ints, Singles
 from .csv_text import csv_text
 from .files import decode_text, named_path, read_bytes, require_new, write_bytes
 from .memory import available_bytes, require_memory
@@ -8,8 +9,12 @@ from .table_reader import Table
 from .values import Name, Number
 
 __all__ = [
+    "Flags",
+    "Floats",
+    "Ints",
     "Name",
     "Number",
+    "Singles",
     "Table",
     "available_bytes",
     "csv_text",

@@ -12,10 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Floats, Ints
 from .indexing import count_up
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Spans = tuple[Floats, Floats]
 """Minimum and maximum of a coordinate of G shapes, each (G,)."""
 

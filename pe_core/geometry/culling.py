@@ -8,12 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Floats, Ints
 from .bins import BOX_MARGIN, CubeFace, Spans, corner_max, spans_of_boxes, spans_of_triangles
 from .ray_triangle import Facing
 from .triangle_tree import TriangleTree
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Select = Callable[[Spans, Spans], NDArray[np.bool_]]
 """Returns which rectangles of a face are selected, (N,) bool."""
 CountRays = Callable[[Spans, Spans], Ints]

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Floats, Ints
 from ..base.errors import InputError
 from ..base.setting import Pair, Panel, check_settings, setting
 from ..base.values import Number
@@ -103,11 +104,6 @@ def _check_divides(name: str, bounds: tuple[float, float], interval: float) -> N
         raise InputError(
             "space", "interval", f"a length that divides {name} = {list(bounds)}", interval
         )
-
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,8 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from .poses import Floats, Pose, cross, dot, rotate
+from ..base.arrays import Floats
+from .poses import Pose, cross, dot, rotate
 
 SIDES = 16
 """Number of sides of the prism that encloses a cylinder: at most 2 % of the radius larger."""

@@ -10,12 +10,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..base.arrays import Floats
 from ..base.degrees import degrees_in_file
 from ..base.values import Angle, Number, vector
-
-Floats = NDArray[np.float64]
 
 FARTHEST_M = 1e4
 """Maximum magnitude of a coordinate; kernels rely on it."""

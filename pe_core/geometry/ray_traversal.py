@@ -16,12 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Floats, Ints, Singles
 from .indexing import blocks
 from .triangle_tree import BRANCH, TriangleTree
 
-Floats = NDArray[np.float64]
-Singles = NDArray[np.float32]
-Ints = NDArray[np.int64]
 Triple = tuple[Floats, Floats, Floats]
 Meet = Callable[[Ints, Ints, Floats], None]
 """Called with rays (P,), the triangles (P,) that they hit, and distances (P,) [m]."""

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Floats, Ints
 from .bins import CubeFace, Raster, RowSpans, Spans, corner_max, row_spans
 from .poses import cross, dot
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 NEAR_MARGIN = 1e-9
 """Relative enlargement of a triangle's bounding sphere, against rounding errors."""

@@ -20,15 +20,13 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Floats, Ints
 from .bins import FACES, Raster, RowSpans, Spans, row_spans
 from .culling import Ends, FaceLook, VisibleBoxes
 from .indexing import blocks, count_up, stable_order
 from .ray_traversal import RayBoxes, RayWalk
 from .ray_triangle import Facing, Targets, min_distance
 from .triangle_tree import TriangleTree
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 MAX_BINS = 1024
 """Maximum number of bins along a side."""

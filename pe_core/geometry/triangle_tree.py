@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from ..base.arrays import Floats, Ints
 
 MIXERS = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9)
 """Odd factors of the hash of a point (from the golden ratio, and two primes of xxHash)."""
@@ -62,8 +62,6 @@ def _mixed(numbers: NDArray[np.uint64]) -> NDArray[np.uint64]:
         numbers = (numbers ^ (numbers >> np.uint64(33))) * np.uint64(mixer)
     return numbers ^ (numbers >> np.uint64(33))
 
-
-Ints = NDArray[np.int64]
 
 BRANCH = 8
 """Number of triangles in a box of the lowest level, and of boxes in a box of the next level."""

@@ -10,11 +10,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..base.arrays import Floats
 from ..base.values import Number
-
-Floats = NDArray[np.float64]
 
 AP_MIN, AP_MAX = 0.001, 0.999
 """The paper's clamp of AP "for numerical stability"."""

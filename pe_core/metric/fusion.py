@@ -20,9 +20,9 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..base.arrays import Floats
 from .entropy import BLIND_PRECISION, H_BLIND, ApCurve, entropy_of, precision_of
 
-Floats = NDArray[np.float64]
 CurveOf = str | ApCurve
 """An AP curve: the name of a kind of sensor ("lidar", "camera"), or the curve itself."""
 Measurement = tuple[CurveOf, NDArray]

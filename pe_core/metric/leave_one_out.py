@@ -16,11 +16,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Floats, Ints
 from .entropy import BLIND_PRECISION, H_BLIND, entropy_of
 from .fusion import CurveOf, Group, PlaneFusion, VisibleRows, group_sum
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class RowValues(NamedTuple):

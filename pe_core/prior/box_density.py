@@ -11,15 +11,13 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.arrays import Floats, Ints
 from ..base.errors import InputError
 from ..base.read_only import read_only
 from ..geometry.grids import PerceptionSpace
 from .boxes import OUTSIDE, Boxes, BoxReport
-from .classes import Floats, Shape, normed
-
-Ints = NDArray[np.int64]
+from .classes import Shape, normed
 
 ROWS_AT_ONCE = 1 << 18
 TIE_DECIMALS = 9

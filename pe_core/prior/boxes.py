@@ -11,11 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..base.arrays import Floats
 from ..base.errors import InputError, shown
 from ..base.read_only import read_only
 from ..base.values import A_PATH, Number, numbers, vector
-
-Floats = NDArray[np.float64]
 
 KNOWN_CLASSES = ("car", "pedestrian", "cyclist", "truck", "cone")
 """The paper's classes, in their order in a prior; others follow alphabetically."""

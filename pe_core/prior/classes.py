@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Floats
 from ..base.errors import InputError, shown
 from ..base.values import A_NAME, LENGTH, SHARE, WEIGHT, Number, listed, real, vector
 from ..geometry.grids import PerceptionSpace
 
-Floats = NDArray[np.float64]
 Shape = tuple[Floats, Floats]
 """Density over the ground (nx, ny) and profile over height (nz,), each summing to 1."""
 

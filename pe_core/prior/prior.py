@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.arrays import Floats
 from ..base.errors import InputError, shown
 from ..base.memory import require_memory
 from ..base.values import A_NAME, ANY, WEIGHT, Number, choice, listed, pair
@@ -23,7 +24,6 @@ from .classes import (
     HIGHWAY_CLASSES,
     ROAD_CLASSES,
     SHIPPED,
-    Floats,
     ObjectClass,
     Shape,
     class_shape,

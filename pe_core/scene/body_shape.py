@@ -11,9 +11,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Floats
 from ..base.errors import MAX_FOUND_LENGTH, InputError
 
-Floats = NDArray[np.float64]
 PartBounds = tuple[Floats, Floats, NDArray[np.bool_]]
 """Lowest and highest corners (P, 3) of the parts, and which parts have any triangles."""
 

@@ -10,9 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Floats
 from ..base.values import A_TEXT, LENGTH, Number, choice, vector
 from ..geometry.overlap import Hull, meets_box, meets_cylinder, upright_hull
-from ..geometry.poses import Floats, Pose, dot, rotate
+from ..geometry.poses import Pose, dot, rotate
 from .vehicle import Vehicle
 
 SHAPES = ("cylinder", "box")

@@ -9,13 +9,11 @@ import math
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.arrays import Floats
 from ..base.read_only import read_only
 from ..geometry.poses import dot
 from .vehicle import Vehicle
-
-Floats = NDArray[np.float64]
 
 AROUND, BELOW_DEG, ENCLOSED = 256, 10.0, 0.9
 """Number of directions of the inside test, lowest elevation below the horizon, and the share of

@@ -10,13 +10,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..base.arrays import Floats, Ints
 from ..base.errors import InputError, shown
 from ..base.read_only import read_only
 from ..base.values import A_NAME, numbers
 from ..geometry.poses import FARTHEST_M
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 STRAIGHT = 1e-12
 """A sine or cosine below this counts as zero: the box is parallel to the ground frame's axes."""

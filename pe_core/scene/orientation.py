@@ -5,11 +5,9 @@ from __future__ import annotations
 import re
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.arrays import Floats
 from .body_shape import BodyShape
-
-Floats = NDArray[np.float64]
 
 LONGER = 1.15
 """Minimum ratio of two sides for one to count as longer."""

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..base.arrays import Floats
 from ..base.errors import InputError, shown
 from ..base.read_only import read_only, read_only_copy
 from ..base.setting import Panel, check_settings, setting
@@ -18,8 +19,6 @@ from ..geometry.poses import FARTHEST_M, cross, dot
 from ..geometry.raycast import Hits, VisibleTriangles
 from ..geometry.triangle_tree import TriangleTree
 from .radar_covers import checked_covers
-
-Floats = NDArray[np.float64]
 
 DEFAULT_CLEARANCE_M = 0.02
 """Distance from the vehicle's surface at which a flush-mounted sensor is evaluated."""

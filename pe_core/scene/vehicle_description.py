@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ..base.arrays import Floats
 from ..base.errors import plural
 from ..base.setting import Panel, check_settings, required_setting, setting
 from ..base.values import Number
@@ -15,8 +13,6 @@ from ..geometry.poses import METRES
 from .body_shape import BodyShape, size_words
 from .orientation import NO_WHEELS, WHEELS, along, front_by_names, is_called
 from .vehicle import Vehicle
-
-Floats = NDArray[np.float64]
 
 LENGTH = Number(0.0, above=True, cap=100.0, unit="m", noun="length")
 UNKNOWN, FIELD_M = "not known", 100.0

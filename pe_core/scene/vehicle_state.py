@@ -13,8 +13,8 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.arrays import Floats
 from ..base.errors import InputError, shown
 from ..base.setting import check_settings, setting
 from ..base.values import A_NAME, WEIGHT, Angle, Number, Whole, vector
@@ -22,7 +22,6 @@ from ..geometry.poses import Pose, rotate, rotation_matrix, rpy_from_matrix
 from .rig import Rig, Sensor
 from .vehicle import Vehicle, closest_points
 
-Floats = NDArray[np.float64]
 Vector3 = tuple[float, float, float]
 
 METRES = Number(-100.0, 100.0, unit="m")

@@ -8,8 +8,8 @@ from __future__ import annotations
 from weakref import WeakValueDictionary
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.arrays import Floats
 from ..base.errors import InputError
 from ..base.read_only import read_only
 from ..geometry.grids import PerceptionSpace
@@ -35,9 +35,6 @@ def cached_densities(prior: Prior, space: PerceptionSpace) -> CachedDensities:
             read_only(density.ground)
         _CACHE[prior, space] = densities
     return densities
-
-
-Floats = NDArray[np.float64]
 
 
 def outside_profile(density: ClassDensity, space: PerceptionSpace, tops: Floats) -> Floats:

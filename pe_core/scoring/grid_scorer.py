@@ -11,8 +11,8 @@ from threading import Event, Lock
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.arrays import Floats
 from ..base.errors import InputError
 from ..base.values import rounded
 from ..geometry.grids import PerceptionSpace
@@ -50,7 +50,6 @@ from .score import (
 )
 
 T = TypeVar("T")
-Floats = NDArray[np.float64]
 KernelKey = tuple[str, ApCurve | None]
 """A kind, and the AP curve of its own that a sensor may have."""
 MeasuredGroup = tuple[CurveOf, Planes]

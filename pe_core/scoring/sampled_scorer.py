@@ -9,6 +9,7 @@ from threading import RLock
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Floats
 from ..base.values import rounded
 from ..geometry.grids import PerceptionSpace
 from ..metric.entropy import H_BEST, H_BLIND
@@ -32,9 +33,6 @@ from .score import (
     sensor_score,
     zone_masks,
 )
-
-Floats = NDArray[np.float64]
-
 
 SENSORS_FUSED = 80
 """Sensors that are fused in the time in which one is measured (measured: 40 to 100)."""

@@ -16,13 +16,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Floats, Ints
 from ..base.errors import InputError
 from ..base.read_only import read_only
 from ..base.values import Whole
 from ..geometry.grids import PerceptionSpace
 from ..prior.prior import ClassDensity
 
-Floats = NDArray[np.float64]
 Words = NDArray[np.uint32]
 
 BITS = 32
@@ -102,8 +102,6 @@ def _reversed(words: Words) -> Words:
         x = ((x >> np.uint32(step)) & np.uint32(mask)) | ((x & np.uint32(mask)) << np.uint32(step))
     return x
 
-
-Ints = NDArray[np.int64]
 
 AZIMUTH, HEIGHT, RING = range(3)
 """Use of the Sobol' sequence's dimensions. The first two fill the plane best: they sample azimuth

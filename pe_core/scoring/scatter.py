@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Floats
 from ..base.values import DECIMALS, rounded
 
-Floats = NDArray[np.float64]
 FigureKey = tuple[str, str, str]
 """Group ("rig", "zone", "class"), name (empty for the rig), and measure ("entropy", ...)."""
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.arrays import Floats
 from ..base.errors import InputError
 from ..geometry.poses import Pose, dot, rotate, rotation_matrix, rpy_from_matrix
 from ..scene.housing import Housing
@@ -33,7 +33,6 @@ from .design_variable import (
 from .mount_surface import MountSurface
 from .mounts import AnyMount, SlotMount, SurfaceMount
 
-Floats = NDArray[np.float64]
 Bounds = tuple[float, float]
 
 START_M, START_TURN = 0.003, 0.002

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.arrays import Floats
 from ..base.errors import InputError, shown
 from ..geometry.poses import cross, dot
 from ..geometry.triangle_tree import TriangleTree
 from ..scene.inside_test import open_side
 from ..scene.vehicle import Vehicle, closest_points
 from .mounts import SurfaceMount
-
-Floats = NDArray[np.float64]
 
 SLACK = 1.0 + 1e-9
 """A search within a computed distance must find that distance again, in spite of rounding."""

@@ -8,16 +8,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.arrays import Floats
 from ..base.errors import InputError, shown
 from ..base.read_only import ReadOnlyDict
 from ..base.setting import FLAG, Panel, check_settings, setting
 from ..base.values import A_NAME, A_PATH, ANY, LENGTH, Number, choice, listed, pair
 from ..geometry.poses import Pose
 from ..scene.vehicle import Vehicle
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -18,16 +18,14 @@ from dataclasses import dataclass
 from statistics import NormalDist
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.arrays import Floats
 from ..base.errors import InputError
 from ..base.setting import FLAG, Panel, check_settings, setting
 from ..base.values import Angle, Number, Whole
 from ..geometry.poses import FARTHEST_M, Pose, rotate, rotation_matrix, rpy_from_matrix
 from ..scene.rig import Rig
 from .design_variable import AXES, pose_from_values
-
-Floats = NDArray[np.float64]
 
 DRAWS = 8
 """Draws by default."""

@@ -6,13 +6,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.arrays import Flags, Ints
 from ..base.read_only import read_only
 from ..scene.objects import Objects
-
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 CELLS, ROUND, INSIDE = range(3)
 """Layers of boxes: the cells that are measured, the shell round the body, boxes inside it."""

@@ -5,14 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.arrays import Flags, Floats, Ints
 from ..geometry.indexing import count_up, stable_order
 from .object_kernel import PlacedBoxes
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 APART_RAD = 1e-6
 """Margin between the directions of balls, seen from above, that do not hide each other [rad]."""

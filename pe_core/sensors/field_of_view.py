@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Floats, Ints
 from ..base.errors import InputError
 from ..base.values import Number
 
@@ -33,10 +34,6 @@ def checked_ranges(
     if not near < far:
         raise InputError(name, "min_range", f"a length below max_range, {far:g} m", f"{near:g}")
     return near, far
-
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -13,15 +13,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.arrays import Flags, Floats
 from ..geometry.grids import GroundGrid
 from ..scene.rig import Sensor
 from ..scene.vehicle import Vehicle
 from .kernels import CachingKernel
 
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 Definition = Callable[[Sensor, Floats, float, Vehicle | None], Floats]
 
 HEIGHT_STEP_M = 0.1

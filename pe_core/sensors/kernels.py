@@ -17,12 +17,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Floats
 from ..geometry.grids import PerceptionSpace
 from ..metric.fusion import VisibleRows
 from ..scene.rig import Sensor
 from ..scene.vehicle import Vehicle
 
-Floats = NDArray[np.float64]
 Planes = Callable[[slice], NDArray | VisibleRows]
 """m of a fusion group on n consecutive x-planes: integers (n, ny, nz), or the visible rows."""
 

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.arrays import Floats
 from ..base.errors import InputError, shown
 from ..geometry.grids import PerceptionSpace
 from ..geometry.poses import dot
@@ -26,7 +27,7 @@ from ..scene.vehicle import Vehicle
 from .body_parts import BodyParts
 from .field_of_view import EgoMask, ViewPatch
 from .ground_kernel import DefinedGround, GroundKernel, GroundView
-from .kernels import DefinedGrid, DefinedSample, Floats, GridKernel, SampleKernel, Voxels
+from .kernels import DefinedGrid, DefinedSample, GridKernel, SampleKernel, Voxels
 from .object_kernel import DefinedObjects, ObjectKernel, ObjectView
 from .ray_fan_view import FieldPicture
 from .weather import Weather

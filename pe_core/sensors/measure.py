@@ -6,15 +6,14 @@ Tests compare the fast kernels with it. Use an `Evaluator` for many voxels.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..base.arrays import Floats
 from ..base.errors import InputError
 from ..scene.objects import Objects
 from ..scene.rig import Sensor
 from ..scene.vehicle import Vehicle
 from .kind import kind_of
-
-Floats = NDArray[np.float64]
 
 
 def measure(

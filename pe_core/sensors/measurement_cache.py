@@ -14,19 +14,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Flags, Floats
 from ..metric.entropy import ApCurve
 from ..metric.fusion import CurveOf
 from ..scene.objects import Objects
 from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
 from .body_parts import BodyParts
-from .ground_kernel import Flags, GroundKernel, GroundView, VisibleGround
+from .ground_kernel import GroundKernel, GroundView, VisibleGround
 from .kernels import Measured, Occlusion, SampleKernel, Voxels
 from .kind import Kind, kind_of
 from .object_kernel import ObjectKernel, ObjectView
 from .weather_rig import clear_air, within_range
-
-Floats = NDArray[np.float64]
 
 
 class MeasurementCache:

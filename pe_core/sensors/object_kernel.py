@@ -11,16 +11,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.arrays import Floats, Ints
 from ..scene.objects import Objects
 from ..scene.rig import Sensor
 from ..scene.vehicle import Vehicle
 from .body_parts import BodyParts
 from .kernels import CachingKernel
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 ObjectDefinition = Callable[[Sensor, Objects, Vehicle | None, bool], Floats]
 
 

@@ -18,14 +18,13 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Floats, Ints
 from ..geometry.poses import rotate
 from ..scene.rig import Sensor, SensorModel
 from ..scene.vehicle import Vehicle
 from .field_of_view import FREE, EgoMask, count_by_part
 from .kernels import Occlusion
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 AngleWindow = tuple[tuple[float, float], tuple[float, float]]
 """Lowest and highest azimuth, and lowest and highest elevation [rad]."""
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.arrays import Floats
 from ..geometry.poses import dot
 from .box_rays import BoxRays
 from .object_kernel import PlacedBoxes
 
-Floats = NDArray[np.float64]
 NEAREST_M = 1e-6
 """Replaces the distance 0 [m]."""
 

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.arrays import Flags, Floats
 from ..geometry.grids import PerceptionSpace
 from ..metric.fusion import VisibleRows
 from ..scene.rig import Sensor
@@ -34,9 +35,6 @@ from .kernels import (
 )
 from .object_kernel import ObjectKernel, ObjectView
 from .ray_fan import FanCache, RayFan, cast_fan
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 VOXEL_BYTES = 200
 """Memory of a voxel of a block while it is measured (measured)."""

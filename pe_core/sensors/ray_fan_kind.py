@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from ..base.arrays import Floats
 from ..geometry.grids import PerceptionSpace
 from ..scene.rig import Sensor, SensorModel
 from ..scene.vehicle import Vehicle
 from .field_of_view import EgoMask, ViewPatch
 from .ground_kernel import GroundView
-from .kernels import Floats, Voxels
+from .kernels import Voxels
 from .kind import Kind
 from .object_kernel import ObjectView
 from .ray_fan import window_of, without_parts

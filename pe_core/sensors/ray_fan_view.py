@@ -7,15 +7,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.arrays import Flags, Floats
 from ..geometry.poses import rotate
 from ..scene.rig import Sensor
 from .field_of_view import FREE, ViewPatch, grid_faces
 from .ray_fan import AngleWindow, RayFan, directions, shape_of
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 MAX_STEPS = 720
 """Of a patch, along a side."""

@@ -8,8 +8,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError, plural
 from pe_core.base.values import listed, rounded, vector
 from pe_core.geometry.grids import PerceptionSpace
@@ -23,8 +23,6 @@ from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.scenarios import fused_early
 from pe_core.sensors import PerceptionModel, kind_named, kind_of, measure
 from pe_tools.advice.advice import times
-
-Floats = NDArray[np.float64]
 
 SEES, HIDDEN = "sees", "occluded"
 """Reason of a sensor that measures the location, and of one whose view of it the vehicle blocks.

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pe_core import catalog
+from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
 from pe_core.geometry.grids import PerceptionSpace
 from pe_core.geometry.poses import Pose, dot
@@ -25,8 +25,6 @@ from pe_tools.advice.advice import metres, percent
 
 from .advice import Advice
 from .vehicle_checks import OFF_AXIS_M, Bodywork
-
-Floats = NDArray[np.float64]
 
 CLEAR_M, CLEAR_ABOVE_M = 0.5, 0.75
 """Greatest distance from the body of a mounted sensor [m]. Above the body it is larger: there are

@@ -7,14 +7,12 @@ from collections import Counter
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.scene.orientation import is_called
 from pe_core.scene.rig import Sensor
 from pe_core.scene.vehicle import Vehicle
 from pe_core.sensors import KINDS
-
-Floats = NDArray[np.float64]
 
 MIRRORS, SKIPPED = ("mirror",), ("-",)
 """Beginnings of words in the names of parts: those of mirrors, and of none."""

@@ -7,16 +7,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.scene.body_shape import USUAL_SECOND_M, BodyShape, car_factor, fitting_units, is_usual
 from pe_core.scene.orientation import LONGER, ON_GROUND, across, front_by_names, wheel_center
 from pe_core.scene.vehicle import Vehicle
 from pe_tools.advice.advice import metres
 
 from .advice import Advice
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

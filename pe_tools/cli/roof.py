@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
 from pe_core.geometry.grids import PerceptionSpace
 from pe_core.scene import Housing, Pose, Rig, Sensor, Vehicle, cuts_body
@@ -16,8 +17,6 @@ from pe_core.scene.body_shape import BodyShape
 from pe_core.scene.orientation import is_called
 from pe_core.search import MountArea, Mounting, SurfaceMount, snap_to_mount
 from pe_core.study import Search, Study
-
-Floats = NDArray[np.float64]
 
 MOUNT = "roof"
 ROOF = ("roof",)

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pe_core.base.errors import InputError, shown
 from pe_core.base.serialization import parse_json
@@ -154,8 +153,6 @@ def _sensor(path: Path, row: Table) -> PortableSensor:
     attributes = row.text("name"), sensor_pose, kind, model.split(",")[0] or None
     return PortableSensor(*attributes, picture_and_note[0], told=picture_and_note[1], entry=entry)
 
-
-Floats = NDArray[np.float64]
 
 PINHOLE, F_THETA = "pinhole", "ftheta"
 FOCAL_KEYS, MIDDLE, SIZE = ("fx", "fy"), ("cx", "cy"), ("width", "height")

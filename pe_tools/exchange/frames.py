@@ -11,14 +11,13 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
 from pe_core.base.values import vector
 from pe_core.geometry.poses import METRES, Pose, rpy_from_matrix
 from pe_core.scene.vehicle_description import Reference
 
-Floats = NDArray[np.float64]
 Quaternion = tuple[float, float, float, float]
 
 BODY_FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])

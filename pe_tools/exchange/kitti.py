@@ -11,12 +11,13 @@ from pathlib import Path
 
 import numpy as np
 
+from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
 from pe_core.base.values import Number
 from pe_core.geometry.poses import Pose
 
 from .foreign_values import Written, figures, spaced, text_of
-from .frames import BODY_FROM_OPTICAL, Floats, checked_rotation, pose_of, product, turned
+from .frames import BODY_FROM_OPTICAL, checked_rotation, pose_of, product, turned
 from .lens_pictures import pinhole_picture
 from .portable import PortableSensor
 from .portable_kinds import CAMERA, LIDAR, cameras, lidars

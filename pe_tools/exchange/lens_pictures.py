@@ -7,8 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.sensors.camera import BrownConrady, FTheta, KannalaBrandt, Lens, Pinhole
 
 Size = tuple[int, int]
@@ -160,8 +160,6 @@ def _straight_alike(a: Picture, b: Picture) -> bool:
     figures = zip((a.fx, a.fy, *a.center), (b.fx, b.fy, *b.center), strict=True)
     return all(abs(x - y) <= ALIKE_PX for x, y in figures)
 
-
-Floats = NDArray[np.float64]
 
 LAST_SQUARE = 10.0
 """Maximum r^2 to which nuScenes' devkit applies the distortion."""

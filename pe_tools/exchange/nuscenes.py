@@ -11,6 +11,7 @@ import hashlib
 from pathlib import Path
 from typing import Any
 
+from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError, shown
 from pe_core.base.table_reader import Table
 from pe_core.base.values import numbers, vector
@@ -22,7 +23,6 @@ from .foreign_values import Written, json_bytes, json_of, json_rows
 from .frames import (
     BODY_FROM_OPTICAL,
     BODY_FROM_RIGHT_FORWARD,
-    Floats,
     from_quaternion,
     pose_of,
     product,

@@ -6,14 +6,10 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
+from pe_core.base.arrays import Floats
 from pe_core.geometry.poses import Pose
 
 from .lens_pictures import KeptPicture, Picture, lost
-
-Floats = NDArray[np.float64]
 
 EVEN_RAD = 1e-4
 """Channels nearer to even distances than this are even."""

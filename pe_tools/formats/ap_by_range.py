@@ -9,16 +9,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError, shown
 from pe_core.geometry.poses import Pose
 from pe_core.scene import Objects
 from pe_core.scene.rig import Sensor, SensorModel
 from pe_core.sensors import measure_objects
 from pe_core.sensors.kind import PAPER_VOXEL_M, SIZES
-
-Floats = NDArray[np.float64]
 
 HEADINGS = 24
 """Headings of an object whose m is averaged."""

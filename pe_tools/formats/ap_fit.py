@@ -12,11 +12,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
 from pe_core.base.files import decode_text, numbered_lines, parse_number, quoted, read_bytes
 from pe_core.metric.entropy import AP_MAX, AP_MIN, ApCurve
-
-Floats = NDArray[np.float64]
 
 MIN_POINTS = 3
 SATURATION = 0.02

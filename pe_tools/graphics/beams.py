@@ -8,13 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats, Ints
 from pe_core.scene import Sensor, Vehicle, rotate
 from pe_core.sensors import Lidar
 
 from .sensor_images import lidar_of
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 PREVIEW_BEAMS, MAX_BEAMS = 12_000, 1_500_000
 """Maximum number of beams that are cast for a preview while the sensor moves, and when idle."""

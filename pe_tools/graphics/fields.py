@@ -7,14 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.scene import Sensor
 from pe_core.sensors import FieldPicture, Radar, Ultrasonic
 
 from .colors import VIEWPORT, Palette, on_scale, with_alpha
 from .primitives import Primitives, polyline
 from .sensor_images import BODY_NEAR, NO_ECHO, RANGES
-
-Floats = NDArray[np.float64]
 
 ARC_POINTS = 33
 """Azimuths of an arc; one of them is the middle."""

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.scene import Sensor
 
 from .colors import VIEWPORT, Palette, Rgba, with_alpha
 from .primitives import Primitives, fan, polyline
 from .sensor_images import camera_of
-
-Floats = NDArray[np.float64]
 
 PLACES = 16
 """Along each side of the picture."""

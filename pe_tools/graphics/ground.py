@@ -8,14 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.scene import PerceptionSpace
 from pe_core.scoring import GroundMap
 from pe_core.scoring.sight import GroundSight
 
 from .colors import CIVIDIS, COUNTS, DIFFERENCE_ON_DARK, VIRIDIS, Rgba, Scale, on_scale
 from .primitives import ColorKey, GroundSheet, LayerShape
-
-Floats = NDArray[np.float64]
 
 BADLY_SEEN = "badly seen"
 """The dark end of colours that begin above what nobody sees."""

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.scene import Sensor, Vehicle
 
 from . import fields, frustums, rays
@@ -19,8 +19,6 @@ from .beams import BeamChoice, Beams, cast, shown_beams
 from .colors import VIEWPORT, Palette, Rgba
 from .primitives import Primitives
 from .sensor_images import camera_of
-
-Floats = NDArray[np.float64]
 
 VIEW_SHARE = 0.62
 """Part of a beam that must be inside the picture: the end of a beam is faint."""

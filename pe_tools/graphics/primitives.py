@@ -9,9 +9,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pe_core.base.arrays import Floats
+
 from .colors import Rgba
 
-Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 LabelRectangle = tuple[float, float, float, float]
 """Left, lower, right and upper side of a box in a picture; lower and upper may change places."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.scene import Sensor
 
 from .beams import Beams, Cast
@@ -17,7 +18,6 @@ from .sensor_images import lidar_of
 
 Colors = NDArray[np.floating]
 
-Floats = NDArray[np.float64]
 BoxBounds = tuple[Floats, Floats]
 """Lowest and highest corner, (3,) each [m]."""
 

@@ -19,12 +19,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats, Ints
 from pe_core.base.values import Whole
 from pe_core.geometry.poses import cross, dot
 from pe_core.scene.vehicle import Vehicle
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 DEFAULT_TRIANGLES = 200_000
 TRIANGLES = Whole(1000, 10**9, "triangles")

@@ -10,15 +10,14 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.geometry.poses import Pose
 from pe_core.scoring.requirements import BODIES, Body
 
 from .colors import Rgba, with_alpha
 from .primitives import LayerShape, Primitives, Tag
 
-Floats = NDArray[np.float64]
 Bounds = tuple[Floats, Floats]
 
 BELOW_M = -0.02

@@ -12,13 +12,12 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from pe_core.base.arrays import Floats
 from pe_core.scene import Sensor
 
 from .colors import VIEWPORT, Palette, Rgb, with_alpha
-
-Floats = NDArray[np.float64]
 
 TINTS = {
     "lidar": (

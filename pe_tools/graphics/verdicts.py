@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.scoring.requirements import Verdict
-
-Floats = NDArray[np.float64]
 
 SPOT_M = 0.3
 """Size at which samples of paths and single spots are painted at least."""

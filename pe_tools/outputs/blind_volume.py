@@ -6,13 +6,13 @@ import math
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pe_core.base.arrays import Flags, Floats, Ints
 from pe_core.scene import PerceptionSpace, Rig, Vehicle
 from pe_core.scoring.sight.grid_regions import chained
 from pe_core.sensors import MeasurementCache, Voxels
 
-from .solid import Floats, Ints, Solid
+from .solid import Solid
 
 
 def level_outlines(solid: Solid, height: float) -> tuple[Floats, ...]:
@@ -46,8 +46,6 @@ def _passing(points: Floats, edges: Ints, height: float) -> Floats:
     share = (height - start[:, 2]) / (end[:, 2] - start[:, 2])
     return start[:, :2] + share[:, None] * (end - start)[:, :2]
 
-
-Flags = NDArray[np.bool_]
 
 SIDES = {
     (0, 1): ((1, 0, 0), (1, 1, 0), (1, 1, 1), (1, 0, 1)),

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
 from pe_core.scene import PerceptionSpace, Pose, Sensor, Vehicle
 from pe_core.scoring.sight.grid_regions import outlines
@@ -19,7 +20,7 @@ from pe_core.sensors import kind_of
 from ..graphics import sensor_colors_on_paper
 from .blind_volume import level_outlines
 from .request import OutputRequest, Rgb, plain_names
-from .solid import Floats, free_solid, mounted_view
+from .solid import free_solid, mounted_view
 
 STEP = math.radians(0.5)
 REACH_M = 30.0

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats, Ints
 from pe_core.scene import Reference, Vehicle
 from pe_core.scoring.sight.grid_regions import chained
 from pe_core.version import __version__
@@ -17,8 +18,6 @@ from pe_core.version import __version__
 from .request import BODY, GLASS, Rgb, linear
 from .solid import MountedView, border
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Entries = list[dict[str, Any]]
 
 FLOAT, UNSIGNED = 5126, 5125

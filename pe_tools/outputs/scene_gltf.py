@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from pe_core.base.arrays import Floats
 from pe_core.scene import Sensor, rotate
 
 from ..exchange import Written
@@ -22,7 +23,7 @@ from ..exchange.portable_kinds import portable_sensors
 from ..graphics import Rgb, sensor_colors_on_paper
 from .glb import LINES, GlbScene, add_vehicle, view_wires, y_up
 from .request import OutputRequest
-from .solid import Floats, free_solid, mounted_view
+from .solid import free_solid, mounted_view
 
 FILE, TITLE = "scene.glb", "glTF"
 ROOT = "Grp_Root"

@@ -13,16 +13,14 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.base.values import rounded
 from pe_core.scene.rig import Rig
 from pe_core.scoring import Evaluator, RigJudge
 from pe_core.search import Objective, evaluate_all, objective_of
 from pe_core.study.objective_search import is_by_ap, on_objects, searched_study
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
-
-Floats = NDArray[np.float64]
 
 SAMPLES = 4
 """Independent samples: three degrees of freedom for each standard error."""

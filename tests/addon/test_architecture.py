@@ -324,6 +324,10 @@ def public_names(room):
     return set(getattr(room, "__all__", (n for n in dir(room) if not n.startswith("_"))))
 
 
+ARRAY_TYPES = {"Flags", "Floats", "Ints", "Singles"}
+"""Types of arrays: every module's annotations name them."""
+
+
 def beside_the_faces(source):
     """Yield what a source takes from the engine that no room shows."""
     taken = {
@@ -332,7 +336,7 @@ def beside_the_faces(source):
         if isinstance(node, ast.ImportFrom) and node.module == "engine"
         for alias in node.names
     }
-    yield from set(taken.values()) - set(rooms())
+    yield from set(taken.values()) - set(rooms()) - ARRAY_TYPES
     for node in nodes_of(source):
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             room = rooms().get(taken.get(node.value.id))

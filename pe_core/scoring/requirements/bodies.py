@@ -14,16 +14,12 @@ from functools import cache
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Ints
 from ...base.errors import InputError, shown
 from ...base.values import A_NAME, Angle, Number
 from ...sensors.body_parts import INSIDE, ROUND
 from .mesh_shape import MeshShape
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 LENGTH = Number(1e-3, 100.0, unit="m", noun="length")
 HEADING = Angle(-360.0, 360.0)

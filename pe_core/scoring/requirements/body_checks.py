@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats
 from ...metric.entropy import ap_of_entropy
 from ...scene.objects import Objects
 from ...scene.rig import Rig, Sensor
@@ -26,8 +27,6 @@ from .definition import body_has_enough, parts_of, placed, visible_share
 from .reasons import columns_of
 from .verdict import Judged, Samples
 
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 CountsBySensor = Mapping[str, Floats]
 NOTHING = np.zeros(0)
 PART = ("part",)

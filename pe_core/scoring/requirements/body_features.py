@@ -9,14 +9,10 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Ints
 from ...base.read_only import read_only
 from ...scene.vehicle import Vehicle
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 
 CONTACT_M = 0.03
 """Height above the lowest point at which tyres are cut: a tyre of 0.3 m radius is 0.27 m long."""

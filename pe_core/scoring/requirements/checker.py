@@ -7,9 +7,6 @@ from dataclasses import replace
 from threading import RLock
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ...base.errors import InputError
 from ...geometry.grids import PerceptionSpace
 from ...scene.rig import Rig
@@ -26,7 +23,6 @@ from .verdict import Samples, Verdict, body_verdict
 from .zone_growth import ZoneGrowth, boxes_of
 from .zones import INSIDE_M, PlacedZone
 
-Floats = NDArray[np.float64]
 FULL, INSIDE, PREVIEW = "full", "inside", "preview"
 """Sets of samples: of the zones and the ground round them, of the zones alone, of fewer."""
 COARSE = 2.0

@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from ...scene.objects import Objects
 from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
@@ -22,7 +23,6 @@ from .bodies import DIAGONALS, Body, cell_plan, post_bands
 from .criteria import Criterion
 from .mesh_shape import surface_shares
 
-Floats = NDArray[np.float64]
 NEAREST_M = 1e-3
 NARROWEST_PX = 1e-9
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats
 from ...geometry.grids import PerceptionSpace
 from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
@@ -25,9 +25,6 @@ from .criteria import Criterion, Requirement
 from .margins import growth, rounded_down
 from .verdict import GroundFigures, Samples, Verdict
 from .zones import INSIDE_M, PlacedZone, signed_distance
-
-Flags = NDArray[np.bool_]
-Floats = NDArray[np.float64]
 
 FAR_OFF_M = 10.0
 """Blind ground this much too far out is as far off as can be."""

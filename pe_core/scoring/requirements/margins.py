@@ -9,12 +9,9 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats
 from .zones import INSIDE_M, PlacedZone
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 DECIMALS = 2
 """Margins are rounded to the centimetre, to the safe side."""

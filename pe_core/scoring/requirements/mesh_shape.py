@@ -13,14 +13,12 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats
 from ...base.errors import InputError
 from ...base.read_only import read_only
 from ...geometry.poses import cross, dot
 
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 GridRectangle = tuple[int, int, int, int]
 
 CELLS, SMALLEST_CELL_M = 64, 0.01

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from ...base.errors import InputError, shown
 from ...base.read_only import read_only
 from ...base.values import FINITE, LENGTH, real
@@ -24,7 +24,6 @@ from ...scene.vehicle import Vehicle
 from ...scene.vehicle_description import Reference, guessed_reference
 from .body_features import axles_of, mirror_faces, parts_below
 
-Floats = NDArray[np.float64]
 Place = float | str
 """A coordinate of a zone: metres in the ground frame, or a plane with an offset."""
 

@@ -5,17 +5,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Ints
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
 from ...sensors import kind_of
 from .bodies import Body
 from .criteria import Requirement, levels_of
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 
 TOO_FEW, IN_PART = "too few on it", "seen in part at most"
 NO_COUNT = "of a kind that does not count"

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Ints
 from ...base.values import Number
 from ...geometry.grids import PerceptionSpace
 from ...scene.rig import Rig
@@ -25,9 +26,6 @@ from .bodies import BODIES, Body
 from .definition import cautious, placed
 from .planes import VehiclePlanes
 from .zones import INSIDE_M, signed_distance
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 HEIGHT = Number(0.01, 5.0, unit="m", noun="length")
 NO_GROUND = -1

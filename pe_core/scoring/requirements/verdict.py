@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats
 from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
 from ..sight.ground_cells import GroundCells
@@ -17,9 +18,6 @@ from .criteria import Requirement
 from .margins import margin_of
 from .reasons import IN_PART, NO_COUNT, TOO_FEW, columns_of, why_not, worst_sample
 from .zones import INSIDE_M, PlacedZone
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 LINES = ("path", "spots")
 """Kinds of zones without an inside: one that fails does not shrink."""

@@ -13,8 +13,8 @@ from collections.abc import Generator, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Ints
 from ...scene.rig import Rig, Sensor
 from ...sensors import PerceptionModel
 from .body_checks import BodyChecks, SceneCaches, counted
@@ -23,10 +23,6 @@ from .margins import growth, margin_of
 from .reasons import columns_of
 from .verdict import Judged, Samples
 from .zones import INSIDE_M
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 
 MAX_GROWN = 30_000
 """A zone is grown as long as no more boxes stand on the ground that is added."""

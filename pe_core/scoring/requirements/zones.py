@@ -14,8 +14,8 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from ...base.errors import InputError, shown
 from ...base.setting import OneOf, check_settings, setting
 from ...base.values import Number, listed, pair
@@ -23,8 +23,6 @@ from ...scene.vehicle import Vehicle
 from ...scene.vehicle_description import Reference
 from .planes import DECIMALS, SIDES, Place, VehiclePlanes, parsed
 
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 PlacePair = tuple[Place, Place]
 
 STEP_M = 0.15

@@ -12,15 +12,12 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats
 from ...base.read_only import read_only
 from ...scene.vehicle import Vehicle
 from .grid_regions import outlines
 from .ground_cells import ROUNDING, GroundCells, Rectangle
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 BLIND_TO_M = 0.5
 """Height of the object for which blind ground is computed [m]: a post at the kerb or a small child.

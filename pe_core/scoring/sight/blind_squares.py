@@ -18,16 +18,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Flags
 from ...geometry.grids import GroundGrid, PerceptionSpace
 from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
 from ...sensors import GroundView, VisibleGroundCache
 from .grid_regions import dilated, squares_touching, squares_within, without_specks
 from .ground_cells import ROUNDING, STEP, GroundCells
-
-Flags = NDArray[np.bool_]
 
 BODY_M = 0.3
 """Diameter of the test body: that of the cylinders of FMVSS 111 and UN regulation 158, less than a

@@ -12,14 +12,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from ...base.errors import InputError
 from ...base.values import Number
 from ...geometry.grids import PerceptionSpace
 from ..sampling import CENTERED, scrambled_sobol
 
-Floats = NDArray[np.float64]
 Bounds = tuple[float, float]
 Rectangle = tuple[Bounds, Bounds]
 """A rectangle of the ground: bounds along x and along y [m]."""

@@ -17,8 +17,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Ints
 from ...base.errors import InputError, shown
 from ...base.read_only import read_only
 from ...base.values import Number, Whole
@@ -28,9 +28,6 @@ from ...scene.rig import Rig
 from ..sampling import CENTERED, scrambled_sobol
 from ..score import FARTHEST_M
 from ..targets.lone_objects import SECTORS, LoneObjects
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 RING_M = 1.0
 SMOOTHED_M = 5.0
@@ -181,8 +178,6 @@ def _end_of_longest(values: Floats, min_value: float) -> float:
     above, below = float(values[end - 1]), float(values[end])
     return end - 0.5 + (above - min_value) / (above - below)
 
-
-Flags = NDArray[np.bool_]
 
 AT_LEAST_M = 0.5
 """A reach this near to the end of the evaluated range counts as its end: it is "at least"."""

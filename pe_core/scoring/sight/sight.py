@@ -9,6 +9,7 @@ from threading import RLock
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from ...base.read_only import read_only
 from ...base.values import rounded
 from ...geometry.grids import PerceptionSpace
@@ -29,8 +30,6 @@ from .ground_cells import GroundCells, widened
 from .reach import AP, BEARINGS, Reach, Spokes, density_of, object_reach
 from .visibility import GroundSight, VisibleShares, ground_sight, visible_shares
 from .voxel_sets import VoxelsByCell, VoxelSetCache, by_prior, in_layer, layer_at
-
-Floats = NDArray[np.float64]
 
 ORIGIN = ((0.0, 0.0), (0.0, 0.0))
 SAMPLES = 65_536

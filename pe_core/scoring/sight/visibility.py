@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats, Ints
 from ...base.read_only import read_only
 from ...metric.fusion import Fusion
 from ...scene.rig import Rig
@@ -15,9 +16,6 @@ from ..sampling import VoxelSample
 from ..scenarios import fused_early
 from ..score import zone_masks
 from .voxel_sets import VoxelsByCell
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

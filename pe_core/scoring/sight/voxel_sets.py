@@ -11,6 +11,7 @@ from typing import Any, Generic, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats, Ints
 from ...base.errors import InputError
 from ...base.values import FINITE
 from ...geometry.grids import PerceptionSpace
@@ -22,9 +23,6 @@ from ...scene.vehicle import Vehicle
 from ...sensors import MeasurementCache, Voxels
 from .grid_regions import closed, gauss, without_specks
 from .ground_cells import ROUNDING, GroundCells
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 AT_ONCE = 1 << 17
 SPREAD_M = 0.7

@@ -10,8 +10,8 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Floats, Ints
 from ...base.values import rounded
 from ...metric.entropy import ap_of_entropy
 from ...scene.objects import Objects
@@ -22,9 +22,6 @@ from ..score import FARTHEST_M
 from .object_metric import FusedObjects
 from .object_sampling import SampledObjects
 from .scene_layout import ground_rectangles, overlap, vehicle_rectangle
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 SECTORS = (
     *("front", "front left", "left", "rear left"),

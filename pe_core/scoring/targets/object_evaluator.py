@@ -10,6 +10,7 @@ from threading import RLock
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from ...base.values import rounded
 from ...geometry.grids import PerceptionSpace
 from ...metric.entropy import H_BLIND
@@ -26,7 +27,6 @@ from .object_metric import FusedObjects, ObjectSums
 from .object_sampling import CENTERED, SampledObjects, sample_objects
 from .target_rule import OBJECTS, TargetRule
 
-Floats = NDArray[np.float64]
 MByName = Mapping[str, Floats]
 """m of sensors on the objects, (N,) each, by name."""
 

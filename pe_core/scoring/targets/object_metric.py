@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from ...base.errors import InputError
 from ...base.values import rounded
 from ...metric.entropy import H_BEST, H_BLIND, ap_of_entropy
@@ -19,8 +20,6 @@ from ...sensors import PerceptionModel
 from ..scatter import ALIKE, RULE_OF_THREE, FigureKey, Scatter, residuals, sample_digest
 from ..score import POINTS, FoundClass, ObjectScore, PartScore, zone_masks
 from .object_sampling import SampledObjects
-
-Floats = NDArray[np.float64]
 
 
 class FusedObjects:

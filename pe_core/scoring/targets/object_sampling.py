@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Floats, Ints
 from ...base.errors import InputError
 from ...base.memory import require_memory
 from ...base.read_only import read_only
@@ -28,9 +28,6 @@ from .scene_layout import (
     vehicle_rectangle,
 )
 from .target_rule import TargetRule
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 OBJECT_BYTES = 1500
 """Memory of an object while scenes are sampled and sensors are measured on it."""

@@ -16,15 +16,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats, Ints
 from ...base.errors import InputError
 from ...geometry.grids import PerceptionSpace
 from ...prior.boxes import Boxes
 from ...prior.classes import ObjectClass, sampled_positions
 from ...scene.vehicle import Vehicle
 from ..sampling import DIMENSIONS, scrambled_sobol
-
-Floats = NDArray[np.float64]
-
 
 X, Y, HEIGHT, LENGTH, WIDTH, HEADING, ANY = range(DIMENSIONS)
 """What the dimensions of the Sobol' sequence sample: the first ones, which fill best, positions."""
@@ -171,8 +169,6 @@ def overlap(a: GroundRectangles, b: GroundRectangles) -> NDArray[np.bool_]:
             overlaps &= across < one.across + other.along * slant + other.across * turn
     return overlaps
 
-
-Ints = NDArray[np.int64]
 
 MAX_ATTEMPTS = 200
 """How many positions are proposed for an object before placing it fails."""

@@ -6,14 +6,12 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from .._vendor.cmaes._cma import CMA
 from ..design_variable import METRE, RADIAN, SHARE
 from ..parametrization import Candidate
 from .method import Evaluated, Given, MethodPart, Phase, QuestionStream, sampled_candidate
-
-Floats = NDArray[np.float64]
 
 SCALE = {METRE: 1.0, RADIAN: math.radians(30.0), SHARE: 1.0}
 """The scale of each unit: the first reach of Algorithm 1, and all of a list."""

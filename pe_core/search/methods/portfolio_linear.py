@@ -16,9 +16,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...base.arrays import Floats
 from ..parametrization import Candidate
 from .method import Given, MethodPart, Phase
-from .portfolio_ranges import Floats, UnitRanges
+from .portfolio_ranges import UnitRanges
 
 LEAST_HEIGHT, LONGEST, NEW_HEIGHT = 0.25, 2.1, 0.5
 """Powell's alpha, beta, gamma: least height and longest edge of a simplex, and the height of a new

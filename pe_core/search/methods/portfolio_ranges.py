@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from ..design_variable import SHARE
 from ..parametrization import Vector
 from .method import Given
-
-Floats = NDArray[np.float64]
 
 
 class UnitRanges:

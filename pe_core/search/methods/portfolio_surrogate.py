@@ -17,10 +17,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...base.arrays import Floats
 from ..design_variable import SHARE
 from ..parametrization import Candidate
 from .method import MAX_SAMPLED, Given, MethodPart, Phase, QuestionStream
-from .portfolio_ranges import Floats, UnitRanges
+from .portfolio_ranges import UnitRanges
 
 SAMPLED = 500
 """Placements sampled for each question."""

@@ -18,12 +18,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from ...geometry.poses import dot
 from .lens import Lens
 from .model import Camera
 from .pixel_area import QUAD, ROUNDING_PX, SensorAxes, clamped_integral
 
-Floats = NDArray[np.float64]
 ImagePoints = tuple[Floats, Floats]
 """Image positions, right and down [px]."""
 

@@ -8,8 +8,8 @@ most voxels whether the vehicle hides them; it covers all directions.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Floats, Ints, Singles
 from ...geometry.grids import PerceptionSpace
 from ...geometry.poses import Pose
 from ...metric.fusion import VisibleRows
@@ -20,10 +20,6 @@ from .model import Camera
 from .sample_areas import Sorter, edge_areas
 from .tie_rules import NUDGE, aims_at, axes_of, offsets_of
 from .voxel_occlusion import VoxelOcclusion, distance_along, positions_of, span
-
-Floats = NDArray[np.float64]
-Singles = NDArray[np.float32]
-Ints = NDArray[np.int64]
 
 ALL_ROUND = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0]])
 """The directions that `VoxelOcclusion` gets as corners of the picture: they include all sides."""

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats, Ints
 from ...geometry.poses import dot
 from ..object_kernel import PlacedBoxes
 from .bent_area import RIGHT_BEHIND, ImagePoints, aperture_of
@@ -23,8 +24,6 @@ from .lens import Lens
 from .model import Camera
 from .pixel_area import QUAD, ROUNDING_PX, clamped_integral
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 ImagedFaces = tuple[Ints, Floats, ImagePoints]
 """Boxes (P,), the area (P,) of a face of each, and points (P, K) that bound its image [px]."""
 

@@ -12,6 +12,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats, Singles
 from ...geometry.poses import dot
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle, VisibleMesh
@@ -20,8 +21,6 @@ from .model import Camera
 from .pixel_area import clipped_pixel_area
 from .tie_rules import aims_at, axes_of, offsets_of
 
-Floats = NDArray[np.float64]
-Singles = NDArray[np.float32]
 Mask = NDArray[np.bool_]
 
 

@@ -13,8 +13,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Floats, Ints, Singles
 from ...geometry.grids import PerceptionSpace
 from ...geometry.indexing import count_up
 from ...geometry.poses import Pose, dot
@@ -28,9 +28,6 @@ from .sample_areas import NEAR_SIDES
 from .tie_rules import MARGIN, NUDGE, aims_at, axes_of, offsets_of
 from .voxel_occlusion import VoxelOcclusion, distance_along, positions_of, span
 
-Floats = NDArray[np.float64]
-Singles = NDArray[np.float32]
-Ints = NDArray[np.int64]
 HalfSpace = tuple[Floats, float]
 """A direction, and the minimum distance of a voxel's centre from the camera along it [m]."""
 

@@ -9,19 +9,16 @@ from __future__ import annotations
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Ints
 from ...scene.rig import Sensor
 from ...scene.vehicle import VisibleMesh
-from ..ground_kernel import Flags, GroundKernel, GroundView, VisibleGround, heights_of_post
+from ..ground_kernel import GroundKernel, GroundView, VisibleGround, heights_of_post
 from .definition import hidden, is_ranged, out_of_range
 from .model import Camera
 from .picture import PictureBins
 from .pixel_area import frustum_distance, in_sensor_frame
 from .tie_rules import IN_FRONT, aims_at, axes_of
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 BLOCK_M = 0.125
 """Side of a block of squares: gaps between the middles of blocks are too narrow to count."""

@@ -7,6 +7,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats, Ints
 from ...geometry.poses import dot
 from ...scene.rig import Sensor
 from ...scene.vehicle import VisibleMesh
@@ -19,9 +20,6 @@ from .object_definition import visible_share
 from .picture import PictureBins
 from .pixel_area import frustum_distance
 from .tie_rules import axes_of
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 MARGIN_M = 1e-3
 """Balls round boxes are enlarged by this."""

@@ -9,6 +9,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from ...base.arrays import Floats
 from ...geometry.grids import PerceptionSpace
 from ...metric.entropy import RTM3D
 from ...scene.objects import Objects
@@ -17,7 +18,7 @@ from ...scene.vehicle import Vehicle
 from ..body_parts import BodyParts
 from ..field_of_view import EgoMask, ViewPatch
 from ..ground_kernel import GroundView
-from ..kernels import Floats, Voxels
+from ..kernels import Voxels
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, Kind, derived_object_curves
 from ..object_kernel import ObjectView, PlacedBoxes
 from ..weather import Weather, camera_range, limited

@@ -13,12 +13,11 @@ from dataclasses import dataclass, field, replace
 from typing import ClassVar, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from ...base.errors import InputError
 from ...base.values import Angle, Number
 
-Floats = NDArray[np.float64]
 Own = TypeVar("Own", bound="Lens")
 
 FOCAL = Number(1e-6, cap=1e12, unit="pixels", noun="focal length")

@@ -12,11 +12,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from .lens import Lens
 from .lens_models import BrownConrady
 from .model import Camera
 
-Floats = NDArray[np.float64]
 Array = NDArray[np.floating]
 
 ENTRIES = 1 << 15

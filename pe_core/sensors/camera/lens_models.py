@@ -13,11 +13,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from .lens import Lens, around_axis
-
-Floats = NDArray[np.float64]
 
 ALMOST_A_PLANE = math.radians(89.9)
 """Directions farther from the axis are outside any picture."""

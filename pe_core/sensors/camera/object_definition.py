@@ -16,8 +16,8 @@ from collections.abc import Callable, Iterator
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Ints
 from ...geometry.indexing import blocks
 from ...geometry.poses import dot, rotate
 from ...scene.objects import Objects
@@ -29,10 +29,6 @@ from .box_area import BoxImages, along_camera, box_images, face_points
 from .definition import out_of_range
 from .model import Camera
 from .tie_rules import axes_of
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 FIBONACCI = np.array(
     [55, 89, 144, 233, 377, 610, 987, 1597, 2584, 4181, 6765, 10946, 17711, 28657, 46368, 75025]

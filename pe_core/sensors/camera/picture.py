@@ -8,6 +8,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats, Ints
 from ...geometry.bins import Raster, corner_max, corner_min, spans_of_triangles
 from ...geometry.indexing import count_up
 from ...geometry.poses import dot, rotate
@@ -16,8 +17,6 @@ from ...scene.vehicle import Vehicle
 from ..field_of_view import FREE, OUTSIDE, EgoMask, ViewPatch, grid_faces, require_mask_size
 from ..kernels import Occlusion
 from .model import Camera
-
-Floats = NDArray[np.float64]
 
 
 def picture_rays(sensor: Sensor, most: int) -> Floats:
@@ -98,7 +97,6 @@ def picture_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
     return EgoMask(found)
 
 
-Ints = NDArray[np.int64]
 Extent = tuple[Ints, Ints]
 """First and last bin of triangles along one coordinate."""
 

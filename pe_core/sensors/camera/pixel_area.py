@@ -11,10 +11,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from .model import Camera
 from .tie_rules import IN_FRONT
 
-Floats = NDArray[np.float64]
 SensorAxes = tuple[Floats, Floats, Floats]
 """Depth (forward), left and up of points, each (V,) [m]."""
 

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from ...geometry.poses import Pose, dot
 from ...scene.vehicle import VisibleMesh
 from .bent_area import BALL, bent_pixel_area
@@ -23,8 +24,6 @@ from .lens_lookup import Array, QuickLens
 from .model import Camera
 from .pixel_area import clipped_pixel_area, frustum_distance, in_sensor_frame, in_view
 from .tie_rules import MARGIN, aims_at, axes_of, offsets_of
-
-Floats = NDArray[np.float64]
 
 NEAR_SIDES = 15.0
 """Depth in voxel sides below which the exact area is used: the error of the closed form is then at
@@ -77,7 +76,6 @@ def _flat_area(camera: Camera, offsets: Floats, depth: Floats, side: float) -> F
     return (camera.focal_px * side) ** 2 * (away[0] + away[1] + away[2] + 1.5 * side) / cube
 
 
-Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
 FAR_PIECES = 4

@@ -21,11 +21,9 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from ...geometry.poses import Pose, rotation_matrix
-
-Floats = NDArray[np.float64]
 
 TURN_DEG = 360.0
 ANGLE_DECIMALS = 11

@@ -12,14 +12,12 @@ from threading import Lock
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats, Ints
 from ...geometry.bins import FACES, CubeFace, Raster
 from ...geometry.culling import Ends, FaceLook
 from ...geometry.indexing import count_up
 from ...geometry.occlusion_map import OcclusionMap
 from ...scene.vehicle import VisibleMesh
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 def positions_of(

@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Ints
 from ...geometry.poses import rotate
 from ...geometry.raycast import Hits
 from ...scene.rig import Sensor
@@ -25,10 +26,6 @@ from .lattice import lattice_of
 from .model import lidar_of
 from .occlusion import ApproximateOcclusion, BeamSlopes, occlusion_candidates
 from .tie_rules import without_zeros
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

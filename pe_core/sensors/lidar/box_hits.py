@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Ints
 from ...geometry.indexing import blocks, count_up, stable_order
 from ...geometry.poses import dot, rotate
 from ...scene.rig import Sensor
@@ -28,9 +29,6 @@ if TYPE_CHECKING:
     from .fan_runs import ChannelRuns, Fan, RunBlock
     from .lattice import Lattice
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 PAIR_BLOCK = 1 << 15
 """(box, beam) pairs tested together: their arrays fit the processor's cache."""

@@ -18,11 +18,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats, Singles
 from ...geometry.indexing import blocks
 from .slopes import SlopeBounds
 
-Floats = NDArray[np.float64]
-Singles = NDArray[np.float32]
 Counts = NDArray[np.int32]
 
 MARGIN = np.float32(4e-6)

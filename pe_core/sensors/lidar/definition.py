@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats, Ints
 from ...geometry.poses import dot, rotate
 from ...scene.objects import Objects
 from ...scene.rig import Sensor
@@ -19,9 +20,6 @@ from ..body_parts import CELLS, LAYERS, NO_END, BodyParts
 from ..object_kernel import PlacedBoxes
 from .model import lidar_of
 from .tie_rules import offsets_in_voxels, without_zeros
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 MAX_BEAM_TESTS = 1 << 23
 """Beams times voxels (or boxes) tested together: a bound of the memory."""

@@ -14,12 +14,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Ints
 from .model import Lidar
 from .slopes import ChannelSlopes
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 Small = NDArray[np.int16]
 
 CACHED_MODELS = 16

@@ -8,14 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from ...geometry.poses import rotate
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
 from ..field_of_view import EgoMask, ViewPatch, grid_faces
 from .beams import beam_field
 from .model import Lidar, lidar_of
-
-Floats = NDArray[np.float64]
 
 MIN_EXTENT = math.radians(0.2)
 """A field of view without height or width, as of a single channel, is drawn with this one [rad]."""

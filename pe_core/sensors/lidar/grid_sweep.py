@@ -18,11 +18,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats, Ints
 from ...geometry.grids import PerceptionSpace
 from .tie_rules import position_in_voxels, without_zeros
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Fixed = NDArray[np.uint64]
 SaturatingCounts = NDArray[np.uint16]
 

@@ -10,17 +10,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Ints
 from ...geometry.grids import GroundGrid
 from ...geometry.indexing import count_up
 from ...scene.rig import Sensor
-from ..ground_kernel import Flags, GroundKernel, GroundView, VisibleGround
+from ..ground_kernel import GroundKernel, GroundView, VisibleGround
 from .beams import BeamCache
 from .model import lidar_of
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 SPACING_M, MAX_SPACING_M = 0.05, 0.15
 """Distance between the points of a segment; larger if there were more than MAX_POINTS points."""

@@ -19,6 +19,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Ints
 from ...scene.rig import Sensor
 from ..body_parts import BodyParts
 from ..object_kernel import ObjectKernel, ObjectView, PlacedBoxes
@@ -30,9 +31,6 @@ from .lattice import lattice_of
 from .model import lidar_of
 from .planar_clip import PlanarBoxes, TiltedBoxes, tilted_runs, upright_runs
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 Bits = NDArray[np.uint64]
 
 MAX_FANS = 16

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ...base.arrays import Floats
 from ...geometry.grids import PerceptionSpace
 from ...metric.entropy import POINTPILLARS, ApCurve
 from ...scene.objects import Objects
@@ -17,7 +18,7 @@ from ...scene.vehicle import Vehicle
 from ..body_parts import BodyParts
 from ..field_of_view import EgoMask, ViewPatch
 from ..ground_kernel import GroundView
-from ..kernels import Floats, Voxels
+from ..kernels import Voxels
 from ..kind import Kind, derived_object_curves
 from ..object_kernel import ObjectView
 from ..weather import Weather, lidar_range, limited

@@ -13,16 +13,13 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Floats, Ints
 from ...geometry.indexing import count_up
 from ...geometry.poses import rotate
 from .bracket import Bracket
 from .model import Lidar
 from .slopes import SlopeBounds, SlopeCounts
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 WINDOW_MARGIN = 1e-7
 """Windows are widened by this against rounding [rad]."""

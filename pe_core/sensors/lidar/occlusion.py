@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Ints, Singles
 from ...geometry.bins import corner_max, corner_min
 from ...geometry.grids import PerceptionSpace, top_heights
 from ...geometry.poses import rotate
@@ -34,10 +35,6 @@ from .model import lidar_of
 if TYPE_CHECKING:
     from .lattice import Lattice
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
-Singles = NDArray[np.float32]
 Indices = NDArray[np.intp]
 
 MARGIN = 1e-6

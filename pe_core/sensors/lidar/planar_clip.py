@@ -23,13 +23,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Ints
 from ...geometry.poses import dot, rotate
 from ..object_kernel import PlacedBoxes
 from .fan_runs import RotatedFan, RunBlock
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 SideLines = tuple[Floats, Floats]
 """(a, b), (N,) each: along a ray (x, y) the inverse distance of a side is ``a x + b y`` [1/m]."""

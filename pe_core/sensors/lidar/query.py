@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from ...geometry.poses import rotate
 from ...scene.rig import Sensor
 from ..kind import BETWEEN_BEAMS, OUT_OF_RANGE, OUT_OF_VIEW
 from .definition import BALL, beam_directions, cube_crossing
 from .model import Lidar, lidar_of
 from .tie_rules import offsets_in_voxels
-
-Floats = NDArray[np.float64]
 
 WIDE_GAP_RAD = math.radians(5.0)
 """A gap between azimuths wider than this, and than 1.5 steps, bounds a field of view [rad]."""

@@ -14,12 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Singles = NDArray[np.float32]
+from ...base.arrays import Flags, Floats, Singles
+
 Small = NDArray[np.int16]
 Counts = NDArray[np.int32]
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 BOUND_BINS = 1 << 16
 BOUND_MARGIN = np.float32(4e-6)

@@ -14,9 +14,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from ...base.arrays import Floats
 
 SNAP_DECIMALS = 9
 NUDGE_UNIT = 2.0**-40

@@ -22,13 +22,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Singles
 from ...geometry.indexing import blocks
 from .slopes import SlopeCounts
 
-Floats = NDArray[np.float64]
-Singles = NDArray[np.float32]
 Indices = NDArray[np.intp]
-Flags = NDArray[np.bool_]
 Small = NDArray[np.int16]
 Counts = NDArray[np.int32]
 

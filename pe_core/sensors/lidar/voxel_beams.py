@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Floats, Ints, Singles
 from ...geometry.indexing import blocks
-from .bracket import Bracket, Singles, bracket
+from .bracket import Bracket, bracket
 from .lattice import windows_of
 from .upright import Upright
 
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
     from .beams import BeamEnds, RotatedBeams
     from .lattice import Lattice
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Counts = NDArray[np.int32]
 
 PAIR_BLOCK = 1 << 16

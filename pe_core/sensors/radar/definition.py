@@ -24,8 +24,8 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Ints
 from ...geometry.indexing import blocks
 from ...geometry.poses import dot
 from ...scene.objects import Objects
@@ -39,9 +39,6 @@ from ..ray_fan_boxes import side_points
 from .detection import counted, detection_probability, signal_to_noise
 from .model import Radar, RadarMode, radar_of
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 RivalsOf = Callable[[Ints], Rivals]
 
 TARGET = "car"

@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Floats = NDArray[np.float64]
+from ...base.arrays import Floats
 
 MIN_PD = 0.1
 """A resolution cell that is detected more rarely than this does not count."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Ints
 from ...geometry.poses import dot
 from ...scene.rig import Sensor
 from ..box_rays import Rivals, rivals_near
@@ -22,10 +22,6 @@ from .definition import (
 )
 from .model import radar_of
 from .reflectivity import LOW_DBSM
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 
 def measure_view(sensor: Sensor, view: ObjectView, fan: RayFan) -> Floats:

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from ...base.arrays import Floats
 from ...metric.entropy import ApCurve
 from ...scene.objects import Objects
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
-from ..kernels import Floats
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, PAPER_VOXEL_M, SIZES
 from ..ray_fan import angles_of
 from ..ray_fan_kind import FanKind

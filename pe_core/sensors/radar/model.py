@@ -11,6 +11,7 @@ from typing import ClassVar, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...base.arrays import Floats
 from ...base.degrees import all_as_in_file
 from ...base.errors import InputError, shown
 from ...base.read_only import read_only
@@ -21,8 +22,6 @@ from ..ray_fan import AngleWindow
 from ..weather import LIGHT_M_S
 from .detection import ratio_of_db, snr_for
 from .reflectivity import DBSM, Reflectivity, cautious_reflectivity, reflectivity_of
-
-Floats = NDArray[np.float64]
 
 RANGE = Number(SHORTEST_RANGE_M, cap=1e5, unit="m", noun="length")
 SCALE = Number(0.0, 1.0)

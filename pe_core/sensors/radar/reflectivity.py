@@ -8,12 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from ...base.errors import InputError, shown
 from ...base.values import A_NAME, Number, listed
-
-Floats = NDArray[np.float64]
 
 DBSM = Number(-60.0, 80.0, unit="dBsm")
 ASPECT_DEG = Number(0.0, 180.0, unit="degrees", noun="angle")

@@ -11,8 +11,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats
 from ...geometry.poses import dot
 from ...scene.objects import Objects
 from ...scene.rig import Sensor
@@ -22,10 +22,6 @@ from ..object_kernel import NUDGE_M, PlacedBoxes
 from ..ray_fan import RayFan, angles_of, cast_fan
 from ..ray_fan_boxes import side_points
 from .model import Ultrasonic, ultrasonic_of
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 SIDE_POINTS = 144, 89
 """Points of a side of a box: neighbouring Fibonacci numbers."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats
 from ...geometry.poses import dot
 from ...scene.rig import Sensor
 from ..object_kernel import NUDGE_M, ObjectView
@@ -12,9 +12,6 @@ from ..ray_fan import RayFan
 from ..ray_fan_kernels import FanRules
 from .definition import in_cone, measure_voxels, objects_heard, returns_echo
 from .model import ultrasonic_of
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 def cone_of(sensor: Sensor, fan: RayFan) -> Flags:

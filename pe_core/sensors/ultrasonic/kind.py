@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ...base.arrays import Floats
 from ...base.degrees import degrees_in_file
 from ...base.values import Number
 from ...metric.entropy import AP_MIN, ApCurve
@@ -16,7 +17,6 @@ from ...scene.objects import Objects
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
 from ..field_of_view import NEAREST
-from ..kernels import Floats
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, SIZES
 from ..ray_fan import angles_of
 from ..ray_fan_kind import FanKind

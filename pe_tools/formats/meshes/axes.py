@@ -12,13 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError, shown
 from pe_core.geometry.poses import Pose, rotate
 from pe_core.scene.body_shape import BodyShape
 from pe_core.scene.mesh import Mesh, MeshAxes
 from pe_core.scene.orientation import along, front_by_names, hood_end, up_of
-
-Floats = NDArray[np.float64]
 
 BLENDER_S_FRONT = "-y"
 """Forward axis if z is up and the body is along y: Blender's front view shows the front so."""

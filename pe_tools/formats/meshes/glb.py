@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
 from pe_core.base.memory import require_memory
 from pe_core.geometry.poses import rotate
@@ -19,7 +20,6 @@ from pe_core.scene.mesh import Mesh
 from .glb_document import Document, Item, placed_meshes
 from .mesh import fan, gathered, make_mesh, require_room
 
-Floats = NDArray[np.float64]
 Faceted = tuple[Floats, NDArray[Any]]
 """Points (N, 3) and the corners (F, 3) among them of triangles."""
 

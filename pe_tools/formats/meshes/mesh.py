@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError, shown
 from pe_core.base.memory import require_memory
 from pe_core.base.plugins import (
@@ -190,9 +191,6 @@ def _new_name(name: str, taken: set[str], used: Counter[str]) -> str:
         fit = base if used[base] == 1 else f"{base} ({used[base]})"
     taken.add(fit)
     return fit
-
-
-Floats = NDArray[np.float64]
 
 
 class Piece(NamedTuple):

@@ -15,7 +15,7 @@ from typing import TextIO
 import bpy
 
 from ..engine import app, page, pe
-from .open_file import REVIEW, flush, take_over_process
+from .open_file import flush, take_over_process
 from .scene_verbs import (
     OBJECTS,
     add_objects_options,
@@ -80,7 +80,6 @@ def parser(prog: str) -> argparse.ArgumentParser:
     optimize = verbs.add_parser("optimize", help="search for better places for the sensors")
     for verb, job in ((score, pe.ScoreJob), (optimize, pe.OptimizeJob)):
         app.add_run_options(verb, search=job is pe.OptimizeJob)
-        verb.add_argument("--no-render", action="store_false", dest="render", help=f"no {REVIEW}")
         add_variant_option(verb)
         verb.set_defaults(function=run_job, job=job, kind=verb.prog.split()[-1])
     page.add_page()
@@ -113,9 +112,6 @@ def parser(prog: str) -> argparse.ArgumentParser:
     review.add_argument("variants", nargs="*", metavar="NAME", help=about)
     page.add_review_options(review)
     app.add_score_options(review)
-    review.add_argument(
-        "--no-render", action="store_false", dest="render", help="no rendered picture"
-    )
     review.set_defaults(function=review_scene)
     sweep = verbs.add_parser("sweep", help="run the scene, or variants, with many changes")
     sweep.add_argument("variants", nargs="*", metavar="NAME", help="variants (default: the scene)")

@@ -58,34 +58,19 @@ def opened_scene() -> bpy.types.Scene:
     return scene
 
 
-OPTIMIZED, REVIEW = studies.OPTIMIZED, studies.REVIEW
-FILE_ENDINGS = {
-    b"\x89PNG": b"IEND\xaeB`\x82",
-    b"\x28\xb5\x2f\xfd": b"\xb1\xea\x92\x8f",
-}
-"""The end of a complete file by its beginning: PNG, and a compressed .blend (zstd seek table)."""
+OPTIMIZED = studies.OPTIMIZED
+BLEND_BEGIN, BLEND_END = b"\x28\xb5\x2f\xfd", b"\xb1\xea\x92\x8f"
+"""Of a complete compressed .blend file (zstd with its seek table)."""
 
 
-def write_artifacts(outcome: pe.Outcome, data: dict, folder: Path, *, render: bool) -> None:
-    """Write the artifacts that only Blender makes: the optimized scene, and the picture."""
+def write_optimized(outcome: pe.Outcome, data: dict, folder: Path) -> None:
+    """Write the optimized scene beside the results of a search."""
     scene = bpy.context.scene
-    if outcome.kind == "optimize":
-        bridge.place_rig(scene, outcome.study.rig)
-        taken = result_staleness.fingerprint(scene)
-        bridge.store_outcome(scene, outcome, taken.text)
-        bridge.mark_active(scene, bridge.store_search(scene, outcome, taken.surroundings))
-        jobs.add_to_result(data, folder, {OPTIMIZED: save_copy})
-    if render:
-        from .. import review  # imported only for a picture
-
-        def picture(path: Path) -> None:
-            try:
-                review.render_review(scene, outcome.study, outcome, path)
-            except RuntimeError as error:
-                raise pe.InputError(path, "file", "a picture", error) from None
-            check_complete(path)
-
-        jobs.add_to_result(data, folder, {REVIEW: picture})
+    bridge.place_rig(scene, outcome.study.rig)
+    taken = result_staleness.fingerprint(scene)
+    bridge.store_outcome(scene, outcome, taken.text)
+    bridge.mark_active(scene, bridge.store_search(scene, outcome, taken.surroundings))
+    jobs.add_to_result(data, folder, {OPTIMIZED: save_copy})
 
 
 def write_front(found: pe.TradeOff, folder: Path) -> None:
@@ -106,12 +91,12 @@ def save_copy(path: Path) -> None:
 
 
 def check_complete(path: Path) -> None:
-    """Raise `InputError` where a file is incomplete.
+    """Raise `InputError` where a compressed .blend file is incomplete.
 
     On a full disk Blender leaves half a file, or none, without an error.
     """
     data = path.read_bytes() if path.is_file() else b""
-    end = next((end for begin, end in FILE_ENDINGS.items() if data.startswith(begin)), b"")
+    end = BLEND_END if data.startswith(BLEND_BEGIN) else b""
     if not data or not data.endswith(end):
         found = f"that {len(data)} bytes of it could be written"
         raise pe.InputError(path, "file", "enough space on the disk", found)

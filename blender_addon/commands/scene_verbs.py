@@ -13,14 +13,13 @@ from .. import bridge, result_staleness
 from ..engine import app, catalog, exchange, jobs, page, pe, studies, text
 from .open_file import (
     OPTIMIZED,
-    REVIEW,
     from_file,
     opened_scene,
     opened_study,
     quiet_blender,
     save_copy,
-    write_artifacts,
     write_front,
+    write_optimized,
 )
 
 OBJECTS, LIDAR = "blender", "lidar"
@@ -79,13 +78,12 @@ def run_job(args: argparse.Namespace) -> app.Answer:
         with from_file():
             bridge.check_placeable(bpy.context.scene, study)
     job, name = app.job_and_folder(study, args, app.begun_search(args))
-    ours = [OPTIMIZED] * (kind == "optimize") + [REVIEW] * args.render
 
     def leave(outcome: pe.Outcome, data: dict, folder: Path) -> None:
         with quiet_blender():
-            write_artifacts(outcome, data, folder, render=args.render)
+            write_optimized(outcome, data, folder)
 
-    more = app.with_pages(args, app.More(ours, leave))
+    more = app.with_pages(args, app.More([OPTIMIZED], leave) if kind == "optimize" else None)
     output = None
     if name is not None:
         names = [*(more.names if more else ()), *jobs.result_names(study, kind)]
@@ -203,14 +201,4 @@ def review_scene(args: argparse.Namespace) -> app.Answer:
         by_name = studies_of(opened_scene(), args.variants)
     else:
         by_name = {Path(bpy.data.filepath).stem or "scene": opened_study()}
-    # The picture shows the scene's own vehicle: variants have theirs drawn.
-    picture = rendered if args.render and not args.variants else None
-    return page.review_studies(by_name, args, picture, bridge.blender_version())
-
-
-def rendered(outcome: pe.Outcome) -> bytes:
-    """Return Blender's picture of an outcome, PNG."""
-    from .. import review  # only who wants a picture pays for it
-
-    with quiet_blender():
-        return review.picture_of(bpy.context.scene, outcome)
+    return page.review_studies(by_name, args, bridge.blender_version())

@@ -145,16 +145,15 @@ def _with_ending(path: Path, row: outputs.SceneOutput) -> Path:
     return path if row.has_several or path.suffix else path.with_suffix(Path(row.file).suffix)
 
 
-SCORED_SHARE, RENDERED_SHARE = 0.25, 0.4
-"""About which share of an export is done after the score, and after the picture."""
-RENDERING = "rendering"
+SCORED_SHARE = 0.25
+"""About which share of an export is done after the score."""
 
 
-def headless_command(path: Path, render: bool, about: page.About) -> str:
+def headless_command(path: Path, about: page.About) -> str:
     """Return the command that makes the page from the saved file; empty if it is unsaved."""
     if not bpy.data.filepath or bpy.data.is_dirty:
         return ""
-    options = ["review", "-o", path.parent.name or ".", *([] if render else ["--no-render"])]
+    options = ["review", "-o", path.parent.name or "."]
     texts = {field.name: getattr(about, field.name) for field in fields(about)}
     options += [f"--{name}={text}" for name, text in texts.items() if text]
     file = shlex.quote(Path(bpy.data.filepath).name)
@@ -162,7 +161,7 @@ def headless_command(path: Path, render: bool, about: page.About) -> str:
 
 
 class PE_OT_render_review(ExportOperator, bpy.types.Operator):
-    """Score the present sensors and render a picture of the rig (.png)"""
+    """Score the present sensors and write a picture of the rig (.png)"""
 
     bl_idname = "pe.render_review"
     bl_label = "Render Review"
@@ -171,24 +170,23 @@ class PE_OT_render_review(ExportOperator, bpy.types.Operator):
     filter_glob: StringProperty(default="*.png", options={"HIDDEN"})
 
     def job(self, context: bpy.types.Context) -> ExportJob:
-        """Read the scene; score and render it step by step."""
-        path, scene = chosen_file(self.filepath), context.scene.name
-        study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
-        return ExportJob(study, lambda job: PE_OT_render_review.steps(job, path, scene))
+        """Read the scene; score and draw it step by step."""
+        path = chosen_file(self.filepath)
+        study = bridge.study_as_drawn(context.scene)
+        pe.prepare_folder(path.parent)  # fail before the work, not after
+        steps = PE_OT_render_review.steps  # the operator ends with its dialog
+        return ExportJob(study, lambda job: steps(job, path))
 
     @staticmethod
-    def steps(job: ExportJob, path: Path, scene: str) -> ExportSteps:
-        """Score, then render on the main thread."""
-        from .. import review  # imported only for a picture
-
+    def steps(job: ExportJob, path: Path) -> ExportSteps:
+        """Score, then make the picture in a thread."""
         outcome = yield from job.scored(SCORED_SHARE)
         if outcome is None:
             return None
-        yield pe.Progress(RENDERING, SCORED_SHARE)
-        if job.stopped:
-            return None
-        review.render_review(scene_named(scene), outcome.study, outcome, path)
-        return WrittenFiles((path,))
+        made = yield from job.made(
+            "picture", SCORED_SHARE, lambda: page.picture_file(outcome.study, outcome)
+        )
+        return _written(path, made)
 
 
 class PE_OT_export_review(ExportOperator, bpy.types.Operator):
@@ -199,11 +197,6 @@ class PE_OT_export_review(ExportOperator, bpy.types.Operator):
 
     filename_ext = ".html"
     filter_glob: StringProperty(default="*.html", options={"HIDDEN"})
-    render: BoolProperty(
-        name="Rendered Picture",
-        description="Have Blender render the picture at the top of the page",
-        default=True,
-    )
     title: StringProperty(name="Title", description="Title of the page instead of the file's name")
     author: StringProperty(name="Author", description="Author of the page")
     date: StringProperty(
@@ -212,59 +205,36 @@ class PE_OT_export_review(ExportOperator, bpy.types.Operator):
     revision: StringProperty(name="Revision", description="Revision of the page")
 
     def job(self, context: bpy.types.Context) -> ExportJob:
-        """Read the scene; score, render and write the page step by step."""
-        path, scene = chosen_file(self.filepath), context.scene.name
+        """Read the scene; score it and write the page step by step."""
+        path = chosen_file(self.filepath)
         about = page.About(self.title, self.author, self.date, self.revision)
         study = bridge.study_as_drawn(context.scene)
-        facts = {
-            "command": headless_command(path, self.render, about),
-            "versions": bridge.blender_version(),
-        }
-        shown = scene if self.render else ""
+        facts = {"command": headless_command(path, about), "versions": bridge.blender_version()}
         steps = PE_OT_export_review.steps  # the operator ends with its dialog
         pe.prepare_folder(path.parent)  # fail before the work, not after
-        return ExportJob(study, lambda job: steps(job, path, shown, facts, about))
+        return ExportJob(study, lambda job: steps(job, path, facts, about))
 
     @staticmethod
-    def steps(
-        job: ExportJob, path: Path, scene: str, facts: dict[str, Any], about: page.About
-    ) -> ExportSteps:
-        """Score, optionally render the picture of a scene, and make the page in a thread."""
-        from .. import review  # imported only for a page
-
+    def steps(job: ExportJob, path: Path, facts: dict[str, Any], about: page.About) -> ExportSteps:
+        """Score, then make the page in a thread."""
         outcome = yield from job.scored(SCORED_SHARE)
         if outcome is None:
             return None
-        picture = None
-        if scene:
-            yield pe.Progress(RENDERING, SCORED_SHARE)
-            if job.stopped:
-                return None
-            picture = review.picture_of(scene_named(scene), outcome)
-        one = page.ReportContext(path.stem, outcome, picture=picture, **facts)
-        watch = job.watch(RENDERED_SHARE)
+        one = page.ReportContext(path.stem, outcome, **facts)
+        watch = job.watch(SCORED_SHARE)
         made = yield from job.made(
-            "page", RENDERED_SHARE, lambda: page.page_bytes([one], watch, about)
+            "page", SCORED_SHARE, lambda: page.page_bytes([one], watch, about)
         )
-        if made is None:
-            return None
-        with jobs.FileSet(path.parent, (path.name,)) as files:  # the dialog has confirmed it
-            files.add(path.name, made)
-        return WrittenFiles((path,))
+        return _written(path, made)
 
 
-def scene_named(name: str) -> bpy.types.Scene:
-    """Return a scene by its name.
-
-    Raises
-    ------
-    InputError
-        When it was removed.
-    """
-    scene = bpy.data.scenes.get(name)
-    if scene is None:
-        raise pe.InputError("export", "scene", "the scene that was scored", f"{name!r} was removed")
-    return scene
+def _written(path: Path, made: bytes | None) -> WrittenFiles | None:
+    """Write what was made; nothing where the export was stopped."""
+    if made is None:
+        return None
+    with jobs.FileSet(path.parent, (path.name,)) as files:  # the dialog has confirmed it
+        files.add(path.name, made)
+    return WrittenFiles((path,))
 
 
 CLASSES = (

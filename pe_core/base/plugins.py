@@ -29,6 +29,7 @@ SHIPPED = {
     "mesh.usdc": "pe_tools.formats.meshes.usd:read_usd",
     "mesh.usdz": "pe_tools.formats.meshes.usd:read_usd",
     "library.dxf": "pe_tools.outputs.dxf:dxf_bytes",
+    "library.picture": "pe_tools.page.pictures.picture_file:picture_output",
     "library.rerun": "pe_tools.outputs.recording:recording_bytes",
     "library.feather": "pe_tools.exchange.feather",
     "verb.plots": "pe_tools.plots.verbs:add_verbs",

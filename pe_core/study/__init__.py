@@ -9,7 +9,7 @@ from .catalog_lookup import mounts_table
 from .condition_file import state_from_dict, state_table
 from .condition_set import Conditions, StateInWeather, under
 from .condition_table import ConditionScore, ConditionTable, condition_table
-from .file_names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW, REVIEW_PAGE, SEARCH, STUDY
+from .file_names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW_PAGE, SEARCH, STUDY
 from .objective_setting import OBJECTIVES
 from .passthrough import passthrough_of_text, passthrough_table, passthrough_text, read_passthrough
 from .setting_table import panel_default, setting_keys
@@ -17,7 +17,7 @@ from .study import Search, Study, vehicle_digest
 from .study_file import load_study, load_study_data, save_study, study_from_dict, study_to_dict
 
 __all__ = ["AREAS", "MESH", "ConditionScore", "ConditionTable", "Conditions", "StateInWeather"]
-__all__ += ["METHODS", "OBJECTIVES", "OPTIMIZED", "REQUIRED", "RESULT", "REVIEW", "REVIEW_PAGE"]
+__all__ += ["METHODS", "OBJECTIVES", "OPTIMIZED", "REQUIRED", "RESULT", "REVIEW_PAGE"]
 __all__ += ["SCHEDULED_METHOD", "SEARCH", "STUDY", "Angle", "Number", "OneOf", "Pair", "Panel"]
 __all__ += ["Robustness", "Search", "Setting", "Study", "Toggle", "Whole", "condition_table"]
 __all__ += ["load_study", "load_study_data", "mounts_table", "panel_default"]

@@ -5,8 +5,8 @@ AREAS = "areas.npz"
 """Mesh file with the areas of mounts, one part for each mount."""
 BOXES = "boxes.csv"
 """File of labelled boxes beside a study, when they have no file of their own."""
-OPTIMIZED, REVIEW = "optimized.blend", "review.png"
-"""Files that Blender adds."""
+OPTIMIZED = "optimized.blend"
+"""The file that Blender adds."""
 REVIEW_PAGE = "review.html"
 """The review page."""
 CONDITIONS = "conditions.csv"
@@ -15,7 +15,7 @@ SEARCH, RUNNERS_UP = "search.json", tuple(f"runner_up_{k}.toml" for k in (1, 2, 
 """Checkpoint of a search, from which it can be resumed, and studies of other optima it found."""
 BESIDE_RESULT = (
     *(STUDY, MESH, AREAS, BOXES, HISTORY, CONDITIONS, SEARCH),
-    *(*RUNNERS_UP, OPTIMIZED, REVIEW, REVIEW_PAGE),
+    *(*RUNNERS_UP, OPTIMIZED, REVIEW_PAGE),
 )
 """All files that belong to a result.json."""
 SCHEMA = 1

@@ -18,7 +18,7 @@ from . import masks, nebula, scene_gltf, solids, svg
 from .footprints import ground_plan
 from .request import OutputRequest
 
-DXF, RECORDING = "footprints.dxf", "scene.rrd"
+DXF, PICTURE, RECORDING = "footprints.dxf", "picture.png", "scene.rrd"
 
 
 def write_dxf(request: OutputRequest) -> tuple[Written, list[str]]:
@@ -32,6 +32,12 @@ def write_recording(request: OutputRequest) -> tuple[Written, list[str]]:
     """Return the scene as a recording of Rerun's, and lines on what is not in it."""
     data, lines = _function("rerun", "Rerun")(request)
     return {RECORDING: data}, lines
+
+
+def write_picture(request: OutputRequest) -> tuple[Written, list[str]]:
+    """Return the picture of the rig on its vehicle, with numbered sensors and their key."""
+    written: tuple[Written, list[str]] = _function("picture", "picture")(request)
+    return written
 
 
 def _function(name: str, title: str) -> Callable[..., Any]:
@@ -73,6 +79,7 @@ _ROWS = (
     SceneOutput("gltf", "Whole Scene (glTF)", scene_gltf.FILE, scene_gltf.write),
     SceneOutput("rerun", "Rerun Recording", RECORDING, write_recording),
     SceneOutput("masks", "Ego Masks (PNG, CSV)", "masks", masks.write, True, has_range=False),
+    SceneOutput("picture", "Picture (PNG)", PICTURE, write_picture, has_range=False),
     SceneOutput("nebula", "Radar Mountings (Nebula)", nebula.FILE, nebula.write, has_range=False),
 )
 SCENE_OUTPUTS = MappingProxyType({row.name: row for row in _ROWS})

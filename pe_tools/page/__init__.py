@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ..cli import Answer
     from .build import review_studies
     from .document import PAGE, page_bytes, write_page
+    from .pictures.picture_file import picture_file
     from .report_context import About, ReportContext, Section, keyed_contexts
 
 _MODULES = {
@@ -26,6 +27,7 @@ _MODULES = {
     "PAGE": "document",
     "page_bytes": "document",
     "write_page": "document",
+    "picture_file": "pictures.picture_file",
     "About": "report_context",
     "ReportContext": "report_context",
     "Section": "report_context",
@@ -41,6 +43,7 @@ __all__ = [
     "add_review_options",
     "keyed_contexts",
     "page_bytes",
+    "picture_file",
     "review_studies",
     "write_page",
 ]

@@ -56,7 +56,6 @@ def _review(args: argparse.Namespace) -> app.Answer:
 def review_studies(
     by_name: Mapping[str, pe.Study],
     args: argparse.Namespace,
-    picture: Callable[[pe.Outcome], bytes] | None = None,
     versions: Mapping[str, str] | None = None,
 ) -> app.Answer:
     """Score studies by name and write their page.
@@ -66,19 +65,16 @@ def review_studies(
     by_name : mapping of str to Study
     args : Namespace
         Parsed options of `add_review_options` and of a score.
-    picture : callable, optional
-        Renders a picture (PNG) of an outcome.
     versions : mapping of str, optional
         Versions of programs besides the engine's, by name.
     """
     with app.noted_when_interrupted(INTERRUPTED):
-        return _review_studies(by_name, args, picture, versions)
+        return _review_studies(by_name, args, versions)
 
 
 def _review_studies(
     by_name: Mapping[str, pe.Study],
     args: argparse.Namespace,
-    picture: Callable[[pe.Outcome], bytes] | None,
     versions: Mapping[str, str] | None,
 ) -> app.Answer:
     _check_count(len(by_name))
@@ -88,20 +84,17 @@ def _review_studies(
     contexts = []
     for name, study in requested.items():
         outcome = app.scored(study, args.workers)
-        png = None if picture is None else picture(outcome)
         origin = {"command": args.command_line, "versions": versions or {}}
-        contexts.append(ReportContext(name, outcome, picture=png, **origin))
+        contexts.append(ReportContext(name, outcome, **origin))
     return _write(contexts, args)
 
 
 def write_search_page(outcome: pe.Outcome, data: dict[str, Any], folder: Path) -> None:
-    """Write the page of a search beside its results, with the picture rendered there if any."""
-    files = data["run"].get("files", {})
-    picture = (folder / studies.REVIEW).read_bytes() if studies.REVIEW in files else None
+    """Write the page of a search beside its results."""
     host = {k: v for k, v in data["run"]["versions"].items() if k not in OWN_VERSIONS}
     command = str(data["run"].get("command", ""))
     name = folder.resolve().name
-    context = ReportContext(name, outcome, picture=picture, command=command, versions=host)
+    context = ReportContext(name, outcome, command=command, versions=host)
     jobs.add_to_result(data, folder, {PAGE: page_bytes([context])})
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import html
 import json
 from collections.abc import Iterable, Sequence
@@ -40,14 +39,6 @@ def script_json(data: Any) -> str:
     for character, escape in JSON_ESCAPES.items():
         text = text.replace(character, escape)
     return text
-
-
-def png_figure(png: bytes, alt: str, caption: str = "", css: str = "") -> str:
-    """Return a figure with an embedded PNG; the caption is HTML."""
-    source = f"data:image/png;base64,{base64.b64encode(png).decode()}"
-    below = f"<figcaption>{caption}</figcaption>" if caption else ""
-    image = f'<img src="{source}" alt="{escaped(alt)}">'
-    return f'<figure class="{escaped(css)}">{image}{below}</figure>'
 
 
 def table(

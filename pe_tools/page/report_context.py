@@ -36,8 +36,6 @@ class ReportContext:
         Result of a job: of a score, or of a search with the study before and after it.
     key : str
         A letter that identifies the study on its page: ids of elements end in it.
-    picture : bytes or None
-        Rendered picture of the study, PNG; None: a section renders one itself.
     command : str
         Command line that reproduces the results; empty if unknown.
     versions : mapping of str
@@ -51,7 +49,6 @@ class ReportContext:
     name: str
     outcome: pe.Outcome
     key: str = "a"
-    picture: bytes | None = None
     command: str = ""
     versions: Mapping[str, str] = field(default_factory=dict)
     cache: dict[str, Any] = field(default_factory=dict, repr=False)

@@ -1,7 +1,6 @@
 """The add-on in bpy, without a window. Where there is no bpy the tests are skipped."""
 
 import ctypes
-import functools
 import importlib.util
 import os
 import sys
@@ -88,12 +87,9 @@ def scene(addon, few_errors):
 
 @pytest.fixture
 def small_pictures(monkeypatch):
-    """Render few pixels, for the review and its page: what is in them does not depend on that."""
-    from blender_addon import review
+    """Draw few pixels, for the picture and the page: what is in them does not depend on that."""
     from pe_tools.page.pictures import sensor_views, vehicle_picture
 
-    small = functools.partial(review.render_review, size=(320, 180))
-    monkeypatch.setattr(review, "render_review", small)
     monkeypatch.setattr(vehicle_picture, "SIZE", (192, 108))
     monkeypatch.setattr(sensor_views, "MAX_WIDTH", 128)
 

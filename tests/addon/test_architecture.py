@@ -106,7 +106,6 @@ ALLOWED = {
         "vehicle_cache",
         "viewport",
     },
-    "review": {"bridge", "engine"},
     "operators": {
         "bridge",
         "choices",
@@ -123,7 +122,6 @@ ALLOWED = {
         "properties",
         "requirement_checkers",
         "result_staleness",
-        "review",
         "search_curve",
         "sensor_cache",
         "sensor_kinds",
@@ -133,7 +131,7 @@ ALLOWED = {
         "worker",
     },
     "panels": {"choices", "language", "operators", "properties"},
-    "commands": {"bridge", "engine", "result_staleness", "review"},
+    "commands": {"bridge", "engine", "result_staleness"},
     "wiring": {
         "bridge",
         "change_events",
@@ -270,11 +268,11 @@ def test_imports_are_seen_wherever_they_stand(tmp_path):
     path.write_text(
         "from .. import result_staleness as s, bridge\n"
         "from ..overlay import draw_handler\n"
-        "def f():\n    from . import running_job\n    import blender_addon.review.captions\n"
+        "def f():\n    from . import running_job\n    import blender_addon.overlay.labels\n"
     )
     found = list(imported_files("operators.job", path))
     expected = ["result_staleness", "bridge", "overlay.draw_handler"]
-    expected += ["operators.running_job", "review.captions"]
+    expected += ["operators.running_job", "overlay.labels"]
     assert found == expected
     (tmp_path / "__init__.py").write_text("from .rig import x\nfrom ..engine import pe\n")
     found = list(imported_files("bridge", tmp_path / "__init__.py"))

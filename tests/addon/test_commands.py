@@ -72,13 +72,13 @@ def test_a_search_that_cannot_place_is_refused_before_it_begins(car, tmp_path):
     (line,) = complaints(answer)
     assert "sensor 'roof': placement: expected an object that can be placed" in line
     assert str(path) in line and not (tmp_path / "out").exists()
-    assert run_here(path, "score", *FAST[:2], "--no-render").returncode == 0
+    assert run_here(path, "score", *FAST[:2]).returncode == 0
 
 
 def test_optimize_and_export_agree_with_the_engine(blend, tmp_path, all_errors):
     inside, study, outside = (tmp_path / name for name in ("inside", "study", "outside"))
     before = blend.read_bytes()
-    options = ("--no-review", *FAST, "-o", inside, "--no-render", "--json")
+    options = ("--no-review", *FAST, "-o", inside, "--json")
     answer = run_alone(blend, "optimize", *options)
     assert answer.returncode == 0, answer.stderr
     assert json.loads(answer.stdout)["run"]["versions"]["blender"] == bpy.app.version_string
@@ -105,7 +105,7 @@ def test_focus_and_prior_of_the_scene_agree_with_the_engine(car, tmp_path, prior
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
     inside, study, outside = (tmp_path / name for name in ("inside", "study", "outside"))
     samples = FAST[:2]
-    answer = run_here(blend, "score", *samples, "-o", inside, "--no-render")
+    answer = run_here(blend, "score", *samples, "-o", inside)
     assert answer.returncode == 0, answer.stderr
     assert run_here(blend, "export", "-o", study).returncode == 0
     answer = pe_here("score", study / "study.toml", *samples, "-o", outside)
@@ -120,7 +120,7 @@ def check_resumed(blend: Path, folder: Path) -> None:
     whole, begun = without_run(folder / "result.json"), jobs.read_search(folder)
     state = jobs.SearchState(begun.study, begun.inputs)
     state.save(folder, begun.study, begun.judged[:5])
-    answer = run_here(blend, "optimize", "--no-review", *FAST, "--resume", folder, "--no-render")
+    answer = run_here(blend, "optimize", "--no-review", *FAST, "--resume", folder)
     assert answer.returncode == 0, answer.stderr
     assert complaints(answer) == ["pe: going on after 5 placements"]
     assert without_run(folder / "result.json") == whole
@@ -177,7 +177,7 @@ def test_sensors(blend):
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for one process on Windows")
 def test_interrupt_keeps_the_best_so_far(blend, tmp_path):
     folder = tmp_path / "result"
-    arguments = (*FAST[:6], "--candidates", 100_000, "-o", folder, "--no-render")
+    arguments = (*FAST[:6], "--candidates", 100_000, "-o", folder)
     with (tmp_path / "log").open("w+") as log:
         process = subprocess.Popen(
             command(blend, "optimize", "--no-review", *arguments),

@@ -48,7 +48,7 @@ def test_a_job_the_command_lines_and_the_panel_find_the_same_bits(settings, tmp_
     blend = tmp_path / "car.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
     inside, study, outside = (tmp_path / name for name in ("inside", "study", "outside"))
-    answer = run_here(blend, "optimize", "--no-review", *OPTIONS, "-o", inside, "--no-render")
+    answer = run_here(blend, "optimize", "--no-review", *OPTIONS, "-o", inside)
     assert answer.returncode == 0, answer.stderr
     settings = bpy.context.scene.perception_entropy
     study.mkdir()

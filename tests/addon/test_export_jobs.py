@@ -5,18 +5,15 @@ import itertools
 import bpy
 import pytest
 
-from blender_addon import review
-from blender_addon.engine import pe
 from blender_addon.operators import export_files, export_job, running_job
 from blender_addon.operators import export_files as exports
 from tests.addon import scenes
 
 
 @pytest.fixture
-def small(car, monkeypatch):
-    """Return a scene that is scored fast, and a picture that is there at once."""
+def small(car, small_pictures):
+    """Return a scene that is scored fast and drawn in few pixels."""
     car.perception_entropy.score_samples = 1024
-    monkeypatch.setattr(review, "picture_of", lambda _scene, _outcome: b"\x89PNG picture")
     return car
 
 
@@ -24,7 +21,13 @@ def page_job(path):
     """Return the job of a page, as the operator makes it."""
     told = {"command": "", "versions": {}}
     steps, about = exports.PE_OT_export_review.steps, exports.page.About()
-    return export_job.ExportJob(scenes.study(), lambda job: steps(job, path, "Scene", told, about))
+    return export_job.ExportJob(scenes.study(), lambda job: steps(job, path, told, about))
+
+
+def picture_job(path):
+    """Return the job of a picture."""
+    steps = exports.PE_OT_render_review.steps
+    return export_job.ExportJob(scenes.study(), lambda job: steps(job, path))
 
 
 def scene_job(path):
@@ -34,7 +37,12 @@ def scene_job(path):
     return export_job.ExportJob(scenes.study(), lambda job: steps(job, row, path, 5.0, False))
 
 
-JOBS = {"page.html": page_job, "scene.glb": scene_job}
+JOBS = {"page.html": page_job, "picture.png": picture_job, "scene.glb": scene_job}
+STAGES = {
+    "page.html": ["scoring", "page"],
+    "picture.png": ["scoring", "picture"],
+    "scene.glb": ["exporting"],
+}
 
 
 @pytest.mark.parametrize("name", JOBS)
@@ -49,16 +57,12 @@ def test_a_job_tells_how_far_it_is_and_writes_at_its_end(small, tmp_path, name):
     assert all(step.entropy is None for step in steps), "no search: it has no best so far"
     assert job.written.paths == (tmp_path / name,) and (tmp_path / name).stat().st_size > 1000
     stages = [stage for stage, _ in itertools.groupby(step.stage for step in steps)]
-    expected = ["scoring", "rendering", "page"] if name == "page.html" else ["exporting"]
-    assert [stage.split()[0] for stage in stages] == expected
+    assert [stage.split()[0] for stage in stages] == STAGES[name]
 
 
 @pytest.mark.parametrize(
     ("name", "stage"),
-    [
-        *(("page.html", stage) for stage in ("scoring", "rendering", "page")),
-        ("scene.glb", "exporting"),
-    ],
+    [(name, stage) for name, stages in STAGES.items() for stage in stages],
 )
 def test_stopped_at_any_stage_it_leaves_nothing(small, tmp_path, name, stage):
     job = JOBS[name](tmp_path / name)
@@ -96,8 +100,3 @@ def test_no_export_begins_while_another_job_runs(small, monkeypatch):
     monkeypatch.setattr(running_job, "current", object())
     names = ("export_review", "render_review", "export_scene")
     assert not any(getattr(bpy.ops.pe, name).poll() for name in names)
-
-
-def test_the_scene_that_is_gone_is_one_line(small):
-    with pytest.raises(pe.InputError, match="'Other' was removed"):
-        exports.scene_named("Other")

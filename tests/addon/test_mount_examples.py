@@ -74,10 +74,7 @@ def test_the_four_corners_of_the_file_and_of_the_study_are_one(addon, tmp_path):
     study = tmp_path / "study.toml"
     pe.export_study(replace(there, search=replace(there.search, requirements=None)), study)
     out = tmp_path / "blender"
-    assert (
-        main(["optimize", "--no-review", "-o", str(out), "--no-render", *FAST], "pe", io.StringIO())
-        == 0
-    )
+    assert main(["optimize", "--no-review", "-o", str(out), *FAST], "pe", io.StringIO()) == 0
     with contextlib.redirect_stdout(io.StringIO()):
         assert (
             pe_main(
@@ -108,7 +105,7 @@ def test_a_variant_of_the_four_corners_is_searched_with_its_mounts(addon, tmp_pa
     swept, alone = tmp_path / "swept", tmp_path / "alone"
     options = ["--optimize", "--set", "optimize.seed=0", "-o", str(swept), *FAST]
     assert main(["sweep", "Variant", *options], "pe", io.StringIO()) == 0
-    search = ["optimize", "--no-review", "-o", str(alone), "--no-render", *FAST]
+    search = ["optimize", "--no-review", "-o", str(alone), *FAST]
     assert main(search, "pe", io.StringIO()) == 0
     (run,) = (path.parent for path in swept.rglob("result.json"))
     variant, scene = result(run), result(alone)

@@ -37,7 +37,7 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {p.name: p.read_bytes() for p in folder.iterdir()}
 
 
-@pytest.mark.parametrize("name", ["optimized.blend", "review.png"])
+@pytest.mark.parametrize("name", ["optimized.blend", "review.html"])
 def test_a_users_own_file_is_refused_before_the_work(blend, tmp_path, name):
     out = tmp_path / "out"
     out.mkdir()
@@ -56,7 +56,7 @@ def test_the_same_folder_again_is_one_set(blend, tmp_path, small_pictures):
         assert answer.returncode == 0, answer.stderr
     named = json.loads((out / "result.json").read_text())["run"]["files"]
     expected = (
-        *("history.csv", "optimized.blend", "review.html", "review.png"),
+        *("history.csv", "optimized.blend", "review.html"),
         *("search.json", "study.toml", "vehicle.npz"),
     )
     assert sorted(named) == list(expected)
@@ -65,7 +65,7 @@ def test_the_same_folder_again_is_one_set(blend, tmp_path, small_pictures):
 
 def test_being_told_to_end_keeps_the_best(blend, tmp_path):
     out, log = tmp_path / "out", tmp_path / "log"
-    arguments = (*FAST[:6], "--candidates", 100_000, "-o", out, "--no-render")
+    arguments = (*FAST[:6], "--candidates", 100_000, "-o", out)
     with log.open("w") as stderr:
         process = subprocess.Popen(
             command(blend, "optimize", "--no-review", *arguments),
@@ -86,7 +86,7 @@ def test_being_told_to_end_keeps_the_best(blend, tmp_path):
 
 def test_a_full_stderr_ends_nothing(blend, tmp_path):
     out = tmp_path / "out"
-    arguments = command(blend, "score", *FAST[:2], "-o", out, "--no-render")
+    arguments = command(blend, "score", *FAST[:2], "-o", out)
     with open("/dev/full", "w") as full:
         answer = subprocess.run(
             arguments, cwd=ROOT, stdout=subprocess.PIPE, stderr=full, timeout=TIMEOUT_S
@@ -101,7 +101,7 @@ def test_a_scene_that_does_not_fit_on_the_disk_sets_the_old_one_aside(blend, tmp
 
     out, elsewhere = tmp_path / "out", tmp_path / "tmp"
     elsewhere.mkdir()
-    optimize = (blend, "optimize", "--no-review", *FAST, "-o", out, "--no-render")
+    optimize = (blend, "optimize", "--no-review", *FAST, "-o", out)
     assert run_here(*optimize).returncode == 0
     before = (out / "optimized.blend").read_bytes()
     assert len(before) > 50_000 > len((out / "result.json").read_bytes())

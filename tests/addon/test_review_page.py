@@ -1,6 +1,5 @@
-"""The page to hand on, from the panel and from headless Blender: the engine's, with a picture."""
+"""The page and the picture to hand on, from the panel and headless: those of the engine."""
 
-import base64
 import io
 import re
 
@@ -11,10 +10,10 @@ from blender_addon import commands
 from blender_addon.engine import page
 from tests.addon import scenes
 
-PICTURE = re.compile(r'src="data:image/png;base64,([^"]+)" alt="The vehicle with 1 LiDAR')
+PICTURE = re.compile('="The vehicle with 1 LiDAR')
 
 
-def test_the_panel_s_page_has_blender_s_picture(car, tmp_path, small_pictures):
+def test_the_panel_s_page_has_its_title_and_the_picture_once(car, tmp_path, small_pictures):
     car.perception_entropy.score_samples = 1024
     path = tmp_path / "for <all>.html"
     path.write_text("mine")  # the file dialog has asked
@@ -23,14 +22,25 @@ def test_the_panel_s_page_has_blender_s_picture(car, tmp_path, small_pictures):
     text = path.read_text("utf-8")
     assert "for &lt;all&gt;" in text
     assert "<h1>Roof &amp; rails</h1>" in text and "A. Author, May, Revision B</p>" in text
-    (picture,) = PICTURE.findall(text)
-    assert base64.b64decode(picture).startswith(b"\x89PNG")
+    assert len(PICTURE.findall(text)) == 1
+
+
+def test_the_picture_alone_is_the_engine_s(car, tmp_path, small_pictures):
+    car.perception_entropy.score_samples = 1024
+    path, plain = tmp_path / "picture.png", tmp_path / "plain.png"
+    assert bpy.ops.pe.render_review(filepath=str(path)) == {"FINISHED"}
+    job = pe.ScoreJob(scenes.study())
+    for _ in job:
+        pass
+    assert path.read_bytes() == page.picture_file(job.study, job.outcome)
+    bpy.ops.pe.export_scene(filepath=str(plain), output="picture")
+    assert plain.read_bytes() == page.picture_file(job.study)
 
 
 def test_a_page_that_cannot_be_written_is_one_line(car, tmp_path):
     (tmp_path / "file").touch()
     try:
-        bpy.ops.pe.export_review(filepath=str(tmp_path / "file" / "a.html"), render=False)
+        bpy.ops.pe.export_review(filepath=str(tmp_path / "file" / "a.html"))
     except RuntimeError as error:
         assert "a folder that can be written" in str(error)
     else:
@@ -41,7 +51,7 @@ def test_headless_blender_writes_the_page_of_the_command_line(car, tmp_path, sma
     scenes.add_sensor("front", model="Camera 60 deg")
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "study.blend"))
     bpy.ops.pe.export_study(filepath=str(tmp_path / "study.toml"))
-    arguments = ["--grid-samples", "1024", "-o", str(tmp_path / "inside"), "--no-render"]
+    arguments = ["--grid-samples", "1024", "-o", str(tmp_path / "inside")]
     said = io.StringIO()
     assert commands.main(["review", *arguments], commands.IN_BLENDER, said) == 0
     inside = (tmp_path / "inside" / page.PAGE).read_text("utf-8")

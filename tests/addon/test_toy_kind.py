@@ -13,8 +13,6 @@ import blender_addon
 import pe_core as pe
 from blender_addon import bridge, housing, operators, panels, properties, sensor_kinds
 from blender_addon.operators import listed_sensors, models, offers
-from blender_addon.review import render_review
-from blender_addon.review.captions import legend_of
 from pe_core import catalog
 from pe_core import sensors as kinds
 from tests.addon import scenes
@@ -121,21 +119,6 @@ def test_it_is_drawn_where_it_is_and_where_it_looks(ring_kind, ring):
     np.testing.assert_allclose(offsets[:, 2], 0.0, atol=1e-6)
     assert not len(faces.points)
     assert list(shown["beams"]) == ["roof"], "the ring took its share of the beams"
-
-
-def test_the_review_shows_it(ring_kind, ring, tmp_path):
-    study = scenes.study()
-    job = pe.ScoreJob(study)
-    for _ in job:
-        pass
-    names = [text for text, _, _ in legend_of(study.rig, stopped=True, moved=False)]
-    assert names == ["LiDAR beam", "occluded by the vehicle", "Toy Ring"]
-    path = tmp_path / "review.png"
-    render_review(ring_kind, study, job.outcome, path, (800, 450))
-    image = bpy.data.images.load(str(path))
-    values = np.array(image.pixels[:]).reshape(-1, image.channels)[:, :3]
-    red, green, blue = values.T
-    assert ((green > red + 0.1) & (green > blue)).sum() > 100, "nothing of the ring's green"
 
 
 def test_an_own_sensor_of_it_is_defined_by_its_keys(ring_kind):

@@ -84,7 +84,7 @@ def test_an_unknown_variant_is_reported(blend):
 def test_a_search_keeps_its_start_and_its_result_in_the_file_that_it_leaves(blend, tmp_path):
     fast = (*FEW, "--samples", "4096", "--method", "random", "--candidates", "2")
     out = tmp_path / "out"
-    answer = run_here(blend, "optimize", "--no-review", *fast, "--no-render", "-o", out)
+    answer = run_here(blend, "optimize", "--no-review", *fast, "-o", out)
     assert answer.returncode == 0, answer.stderr
     bpy.ops.wm.open_mainfile(filepath=str(out / "optimized.blend"))
     rows = bpy.context.scene.perception_entropy.variants

@@ -177,11 +177,12 @@ def test_a_long_name_overflows_nothing(view):
     name.evaluate("(span, own) => { span.textContent = own }", own)
 
 
-def test_without_webgl_a_still_picture_is_there(chromium, file):
+def test_without_webgl_a_note_leads_to_the_picture_at_the_top(chromium, file):
     with opened(chromium, file, DESKTOP, WITHOUT_WEBGL) as (page, heard):
         assert page.locator(".v3-live").is_hidden() and heard.complaints == []
-        still = page.locator(".v3-still figure")
-        assert still.is_visible() and still.bounding_box()["width"] > 400
+        assert page.locator(".v3-still").is_visible()
+        picture = page.locator("#summary figure svg")
+        assert picture.is_visible() and picture.bounding_box()["width"] > 400
 
 
 def test_it_prints_with_the_view_as_a_picture(desktop):

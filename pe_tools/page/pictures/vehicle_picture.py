@@ -6,6 +6,7 @@ Sensors are drawn in their colours, with housings of the size that data sheets s
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,13 +77,17 @@ def vehicle_picture(
     view : Viewpoint, optional
         By default from ahead on the right, with the whole vehicle in the picture.
     """
-    width, height = size
     view = view or default_view(vehicle, rig, size)
-    camera = view.camera(width, height)
+    return graphics.png_bytes(graphics.as_bytes(rendered(vehicle, rig, size, view)))
+
+
+def rendered(
+    vehicle: pe.Vehicle | None, rig: pe.Rig, size: tuple[int, int], view: Viewpoint
+) -> Floats:
+    """Return a picture of a rig on its vehicle as sRGB (H, W, 3), 0 to 1."""
     solids = [] if vehicle is None else [painted_vehicle(vehicle)]
     bodies = RayScene([*solids, *sensor_solids(rig)], vehicle is not None)
-    picture = render(camera, bodies, _studio(_bounds(vehicle, rig)))
-    return graphics.png_bytes(graphics.as_bytes(picture))
+    return render(view.camera(*size), bodies, _studio(_bounds(vehicle, rig)))
 
 
 def default_view(
@@ -142,14 +147,30 @@ def labelled_picture(
     canvas = Canvas(width, height, alt)
     png = picture or vehicle_picture(vehicle, rig, SIZE, view)
     canvas.picture(png, (0.0, 0.0, width, height))
+    for label in labels(vehicle, rig, view):
+        _draw_number(canvas, label)
+    return figure(canvas.svg(), sensor_key(rig))
+
+
+class Label(NamedTuple):
+    """The number of a sensor in a picture: positions [px of `SIZE`], and whether it is hidden."""
+
+    number: int
+    end: Floats
+    disc: Floats
+    color: graphics.Rgb
+    is_hidden: bool
+
+
+def labels(vehicle: pe.Vehicle | None, rig: pe.Rig, view: Viewpoint) -> list[Label]:
+    """Return the label of each sensor, in a picture of `SIZE`."""
     positions = np.array([sensor.pose.position for sensor in rig])
     ends = np.stack(view.project(positions, *SIZE), axis=1)
-    hidden = _behind_vehicle(vehicle, view, positions)
+    hidden = _behind_vehicle(vehicle, view, positions).tolist()
     discs = spread_apart(ends - [0.0, LABEL_RISE])
-    colors = map(hexadecimal, graphics.sensor_colors_on_paper(rig).values())
-    for number, (end, disc, color) in enumerate(zip(ends, discs, colors, strict=True)):
-        _draw_number(canvas, number, end, disc, color, bool(hidden[number]))
-    return figure(canvas.svg(), sensor_key(rig))
+    colors = graphics.sensor_colors_on_paper(rig).values()
+    rows = zip(ends, discs, colors, hidden, strict=True)
+    return [Label(number, *row) for number, row in enumerate(rows, 1)]
 
 
 def sensor_key(rig: pe.Rig) -> Markup:
@@ -180,17 +201,16 @@ def spread_apart(positions: Floats) -> Floats:
     return moved
 
 
-def _draw_number(
-    canvas: Canvas, number: int, end: Floats, disc: Floats, color: str, hidden: bool
-) -> None:
+def _draw_number(canvas: Canvas, label: Label) -> None:
     """Draw a disc with a number, and a line to its sensor: dashed if the vehicle hides it."""
+    end, disc, color = label.end, label.disc, hexadecimal(label.color)
     line = f"M{disc[0]:.1f} {disc[1]:.1f}L{end[0]:.1f} {end[1]:.1f}"
-    dashes = "4 4" if hidden else "none"
+    dashes = "4 4" if label.is_hidden else "none"
     canvas.add("path", d=line, stroke="#1b1f24", stroke_width=1.5, stroke_dasharray=dashes)
-    if hidden:
+    if label.is_hidden:
         canvas.add("circle", cx=end[0], cy=end[1], r=4.0, fill=color, stroke="#1b1f24")
     canvas.add("circle", cx=disc[0], cy=disc[1], r=RADIUS, fill=color, stroke="#1b1f24")
-    canvas.text(disc[0], disc[1] + 6.0, str(number + 1), text_anchor="middle", css="number")
+    canvas.text(disc[0], disc[1] + 6.0, str(label.number), text_anchor="middle", css="number")
 
 
 def _behind_vehicle(

@@ -18,9 +18,8 @@ import pe_core as pe
 from pe_core import sensors as kinds
 
 from ... import graphics
-from ..markup import escaped, percent, png_figure
+from ..markup import escaped, percent
 from ..pictures.sensor_views import sensor_view
-from ..pictures.vehicle_picture import labelled_picture_of
 from ..report_context import ReportContext, Section
 from .packed_data import css_color, housing_data, maps_data, packed_primitives, vehicle_data
 
@@ -57,7 +56,10 @@ LABEL = (
     "3-D view of the vehicle and its sensors. Arrow keys turn it, plus and minus change the "
     "distance, 0 resets it."
 )
-NO_WEBGL = "This browser has no WebGL: a still picture replaces the 3-D view."
+NO_WEBGL = (
+    "This browser has no WebGL, which the 3-D view needs. The vehicle with its sensors is in the "
+    '<a href="#summary">picture at the top</a>.'
+)
 
 __all__ = ["scene_data", "view3d"]
 
@@ -65,7 +67,7 @@ __all__ = ["scene_data", "view3d"]
 def view3d(context: ReportContext) -> Section:
     """Return the section with the 3-D view."""
     data = scene_data(context)
-    html = view_html(data, _still_picture(context)) + _simplified_note(data)
+    html = view_html(data) + _simplified_note(data)
     css = (HERE / "scene3d.css").read_text("utf-8")
     return Section("view", "3-D view", html, data, _scripts(), (css,))
 
@@ -93,15 +95,6 @@ def _scripts() -> tuple[str, ...]:
     return THREE.read_text("utf-8"), program
 
 
-def _still_picture(context: ReportContext) -> str:
-    """Return the picture for browsers without WebGL."""
-    names = ", ".join(sensor.name for sensor in context.rig)
-    alt = f"The vehicle with its sensors: {names}"
-    if context.picture is None:
-        return labelled_picture_of(context, alt)
-    return png_figure(context.picture, alt)
-
-
 def _simplified_note(data: dict[str, Any]) -> str:
     """Return a note on the simplification of the vehicle; empty if it is complete."""
     vehicle = data["vehicle"]
@@ -115,10 +108,10 @@ def _simplified_note(data: dict[str, Any]) -> str:
     )
 
 
-def view_html(data: Mapping[str, Any], still: str) -> str:
-    """Return the HTML of the view: a still picture, which the script replaces if WebGL works."""
+def view_html(data: Mapping[str, Any]) -> str:
+    """Return the HTML of the view, and a note that the script replaces if WebGL works."""
     return (
-        f'<div class="v3-still">{still}<p class="note">{NO_WEBGL}</p></div>'
+        f'<p class="v3-still note">{NO_WEBGL}</p>'
         '<div class="v3-live" hidden>'
         f'<div class="v3-stage" tabindex="0" role="group" aria-label="{LABEL}">'
         '<canvas class="v3-canvas"></canvas><div class="v3-labels"></div>'

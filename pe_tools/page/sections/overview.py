@@ -24,7 +24,6 @@ from ..markup import (
     number,
     percent,
     percent_points,
-    png_figure,
     signed,
 )
 from ..pictures.svg import STYLE
@@ -266,11 +265,7 @@ def _worst_loss(context: ReportContext) -> tuple[str, str, str]:
 
 
 def _picture(context: ReportContext) -> str:
-    if context.picture is None:
-        return labelled_picture_of(context, f"The vehicle with {_sensor_counts(context)}")
-    return png_figure(
-        context.picture, f"The vehicle with {_sensor_counts(context)} and what they see"
-    )
+    return labelled_picture_of(context, f"The vehicle with {_sensor_counts(context)}")
 
 
 def _entropy_explained() -> str:

@@ -55,7 +55,7 @@ def test_the_demo_searches_by_default_for_a_lidar_and_a_camera(addon, tmp_path):
     script = (TOOLS / "demo.sh").read_text("utf-8")
     options = shlex.split(re.search(r"OPTIONS=\((.*?)\)", script, re.DOTALL)[1])
     few = ("--evaluations", "5", "--samples", "1024", "--grid-samples", "1024", "--workers", "1")
-    more = ("--no-review", "--no-render", "--output", tmp_path)
+    more = ("--no-review", "--output", tmp_path)
     answer = run_here(start, "optimize", *options, *few, *more)
     assert answer.returncode == 0, answer.stderr
     result = json.loads((tmp_path / "result.json").read_text("utf-8"))

@@ -1,14 +1,21 @@
 """What the pages show can be typed: lines of the command parse, and the Python of a page runs."""
 
+import json
 import re
 import shlex
+import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 import pe_core as pe
 from pe_tools.cli.verbs import parser
+from tests.engine import shapes
+from tests.engine.mesh_files import stl_binary, to_gltf
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -80,3 +87,121 @@ def test_the_python_of_the_page_runs(tmp_path, monkeypatch, capsys):
     assert "roof" in said and "met" in said
     assert (tmp_path / "results" / "result.json").is_file()
     assert pe.load_study(tmp_path / "small.toml").samples == 4096
+
+
+TYPED = ["README.md", *sorted(p.relative_to(ROOT).as_posix() for p in DOCS.glob("howto/*.md"))]
+"""Pages whose commands a newcomer types from the first to the last."""
+SMALL = "samples = 1024\n\n[space]\nx = [-14, 14]\ny = [-12, 12]\nz = [0, 2]\ninterval = 0.5\n\n"
+CHOICE = """
+[[choice]]
+sensor = "roof"
+option = [
+    { model = "Velodyne VLP-16 Puck", price = 100 },
+    { model = "Hesai Pandar64", price = 600 },
+]
+"""
+FIRST = "pe optimize car.toml -o results"
+"""What the reader of README has done before, in Blender. Other readers have README's files."""
+OF_THEIR_OWN = ("docs/howto/choose_sensors.md", "docs/howto/vehicle.md")
+"""Pages that begin with another study, or with none."""
+NEEDS_AN_EXTRA, NOT_MET = {"pe front results"}, 3
+TYPE_ALL = r"""
+import contextlib, io, json, os, re, shlex, shutil, sys, traceback
+from pathlib import Path
+from pe_tools.__main__ import main
+small, pages = json.load(sys.stdin)
+os.cpu_count = lambda: 1  # no worker processes: their starts would take most of the time
+for page, (folder, lines) in pages.items():
+    os.chdir(folder)
+    for made in ("sweep", "review", "cad"):
+        shutil.rmtree(made, ignore_errors=True)
+    for line in lines:
+        out, err, words = io.StringIO(), io.StringIO(), shlex.split(line)[1:]
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            try:
+                sys.argv = ["pe", *words]
+                status = main()
+            except SystemExit as end:
+                status = end.code
+            except BaseException:
+                status = traceback.format_exc()
+        answer = [page, line, status, out.getvalue()[:2000], err.getvalue()[-2000:]]
+        print(json.dumps(answer), file=sys.__stdout__)
+        if words[0] == "new" and not status:  # a newcomer's study is made small, to be quick
+            study = Path(words[words.index("-o") + 1])
+            text = re.sub(r"(?ms)^samples = .*?(?=^\[prior\])", small, study.read_text(), count=1)
+            study.write_text(text.replace("evaluations = 0 ", "evaluations = 4 "))
+"""
+"""Types the lines of all pages into a Python without extras, in one process."""
+
+
+@pytest.fixture(scope="module")
+def bare_python(tmp_path_factory):
+    """A Python that has NumPy and this checkout, and no extra."""
+    folder = tmp_path_factory.mktemp("bare")
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", folder], check=True)
+    packages = next((folder / "lib").glob("python*/site-packages"))
+    for name in ("numpy", "numpy.libs"):
+        if (installed := Path(np.__file__).parents[1] / name).exists():
+            (packages / name).symlink_to(installed)
+    (packages / "checkout.pth").write_text(f"{ROOT}\n")
+    return folder / "bin" / "python"
+
+
+def files_of_a_reader(folder, page):
+    """Write what the reader of a page has: a car in three formats, studies, a detector's table."""
+    body = shapes.box_car()
+    wheels = [shapes.box((x, -0.9, 0.0), (x + 0.6, 0.9, 0.3)) for x in (-1.6, 1.1)]
+    names, sizes = ("wheel_rear", "wheel_front"), [len(wheel) for wheel in wheels]
+    car = pe.Mesh(
+        np.concatenate([body.triangles, *wheels]),
+        np.concatenate([body.parts, np.repeat([2, 3], sizes)]).astype(int),
+        (*body.part_names, *names),
+    )
+    points = car.triangles.reshape(-1, 3)
+    faces = np.arange(len(points)).reshape(-1, 3)
+    trimesh.Trimesh(to_gltf(points), faces).export(folder / "car.glb")
+    (folder / "car.stl").write_bytes(stl_binary(triangles=1000.0 * to_gltf(car.triangles)))
+    shutil.copy(ROOT / "studies/paper/data/paper_lidar.csv", folder / "ap_by_points.csv")
+    pe.write_mesh(folder / "box.npz", car)
+    study = STUDY + (CHOICE if "choose_sensors" in page else "")
+    for name in ("study.toml", "car.toml"):
+        (folder / name).write_text(study, "utf-8")
+
+
+@pytest.fixture(scope="module")
+def typed(bare_python, tmp_path_factory):
+    """Answers to every line of the pages: page, line, status, stdout, stderr."""
+    shared = tmp_path_factory.mktemp("typed")
+    pages, known = {}, set()
+    for page in TYPED:
+        folder = tmp_path_factory.mktemp("own") if page in OF_THEIR_OWN else shared
+        files_of_a_reader(folder, page)
+        lines = [FIRST] if page == TYPED[0] else []
+        for of, line in command_lines():
+            if of == page and (folder is not shared or line not in known):  # the same twice is slow
+                lines.append(line)
+                known.add(line)
+        pages[page] = str(folder), lines
+    (Path(pages["docs/howto/vehicle.md"][0]) / "study.toml").unlink()
+    run = subprocess.run(
+        [bare_python, "-c", TYPE_ALL],
+        input=json.dumps([SMALL, pages]),
+        capture_output=True,
+        text=True,
+        cwd=tmp_path_factory.getbasetemp(),
+    )
+    assert run.returncode == 0, run.stderr
+    return [json.loads(line) for line in run.stdout.splitlines()]
+
+
+def test_commands_of_readme_and_how_to_pages_do_as_typed_without_extras(typed):
+    assert len(typed) > 30
+    wrong = []
+    for page, line, status, _, said in typed:
+        if line in NEEDS_AN_EXTRA:
+            as_expected = status == 1 and "pip install" in said and said.count("\n") == 1
+        else:
+            as_expected = status == 0 or (status == NOT_MET and line.startswith("pe check"))
+        wrong += [] if as_expected else [(page, line, said)]
+    assert not wrong

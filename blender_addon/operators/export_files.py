@@ -84,7 +84,7 @@ class PE_OT_import_study(ImportHelper, bpy.types.Operator):
 
 
 _OUTPUT_ITEMS = tuple(
-    (row.name, row.title, "", k) for k, row in enumerate(outputs.SCENE_OUTPUTS.values())
+    (row.name, row.title, "", k) for k, row in enumerate(outputs.scene_outputs().values())
 )
 
 
@@ -116,7 +116,8 @@ class PE_OT_export_scene(ExportOperator, bpy.types.Operator):
         """Read the scene; its files are made on a thread."""
         row = outputs.scene_output(self.output)
         path = _with_ending(chosen_file(self.filepath), row)
-        exchange.format_of_file(path, outputs.FILES, row.name)  # refuses another one's suffix
+        # Refuses the suffix of another output.
+        exchange.format_of_file(path, outputs.output_files(), row.name)
         study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
         replace = self.replace or not row.has_several  # of one file the dialog has confirmed it
         reach = self.range_m or None

@@ -28,7 +28,6 @@ SHIPPED = {
     "mesh.usda": "pe_tools.formats.meshes.usd:read_usd",
     "mesh.usdc": "pe_tools.formats.meshes.usd:read_usd",
     "mesh.usdz": "pe_tools.formats.meshes.usd:read_usd",
-    "library.dxf": "pe_tools.outputs.dxf:dxf_bytes",
     "library.picture": "pe_tools.page.pictures.picture_file:picture_output",
     "library.rerun": "pe_tools.outputs.recording:recording_bytes",
     "library.feather": "pe_tools.exchange.feather",
@@ -38,7 +37,6 @@ SHIPPED = {
 """Plugins of this distribution: module and attribute, by the plugin's name."""
 EXTRAS = {
     "mesh": "meshes",
-    "library.dxf": "cad",
     "library.rerun": "rerun",
     "library.feather": "argoverse",
     "tqdm": "progress",

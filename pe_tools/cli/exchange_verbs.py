@@ -26,8 +26,7 @@ from ..exchange import (
     read_vehicle_info,
 )
 from ..formats import read_mesh
-from ..outputs import FILES as SCENE_FILES
-from ..outputs import SCENE_OUTPUTS, export_scene
+from ..outputs import OF_EXAMPLE, export_scene, output_files, scene_output, scene_outputs
 from .terminal import DONE, Answer, tell
 
 
@@ -106,10 +105,10 @@ def _columns(rows: Sequence[Sequence[str]]) -> list[str]:
     return ["  ".join(cells).rstrip() for cells in padded]
 
 
-FILE_NAMES = {**FILES, **SCENE_FILES}
+FILE_NAMES = {**FILES, **output_files()}
 SUFFIXES = frozenset(Path(name).suffix for name in FILE_NAMES.values())
 """Suffixes of files that name their format."""
-RANGED = tuple(row.name for row in SCENE_OUTPUTS.values() if row.has_range)
+RANGED = tuple(row.name for row in scene_outputs().values() if row.has_range)
 """Outputs that draw fields of view, as far as asked for."""
 POSE = ("X", "Y", "Z", "ROLL", "PITCH", "YAW")
 NO_GUESS = "parts named as wheels, front and rear, to guess the rear axle from"
@@ -123,7 +122,7 @@ def add_export_options(
     With `also_study`, the default without a format and a suffix is to write the study. `more` has
     additional formats of the caller.
     """
-    known = [*RIG_FORMATS, *SCENE_OUTPUTS, *more]
+    known = [*RIG_FORMATS, *dict.fromkeys([*scene_outputs(), *OF_EXAMPLE]), *more]
     default = "by the suffix of PATH" + (", or else a study" if also_study else "")
     about = f"format: {', '.join(known)} (default: {default})"
     parser.add_argument("--to", choices=known, metavar="FORMAT", help=about)
@@ -165,13 +164,15 @@ def _add_axle_options(parser: argparse.ArgumentParser) -> None:
 
 def export(study: Study, args: argparse.Namespace) -> Answer:
     """Write a study's rig, or its scene, for another program."""
+    if args.to in OF_EXAMPLE:
+        scene_output(args.to)  # refuses it without its plugin
     args.to = format_of_file(Path(args.output), FILE_NAMES, args.to)
     _refuse_range(args)
     given = [Path(args.study)] if hasattr(args, "study") else []
     require_new(Path(args.output), replace=True, inputs=given)
     reference = _reference(args, study.reference, study.vehicle, args.to)
     where, options = (args.to, args.output), {"replace": args.replace}
-    if args.to in SCENE_OUTPUTS:
+    if args.to in scene_outputs():
         study = replace(study, reference=reference)
         paths, lines = export_scene(study, *where, args.range, **options)
     else:

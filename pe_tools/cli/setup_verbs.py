@@ -32,7 +32,6 @@ PACKAGES: Mapping[str, tuple[str, ...]] = {
     "progress": ("tqdm",),
     "cluster": ("distributed",),
     "report": ("matplotlib",),
-    "cad": ("ezdxf",),
     "rerun": ("rerun-sdk", "pyarrow"),
     "argoverse": ("pyarrow",),
     "studies": ("matplotlib", "tensorflow"),

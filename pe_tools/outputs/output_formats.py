@@ -2,30 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import cache, partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from pe_core.base.errors import InputError, shown
-from pe_core.base.plugins import call_plugin, install_hint, required_plugin
+from pe_core.base.plugins import (
+    call_plugin,
+    find_plugin,
+    find_plugins,
+    install_hint,
+    plugin_name,
+    required_plugin,
+)
 from pe_core.study import Study
 
 from ..exchange import Written, write_files
-from . import masks, nebula, scene_gltf, solids, svg
-from .footprints import ground_plan
+from . import masks, scene_gltf, solids, svg
 from .request import OutputRequest
 
-DXF, PICTURE, RECORDING = "footprints.dxf", "picture.png", "scene.rrd"
-
-
-def write_dxf(request: OutputRequest) -> tuple[Written, list[str]]:
-    """Return the plan from above as DXF, and lines on what is not in it."""
-    dxf_bytes = _function("dxf", "DXF")
-    plan, lines = ground_plan(request)
-    return {DXF: dxf_bytes(plan)}, lines
+PICTURE, RECORDING = "picture.png", "scene.rrd"
 
 
 def write_recording(request: OutputRequest) -> tuple[Written, list[str]]:
@@ -75,24 +75,51 @@ class SceneOutput:
 _ROWS = (
     SceneOutput("solids", "Fields of View as Solids (glTF, STL)", "solids", solids.write, True),
     SceneOutput("footprints", "Footprints on the Ground (SVG)", svg.FILE, svg.write),
-    SceneOutput("footprints-dxf", "Footprints on the Ground (DXF)", DXF, write_dxf),
     SceneOutput("gltf", "Whole Scene (glTF)", scene_gltf.FILE, scene_gltf.write),
     SceneOutput("rerun", "Rerun Recording", RECORDING, write_recording),
     SceneOutput("masks", "Ego Masks (PNG, CSV)", "masks", masks.write, True, has_range=False),
     SceneOutput("picture", "Picture (PNG)", PICTURE, write_picture, has_range=False),
-    SceneOutput("nebula", "Radar Mountings (Nebula)", nebula.FILE, nebula.write, has_range=False),
 )
-SCENE_OUTPUTS = MappingProxyType({row.name: row for row in _ROWS})
-"""Outputs by name."""
-FILES = MappingProxyType({row.name: row.file for row in _ROWS if not row.has_several})
-"""Usual name of the file by output, of the outputs that have one."""
+OF_EXAMPLE = ("footprints-dxf", "nebula")
+"""Outputs of the plugin that is shipped as an example."""
+EXAMPLE = "the plugin perception-entropy-outputs: pip install examples/plugin"
+OUTPUT = "output"
+"""The sort of plugins that lead to a `SceneOutput`."""
+
+
+@cache
+def scene_outputs() -> Mapping[str, SceneOutput]:
+    """Return all outputs by name: our own, then those of plugins that can be loaded."""
+    rows = {row.name: row for row in _ROWS}
+    for point in find_plugins(OUTPUT):
+        with suppress(ImportError, InputError):  # `scene_output` says why, once it is asked for
+            name = point.name.removeprefix(f"{OUTPUT}.")
+            rows.setdefault(name, _plugin_output(name))
+    return MappingProxyType(rows)
+
+
+def _plugin_output(name: str) -> SceneOutput:
+    """Return the output of a plugin; `InputError` where it is missing or no output."""
+    expected = EXAMPLE if name in OF_EXAMPLE else "a package that brings it"
+    point, row = required_plugin(OUTPUT, name, "export", f"output {name!r}", expected)
+    if not isinstance(row, SceneOutput) or row.name != name:
+        expected = f"a SceneOutput named {name!r}"
+        raise InputError(plugin_name(point), "entry point", expected, type(row).__name__)
+    return replace(row, write=partial(call_plugin, point, row.write))
+
+
+def output_files() -> dict[str, str]:
+    """Return the usual name of the file by output, of the outputs that have one."""
+    return {row.name: row.file for row in scene_outputs().values() if not row.has_several}
 
 
 def scene_output(name: str) -> SceneOutput:
     """Return the output of that name, or raise `InputError`."""
-    if name not in SCENE_OUTPUTS:
-        raise InputError("export", "output", f"one of {', '.join(SCENE_OUTPUTS)}", shown(name))
-    return SCENE_OUTPUTS[name]
+    if name in scene_outputs():
+        return scene_outputs()[name]
+    if name in OF_EXAMPLE or find_plugin(OUTPUT, name) is not None:
+        return _plugin_output(name)
+    raise InputError("export", "output", f"one of {', '.join(scene_outputs())}", shown(name))
 
 
 def scene_files(study: Study, name: str, range_m: float | None = None) -> tuple[Written, list[str]]:
@@ -102,7 +129,7 @@ def scene_files(study: Study, name: str, range_m: float | None = None) -> tuple[
     ----------
     study : Study
     name : str
-        Of the output: one of `SCENE_OUTPUTS`.
+        Of the output: one of `scene_outputs`.
     range_m : float, optional
         How far fields of view are drawn [m]; by default to each sensor's own range.
 

@@ -9,7 +9,7 @@ from blender_addon.engine import outputs
 from tests.addon import scenes
 from tests.addon.command_line import run_here
 
-NEED_LIBRARIES = ("footprints-dxf", "rerun")
+NEED_LIBRARIES = ("rerun",)
 
 
 @pytest.fixture
@@ -26,7 +26,7 @@ def exported(tmp_path, name, **options):
     return path
 
 
-@pytest.mark.parametrize("name", [n for n in outputs.SCENE_OUTPUTS if n not in NEED_LIBRARIES])
+@pytest.mark.parametrize("name", [n for n in outputs.scene_outputs() if n not in NEED_LIBRARIES])
 def test_every_output_of_the_panel_is_that_of_the_engine(seen, tmp_path, name):
     path = exported(tmp_path, name, range_m=5.0)
     files, _ = outputs.scene_files(scenes.study(), name, 5.0)

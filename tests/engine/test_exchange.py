@@ -428,7 +428,7 @@ def test_the_command_writes_and_reads(tmp_path, capsys, monkeypatch):
         ("prius.urdf", None, "urdf"),
         ("PRIUS.URDF", None, "urdf"),
         ("objects.json", None, "carla"),
-        ("plan.dxf", None, "footprints-dxf"),
+        ("plan.svg", None, "footprints"),
         ("prius.urdf", "urdf", "urdf"),
         ("rig", "ros", "ros"),
         ("front.json", "osi", "osi"),

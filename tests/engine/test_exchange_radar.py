@@ -2,6 +2,9 @@
 
 import json
 import math
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -10,6 +13,7 @@ import pe_core as pe
 from pe_core import catalog
 from pe_tools.exchange.yaml_text import parse_yaml_blocks
 from pe_tools.outputs import scene_files
+from tests.engine.conftest import CHECKOUT, EXAMPLE_PLUGIN
 
 AXLE = pe.Reference(-1.38, 0.3)
 RADARS = {"front": (3.4, 0.0, 0.5, 0.0), "corner_radar": (3.2, 0.8, 0.55, 50.0)}
@@ -65,7 +69,7 @@ def test_a_radar_of_carla_is_its_field_of_view(tmp_path):
     assert mode.max_range == 80.0 and mode.range_resolution is None
 
 
-def test_nebula_gets_positions_angles_and_the_damping_of_covers():
+def test_nebula_gets_positions_angles_and_the_damping_of_covers(example_plugin):
     """From the front axle; the radar's own cover and the bumper before it are 1.5 + 2 dB."""
     model = catalog.load("Continental ARS408-21")
     lossy = catalog.from_table("lossy", {**catalog.to_table(model), "cover_loss_db": 1.5})
@@ -88,3 +92,38 @@ def test_nebula_gets_positions_angles_and_the_damping_of_covers():
     camera = pe.Sensor("eye", catalog.load("nuScenes front"), pe.Pose((0, 0, 1)))
     _, lines = scene_files(pe.Study(pe.Rig([camera])), "nebula")
     assert "no radar in the rig: the file names none" in lines
+
+
+@pytest.mark.parametrize("installed", [True, False])
+def test_the_example_of_a_plugin_adds_its_outputs_to_the_command(
+    installed, example_plugin, tmp_path
+):
+    """Without it the one line names it; the status is that of bad input."""
+    pe.save_study(
+        pe.Study(pe.Rig([pe.Sensor("r", catalog.load("Delphi ESR"), pe.Pose((0, 0, 1)))])),
+        tmp_path / "study.toml",
+    )
+    paths = [example_plugin, EXAMPLE_PLUGIN] if installed else []
+    inherited = os.environ.get("PYTHONPATH")
+    path = os.pathsep.join(map(str, [CHECKOUT, *paths, *([inherited] if inherited else [])]))
+    environment = os.environ | {"PYTHONPATH": path}
+    for name, file in (("nebula", "a.yaml"), ("footprints-dxf", "a.dxf")):
+        command = [
+            sys.executable,
+            "-m",
+            "pe_core",
+            "export",
+            "study.toml",
+            "--to",
+            name,
+            "-o",
+            file,
+        ]
+        answer = subprocess.run(
+            command, cwd=tmp_path, env=environment, capture_output=True, text=True
+        )
+        assert answer.returncode == (0 if installed else 1), answer.stderr
+        assert (tmp_path / file).exists() == installed
+        if not installed:
+            (line,) = answer.stderr.splitlines()
+            assert "perception-entropy-outputs" in line and name in line

@@ -31,8 +31,8 @@ def area(points):
 
 
 @pytest.fixture(scope="module")
-def drawing():
-    ezdxf = pytest.importorskip("ezdxf", reason="of the extra cad")
+def drawing(example_plugin):
+    ezdxf = pytest.importorskip("ezdxf", reason="of the example of a plugin")
     files, _ = scene_files(STUDY, "footprints-dxf", 20.0)
     assert files == scene_files(STUDY, "footprints-dxf", 20.0)[0], "the same bytes every time"
     return ezdxf.read(io.StringIO(files["footprints.dxf"].decode()))
@@ -245,7 +245,6 @@ def test_offsets_that_lie_and_feather_s_first_version_are_refused_before_a_value
 
 
 ASKING = {
-    "footprints-dxf": (lambda: scene_files(STUDY, "footprints-dxf"), "cad"),
     "rerun": (lambda: scene_files(STUDY, "rerun"), "rerun"),
     "argoverse2": (lambda: rig_files(RIG, "argoverse2", AXLE), "argoverse"),
 }

@@ -10,13 +10,27 @@ from typing import Any
 import ezdxf
 from ezdxf import units
 
-from . import BLIND, GroundFootprint, hex_color
+from pe_tools.outputs import (
+    BLIND,
+    GroundFootprint,
+    OutputRequest,
+    SceneOutput,
+    ground_plan,
+    hex_color,
+)
 
+FILE = "footprints.dxf"
 MM = 1000.0
 VEHICLE, BLIND_GROUND, LABELS = "VEHICLE", "BLIND_GROUND", "LABELS"
 MARK_M, AHEAD_M, TEXT_M = 0.06, 0.5, 0.15
 """Of a sensor: the radius of its circle, its stroke to where it looks, its letters [m]."""
 GREY = (90, 90, 90)
+
+
+def write(request: OutputRequest) -> tuple[dict[str, bytes], list[str]]:
+    """Return the plan from above as DXF, and lines on what is not in it."""
+    plan, lines = ground_plan(request)
+    return {FILE: dxf_bytes(plan)}, lines
 
 
 def dxf_bytes(plan: Any) -> bytes:
@@ -76,3 +90,6 @@ def _mark(space: Any, layer: str, footprint: GroundFootprint) -> None:
 def _rgb(color: str) -> tuple[int, int, int]:
     red, green, blue = (int(color[k : k + 2], 16) for k in (1, 3, 5))
     return red, green, blue
+
+
+OUTPUT = SceneOutput("footprints-dxf", "Footprints on the Ground (DXF)", FILE, write)

@@ -12,11 +12,9 @@ import json
 from pe_core import catalog
 from pe_core.scene import Reference, Sensor
 from pe_core.sensors import kind_of
+from pe_tools.outputs import OutputRequest, SceneOutput
 
-from ..exchange import Written
-from ..exchange.portable_kinds import RADAR
-from .request import OutputRequest
-
+RADAR = "radar"
 FILE = "nebula_radars.yaml"
 HEAD = """\
 # Radars of the rig, for the services of tier4/nebula. Metres from {origin},
@@ -25,7 +23,7 @@ HEAD = """\
 DECIMALS = 6
 
 
-def write(request: OutputRequest) -> tuple[Written, list[str]]:
+def write(request: OutputRequest) -> tuple[dict[str, bytes], list[str]]:
     """Return the mountings of a study's radars, and lines on what is not in them."""
     study, lines = request.study, []
     origin, offset = _origin(study.reference)
@@ -74,3 +72,6 @@ def _mounting(sensor: Sensor, offset: float, damping: float) -> str:
     lines = [f"{json.dumps(sensor.name)}:", f"  model: {json.dumps(sensor.model.name)}"]
     lines += [f"  {key}: {round(value, DECIMALS) + 0.0!r}" for key, value in numbers.items()]
     return "\n".join(lines) + "\n"
+
+
+OUTPUT = SceneOutput("nebula", "Radar Mountings (Nebula)", FILE, write, has_range=False)

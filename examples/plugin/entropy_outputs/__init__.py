@@ -1,0 +1,1 @@
+"""Outputs of the scene that perception entropy finds by entry points."""

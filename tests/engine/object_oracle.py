@@ -75,7 +75,7 @@ def pixels(sensor, ray_of, finer, objects, vehicle, traffic):
 def visible_shares(sensor, ray_of, objects, vehicle, traffic, want=10_000):
     """(N,) share of the rays to each object that nothing hides, NaN of objects hardly in the view.
 
-    Rays through every second pixel find the object's part of the picture; about `want` rays to the
+    Rays through every pixel find the object's part of the picture; about `want` rays to the
     object, evenly spread over that part, decide.
     """
     origin, turn = np.array(sensor.pose.position), oracle.rotation(*sensor.pose.rpy)
@@ -95,13 +95,13 @@ def visible_shares(sensor, ray_of, objects, vehicle, traffic, want=10_000):
 
     for item in range(len(objects)):
         own = box_triangles(objects, item)
-        coarse = [np.arange(1.0, size, 2.0) for size in (camera.width, camera.height)]
+        coarse = [np.arange(0.5, size, 1.0) for size in (camera.width, camera.height)]
         (x, y), _, _ = hits(*coarse, own)
-        if len(x) < 12:
+        if len(x) < 48:
             continue
         low, high = (np.array([f(x), f(y)]) for f in (np.min, np.max))
         low, high = low - 2.0, high + 2.0
-        finer = math.sqrt(want / (4.0 * len(x)))
+        finer = math.sqrt(want / len(x))
         rows = [np.arange(a + 0.5 / finer, b, 1.0 / finer) for a, b in zip(low, high, strict=True)]
         rows = [
             w[(w > 0.0) & (w < s)] for w, s in zip(rows, (camera.width, camera.height), strict=True)

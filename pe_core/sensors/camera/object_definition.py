@@ -35,7 +35,7 @@ FIBONACCI = np.array(
 )
 """Point i of a lattice of FIBONACCI[k] is at i / FIBONACCI[k] across, and at
 i * FIBONACCI[k - 1] / FIBONACCI[k] down."""
-HITS, PARTLY_HITS = 55, 144
+HITS, PARTLY_HITS = 89, 144
 RAYS_AT_ONCE = 73_728
 SIDE_PLACES = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 15)] * 2), axis=-1).reshape(-1, 2)
 """Points on a side of a box, in half sides, that rays aim at if no lattice ray hits the box."""

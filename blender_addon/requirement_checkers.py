@@ -21,7 +21,7 @@ class CheckerCache:
         self._kept: list[tuple[tuple[Any, ...], requirements.RequirementChecker]] = []
         self._lock = threading.Lock()
 
-    def of(
+    def checker(
         self,
         wanted: Sequence[requirements.Requirement],
         vehicle: pe.Vehicle | None,
@@ -45,7 +45,9 @@ class CheckerCache:
 
     def of_study(self, study: pe.Study) -> requirements.RequirementChecker:
         """Return what holds rigs to the requirements of a study."""
-        return self.of(study.requirements, study.vehicle, study.model, study.reference, study.space)
+        return self.checker(
+            study.requirements, study.vehicle, study.model, study.reference, study.space
+        )
 
     def clear(self) -> None:
         """Drop everything."""

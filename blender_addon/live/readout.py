@@ -16,7 +16,15 @@ from .. import viewport, worker
 from ..language import shown as in_language
 from ..viewport import FAINT, INK, PLATE, SMALL, Rgba
 from . import background_figures
-from .readout_text import BETTER, WORSE, Line, Piece, figure_lines, known_rig_line, readout_of
+from .readout_text import (
+    BETTER,
+    WORSE,
+    ReadoutLine,
+    TextPiece,
+    figure_lines,
+    known_rig_line,
+    readout_of,
+)
 from .state import LiveScore, ShownScore, live_state, shown_score
 
 LARGE = 17.0
@@ -89,7 +97,7 @@ def figure_rows(scene_name: str, score: LiveScore, shown: ShownScore | None) -> 
     return rows
 
 
-def row_of(line: Line, color: Rgba = INK) -> TextRow:
+def row_of(line: ReadoutLine, color: Rgba = INK) -> TextRow:
     """Return a line as a row: gains and losses in their colours."""
     words = tuple((text, SENSE_COLORS.get(sense, color)) for text, sense in line)
     return TextRow(SMALL, words, WORD_GAP)
@@ -118,7 +126,7 @@ def _rows_of_score(
     arrow, color = ARROWS.get(text.sense, ""), SENSE_COLORS.get(text.sense, FAINT)
     change = ((f"{arrow} {text.change}".strip(), color),) if text.change else ()
     has_zones = score is not None and score.before is not None
-    reserved = ((Piece(""),),) * (ZONE_ROWS + 1 - len(text.lines)) if has_zones else ()
+    reserved = ((TextPiece(""),),) * (ZONE_ROWS + 1 - len(text.lines)) if has_zones else ()
     coverage, *zones = (row_of(line) for line in (*text.lines, *reserved))
     return [
         TextRow(LARGE, ((text.headline, INK), *change)),

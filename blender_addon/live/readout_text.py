@@ -21,23 +21,23 @@ PENDING = "Blind ground, reach, AP: being computed"
 BEFORE = "Before this move: "
 
 
-class Piece(NamedTuple):
+class TextPiece(NamedTuple):
     """A piece of a line, and whether it tells a gain or a loss."""
 
     text: str
     sense: int = SAME
 
 
-Line = tuple[Piece, ...]
+ReadoutLine = tuple[TextPiece, ...]
 """Pieces that are drawn beside each other; empty for no line."""
 
 
-def text_of(line: Line) -> str:
+def text_of(line: ReadoutLine) -> str:
     """Return a line as plain text."""
     return " ".join(piece.text for piece in line)
 
 
-def sense_of(line: Line) -> int:
+def sense_of(line: ReadoutLine) -> int:
     """Return whether a line tells a loss, or else a gain."""
     return max((piece.sense for piece in line if piece.sense), default=SAME)
 
@@ -50,7 +50,7 @@ class ReadoutText(NamedTuple):
     change: str
     sense: int
     against: str
-    lines: tuple[Line, ...]
+    lines: tuple[ReadoutLine, ...]
 
 
 def nats_text(entropy: float, change: float | None = None) -> str:
@@ -64,11 +64,11 @@ def readout_of(score: LiveScore | None, shown: ShownScore) -> ReadoutText:
     Changes are those of the live score, from sample to sample; of a stored search, its own.
     """
     change, sense, against = "", SAME, ""
-    lines: tuple[Line, ...] = ((Piece(f"Coverage {shown.coverage:.1%}"),),)
+    lines: tuple[ReadoutLine, ...] = ((TextPiece(f"Coverage {shown.coverage:.1%}"),),)
     if score is not None:
         now, before = score.summary, score.before
         what = "Coverage" if now.voxels else "Objects visible:"
-        coverage = Piece(f"{what} {shown.coverage:.1%}"), *coverage_change(now, before)
+        coverage = TextPiece(f"{what} {shown.coverage:.1%}"), *coverage_change(now, before)
         lines = coverage, *ap_lines(now, before), *zone_lines(now, before)
         if before is not None and score.baseline is not None:
             change, sense = entropy_change(now.entropy, before.entropy)
@@ -106,85 +106,85 @@ def entropy_change(now: float, before: float) -> tuple[str, int]:
     return f"{abs(by):.3f} {'worse' if by > 0.0 else 'better'}", WORSE if by > 0.0 else BETTER
 
 
-def coverage_change(now: pe.SummaryScore, before: pe.SummaryScore | None) -> Line:
+def coverage_change(now: pe.SummaryScore, before: pe.SummaryScore | None) -> ReadoutLine:
     """Return how the coverage changed, in percentage points; nothing where it did not."""
     return change_of(None if before is None else 100.0 * (now.coverage - before.coverage), 1)
 
 
-def ap_lines(now: pe.SummaryScore, before: pe.SummaryScore | None) -> list[Line]:
+def ap_lines(now: pe.SummaryScore, before: pe.SummaryScore | None) -> list[ReadoutLine]:
     """Return "Expected AP 0.653 (+0.012)" where objects are scored; nothing for voxels."""
     if now.ap is None:
         return []
     by = None if before is None or before.ap is None else now.ap - before.ap
-    return [(Piece(f"Expected AP {now.ap:.3f}"), *change_of(by, 3))]
+    return [(TextPiece(f"Expected AP {now.ap:.3f}"), *change_of(by, 3))]
 
 
-def zone_lines(now: pe.SummaryScore, before: pe.SummaryScore | None) -> list[Line]:
+def zone_lines(now: pe.SummaryScore, before: pe.SummaryScore | None) -> list[ReadoutLine]:
     """Return the zone that improved most, and the one that worsened most: at most a line each."""
     if before is None:
         return []
     common = [name for name in now.per_zone if name in before.per_zone]
     by = {name: now.per_zone[name].entropy - before.per_zone[name].entropy for name in common}
-    lines: list[Line] = []
+    lines: list[ReadoutLine] = []
     for word, sense in (("Better", BETTER), ("Worse", WORSE)):
         name = max(common, key=lambda zone: sense * by[zone], default=None)
         if name is not None and sense * by[name] >= MIN_ZONE_CHANGE:
             where = advice.WHERE.get(name, name)
-            lines.append((Piece(f"{word} {where} by {abs(by[name]):.2f} nats", sense),))
+            lines.append((TextPiece(f"{word} {where} by {abs(by[name]):.2f} nats", sense),))
     return lines
 
 
-def figure_lines(figures: ShownFigures) -> tuple[Line, Line]:
+def figure_lines(figures: ShownFigures) -> tuple[ReadoutLine, ReadoutLine]:
     """Return two lines: blind ground; reach and AP. Earlier figures are marked as such."""
     now, before = figures.now, figures.before
     if now is None:
-        return (Piece(PENDING),), ()
+        return (TextPiece(PENDING),), ()
     lines = blind_line(now, before), reach_line(now, before)
     if figures.current:
         return lines
-    blind, reach = ((Piece(f"{BEFORE}{text_of(line)}"),) if line else () for line in lines)
+    blind, reach = ((TextPiece(f"{BEFORE}{text_of(line)}"),) if line else () for line in lines)
     return blind, reach
 
 
-def blind_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> Line:
+def blind_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> ReadoutLine:
     """Return "81.2 m² blind to what is 0.5 m tall (−3.1)"."""
     what = f"blind to what is {now.height:g} m tall" if now.height else "blind to what lies flat"
     by = None if before is None else now.blind_m2 - before.blind_m2
-    return Piece(f"{now.blind_m2:.1f} m² {what}"), *change_of(by, 1, lower_is_better=True)
+    return TextPiece(f"{now.blind_m2:.1f} m² {what}"), *change_of(by, 1, lower_is_better=True)
 
 
-def reach_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> Line:
+def reach_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> ReadoutLine:
     """Return "Pedestrian detected to 47 m ahead (+2), AP 0.62"; empty without a class."""
     if now.class_name is None or now.reach_m is None:
         return ()
     by = None if before is None or before.reach_m is None else now.reach_m - before.reach_m
     sign = "\N{GREATER-THAN OR EQUAL TO} " if now.at_least else ""
     to = f"to {sign}{now.reach_m:.0f} m ahead" if now.reach_m else "nowhere ahead"
-    line = Piece(f"{now.class_name.capitalize()} detected {to}"), *change_of(by, 0)
+    line = TextPiece(f"{now.class_name.capitalize()} detected {to}"), *change_of(by, 0)
     if now.expected_ap is None:
         return line
     earlier_ap = None if before is None else before.expected_ap
     by = None if earlier_ap is None else now.expected_ap - earlier_ap
     *first, last = line
     comma = last._replace(text=f"{last.text},")
-    return *first, comma, Piece(f"AP {now.expected_ap:.2f}"), *change_of(by, 2)
+    return *first, comma, TextPiece(f"AP {now.expected_ap:.2f}"), *change_of(by, 2)
 
 
-def change_of(by: float | None, digits: int, *, lower_is_better: bool = False) -> Line:
+def change_of(by: float | None, digits: int, *, lower_is_better: bool = False) -> ReadoutLine:
     """Return "(+1.2)" as a gain or a loss; nothing where the change is 0 in these digits."""
     text = "" if by is None else f"{by:+.{digits}f}"
     if by is None or not text.strip("+-0."):
         return ()
     sense = BETTER if (by < 0.0) == lower_is_better else WORSE
-    return (Piece(f"({text.replace('-', MINUS)})", sense),)
+    return (TextPiece(f"({text.replace('-', MINUS)})", sense),)
 
 
-def known_rig_line(known_rig: KnownRigScore, now: pe.SummaryScore) -> Line:
+def known_rig_line(known_rig: KnownRigScore, now: pe.SummaryScore) -> ReadoutLine:
     """Return "nuScenes here: 2.867 nats; this is 0.229 worse"; empty until it is scored."""
     summary = known_rig.summary
     if summary is None:
         return ()
     change, sense = entropy_change(now.entropy, summary.entropy)
     word = "alike" if sense == SAME else change
-    here = Piece(f"{known_rig.title} here: {summary.entropy:.3f} nats; this is")
-    return here, Piece(word, sense)
+    here = TextPiece(f"{known_rig.title} here: {summary.entropy:.3f} nats; this is")
+    return here, TextPiece(word, sense)

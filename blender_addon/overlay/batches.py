@@ -13,7 +13,7 @@ from ..engine import graphics
 from ..viewport import shader
 
 
-class Area(Protocol):
+class DrawRegion(Protocol):
     """What is drawn into: its size [px]."""
 
     @property
@@ -53,7 +53,7 @@ class Batches:
             if batch is not None:
                 batch.draw(shader("SMOOTH_COLOR"))
 
-    def draw_lines(self, region: Area, width_px: float, *, edged: bool) -> None:
+    def draw_lines(self, region: DrawRegion, width_px: float, *, edged: bool) -> None:
         """Draw the lines in that width on the screen; with a dark edge where `edged`."""
         if self.through is not None:
             gpu.state.depth_test_set("NONE")
@@ -70,7 +70,7 @@ class Batches:
         self.lines.draw(_line_shader("POLYLINE_SMOOTH_COLOR", region, width_px))
 
 
-def _line_shader(name: str, region: Area, width_px: float) -> gpu.types.GPUShader:
+def _line_shader(name: str, region: DrawRegion, width_px: float) -> gpu.types.GPUShader:
     """Return a shader of lines, bound, for a width in a region."""
     wide = shader(name)
     wide.bind()

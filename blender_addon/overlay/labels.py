@@ -7,10 +7,9 @@ from collections.abc import Sequence
 import bpy
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from numpy.typing import NDArray
 
 from .. import viewport
-from ..engine import graphics
+from ..engine import Floats, graphics
 from ..viewport import SMALL, PlateBox
 
 STRONG_SIZE = 12.5
@@ -28,7 +27,7 @@ FAINT_INK: graphics.Rgba = (0.72, 0.72, 0.72, 1.0)
 PLATE: graphics.Rgba = (0.10, 0.10, 0.10, 0.78)
 LABEL_PLATE: graphics.Rgba = (0.08, 0.08, 0.08, 0.55)
 
-Bounds = tuple[NDArray[np.float64], NDArray[np.float64]]
+CornerPair = tuple[Floats, Floats]
 """Lowest and highest corner [m]."""
 
 
@@ -60,7 +59,7 @@ def draw_labels(
 
 
 def draw_legends(
-    context: bpy.types.Context, legends: Sequence[graphics.ColorKey], vehicle: Bounds | None
+    context: bpy.types.Context, legends: Sequence[graphics.ColorKey], vehicle: CornerPair | None
 ) -> list[PlateBox]:
     """Draw legends: in the lower right corner, or where they cover no plate and not the vehicle.
 
@@ -149,7 +148,7 @@ def _overlap(box: PlateBox, vehicle: PlateBox | None) -> float:
     return max(width, 0.0) * max(height, 0.0)
 
 
-def _box_of(context: bpy.types.Context, vehicle: Bounds | None) -> PlateBox | None:
+def _box_of(context: bpy.types.Context, vehicle: CornerPair | None) -> PlateBox | None:
     """Return the box of the vehicle in the view; None without one, or where the eye is in it."""
     if vehicle is None:
         return None

@@ -161,4 +161,4 @@ def _checker(request: ViewRequest) -> tuple[requirements.RequirementChecker, dic
     around = rig, request.vehicle, request.reference, request.space
     placed, unplaced = requirements.checkable(request.requirements, *around)
     given = request.vehicle, request.model, request.reference, request.space
-    return requirement_checkers.shared.of(placed, *given), unplaced
+    return requirement_checkers.shared.checker(placed, *given), unplaced

@@ -13,7 +13,7 @@ import gpu
 
 from .. import vehicle_cache
 from ..engine import graphics, pe
-from .batches import Area, Batches
+from .batches import Batches, DrawRegion
 
 if TYPE_CHECKING:
     import bpy
@@ -35,7 +35,9 @@ def labels_around(scene: bpy.types.Scene, eye: pe.Pose) -> tuple[graphics.Tag, .
     return _around(scene, eye)[0].bodies.labels
 
 
-def draw_around(scene: bpy.types.Scene, eye: pe.Pose, area: Area, as_linear: bool = False) -> None:
+def draw_around(
+    scene: bpy.types.Scene, eye: pe.Pose, area: DrawRegion, as_linear: bool = False
+) -> None:
     """Draw what is around a sensor, with the matrices of its picture.
 
     `as_linear`: into a texture of linear light.

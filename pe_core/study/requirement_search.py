@@ -30,7 +30,7 @@ INFEASIBLE = 100.0
 """Value of a placement that breaks a constraint, without the violation: above all entropies."""
 
 
-class Constraint(Protocol):
+class FeasibilityRule(Protocol):
     """Something that a placement keeps, or breaks by so much."""
 
     def violation(self, rig: Rig) -> float:
@@ -68,10 +68,10 @@ class FeasibleFirst:
     ----------
     objective : Objective
         The entropy.
-    constraints : sequence of Constraint
+    constraints : sequence of FeasibilityRule
     """
 
-    def __init__(self, objective: Objective, constraints: Sequence[Constraint]) -> None:
+    def __init__(self, objective: Objective, constraints: Sequence[FeasibilityRule]) -> None:
         self._objective, self._constraints = objective, tuple(constraints)
 
     def entropy(self, rig: Rig) -> float:
@@ -107,7 +107,7 @@ class FeasibleFirst:
         return rounded(sum(each.violation(rig) for each in self._constraints))
 
 
-def constraints_of(study: Study) -> tuple[Constraint, ...]:
+def constraints_of(study: Study) -> tuple[FeasibilityRule, ...]:
     """Return what placements of a study's search have to keep: requirements, blind ground.
 
     Raises
@@ -115,7 +115,7 @@ def constraints_of(study: Study) -> tuple[Constraint, ...]:
     InputError
         When a zone of a requirement that is to be kept cannot be placed.
     """
-    search, constraints = study.search, list[Constraint]()
+    search, constraints = study.search, list[FeasibilityRule]()
     if search.requirements == KEEP and study.requirements:
         checker = checker_of(study)
         constraints.append(RequirementConstraint(checker, search.tolerance, search.seed))
@@ -124,7 +124,7 @@ def constraints_of(study: Study) -> tuple[Constraint, ...]:
     return tuple(constraints)
 
 
-def feasible_first(objective: Objective, constraints: Sequence[Constraint]) -> Objective:
+def feasible_first(objective: Objective, constraints: Sequence[FeasibilityRule]) -> Objective:
     """Return what a search minimises: the objective, or `FeasibleFirst` of it."""
     return FeasibleFirst(objective, constraints) if constraints else objective
 

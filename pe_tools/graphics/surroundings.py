@@ -18,7 +18,7 @@ from pe_core.scoring.requirements import BODIES, Body
 from .colors import Rgba, with_alpha
 from .primitives import LayerShape, Primitives, Tag
 
-Bounds = tuple[Floats, Floats]
+CornerPair = tuple[Floats, Floats]
 
 BELOW_M = -0.02
 """Height of the ground: a floor that the scene has at 0 hides it."""
@@ -63,7 +63,7 @@ class Surroundings:
     bodies: LayerShape
 
 
-def surroundings(eye: Pose, vehicle: Bounds | None = None) -> Surroundings:
+def surroundings(eye: Pose, vehicle: CornerPair | None = None) -> Surroundings:
     """Return what a camera at a pose has around it; no test body stands in the vehicle's bounds."""
     x, y = eye.position[:2]
     ground = LayerShape(
@@ -97,7 +97,7 @@ def _heading(eye: Pose) -> float:
     return math.atan2(along[1], along[0])
 
 
-def _stands_in(foot: Floats, body: Body, vehicle: Bounds) -> bool:
+def _stands_in(foot: Floats, body: Body, vehicle: CornerPair) -> bool:
     low, high = (corner[:2] for corner in vehicle)
     return bool(
         (foot + body.largest / 2.0 > low).all() and (foot - body.largest / 2.0 < high).all()

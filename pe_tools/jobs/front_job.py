@@ -11,7 +11,7 @@ from pe_core.scoring import RigJudge
 from pe_core.search import Journal, Objective, Picks, feasible_start, optimize
 from pe_core.study.objective_search import is_by_ap, search_evaluator
 from pe_core.study.requirement_search import (
-    Constraint,
+    FeasibilityRule,
     FeasibleFirst,
     constraints_of,
     feasible_first,
@@ -73,7 +73,7 @@ class FrontJob(Job):
         self._choice = study.designs()
         self._designs: list[tuple[Models, float, Study]] = []
         self._figures: list[FrontFigures] = []
-        self._constraints: list[tuple[Constraint, ...]] = []
+        self._constraints: list[tuple[FeasibilityRule, ...]] = []
         self._helpers: ExecutorSource | None = None
         self._found: list[_Found] = []
         self._errors: dict[Picks, InputError] = {}

@@ -14,7 +14,7 @@ from pe_core.study.objective_setting import EXPECTED_AP
 from pe_core.study.study import Study
 
 from .archive import Archive
-from .constraints import ActiveConstraint, DesignSpace, Unmet, active_constraints
+from .constraints import ActiveConstraint, Neighbourhood, Unmet, active_constraints
 from .flatness import FAR, NEAR, AxisCost, flatness
 from .fresh_samples import FreshSamples
 from .optima import BETWEEN, DESCENT, EXAMINED, MAX_RUNNERS_UP, Basins, Endings
@@ -135,7 +135,7 @@ def analyse(
         return None
     steps, with_endings = parts
     space = start.search_space()
-    design = DesignSpace(best.rig, space)
+    design = Neighbourhood(best.rig, space)
     axes = []
     for row in flatness(samples, design.status, steps):
         axes.append(row)

@@ -65,7 +65,7 @@ class ActiveConstraint:
         }
 
 
-class DesignSpace:
+class Neighbourhood:
     """A placement in the space of a search: what each axis does, and what forbids a step.
 
     Parameters
@@ -159,7 +159,7 @@ class DesignSpace:
 
 
 def active_constraints(
-    table: Iterable[AxisCost], space: DesignSpace, unmet: Unmet | None = None
+    table: Iterable[AxisCost], space: Neighbourhood, unmet: Unmet | None = None
 ) -> tuple[ActiveConstraint, ...]:
     """Return the active constraints, that of the largest gain first; one without names last.
 
@@ -167,7 +167,7 @@ def active_constraints(
     ----------
     table : iterable of AxisCost
         What each step costs.
-    space : DesignSpace
+    space : Neighbourhood
     unmet : callable, optional
         Requirements that are to be kept.
     """

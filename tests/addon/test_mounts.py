@@ -200,7 +200,7 @@ def test_followers_have_neither_mount_nor_bounds_in_the_study(roof):
     sensor.location.y = 0.3
     put(sensor, "roof area")
     assert bpy.ops.pe.mirror_sensor(name="roof", linked=True) == {"FINISHED"}
-    own = bpy.data.objects["roof mirrored"].perception_entropy
+    own = bpy.data.objects["roof right"].perception_entropy
     own.bounded[0] = True
     study = scenes.study()
     assert study.search.mounting.on == {"roof": "roof area"}
@@ -272,8 +272,8 @@ def test_variants_hold_links_mounts_and_racks(roof):
     sensor.perception_entropy.mount = sensor.perception_entropy.rack = ""
     bridge.activate_variant(roof, roof.perception_entropy.variants[0])
     own = sensor.perception_entropy
-    assert (own.mirror_of, own.mount, own.rack) == ("roof mirrored", "roof area", "arm")
-    assert bpy.data.objects["roof mirrored"].perception_entropy.mirror_of == "roof"
+    assert (own.mirror_of, own.mount, own.rack) == ("roof right", "roof area", "arm")
+    assert bpy.data.objects["roof right"].perception_entropy.mirror_of == "roof"
 
 
 def test_a_variant_of_an_older_version_leaves_links_and_mounts_alone(roof):

@@ -320,5 +320,7 @@ def test_bad_files_are_one_clear_line(write, text, message):
 )
 def test_a_study_names_its_file_its_field_and_the_angles_file(write, data, message):
     folder = write("1\nx\n").parent
-    with pytest.raises(pe.InputError, match=r"^study\.toml: sensor\[0\]\.angles: .*" + message):
+    with pytest.raises(
+        pe.InputError, match=r"^study\.toml: sensor\[0\]\.model\.angles: .*" + message
+    ):
         study_from_dict(data, "study.toml", folder)

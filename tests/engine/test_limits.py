@@ -50,7 +50,7 @@ def vehicle(**options):
 # what is made, the option, values that are taken, values that are not
 LIMITS = [
     (lidar, "azimuth_count", (1, 360_000, 1800.0), (0, -1, 360_001, 180.7, True, "4", None)),
-    (lidar, "max_range", (1e-6, 1e5), (0.0, -1.0, 1.1e5, math.inf, math.nan, True, "50")),
+    (lidar, "max_range", (1e-3, 1e5), (0.0, 1e-6, -1.0, 1.1e5, math.inf, math.nan, True, "50")),
     (lidar, "elevations", ([90 * DEG], [-90 * DEG]), ([90.001 * DEG], [-91 * DEG], [math.nan], [])),
     (
         lidar,

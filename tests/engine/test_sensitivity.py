@@ -19,7 +19,7 @@ from pe_tools.sensitivity import (
     sensitivity_from_dict,
     sensitivity_lines,
 )
-from pe_tools.sensitivity.constraints import DesignSpace, active_constraints
+from pe_tools.sensitivity.constraints import Neighbourhood, active_constraints
 from pe_tools.sensitivity.flatness import PoseStep, flatness
 from pe_tools.sensitivity.fresh_samples import SAMPLES, FreshSamples
 from pe_tools.sensitivity.optima import Basins
@@ -112,7 +112,7 @@ class Slope:
 
 def active(given):
     """Active constraints of a study on a slope, by the text of their step."""
-    design, slope = DesignSpace(given.rig, given.search_space()), Slope(given.rig)
+    design, slope = Neighbourhood(given.rig, given.search_space()), Slope(given.rig)
     table = list(flatness(slope, design.status, (NEAR,)))
     return {each.step.text: each for each in active_constraints(table, design)}
 
@@ -159,7 +159,7 @@ def test_rules_slots_fixed_sensors_and_kept_requirements_forbid_steps():
     assert active(replace(given, search=settings))["roof x +1 cm"].constraints[0] == (
         "x of 'roof' held"
     )
-    design = DesignSpace(given.rig, given.search_space())
+    design = Neighbourhood(given.rig, given.search_space())
     table = list(flatness(Slope(given.rig), design.status, (NEAR,)))
     found = active_constraints(table, design, lambda _: ["front"])
     assert all(each.constraints[-1] == "requirement 'front'" for each in found)
@@ -170,7 +170,7 @@ def test_a_step_along_a_surface_is_allowed_and_one_off_it_is_not():
     roof = shapes.lidar_on_roof(shapes.small_lidar(4, 90), (0.0, 0.0, 0.9))
     given = free_study([roof], (), shapes.box_car(), mounts=mounts, on={"roof": "top"})
     given = replace(given, rig=Parametrization(given.rig, given.search_space()).start.rig)
-    design = DesignSpace(given.rig, given.search_space())
+    design = Neighbourhood(given.rig, given.search_space())
     assert design.status("roof", "x") == "surface"
     assert design.forbidding(PoseStep("roof", "x", 1.0)) == ()
     assert design.forbidding(PoseStep("roof", "z", 1.0)) == ("mount 'top'",)
@@ -247,7 +247,7 @@ def test_a_link_forbids_steps_of_one_of_the_linked_sensors():
     mounting = pe.Mounting(pairs=[("left", "right")])
     settings = pe.Search(free={"left": ("x",)}, mounting=mounting)
     given = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=settings)
-    design = DesignSpace(rig, given.search_space())
+    design = Neighbourhood(rig, given.search_space())
     assert [design.status(name, "x") for name in names] == ["free", "linked"]
     for name in names:
         assert design.forbidding(PoseStep(name, "x", 1.0)) == ("link of 'right' to 'left'",)

@@ -196,7 +196,7 @@ def test_what_there_is_to_know_is_reported_in_lines():
     assert own == [
         "a b: called a_b in names of files",
         "a b: has no range of its own; its solids end at 80 m (--range)",
-        "no vehicle: nothing is hidden, and there is no blind volume near it",
+        "no vehicle: nothing is occluded, and there is no blind volume near it",
     ]
 
 
@@ -238,14 +238,18 @@ def test_the_check_for_closed_surfaces_sees_a_hole_a_fold_and_a_turned_triangle(
         (["--to", "solids", "--range", "0"], "export: range: expected a length above 0 m"),
         (["--to", "solids", "-o", "taken"], "taken: folder: expected a path that can be written"),
         (["--to", "gltf", "-o", "taken/scene.glb"], "expected a path that can be written"),
-        (["--to", "gltf", "-o", "taken"], "taken: file: expected a new file"),
-        (["--to", "csv", "--range", "5"], "--range: option: expected one of solids"),
+        (["--to", "gltf", "-o", "taken.glb"], "taken.glb: file: expected a new file"),
+        (
+            ["--to", "csv", "-o", "rig.csv", "--range", "5"],
+            "--range: option: expected one of solids",
+        ),
     ],
 )
 def test_what_cannot_be_written_is_reported(options, words, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     pe.save_study(a_study(camera()), "study.toml")
-    (tmp_path / "taken").write_text("mine")
+    for name in ("taken", "taken.glb"):
+        (tmp_path / name).write_text("mine")
     assert main(["export", "study.toml", "-o", "out", *options]) == 1
     told = capsys.readouterr().err
     assert words in told and told.count("\n") == 1

@@ -39,7 +39,7 @@ def test_bodies_of_the_requirements_stand_at_5_10_and_20_metres(rotation):
 
 
 def test_none_stands_in_the_vehicle():
-    low, high = np.array([-9.0, -1.2, 0.0]), np.array([6.0, 1.2, 3.0])
+    low, high = np.array([-9.0, -1.4, 0.0]), np.array([6.0, 1.4, 3.0])
     found = surroundings(eye((0.5, 0.0, 3.1)), (low, high)).bodies
     assert [tag.text for tag in found.labels] == ["car, 20 m", "cyclist, 10 m"]
     assert len(surroundings(eye((0.5, 0.0, 3.1)), shapes.box_car().bounds).bodies.labels) == 3

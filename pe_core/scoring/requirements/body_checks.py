@@ -58,7 +58,7 @@ class _BodySet:
 
 
 @dataclass(frozen=True, slots=True)
-class _Measured:
+class _PointsByBand:
     """m by sensor: (N,) of all bodies, and (C,) of their cells where the sensor shows parts."""
 
     m: CountsBySensor
@@ -126,9 +126,9 @@ class BodyChecks:
         found = [
             {sensor.name: each.measure_again(sensor)} for each in self._measurers_of(number, sensor)
         ]
-        return self._seen(0, sensor, _Measured(found[0], found[-1] if len(found) > 1 else {}))
+        return self._seen(0, sensor, _PointsByBand(found[0], found[-1] if len(found) > 1 else {}))
 
-    def _judged(self, number: int, rig: Rig, measured: _Measured) -> Judged:
+    def _judged(self, number: int, rig: Rig, measured: _PointsByBand) -> Judged:
         requirement, _ = self._wanted[number]
         names = [s.name for s in rig]
         seen = {s.name: self._seen(number, s, measured) for s in rig}
@@ -142,15 +142,15 @@ class BodyChecks:
             passed &= np.logical_and.reduce(list(without.values()))
         return Judged(passed, whole, without, seen)
 
-    def _measured(self, number: int, rig: Rig) -> _Measured:
+    def _measured(self, number: int, rig: Rig) -> _PointsByBand:
         """Return m of all bodies, and of their cells where a share is asked for, in a scene."""
         if self._joined is None:
-            return _Measured({}, {})
+            return _PointsByBand({}, {})
         m = self._measurer(number).measure(rig)
         parts: CountsBySensor = {}
         if number in self._part_measurers:
             parts = self._part_measurers[number].measure(filter(self._shows_parts, rig))
-        return _Measured(m, parts)
+        return _PointsByBand(m, parts)
 
     def _measurer(self, number: int) -> ObjectMeasurementCache:
         """Return what measures bodies in a scene; what measures their cells is made, too."""
@@ -176,7 +176,7 @@ class BodyChecks:
         asking = (own.criterion for own, _ in self._wanted if own.criterion.share is not None)
         return any(each.counts(sensor.kind) for each in asking)
 
-    def _seen(self, number: int, sensor: Sensor, measured: _Measured) -> Flags:
+    def _seen(self, number: int, sensor: Sensor, measured: _PointsByBand) -> Flags:
         """Return the samples and bodies (N, bodies * headings) that a sensor sees."""
         requirement, samples = self._wanted[number]
         criterion, columns = requirement.criterion, []

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
-Place = tuple[float, float]
-Color = tuple[float, float, float]
+PixelPlace = tuple[float, float]
+Srgb = tuple[float, float, float]
 
 LETTERS = Path(__file__).with_name("letters.npz")
 BASELINE_PX = 25
@@ -19,8 +19,8 @@ BASELINE_PX = 25
 UNKNOWN = "\u25a1"
 """Stands for a letter of another script than Latin, Greek and Cyrillic."""
 DASH_PX = 7.0
-INK: Color = (0.106, 0.122, 0.141)
-WHITE: Color = (1.0, 1.0, 1.0)
+INK: Srgb = (0.106, 0.122, 0.141)
+WHITE: Srgb = (1.0, 1.0, 1.0)
 
 
 class DrawnPixels:
@@ -38,13 +38,15 @@ class DrawnPixels:
         height, width = pixels.shape[:2]
         self._down, self._right = np.mgrid[0:height, 0:width] + 0.5
 
-    def disc(self, center: Place, radius_px: float, color: Color) -> None:
+    def disc(self, center: PixelPlace, radius_px: float, color: Srgb) -> None:
         """Fill a circle with a dark edge."""
         away = np.hypot(self._right - center[0], self._down - center[1])
         self._blend(radius_px - away, INK)
         self._blend(radius_px - 1.5 - away, color)
 
-    def line(self, start: Place, end: Place, width_px: float, *, dashed: bool = False) -> None:
+    def line(
+        self, start: PixelPlace, end: PixelPlace, width_px: float, *, dashed: bool = False
+    ) -> None:
         """Draw a dark line."""
         first, along = np.array(start), np.array(end) - np.array(start)
         length = max(float(np.hypot(*along)), 1e-9)
@@ -55,7 +57,7 @@ class DrawnPixels:
         inside = width_px / 2.0 - away
         self._blend(np.where(position // DASH_PX % 2 == 1, -1.0, inside) if dashed else inside, INK)
 
-    def text(self, text: str, left: float, baseline: float, color: Color = INK) -> None:
+    def text(self, text: str, left: float, baseline: float, color: Srgb = INK) -> None:
         """Write one line; it ends at the picture's edge."""
         rows = tile_of(text)
         height, width = self.pixels.shape[:2]
@@ -68,7 +70,7 @@ class DrawnPixels:
         area = self.pixels[low:high, start:end]
         area += shown * (np.array(color) - area)
 
-    def _blend(self, inside_px: Floats, color: Color) -> None:
+    def _blend(self, inside_px: Floats, color: Srgb) -> None:
         """Blend a colour in by how far pixels are inside its edge [px]."""
         share = np.clip(inside_px + 0.5, 0.0, 1.0)[..., None]
         self.pixels += share * (np.array(color) - self.pixels)

@@ -51,7 +51,7 @@ def picture_output(request: Any) -> tuple[dict[str, bytes], list[str]]:
     return {"picture.png": picture_file(request.study)}, []
 
 
-def _draw_label(drawn: DrawnPixels, label: pictures.Label) -> None:
+def _draw_label(drawn: DrawnPixels, label: pictures.NumberLabel) -> None:
     end, disc = (tuple((SCALE * place).tolist()) for place in (label.end, label.disc))
     drawn.line(disc, end, SCALE * 1.5, dashed=label.is_hidden)
     if label.is_hidden:

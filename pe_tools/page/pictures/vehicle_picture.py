@@ -152,7 +152,7 @@ def labelled_picture(
     return figure(canvas.svg(), sensor_key(rig))
 
 
-class Label(NamedTuple):
+class NumberLabel(NamedTuple):
     """The number of a sensor in a picture: positions [px of `SIZE`], and whether it is hidden."""
 
     number: int
@@ -162,7 +162,7 @@ class Label(NamedTuple):
     is_hidden: bool
 
 
-def labels(vehicle: pe.Vehicle | None, rig: pe.Rig, view: Viewpoint) -> list[Label]:
+def labels(vehicle: pe.Vehicle | None, rig: pe.Rig, view: Viewpoint) -> list[NumberLabel]:
     """Return the label of each sensor, in a picture of `SIZE`."""
     positions = np.array([sensor.pose.position for sensor in rig])
     ends = np.stack(view.project(positions, *SIZE), axis=1)
@@ -170,7 +170,7 @@ def labels(vehicle: pe.Vehicle | None, rig: pe.Rig, view: Viewpoint) -> list[Lab
     discs = spread_apart(ends - [0.0, LABEL_RISE])
     colors = graphics.sensor_colors_on_paper(rig).values()
     rows = zip(ends, discs, colors, hidden, strict=True)
-    return [Label(number, *row) for number, row in enumerate(rows, 1)]
+    return [NumberLabel(number, *row) for number, row in enumerate(rows, 1)]
 
 
 def sensor_key(rig: pe.Rig) -> Markup:
@@ -201,7 +201,7 @@ def spread_apart(positions: Floats) -> Floats:
     return moved
 
 
-def _draw_number(canvas: Canvas, label: Label) -> None:
+def _draw_number(canvas: Canvas, label: NumberLabel) -> None:
     """Draw a disc with a number, and a line to its sensor: dashed if the vehicle hides it."""
     end, disc, color = label.end, label.disc, hexadecimal(label.color)
     line = f"M{disc[0]:.1f} {disc[1]:.1f}L{end[0]:.1f} {end[1]:.1f}"

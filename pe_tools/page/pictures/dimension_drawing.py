@@ -6,16 +6,15 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 import pe_core as pe
+from pe_core.base.arrays import Floats
 
 from ... import graphics
 from ..markup import Markup, number
 from .ground_plan import outline_of
 from .svg import Canvas, hexadecimal
 
-Floats = NDArray[np.float64]
 Extent1d = tuple[float, float]
 
 WIDTH = 460.0

@@ -7,9 +7,9 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from pe_core.base.arrays import Floats
+
 PixelPlace = tuple[float, float]
 Srgb = tuple[float, float, float]
 

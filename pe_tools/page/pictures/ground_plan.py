@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 import pe_core as pe
+from pe_core.base.arrays import Floats
 from pe_core.scoring import sight
 
 from ... import graphics
 from ..markup import Markup, number
 from .svg import Canvas, hexadecimal
 
-Floats = NDArray[np.float64]
 PlanBounds = tuple[tuple[float, float], tuple[float, float]]
 
 WIDTH, MAX_HEIGHT = 440.0, 330.0

@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pe_core.base.arrays import Floats, Ints
+
 from .painted_mesh import unit
 from .ray_scene import GROUND, RayHits, RayScene
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Size = tuple[int, int]
 
 LAMPS_PER_PIXEL, LAMP_SETS = 6, 4

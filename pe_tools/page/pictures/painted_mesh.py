@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import pe_core as pe
+from pe_core.base.arrays import Floats, Ints
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Rgb = tuple[float, float, float]
 
 CREASE = math.cos(math.radians(38.0))

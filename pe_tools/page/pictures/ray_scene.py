@@ -7,13 +7,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from pe_core.base.arrays import Flags, Floats, Ints
 
 from .painted_mesh import PaintedMesh, unit
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 NOTHING, SKY, GROUND = -2, -1, 0
 """Surfaces of rays that meet no solid: outside the lens, sky, ground. Solids count from 1."""

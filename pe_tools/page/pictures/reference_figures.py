@@ -6,13 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 import pe_core as pe
+from pe_core.base.arrays import Floats
 
 from .painted_mesh import GLASS, TAIL, TYRE, Paint, PaintedMesh, capped, lathe
-
-Floats = NDArray[np.float64]
 
 PERSON_M = (0.5, 0.5, 1.75)
 """Length, width and height of a person."""

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pe_core.base.arrays import Flags, Floats
+
 from .illumination import skylight, sun_position, sunlight
 from .painted_mesh import unit
 from .ray_scene import GROUND, NOTHING, SKY, RayCamera, RayHits, RayScene
 
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 Rgb = tuple[float, float, float]
 
 SUN, UPPER, LOWER = np.array([1.16, 1.11, 1.04]), np.array([0.50, 0.54, 0.60]), np.array([0.30] * 3)

@@ -6,17 +6,14 @@ import math
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 import pe_core as pe
+from pe_core.base.arrays import Flags, Floats
 from pe_core.scoring import requirements, sight
 
 from ... import graphics
 from ..markup import Markup, number
 from .ground_plan import PlanBounds, PlanDrawing
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 MET, NOT_MET, INK = "#1a7f4b", "#c4320a", "#1b1f24"
 MET_RGBA, NOT_MET_RGBA = (26, 127, 75, 90), (196, 50, 10, 235)

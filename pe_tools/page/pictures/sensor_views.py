@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 import pe_core as pe
 from pe_core import scene
 from pe_core import sensors as kinds
+from pe_core.base.arrays import Floats
 
 from ... import graphics
 from ..markup import Markup, escaped, number, signed
@@ -26,8 +27,6 @@ from .ray_scene import RayCamera, RayScene
 from .reference_figures import DISTANCES, ReferenceFigure, reference_figures
 from .rendering import Environment, from_srgb, render
 from .svg import LETTER_WIDTH, Canvas, LabelledPicture, TextLabel, figure, hexadecimal
-
-Floats = NDArray[np.float64]
 
 MAX_WIDTH, MAX_HEIGHT = 640, 480
 """Size of a camera's image on the page [px]."""

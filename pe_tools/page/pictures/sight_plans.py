@@ -7,17 +7,15 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import pe_core as pe
+from pe_core.base.arrays import Floats
 from pe_core.scoring import sight
 
 from ... import graphics
 from ..markup import Markup
 from .ground_plan import PlanBounds, PlanDrawing
 from .svg import hexadecimal
-
-Floats = NDArray[np.float64]
 
 RIG, BEFORE = "#0b5cad", "#8c959f"
 GRID = "#c8cfd6"

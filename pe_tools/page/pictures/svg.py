@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
+
+from pe_core.base.arrays import Floats
 
 from ..markup import Markup, escaped
 
-Floats = NDArray[np.float64]
 PictureBox = tuple[float, float, float, float]
 """Left, top, width and height."""
 LINE_HEIGHT, LETTER_WIDTH = 17.0, 10.0

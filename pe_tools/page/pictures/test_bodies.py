@@ -6,17 +6,15 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 import pe_core as pe
 from pe_core import sensors as kinds
+from pe_core.base.arrays import Floats
 from pe_core.scoring import requirements
 from pe_core.scoring.requirements.definition import placed
 
 from .painted_mesh import Paint, PaintedMesh, capped
 from .reference_figures import ReferenceFigure
-
-Floats = NDArray[np.float64]
 
 MET_PAINT, NOT_MET_PAINT = Paint((0.02, 0.24, 0.10)), Paint((0.62, 0.09, 0.01))
 AROUND = 24

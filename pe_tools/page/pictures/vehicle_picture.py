@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 import pe_core as pe
 from pe_core import catalog, scene
+from pe_core.base.arrays import Floats
 
 from ... import graphics
 from ..markup import Markup, escaped
@@ -22,8 +23,6 @@ from .ray_scene import RayScene, Viewpoint
 from .rendering import Environment, from_srgb, render
 from .sensor_views import sensor_view
 from .svg import Canvas, figure, hexadecimal
-
-Floats = NDArray[np.float64]
 
 SIZE = (960, 540)
 """Width and height of the picture [px]."""

@@ -29,7 +29,7 @@ REPORT_S = 0.1
 TURN_S, IDLE_S = 0.01, 0.05
 ROW_STEP = 18
 """A button is 20 pixels high at this scale: smaller steps cannot miss one."""
-COLUMNS = (0.7, 0.25, 0.5)
+COLUMNS = (0.7, 0.25, 0.45)
 """Where to look in a row: its middle may be the gap between two buttons."""
 
 
@@ -252,10 +252,13 @@ def look_for_button(operator, words, first):
 
 
 def sidebar_places(window, sidebar):
-    """Yield places in the sidebar from its top down, column by column; y from the window's top."""
+    """Yield places in the sidebar from its top down, column by column; y from the window's top.
+
+    A button that is cut by the sidebar's end is none: there a click takes the editor's edge.
+    """
     top = window.height - (sidebar.y + sidebar.height)
     for column in COLUMNS:
-        for y in range(top + ROW_STEP, top + sidebar.height, ROW_STEP):
+        for y in range(top + ROW_STEP, top + sidebar.height - ROW_STEP, ROW_STEP):
             yield round(sidebar.x + column * sidebar.width), y
 
 

@@ -7,6 +7,7 @@ import os
 import re
 import secrets
 import stat
+import threading
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -34,6 +35,11 @@ _FILE_TYPES = {
     stat.S_IFCHR: "a device",
     stat.S_IFBLK: "a device",
 }
+
+
+_writing_files = threading.RLock()
+END_WAIT_S = 5.0
+"""How long a process that ends at once waits for a file that a thread is writing."""
 
 
 def read_bytes(path: Path, max_bytes: int = TEXT_BYTES) -> bytes:
@@ -136,17 +142,23 @@ def write_all_bytes(files: Mapping[Path, bytes]) -> None:
     # Not the tempfile module: only the owner may read its files, and os.replace keeps that mode.
     token = secrets.token_hex(4)
     temporaries = {p: p.with_name(f".{token}{number}.tmp") for number, p in enumerate(files)}
-    try:
-        for path, data in files.items():
-            with _writing(path):
-                if path.exists():
-                    _require_regular(path, os.stat(path), "a path that can be written")
-                write_synced(temporaries[path], data)
-        put_in_place({temporary: path for path, temporary in temporaries.items()})
-    finally:
-        for temporary in temporaries.values():
-            with suppress(OSError, ValueError):
-                temporary.unlink(missing_ok=True)
+    with _writing_files:
+        try:
+            for path, data in files.items():
+                with _writing(path):
+                    if path.exists():
+                        _require_regular(path, os.stat(path), "a path that can be written")
+                    write_synced(temporaries[path], data)
+            put_in_place({temporary: path for path, temporary in temporaries.items()})
+        finally:
+            for temporary in temporaries.values():
+                with suppress(OSError, ValueError):
+                    temporary.unlink(missing_ok=True)
+
+
+def finish_writing() -> None:
+    """Wait until no file is being written, and let none begin: the process is about to end."""
+    _writing_files.acquire(timeout=END_WAIT_S)
 
 
 def put_in_place(moves: Mapping[Path, Path]) -> None:

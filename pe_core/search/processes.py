@@ -20,6 +20,7 @@ from types import ModuleType
 from typing import Any, TypeVar
 
 from ..base.errors import InputError
+from ..base.files import finish_writing
 from .payload import Unreadable, receive, send_payload
 
 T = TypeVar("T")
@@ -220,6 +221,7 @@ def keep_freed_memory() -> bool:
 
 def _end_after(sentinel: int) -> None:
     multiprocessing.connection.wait([sentinel])
+    finish_writing()
     os._exit(1)
 
 

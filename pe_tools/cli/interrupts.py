@@ -10,6 +10,8 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
+from pe_core.base.files import finish_writing
+
 FATAL = 128
 """Exit status of a process that a signal ended, less the signal's number."""
 NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
@@ -111,4 +113,5 @@ def leave(status: int, *, at_once: bool = False) -> NoReturn:
     for stream in (sys.stdout, sys.stderr):
         with suppress(AttributeError, OSError, ValueError):  # it is closed, or nobody reads it
             stream.flush()
+    finish_writing()
     os._exit(status)

@@ -4,6 +4,7 @@ import csv
 import errno
 import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -244,3 +245,22 @@ def test_every_table_goes_through_the_one_writer():
 def test_every_file_system_takes_the_names_of_files(name, joint):
     stem = file_stem(name, "sensor", joint=joint)
     assert re.fullmatch("[A-Za-z0-9_-]{1,107}", stem) and not is_reserved(stem)
+
+
+def test_a_process_that_ends_at_once_waits_for_a_file_that_is_being_written(tmp_path):
+    """SIGTERM in the middle of a write left its temporary file."""
+    code = (
+        "import os, pathlib, threading, time\n"
+        "from pe_core.base import files\n"
+        "sync, began = os.fsync, threading.Event()\n"
+        "os.fsync = lambda number: (began.set(), time.sleep(0.5), sync(number))\n"
+        "path = pathlib.Path('result.json')\n"
+        "threading.Thread(target=files.write_bytes, args=(path, b'whole')).start()\n"
+        "began.wait()\n"
+        "files.finish_writing()\n"
+        "os._exit(0)\n"
+    )
+    environment = os.environ | {"PYTHONPATH": str(Path(files.__file__).parents[2])}
+    subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=environment, check=True)
+    assert [path.name for path in tmp_path.iterdir()] == ["result.json"]
+    assert (tmp_path / "result.json").read_bytes() == b"whole"

@@ -31,7 +31,7 @@ def tool():
 
 
 EXAMPLES = tool()
-PROJECTS = sorted(path.name for path in FOLDER.iterdir() if path.is_dir())
+PROJECTS = sorted(path.parent.name for path in FOLDER.glob("*/decided.toml"))
 STUDIES = [path for name in PROJECTS for path in EXAMPLES.studies_of(name)]
 QUICK = [path for path in STUDIES if path.stem == "1_roof"]
 RECOMPUTED = QUICK

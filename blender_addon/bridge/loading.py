@@ -15,14 +15,14 @@ from typing import Any
 import bpy
 
 from ..choices import BY_GROUP, BY_PARTS, ON_SLOTS
-from ..engine import catalog, pe, search, studies
+from ..engine import catalog, kinds, pe, search, studies
 from .apply_variant import apply_records
 from .conditions import write_conditions
 from .prior import write_prior
 from .requirements import write_requirements
 from .rig import place_at, view_layer_of
 from .scene_record import SceneRecord, study_from_scene, vehicle_of_scene, write_options
-from .scene_settings import write_settings, write_values
+from .scene_settings import KEEP, write_goals, write_passthrough, write_reference, write_values
 from .sensor_records import NO_BOUNDS, ZEROS, ModelOption, SensorRecord
 from .vehicle import make_body, paint_area, same_body
 
@@ -44,7 +44,7 @@ def load_into(scene: bpy.types.Scene, study: pe.Study) -> list[str]:
     """
     record = record_of_study(study)  # an error comes before anything is changed
     _write_vehicle(scene, record.vehicle)
-    write_settings(scene.perception_entropy, record)
+    _write_settings(scene.perception_entropy, record)
     write_prior(scene.perception_entropy, record.prior)
     write_requirements(scene.perception_entropy, record.requirements)
     write_conditions(scene.perception_entropy, record.conditions)
@@ -209,6 +209,33 @@ def _write_vehicle(scene: bpy.types.Scene, vehicle: pe.Vehicle) -> None:
     if not same_body(present, vehicle):
         settings.vehicle = make_body(scene, vehicle)
         layer.update()
+
+
+def _write_settings(settings: bpy.types.PropertyGroup, record: SceneRecord) -> None:
+    """Write the settings of a record to a scene: space, AP curves, score, search and limits.
+
+    Vehicle, sensors, prior, mounts and constraints are written by others.
+    """
+    own, tolerance = record.search, record.search.tolerance
+    instances = (record.space, record.targets, record.model, own, own.schedule, record.selection)
+    for instance in instances:
+        write_values(settings, instance)
+    settings.score_samples, settings.method = record.samples, own.method
+    settings.keep_requirements = own.requirements == KEEP
+    write_goals(settings, own.goals)
+    settings.search_conditions = own.conditions or "none"
+    settings.currency = record.selection.currency
+    settings.mounting_errors = tolerance.position > 0.0 or tolerance.angle > 0.0
+    names = () if settings.mounting_errors else ("failures", "worst")
+    write_values(settings, tolerance, names)  # without errors their fields keep their values
+    settings.curves.clear()
+    default = pe.PerceptionModel()
+    for kind in kinds.KINDS:
+        if (curve := record.model.curve(kind)) != default.curve(kind):
+            row = settings.curves.add()
+            row.name, row.own, row.a, row.b = kind, True, curve.a, curve.b
+    write_reference(settings, record.reference)
+    write_passthrough(settings, record.passthrough)
 
 
 def _write_mounts(scene: bpy.types.Scene, mounts: Mapping[str, search.AnyMount]) -> None:

@@ -7,19 +7,14 @@ that a scene stores in a different form than a study file have separate function
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 import bpy
+import numpy as np
 
 from ..choices import EXPECTED_AP, OBJECTS
 from ..engine import exchange, kinds, pe, search, studies
-
-if TYPE_CHECKING:
-    from .scene_record import SceneRecord
-from collections.abc import Sequence
-
-import numpy as np
 
 
 def as_typed(value: float) -> float:
@@ -221,33 +216,6 @@ def passthrough_of(settings: bpy.types.PropertyGroup) -> exchange.Passthrough | 
 def write_passthrough(settings: bpy.types.PropertyGroup, kept: exchange.Passthrough | None) -> None:
     """Write the contents of an imported file besides the rig, as JSON text."""
     settings.passthrough = studies.passthrough_text(kept)
-
-
-def write_settings(settings: bpy.types.PropertyGroup, record: SceneRecord) -> None:
-    """Write the settings of a record to a scene: space, AP curves, score, search and limits.
-
-    Vehicle, sensors, prior, mounts and constraints are written by others.
-    """
-    own, tolerance = record.search, record.search.tolerance
-    instances = (record.space, record.targets, record.model, own, own.schedule, record.selection)
-    for instance in instances:
-        write_values(settings, instance)
-    settings.score_samples, settings.method = record.samples, own.method
-    settings.keep_requirements = own.requirements == KEEP
-    write_goals(settings, own.goals)
-    settings.search_conditions = own.conditions or "none"
-    settings.currency = record.selection.currency
-    settings.mounting_errors = tolerance.position > 0.0 or tolerance.angle > 0.0
-    names = () if settings.mounting_errors else ("failures", "worst")
-    write_values(settings, tolerance, names)  # without errors their fields keep their values
-    settings.curves.clear()
-    default = pe.PerceptionModel()
-    for kind in kinds.KINDS:
-        if (curve := record.model.curve(kind)) != default.curve(kind):
-            row = settings.curves.add()
-            row.name, row.own, row.a, row.b = kind, True, curve.a, curve.b
-    write_reference(settings, record.reference)
-    write_passthrough(settings, record.passthrough)
 
 
 def settings_signature(settings: bpy.types.PropertyGroup) -> list[object]:

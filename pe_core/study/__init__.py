@@ -7,7 +7,7 @@ from ..search import METHODS, SCHEDULED_METHOD, Robustness
 from . import requirement_file, requirement_search
 from .catalog_lookup import mounts_table
 from .condition_file import state_from_dict, state_table
-from .condition_set import Conditions, StateInWeather, under
+from .condition_set import Conditions, StateInWeather
 from .condition_table import ConditionScore, ConditionTable, condition_table
 from .file_names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW_PAGE, SEARCH, STUDY
 from .objective_setting import OBJECTIVES
@@ -24,4 +24,4 @@ __all__ += ["load_study", "load_study_data", "mounts_table", "panel_default"]
 __all__ += ["passthrough_of_text", "passthrough_table", "passthrough_text", "read_passthrough"]
 __all__ += ["requirement_file", "requirement_search", "save_study", "setting_keys", "settings_of"]
 __all__ += ["state_from_dict", "state_table", "study_from_dict", "study_to_dict"]
-__all__ += ["under", "value_in_file", "vehicle_digest"]
+__all__ += ["value_in_file", "vehicle_digest"]

@@ -6,17 +6,13 @@ requirement that is to be kept (`requirement_search`).
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from ..base.values import rounded
 from ..geometry.grids import PerceptionSpace
 from ..prior.prior import Prior
 from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..scoring.sight import BLIND_TO_M, Sight
-
-if TYPE_CHECKING:
-    from .study import Study
+from .study import Study
 
 
 def blind_area(sight: Sight, rig: Rig) -> float:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, TypeVar
+from dataclasses import dataclass
+from typing import TypeVar
 
 from ..base.errors import InputError
 from ..scene.rig import Rig
@@ -12,9 +12,6 @@ from ..scene.vehicle import Vehicle
 from ..scene.vehicle_state import State, check_name
 from ..sensors.weather import Weather, checked_weights
 from ..sensors.weather_rig import rig_in_weather
-
-if TYPE_CHECKING:
-    from .study import Study
 
 T = TypeVar("T", State, Weather)
 
@@ -109,17 +106,6 @@ class Conditions:
         """Raise `InputError` for a state with parts or sensors that there are not."""
         for state in self.states:
             state.moves(vehicle, rig)
-
-
-def under(study: Study, condition: StateInWeather) -> Study:
-    """Return the study under a condition: a study of its own, as any other."""
-    return replace(
-        study,
-        rig=condition.rig(study.rig, study.vehicle),
-        vehicle=condition.vehicle(study.vehicle),
-        conditions=Conditions(),
-        requirements=(),
-    )
 
 
 def _named(kind: str, name: str | None, items: Sequence[T]) -> T | None:

@@ -169,10 +169,7 @@ class StateEvaluators:
         """Return the evaluator on the vehicle in a state, and that vehicle."""
         key = "" if state is None or state.is_as_drawn else state.name
         if key not in self._made:
-            from .condition_set import Conditions, under
-
-            study = under(self._study, StateInWeather(state if key else None))
-            assert study.conditions == Conditions()
+            study = self._study.under(StateInWeather(state if key else None))
             made = self._make(study, self._samples, self._workers), study.vehicle
             self._made[key] = made
         return self._made[key]

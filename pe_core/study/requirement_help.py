@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 from itertools import chain
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,10 +20,7 @@ from ..search import Parametrization
 from ..search.design_variable import METRE, RADIAN, SHARE
 from ..search.methods.method import sampled_candidate
 from ..search.parametrization import Candidate
-from .requirement_check import checker_of
-
-if TYPE_CHECKING:
-    from .study import Study
+from .study import Study
 
 HELP_STEPS = {
     METRE: (0.05, 0.1, 0.2, 0.4, 0.8),
@@ -83,7 +79,7 @@ def suggestions(
     dict of Suggestion or None
         By name; None where no placement that was tried is enough.
     """
-    checker, coding = checker or checker_of(study), study.coding()
+    checker, coding = checker or study.checker(), study.coding()
     names = [each.name for each in checker.requirements]
     before = checker.shortfalls(study.rig)
     left = [number for number, off in enumerate(before) if off]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -20,10 +20,8 @@ from ..scoring.requirements import RequirementChecker
 from ..search import Tolerance, optimize, shared_parts
 from ..search.methods.method import sampled_candidate
 from .blind_ground_search import BlindGroundLimit
-from .requirement_check import checker_of, mounting_cases
-
-if TYPE_CHECKING:
-    from .study import Study
+from .requirement_check import mounting_cases
+from .study import Study
 
 KEEP = "keep"
 INFEASIBLE = 100.0
@@ -117,7 +115,7 @@ def constraints_of(study: Study) -> tuple[FeasibilityRule, ...]:
     """
     search, constraints = study.search, list[FeasibilityRule]()
     if search.requirements == KEEP and study.requirements:
-        checker = checker_of(study)
+        checker = study.checker()
         constraints.append(RequirementConstraint(checker, search.tolerance, search.seed))
     if search.goals.blind_ground == KEEP:
         constraints.append(BlindGroundLimit.of(study))
@@ -186,7 +184,7 @@ def conflicts(
         By name of the requirement: the others; empty if only the budget of the search was short;
         None if no placement met it even without all others.
     """
-    checker = checker or checker_of(study)
+    checker = checker or study.checker()
     names = [each.name for each in checker.requirements]
     before = checker.shortfalls(rig)
     found: dict[str, tuple[str, ...] | None] = {}

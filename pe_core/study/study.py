@@ -17,6 +17,7 @@ from ..base.read_only import ReadOnlyDict
 from ..base.setting import OneOf, Panel, check_settings, setting
 from ..base.values import A_NAME, A_PATH, Whole
 from ..geometry.grids import PerceptionSpace
+from ..prior import HIGHWAY_CLASSES, ROAD_CLASSES
 from ..prior.prior import Prior
 from ..scene.body_shape import require_vehicle_size
 from ..scene.mesh import MeshAxes
@@ -25,6 +26,7 @@ from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference, vehicle_line
 from ..scoring import Evaluator, RigJudge
 from ..scoring.requirements import (
+    BODIES,
     CheckStep,
     Requirement,
     RequirementChecker,
@@ -52,10 +54,10 @@ from ..search import (
 )
 from ..sensors import PerceptionModel
 from .catalog_lookup import check_pairs, housings_of
-from .condition_set import Conditions
+from .condition_set import Conditions, StateInWeather
 from .objective_setting import OBJECTIVE
 from .passthrough import Passthrough
-from .requirement_check import check_steps, checker_of, verdicts_of
+from .requirement_check import ConditionedChecker, check_classes, mounting_cases
 
 DEFAULT_SEARCH_SAMPLES = 65_536
 SEED = Whole(0, 2**63 - 1)
@@ -250,19 +252,64 @@ class Study:
             )
 
     def checker(self, as_drawn: RequirementChecker | None = None) -> RequirementChecker:
-        """Return what holds rigs to the requirements; `InputError` where that cannot be done.
+        """Return what holds rigs to the study's requirements.
 
-        `as_drawn` is one of the same requirements round the same vehicle, where there is one.
+        `as_drawn` is one of the same requirements round the same vehicle, if there is one already:
+        what it has measured is not measured again.
+
+        Raises
+        ------
+        InputError
+            When a zone cannot be placed round the vehicle, the rig lacks a kind of sensor, mounting
+            errors are asked for that the study does not state, or nothing is known of a class.
         """
-        return checker_of(self, as_drawn)
+        wanted, where = self.requirements, (self.requirements, self.vehicle)
+        check_classes(wanted, self._known_classes())
+        options: Any = {"model": self.model, "reference": self.reference, "space": self.space}
+        if any(each.under.states or each.under.weathers for each in wanted):
+            as_drawn = ConditionedChecker(*where, self.conditions, as_drawn, **options)
+        checker = as_drawn or RequirementChecker(*where, **options)
+        checker.check_rig(self.rig)
+        for each in wanted:
+            if each.under.mounting and not self.search.tolerance.mounts_off:
+                who = f"requirement {each.name!r}"
+                raise InputError(who, "under.mounting", "errors in [optimize.tolerance]", "none")
+        return checker
 
-    def verdicts(self, rig: Rig | None = None) -> tuple[Verdict, ...]:
+    def _known_classes(self) -> Iterator[str | None]:
+        """Yield the classes of objects of which anything is known."""
+        yield from self.prior.class_names
+        yield from (each.name for each in (*ROAD_CLASSES, *HIGHWAY_CLASSES))
+        yield from (body.class_name for body in BODIES.values())
+        yield from (name for curves in self.model.objects.values() for name in curves)
+        yield from (name for sensor in self.rig for name in getattr(sensor.model, "rcs", ()))
+
+    def verdicts(
+        self, rig: Rig | None = None, checker: RequirementChecker | None = None
+    ) -> tuple[Verdict, ...]:
         """Return the verdicts on a rig, the study's by default, with its mounting errors."""
-        return verdicts_of(self, self.rig if rig is None else rig)
+        steps = self.check_steps(checker, rig)
+        return tuple(step.verdict for step in steps if step.verdict is not None)
 
-    def check_steps(self, checker: RequirementChecker | None = None) -> Iterator[CheckStep]:
-        """Yield the verdicts on the study's rig one by one, with steps in between."""
-        yield from check_steps(self, self.rig, checker)
+    def check_steps(
+        self, checker: RequirementChecker | None = None, rig: Rig | None = None
+    ) -> Iterator[CheckStep]:
+        """Yield the verdicts on a rig, the study's by default, one by one, with steps between."""
+        if not self.requirements:
+            return
+        rig, search = self.rig if rig is None else rig, self.search
+        cases = mounting_cases(self.requirements, rig, search.tolerance, search.seed)
+        yield from (checker or self.checker()).steps(rig, cases=cases)
+
+    def under(self, condition: StateInWeather) -> Study:
+        """Return the study under a condition: a study of its own, as any other."""
+        return replace(
+            self,
+            rig=condition.rig(self.rig, self.vehicle),
+            vehicle=condition.vehicle(self.vehicle),
+            conditions=Conditions(),
+            requirements=(),
+        )
 
     @contextmanager
     def _naming_vehicle(self) -> Iterator[None]:

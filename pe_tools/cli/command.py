@@ -18,7 +18,7 @@ from pe_core.base.errors import InputError
 from pe_core.base.files import named_path, quoted, reason_of
 from pe_core.search import Schedule
 from pe_core.sensors import CURVE_MODELS, kind_of
-from pe_core.study import METHODS, OBJECTIVES, SCHEDULED_METHOD, Search, Study, under
+from pe_core.study import METHODS, OBJECTIVES, SCHEDULED_METHOD, Search, Study
 
 from .goal_options import add_goal_options, with_goals
 from .interrupts import FATAL, signals_interrupt
@@ -132,7 +132,7 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
     study = with_curves(study, args)
     state, weather = getattr(args, "state", None), getattr(args, "weather", None)
     if state or weather:
-        study = under(study, study.conditions.one(state, weather))
+        study = study.under(study.conditions.one(state, weather))
     search = study.search
     for name in ("method", "objective", "seed", "samples", "evaluations"):
         if (value := getattr(args, name, None)) is not None:

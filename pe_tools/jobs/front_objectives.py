@@ -31,7 +31,6 @@ from pe_core.search.tolerance import without_each
 from pe_core.study.blind_ground_search import blind_area
 from pe_core.study.objective_search import is_by_ap
 from pe_core.study.objective_setting import EXPECTED_AP
-from pe_core.study.requirement_check import verdicts_of
 from pe_core.study.study import Study
 
 AUGMENTED = 0.05
@@ -150,7 +149,7 @@ class FrontFigures:
     def _zones(self, rig: Rig) -> tuple[float, float]:
         """Return the worst margin of all requirements [m], and their blind ground [m2]."""
         assert self._checker is not None
-        verdicts = verdicts_of(self._study, rig, self._checker)
+        verdicts = self._study.verdicts(rig, self._checker)
         worst = min(map(_margin, verdicts), default=0.0)
         return worst, sum(v.blind_m2 or 0.0 for v in verdicts)
 

@@ -2,6 +2,7 @@
 
 import ast
 import functools
+import graphlib
 import importlib
 import re
 import subprocess
@@ -182,19 +183,19 @@ def test_modules_are_imported_by_name_in_few_places():
     assert callers == set(BY_NAME)
 
 
-def top_imports(body):
-    """Import statements that run when a module is imported."""
+def top_imports(body, *, hints):
+    """Import statements at the top of a module; of type hints alone only where `hints` is set."""
     for node in body:
         if isinstance(node, ast.Import | ast.ImportFrom):
             yield node
-        elif isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
-            yield from top_imports(node.orelse)
+        elif isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test) and not hints:
+            yield from top_imports(node.orelse, hints=hints)
         elif isinstance(node, ast.If | ast.Try):
-            yield from top_imports([*node.body, *node.orelse])
+            yield from top_imports([*node.body, *node.orelse], hints=hints)
 
 
-def import_graph(package):
-    """The modules of a package that each of its modules imports when it is imported."""
+def import_graph(package, *, hints=False):
+    """The modules of a package that each of its modules imports at its top."""
     modules = {}
     for name, path in files(package).items():
         modules[name.removesuffix(".py").removesuffix("/__init__").replace("/", ".")] = path
@@ -202,7 +203,7 @@ def import_graph(package):
     for module, path in modules.items():
         parts = module.split(".")
         own = parts if path.name == "__init__.py" else parts[:-1]
-        for node in top_imports(tree_of(path).body):
+        for node in top_imports(tree_of(path).body, hints=hints):
             if isinstance(node, ast.Import):
                 graph[module] |= {a.name for a in node.names} & set(modules)
                 continue
@@ -236,6 +237,12 @@ def test_the_engine_is_low_and_its_chains_are_short():
     assert len(longest_path(rooms)) <= STOREYS, longest_path(rooms)
     chain = longest_path(graph)
     assert len(chain) <= MAX_CHAIN_LENGTH, "\n".join(chain)
+
+
+@pytest.mark.parametrize("package", ["pe_core", "pe_tools"])
+def test_no_modules_import_each_other_in_a_circle(package):
+    """A type hint is an arrow, too."""
+    graphlib.TopologicalSorter(import_graph(package, hints=True)).prepare()
 
 
 def test_the_product_stays_small():

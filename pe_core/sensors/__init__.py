@@ -1,26 +1,42 @@
 """Kinds of sensors, one folder for each: intrinsics, the definition of m, and fast kernels."""
 
 from .camera import CAMERA, BrownConrady, Camera, FTheta, KannalaBrandt, Lens, Pinhole
-from .field_of_view import EgoMask, ViewPatch
-from .ground_kernel import GroundKernel, GroundView, VisibleGround
-from .kernels import GridKernel, Measured, Occlusion, SampleKernel, Voxels
-from .kind import KINDS, Kind, derived_object_curves, kind_named, kind_of, register, unregister
+from .field_of_view import EgoMask, FieldPicture, ViewPatch
+from .kernels import (
+    GridKernel,
+    GroundKernel,
+    GroundView,
+    Measured,
+    ObjectKernel,
+    ObjectView,
+    Occlusion,
+    SampleKernel,
+    VisibleGround,
+    Voxels,
+)
+from .kind import (
+    KINDS,
+    Kind,
+    derived_object_curves,
+    kind_named,
+    kind_of,
+    measure,
+    measure_objects,
+    register,
+    unregister,
+)
 from .lidar import LIDAR, BeamField, Lidar, RangePicture, beam_field, range_picture
-from .measure import measure, measure_objects
 from .measurement_cache import (
     MeasurementCache,
     ObjectMeasurementCache,
     PartMeasurementCache,
     VisibleGroundCache,
 )
-from .object_kernel import ObjectKernel, ObjectView
 from .perception import BLIND_RULES, PerceptionModel
 from .radar import RADAR, Radar, RadarMode
-from .ray_fan_view import FieldPicture
 from .scan_curves import CURVE_MODELS, SCANS, scan_curves
 from .ultrasonic import ULTRASONIC, Ultrasonic
-from .weather import Weather
-from .weather_rig import rig_in_weather
+from .weather import Weather, rig_in_weather
 
 __all__ = ["BLIND_RULES", "CURVE_MODELS", "KINDS", "SCANS", "BeamField", "BrownConrady", "Camera"]
 __all__ += ["EgoMask", "FTheta", "FieldPicture", "GridKernel", "GroundKernel", "GroundView"]

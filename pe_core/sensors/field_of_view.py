@@ -1,22 +1,32 @@
-"""Field of view: minimum and maximum range, the directions a sensor sees, and its ego mask."""
+"""What a sensor sees: its range, the directions of its field of view, pictures, its ego mask."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.arrays import Floats, Ints
+from ..base.arrays import Flags, Floats, Ints
 from ..base.errors import InputError
 from ..base.values import Number
+from ..scene.rig import Sensor, SensorModel
 
+LIGHT_M_S = 299_792_458.0
 NEAREST = 0.0
 """Default minimum range [m]."""
 SHORTEST_RANGE_M = 0.001
 """Least maximum range: what reaches less far is a typing error, and its square is 0."""
 MIN_RANGE = Number(0.0, cap=1e5, unit="m", noun="length")
+STEP_M = 0.01
+"""A limited range is at least this much above the minimum range."""
+MAX_RAYS = 50_000_000
+"""Maximum rays of a mask: a picture of 50 megapixels takes about a minute and 2 GB."""
+FREE, OUTSIDE = -1, -2
+"""Values in place of a part: a free ray, and a pixel beyond the edge of a lens's field."""
 
 
 def checked_ranges(
@@ -36,16 +46,32 @@ def checked_ranges(
     return near, far
 
 
+_whole: WeakKeyDictionary[SensorModel, SensorModel] = WeakKeyDictionary()
+"""Models by those whose range was limited."""
+
+
+def limited(model: Any, range_m: float) -> Any:
+    """Return a model with `max_range` at most a range [m], above its minimum range."""
+    limit = max(range_m, model.min_range + STEP_M)
+    if limit >= model.max_range:
+        return model
+    short = replace(model, max_range=limit)
+    _whole[short] = model
+    return short
+
+
+def at_whole_range(sensor: Sensor) -> Sensor:
+    """Return the sensor of which `limited` made this one; without it the same object."""
+    model = _whole.get(sensor.model)
+    return sensor if model is None else replace(sensor, model=model)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class ViewPatch:
     """A sensor's field of view as a mesh on the unit sphere.
 
-    Attributes
-    ----------
-    directions : (N, 3) float
-        Unit, sensor frame.
-    faces : (F, 3) int
-        Indices into them, counter-clockwise as seen from outside.
+    `directions` (N, 3) are unit vectors, sensor frame; `faces` (F, 3) indices into them,
+    counter-clockwise as seen from outside.
     """
 
     directions: Floats
@@ -66,12 +92,6 @@ def grid_faces(index: Ints, *, closed: bool) -> Ints:
     pairs = ((0, 1), (1, 2), (2, 0))
     valid = np.logical_and.reduce([faces[:, i] != faces[:, j] for i, j in pairs])
     return faces[valid]
-
-
-MAX_RAYS = 50_000_000
-"""Maximum rays of a mask: a picture of 50 megapixels takes about a minute and 2 GB."""
-FREE, OUTSIDE = -1, -2
-"""Values in place of a part: a free ray, and a pixel beyond the edge of a lens's field."""
 
 
 def require_mask_size(name: str, rays: int) -> None:
@@ -101,19 +121,45 @@ class EgoMask:
     """
 
     parts: NDArray[np.int32]
-    elevations: NDArray[np.float64] | None = None
-    azimuths: NDArray[np.float64] | None = None
+    elevations: Floats | None = None
+    azimuths: Floats | None = None
 
     @property
-    def sees_out(self) -> NDArray[np.bool_]:
+    def sees_out(self) -> Flags:
         """(H, W) which rays are free: white in the mask."""
         return self.parts == FREE
 
     @property
-    def outside(self) -> NDArray[np.bool_]:
+    def outside(self) -> Flags:
         """(H, W) which pixels show nothing."""
         return self.parts == OUTSIDE
 
     def counts(self, part_names: Sequence[str]) -> dict[str, int]:
         """Number of rays that end on each part of the vehicle, in descending order."""
         return count_by_part(self.parts, part_names)
+
+
+@dataclass(frozen=True, slots=True)
+class FieldPicture:
+    """What a sensor detects of a target by range and azimuth.
+
+    Attributes
+    ----------
+    values : (R, A) float
+        m of the target, farthest range first, leftmost azimuth first; 0 where it is not detected.
+    hidden : (R, A) bool
+        Whether it would be detected if the vehicle did not hide it.
+    ranges, azimuths : (R,) and (A,) float
+        Of the target's centre, over the ground [m] and from the sensor's heading [rad], descending.
+    height_m : float
+        Height of the target's centre above the ground.
+    target : str
+        What the target is.
+    """
+
+    values: Floats
+    hidden: Flags
+    ranges: Floats
+    azimuths: Floats
+    height_m: float
+    target: str

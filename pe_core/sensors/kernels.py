@@ -1,7 +1,7 @@
-"""Voxel kernels: measure the sensors of one kind on the whole grid, or on a sample of voxels.
+"""Kernels: measure the sensors of one kind on voxels, on squares of the ground, and on objects.
 
-`GridKernel` and `SampleKernel` are the interfaces for scoring. `DefinedGrid` and `DefinedSample`
-implement them with the definition of m alone, for kinds without fast kernels.
+`GridKernel`, `SampleKernel`, `GroundKernel` and `ObjectKernel` are the interfaces for scoring. The
+kernels of `Defined...` implement them by the definition of m alone, for kinds without fast ones.
 """
 
 from __future__ import annotations
@@ -17,17 +17,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.arrays import Floats
-from ..geometry.grids import PerceptionSpace
+from ..base.arrays import Flags, Floats, Ints
+from ..geometry.grids import GroundGrid, PerceptionSpace
 from ..metric.fusion import VisibleRows
+from ..scene.objects import Objects
 from ..scene.rig import Sensor
 from ..scene.vehicle import Vehicle
+from .boxes import BodyParts
 
 Planes = Callable[[slice], NDArray | VisibleRows]
 """m of a fusion group on n consecutive x-planes: integers (n, ny, nz), or the visible rows."""
+Definition = Callable[[Sensor, Floats, float, Vehicle | None], Floats]
+ObjectDefinition = Callable[[Sensor, Objects, Vehicle | None, bool], Floats]
 
 BLOCK_PLANES = 32
 """x-planes that a thread measures at a time."""
+HEIGHT_STEP_M = 0.1
+"""Distance of the points of a post that are tested; its foot and its top are among them [m]."""
+FLAT_M = 1e-3
+"""Side of the cubes that stand for posts of height 0, for kinds with a definition only [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +43,7 @@ class Voxels:
     """Some voxels of a space: `index` (V, 3) and `centers` (V, 3) [m]."""
 
     space: PerceptionSpace
-    index: NDArray[np.int64]
+    index: Ints
     centers: Floats
 
 
@@ -53,22 +61,42 @@ class Occlusion:
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """The measurement of a sensor on a sample of voxels.
+    """The measurement m (V,) of a sensor on a sample of voxels.
 
-    Attributes
-    ----------
-    sensor : Sensor
-    m : (V,) int or float
-    approximate : bool
-        Whether the occlusion by the vehicle is approximate.
-    kernel_data : object
-        Intermediate results that the kernel uses again.
+    It is `approximate` if the occlusion by the vehicle is. The kernel uses `kernel_data` again.
     """
 
     sensor: Sensor
     m: NDArray
     approximate: bool = False
     kernel_data: Any = None
+
+
+@dataclass(frozen=True, slots=True)
+class GroundView:
+    """Squares of the ground, the height of posts on them [m], and the vehicle."""
+
+    grid: GroundGrid
+    height: float
+    vehicle: Vehicle | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class VisibleGround:
+    """Squares `marked` (NX, NY) for a sensor; `approximate` if the occlusion by the vehicle is."""
+
+    sensor: Sensor
+    marked: Flags
+    approximate: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectView:
+    """Objects, the vehicle, and whether the objects of a scene occlude each other."""
+
+    objects: Objects
+    vehicle: Vehicle | None = None
+    traffic: bool = False
 
 
 class GridKernel(ABC):
@@ -110,10 +138,6 @@ class CachingKernel:
 
     cache: Any = None
 
-    def share_cache(self, cache: Any) -> None:
-        """Use the cache of another kernel of this kind."""
-        self.cache = cache
-
     def keep_only(self, sensors: Collection[Sensor]) -> None:
         """Remove all other sensors from the caches."""
         if self.cache is not None:
@@ -136,14 +160,44 @@ class SampleKernel(CachingKernel, ABC):
         return Occlusion()
 
 
-Definition = Callable[[Sensor, Floats, float, Vehicle | None], Floats]
+class GroundKernel(CachingKernel, ABC):
+    """Marks squares of one grid in which sensors of one kind surely see an upright post.
+
+    A post stands for any thin object; it reaches from the ground to a given height. A square is
+    marked if a post somewhere in it is surely visible: a beam hits it, or a line of sight reaches a
+    point of it. In a square that is not marked a post may be visible or not: kernels may mark too
+    few squares, never too many.
+    """
+
+    @abstractmethod
+    def mark(self, sensor: Sensor, approximate: bool) -> VisibleGround:
+        """Mark squares; with `approximate` occlusion may be approximate, if that is faster."""
+
+
+class ObjectKernel(CachingKernel, ABC):
+    """Measures sensors of one kind on a fixed set of objects."""
+
+    @abstractmethod
+    def measure(self, sensor: Sensor) -> Floats:
+        """Return m (N,) of a sensor, equal to the definition of its kind."""
+
+    def measure_parts(self, sensor: Sensor, parts: BodyParts) -> Floats:
+        """Return m (N,) of the cells of bodies, equal to `Kind.measure_parts`; else `measure`."""
+        return self.measure(sensor)
+
+    def unoccluded(self, sensor: Sensor) -> Floats | None:
+        """Return m (N,) where nothing occludes an object; None: as expensive as `measure`.
+
+        No m of `measure` is higher.
+        """
+        return None
 
 
 class DefinedGrid(GridKernel):
     """Measures blocks of x-planes by the definition of m."""
 
     def __init__(
-        self, measure: Definition, space: PerceptionSpace, vehicle: Vehicle | None
+        self, measure: Definition, space: PerceptionSpace, vehicle: Vehicle | None, _: int = 0
     ) -> None:
         self._measure, self._space, self._vehicle = measure, space, vehicle
 
@@ -156,24 +210,20 @@ class DefinedGrid(GridKernel):
         return [partial(self._sum, sensors) for sensors in groups]
 
     def _sum(self, sensors: Sequence[Sensor], planes: slice) -> VisibleRows:
-        (n, ny, nz), centers = self._shape(planes), self._centers(planes)
-        side = self._space.interval
-        m = reduce(add, (self._measure(s, centers, side, self._vehicle) for s in sensors))
-        return VisibleRows(slice(0, ny), np.asarray(m, dtype=float).reshape(n, ny, nz))
-
-    def _shape(self, planes: slice) -> tuple[int, int, int]:
-        _, ny, nz = self._space.shape
-        return planes.stop - planes.start, ny, nz
-
-    def _centers(self, planes: slice) -> Floats:
-        axes = (self._space.centers(0)[planes], self._space.centers(1), self._space.centers(2))
-        return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+        space = self._space
+        x, y, z = space.centers(0)[planes], space.centers(1), space.centers(2)
+        centers = np.stack(np.meshgrid(x, y, z, indexing="ij"), axis=-1).reshape(-1, 3)
+        parts = (self._measure(s, centers, space.interval, self._vehicle) for s in sensors)
+        m = np.asarray(reduce(add, parts), dtype=float).reshape(len(x), len(y), len(z))
+        return VisibleRows(slice(0, len(y)), m)
 
 
 class DefinedSample(SampleKernel):
     """Measures sampled voxels by the definition of m."""
 
-    def __init__(self, measure: Definition, voxels: Voxels, vehicle: Vehicle | None) -> None:
+    def __init__(
+        self, measure: Definition, voxels: Voxels, vehicle: Vehicle | None, _: int = 0
+    ) -> None:
         self._measure, self._voxels, self._vehicle = measure, voxels, vehicle
 
     def measure(self, sensor: Sensor, approximate: bool) -> Measured:
@@ -187,3 +237,42 @@ class DefinedSample(SampleKernel):
     def _by_definition(self, sensor: Sensor, vehicle: Vehicle | None) -> NDArray:
         side = self._voxels.space.interval
         return np.asarray(self._measure(sensor, self._voxels.centers, side, vehicle), dtype=float)
+
+
+class DefinedGround(GroundKernel):
+    """Marks squares by the definition of m, of small cubes in the middle of the squares."""
+
+    def __init__(self, measure: Definition, view: GroundView) -> None:
+        self._measure, self._view = measure, view
+
+    def mark(self, sensor: Sensor, approximate: bool) -> VisibleGround:
+        """Measure small cubes, at steps of `HEIGHT_STEP_M` over the height of the posts."""
+        grid, height = self._view.grid, self._view.height
+        side = min(grid.step, height) or FLAT_M
+        marked = np.zeros(grid.shape[0] * grid.shape[1], bool)
+        middles = grid.middles(np.arange(len(marked)))
+        for z in heights_of_post(max(height - side, 0.0)):
+            left = np.flatnonzero(~marked)
+            centers = np.column_stack([middles[left], np.full(len(left), z + side / 2.0)])
+            marked[left] = self._measure(sensor, centers, side, self._view.vehicle) > 0
+        return VisibleGround(sensor, marked.reshape(grid.shape))
+
+
+def heights_of_post(height: float) -> Floats:
+    """Return heights (Z,) at which a post is tested: its top, its foot, and between them [m]."""
+    steps = int(np.ceil(height / HEIGHT_STEP_M - 1e-9))
+    between = [height * k / steps for k in range(1, steps)]
+    return np.array([height, *([0.0] if height else []), *between])
+
+
+class DefinedObjects(ObjectKernel):
+    """Measures objects by the definition of m."""
+
+    def __init__(self, measure: ObjectDefinition, view: ObjectView) -> None:
+        self._measure, self._view = measure, view
+
+    def measure(self, sensor: Sensor) -> Floats:
+        """Return m (N,) by the definition."""
+        view = self._view
+        m = self._measure(sensor, view.objects, view.vehicle, view.traffic)
+        return np.asarray(m, dtype=float)

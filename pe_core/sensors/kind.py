@@ -1,6 +1,6 @@
-"""`Kind`, the interface of a kind of sensor, and the registry of kinds.
+"""`Kind`, a kind of sensor as a row of functions, the registry of kinds, and m by definition.
 
-A kind defines its measurement m, its intrinsics, and how these are read, written and described.
+A kind gives its measurement m, its intrinsics, and how these are read, written and described.
 Fast kernels are optional: without them every voxel is measured by the definition. A kind also has
 AP curves of whole objects, converted from its curve of voxels by the sizes of the classes.
 """
@@ -8,13 +8,15 @@ AP curves of whole objects, converted from its curve of voxels by the sizes of t
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
 from ..base.errors import InputError, shown
@@ -24,13 +26,21 @@ from ..metric.entropy import ApCurve
 from ..scene.objects import Objects
 from ..scene.rig import Sensor, SensorModel
 from ..scene.vehicle import Vehicle
-from .body_parts import BodyParts
-from .field_of_view import EgoMask, ViewPatch
-from .ground_kernel import DefinedGround, GroundKernel, GroundView
-from .kernels import DefinedGrid, DefinedSample, GridKernel, SampleKernel, Voxels
-from .object_kernel import DefinedObjects, ObjectKernel, ObjectView
-from .ray_fan_view import FieldPicture
-from .weather import Weather
+from .boxes import BodyParts
+from .field_of_view import EgoMask, FieldPicture, ViewPatch
+from .kernels import (
+    DefinedGrid,
+    DefinedGround,
+    DefinedObjects,
+    DefinedSample,
+    GridKernel,
+    GroundKernel,
+    GroundView,
+    ObjectKernel,
+    ObjectView,
+    SampleKernel,
+    Voxels,
+)
 
 BoxSize = tuple[float, float, float]
 ClassCurves = Mapping[str, Mapping[str, ApCurve]]
@@ -46,6 +56,8 @@ SIZES: dict[str, BoxSize] = {
     "cone": (0.4, 0.4, 0.9),
 }
 """Length, width, height [m] of the classes: the means of the road prior."""
+OUT_OF_VIEW, OUT_OF_RANGE, BETWEEN_BEAMS = "out of view", "out of range", "between beams"
+"""Reasons why a sensor does not see a location although nothing occludes it."""
 
 
 def derived_object_curve(curve: ApCurve, size: BoxSize, side: float = PAPER_VOXEL_M) -> ApCurve:
@@ -65,12 +77,30 @@ def derived_object_curves(curve: ApCurve) -> dict[str, ApCurve]:
     return {name: derived_object_curve(curve, size) for name, size in SIZES.items()}
 
 
-OUT_OF_VIEW, OUT_OF_RANGE, BETWEEN_BEAMS = "out of view", "out of range", "between beams"
-"""Reasons why a sensor does not see a location although nothing occludes it."""
+def _refuses(expected: str) -> Callable[..., NoReturn]:
+    """Return a function of a sensor, and of whatever follows, that raises `InputError`."""
+
+    def refuse(sensor: Sensor, *_: object) -> NoReturn:
+        raise InputError(sensor.name, "kind", expected, repr(sensor.kind))
+
+    return refuse
 
 
-class Kind(ABC):
-    """A kind of sensor.
+NO_OBJECTS = _refuses("a kind of sensor that measures objects")
+NO_PARTS = _refuses("a kind whose rays end on bodies")
+NO_PICTURES = _refuses("a kind of sensor with pictures")
+
+
+def ray_to_center(sensor: Sensor, center: Floats, side: float) -> tuple[Floats, Floats]:
+    """Return one ray, to the centre of a cube: its direction (1, 3) and its length (1,) [m]."""
+    offset = center - np.asarray(sensor.pose.position)
+    distance = float(np.sqrt(dot(offset, offset)))
+    return offset[None] / (distance or 1.0), np.array([distance])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Kind:
+    """A kind of sensor: its figures and its functions.
 
     Attributes
     ----------
@@ -86,9 +116,30 @@ class Kind(ABC):
         Eq. 4 of its detector, unless a study has another.
     keys : frozenset of str
         Keys of a sensor's table, without those that every kind has.
+    measure : callable
+        Of a sensor, centres (V, 3) [m] of cubes, their side [m] and the vehicle or None: m (V,) by
+        definition.
+    read : callable
+        Of a name, a sensor's table, and the folder of files that it names: the intrinsics.
+    write : callable
+        Of intrinsics: the table that `read` turns into them again, without the kind.
+    data_sheet : callable
+        Of intrinsics: the figures for users, one line each.
+    summary : callable
+        The main figures in one line; by default the first of `data_sheet`.
+    plot : callable
+        Of intrinsics: the lines of a small text plot.
     object_curves : mapping of str to ApCurve
         Eq. 4 of whole objects by class, m counted on the object, unless a study has another. A
         class without a curve cannot be scored.
+    measure_objects : callable
+        Of a sensor, objects, the vehicle and whether objects occlude each other: m (N,) of objects
+        by definition.
+    measure_parts : callable
+        Of a sensor, `BodyParts` and the vehicle: m (N,) of the cells of bodies by definition. A
+        point is counted in the cells that its ray meets in the band in which it surely ends.
+    image_widths : callable
+        Of a sensor and objects: the widths (N,) of their images [px].
     counts_points : bool
         Whether m of an object is a number of points on it.
     point : float
@@ -97,10 +148,38 @@ class Kind(ABC):
         Whether its rays end on bodies, so that it tells which part of one it sees: `measure_parts`.
     lowest_m : float
         A body on the ground that is lower is not seen by it, to a requirement [m].
+    cautious : callable
+        Of intrinsics: as requirements take them, with what it knows of nearly all bodies, not of
+        half of them.
+    in_weather : callable
+        Of intrinsics and a `Weather`: the intrinsics as they are under it.
     has_top : bool
         Whether it matters which side of the sensor is up, as for a picture.
     occlusion_text : str
         Text about its occlusion by the vehicle: "12 % of its *beams occluded*".
+    rays : callable
+        Of a sensor and a number: at most so many unit directions (R, 3), ground frame, evenly
+        spread over the field of view. None: the share that the vehicle occludes is unknown.
+    rays_to : callable
+        Of a sensor, the centre (3,) and the side of a cube [m]: directions (R, 3), ground frame,
+        and lengths (R,) [m] of the rays that decide whether it is occluded.
+    missed : callable
+        Of the same: why the sensor does not see the cube, which nothing occludes.
+    view : callable
+        Of intrinsics and a step [rad]: the field of view in triangles of about that size, or None.
+    field_picture : callable
+        Of a sensor and the vehicle: what it detects by range and azimuth, or None.
+    covers_met : callable
+        Of the same: loss [dB] and share of the field of each cover it measures through.
+    opaque : callable
+        Of the vehicle: what blocks the rays of such sensors, or None.
+    ego_mask : callable
+        Of a sensor and the vehicle: which of its rays end on the vehicle, None if unknown.
+    on_grid, on_sample : callable
+        Of a space or of `Voxels`, the vehicle, and the integer m from which AP is at its maximum:
+        a kernel. By default it measures by definition, as do both others.
+    on_ground, on_objects : callable
+        Of a `GroundView` or an `ObjectView`: a kernel.
     """
 
     name: str
@@ -110,144 +189,48 @@ class Kind(ABC):
     model: type[SensorModel]
     curve: ApCurve
     keys: frozenset[str]
-    object_curves: Mapping[str, ApCurve] = MappingProxyType({})
+    measure: Callable[[Sensor, Floats, float, Vehicle | None], Floats]
+    read: Callable[[str, Mapping[str, Any], Path], SensorModel]
+    write: Callable[[Any], dict[str, Any]]
+    data_sheet: Callable[[Any], list[str]]
+    summary: Callable[[Any], str] = None  # type: ignore[assignment]  # of the data sheet
+    plot: Callable[[Any], list[str]] = lambda model: []
+    object_curves: Mapping[str, ApCurve] = field(default_factory=dict)
+    measure_objects: Callable[[Sensor, Objects, Vehicle | None, bool], Floats] = NO_OBJECTS
+    measure_parts: Callable[[Sensor, BodyParts, Vehicle | None], Floats] = NO_PARTS
+    image_widths: Callable[[Sensor, Objects], Floats] = NO_PICTURES
     counts_points: bool = False
     point: float = 1.0
     shows_parts: bool = False
     lowest_m: float = 0.0
+    cautious: Callable[[Any], Any] = lambda model: model
+    in_weather: Callable[[Any, Any], Any] = lambda model, weather: model
     has_top: bool = False
     occlusion_text: str = "beams occluded"
-    weather_limits_range: bool = False
-    """Whether weather changes `max_range` alone, beyond which m is 0."""
+    rays: Callable[[Sensor, int], Floats] = lambda sensor, most: np.empty((0, 3))
+    rays_to: Callable[[Sensor, Floats, float], tuple[Floats, Floats]] = ray_to_center
+    missed: Callable[[Sensor, Floats, float], str] = lambda sensor, center, side: OUT_OF_VIEW
+    view: Callable[[Any, float], ViewPatch | None] = lambda model, step: None
+    field_picture: Callable[[Sensor, Vehicle | None], FieldPicture | None] = lambda *_: None
+    covers_met: Callable[[Sensor, Vehicle], Mapping[str, tuple[float, float]]] = lambda *_: {}
+    opaque: Callable[[Vehicle], Vehicle | None] = lambda vehicle: vehicle
+    ego_mask: Callable[[Sensor, Vehicle | None], EgoMask | None] = lambda *_: None
+    on_grid: Callable[[PerceptionSpace, Vehicle | None, int], GridKernel] = None  # type: ignore[assignment]
+    on_sample: Callable[[Voxels, Vehicle | None, int], SampleKernel] = None  # type: ignore[assignment]
+    on_ground: Callable[[GroundView], GroundKernel] = None  # type: ignore[assignment]
+    on_objects: Callable[[ObjectView], ObjectKernel] = None  # type: ignore[assignment]
 
-    @abstractmethod
-    def measure(
-        self, sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None
-    ) -> Floats:
-        """Return m (V,) of cubes with centres (V, 3) [m] and a side [m], by definition."""
-
-    def measure_objects(
-        self, sensor: Sensor, objects: Objects, vehicle: Vehicle | None, traffic: bool
-    ) -> Floats:
-        """Return m (N,) of objects by definition; with `traffic` objects occlude each other.
-
-        Raises
-        ------
-        InputError
-            When the kind only measures voxels: the default.
-        """
-        expected = "a kind of sensor that measures objects"
-        raise InputError(sensor.name, "kind", expected, repr(self.name))
-
-    def measure_parts(self, sensor: Sensor, parts: BodyParts, vehicle: Vehicle | None) -> Floats:
-        """Return m (N,) of the cells of bodies by definition.
-
-        A point is counted in the cells that its ray meets in the band in which it surely ends.
-
-        Raises
-        ------
-        InputError
-            When no ray of the kind ends on bodies: the default.
-        """
-        raise InputError(sensor.name, "kind", "a kind whose rays end on bodies", repr(self.name))
-
-    def cautious(self, model: Any) -> Any:
-        """Return a sensor's intrinsics as requirements take them: the same object by default.
-
-        What it knows of bodies is then what nearly all of them have, not what half of them have.
-        """
-        return model
-
-    def image_widths(self, sensor: Sensor, objects: Objects) -> Floats:
-        """Return the widths (N,) of objects' images [px]; `InputError` without pictures."""
-        raise InputError(sensor.name, "kind", "a kind of sensor with pictures", repr(self.name))
-
-    @abstractmethod
-    def read(self, name: str, table: Mapping[str, Any], folder: Path) -> SensorModel:
-        """Build a sensor's intrinsics from its table; files it names are relative to `folder`."""
-
-    @abstractmethod
-    def write(self, model: Any) -> dict[str, Any]:
-        """Return the table that `read` turns into this sensor again, without its kind."""
-
-    @abstractmethod
-    def data_sheet(self, model: Any) -> list[str]:
-        """Return the figures of a sensor for users, one line each."""
-
-    def in_weather(self, model: Any, weather: Weather) -> Any:
-        """Return a sensor's intrinsics as they are under a weather; unchanged by default."""
-        return model
-
-    def summary(self, model: Any) -> str:
-        """Return the main figures of a sensor in one line; by default the first of `data_sheet`."""
-        return next((" ".join(line.split()) for line in self.data_sheet(model)), "")
-
-    def plot(self, model: Any) -> list[str]:
-        """Return the lines of a small text plot of a sensor; none by default."""
-        return []
-
-    def rays(self, sensor: Sensor, max_rays: int) -> Floats:
-        """Return at most `max_rays` unit directions (R, 3), evenly spread over the field of view.
-
-        Ground frame. None by default: the share that the vehicle occludes is then unknown.
-        """
-        return np.empty((0, 3))
-
-    def rays_to(self, sensor: Sensor, center: Floats, side: float) -> tuple[Floats, Floats]:
-        """Return the rays of a sensor that decide whether a cube is occluded.
-
-        Directions (R, 3), ground frame, and lengths (R,) [m]. By default one ray to the centre.
-        """
-        offset = center - np.asarray(sensor.pose.position)
-        distance = float(np.sqrt(dot(offset, offset)))
-        return offset[None] / (distance or 1.0), np.array([distance])
-
-    def missed(self, sensor: Sensor, center: Floats, side: float) -> str:
-        """Say why a sensor does not see a cube, centre (3,) [m], that nothing occludes."""
-        return OUT_OF_VIEW
-
-    def view(self, model: Any, step: float) -> ViewPatch | None:
-        """Return the field of view in triangles of about `step` [rad]; None by default."""
-        return None
-
-    def field_picture(self, sensor: Sensor, vehicle: Vehicle | None) -> FieldPicture | None:
-        """Return what it detects by range and azimuth; None by default."""
-        return None
-
-    def covers_met(self, sensor: Sensor, vehicle: Vehicle) -> Mapping[str, tuple[float, float]]:
-        """Return loss [dB] and share of the field of each cover it measures through; none here."""
-        return {}
-
-    def opaque(self, vehicle: Vehicle) -> Vehicle | None:
-        """Return what blocks the rays of such sensors: all of the vehicle by default."""
-        return vehicle
-
-    def ego_mask(self, sensor: Sensor, vehicle: Vehicle | None) -> EgoMask | None:
-        """Return which rays of the sensor end on its vehicle; None by default: unknown."""
-        return None
-
-    def on_grid(
-        self, space: PerceptionSpace, vehicle: Vehicle | None, saturation_count: int
-    ) -> GridKernel:
-        """Return a kernel for all voxels of a space.
-
-        `saturation_count` is the integer m from which AP is at its maximum.
-        """
-        return DefinedGrid(self.measure, space, vehicle)
-
-    def on_sample(
-        self, voxels: Voxels, vehicle: Vehicle | None, saturation_count: int
-    ) -> SampleKernel:
-        """Return a kernel for a sample of voxels."""
-        return DefinedSample(self.measure, voxels, vehicle)
-
-    def on_ground(self, view: GroundView) -> GroundKernel:
-        """Return a kernel that marks squares of the ground."""
-        return DefinedGround(self.measure, view)
-
-    def on_objects(self, view: ObjectView) -> ObjectKernel:
-        """Return a kernel for a set of objects."""
-        return DefinedObjects(self.measure_objects, view)
+    def __post_init__(self) -> None:
+        defaults: dict[str, Callable[..., Any]] = {
+            "summary": lambda model: " ".join(next(iter(self.data_sheet(model)), "").split()),
+            "on_grid": partial(DefinedGrid, self.measure),
+            "on_sample": partial(DefinedSample, self.measure),
+            "on_ground": partial(DefinedGround, self.measure),
+            "on_objects": partial(DefinedObjects, self.measure_objects),
+        }
+        for key, function in defaults.items():
+            if getattr(self, key) is None:
+                object.__setattr__(self, key, function)
 
 
 _kinds: dict[str, Kind] = {}
@@ -299,3 +282,74 @@ def kind_of(sensor: Sensor | SensorModel) -> Kind:
         When its kind is not registered.
     """
     return kind_named(getattr(sensor, "kind", None), sensor.name)
+
+
+def measure(
+    sensor: Sensor, centers: ArrayLike, side: float, vehicle: Vehicle | None = None
+) -> Floats:
+    """Return the measurement of each voxel by one sensor.
+
+    LiDAR: the number of beams that pass through the cube. A beam has to enter the cube within the
+    maximum range, and before the vehicle occludes it. A cube owns its lower faces: a beam exactly
+    along a face belongs to the cube above it (`lidar.tie_rules`).
+
+    Camera: the area of the cube's image in pixels, clipped to the picture. It is 0 if a corner is
+    behind the camera or in its plane, if the centre is out of range, or if the vehicle occludes
+    the centre (`camera.tie_rules`). Through a lens with distortion, the part inside the lens's
+    field counts, also if a corner is behind the camera (`camera.bent_area`).
+
+    Parameters
+    ----------
+    sensor : Sensor
+    centers : (V, 3) float
+        Voxel centres, ground frame [m].
+    side : float
+        Side of the cubes [m].
+    vehicle : Vehicle, optional
+        Occludes the voxels behind it.
+
+    Returns
+    -------
+    (V,) float
+        Beams or pixels.
+
+    Raises
+    ------
+    InputError
+        When the centres are not (V, 3) finite numbers.
+    """
+    centers = np.asarray(centers, dtype=float)
+    if centers.ndim != 2 or centers.shape[1] != 3 or not np.isfinite(centers).all():
+        raise InputError("measure", "centers", "(V, 3) finite numbers", centers.shape)
+    return kind_of(sensor).measure(sensor, centers, side, vehicle)
+
+
+def measure_objects(
+    sensor: Sensor, objects: Objects, vehicle: Vehicle | None = None, traffic: bool = False
+) -> Floats:
+    """Return the measurement of each object by one sensor.
+
+    LiDAR: the number of beams whose first hit is the object, within the LiDAR's range. Camera: the
+    area of the box's image in pixels, clipped to the picture, times the share of it that is not
+    occluded (docs/metric.md).
+
+    Parameters
+    ----------
+    sensor : Sensor
+    objects : Objects
+    vehicle : Vehicle, optional
+        Occludes the voxels behind it.
+    traffic : bool
+        Whether the objects of a scene occlude each other; otherwise each is measured alone.
+
+    Returns
+    -------
+    (N,) float
+        Beams or pixels.
+
+    Raises
+    ------
+    InputError
+        When the kind of the sensor does not measure objects.
+    """
+    return kind_of(sensor).measure_objects(sensor, objects, vehicle, traffic)

@@ -1,7 +1,11 @@
 """Caches of measurements by sensor: a sensor that has not moved is not measured again.
 
-Each cache keeps the sensors of the last rig, by name. There is one for voxels, one for objects and
-one for squares of the ground.
+Each cache keeps the sensors of the last rig, by name. There is one for voxels, one for objects, one
+for parts of bodies, and one for squares of the ground.
+
+m of a sensor whose range was `limited` is its m at whole range for all voxels within the shorter
+range, 0 beyond it, and counted again on the few voxels that the range cuts: a sensor is measured
+once for all its ranges, and the numbers are those of measuring it anew.
 """
 
 from __future__ import annotations
@@ -9,23 +13,67 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Hashable, Iterable, Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arrays import Flags, Floats
-from ..metric.entropy import ApCurve
 from ..metric.fusion import CurveOf
 from ..scene.objects import Objects
 from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
-from .body_parts import BodyParts
-from .ground_kernel import GroundKernel, GroundView, VisibleGround
-from .kernels import Measured, Occlusion, SampleKernel, Voxels
+from .boxes import BodyParts
+from .field_of_view import at_whole_range
+from .kernels import (
+    CachingKernel,
+    GroundKernel,
+    GroundView,
+    Measured,
+    ObjectKernel,
+    ObjectView,
+    Occlusion,
+    SampleKernel,
+    VisibleGround,
+    Voxels,
+)
 from .kind import Kind, kind_of
-from .object_kernel import ObjectKernel, ObjectView
-from .weather_rig import clear_air, within_range
+
+K = TypeVar("K", bound=CachingKernel)
+
+MARGIN = 1e-6
+"""Of half a voxel's diagonal, for rounding."""
+
+
+class _Kernels(Generic[K]):
+    """Kernels of the kinds of sensors, made by `make`.
+
+    `caches` are those of kernels by kind, shared by all kernels on one vehicle.
+    """
+
+    def __init__(self, make: Callable[[Sensor], K], caches: dict[str, Any] | None) -> None:
+        self._make, self._caches = make, {} if caches is None else caches
+        self._by_key: dict[Hashable, K] = {}
+
+    def of(self, sensor: Sensor, key: Hashable = None) -> K:
+        """Return the kernel of a sensor's kind, and of one more key."""
+        found = self._by_key.get((sensor.kind, key))
+        if found is None:
+            found = self._by_key[sensor.kind, key] = self._make(sensor)
+            if found.cache is not None:
+                found.cache = self._caches.setdefault(sensor.kind, found.cache)
+        return found
+
+    def keep_only(self, sensors: Iterable[Sensor]) -> None:
+        """Remove all other sensors from the kernels."""
+        kept = tuple(sensors)
+        for kernel in self._by_key.values():
+            kernel.keep_only(kept)
+
+
+def _is_same(one: Sensor, other: Sensor) -> bool:
+    """Whether two sensors of one AP curve measure the same."""
+    return one.model is other.model and one.pose == other.pose
 
 
 class MeasurementCache:
@@ -50,10 +98,9 @@ class MeasurementCache:
     ) -> None:
         self._voxels, self._vehicle = voxels, vehicle
         self._saturation_count = saturation_count
-        self._kernel_caches = {} if kernel_caches is None else kernel_caches
-        self._kernels: dict[tuple[str, ApCurve | None], SampleKernel] = {}
+        self._kernels = _Kernels(self._new_kernel, kernel_caches)
         self._measured: dict[str, Measured] = {}
-        self._clear: dict[Hashable, Measured] = {}  # in clear air, of the last rig and of `_stayed`
+        self._whole: dict[Hashable, Measured] = {}  # at whole range: the last rig's, `_stayed`'s
         self._occlusions: dict[Hashable, Occlusion] = {}
         self._stayed: dict[str, Hashable] = {}  # where each sensor last was for two rigs in a row
 
@@ -81,14 +128,13 @@ class MeasurementCache:
             if done is not None:
                 done()
         self._measured = measured
-        used = {s.name: _key(clear_air(s) or s) for s in rig}
+        used = {s.name: _key(at_whole_range(s)) for s in rig}
         moved = {n for n, m in self._measured.items() if before.get(n) is not m}
         self._stayed = {n: stayed.get(n) if n in moved else key for n, key in used.items()}
         kept = {*used.values(), *self._stayed.values()}
-        self._clear = {k: self._clear[k] for k in self._clear if k in kept}
+        self._whole = {k: self._whole[k] for k in self._whole if k in kept}
         self._occlusions = {k: v for k, v in self._occlusions.items() if k in kept}
-        for kernel in self._kernels.values():
-            kernel.keep_only(rig.sensors)
+        self._kernels.keep_only(rig)
 
     def measure_again(self, sensor: Sensor) -> NDArray:
         """Measure one sensor exactly, cache the result, and return m (V,)."""
@@ -96,28 +142,37 @@ class MeasurementCache:
         return measured.m
 
     def _one(self, sensor: Sensor, approximate: bool) -> Measured:
-        """Measure a sensor; of one in a weather only what differs from clear air."""
-        clear = clear_air(sensor) or sensor
-        measured = self._clear.get(_key(clear))
+        """Measure a sensor; of one with a limited range only what differs from the whole one."""
+        whole = at_whole_range(sensor)
+        measured = self._whole.get(_key(whole))
         if measured is None or (measured.approximate and not approximate):
-            measured = self._kernel(clear).measure(clear, approximate)
-            self._clear[_key(clear)] = measured
-        if clear is sensor:
-            return measured
-        return within_range(sensor, measured, self._voxels, self._measure_some)
+            measured = self._kernel(whole).measure(whole, approximate)
+            self._whole[_key(whole)] = measured
+        return measured if whole is sensor else self._within_range(sensor, measured)
 
-    def _measure_some(self, sensor: Sensor, voxels: Voxels) -> NDArray:
-        """Return m (V,) of a sensor on other voxels."""
-        few = MeasurementCache(voxels, self._vehicle, self._saturation_count)
-        return few._kernel(sensor).measure(sensor, False).m
+    def _within_range(self, sensor: Sensor, whole: Measured) -> Measured:
+        """Return the measurement of a sensor with a limited range, of that at whole range."""
+        limit: float = sensor.model.max_range  # type: ignore[attr-defined]  # of kinds with a range
+        voxels = self._voxels
+        offset = voxels.centers - np.asarray(sensor.pose.position)
+        square = offset[:, 0] ** 2 + offset[:, 1] ** 2 + offset[:, 2] ** 2
+        half = voxels.space.interval * math.sqrt(3.0) / 2.0 * (1.0 + MARGIN) + MARGIN
+        m = np.where(square <= (limit + half) ** 2, whole.m, whole.m.dtype.type(0))
+        low = max(limit - half, 0.0)
+        cut = np.flatnonzero((square >= low * low) & (m > 0))
+        if len(cut):
+            some = Voxels(voxels.space, voxels.index[cut], voxels.centers[cut])
+            few = MeasurementCache(some, self._vehicle, self._saturation_count)
+            m[cut] = few._kernel(sensor).measure(sensor, False).m[: len(cut)]
+            m[cut] = np.where(square[cut] <= (limit + half) ** 2, m[cut], 0)
+        return Measured(sensor, m, whole.approximate, whole.kernel_data)
 
     def cached(self, sensor: Sensor, approximate: bool) -> Measured | None:
         """Return the valid cached measurement of a sensor; without `approximate` an exact one."""
-        for cached in (self._measured.get(sensor.name), self._clear.get(_key(sensor))):
+        for cached in (self._measured.get(sensor.name), self._whole.get(_key(sensor))):
             if cached is None or (cached.approximate and not approximate):
                 continue
-            one = cached.sensor
-            if one.model is sensor.model and (one.curve, one.pose) == (sensor.curve, sensor.pose):
+            if _is_same(cached.sensor, sensor) and cached.sensor.curve == sensor.curve:
                 return cached
         return None
 
@@ -128,31 +183,26 @@ class MeasurementCache:
     def occlusion(self, sensor: Sensor) -> Occlusion:
         """Return how much of a sensor of the last rig the vehicle occludes.
 
-        Weather that shortens a range to no less than the far end of the vehicle changes nothing.
+        A range that is limited to no less than the far end of the vehicle changes nothing.
         """
-        clear = clear_air(sensor)
-        key = _key(sensor if clear is None or not self._is_whole(sensor) else clear)
+        whole = at_whole_range(sensor)
+        if whole is not sensor and self._vehicle is not None:
+            far = np.abs(np.asarray(self._vehicle.bounds) - np.asarray(sensor.pose.position))
+            limit: float = sensor.model.max_range  # type: ignore[attr-defined]
+            whole = whole if math.hypot(*far.max(axis=0)) <= limit else sensor
+        key = _key(whole)
         if key not in self._occlusions:
             measured = self._measured[sensor.name]
             self._occlusions[key] = self._kernel(sensor).occlusion(measured)
         return self._occlusions[key]
 
-    def _is_whole(self, sensor: Sensor) -> bool:
-        """Whether the whole vehicle is in the range of a sensor of a kind with a range."""
-        if self._vehicle is None:
-            return True
-        offsets = np.abs(np.asarray(self._vehicle.bounds) - np.asarray(sensor.pose.position))
-        limit: float = sensor.model.max_range  # type: ignore[attr-defined]  # as in `within_range`
-        return math.hypot(*offsets.max(axis=0)) <= limit
-
     def _kernel(self, sensor: Sensor) -> SampleKernel:
-        kind, key = kind_of(sensor), (sensor.kind, sensor.curve)
-        if key not in self._kernels:
-            count = self._saturation_count(sensor.curve or kind.name)
-            kernel = kind.on_sample(self._voxels, self._vehicle, count)
-            kernel.share_cache(self._kernel_caches.setdefault(kind.name, kernel.cache))
-            self._kernels[key] = kernel
-        return self._kernels[key]
+        return self._kernels.of(sensor, sensor.curve)
+
+    def _new_kernel(self, sensor: Sensor) -> SampleKernel:
+        kind = kind_of(sensor)
+        count = self._saturation_count(sensor.curve or kind.name)
+        return kind.on_sample(self._voxels, self._vehicle, count)
 
 
 def _key(sensor: Sensor) -> Hashable:
@@ -181,23 +231,19 @@ class ObjectMeasurementCache:
         kernel_caches: dict[str, Any] | None = None,
     ) -> None:
         self._view = ObjectView(objects, vehicle, traffic)
-        self._kernel_caches = {} if kernel_caches is None else kernel_caches
-        self._kernels: dict[str, ObjectKernel] = {}
+        self._kernels = _Kernels(self._new_kernel, kernel_caches)
         self._measured: dict[str, tuple[Sensor, Floats]] = {}
 
     def measure(self, sensors: Iterable[Sensor]) -> Mapping[str, Floats]:
         """Return m (N,) of the sensors of a rig, or of some of them, by name; read-only."""
         self._measured = {s.name: (s, self._one(s)) for s in sensors}
-        for kernel in self._kernels.values():
-            kernel.keep_only([s for s, _ in self._measured.values()])
+        self._kernels.keep_only([s for s, _ in self._measured.values()])
         return MappingProxyType({name: m for name, (_, m) in self._measured.items()})
 
     def cached(self, sensor: Sensor) -> Floats | None:
         """Return the valid cached m (N,) of a sensor."""
         cached = self._measured.get(sensor.name)
-        if cached and cached[0].model is sensor.model and cached[0].pose == sensor.pose:
-            return cached[1]
-        return None
+        return cached[1] if cached and _is_same(cached[0], sensor) else None
 
     def measure_again(self, sensor: Sensor) -> Floats:
         """Measure one sensor, cache the result, and return m (N,)."""
@@ -212,13 +258,13 @@ class ObjectMeasurementCache:
         """
         if self._view.vehicle is None and not self._view.traffic:
             return None
-        return self._kernel(sensor).unoccluded(sensor)
+        return self._kernels.of(sensor).unoccluded(sensor)
 
     def _one(self, sensor: Sensor) -> Floats:
         cached = self.cached(sensor)
         if cached is not None:
             return cached
-        m = self._measure(self._kernel(sensor), sensor)
+        m = self._measure(self._kernels.of(sensor), sensor)
         m.flags.writeable = False
         return m
 
@@ -228,13 +274,9 @@ class ObjectMeasurementCache:
     def _view_for(self, kind: Kind) -> ObjectView:
         return self._view
 
-    def _kernel(self, sensor: Sensor) -> ObjectKernel:
+    def _new_kernel(self, sensor: Sensor) -> ObjectKernel:
         kind = kind_of(sensor)
-        if kind.name not in self._kernels:
-            kernel = self._kernels[kind.name] = kind.on_objects(self._view_for(kind))
-            if kernel.cache is not None:
-                kernel.share_cache(self._kernel_caches.setdefault(kind.name, kernel.cache))
-        return self._kernels[kind.name]
+        return kind.on_objects(self._view_for(kind))
 
 
 class PartMeasurementCache(ObjectMeasurementCache):
@@ -275,8 +317,10 @@ class VisibleGroundCache:
     """
 
     def __init__(self, view: GroundView, kernel_caches: dict[str, Any]) -> None:
-        self.view, self._kernel_caches = view, kernel_caches
-        self._kernels: dict[str, GroundKernel] = {}
+        self.view = view
+        self._kernels: _Kernels[GroundKernel] = _Kernels(
+            lambda sensor: kind_of(sensor).on_ground(view), kernel_caches
+        )
         self._visible: dict[str, VisibleGround] = {}
 
     @property
@@ -287,8 +331,7 @@ class VisibleGroundCache:
     def marked(self, rig: Rig, approximate: bool = False) -> tuple[Flags, bool]:
         """Return squares (NX, NY) that any sensor marks, and whether any of it is approximate."""
         self._visible = {s.name: self._one(s, approximate) for s in rig}
-        for kernel in self._kernels.values():
-            kernel.keep_only(rig.sensors)
+        self._kernels.keep_only(rig)
         marked = np.zeros(self.view.grid.shape, bool)
         for visible in self._visible.values():
             marked |= visible.marked
@@ -296,12 +339,7 @@ class VisibleGroundCache:
 
     def _one(self, sensor: Sensor, approximate: bool) -> VisibleGround:
         cached = self._visible.get(sensor.name)
-        if cached is not None and (approximate or not cached.approximate):
-            same = cached.sensor.model is sensor.model and cached.sensor.pose == sensor.pose
-            if same:
-                return cached
-        kind = kind_of(sensor)
-        if kind.name not in self._kernels:
-            kernel = self._kernels[kind.name] = kind.on_ground(self.view)
-            kernel.share_cache(self._kernel_caches.setdefault(kind.name, kernel.cache))
-        return self._kernels[kind.name].mark(sensor, approximate)
+        if cached is None or (cached.approximate and not approximate):
+            return self._kernels.of(sensor).mark(sensor, approximate)
+        same = _is_same(cached.sensor, sensor)
+        return cached if same else self._kernels.of(sensor).mark(sensor, approximate)

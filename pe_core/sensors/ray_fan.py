@@ -10,7 +10,7 @@ loss.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from weakref import WeakKeyDictionary
@@ -18,11 +18,11 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.arrays import Floats, Ints
+from ..base.arrays import Flags, Floats, Ints
 from ..geometry.poses import rotate
 from ..scene.rig import Sensor, SensorModel
 from ..scene.vehicle import Vehicle
-from .field_of_view import FREE, EgoMask, count_by_part
+from .field_of_view import FREE, EgoMask, FieldPicture, ViewPatch, count_by_part, grid_faces
 from .kernels import Occlusion
 
 AngleWindow = tuple[tuple[float, float], tuple[float, float]]
@@ -32,24 +32,19 @@ MAX_STEP_RAD = math.radians(0.5)
 """Largest bin of a fan."""
 BINS = 240
 """A window is divided into at least so many bins along its longer side."""
+MAX_STEPS = 720
+"""Of a patch, along a side."""
+PICTURE_ROWS, PICTURE_COLUMNS = 180, 241
+"""Ranges and azimuths of a picture; one of the azimuths is the middle."""
 
 
 @dataclass(frozen=True, eq=False)
 class RayFan:
     """What the rays of a fan meet; arrays are (E, A): by elevation, lowest first, and azimuth.
 
-    Attributes
-    ----------
-    window : AngleWindow
-    distance : (E, A) float
-        Distance to what occludes [m]; inf for a free ray.
-    part : (E, A) int
-        The part of the vehicle that occludes, or `FREE`.
-    loss_db : (E, A) float
-        Loss by covers, one way [dB].
-    part_names : tuple of str
-    through : mapping of str to (E, A) bool
-        Which rays pass each cover.
+    `distance` is that to what occludes [m], inf for a free ray; `part` the part of the vehicle that
+    occludes, or `FREE`; `loss_db` the loss by covers, one way; `through` says which rays pass each
+    cover.
     """
 
     window: AngleWindow
@@ -57,7 +52,7 @@ class RayFan:
     part: NDArray[np.int32]
     loss_db: Floats
     part_names: tuple[str, ...] = ()
-    through: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
+    through: Mapping[str, Flags] = field(default_factory=dict)
 
     def bins(self, azimuth: Floats, elevation: Floats) -> Ints:
         """Return the flat bin (N,) of directions, sensor frame [rad]; outside: the nearest one."""
@@ -67,6 +62,13 @@ class RayFan:
         row = ((elevation - low) * (rows / (high - low))).astype(np.int64)
         bins = np.clip(row, 0, rows - 1) * columns + np.clip(column, 0, columns - 1)
         return np.asarray(bins)
+
+    @classmethod
+    def free(cls, window: AngleWindow) -> RayFan:
+        """Return a fan whose rays are all free."""
+        shape = shape_of(window)
+        part = np.full(shape, FREE, np.int32)
+        return cls(window, np.full(shape, np.inf), part, np.zeros(shape))
 
     @cached_property
     def is_free(self) -> bool:
@@ -79,7 +81,7 @@ class RayFan:
         ((left, right), (low, high)), (rows, columns) = self.window, self.distance.shape
         return _middles(low, high, rows), _middles(left, right, columns)
 
-    def occlusion(self, inside: NDArray[np.bool_]) -> Occlusion:
+    def occlusion(self, inside: Flags) -> Occlusion:
         """Count the rays of the field of view, `inside` (E, A), that end on the vehicle."""
         by_part = count_by_part(self.part[inside], self.part_names)
         return Occlusion(int(inside.sum()), sum(by_part.values()), by_part)
@@ -149,11 +151,10 @@ def cast_fan(sensor: Sensor, vehicle: Vehicle | None, through_covers: bool) -> R
     A ray loses the dB of each cover that it meets, once for a part, however many skins it has.
     """
     window = window_of(sensor.model)
-    shape = shape_of(window)
-    distance, loss = np.full(shape, np.inf), np.zeros(shape)
-    part = np.full(shape, FREE, np.int32)
+    free = RayFan.free(window)
     if vehicle is None:
-        return RayFan(window, distance, part, loss)
+        return free
+    distance, part, loss, shape = free.distance, free.part, free.loss_db, shape_of(window)
     rays = rotate(sensor.pose.ground_from_sensor, directions(window, shape))
     names, position = tuple(vehicle.part_names), sensor.pose.position
     covers = dict(vehicle.covers) if through_covers else {}
@@ -202,3 +203,50 @@ def _middles(low: float, high: float, count: int) -> Floats:
 def _circle(angles: Floats) -> tuple[Floats, Floats]:
     values = angles.tolist()
     return np.array([math.cos(a) for a in values]), np.array([math.sin(a) for a in values])
+
+
+def field_picture_of(
+    sensor: Sensor,
+    window: AngleWindow,
+    max_range: float,
+    target: tuple[str, float],
+    measured: Callable[[Floats], tuple[Floats, Floats]],
+) -> FieldPicture:
+    """Return a picture; `target` is a name and the height of a centre [m].
+
+    `measured` takes centres (N, 3), ground frame, and returns m with the vehicle and without it.
+    """
+    (right, left), _ = window
+    azimuths = left - (np.arange(PICTURE_COLUMNS) + 0.5) * (left - right) / PICTURE_COLUMNS
+    step = max_range / PICTURE_ROWS
+    ranges = max_range - step * (np.arange(PICTURE_ROWS) + 0.5)
+    ahead = sensor.pose.ground_from_sensor[:2, 0]
+    heading = math.atan2(float(ahead[1]), float(ahead[0]))
+    angles = [(math.cos(heading + a), math.sin(heading + a)) for a in azimuths.tolist()]
+    flat = ranges[:, None, None] * np.array(angles)
+    x, y, _ = sensor.pose.position
+    height = np.full((*flat.shape[:2], 1), target[1])
+    centers = np.concatenate([flat + np.array([x, y]), height], axis=-1).reshape(-1, 3)
+    seen, free = (m.reshape(PICTURE_ROWS, PICTURE_COLUMNS) for m in measured(centers))
+    return FieldPicture(seen, (free > 0.0) & (seen <= 0.0), ranges, azimuths, target[1], target[0])
+
+
+def patch_of(window: AngleWindow, step: float) -> ViewPatch:
+    """Return a window of azimuths and elevations as triangles of about `step` [rad]."""
+    (left, right), (low, high) = window
+    closed = right - left >= 2.0 * math.pi - 1e-9
+    columns = min(max(math.ceil((right - left) / step), 3 if closed else 1), MAX_STEPS)
+    rows = min(max(math.ceil((high - low) / step), 1), MAX_STEPS) + 1
+    azimuths = np.linspace(left, right, columns + 1)[: columns if closed else None]
+    up, across = np.meshgrid(np.linspace(low, high, rows), azimuths, indexing="ij")
+    vectors = [np.cos(up) * np.cos(across), np.cos(up) * np.sin(across), np.sin(up)]
+    index = np.arange(up.size).reshape(up.shape)
+    return ViewPatch(np.stack(vectors, axis=-1).reshape(-1, 3), grid_faces(index, closed=closed))
+
+
+def fan_rays(sensor: Sensor, window: AngleWindow, inside: Flags, most: int) -> Floats:
+    """Return at most `most` directions (R, 3) of the rays `inside` (E, A), ground frame."""
+    rays = directions(window, shape_of(window))[inside.reshape(-1)]
+    if len(rays) > most:
+        rays = rays[np.linspace(0, len(rays) - 1, most).astype(np.int64)]
+    return rotate(sensor.pose.ground_from_sensor, rays)

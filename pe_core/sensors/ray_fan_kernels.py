@@ -13,7 +13,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import partial, reduce
 from operator import add
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,20 +21,25 @@ from numpy.typing import NDArray
 from ..base.arrays import Flags, Floats
 from ..geometry.grids import PerceptionSpace
 from ..metric.fusion import VisibleRows
-from ..scene.rig import Sensor
+from ..scene.rig import Sensor, SensorModel
 from ..scene.vehicle import Vehicle
-from .ground_kernel import GroundKernel, GroundView, VisibleGround, heights_of_post
+from .field_of_view import EgoMask, ViewPatch
 from .kernels import (
     GridKernel,
+    GroundKernel,
+    GroundView,
     Measured,
+    ObjectKernel,
+    ObjectView,
     Occlusion,
     Planes,
     SampleKernel,
+    VisibleGround,
     Voxels,
     block_voxels,
+    heights_of_post,
 )
-from .object_kernel import ObjectKernel, ObjectView
-from .ray_fan import FanCache, RayFan, cast_fan
+from .ray_fan import FanCache, RayFan, cast_fan, fan_rays, patch_of, window_of, without_parts
 
 VOXEL_BYTES = 200
 """Memory of a voxel of a block while it is measured (measured)."""
@@ -87,6 +92,44 @@ class FanRules:
         """Count the rays of the field of view, and those of them that end on the vehicle."""
         return fan.occlusion(self.field(sensor, fan))
 
+    def measure(
+        self, sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None
+    ) -> Floats:
+        """Return m (V,) of cubes by definition."""
+        return self.voxels(sensor, centers, side, self.fan(sensor, vehicle))
+
+    def rays(self, sensor: Sensor, most: int) -> Floats:
+        """Return at most `most` rays (R, 3) in the field of view, ground frame."""
+        fan = RayFan.free(window_of(sensor.model))
+        return fan_rays(sensor, fan.window, self.field(sensor, fan), most)
+
+    def view(self, model: SensorModel, step: float) -> ViewPatch:
+        """Return the azimuths and elevations round the field of view."""
+        return patch_of(window_of(model), step)
+
+    def opaque(self, vehicle: Vehicle) -> Vehicle | None:
+        """Return the vehicle without the covers that let rays through; None if nothing is left."""
+        return without_parts(vehicle, tuple(vehicle.covers if self.through_covers else ()))
+
+    def ego_mask(self, sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
+        """Return the rays of the fan: those that a cover lets through are free."""
+        return self.fan(sensor, vehicle).mask()
+
+    @property
+    def functions(self) -> dict[str, Any]:
+        """What the row of a kind with a fan takes from its rules: kernels, rays, views, mask."""
+        own = ("measure", "rays", "view", "opaque", "ego_mask")
+        kernels = {
+            "on_grid": FanGrid,
+            "on_sample": FanSample,
+            "on_ground": FanGround,
+            "on_objects": FanObjects,
+        }
+        return {
+            **{name: getattr(self, name) for name in own},
+            **{name: partial(kernel, self) for name, kernel in kernels.items()},
+        }
+
 
 class FanSensor(NamedTuple):
     """A mounted sensor with its fan of rays."""
@@ -98,7 +141,9 @@ class FanSensor(NamedTuple):
 class FanGrid(GridKernel):
     """Measures the rows of a space that the field of view reaches."""
 
-    def __init__(self, rules: FanRules, space: PerceptionSpace, vehicle: Vehicle | None) -> None:
+    def __init__(
+        self, rules: FanRules, space: PerceptionSpace, vehicle: Vehicle | None, _: int
+    ) -> None:
         self._rules, self._space, self._vehicle = rules, space, vehicle
 
     def prepare(self, sensor: Sensor) -> FanSensor:
@@ -152,7 +197,7 @@ class FanGrid(GridKernel):
 class FanSample(SampleKernel):
     """Measures sampled voxels."""
 
-    def __init__(self, rules: FanRules, voxels: Voxels, vehicle: Vehicle | None) -> None:
+    def __init__(self, rules: FanRules, voxels: Voxels, vehicle: Vehicle | None, _: int) -> None:
         self._rules, self._voxels = rules, voxels
         self.cache, self._without = rules.cache(vehicle), rules.cache(None)
 

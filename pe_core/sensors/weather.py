@@ -1,7 +1,8 @@
 """Weather: what rain, snow, fog and night leave of a sensor's range.
 
-A kind of sensor answers with its model as it is under a weather (`Kind.in_weather`); here are the
-weather and the formulas that kinds share. A range under a weather is rounded down to 1 cm.
+A weather turns a rig into another rig (`rig_in_weather`): each kind of sensor answers with its
+model as it is under it (`Kind.in_weather`), by the formulas here. Nothing else knows of weather. A
+range under a weather is rounded down to 1 cm.
 
 Sources: [KO] Koschmieder's law with a contrast threshold of 5 %, extinction = ln 20 / MOR;
 [LISA] Kilic et al., arXiv 2107.07004; [FOG] Hahner et al., Fog Simulation on Real LiDAR Point
@@ -21,6 +22,9 @@ from typing import Any
 from ..base.errors import InputError, shown
 from ..base.setting import FLAG, check_settings, setting
 from ..base.values import A_NAME, WEIGHT, Number
+from ..scene.rig import Rig, SensorModel
+from .field_of_view import LIGHT_M_S
+from .kind import kind_of
 
 RAIN, SNOW = Number(0.0, 300.0, unit="mm/h"), Number(0.0, 50.0, unit="mm/h")
 MOR = Number(1.0, 1e5, unit="m", noun="length")
@@ -31,7 +35,7 @@ SNOW_KM = ((0.0, 0.0), (1.0, 1.44), (2.5, 2.43), (5.0, 3.60))
 BACKSCATTER = 0.046
 """Backscatter of fog times MOR [1/sr], [FOG]."""
 TARGET_BACKSCATTER = 1e-6 / math.pi
-PULSE_S, LIGHT_M_S = 2e-8, 299_792_458.0
+PULSE_S = 2e-8
 OVERLAP_M = (0.9, 1.0)
 """[FOG]: a target's differential reflectivity, half-power width of the pulse [s], and distances
 [m] from which the receiver sees some of the beam, and all of it."""
@@ -40,7 +44,6 @@ CONTRAST, THRESHOLD = 0.5, 0.05
 LAMP_LUX, LAMP_M, LAMPS, SEEN_LUX = 12.0, 25.0, 2, 5.0
 """A headlamp's least illuminance at point 75R, its distance [R112], their number; the illuminance
 to which lamps are said to reach [IIHS]."""
-STEP_M = 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,11 +116,20 @@ class Weather:
         return self.extinction == 0.0 and not self.night and self.reflectivity == 1.0
 
 
-def limited(model: Any, range_m: float) -> Any:
-    """Return a model with `max_range` at most a range [m], above its minimum range."""
-    least = model.min_range + STEP_M
-    limit = max(range_m, least)
-    return model if limit >= model.max_range else replace(model, max_range=limit)
+def rig_in_weather(rig: Rig, weather: Weather | None) -> Rig:
+    """Return a rig with its sensors as they are under a weather; the same ones where none is."""
+    if weather is None or weather.is_clear:
+        return rig
+    models = [_model_in_weather(sensor.model, weather) for sensor in rig]
+    pairs = zip(rig, models, strict=True)
+    return Rig([s if model is s.model else replace(s, model=model) for s, model in pairs])
+
+
+@lru_cache(maxsize=1024)
+def _model_in_weather(model: SensorModel, weather: Weather) -> SensorModel:
+    """Return one and the same object for a model and a weather: caches compare by identity."""
+    changed: SensorModel = kind_of(model).in_weather(model, weather)
+    return changed
 
 
 def lidar_range(max_range: float, weather: Weather) -> float:

@@ -10,8 +10,7 @@ from ..base.errors import InputError
 from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_state import State, check_name
-from ..sensors.weather import Weather, checked_weights
-from ..sensors.weather_rig import rig_in_weather
+from ..sensors.weather import Weather, checked_weights, rig_in_weather
 
 T = TypeVar("T", State, Weather)
 

@@ -1,8 +1,8 @@
 """A rig under all conditions of a study: states by weathers, with each sensor lost.
 
 What conditions share is computed once: each state has one evaluator, and each of its sensors is
-measured once for all weathers that only shorten its range (`sensors.weather_rig`). A study that
-scores all voxels has its conditions scored on a sample, of which the standard error is known.
+measured once for all weathers that only shorten its range (`sensors.measurement_cache`). A study
+that scores all voxels has its conditions scored on a sample, of which the standard error is known.
 """
 
 from __future__ import annotations

@@ -11,8 +11,8 @@ from typing import Any
 from pe_core.base.csv_text import csv_text, unmarked
 from pe_core.base.errors import InputError
 from pe_core.base.values import Number, choice
+from pe_core.sensors.camera.kind import FOV_DEG
 from pe_core.sensors.camera.lens_models import LENSES
-from pe_core.sensors.camera.sensor_table import FOV_DEG
 from pe_core.study.passthrough import json_entry
 
 from .foreign_values import (

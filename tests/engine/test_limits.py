@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import sensors as kinds
 from pe_core.base.values import numbers
 from tests.engine import shapes
 
@@ -142,12 +141,6 @@ def test_what_is_large_is_equal_to_itself_alone(thing):
     }[thing]
     one, other = made(), made()
     assert one != other and one == one and len({one, other, one}) == 2
-
-
-def test_a_kind_has_to_say_what_it_measures_and_how_it_is_written():
-    assert kinds.Kind.__abstractmethods__ == {"measure", "read", "write", "data_sheet"}
-    assert kinds.GridKernel.__abstractmethods__ == {"prepare", "planes"}
-    assert kinds.SampleKernel.__abstractmethods__ == {"measure", "unoccluded"}
 
 
 def test_numbers_of_an_array():

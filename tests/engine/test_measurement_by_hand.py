@@ -7,9 +7,9 @@ import pytest
 
 import pe_core as pe
 from pe_core import sensors as kinds
+from pe_core.sensors import LIDAR as LIDAR_KIND
 from pe_core.sensors.camera.pixel_area import frustum_distance
 from pe_core.sensors.camera.sample_areas import pixel_areas
-from pe_core.sensors.lidar import sensor_table as lidar_table
 from tests.engine import shapes
 
 
@@ -364,7 +364,7 @@ def test_tables_say_what_they_said():
     assert table["azimuth_offsets_deg"] == [0.0, 1.25]
     assert table["horizontal_fov_deg"] == [-60.0, 45.0]
     assert pe.catalog.to_table(pe.catalog.from_table("mine", CAMERA)) == CAMERA
-    assert lidar_table.read("mine", LIDAR | {"azimuth_count": 12}, None).azimuth_count == 12
+    assert LIDAR_KIND.read("mine", LIDAR | {"azimuth_count": 12}, None).azimuth_count == 12
 
 
 @pytest.mark.parametrize(

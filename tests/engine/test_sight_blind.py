@@ -18,7 +18,7 @@ from pe_core.scoring.sight.blind_ground import (
 from pe_core.scoring.sight.blind_squares import BODY_M, TOO_FAR_M
 from pe_core.scoring.sight.ground_cells import GroundCells
 from pe_core.sensors import CAMERA, GroundView
-from pe_core.sensors.ground_kernel import DefinedGround
+from pe_core.sensors.kernels import DefinedGround
 from tests.engine import shapes
 from tests.engine.test_sight_outline import signed_area
 

@@ -21,7 +21,7 @@ CAR = shapes.box_car()
 @pytest.fixture
 def ring_kind():
     """The kind of tests, for a test."""
-    kinds.register(toy_kind.RingKind())
+    kinds.register(toy_kind.RING)
     yield
     kinds.unregister("toyring")
 

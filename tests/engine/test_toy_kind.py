@@ -6,6 +6,7 @@ A toy ring: m depends on the distance alone, and so does what is expected of eve
 import json
 import math
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from pe_core.metric import entropy_of, late_fusion, precision_of
 from pe_tools.cli.verbs import main
 from pe_tools.exchange import RIG_FORMATS
 from tests.engine import shapes
-from tests.engine.toy_kind import CURVE, Ring, RingKind
+from tests.engine.toy_kind import CURVE, RING, Ring
 
 SPACE = pe.PerceptionSpace((-8, 8), (-6, 6), (0, 3), 0.5)
 STUDY = """
@@ -51,10 +52,9 @@ samples = 1024
 @pytest.fixture
 def ring_kind():
     """Have the kind in the table for a test."""
-    kind = RingKind()
-    kinds.register(kind)
-    yield kind
-    kinds.unregister(kind.name)
+    kinds.register(RING)
+    yield RING
+    kinds.unregister(RING.name)
 
 
 def ring(name="bumper", position=(2.0, 0.0, 0.5), range_m=4.0, fusion=None):
@@ -158,17 +158,13 @@ def test_a_kind_that_is_not_in_the_table_is_refused_everywhere():
 
 def test_the_table_takes_each_name_once_and_only_its_own_model(ring_kind):
     with pytest.raises(pe.InputError, match="a name used once"):
-        kinds.register(RingKind())
-
-    class Odd(RingKind):
-        name = "odd"
-
+        kinds.register(RING)
     with pytest.raises(pe.InputError, match=r"model\.kind: expected 'odd', found 'toyring'"):
-        kinds.register(Odd())
+        kinds.register(replace(RING, name="odd"))
     assert list(kinds.KINDS) == ["lidar", "camera", "radar", "ultrasonic", "toyring"]
 
 
-def test_kernels_of_ones_own_are_asked(ring_kind, monkeypatch):
+def test_kernels_of_ones_own_are_asked():
     """A kind with a grid kernel of its own is measured by it: here one that sees everything."""
 
     class Everything(kinds.GridKernel):
@@ -182,8 +178,11 @@ def test_kernels_of_ones_own_are_asked(ring_kind, monkeypatch):
                 for _ in groups
             ]
 
-    monkeypatch.setattr(RingKind, "on_grid", lambda *_: Everything())
-    score = pe.Evaluator(SPACE, pe.Prior.uniform()).score(pe.Rig([ring()]))
+    kinds.register(replace(RING, on_grid=lambda *_: Everything()))
+    try:
+        score = pe.Evaluator(SPACE, pe.Prior.uniform()).score(pe.Rig([ring()]))
+    finally:
+        kinds.unregister(RING.name)
     assert score.coverage == 1.0
     nine = float(entropy_of(precision_of(9, CURVE)))
     assert score.entropy == pytest.approx(nine, abs=1e-9)
@@ -231,13 +230,12 @@ def test_a_table_that_is_none_is_one_line(ring_kind, tmp_path):
 
 def test_without_its_kind_its_row_passes_through(tmp_path):
     """Imported where the kind is unknown, or has no model: left out, and written as it came."""
-    kind = RingKind()
-    kinds.register(kind)
+    kinds.register(RING)
     rig = pe.Rig([ring(), shapes.lidar_on_roof()])
     try:
         (path,), _ = pe.export_rig(rig, "csv", tmp_path / "rig.csv")
     finally:
-        kinds.unregister(kind.name)
+        kinds.unregister(RING.name)
     found = pe.import_rig(path)
     assert [sensor.name for sensor in found.rig] == ["roof"]
     options = {"passthrough": found.passthrough}

@@ -24,27 +24,30 @@ class Ring(SensorModel):
     range_m: float
 
 
-class RingKind(kinds.Kind):
-    """m is how many times the distance goes into the range, 0 beyond it."""
+def measure(sensor, centers, side, vehicle):
+    """How many times the distance goes into the range, 0 beyond it."""
+    offsets = centers - np.asarray(sensor.pose.position)
+    distance = np.sqrt((offsets**2).sum(axis=1))
+    times = sensor.model.range_m / np.maximum(distance, side / 2)
+    return np.where(times >= 1.0, times, 0.0)
 
-    name, label, plural, unit = "toyring", "Toy Ring", "Toy Rings", "echoes"
-    model = Ring
-    curve = CURVE
-    keys = frozenset({"range_m"})
 
-    def measure(self, sensor, centers, side, vehicle):
-        offsets = centers - np.asarray(sensor.pose.position)
-        distance = np.sqrt((offsets**2).sum(axis=1))
-        times = sensor.model.range_m / np.maximum(distance, side / 2)
-        return np.where(times >= 1.0, times, 0.0)
+def read(name, table, folder):
+    if "range_m" not in table:
+        raise pe.InputError(name, "range_m", "a range in metres", "none")
+    return Ring(name, float(table["range_m"]))
 
-    def read(self, name, table, folder):
-        if "range_m" not in table:
-            raise pe.InputError(name, "range_m", "a range in metres", "none")
-        return Ring(name, float(table["range_m"]))
 
-    def write(self, model):
-        return {"range_m": model.range_m}
-
-    def data_sheet(self, model):
-        return [f"range           {model.range_m:g} m"]
+RING = kinds.Kind(
+    name="toyring",
+    label="Toy Ring",
+    plural="Toy Rings",
+    unit="echoes",
+    model=Ring,
+    curve=CURVE,
+    keys=frozenset({"range_m"}),
+    measure=measure,
+    read=read,
+    write=lambda model: {"range_m": model.range_m},
+    data_sheet=lambda model: [f"range           {model.range_m:g} m"],
+)

@@ -18,7 +18,7 @@ import numpy as np
 from ...base.arrays import Flags, Floats, Ints
 from ...base.errors import InputError, shown
 from ...base.values import A_NAME, Angle, Number
-from ...sensors.body_parts import INSIDE, ROUND
+from ...sensors.boxes import INSIDE, ROUND
 from .mesh_shape import MeshShape
 
 LENGTH = Number(1e-3, 100.0, unit="m", noun="length")

@@ -19,7 +19,7 @@ from ...scene.objects import Objects
 from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...sensors import ObjectMeasurementCache, PartMeasurementCache, PerceptionModel
-from ...sensors.body_parts import BodyParts
+from ...sensors.boxes import BodyParts
 from ..targets.object_metric import FusedObjects
 from .bodies import Body
 from .criteria import Criterion, Requirement, levels_of

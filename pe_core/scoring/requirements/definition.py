@@ -17,8 +17,7 @@ from ...scene.objects import Objects
 from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...sensors import kind_of
-from ...sensors.body_parts import CELLS, BodyParts
-from ...sensors.object_kernel import PlacedBoxes
+from ...sensors.boxes import CELLS, BodyParts, PlacedBoxes
 from .bodies import DIAGONALS, Body, cell_plan, post_bands
 from .criteria import Criterion
 from .mesh_shape import surface_shares

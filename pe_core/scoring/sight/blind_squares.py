@@ -5,7 +5,7 @@ that lies flat. It is invisible if no beam of a LiDAR passes through it before t
 the beam, and no line of sight of a camera ends on it. So a gap between beams that is narrower than
 the body is not blind. No voxels are involved, so blind ground varies evenly with its height.
 
-Kinds of sensors mark squares in which something is certainly visible (`sensors.ground_kernel`).
+Kinds of sensors mark squares in which something is certainly visible (`sensors.GroundKernel`).
 From these, all invisible bodies are found, and some that are just visible: no blind square is
 missing except pieces of less than 0.25 m2 and strips along the vehicle narrower than a square's
 diagonal. A blind square is at most `TOO_FAR_M` from a hole, as wide as the body, without marks.

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ...base.arrays import Floats, Ints
 from ...geometry.poses import dot
-from ..object_kernel import PlacedBoxes
+from ..boxes import PlacedBoxes
 from .bent_area import RIGHT_BEHIND, ImagePoints, aperture_of
 from .lens import Lens
 from .model import Camera

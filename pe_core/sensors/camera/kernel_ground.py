@@ -13,7 +13,7 @@ import numpy as np
 from ...base.arrays import Flags, Floats, Ints
 from ...scene.rig import Sensor
 from ...scene.vehicle import VisibleMesh
-from ..ground_kernel import GroundKernel, GroundView, VisibleGround, heights_of_post
+from ..kernels import GroundKernel, GroundView, VisibleGround, heights_of_post
 from .definition import hidden, is_ranged, out_of_range
 from .model import Camera
 from .picture import PictureBins

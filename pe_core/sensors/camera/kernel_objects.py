@@ -11,8 +11,8 @@ from ...base.arrays import Floats, Ints
 from ...geometry.poses import dot
 from ...scene.rig import Sensor
 from ...scene.vehicle import VisibleMesh
-from ..box_rays import BoxRays, behind_others, rivals_near
-from ..object_kernel import ObjectKernel, ObjectView, PlacedBoxes
+from ..boxes import BoxRays, PlacedBoxes, Rivals, behind_others
+from ..kernels import ObjectKernel, ObjectView
 from .box_area import BoxImages, along_camera, box_images
 from .definition import is_ranged, out_of_range
 from .model import Camera
@@ -60,7 +60,7 @@ class CameraObjects(ObjectKernel):
         by_vehicle = _may_be_hidden(camera, axes, image, seen)
         rivals, asked = None, by_vehicle
         if view.traffic:
-            rivals = rivals_near(boxes, view.objects.scenes, self._balls, which[shown])
+            rivals = Rivals.near(boxes, view.objects.scenes, self._balls, which[shown])
             asked = by_vehicle | (rivals.count > 0)
 
         def is_hidden(rays: BoxRays) -> NDArray[np.bool_]:

@@ -36,7 +36,7 @@ class ReadyCamera(NamedTuple):
 class CameraGrid(GridKernel):
     """Measures areas on all voxels of a space."""
 
-    def __init__(self, space: PerceptionSpace, vehicle: Vehicle | None) -> None:
+    def __init__(self, space: PerceptionSpace, vehicle: Vehicle | None, _: int = 0) -> None:
         self._space, self._vehicle = space, vehicle
 
     def prepare(self, sensor: Sensor) -> ReadyCamera:
@@ -63,7 +63,7 @@ class CameraGrid(GridKernel):
 class CameraSample(SampleKernel):
     """Measures areas of sampled voxels."""
 
-    def __init__(self, voxels: Voxels, vehicle: Vehicle | None) -> None:
+    def __init__(self, voxels: Voxels, vehicle: Vehicle | None, _: int = 0) -> None:
         self._voxels, self._vehicle = voxels, vehicle
         self._centers = np.asfortranarray(voxels.centers)  # fast for arithmetic axis by axis
 

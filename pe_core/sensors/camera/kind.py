@@ -1,4 +1,4 @@
-"""The camera as a kind of sensor: its row of the registry, and its figures in text."""
+"""The camera as a kind: its row of the registry, its table in degrees, and its figures in text."""
 
 from __future__ import annotations
 
@@ -10,28 +10,130 @@ from typing import Any, cast
 import numpy as np
 
 from ...base.arrays import Floats
-from ...geometry.grids import PerceptionSpace
+from ...base.degrees import degrees_in_file
+from ...base.errors import InputError, shown
+from ...base.values import Number, choice, listed
 from ...metric.entropy import RTM3D
 from ...scene.objects import Objects
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
-from ..body_parts import BodyParts
-from ..field_of_view import EgoMask, ViewPatch
-from ..ground_kernel import GroundView
-from ..kernels import Voxels
+from ..boxes import BodyParts, PlacedBoxes
+from ..field_of_view import NEAREST, limited
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, Kind, derived_object_curves
-from ..object_kernel import ObjectView, PlacedBoxes
-from ..weather import Weather, camera_range, limited
-from . import sensor_table
+from ..weather import camera_range
 from .box_area import box_images
 from .definition import count_pixels, out_of_range
 from .kernel_ground import CameraGround
 from .kernel_objects import CameraObjects
 from .kernels import CameraGrid, CameraSample
-from .model import Camera
+from .lens import COEFFICIENT, FOCAL, PLACE, Lens
+from .lens import FOV as LENS_FOV
+from .lens_models import LENSES, FTheta, Pinhole
+from .model import FOV, PIXELS, Camera
 from .object_definition import count_object_pixels
 from .picture import picture_mask, picture_patch, picture_rays
 from .tie_rules import axes_of
+
+LENS_KEYS = frozenset({"fx", "fy", "cx", "cy", "distortion", "fov_deg"})
+KEYS = frozenset({"width", "height", "hfov_deg", "min_range_m", "max_range_m"}) | LENS_KEYS
+HFOV_DEG = Number(FOV.minimum, FOV.maximum, below=True, unit="degrees", noun="angle")
+FOV_DEG = Number(LENS_FOV.minimum, LENS_FOV.maximum, unit="degrees", noun="angle")
+LISTED = "coefficients"
+"""Key of a list of coefficients in the order of OpenCV and ROS, instead of names."""
+LENGTHS = {"brown-conrady": (4, 5, 8), "kannala-brandt": (4,), "f-theta": (1, 2, 3, 4, 5, 6)}
+
+
+def read(name: str, table: Mapping[str, Any], folder: Path) -> Camera:
+    """Build a camera from its table."""
+    width, height = (PIXELS.checked(name, k, table.get(k)) for k in ("width", "height"))
+    ranges = table.get("min_range_m", NEAREST), table.get("max_range_m", math.inf)
+    if not LENS_KEYS & set(table):
+        hfov = HFOV_DEG.checked(name, "hfov_deg", table.get("hfov_deg"))
+        return Camera(name, width, height, math.radians(hfov), None, *ranges)
+    if "hfov_deg" in table:
+        key = sorted(LENS_KEYS & set(table))[0]
+        raise InputError(name, "hfov_deg", f"either hfov_deg or a lens ({key})", "both")
+    return Camera(name, width, height, None, read_lens(name, table), *ranges)  # type: ignore[arg-type]
+
+
+def write(model: Camera) -> dict[str, Any]:
+    """Return a camera's table."""
+    table: dict[str, Any] = {"width": model.width, "height": model.height}
+    if model.lens is None:
+        table["hfov_deg"] = degrees_in_file(model.hfov)
+    else:
+        table |= lens_table(model.lens)
+    if model.min_range > NEAREST:
+        table["min_range_m"] = model.min_range
+    if model.max_range < math.inf:
+        table["max_range_m"] = model.max_range
+    return table
+
+
+def read_lens(name: str, table: Mapping[str, Any]) -> Lens:
+    """Build a lens from a camera's table.
+
+    Raises
+    ------
+    InputError
+        When a number is missing or not possible, or there is no such model.
+    """
+    own = table.get("distortion", {})
+    if not isinstance(own, Mapping):
+        raise InputError(name, "distortion", "a table", shown(own))
+    model = choice(name, "distortion.model", own.get("model", Pinhole.model), LENSES)
+    lens = LENSES[model]
+    fx, fy = _focal_lengths(name, table, lens)
+    cx, cy = (PLACE.checked(name, key, table.get(key)) for key in ("cx", "cy"))
+    values = _coefficients(name, own, lens)
+    if lens is FTheta and not values.get("k1"):
+        raise InputError(name, "distortion.k1", "pixels a radian on the axis", "none")
+    fov = None
+    if "fov_deg" in table:
+        fov = math.radians(FOV_DEG.checked(name, "fov_deg", table["fov_deg"]))
+    return lens(fx, fy, cx, cy, fov, **values)
+
+
+def lens_table(lens: Lens) -> dict[str, Any]:
+    """Return the keys of a camera's table that `read_lens` turns into this lens again."""
+    table: dict[str, Any] = {"fx": lens.fx, "fy": lens.fy, "cx": lens.cx, "cy": lens.cy}
+    if lens.fov is not None:
+        table["fov_deg"] = degrees_in_file(lens.fov)
+    if not isinstance(lens, Pinhole):
+        values = {key: value for key in lens.coefficients if (value := getattr(lens, key))}
+        table["distortion"] = {"model": lens.model, **values}
+    return table
+
+
+def _focal_lengths(name: str, table: Mapping[str, Any], lens: type[Lens]) -> tuple[float, float]:
+    """Focal lengths: `fy` defaults to `fx`; both default to 1 for an f-theta lens."""
+    fx = table.get("fx", 1.0 if lens is FTheta else None)
+    return FOCAL.checked(name, "fx", fx), FOCAL.checked(name, "fy", table.get("fy", fx))
+
+
+def _coefficients(name: str, own: Mapping[str, Any], lens: type[Lens]) -> dict[str, float]:
+    known = ("model", LISTED, *lens.coefficients) if lens.coefficients else ("model",)
+    for key in own:
+        if key not in known:
+            expected = f"one of {', '.join(known)}"
+            raise InputError(name, f"distortion.{key}", expected, "an unknown key")
+    found = {k: own[k] for k in lens.coefficients if k in own}
+    if LISTED in own:
+        if found:
+            raise InputError(name, f"distortion.{LISTED}", "a list or names", "both")
+        found = dict(zip(lens.coefficients, _listed(name, own[LISTED], lens), strict=False))
+    return {k: COEFFICIENT.checked(name, f"distortion.{k}", v) for k, v in found.items()}
+
+
+def _listed(name: str, values: Any, lens: type[Lens]) -> list[Any]:
+    lengths = LENGTHS[lens.model]
+    found = listed(values, 20)
+    if found is None or len(found) not in lengths:
+        few = ", ".join(map(str, lengths[:-1]))
+        expected = f"{few} or {lengths[-1]} numbers" if few else f"{lengths[-1]} numbers"
+        count = shown(values) if found is None else len(found)
+        raise InputError(name, f"distortion.{LISTED}", expected, count)
+    return found
 
 
 def summary(camera: Camera) -> str:
@@ -71,98 +173,52 @@ def _ranges(camera: Camera) -> list[str]:
     return [f"range           {camera.min_range:g} m to {most}"]
 
 
-class CameraKind(Kind):
-    """Cameras: m is the number of pixels that a voxel covers."""
-
-    name, label, plural, unit = "camera", "Camera", "Cameras", "pixels"
-    model = Camera
-    curve = RTM3D
-    weather_limits_range = True
-    object_curves = derived_object_curves(RTM3D)
-    keys = sensor_table.KEYS
-    has_top = True
-    shows_parts = True
-    occlusion_text = "picture occluded"
-
-    def measure(
-        self, sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None
-    ) -> Floats:
-        """Measure the area of each cube's image."""
-        return count_pixels(sensor, centers, side, vehicle)
-
-    def measure_objects(
-        self, sensor: Sensor, objects: Objects, vehicle: Vehicle | None, traffic: bool
-    ) -> Floats:
-        """Measure what is seen of each object's image."""
-        return count_object_pixels(sensor, objects, vehicle, traffic)
-
-    def measure_parts(self, sensor: Sensor, parts: BodyParts, vehicle: Vehicle | None) -> Floats:
-        """Measure what is seen of each cell's image, of each alone."""
-        return count_object_pixels(sensor, parts.cells, vehicle, False)
-
-    def image_widths(self, sensor: Sensor, objects: Objects) -> Floats:
-        """Measure how wide the images are in the picture, whatever hides them."""
-        boxes = PlacedBoxes.of(objects, sensor.pose.position)
-        found = box_images(cast(Camera, sensor.model), axes_of(sensor.pose), boxes)
-        return np.maximum(found.high - found.low, 0.0)[:, 0]
-
-    def read(self, name: str, table: Mapping[str, Any], folder: Path) -> Camera:
-        """Build a camera from its table."""
-        return sensor_table.read(name, table)
-
-    def write(self, model: Camera) -> dict[str, Any]:
-        """Return a camera's table."""
-        return sensor_table.write(model)
-
-    def in_weather(self, model: Camera, weather: Weather) -> Camera:
-        """Limit the range: see `camera_range`."""
-        return limited(model, camera_range(model.max_range, weather))
-
-    def data_sheet(self, model: Camera) -> list[str]:
-        """Picture, field of view, focal length."""
-        return figures(model)
-
-    def rays(self, sensor: Sensor, most: int) -> Floats:
-        """Look through pixels that are spread over the picture."""
-        return picture_rays(sensor, most)
-
-    def missed(self, sensor: Sensor, center: Floats, side: float) -> str:
-        """Out of range, or out of view."""
-        offset = np.asarray(center)[None] - np.asarray(sensor.pose.position)
-        out = out_of_range(cast(Camera, sensor.model), offset)[0]
-        return OUT_OF_RANGE if out else OUT_OF_VIEW
-
-    def summary(self, model: Camera) -> str:
-        """Picture and field of view."""
-        return summary(model)
-
-    def view(self, model: Camera, step: float) -> ViewPatch:
-        """Take what the picture shows."""
-        return picture_patch(model, step)
-
-    def ego_mask(self, sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
-        """Ask every pixel."""
-        return picture_mask(sensor, vehicle)
-
-    def on_grid(
-        self, space: PerceptionSpace, vehicle: Vehicle | None, saturation_count: int
-    ) -> CameraGrid:
-        """Fill columns of voxels between the sides of the picture."""
-        return CameraGrid(space, vehicle)
-
-    def on_sample(
-        self, voxels: Voxels, vehicle: Vehicle | None, saturation_count: int
-    ) -> CameraSample:
-        """Take the closed form of the area where it is good."""
-        return CameraSample(voxels, vehicle)
-
-    def on_ground(self, view: GroundView) -> CameraGround:
-        """Look at points of what stands there."""
-        return CameraGround(view)
-
-    def on_objects(self, view: ObjectView) -> CameraObjects:
-        """Look only where something may be seen, and be hidden."""
-        return CameraObjects(view)
+def parts_in_picture(sensor: Sensor, parts: BodyParts, vehicle: Vehicle | None) -> Floats:
+    """Measure what is seen of each cell's image (N,), of each alone [px]."""
+    return count_object_pixels(sensor, parts.cells, vehicle, False)
 
 
-CAMERA = CameraKind()
+def image_widths(sensor: Sensor, objects: Objects) -> Floats:
+    """Measure how wide (N,) the images are in the picture, whatever hides them [px]."""
+    boxes = PlacedBoxes.of(objects, sensor.pose.position)
+    found = box_images(cast(Camera, sensor.model), axes_of(sensor.pose), boxes)
+    return np.maximum(found.high - found.low, 0.0)[:, 0]
+
+
+def missed(sensor: Sensor, center: Floats, side: float) -> str:
+    """Return one of: out of range, out of view."""
+    offset = np.asarray(center)[None] - np.asarray(sensor.pose.position)
+    out = out_of_range(cast(Camera, sensor.model), offset)[0]
+    return OUT_OF_RANGE if out else OUT_OF_VIEW
+
+
+CAMERA = Kind(
+    name="camera",
+    label="Camera",
+    plural="Cameras",
+    unit="pixels",
+    model=Camera,
+    curve=RTM3D,
+    object_curves=derived_object_curves(RTM3D),
+    keys=KEYS,
+    has_top=True,
+    shows_parts=True,
+    occlusion_text="picture occluded",
+    measure=count_pixels,
+    measure_objects=count_object_pixels,
+    measure_parts=parts_in_picture,
+    image_widths=image_widths,
+    read=read,
+    write=write,
+    in_weather=lambda model, weather: limited(model, camera_range(model.max_range, weather)),
+    data_sheet=figures,
+    summary=summary,
+    rays=picture_rays,
+    missed=missed,
+    view=picture_patch,
+    ego_mask=picture_mask,
+    on_grid=CameraGrid,
+    on_sample=CameraSample,
+    on_ground=CameraGround,
+    on_objects=CameraObjects,
+)

@@ -23,8 +23,7 @@ from ...geometry.poses import dot, rotate
 from ...scene.objects import Objects
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
-from ..box_rays import BoxRays, Rivals, behind_others
-from ..object_kernel import PlacedBoxes
+from ..boxes import BoxRays, PlacedBoxes, Rivals, behind_others
 from .box_area import BoxImages, along_camera, box_images, face_points
 from .definition import out_of_range
 from .model import Camera

@@ -19,7 +19,7 @@ from ...base.arrays import Flags, Floats, Ints
 from ...geometry.indexing import blocks, count_up, stable_order
 from ...geometry.poses import dot, rotate
 from ...scene.rig import Sensor
-from ..object_kernel import PlacedBoxes
+from ..boxes import PlacedBoxes
 from .definition import BoxHits
 from .lattice import WINDOW_MARGIN, Windows, lattice_of
 from .model import Lidar, lidar_of

@@ -16,8 +16,7 @@ from ...geometry.poses import dot, rotate
 from ...scene.objects import Objects
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
-from ..body_parts import CELLS, LAYERS, NO_END, BodyParts
-from ..object_kernel import PlacedBoxes
+from ..boxes import CELLS, LAYERS, NO_END, BodyParts, PlacedBoxes
 from .model import lidar_of
 from .tie_rules import offsets_in_voxels, without_zeros
 

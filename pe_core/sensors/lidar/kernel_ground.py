@@ -15,7 +15,7 @@ from ...base.arrays import Flags, Floats, Ints
 from ...geometry.grids import GroundGrid
 from ...geometry.indexing import count_up
 from ...scene.rig import Sensor
-from ..ground_kernel import GroundKernel, GroundView, VisibleGround
+from ..kernels import GroundKernel, GroundView, VisibleGround
 from .beams import BeamCache
 from .model import lidar_of
 

@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 
 from ...base.arrays import Flags, Floats, Ints
 from ...scene.rig import Sensor
-from ..body_parts import BodyParts
-from ..object_kernel import ObjectKernel, ObjectView, PlacedBoxes
+from ..boxes import BodyParts, PlacedBoxes
+from ..kernels import ObjectKernel, ObjectView
 from .beams import BeamCache
 from .box_hits import BoxTester, FanBeams, azimuth_spans, candidate_hits, concatenated, nearest_hits
 from .definition import BoxHits, counts_in_bands

@@ -1,4 +1,4 @@
-"""The LiDAR as a kind of sensor: its row of the registry, and its figures in text."""
+"""The LiDAR as a kind: its row of the registry, its table in degrees, and its figures in text."""
 
 from __future__ import annotations
 
@@ -9,26 +9,20 @@ from typing import Any
 
 import numpy as np
 
-from ...base.arrays import Floats
-from ...geometry.grids import PerceptionSpace
+from ...base.degrees import degrees_in_file
+from ...base.errors import InputError, shown
+from ...base.plugins import shipped
+from ...base.values import A_PATH, Number, listed, vector
 from ...metric.entropy import POINTPILLARS, ApCurve
-from ...scene.objects import Objects
-from ...scene.rig import Sensor
-from ...scene.vehicle import Vehicle
-from ..body_parts import BodyParts
-from ..field_of_view import EgoMask, ViewPatch
-from ..ground_kernel import GroundView
-from ..kernels import Voxels
+from ..field_of_view import NEAREST, limited
 from ..kind import Kind, derived_object_curves
-from ..object_kernel import ObjectView
-from ..weather import Weather, lidar_range, limited
-from . import sensor_table
+from ..weather import lidar_range
 from .definition import count_beams, count_on_objects, count_on_parts
 from .field_of_view import beam_patch, revolution_mask
 from .kernel_ground import LidarGround
 from .kernel_objects import LidarObjects
 from .kernel_voxels import LidarGrid, LidarSample
-from .model import Lidar
+from .model import RANGE, STEPS, Lidar
 from .query import beams_to, reason_missed, sample_beams
 
 FITTED = {
@@ -40,118 +34,158 @@ FITTED = {
 PointRCNN's detections in KITTI's tracking sequences (from the public AB3DMOT repository), AP at 40
 recalls by KITTI's overlaps (0.7 for cars, 0.5 for the others). The detector was trained on drives
 that overlap with these, so its AP is rather high."""
-OBJECT_CURVES = derived_object_curves(POINTPILLARS) | FITTED
 PLOT_ROWS, BAR_WIDTH = 24, 48
+KEYS = frozenset(
+    {
+        "angles",
+        "elevations_deg",
+        "azimuth_count",
+        "azimuth_step_deg",
+        "max_range_m",
+        "min_range_m",
+        "azimuth_offsets_deg",
+        "horizontal_fov_deg",
+    }
+)
+DEGREES = Number(cap=1e6, unit="degrees", noun="angle")
+STEP_DEG = Number(0.001, 360.0, unit="degrees", noun="angle")
 
 
-class LidarKind(Kind):
-    """LiDARs: m is the number of beams through a voxel."""
-
-    name, label, plural, unit = "lidar", "LiDAR", "LiDARs", "beams"
-    model = Lidar
-    curve = POINTPILLARS
-    weather_limits_range = True
-    object_curves = OBJECT_CURVES
-    counts_points = True
-    shows_parts = True
-    keys = sensor_table.KEYS
-
-    def measure(
-        self, sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None
-    ) -> Floats:
-        """Count the beams that pass through each cube before they end."""
-        return count_beams(sensor, centers, side, vehicle)
-
-    def measure_objects(
-        self, sensor: Sensor, objects: Objects, vehicle: Vehicle | None, traffic: bool
-    ) -> Floats:
-        """Count the beams that end on each object."""
-        return count_on_objects(sensor, objects, vehicle, traffic)
-
-    def measure_parts(self, sensor: Sensor, parts: BodyParts, vehicle: Vehicle | None) -> Floats:
-        """Count the beams that meet each cell in the band in which they surely end."""
-        return count_on_parts(sensor, parts, vehicle)
-
-    def read(self, name: str, table: Mapping[str, Any], folder: Path) -> Lidar:
-        """Build a LiDAR from its table."""
-        return sensor_table.read(name, table, folder)
-
-    def write(self, model: Lidar) -> dict[str, Any]:
-        """Return a LiDAR's table."""
-        return sensor_table.write(model)
-
-    def in_weather(self, model: Lidar, weather: Weather) -> Lidar:
-        """Limit the range: see `lidar_range`."""
-        return limited(model, lidar_range(model.max_range, weather))
-
-    def data_sheet(self, model: Lidar) -> list[str]:
-        """Return the channels, azimuths, number of beams and range, a line each."""
-        low, high = math.degrees(model.elevations.min()), math.degrees(model.elevations.max())
-        left, right = (math.degrees(a) for a in model.horizontal_fov)
-        min_range = f"{model.min_range:g} to " if model.min_range > 0.0 else ""
-        return [
-            f"channels        {len(model.elevations)}, {low:g} to {high:g} deg",
-            f"azimuths        {len(model.azimuth_steps)}, {left:g} to {right:g} deg, "
-            f"every {math.degrees(model.azimuth_step):.4g} deg",
-            f"beams a frame   {model.beam_count}",
-            f"range           {min_range}{model.max_range:g} m",
-        ]
-
-    def summary(self, model: Lidar) -> str:
-        """Return the number of channels, the field of view across and up, and the range."""
-        across = math.degrees(model.horizontal_fov[1] - model.horizontal_fov[0])
-        up = math.degrees(model.elevations.max() - model.elevations.min())
-        fov = f"{min(across, 360.0):.0f} x {up:.0f} deg"
-        return f"{len(model.elevations)} channels, {fov}, {model.max_range:g} m"
-
-    def plot(self, model: Lidar) -> list[str]:
-        """Return a histogram of the elevations in text, top first: one mark is one channel."""
-        counts, edges = np.histogram(np.degrees(model.elevations), bins=PLOT_ROWS)
-        scale = min(1.0, BAR_WIDTH / counts.max())
-        return [
-            f"{(edges[i] + edges[i + 1]) / 2:8.2f} deg |{'#' * math.ceil(counts[i] * scale)}"
-            for i in reversed(range(PLOT_ROWS))
-        ]
-
-    def rays(self, sensor: Sensor, most: int) -> Floats:
-        """Return evenly picked beams."""
-        return sample_beams(sensor, most)
-
-    def rays_to(self, sensor: Sensor, center: Floats, side: float) -> tuple[Floats, Floats]:
-        """Return the beams through the cube without a vehicle, and where they enter it."""
-        return beams_to(sensor, center, side)
-
-    def missed(self, sensor: Sensor, center: Floats, side: float) -> str:
-        """Return one of: out of range, out of view, between beams."""
-        return reason_missed(sensor, center, side)
-
-    def view(self, model: Lidar, step: float) -> ViewPatch:
-        """Return the region between its beams."""
-        return beam_patch(model, step)
-
-    def ego_mask(self, sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
-        """Cast all beams."""
-        return revolution_mask(sensor, vehicle)
-
-    def on_grid(
-        self, space: PerceptionSpace, vehicle: Vehicle | None, saturation_count: int
-    ) -> LidarGrid:
-        """Return a kernel that sweeps beams through the planes of the grid."""
-        return LidarGrid(space, vehicle, saturation_count)
-
-    def on_sample(
-        self, voxels: Voxels, vehicle: Vehicle | None, saturation_count: int
-    ) -> LidarSample:
-        """Return a kernel that looks beams up by direction."""
-        return LidarSample(voxels, vehicle, saturation_count)
-
-    def on_ground(self, view: GroundView) -> LidarGround:
-        """Return a kernel that marks the ground below low beams."""
-        return LidarGround(view)
-
-    def on_objects(self, view: ObjectView) -> LidarObjects:
-        """Return a kernel that counts runs of channels, azimuth by azimuth."""
-        return LidarObjects(view)
+def read(name: str, table: Mapping[str, Any], folder: Path) -> Lidar:
+    """Build a LiDAR from its table; the path of a file of `angles` is relative to `folder`."""
+    elevations, offsets = _channels(name, table, folder)
+    fov = table.get("horizontal_fov_deg", (-180.0, 180.0))
+    low, high = map(math.radians, vector(name, "horizontal_fov_deg", fov, 2, DEGREES))
+    return Lidar(
+        name,
+        elevations,
+        _azimuth_count(name, table),
+        RANGE.checked(name, "max_range_m", table.get("max_range_m")),
+        offsets,  # type: ignore[arg-type]
+        (low, high),
+        table.get("min_range_m", NEAREST),
+    )
 
 
-LIDAR = LidarKind()
+def write(model: Lidar) -> dict[str, Any]:
+    """Return a LiDAR's table."""
+    table: dict[str, Any] = {
+        "azimuth_count": model.azimuth_count,
+        "max_range_m": model.max_range,
+        "horizontal_fov_deg": [degrees_in_file(a) for a in model.horizontal_fov],
+        "elevations_deg": [degrees_in_file(a) for a in model.elevations.tolist()],
+    }
+    if any(offsets := model.azimuth_offsets.tolist()):
+        table["azimuth_offsets_deg"] = [degrees_in_file(a) for a in offsets]
+    if model.min_range > NEAREST:
+        table["min_range_m"] = model.min_range
+    return table
+
+
+def _channels(
+    name: str, table: Mapping[str, Any], folder: Path
+) -> tuple[np.ndarray, np.ndarray | None]:
+    """Elevations (C,) and, if the table has them, azimuth offsets (C,) [rad]."""
+    if "angles" in table:
+        return _channels_of_file(name, table, folder)
+    elevations = _radians(name, table, "elevations_deg")
+    if "azimuth_offsets_deg" not in table:
+        return elevations, None
+    return elevations, _radians(name, table, "azimuth_offsets_deg")
+
+
+def _channels_of_file(
+    name: str, table: Mapping[str, Any], folder: Path
+) -> tuple[np.ndarray, np.ndarray]:
+    file = A_PATH.checked(name, "angles", table["angles"])
+    for key in ("elevations_deg", "azimuth_offsets_deg"):
+        if key in table:
+            raise InputError(name, "angles", f"either a file of angles or {key}", "both")
+    try:
+        channels = shipped("reader.angles")(folder / file)
+    except InputError as error:  # a study replaces the source; the field keeps the file's name
+        field = f"angles: {error.source}: {error.field}"
+        raise InputError(name, field, error.expected, error.found) from None
+    return (
+        np.array([math.radians(c.elevation_deg) for c in channels]),
+        np.array([math.radians(c.azimuth_offset_deg) for c in channels]),
+    )
+
+
+def _azimuth_count(name: str, table: Mapping[str, Any]) -> int:
+    """Azimuth steps in a circle: given, or 360 degrees over the nominal step, rounded."""
+    if "azimuth_count" in table:
+        return STEPS.checked(name, "azimuth_count", table["azimuth_count"])
+    step = STEP_DEG.checked(name, "azimuth_step_deg", table.get("azimuth_step_deg"))
+    return round(360.0 / step)
+
+
+def _radians(name: str, table: Mapping[str, Any], key: str) -> np.ndarray:
+    values = listed(table.get(key))
+    if not values:
+        raise InputError(name, key, "a list of angles", shown(table.get(key)))
+    return np.array([math.radians(DEGREES.checked(name, key, v)) for v in values])
+
+
+def figures(model: Lidar) -> list[str]:
+    """Return the channels, azimuths, number of beams and range, a line each."""
+    low, high = math.degrees(model.elevations.min()), math.degrees(model.elevations.max())
+    left, right = (math.degrees(a) for a in model.horizontal_fov)
+    min_range = f"{model.min_range:g} to " if model.min_range > 0.0 else ""
+    return [
+        f"channels        {len(model.elevations)}, {low:g} to {high:g} deg",
+        f"azimuths        {len(model.azimuth_steps)}, {left:g} to {right:g} deg, "
+        f"every {math.degrees(model.azimuth_step):.4g} deg",
+        f"beams a frame   {model.beam_count}",
+        f"range           {min_range}{model.max_range:g} m",
+    ]
+
+
+def summary(model: Lidar) -> str:
+    """Return the number of channels, the field of view across and up, and the range."""
+    across = math.degrees(model.horizontal_fov[1] - model.horizontal_fov[0])
+    up = math.degrees(model.elevations.max() - model.elevations.min())
+    fov = f"{min(across, 360.0):.0f} x {up:.0f} deg"
+    return f"{len(model.elevations)} channels, {fov}, {model.max_range:g} m"
+
+
+def plot(model: Lidar) -> list[str]:
+    """Return a histogram of the elevations in text, top first: one mark is one channel."""
+    counts, edges = np.histogram(np.degrees(model.elevations), bins=PLOT_ROWS)
+    scale = min(1.0, BAR_WIDTH / counts.max())
+    return [
+        f"{(edges[i] + edges[i + 1]) / 2:8.2f} deg |{'#' * math.ceil(counts[i] * scale)}"
+        for i in reversed(range(PLOT_ROWS))
+    ]
+
+
+LIDAR = Kind(
+    name="lidar",
+    label="LiDAR",
+    plural="LiDARs",
+    unit="beams",
+    model=Lidar,
+    curve=POINTPILLARS,
+    object_curves=derived_object_curves(POINTPILLARS) | FITTED,
+    counts_points=True,
+    shows_parts=True,
+    keys=KEYS,
+    measure=count_beams,
+    measure_objects=count_on_objects,
+    measure_parts=count_on_parts,
+    read=read,
+    write=write,
+    in_weather=lambda model, weather: limited(model, lidar_range(model.max_range, weather)),
+    data_sheet=figures,
+    summary=summary,
+    plot=plot,
+    rays=sample_beams,
+    rays_to=beams_to,
+    missed=reason_missed,
+    view=beam_patch,
+    ego_mask=revolution_mask,
+    on_grid=LidarGrid,
+    on_sample=LidarSample,
+    on_ground=LidarGround,
+    on_objects=LidarObjects,
+)

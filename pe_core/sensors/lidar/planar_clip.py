@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from ...base.arrays import Flags, Floats, Ints
 from ...geometry.poses import dot, rotate
-from ..object_kernel import PlacedBoxes
+from ..boxes import PlacedBoxes
 from .fan_runs import RotatedFan, RunBlock
 
 SideLines = tuple[Floats, Floats]

@@ -31,11 +31,9 @@ from ...geometry.poses import dot
 from ...scene.objects import Objects
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
-from ..box_rays import Rivals, behind_others
+from ..boxes import NUDGE_M, PlacedBoxes, Rivals, behind_others
 from ..kind import SIZES
-from ..object_kernel import NUDGE_M, PlacedBoxes
 from ..ray_fan import RayFan, angles_of, cast_fan
-from ..ray_fan_boxes import side_points
 from .detection import counted, detection_probability, signal_to_noise
 from .model import Radar, RadarMode, radar_of
 
@@ -195,9 +193,10 @@ def _block(
 ) -> Floats:
     """Return m (P,) of the objects `own` (P,)."""
     radar = radar_of(sensor)
-    sizes, far, aspect = seen_sizes(boxes.take(own))
+    own_boxes = boxes.take(own)
+    sizes, far, aspect = seen_sizes(own_boxes)
     rcs = _rcs(radar, objects, own, aspect)
-    sides, solid = side_points(boxes.take(own), *SIDE_POINTS)
+    sides, solid = own_boxes.side_points(*SIDE_POINTS)
     angles = angles_of(sensor, sides.directions)
     free, loss = seen_through(fan, angles, sides.distance)
     free &= ~behind_others(boxes, near, sides)

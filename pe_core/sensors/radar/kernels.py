@@ -7,8 +7,8 @@ import numpy as np
 from ...base.arrays import Flags, Floats, Ints
 from ...geometry.poses import dot
 from ...scene.rig import Sensor
-from ..box_rays import Rivals, rivals_near
-from ..object_kernel import NUDGE_M, ObjectView, PlacedBoxes
+from ..boxes import NUDGE_M, PlacedBoxes, Rivals
+from ..kernels import ObjectView
 from ..ray_fan import RayFan, angles_of
 from ..ray_fan_kernels import BALL_MARGIN_M, FanRules
 from .definition import (
@@ -35,7 +35,7 @@ def measure_view(sensor: Sensor, view: ObjectView, fan: RayFan) -> Floats:
     def near(own: Ints) -> Rivals:
         if not view.traffic:
             return Rivals.of(alone, own)
-        return rivals_near(boxes, objects.scenes, balls, own)
+        return Rivals.near(boxes, objects.scenes, balls, own)
 
     return objects_seen(sensor, objects, fan, boxes, which, near)
 

@@ -1,4 +1,4 @@
-"""The radar as a kind of sensor: its row of the registry, and its figures in text."""
+"""The radar as a kind: its row of the registry, its table in degrees, and its figures in text."""
 
 from __future__ import annotations
 
@@ -11,19 +11,20 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Floats
+from ...base.degrees import degrees_in_file
+from ...base.errors import InputError, shown
+from ...base.values import Number, listed
 from ...metric.entropy import ApCurve
-from ...scene.objects import Objects
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
-from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, PAPER_VOXEL_M, SIZES
-from ..ray_fan import angles_of
-from ..ray_fan_kind import FanKind
-from ..ray_fan_view import FieldPicture, field_picture_of
+from ..field_of_view import FieldPicture
+from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, PAPER_VOXEL_M, SIZES, Kind
+from ..ray_fan import angles_of, field_picture_of
 from ..weather import Weather, rain_db_per_km
-from . import sensor_table
 from .definition import SURE, TARGET, fan_of, measure_objects, seen_through, target_detections
 from .kernels import RULES, field_of
 from .model import Radar, RadarMode, radar_of
+from .reflectivity import read_reflectivity, write_reflectivity
 
 SLOPE = 0.152
 """a of the default curves: that of PointPillars on points of a LiDAR (Ma, Liu and Li, ICRA 2021).
@@ -32,19 +33,29 @@ PUBLISHED_AP = {"car": 0.379, "pedestrian": 0.312, "cyclist": 0.657}
 """AP of PointPillars on five scans of View-of-Delft's radar."""
 ANCHOR_M = 5.0
 """m at which the default curves have the published AP: a detection in each of the five scans."""
-
-
-def _object_curves() -> dict[str, ApCurve]:
-    """Return the default curves of classes: the published AP at `ANCHOR_M`, with slope `SLOPE`.
-
-    A truck gets the AP of cars, a cone that of pedestrians: no figure of theirs was found.
-    """
-    published = PUBLISHED_AP | {
-        "truck": PUBLISHED_AP["car"],
-        "cone": PUBLISHED_AP["pedestrian"],
+OFFSET = SLOPE * math.log(ANCHOR_M)
+OBJECT_CURVES = {
+    name: ApCurve(SLOPE, PUBLISHED_AP[like] - OFFSET)
+    for name, like in {
+        **{name: name for name in PUBLISHED_AP},
+        "truck": "car",  # no figure of trucks and cones was found
+        "cone": "pedestrian",
+    }.items()
+}
+OWN = (
+    *("reference_rcs_dbsm", "detection_probability", "false_alarm", "list_length"),
+    *("cover_loss_db", "attenuation_db_km"),
+)
+"""Keys that are fields of the model."""
+MODE_KEYS = frozenset(
+    {
+        *("name", "azimuth_deg", "range_m", "elevation_deg", "elevation_scale"),
+        *("range_resolution_m", "azimuth_resolution_deg", "elevation_resolution_deg"),
+        *("min_range_m", "max_range_m", "bandwidth_mhz"),
     }
-    offset = SLOPE * math.log(ANCHOR_M)
-    return {name: ApCurve(SLOPE, ap - offset) for name, ap in published.items()}
+)
+KEYS = frozenset({"mode", "rcs_dbsm", *OWN})
+DEGREES = Number(cap=1e6, unit="degrees", noun="angle")
 
 
 def _voxel_curve(of_target: ApCurve) -> ApCurve:
@@ -54,93 +65,110 @@ def _voxel_curve(of_target: ApCurve) -> ApCurve:
     return ApCurve(of_target.a, of_target.b + of_target.a * math.log(times))
 
 
-OBJECT_CURVES = _object_curves()
+def read(name: str, table: Mapping[str, Any], folder: Path) -> Radar:
+    """Build a radar from its table; `mode` is a list of tables, one for each scan of a frame.
+
+    Raises
+    ------
+    InputError
+        When a key is missing or unknown, or a figure is impossible.
+    """
+    modes = listed(table.get("mode"), 100)
+    if not modes:
+        raise InputError(name, "mode", "a list of tables, one a mode", shown(table.get("mode")))
+    own = {key: table[key] for key in OWN if key in table}
+    rcs = read_reflectivity(name, table.get("rcs_dbsm", {}))
+    read_modes = [_mode(name, mode, number) for number, mode in enumerate(modes)]
+    return Radar(name, read_modes, rcs=rcs, **own)
 
 
-class RadarKind(FanKind):
-    """Radars: m is the number of expected detections."""
+def _mode(name: str, table: Any, number: int) -> RadarMode:
+    if not isinstance(table, Mapping):
+        raise InputError(name, f"mode {number + 1}", "a table", shown(table))
+    for key in table:
+        if key not in MODE_KEYS:
+            expected = f"one of {', '.join(sorted(MODE_KEYS))}"
+            raise InputError(name, f"mode {number + 1}: {key}", expected, "an unknown key")
+    try:
+        return RadarMode(
+            table.get("name", f"mode {number + 1}"),
+            _radians("azimuth_deg", table),
+            table.get("range_m"),  # type: ignore[arg-type]  # checked by the model
+            _radians("elevation_deg", table),
+            table.get("elevation_scale", 1.0),
+            table.get("range_resolution_m"),
+            _radian("azimuth_resolution_deg", table),
+            _radian("elevation_resolution_deg", table),
+            table.get("min_range_m", 0.0),
+            table.get("max_range_m"),
+            table.get("bandwidth_mhz"),
+        )
+    except InputError as error:  # name the radar as well
+        raise InputError(
+            name, f"{error.source}: {error.field}", error.expected, error.found
+        ) from None
 
-    name, label, plural, unit = "radar", "Radar", "Radars", "detections"
-    model = Radar
-    curve = _voxel_curve(OBJECT_CURVES[TARGET])
-    object_curves = OBJECT_CURVES
-    counts_points = True
-    point = SURE
-    lowest_m = 0.8
-    """Its figure for what stands on the ground is that of a pedestrian: the cylinder of UN R158 and
-    FMVSS 111, which stands for a small child, is the lowest."""
-    keys = sensor_table.KEYS
-    rules = RULES
-    occlusion_text = "field occluded"
 
-    def measure_objects(
-        self, sensor: Sensor, objects: Objects, vehicle: Vehicle | None, traffic: bool
-    ) -> Floats:
-        """Measure the expected detections of each object."""
-        return measure_objects(sensor, objects, vehicle, traffic)
+def _radians(key: str, table: Mapping[str, Any]) -> Any:
+    values = listed(table.get(key))
+    if values is None:
+        return table.get(key)
+    return [math.radians(DEGREES.checked("mode", key, value)) for value in values]
 
-    def read(self, name: str, table: Mapping[str, Any], folder: Path) -> Radar:
-        """Build a radar from its table."""
-        return sensor_table.read(name, table)
 
-    def write(self, model: Radar) -> dict[str, Any]:
-        """Return a radar's table."""
-        return sensor_table.write(model)
+def _radian(key: str, table: Mapping[str, Any]) -> float | None:
+    if table.get(key) is None:
+        return None
+    return math.radians(DEGREES.checked("mode", key, table[key]))
 
-    def in_weather(self, model: Radar, weather: Weather) -> Radar:
-        """Add the attenuation of rain, ITU-R P.838-3; fog and snow leave it as it is."""
-        rain = rain_db_per_km(weather.rain_mm_h)
-        return replace(model, attenuation_db_km=model.attenuation_db_km + rain) if rain else model
 
-    def cautious(self, model: Radar) -> Radar:
-        """Return the radar with the RCS that 95 % of the bodies exceed."""
-        return model if model.is_cautious else model.cautious
+def write(model: Radar) -> dict[str, Any]:
+    """Return a radar's table."""
+    default = Radar(model.name, model.modes)
+    own = {key: getattr(model, key) for key in OWN}
+    table = {k: v for k, v in own.items() if v is not None and v != getattr(default, k)}
+    if model.rcs:
+        table["rcs_dbsm"] = write_reflectivity(model.rcs)
+    table["mode"] = [_mode_table(mode) for mode in model.modes]
+    return table
 
-    def data_sheet(self, model: Radar) -> list[str]:
-        """Return the figures of each mode, and those of the radar, a line each."""
-        lines = [f"{mode.name:<15} {_mode_text(mode)}" for mode in model.modes]
-        rcs, pd = model.reference_rcs_dbsm, model.detection_probability
-        lines.append(f"reference       {rcs:g} dBsm at Pd {pd:g}, Pfa {model.false_alarm:g}")
-        if model.list_length is not None:
-            lines.append(f"list            {model.list_length} detections")
-        if model.cover_loss_db:
-            lines.append(f"cover           {model.cover_loss_db:g} dB one way")
-        return lines
 
-    def summary(self, model: Radar) -> str:
-        """Return the number of modes, the field of view across and up, and the range."""
-        (left, right), (low, high) = model.window
-        field = f"{math.degrees(right - left):.0f} x {math.degrees(high - low):.0f} deg"
-        modes = f"{len(model.modes)} modes, " if len(model.modes) > 1 else ""
-        return f"{modes}{field}, {model.max_range:g} m"
+def _mode_table(mode: RadarMode) -> dict[str, Any]:
+    table: dict[str, Any] = {
+        "name": mode.name,
+        "azimuth_deg": [degrees_in_file(a) for a in mode.azimuths.tolist()],
+        "range_m": _shortest(mode.ranges.tolist()),
+        "elevation_deg": [degrees_in_file(a) for a in mode.elevations.tolist()],
+        "min_range_m": mode.min_range,
+        "max_range_m": mode.max_range,
+    }
+    if any(scale != 1.0 for scale in mode.scales.tolist()):
+        table["elevation_scale"] = _shortest(mode.scales.tolist())
+    if mode.range_resolution is not None:
+        table["range_resolution_m"] = mode.range_resolution
+    if mode.bandwidth_mhz is not None:
+        table["bandwidth_mhz"] = mode.bandwidth_mhz
+    for key in ("azimuth_resolution", "elevation_resolution"):
+        if (angle := getattr(mode, key)) is not None:
+            table[f"{key}_deg"] = degrees_in_file(angle)
+    return table
 
-    def missed(self, sensor: Sensor, center: Floats, side: float) -> str:
-        """Return one of: out of range, out of view."""
-        offset = np.asarray(center)[None] - np.asarray(sensor.pose.position)
-        reaches = [mode.reach(*angles_of(sensor, offset))[0] for mode in radar_of(sensor).modes]
-        return OUT_OF_RANGE if max(reaches) > 0.0 else OUT_OF_VIEW
 
-    def covers_met(self, sensor: Sensor, vehicle: Vehicle) -> Mapping[str, tuple[float, float]]:
-        """Return loss [dB] and share of the field of each cover that rays pass."""
-        fan = fan_of(sensor, vehicle)
-        inside = field_of(sensor, fan)
-        shares = {name: float(met[inside].mean()) for name, met in fan.through.items()}
-        return {name: (vehicle.covers[name], share) for name, share in shares.items() if share}
+def _shortest(values: list[float]) -> float | list[float]:
+    """Return one number in place of a list of equal ones."""
+    return values[0] if len(set(values)) == 1 else values
 
-    def field_picture(self, sensor: Sensor, vehicle: Vehicle | None) -> FieldPicture:
-        """Return the expected detections of a reference car by range and azimuth."""
-        radar, fan = radar_of(sensor), fan_of(sensor, vehicle)
 
-        def measured(centers: Floats) -> tuple[Floats, Floats]:
-            offsets = centers - np.asarray(sensor.pose.position)
-            distance = np.sqrt((offsets * offsets).sum(axis=1))
-            angles = angles_of(sensor, offsets)
-            free, loss = seen_through(fan, angles, distance)
-            m = target_detections(radar, angles, distance, loss)
-            return np.where(free, m, 0.0), target_detections(radar, angles, distance, None)
-
-        target = TARGET, SIZES[TARGET][2] / 2.0
-        return field_picture_of(sensor, radar.window, radar.max_range, target, measured)
+def figures(model: Radar) -> list[str]:
+    """Return the figures of each mode, and those of the radar, a line each."""
+    lines = [f"{mode.name:<15} {_mode_text(mode)}" for mode in model.modes]
+    rcs, pd = model.reference_rcs_dbsm, model.detection_probability
+    lines.append(f"reference       {rcs:g} dBsm at Pd {pd:g}, Pfa {model.false_alarm:g}")
+    if model.list_length is not None:
+        lines.append(f"list            {model.list_length} detections")
+    if model.cover_loss_db:
+        lines.append(f"cover           {model.cover_loss_db:g} dB one way")
+    return lines
 
 
 def _mode_text(mode: RadarMode) -> str:
@@ -155,4 +183,75 @@ def _mode_text(mode: RadarMode) -> str:
     return f"{mode.min_range:g} to {mode.max_range:g} m, {field}{size}"
 
 
-RADAR = RadarKind()
+def summary(model: Radar) -> str:
+    """Return the number of modes, the field of view across and up, and the range."""
+    (left, right), (low, high) = model.window
+    field = f"{math.degrees(right - left):.0f} x {math.degrees(high - low):.0f} deg"
+    modes = f"{len(model.modes)} modes, " if len(model.modes) > 1 else ""
+    return f"{modes}{field}, {model.max_range:g} m"
+
+
+def in_weather(model: Radar, weather: Weather) -> Radar:
+    """Add the attenuation of rain, ITU-R P.838-3; fog and snow leave the radar as it is."""
+    rain = rain_db_per_km(weather.rain_mm_h)
+    return replace(model, attenuation_db_km=model.attenuation_db_km + rain) if rain else model
+
+
+def missed(sensor: Sensor, center: Floats, side: float) -> str:
+    """Return one of: out of range, out of view."""
+    offset = np.asarray(center)[None] - np.asarray(sensor.pose.position)
+    reaches = [mode.reach(*angles_of(sensor, offset))[0] for mode in radar_of(sensor).modes]
+    return OUT_OF_RANGE if max(reaches) > 0.0 else OUT_OF_VIEW
+
+
+def covers_met(sensor: Sensor, vehicle: Vehicle) -> Mapping[str, tuple[float, float]]:
+    """Return loss [dB] and share of the field of each cover that rays pass."""
+    fan = fan_of(sensor, vehicle)
+    inside = field_of(sensor, fan)
+    shares = {name: float(met[inside].mean()) for name, met in fan.through.items()}
+    return {name: (vehicle.covers[name], share) for name, share in shares.items() if share}
+
+
+def field_picture(sensor: Sensor, vehicle: Vehicle | None) -> FieldPicture:
+    """Return the expected detections of a reference car by range and azimuth."""
+    radar, fan = radar_of(sensor), fan_of(sensor, vehicle)
+
+    def measured(centers: Floats) -> tuple[Floats, Floats]:
+        offsets = centers - np.asarray(sensor.pose.position)
+        distance = np.sqrt((offsets * offsets).sum(axis=1))
+        angles = angles_of(sensor, offsets)
+        free, loss = seen_through(fan, angles, distance)
+        m = target_detections(radar, angles, distance, loss)
+        return np.where(free, m, 0.0), target_detections(radar, angles, distance, None)
+
+    target = TARGET, SIZES[TARGET][2] / 2.0
+    return field_picture_of(sensor, radar.window, radar.max_range, target, measured)
+
+
+RADAR = Kind(
+    name="radar",
+    label="Radar",
+    plural="Radars",
+    unit="detections",
+    model=Radar,
+    curve=_voxel_curve(OBJECT_CURVES[TARGET]),
+    object_curves=OBJECT_CURVES,
+    counts_points=True,
+    point=SURE,
+    # Its figure for what stands on the ground is that of a pedestrian: the cylinder of UN R158 and
+    # FMVSS 111, which stands for a small child, is the lowest.
+    lowest_m=0.8,
+    keys=KEYS,
+    occlusion_text="field occluded",
+    measure_objects=measure_objects,
+    read=read,
+    write=write,
+    in_weather=in_weather,
+    cautious=lambda model: model if model.is_cautious else model.cautious,
+    data_sheet=figures,
+    summary=summary,
+    missed=missed,
+    covers_met=covers_met,
+    field_picture=field_picture,
+    **RULES.functions,
+)

@@ -17,9 +17,8 @@ from ...base.errors import InputError, shown
 from ...base.read_only import read_only
 from ...base.values import A_NAME, Angle, Number, Whole, numbers
 from ...scene.rig import Sensor, SensorModel
-from ..field_of_view import MIN_RANGE, SHORTEST_RANGE_M
+from ..field_of_view import LIGHT_M_S, MIN_RANGE, SHORTEST_RANGE_M
 from ..ray_fan import AngleWindow
-from ..weather import LIGHT_M_S
 from .detection import ratio_of_db, snr_for
 from .reflectivity import DBSM, Reflectivity, cautious_reflectivity, reflectivity_of
 

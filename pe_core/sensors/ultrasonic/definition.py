@@ -17,10 +17,10 @@ from ...geometry.poses import dot
 from ...scene.objects import Objects
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
-from ..box_rays import BoxRays, Rivals, behind_others
-from ..object_kernel import NUDGE_M, PlacedBoxes
+from ..boxes import NUDGE_M, BoxRays, PlacedBoxes, Rivals, behind_others
+from ..kernels import ObjectView
 from ..ray_fan import RayFan, angles_of, cast_fan
-from ..ray_fan_boxes import side_points
+from ..ray_fan_kernels import FanRules
 from .model import Ultrasonic, ultrasonic_of
 
 SIDE_POINTS = 144, 89
@@ -78,7 +78,7 @@ def objects_heard(sensor: Sensor, objects: Objects, fan: RayFan, traffic: bool) 
     if not len(near):
         return m
     own = boxes.take(near)
-    sides, _ = side_points(own, *SIDE_POINTS)
+    sides, _ = own.side_points(*SIDE_POINTS)
     rays = _joined(sides, _nearest_points(own))
     heard = returns_echo(sensor, fan, rays.directions * rays.distance[:, None])
     heard &= _cosine(own, rays) >= math.cos(model.max_incidence) - INCIDENCE_MARGIN
@@ -95,9 +95,7 @@ def _nearest_points(boxes: PlacedBoxes) -> BoxRays:
     nearest = np.clip(0.0, low, high)
     distance = np.sqrt(dot(nearest, nearest))
     item = np.flatnonzero(distance > NEAR_M)
-    x, y, z = nearest[item].T
-    c, s = boxes.headings[item].T
-    ground = np.stack([c * x - s * y, s * x + c * y, z], axis=1)
+    ground = boxes.in_ground(nearest[item], item)
     return BoxRays(item, ground / distance[item, None], distance[item])
 
 
@@ -117,3 +115,50 @@ def _joined(one: BoxRays, two: BoxRays) -> BoxRays:
         np.concatenate([one.directions, two.directions]),
         np.concatenate([one.distance, two.distance]),
     )
+
+
+def cone_of(sensor: Sensor, fan: RayFan) -> Flags:
+    """Return which rays (E, A) of a fan are in the cone."""
+    elevations, azimuths = fan.angles
+    return in_cone(ultrasonic_of(sensor), azimuths[None, :], elevations[:, None])
+
+
+def reached_by_balls(sensor: Sensor, centers: Floats, balls: Floats) -> Flags:
+    """Whether balls (N,) round points (N, 3) [m] may be in range; never too few."""
+    offsets = centers - np.asarray(sensor.pose.position)
+    reach = ultrasonic_of(sensor).max_range + balls
+    return np.asarray(dot(offsets, offsets) <= reach * reach)
+
+
+def measure_columns(
+    sensor: Sensor, columns: Floats, heights: Floats, side: float, fan: RayFan
+) -> Floats:
+    """Return m (C, Z) of cubes in columns (C, 2) at heights (Z,) [m]: 1 or 0."""
+    up, across = len(heights), len(columns)
+    centers = np.column_stack([np.repeat(columns, up, axis=0), np.tile(heights, across)])
+    return measure_voxels(sensor, centers, side, fan).reshape(across, up)
+
+
+def hears_points(sensor: Sensor, points: Floats, fan: RayFan) -> Flags:
+    """Whether points (N, 3) of posts return an echo: sound meets a post level."""
+    offsets = points - (np.asarray(sensor.pose.position) + NUDGE_M)
+    steepest = min(ultrasonic_of(sensor).max_incidence, np.pi / 2.0 - 1e-9)
+    flat = np.sqrt((offsets[:, :2] ** 2).sum(axis=1))
+    level = np.abs(offsets[:, 2]) <= np.tan(steepest) * flat
+    return returns_echo(sensor, fan, offsets) & level
+
+
+def measure_view(sensor: Sensor, view: ObjectView, fan: RayFan) -> Floats:
+    """Return m (N,) of objects: 1 or 0."""
+    return objects_heard(sensor, view.objects, fan, view.traffic)
+
+
+RULES = FanRules(
+    through_covers=False,
+    field=cone_of,
+    reached=reached_by_balls,
+    voxels=measure_voxels,
+    columns=measure_columns,
+    posts=hears_points,
+    objects=measure_view,
+)

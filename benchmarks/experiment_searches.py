@@ -35,8 +35,8 @@ EXPERIMENTS = {
     "4_cameras": "4, two LiDARs, two cameras",
 }
 COMPARED = ("portfolio", "block-descent", "random")
-SAMPLES, JUDGES, SHIFT = 65_536, 262_144, (0.31, 0.62, 0.13)
-"""Voxels a candidate is judged on; voxels, others, that tell what the best so far is worth."""
+SAMPLES, EVALUATED, SHIFT = 65_536, 262_144, (0.31, 0.62, 0.13)
+"""Voxels a candidate is evaluated on; voxels, others, that tell what the best so far is worth."""
 MARKS_S = (1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 80, 100, 150, 200, 300, 450)
 
 Json = dict[str, Any]
@@ -113,15 +113,15 @@ def _processor_s() -> float:
 
 def _curve(study: pe.Study, bests: list[tuple[float, Any]], end: float) -> list[list[float]]:
     """Return time [s] and entropy of the best so far at some times, on voxels of its own."""
-    options = {"samples": JUDGES, "shift": SHIFT, "model": study.model}
-    judge = pe.Evaluator(study.space, study.prior, study.vehicle, **options)
+    options = {"samples": EVALUATED, "shift": SHIFT, "model": study.model}
+    evaluator = pe.Evaluator(study.space, study.prior, study.vehicle, **options)
     known: dict[int, float] = {}
     points = []
     for mark in MARKS_S:
         number = sum(seconds <= mark for seconds, _ in bests) - 1
         if number >= 0:
             if number not in known:
-                known[number] = judge.entropy(bests[number][1].rig)
+                known[number] = evaluator.entropy(bests[number][1].rig)
             points.append([float(mark), known[number]])
         if mark >= end:
             break

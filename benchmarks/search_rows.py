@@ -46,13 +46,15 @@ def candidates_in_traffic() -> Timing:
     """Candidates scored by objects that occlude each other, against the voxels of a search."""
     study = pe.load_study(EXPERIMENT)
     targets = pe.TargetRule("objects", traffic=True)
-    judges = [
+    evaluates = [
         each.evaluator(study.search.samples) for each in (replace(study, targets=targets), study)
     ]
     rigs = list(_near_the_optimum(study))
     ours, theirs = (
-        best_of_processor(lambda judge=judge: evaluate_all(judge, rigs), TRAFFIC_REPEATS)
-        for judge in judges
+        best_of_processor(
+            lambda evaluator=evaluator: evaluate_all(evaluator, rigs), TRAFFIC_REPEATS
+        )
+        for evaluator in evaluates
     )
     work = f"the same by {targets.scenes} scenes of objects in traffic, processor time"
     yardstick = f"by {study.search.samples:,} samples"

@@ -83,7 +83,7 @@ def run(name: str, method: str, seed: int) -> Json:
 
 
 def _ours(
-    study: pe.Study, last: pe.RigJudge, method: str, seed: int, evaluations: int
+    study: pe.Study, last: pe.RigEvaluator, method: str, seed: int, evaluations: int
 ) -> tuple[list[EvaluatedRow], int, str]:
     """Search by a method of the engine, on its own levels."""
     levels = pe.METHODS[method].samples(study.search.samples)
@@ -109,7 +109,7 @@ def _ours(
 
 
 def _theirs(
-    study: pe.Study, evaluator: pe.RigJudge, method: str, seed: int, evaluations: int
+    study: pe.Study, evaluator: pe.RigEvaluator, method: str, seed: int, evaluations: int
 ) -> tuple[list[EvaluatedRow], int, str]:
     """Search by a method of another library."""
     rows, lowest, count = list[EvaluatedRow](), float("inf"), 0

@@ -23,7 +23,7 @@ from studies.paper.paper import study_of
 
 OFF_DEG = (0.1, 0.3)
 """1 sigma of roll, pitch and yaw."""
-JUDGED_DRAWS, JUDGED_SEED, JUDGED_SAMPLES = 32, 1000, 65_536
+EVALUATED_DRAWS, EVALUATED_SEED, EVALUATED_SAMPLES = 32, 1000, 65_536
 OTHER_VOXELS = (0.137, 0.611, 0.293)
 DEARER = 7
 """How many times as many candidates are tried as they stand."""
@@ -59,21 +59,21 @@ def found(setting: HowToSearch, degrees: float) -> tuple[pe.Rig, float]:
     return last.best, time.process_time() - began
 
 
-def judged(rig: pe.Rig) -> tuple[float, ...]:
+def evaluated(rig: pe.Rig) -> tuple[float, ...]:
     """Return the entropy of a placement as it stands, and mounted off by each of OFF_DEG."""
     study = study_of("3_front")
     evaluator = pe.Evaluator(
         study.space,
         study.prior,
         study.vehicle,
-        samples=JUDGED_SAMPLES,
+        samples=EVALUATED_SAMPLES,
         shift=OTHER_VOXELS,
         model=study.model,
     )
     means = []
     for degrees in OFF_DEG:
-        errors = pe.Tolerance(angle=math.radians(degrees), draws=JUDGED_DRAWS)
-        means.append(np.mean(evaluator.entropies(mounted_off(rig, errors, JUDGED_SEED))))
+        errors = pe.Tolerance(angle=math.radians(degrees), draws=EVALUATED_DRAWS)
+        means.append(np.mean(evaluator.entropies(mounted_off(rig, errors, EVALUATED_SEED))))
     return (evaluator.entropy(rig), *map(float, means))
 
 
@@ -86,7 +86,7 @@ def rows(setting: HowToSearch) -> Iterator[str]:
 
 def row(name: str, rig: pe.Rig, spent: str) -> str:
     """Return a placement and what it is worth as a row."""
-    entropies = " | ".join(f"{value:.3f}" for value in judged(rig))
+    entropies = " | ".join(f"{value:.3f}" for value in evaluated(rig))
     return f"| {name} | {entropies} | {'; '.join(map(place, rig))} | {spent} |"
 
 

@@ -37,7 +37,7 @@ class Landscape:
     Parameters
     ----------
     study : Study
-    evaluator : RigJudge
+    evaluator : RigEvaluator
     evaluations : int
         After so many, the start included, `Spent` is raised.
     told : callable
@@ -45,7 +45,7 @@ class Landscape:
     """
 
     def __init__(
-        self, study: pe.Study, evaluator: pe.RigJudge, evaluations: int, told: Told
+        self, study: pe.Study, evaluator: pe.RigEvaluator, evaluations: int, told: Told
     ) -> None:
         self._coding = Parametrization(study.rig, study.search_space())
         self._evaluator, self._told, self._left = evaluator, told, evaluations

@@ -24,7 +24,7 @@ from .scoring import (
     GroundMap,
     ObjectScore,
     PartScore,
-    RigJudge,
+    RigEvaluator,
     Scatter,
     Score,
     SensorScore,
@@ -84,7 +84,7 @@ __all__ += ["FTheta", "Focus", "GroundMap", "GroundSight", "Housing", "InputErro
 __all__ += ["KannalaBrandt", "Lidar", "Mesh", "MeshAxes", "Method", "Motion", "MountArea"]
 __all__ += ["Mounting", "NoGo", "ObjectClass", "ObjectEvaluator", "ObjectScore", "Objective"]
 __all__ += ["Objects", "Option", "PartScore", "PerceptionModel", "PerceptionSpace", "Pinhole"]
-__all__ += ["Pose", "Prior", "Reach", "Reference", "Rig", "RigJudge", "Scatter", "Schedule"]
+__all__ += ["Pose", "Prior", "Reach", "Reference", "Rig", "RigEvaluator", "Scatter", "Schedule"]
 __all__ += ["Score", "Search", "SearchSpace", "Selection", "Sensor", "SensorScore", "Sight"]
 __all__ += ["Slot", "SlotMount", "State", "Step", "Study", "SurfaceMount", "TargetRule"]
 __all__ += ["Tolerance", "Vehicle", "Weather", "__version__", "beam_field", "catalog"]

@@ -96,7 +96,7 @@ class CachedEvaluator(NamedTuple):
     """An evaluator, and its problem's key."""
 
     key: Hashable
-    evaluator: pe.RigJudge
+    evaluator: pe.RigEvaluator
 
 
 class EvaluatorCache:
@@ -123,7 +123,7 @@ class EvaluatorCache:
         return cached
 
 
-def make_evaluator(problem: Problem) -> pe.RigJudge:
+def make_evaluator(problem: Problem) -> pe.RigEvaluator:
     """Return what scores a problem quickly: on a sample of voxels, or few scenes of objects."""
     place = problem.space, problem.prior, problem.vehicle
     rule = problem.targets

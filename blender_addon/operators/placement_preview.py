@@ -133,7 +133,7 @@ class GainPreview:
     def __init__(self, study: pe.Study, name: str, on_result: Callable[[str], None]) -> None:
         self._study, self._name, self._on_result = study, name, on_result
         self._others = [each for each in study.rig if each.name != name]
-        self._evaluator: pe.RigJudge | None = None
+        self._evaluator: pe.RigEvaluator | None = None
         self._before: float | None = None
 
     def ask(self, pose: pe.Pose) -> None:

@@ -1,7 +1,7 @@
 """Scores of a rig: on all voxels, or on a sample of them."""
 
 from .evaluator import Evaluator
-from .protocol import Judgement, Objective, RigJudge
+from .protocol import Evaluation, Objective, RigEvaluator
 from .sampling import VoxelSample, draw
 from .scatter import Scatter
 from .score import (
@@ -16,14 +16,14 @@ from .score import (
 )
 
 __all__ = [
+    "Evaluation",
     "Evaluator",
     "FoundClass",
     "GroundMap",
-    "Judgement",
     "ObjectScore",
     "Objective",
     "PartScore",
-    "RigJudge",
+    "RigEvaluator",
     "Scatter",
     "Score",
     "ScoreStopped",

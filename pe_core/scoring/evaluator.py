@@ -15,7 +15,7 @@ from ..sensors import PerceptionModel
 from .density_cache import cached_densities
 from .grid_scorer import GridScorer
 from .memory_need import columns_bytes, require_room_for, require_room_for_samples
-from .protocol import Judgement, Scorer
+from .protocol import Evaluation, Scorer
 from .sampled_scorer import SampledScorer
 from .sampling import CENTERED, SAMPLES_OR_GRID
 from .score import Score, SummaryScore, Watch
@@ -136,7 +136,7 @@ class Evaluator:
         """
         return self._scorer.summary(rig, preview)
 
-    def judge(self, rig: Rig, below: float = inf) -> Judgement:
+    def evaluate(self, rig: Rig, cutoff: float = inf) -> Evaluation:
         """Evaluate a rig with a cutoff, as a search does with its candidates.
 
         On a sample, occlusion by the vehicle often need not be computed to find that the entropy is
@@ -145,17 +145,17 @@ class Evaluator:
         Parameters
         ----------
         rig : Rig
-        below : float
+        cutoff : float
             The cutoff: usually the entropy of the incumbent [nats]; inf: none.
 
         Returns
         -------
-        Judgement
-            The entropy; or, where that is not below `below`, perhaps a lower bound of it that is
-            not below `below` either. `is_lower_bound` tells the two apart: a lower bound must not
+        Evaluation
+            The entropy; or, where that is not below `cutoff`, perhaps a lower bound of it that is
+            not below `cutoff` either. `is_lower_bound` tells the two apart: a lower bound must not
             be ranked.
         """
-        return self._scorer.evaluate(rig, below)
+        return self._scorer.evaluate(rig, cutoff)
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the perception entropy of each of several rigs [nats].
@@ -174,24 +174,26 @@ class Evaluator:
         """
         return self._scorer.entropies(rigs)
 
-    def judge_together(self, rigs: Sequence[Rig], below: float, worst: bool = False) -> Judgement:
-        """Evaluate the mean of several rigs' entropies with a cutoff, as `judge` does one rig's.
+    def evaluate_together(
+        self, rigs: Sequence[Rig], cutoff: float, worst: bool = False
+    ) -> Evaluation:
+        """Evaluate the mean of several rigs' entropies with a cutoff, as `evaluate` does one rig's.
 
         Parameters
         ----------
         rigs : sequence of Rig
             As in `entropies`, with the same error.
-        below : float
-            As in `judge`.
+        cutoff : float
+            As in `evaluate`.
         worst : bool
             Evaluate the highest of the entropies instead of their mean.
 
         Returns
         -------
-        Judgement
-            As in `judge`: the mean (or highest) of the rigs' entropies, or of lower bounds of them.
+        Evaluation
+            The mean (or highest) of the rigs' entropies, or of lower bounds of them.
         """
-        return self._scorer.evaluate_together(rigs, below, worst)
+        return self._scorer.evaluate_together(rigs, cutoff, worst)
 
 
 def _evaluator_again(

@@ -27,7 +27,7 @@ from ..sensors import GridKernel, kind_of
 from ..sensors.kernels import BLOCK_PLANES, Planes
 from .density_cache import outside_masses
 from .memory_need import Grouped, grid_bytes, require_room_for
-from .protocol import Judgement
+from .protocol import Evaluation
 from .scenarios import (
     Members,
     Scenarios,
@@ -134,17 +134,17 @@ class GridScorer:
         """Raise `InputError`: a grid is too slow for it."""
         raise InputError("evaluator", "summary", "a sampled score", "a grid score")
 
-    def evaluate(self, rig: Rig, cutoff: float) -> Judgement:
+    def evaluate(self, rig: Rig, cutoff: float) -> Evaluation:
         """Return the entropy, whatever the cutoff."""
-        return Judgement(self.entropy(rig), False)
+        return Evaluation(self.entropy(rig), False)
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the entropy of each of several rigs [nats]."""
         return [self.entropy(part) for part in Scenarios(rigs).parts]
 
-    def evaluate_together(self, rigs: Sequence[Rig], cutoff: float, worst: bool) -> Judgement:
+    def evaluate_together(self, rigs: Sequence[Rig], cutoff: float, worst: bool) -> Evaluation:
         """Return the mean of several rigs' entropies, or the highest, whatever the cutoff."""
-        return Judgement(mean_or_worst(self.entropies(rigs), worst), False)
+        return Evaluation(mean_or_worst(self.entropies(rigs), worst), False)
 
     def score(self, rig: Rig, preview: bool = False, watch: Watch | None = None) -> Score:
         """Return the full score."""

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from .score import Score, SummaryScore, Watch
 
 
-class Judgement(NamedTuple):
+class Evaluation(NamedTuple):
     """The value of a rig: its entropy, or a lower bound of it [nats]."""
 
     entropy: float
@@ -28,10 +28,10 @@ class Objective(Protocol):
     def entropy(self, rig: Rig) -> float:
         """Return the value of a rig; lower is better [nats]."""
 
-    def judge(self, rig: Rig, below: float = inf) -> Judgement:
-        """Return the value of a rig; where it is not below `below`, perhaps a lower bound.
+    def evaluate(self, rig: Rig, cutoff: float = inf) -> Evaluation:
+        """Return the value of a rig; where it is not below `cutoff`, perhaps a lower bound.
 
-        `is_lower_bound` tells the two apart. A lower bound is itself not below `below`, and must
+        `is_lower_bound` tells the two apart. A lower bound is itself not below `cutoff`, and must
         not be ranked.
         """
 
@@ -48,17 +48,17 @@ class Scorer(Protocol):
     def entropy(self, rig: Rig, preview: bool = False) -> float:
         """Return the entropy of a rig [nats]."""
 
-    def evaluate(self, rig: Rig, cutoff: float) -> Judgement:
+    def evaluate(self, rig: Rig, cutoff: float) -> Evaluation:
         """Return the entropy of a rig, or a lower bound that is not below the cutoff."""
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the entropy of each of several rigs [nats]."""
 
-    def evaluate_together(self, rigs: Sequence[Rig], cutoff: float, worst: bool) -> Judgement:
+    def evaluate_together(self, rigs: Sequence[Rig], cutoff: float, worst: bool) -> Evaluation:
         """Evaluate the mean of several rigs' entropies, or the highest, with a cutoff."""
 
 
-class RigJudge(Protocol):
+class RigEvaluator(Protocol):
     """Scores rigs in one space, under one prior, on one vehicle; methods are as `Evaluator`'s.
 
     Attributes
@@ -78,11 +78,13 @@ class RigJudge(Protocol):
     def entropy(self, rig: Rig, *, preview: bool = False) -> float:
         """Return a rig's entropy [nats]."""
 
-    def judge(self, rig: Rig, below: float = inf) -> Judgement:
-        """Return a rig's entropy, or a lower bound that is not below `below`."""
+    def evaluate(self, rig: Rig, cutoff: float = inf) -> Evaluation:
+        """Return a rig's entropy, or a lower bound that is not below `cutoff`."""
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the entropy of each of several rigs [nats]."""
 
-    def judge_together(self, rigs: Sequence[Rig], below: float, worst: bool = False) -> Judgement:
+    def evaluate_together(
+        self, rigs: Sequence[Rig], cutoff: float, worst: bool = False
+    ) -> Evaluation:
         """Evaluate the mean of several rigs' entropies, or the highest, with a cutoff."""

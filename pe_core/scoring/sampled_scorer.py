@@ -19,7 +19,7 @@ from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
 from ..sensors import MeasurementCache, Voxels
 from .density_cache import outside_masses
-from .protocol import Judgement
+from .protocol import Evaluation
 from .sampling import BLOCKS, CENTERED, VoxelSample, draw
 from .scatter import ALIKE, RULE_OF_THREE, FigureKey, Scatter, residuals, sample_digest
 from .scenarios import Scenarios, fused_early, mean_or_worst
@@ -99,14 +99,14 @@ class SampledScorer:
             self._sensors.measure(rig, preview)
             return self._entropy_of(rig, self._sensors.m)
 
-    def evaluate(self, rig: Rig, cutoff: float) -> Judgement:
+    def evaluate(self, rig: Rig, cutoff: float) -> Evaluation:
         """Return the entropy, or a lower bound of it if the bound is not below the cutoff."""
         with self._lock:
             can_bound = cutoff < np.inf and self._vehicle is not None
             bound = self._lower_bound(rig, cutoff) if can_bound else -np.inf
             if bound >= cutoff:
-                return Judgement(bound, True)
-            return Judgement(self.entropy(rig), False)
+                return Evaluation(bound, True)
+            return Evaluation(self.entropy(rig), False)
 
     def _lower_bound(self, rig: Rig, cutoff: float) -> float:
         """Return a lower bound of a rig's entropy, which may already reach the cutoff.
@@ -137,14 +137,14 @@ class SampledScorer:
             m = self._sensors.m
             return [self._entropy_of(part, m) for part in scenarios.parts]
 
-    def evaluate_together(self, rigs: Sequence[Rig], cutoff: float, worst: bool) -> Judgement:
+    def evaluate_together(self, rigs: Sequence[Rig], cutoff: float, worst: bool) -> Evaluation:
         """Evaluate the mean of several rigs' entropies, or the highest, with a cutoff."""
         with self._lock:
             can_bound = cutoff < np.inf and self._vehicle is not None
             bound = self._bound_together(Scenarios(rigs), cutoff, worst) if can_bound else -np.inf
             if bound >= cutoff:
-                return Judgement(bound, True)
-            return Judgement(mean_or_worst(self.entropies(rigs), worst), False)
+                return Evaluation(bound, True)
+            return Evaluation(mean_or_worst(self.entropies(rigs), worst), False)
 
     def _bound_together(self, scenarios: Scenarios, cutoff: float, worst: bool) -> float:
         """Return a lower bound for several rigs together, as `_lower_bound` for one.

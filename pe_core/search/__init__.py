@@ -1,6 +1,6 @@
 """Searches for better placements."""
 
-from ..scoring.protocol import Judgement, Objective
+from ..scoring.protocol import Evaluation, Objective
 from .design_space import DesignSearch, DesignSpace, Picks, above_front, pareto_front
 from .design_variable import AXES, POSITION_AXES, pose_from_values, pose_values
 from .dispatch import evaluate_all, shared_parts
@@ -42,10 +42,10 @@ __all__ = [
     "DesignSearch",
     "DesignSpace",
     "EvaluatedRig",
+    "Evaluation",
     "Front",
     "Goals",
     "Journal",
-    "Judgement",
     "LazyProcesses",
     "Method",
     "MountArea",

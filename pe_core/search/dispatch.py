@@ -12,7 +12,7 @@ from typing import Protocol, runtime_checkable
 
 from ..base.errors import InputError
 from ..scene.rig import Rig
-from ..scoring.protocol import Judgement, Objective
+from ..scoring.protocol import Evaluation, Objective
 from .payload import PackedPayload, Unreadable, send_payload, unpickled
 from .worker_pool import Call, WorkerDied, run_tasks
 
@@ -23,7 +23,7 @@ class BatchObjective(Protocol):
 
     def evaluate_all(
         self, rigs: Sequence[Rig], cutoff: float, executor: Executor | None
-    ) -> list[Judgement]:
+    ) -> list[Evaluation]:
         """Evaluate several rigs, as the function of this name does."""
 
 
@@ -47,7 +47,7 @@ def evaluate_all(
     rigs: Sequence[Rig],
     cutoff: float = math.inf,
     executor: Executor | None = None,
-) -> list[Judgement]:
+) -> list[Evaluation]:
     """Evaluate several rigs; the result depends neither on the workers nor on earlier calls.
 
     Parameters
@@ -63,7 +63,7 @@ def evaluate_all(
 
     Returns
     -------
-    list of Judgement
+    list of Evaluation
         One for each rig: its entropy where that is below `cutoff`; otherwise `cutoff` as a lower
         bound, even where the entropy is known.
 
@@ -77,17 +77,17 @@ def evaluate_all(
     if executor is not None and rigs:
         with suppress(Unreadable):
             return _evaluate_by_workers(objective, rigs, cutoff, executor)
-    return [_reproducible(objective.judge(rig, cutoff), cutoff) for rig in rigs]
+    return [_reproducible(objective.evaluate(rig, cutoff), cutoff) for rig in rigs]
 
 
-def _reproducible(judgement: Judgement, cutoff: float) -> Judgement:
+def _reproducible(evaluation: Evaluation, cutoff: float) -> Evaluation:
     """Replace any value that is not below the cutoff: which one it is depends on caches."""
-    return judgement if judgement.entropy < cutoff else Judgement(cutoff, True)
+    return evaluation if evaluation.entropy < cutoff else Evaluation(cutoff, True)
 
 
 def _evaluate_by_workers(
     objective: Objective, rigs: Sequence[Rig], cutoff: float, executor: Executor
-) -> list[Judgement]:
+) -> list[Evaluation]:
     models = (sensor.model for rig in rigs for sensor in rig)
     sent = send_payload(executor, (*shared_parts(objective), *models))
     candidates = [sent.payload.pickled((objective, rig)) for rig in rigs]
@@ -99,21 +99,21 @@ def _evaluate_by_workers(
         tried.add(number)
         return Call(_evaluate_in_worker, (payload, candidates[number], cutoff))
 
-    judgements: dict[int, Judgement] = {}
+    evaluations: dict[int, Evaluation] = {}
     with closing(run_tasks(executor, deque(range(len(rigs))), call_of)) as batches:
         for number, result in chain.from_iterable(batches):
             if isinstance(result, WorkerDied):
                 expected = "a worker that survives its task"
                 found = f"two that died with {_rig_text(rigs[number])}"
                 raise InputError("workers", "process", expected, found)
-            judgements[number] = result
-    return [judgements[number] for number in range(len(rigs))]
+            evaluations[number] = result
+    return [evaluations[number] for number in range(len(rigs))]
 
 
-def _evaluate_in_worker(payload: PackedPayload, candidate: bytes, cutoff: float) -> Judgement:
+def _evaluate_in_worker(payload: PackedPayload, candidate: bytes, cutoff: float) -> Evaluation:
     """Evaluate a candidate in a worker."""
     objective, rig = unpickled(payload, candidate)
-    return _reproducible(objective.judge(rig, cutoff), cutoff)
+    return _reproducible(objective.evaluate(rig, cutoff), cutoff)
 
 
 def _rig_text(rig: Rig) -> str:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from ..base.errors import InputError
 from ..scene.rig import Rig
-from ..scoring.protocol import Judgement, Objective
+from ..scoring.protocol import Evaluation, Objective
 from .dispatch import evaluate_all
 
 DIGEST_BYTES = 4
@@ -56,7 +56,7 @@ class Journal:
         """
         return [JournaledObjective(self, inner, level) for level, inner in enumerate(objectives)]
 
-    def replay(self, rig: Rig, level: int) -> Judgement | None:
+    def replay(self, rig: Rig, level: int) -> Evaluation | None:
         """Return the journaled value of the next placement; None behind the end of the journal.
 
         Raises
@@ -69,12 +69,12 @@ class Journal:
         entry, digest = self._entries[self._position], _digest(rig, level)
         if entry.digest != digest:
             expected = "the placements this search asks for (of the same version, on such a system)"
-            field = f"judged[{self._position}]"
+            field = f"evaluated[{self._position}]"
             raise InputError(self._source, field, expected, "another")
         self._position += 1
-        return Judgement(entry.entropy, entry.is_lower_bound)
+        return Evaluation(entry.entropy, entry.is_lower_bound)
 
-    def record(self, rig: Rig, level: int, value: Judgement) -> None:
+    def record(self, rig: Rig, level: int, value: Evaluation) -> None:
         """Append the value of a placement that is not in the journal yet."""
         entry = EvaluatedRig(value.entropy, value.is_lower_bound, _digest(rig, level))
         self._entries.append(entry)
@@ -91,21 +91,21 @@ class JournaledObjective:
         """Return the entropy of a rig, from the journal or from the objective [nats]."""
         value = self._journal.replay(rig, self._level)
         if value is None:
-            value = Judgement(self._objective.entropy(rig), False)
+            value = Evaluation(self._objective.entropy(rig), False)
             self._journal.record(rig, self._level, value)
         return value.entropy
 
-    def judge(self, rig: Rig, below: float = math.inf) -> Judgement:
+    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
         """Return the value of a rig, from the journal or from the objective."""
         value = self._journal.replay(rig, self._level)
         if value is None:
-            value = self._objective.judge(rig, below)
+            value = self._objective.evaluate(rig, cutoff)
             self._journal.record(rig, self._level, value)
         return value
 
     def evaluate_all(
         self, rigs: Sequence[Rig], cutoff: float, executor: Executor | None
-    ) -> list[Judgement]:
+    ) -> list[Evaluation]:
         """Evaluate several rigs: the first ones may be in the journal, the others are evaluated.
 
         Workers are sent the objective without the journal.
@@ -117,7 +117,7 @@ class JournaledObjective:
             self._journal.record(rig, self._level, value)
         return values + new_values
 
-    def _replayed(self, rigs: Sequence[Rig]) -> Iterator[Judgement]:
+    def _replayed(self, rigs: Sequence[Rig]) -> Iterator[Evaluation]:
         for rig in rigs:
             value = self._journal.replay(rig, self._level)
             if value is None:

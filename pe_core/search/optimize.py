@@ -10,10 +10,10 @@ from functools import partial
 from itertools import accumulate
 
 from ..scene.rig import Rig
-from ..scoring.protocol import Judgement, Objective
+from ..scoring.protocol import Evaluation, Objective
 from .dispatch import evaluate_all
 from .methods import METHODS, Given, Question, checked_method
-from .methods.method import JudgedVectors, QuestionStream
+from .methods.method import Evaluations, QuestionStream
 from .parametrization import Candidate, Parametrization, feasible_start
 from .search_space import Schedule, SearchSpace
 
@@ -127,7 +127,7 @@ def _steps(
             if step.evaluations == budget:
                 return
         question = _within(question, budget - step.evaluations)
-        answers: JudgedVectors = []
+        answers: Evaluations = []
         evaluated = _evaluated(question, levels[question.level], executor_source())
         for candidate, answer in zip(question.candidates, evaluated, strict=True):
             answers.append(answer)
@@ -148,7 +148,7 @@ def _within(question: Question, left: int) -> Question:
 
 def _evaluated(
     question: Question, objective: Objective, executor: Executor | None
-) -> Iterator[Judgement | None]:
+) -> Iterator[Evaluation | None]:
     """Yield the answers: all evaluated at once by an executor, or one after the other here."""
     rigs = [c.rig for c in question.candidates if c is not None]
     evaluate = partial(evaluate_all, objective, cutoff=question.cutoff, executor=executor)
@@ -165,7 +165,7 @@ def _reevaluated(step: Step, objective: Objective, question: Question) -> Step:
 
 
 def _next_step(
-    step: Step, candidate: Candidate | None, answer: Judgement | None, number: int, fraction: float
+    step: Step, candidate: Candidate | None, answer: Evaluation | None, number: int, fraction: float
 ) -> Step:
     """Return the step after a candidate; None where no feasible candidate was sampled."""
     best, entropy, count, improved = step.best, step.entropy, step.evaluations, False
@@ -177,7 +177,7 @@ def _next_step(
     return Step(best, entropy, count, min(fraction, 1.0), number, improved, step.level)
 
 
-def _next_question(questions: QuestionStream, answers: JudgedVectors) -> Question | None:
+def _next_question(questions: QuestionStream, answers: Evaluations) -> Question | None:
     try:
         return questions.send(answers)
     except StopIteration:

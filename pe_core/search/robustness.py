@@ -16,7 +16,7 @@ import numpy as np
 from ..base.degrees import degrees_in_file
 from ..base.values import rounded
 from ..scene.rig import Rig
-from ..scoring.protocol import Judgement, Objective, RigJudge
+from ..scoring.protocol import Evaluation, Objective, RigEvaluator
 from ..scoring.scenarios import mean_or_worst
 from .tolerance import FRESH, Tolerance, mounted_off, without_each
 
@@ -26,13 +26,13 @@ class RobustObjective:
 
     Parameters
     ----------
-    evaluator : RigJudge
+    evaluator : RigEvaluator
     tolerance : Tolerance
     seed : int
         Seed of the mounting errors, which are the same for every rig.
     """
 
-    def __init__(self, evaluator: RigJudge, tolerance: Tolerance, seed: int = 0) -> None:
+    def __init__(self, evaluator: RigEvaluator, tolerance: Tolerance, seed: int = 0) -> None:
         self._evaluator, self._tolerance, self._seed = evaluator, tolerance, seed
 
     def entropy(self, rig: Rig) -> float:
@@ -40,20 +40,20 @@ class RobustObjective:
         entropies = self._evaluator.entropies(self._tolerance.cases(rig, self._seed))
         return mean_or_worst(entropies, self._tolerance.worst)
 
-    def judge(self, rig: Rig, below: float = math.inf) -> Judgement:
-        """Return that mean (or highest); where it is not below `below`, perhaps a lower bound.
+    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
+        """Return that mean (or highest); where it is not below `cutoff`, perhaps a lower bound.
 
-        As `Evaluator.judge`. The bound is the mean (or highest) of entropies and of lower bounds.
+        As `Evaluator.evaluate`. The bound is the mean (or highest) of bounds and entropies.
         """
         cases = self._tolerance.cases(rig, self._seed)
-        return self._evaluator.judge_together(cases, below, self._tolerance.worst)
+        return self._evaluator.evaluate_together(cases, cutoff, self._tolerance.worst)
 
     def shared_parts(self) -> tuple[object, ...]:
         """Return what workers are sent once: the evaluator."""
         return (self._evaluator,)
 
 
-def objective_of(evaluator: RigJudge, tolerance: Tolerance, seed: int = 0) -> Objective:
+def objective_of(evaluator: RigEvaluator, tolerance: Tolerance, seed: int = 0) -> Objective:
     """Return what a search minimises: the evaluator, or `RobustObjective` if a tolerance is on."""
     return RobustObjective(evaluator, tolerance, seed) if tolerance.is_on else evaluator
 
@@ -130,13 +130,13 @@ class Robustness:
 
 
 def robustness(
-    evaluator: RigJudge, before: Rig, after: Rig, tolerance: Tolerance, seed: int = 0
+    evaluator: RigEvaluator, before: Rig, after: Rig, tolerance: Tolerance, seed: int = 0
 ) -> Robustness:
     """Return how far errors and failures raise the entropy of two placements.
 
     Parameters
     ----------
-    evaluator : RigJudge
+    evaluator : RigEvaluator
         It should be sampled: every sensor is measured once for each draw.
     before, after : Rig
     tolerance : Tolerance
@@ -150,7 +150,9 @@ def robustness(
     return Robustness(errors, evaluator.samples, first, last)
 
 
-def _robustness_of(evaluator: RigJudge, rig: Rig, errors: Tolerance, seed: int) -> RigRobustness:
+def _robustness_of(
+    evaluator: RigEvaluator, rig: Rig, errors: Tolerance, seed: int
+) -> RigRobustness:
     with_errors = evaluator.entropies(mounted_off(rig, errors, seed, FRESH))
     rigs_without = without_each(rig) if len(rig) > 1 else []
     entropy, *failed = evaluator.entropies([rig, *rigs_without])

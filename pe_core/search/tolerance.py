@@ -77,13 +77,13 @@ class Tolerance:
     failures: bool = setting(
         False,
         FLAG,
-        "Judge each candidate by its mean over the loss of each one sensor",
+        "Evaluate each candidate by its mean over the loss of each one sensor",
         Panel("failures", "Sensor Failures"),
     )
     worst: bool = setting(
         False,
         FLAG,
-        "Judge by the worst of mounting errors and failures instead of their mean",
+        "Evaluate by the worst of mounting errors and failures instead of their mean",
         Panel("worst", "Worst Case"),
     )
 

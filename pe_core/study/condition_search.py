@@ -10,7 +10,7 @@ import math
 
 from ..base.errors import InputError
 from ..scene.rig import Rig
-from ..scoring.protocol import Judgement, Objective, RigJudge
+from ..scoring.protocol import Evaluation, Objective, RigEvaluator
 from ..scoring.scenarios import mean_or_worst
 from ..search import objective_of
 from .condition_table import StateEvaluators, weighted_mean
@@ -41,10 +41,10 @@ class ConditionObjective:
 
     def entropy(self, rig: Rig) -> float:
         """Return the mean or the worst of a rig's entropies under all conditions [nats]."""
-        return self.judge(rig).entropy
+        return self.evaluate(rig).entropy
 
-    def judge(self, rig: Rig, below: float = math.inf) -> Judgement:
-        """Return that value; of the worst a lower bound once it is not below `below`."""
+    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
+        """Return that value; of the worst a lower bound once it is not below `cutoff`."""
         search = self._study.search
         cases = search.tolerance.cases(rig, search.seed) if search.tolerance.is_on else [rig]
         values, weights = list[float](), list[float]()
@@ -56,13 +56,13 @@ class ConditionObjective:
                 part = found[number * len(cases) : (number + 1) * len(cases)]
                 values.append(mean_or_worst(part, search.tolerance.worst))
                 weights.append(condition.weight)
-            if self._worst and max(values) >= below and len(values) < len(self._conditions):
-                return Judgement(max(values), True)
-        return Judgement(max(values) if self._worst else weighted_mean(values, weights), False)
+            if self._worst and max(values) >= cutoff and len(values) < len(self._conditions):
+                return Evaluation(max(values), True)
+        return Evaluation(max(values) if self._worst else weighted_mean(values, weights), False)
 
 
 def study_objective(
-    study: Study, evaluator: RigJudge, samples: int, workers: int | None = None
+    study: Study, evaluator: RigEvaluator, samples: int, workers: int | None = None
 ) -> Objective:
     """Return what a study's search minimises, without its requirements.
 

@@ -17,7 +17,7 @@ import numpy as np
 from ..base.values import rounded
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_state import State
-from ..scoring import RigJudge, Score
+from ..scoring import RigEvaluator, Score
 from ..scoring.score import Watch
 from .condition_set import AS_DRAWN, CLEAR, StateInWeather
 from .objective_search import search_evaluator
@@ -163,9 +163,9 @@ class StateEvaluators:
     ) -> None:
         self._study, self._samples, self._workers = study, samples, workers
         self._make = search_evaluator if searching else Study.evaluator
-        self._made: dict[str, tuple[RigJudge, Vehicle | None]] = {}
+        self._made: dict[str, tuple[RigEvaluator, Vehicle | None]] = {}
 
-    def in_state(self, state: State | None) -> tuple[RigJudge, Vehicle | None]:
+    def in_state(self, state: State | None) -> tuple[RigEvaluator, Vehicle | None]:
         """Return the evaluator on the vehicle in a state, and that vehicle."""
         key = "" if state is None or state.is_as_drawn else state.name
         if key not in self._made:

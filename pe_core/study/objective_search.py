@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from ..base.errors import InputError
 from ..scene.rig import Rig
-from ..scoring import RigJudge
+from ..scoring import RigEvaluator
 from ..scoring.targets import OBJECTS, ObjectEvaluator
 from ..scoring.targets.object_evaluator import MByName
 from .objective_setting import EXPECTED_AP
@@ -21,7 +21,7 @@ class ExpectedApEvaluator(ObjectEvaluator):
     """An `ObjectEvaluator` whose value of a rig is minus its expected AP; scores are the same.
 
     Objects and the vehicle occlude and add nothing, so without occlusion the AP is no lower:
-    `judge` has lower bounds as for entropy.
+    `evaluate` has lower bounds as for entropy.
     """
 
     def _value(self, rig: Rig, m: MByName) -> float:
@@ -51,6 +51,6 @@ def searched_study(study: Study) -> Study:
 
 def search_evaluator(
     study: Study, samples: int | None = None, workers: int | None = None
-) -> RigJudge:
+) -> RigEvaluator:
     """Return the evaluator of a search's candidates; arguments are those of `Study.evaluator`."""
     return searched_study(study).evaluator(samples, workers, on_objects(study))

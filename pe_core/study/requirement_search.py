@@ -15,7 +15,7 @@ import numpy as np
 
 from ..base.values import rounded
 from ..scene.rig import Rig
-from ..scoring.protocol import Judgement, Objective
+from ..scoring.protocol import Evaluation, Objective
 from ..scoring.requirements import RequirementChecker
 from ..search import Tolerance, optimize, shared_parts
 from ..search.methods.method import sampled_candidate
@@ -77,24 +77,24 @@ class FeasibleFirst:
         violation = self.violation(rig)
         return INFEASIBLE + violation if violation else self._objective.entropy(rig)
 
-    def judge(self, rig: Rig, below: float = math.inf) -> Judgement:
-        """Return the value of a placement, or a lower bound that is not below `below`.
+    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
+        """Return the value of a placement, or a lower bound that is not below `cutoff`.
 
         What is not below a cutoff with its entropy is not below it if it breaks a constraint, so
         constraints, which take longer, are then not checked.
         """
-        if below > INFEASIBLE:
+        if cutoff > INFEASIBLE:
             violation = self.violation(rig)
             return (
-                Judgement(INFEASIBLE + violation, False)
+                Evaluation(INFEASIBLE + violation, False)
                 if violation
-                else self._objective.judge(rig, below)
+                else self._objective.evaluate(rig, cutoff)
             )
-        found = self._objective.judge(rig, below)
-        if found.is_lower_bound or found.entropy >= below:
-            return Judgement(found.entropy, True)
+        found = self._objective.evaluate(rig, cutoff)
+        if found.is_lower_bound or found.entropy >= cutoff:
+            return Evaluation(found.entropy, True)
         violation = self.violation(rig)
-        return Judgement(INFEASIBLE + violation, False) if violation else found
+        return Evaluation(INFEASIBLE + violation, False) if violation else found
 
     def shared_parts(self) -> tuple[object, ...]:
         """Return what workers are sent once: the parts of the objective, and the constraints."""
@@ -148,9 +148,9 @@ class _OneFirst:
         found = self._checker.shortfalls(rig)
         return rounded(10.0 * found[self._number] + sum(found) - found[self._number])
 
-    def judge(self, rig: Rig, below: float = math.inf) -> Judgement:
+    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
         """Return the value of a placement."""
-        return Judgement(self.entropy(rig), False)
+        return Evaluation(self.entropy(rig), False)
 
 
 def _best_for(objective: _OneFirst, study: Study) -> Rig:

@@ -24,7 +24,7 @@ from ..scene.mesh import MeshAxes
 from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference, vehicle_line
-from ..scoring import Evaluator, RigJudge
+from ..scoring import Evaluator, RigEvaluator
 from ..scoring.requirements import (
     BODIES,
     CheckStep,
@@ -78,7 +78,7 @@ class Search:
         Bounds that replace the default ones; metres and radians.
     seed : int
     samples : int
-        Voxels a candidate is judged on; 0: all.
+        Voxels a candidate is evaluated on; 0: all.
     schedule : Schedule
         Of the method "random", and of the screening of a choice of sensors.
     mounting : Mounting
@@ -86,9 +86,9 @@ class Search:
     method : str
         A name of `METHODS`; by default `DEFAULT_METHOD`. Needed where a schedule is given.
     evaluations : int
-        Placements judged at most; 0: as many as the method takes.
+        Placements evaluated at most; 0: as many as the method takes.
     tolerance : Tolerance
-        Mounting errors and failures that a candidate is judged with; none by default.
+        Mounting errors and failures that a candidate is evaluated with; none by default.
     requirements : {"keep"}, optional
         Placements that meet the study's requirements are better than all that do not.
     goals : Goals
@@ -162,7 +162,7 @@ class Study:
     axles are, for exports; `passthrough` is what an imported rig's file had besides the rig, for an
     export to its own format. Of `search`, what concerns the rig's sensors is kept; one that it does
     not name is free as in the paper. `selection` says which sensors it may have instead of those of
-    `rig`, and what they cost. `targets` says what is judged, `requirements` what has to be met,
+    `rig`, and what they cost. `targets` says what is evaluated, `requirements` what has to be met,
     `conditions` the states of the vehicle and the weathers that count.
 
     Raises
@@ -220,7 +220,7 @@ class Study:
         samples: int | None = None,
         workers: int | None = None,
         on_objects: type[ObjectEvaluator] = ObjectEvaluator,
-    ) -> RigJudge:
+    ) -> RigEvaluator:
         """Return the evaluator of this study; `samples` replaces the study's own.
 
         Objects stand in fewer scenes for a search's coarser levels, else in all of them;

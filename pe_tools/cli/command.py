@@ -76,8 +76,8 @@ def add_search_options(parser: argparse.ArgumentParser) -> None:
     options = (
         ("--seed", LAST_SEED, "seed of the search"),
         ("--candidates", MAX_VOXELS, "of the method random: placements tried in a round"),
-        ("--samples", MAX_VOXELS, "voxels a candidate is judged on (0: all)"),
-        ("--evaluations", MAX_VOXELS, "placements judged at most (0: as the method says)"),
+        ("--samples", MAX_VOXELS, "voxels a candidate is evaluated on (0: all)"),
+        ("--evaluations", MAX_VOXELS, "placements evaluated at most (0: as the method says)"),
     )
     about = f"how to search: one of {', '.join(METHODS)}"
     parser.add_argument("--method", choices=METHODS, metavar="NAME", help=about)

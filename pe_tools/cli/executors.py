@@ -60,8 +60,8 @@ class PostedCheckpoints:
 
     def _event(self, start: int, entries: tuple[EvaluatedRig, ...], best: Study) -> dict[str, Any]:
         poses = [[list(s.pose.position), list(s.pose.rpy)] for s in best.rig]
-        judged = [list(entry) for entry in entries[start:]]
-        return {"run": self.run, "start": start, "judged": judged, "best": poses}
+        evaluated = [list(entry) for entry in entries[start:]]
+        return {"run": self.run, "start": start, "evaluated": evaluated, "best": poses}
 
 
 @dataclass
@@ -81,7 +81,7 @@ class _RunSearch:
     def add(self, event: Mapping[str, Any]) -> None:
         """Add journal entries of an event; a restarted search sends the same entries again."""
         if event["start"] <= len(self.entries):
-            new = [EvaluatedRig(float(e), bool(b), str(m)) for e, b, m in event["judged"]]
+            new = [EvaluatedRig(float(e), bool(b), str(m)) for e, b, m in event["evaluated"]]
             self.entries[event["start"] : event["start"] + len(new)] = new
             poses = [Pose(tuple(at), tuple(rpy)) for at, rpy in event["best"]]
             self.best = self.study.with_rig(self.study.rig.with_poses(poses))

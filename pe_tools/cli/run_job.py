@@ -266,7 +266,7 @@ def job_and_folder(
     if begun is None or not isinstance(job, OptimizeJob):
         return job, args.output
     job.journal, job.inputs = begun.journal_of(study), begun.inputs
-    tell(f"going on after {len(begun.judged):,} placements")
+    tell(f"going on after {len(begun.evaluated):,} placements")
     return job, args.resume
 
 

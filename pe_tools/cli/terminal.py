@@ -189,7 +189,7 @@ def searched(outcome: Outcome) -> str:
     study, search = outcome.start, outcome.start.search
     levels, what = searched_on(study)
     count = f"{outcome.evaluations:,} placements"
-    return f"searched by {search.method}, seed {search.seed}: {count} judged on {levels} {what}"
+    return f"searched by {search.method}, seed {search.seed}: {count} evaluated on {levels} {what}"
 
 
 def warned(outcome: Outcome) -> list[str]:

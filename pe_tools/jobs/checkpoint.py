@@ -26,7 +26,7 @@ from .study_export import fingerprint, inputs_of, study_writers
 PROGRAM, KIND = "perception-entropy", "search"
 STATE_BYTES = 1 << 30
 """Maximum size of a state file: about thirty million evaluated placements."""
-KEYS = ("version", "inputs", "study", "study_sha256", "judged")
+KEYS = ("version", "inputs", "study", "study_sha256", "evaluated")
 A_STATE = "the state of a search, as this program writes it"
 
 
@@ -64,7 +64,7 @@ class SearchState:
 
     def to_bytes(self, entries: Iterable[EvaluatedRig]) -> bytes:
         """Return the content of the state file."""
-        return json.dumps({**self._head, "judged": list(entries)}, ensure_ascii=False).encode()
+        return json.dumps({**self._head, "evaluated": list(entries)}, ensure_ascii=False).encode()
 
     def save(
         self, folder: Path, best: Study, entries: Iterable[EvaluatedRig], *, meshes: bool = True
@@ -106,14 +106,14 @@ class BegunSearch:
         The study that is searched; its files have their names in the folder.
     inputs : dict
         Provenance at the beginning of the search, with the original file names.
-    judged : tuple of EvaluatedRig
+    evaluated : tuple of EvaluatedRig
         Journal of the evaluated rigs.
     """
 
     path: Path
     study: Study
     inputs: dict[str, Any]
-    judged: tuple[EvaluatedRig, ...]
+    evaluated: tuple[EvaluatedRig, ...]
 
     def journal_of(self, study: Study) -> Journal:
         """Return the journal with which a search of the study resumes.
@@ -126,7 +126,7 @@ class BegunSearch:
         if fingerprint(study) != fingerprint(self.study):
             expected = "the study and the options that it was begun with"
             raise InputError(self.path, "study", expected, "others")
-        return Journal(self.judged, str(self.path))
+        return Journal(self.evaluated, str(self.path))
 
 
 def read_search(folder: str | Path) -> BegunSearch:
@@ -143,7 +143,7 @@ def read_search(folder: str | Path) -> BegunSearch:
     if data["version"] != __version__:
         expected = f"{__version__}, the version of this program"
         raise InputError(path, "version", expected, shown(data["version"]))
-    entries = _entries_of(path, data["judged"])
+    entries = _entries_of(path, data["evaluated"])
     study = study_from_dict(load_toml(path, "study", data["study"]), str(path), path.parent)
     if fingerprint(study) != data["study_sha256"]:
         raise InputError(path, "study", "unchanged files beside the study", "changed files")
@@ -168,7 +168,7 @@ def _entries_of(path: Path, rows: Any) -> tuple[EvaluatedRig, ...]:
         kinds = [type(value) for value in row] if isinstance(row, list) else []
         if kinds != [float, bool, str]:
             raise InputError(
-                path, f"judged[{number}]", "an entropy, a truth value, a digest", shown(row)
+                path, f"evaluated[{number}]", "an entropy, a truth value, a digest", shown(row)
             )
     return tuple(EvaluatedRig(*row) for row in rows)
 

@@ -8,7 +8,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 
 from pe_core.base.errors import InputError
-from pe_core.scoring import RigJudge
+from pe_core.scoring import RigEvaluator
 from pe_core.scoring.requirements import Verdict
 from pe_core.scoring.score import Score
 from pe_core.search import (
@@ -185,8 +185,8 @@ class ChoiceJob(Job):
         self._errors: dict[Picks, InputError] = {}
         self._inner: _DesignJob | None = None
         self._possible: int | None = None
-        self._evaluators: dict[int, RigJudge] = {}
-        self._in_traffic: dict[int, RigJudge] = {}
+        self._evaluators: dict[int, RigEvaluator] = {}
+        self._in_traffic: dict[int, RigEvaluator] = {}
         self._helpers: ExecutorSource | None = None
         self._open = ExitStack()
         self.journals = FrontJournals()
@@ -321,7 +321,7 @@ class ChoiceJob(Job):
         job.journal = self.journals.begin(f"{stage} {'-'.join(map(str, picks))}")
         return job
 
-    def evaluator_of(self, samples: int) -> RigJudge:
+    def evaluator_of(self, samples: int) -> RigEvaluator:
         """Return the evaluator with this number of samples; all designs share it.
 
         Designs differ only in their rigs, which the evaluator does not depend on.
@@ -333,7 +333,7 @@ class ChoiceJob(Job):
             self._evaluators[sample_count] = self.study.evaluator(samples, self.workers)
         return self._evaluators[sample_count]
 
-    def search_evaluator_of(self, samples: int) -> RigJudge:
+    def search_evaluator_of(self, samples: int) -> RigEvaluator:
         """Return what evaluates candidates with this number of samples; all designs share it."""
         if not is_by_ap(self.study):
             return self.evaluator_of(samples)
@@ -365,13 +365,13 @@ class _DesignJob(OptimizeJob):
         self._parent = parent
 
     @property
-    def _evaluator(self) -> RigJudge:  # type: ignore[override]
+    def _evaluator(self) -> RigEvaluator:  # type: ignore[override]
         return self._parent.evaluator_of(self.study.samples)
 
-    def _evaluator_of(self, samples: int) -> RigJudge:
+    def _evaluator_of(self, samples: int) -> RigEvaluator:
         return self._parent.search_evaluator_of(samples)
 
-    def _own_evaluator_of(self, samples: int) -> RigJudge:
+    def _own_evaluator_of(self, samples: int) -> RigEvaluator:
         return self._parent.evaluator_of(samples)
 
     @contextmanager

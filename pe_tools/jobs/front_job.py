@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from pe_core.base.errors import InputError
 from pe_core.scene.rig import Rig
-from pe_core.scoring import RigJudge
+from pe_core.scoring import RigEvaluator
 from pe_core.search import Journal, Objective, Picks, feasible_start, optimize
 from pe_core.study.objective_search import is_by_ap, search_evaluator
 from pe_core.study.requirement_search import (
@@ -104,7 +104,7 @@ class FrontJob(Job):
         picks = self._choice.first(ALL_SEARCHED_UP_TO + 1)
         self._complete = len(picks) <= ALL_SEARCHED_UP_TO
         samples = self.study.search.samples
-        shared: RigJudge = self.study.evaluator(samples, self.workers)
+        shared: RigEvaluator = self.study.evaluator(samples, self.workers)
         by_ap = is_by_ap(self.study)
         in_traffic = search_evaluator(self.study, samples, self.workers) if by_ap else None
         for each in picks[:ALL_SEARCHED_UP_TO]:

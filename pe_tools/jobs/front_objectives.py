@@ -11,8 +11,8 @@ from pe_core.base.errors import InputError
 from pe_core.base.values import rounded
 from pe_core.scene.housing import hull_of
 from pe_core.scene.rig import Rig
-from pe_core.scoring import RigJudge
-from pe_core.scoring.protocol import Judgement
+from pe_core.scoring import RigEvaluator
+from pe_core.scoring.protocol import Evaluation
 from pe_core.scoring.requirements import FARTHEST_M, Verdict
 from pe_core.scoring.score import Score
 from pe_core.search import objective_of
@@ -71,10 +71,10 @@ class FrontFigures:
     ----------
     study : Study
     names : sequence of str
-    evaluator : RigJudge
+    evaluator : RigEvaluator
         Of the search.
     price : float
-    in_traffic : RigJudge, optional
+    in_traffic : RigEvaluator, optional
         Evaluates the expected AP of a study whose objective it is.
     """
 
@@ -82,9 +82,9 @@ class FrontFigures:
         self,
         study: Study,
         names: Sequence[str],
-        evaluator: RigJudge,
+        evaluator: RigEvaluator,
         price: float = 0.0,
-        in_traffic: RigJudge | None = None,
+        in_traffic: RigEvaluator | None = None,
     ) -> None:
         self._given = study, tuple(names), evaluator, price, in_traffic
         self._in_traffic = in_traffic
@@ -212,9 +212,9 @@ class ScalarValue:
         """Return the value of a rig."""
         return self.scalar(self._figures.costs(rig))
 
-    def judge(self, rig: Rig, below: float = math.inf) -> Judgement:
+    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
         """Return the value of a rig."""
-        return Judgement(self.entropy(rig), False)
+        return Evaluation(self.entropy(rig), False)
 
 
 def weights_of(count: int, objectives: int) -> list[tuple[float, ...]]:

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig
-from pe_core.scoring import RigJudge
+from pe_core.scoring import RigEvaluator
 from pe_core.scoring.requirements import CheckStep, RequirementChecker, Verdict
 from pe_core.scoring.score import ObjectScore, Score, ScoreStopped
 from pe_core.search import EvaluatedRig, Robustness
@@ -103,7 +103,7 @@ class Outcome:
         Warnings about `study`.
     inputs : dict
         Provenance at the beginning of a resumed search; file names in `start` may have changed.
-    judged : tuple of EvaluatedRig
+    evaluated : tuple of EvaluatedRig
         Journal of the search, from which a stopped search resumes.
     robustness : Robustness or None
         Of a search: how the entropy of start and result changes under mounting errors and failures;
@@ -135,7 +135,7 @@ class Outcome:
     seconds: float = 0.0
     warnings: tuple[Advice, ...] = ()
     inputs: dict[str, Any] | None = None
-    judged: tuple[EvaluatedRig, ...] = ()
+    evaluated: tuple[EvaluatedRig, ...] = ()
     robustness: Robustness | None = None
     verdicts: tuple[Verdict, ...] = ()
     conditions: ConditionTable | None = None
@@ -233,7 +233,7 @@ class Job:
         return time.monotonic() - self._started
 
     @cached_property
-    def _evaluator(self) -> RigJudge:
+    def _evaluator(self) -> RigEvaluator:
         """Evaluator of rigs on the study's vehicle, space and prior."""
         return self.study.evaluator(workers=self.workers)
 

@@ -179,7 +179,7 @@ def write_outcome(
         writers[HISTORY] = text.encode(errors="backslashreplace")
         for name, each in runners_up(outcome).items():
             writers[name] = study_writers(each, STUDY)[STUDY]
-        writers[SEARCH] = SearchState(outcome.start, outcome.inputs).to_bytes(outcome.judged)
+        writers[SEARCH] = SearchState(outcome.start, outcome.inputs).to_bytes(outcome.evaluated)
     if outcome.conditions is not None:
         text = conditions_csv(outcome.conditions)
         writers[CONDITIONS] = text.encode(errors="backslashreplace")

@@ -10,7 +10,7 @@ from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 from pe_core.scene.rig import Rig
-from pe_core.scoring import RigJudge
+from pe_core.scoring import RigEvaluator
 from pe_core.scoring.requirements import Verdict
 from pe_core.scoring.score import ObjectScore, Score
 from pe_core.search import (
@@ -158,7 +158,7 @@ class OptimizeJob(Job):
         ]
 
     @cached_property
-    def _evaluators(self) -> list[RigJudge]:
+    def _evaluators(self) -> list[RigEvaluator]:
         """Evaluators of the rig, one for each level of the search method."""
         return [self._evaluator_of(samples) for samples in self.study.search.level_samples]
 
@@ -168,7 +168,7 @@ class OptimizeJob(Job):
         wanted = self.analyses and is_analysed(self.study)
         return fresh_objectives(self.study, self.workers) if wanted else []
 
-    def _evaluator_of(self, samples: int) -> RigJudge:
+    def _evaluator_of(self, samples: int) -> RigEvaluator:
         """Return what evaluates candidates on a number of voxels, or in its share of scenes."""
         if is_by_ap(self.study):
             few = searched_samples(self.study, samples)
@@ -176,11 +176,11 @@ class OptimizeJob(Job):
         return self._own_evaluator_of(samples)
 
     @cached_property
-    def _in_traffic(self) -> RigJudge:
+    def _in_traffic(self) -> RigEvaluator:
         """The evaluator of expected AP in all scenes of the study."""
         return search_evaluator(self.study, self.study.search.samples, self.workers)
 
-    def _own_evaluator_of(self, samples: int) -> RigJudge:
+    def _own_evaluator_of(self, samples: int) -> RigEvaluator:
         """Return the evaluator of the study's own targets."""
         if self.study.looks_at(samples) == self.study.looks_at(self.study.samples):
             return self._evaluator

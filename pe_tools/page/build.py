@@ -172,7 +172,7 @@ def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> 
         "optimize",
         *(start, best, *scores, history, evaluations, stopped, 0.0, warnings),
         inputs=checkpoint.inputs,
-        judged=checkpoint.judged,
+        evaluated=checkpoint.evaluated,
         robustness=robustness,
         verdicts=last.verdicts,
         conditions=last.conditions,

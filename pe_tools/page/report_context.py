@@ -129,7 +129,7 @@ class ReportContext:
         value: T = self.cache[what]
         return value
 
-    def evaluator(self, samples: int | None = None) -> pe.RigJudge:
+    def evaluator(self, samples: int | None = None) -> pe.RigEvaluator:
         """Return the evaluator of this study; `samples` replaces the study's own number."""
         return self.study.evaluator(samples)
 

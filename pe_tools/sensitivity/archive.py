@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 
 from pe_core.scene.rig import Rig
-from pe_core.scoring.protocol import Judgement, Objective
+from pe_core.scoring.protocol import Evaluation, Objective
 from pe_core.search import evaluate_all
 from pe_core.study.requirement_search import is_infeasible
 
@@ -43,7 +43,7 @@ class Archive:
         """Return the objectives of a search, one for each level, that note what they evaluate."""
         return [NotedObjective(self, inner, level) for level, inner in enumerate(objectives)]
 
-    def note(self, rig: Rig, level: int, value: Judgement) -> None:
+    def note(self, rig: Rig, level: int, value: Evaluation) -> None:
         """Keep a placement if it is the best of its neighbourhood."""
         if value.is_lower_bound or is_infeasible(value.entropy):
             return
@@ -73,18 +73,18 @@ class NotedObjective:
     def entropy(self, rig: Rig) -> float:
         """Return the value of a rig [nats]."""
         value = self._objective.entropy(rig)
-        self._archive.note(rig, self._level, Judgement(value, False))
+        self._archive.note(rig, self._level, Evaluation(value, False))
         return value
 
-    def judge(self, rig: Rig, below: float = math.inf) -> Judgement:
-        """Return the value of a rig, or a lower bound that is not below `below`."""
-        value = self._objective.judge(rig, below)
+    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
+        """Return the value of a rig, or a lower bound that is not below `cutoff`."""
+        value = self._objective.evaluate(rig, cutoff)
         self._archive.note(rig, self._level, value)
         return value
 
     def evaluate_all(
         self, rigs: Sequence[Rig], cutoff: float, executor: Executor | None
-    ) -> list[Judgement]:
+    ) -> list[Evaluation]:
         """Evaluate several rigs."""
         values = evaluate_all(self._objective, rigs, cutoff, executor)
         for rig, value in zip(rigs, values, strict=True):

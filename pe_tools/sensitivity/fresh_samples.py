@@ -17,7 +17,7 @@ import numpy as np
 from pe_core.base.arrays import Floats
 from pe_core.base.values import rounded
 from pe_core.scene.rig import Rig
-from pe_core.scoring import Evaluator, RigJudge
+from pe_core.scoring import Evaluator, RigEvaluator
 from pe_core.search import Objective, evaluate_all, objective_of
 from pe_core.study.objective_search import is_by_ap, on_objects, searched_study
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
@@ -156,7 +156,7 @@ def _size(study: Study) -> int:
     return max(least, 1 << max(fewer, 1).bit_length() - 1)  # Sobol sequences want powers of two
 
 
-def _evaluator(study: Study, number: int, workers: int | None) -> RigJudge:
+def _evaluator(study: Study, number: int, workers: int | None) -> RigEvaluator:
     """Return the evaluator of a sample."""
     problem, size = (study.space, study.prior, study.vehicle), _size(study)
     x, y, z = ((0.5 + (number + 1) * share) % 1.0 for share in GOLDEN)

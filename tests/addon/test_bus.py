@@ -15,7 +15,7 @@ OUTSIDE_THE_SHELL = ("wheel", "plate", "roof_pod")
 
 @pytest.fixture
 def study(addon):
-    """The bus with its two LiDARs, judged on few voxels."""
+    """The bus with its two LiDARs, evaluated on few voxels."""
     return replace(scenes.shipped_study("bus"), samples=16_384)
 
 

@@ -25,7 +25,7 @@ ROOF_M = 1.45
 
 @pytest.fixture
 def study(addon):
-    """The sedan with its roof LiDAR, judged on few voxels."""
+    """The sedan with its roof LiDAR, evaluated on few voxels."""
     return replace(scenes.shipped_study("sedan"), samples=16_384)
 
 

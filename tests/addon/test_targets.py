@@ -15,14 +15,14 @@ from tests.addon import scenes
 
 @pytest.fixture
 def settings(car):
-    """Settings of a scene with a car and a LiDAR of few beams, judged on objects in traffic."""
+    """Settings of a scene with a car and a LiDAR of few beams, evaluated on objects in traffic."""
     scenes.add_sensor("roof", "Velodyne VLP-16 Puck")
     found = car.perception_entropy
     found.targets, found.traffic, found.scenes = "objects", True, 8
     return found
 
 
-def test_a_scene_is_judged_on_voxels_until_told_otherwise(car):
+def test_a_scene_is_evaluated_on_voxels_until_told_otherwise(car):
     scenes.add_sensor("roof")
     own = car.perception_entropy
     own.traffic = True  # left over from objects: of voxels there is none

@@ -30,7 +30,7 @@ ROUND_DEG = (0.0, 0.0, 30.0, 45.0, 90.0, -60.0, 135.0, 180.0, -90.0, 12.5)
 
 @dataclass(frozen=True)
 class Scene:
-    """A rig, the space it is judged in, and perhaps a vehicle."""
+    """A rig, the space it is evaluated in, and perhaps a vehicle."""
 
     space: pe.PerceptionSpace
     vehicle: pe.Vehicle | None

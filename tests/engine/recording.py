@@ -2,7 +2,7 @@
 
 import math
 
-from pe_core.scoring import Judgement
+from pe_core.scoring import Evaluation
 from pe_core.search import AXES, pose_values
 
 
@@ -15,18 +15,18 @@ class Recorder:
 
     def __init__(self, landscape, bounds=False):
         self.landscape, self.bounds = landscape, bounds
-        self.rigs, self.values, self.below = [], [], []
+        self.rigs, self.values, self.cutoff = [], [], []
 
     def entropy(self, rig):
-        return self.judge(rig, math.inf).entropy
+        return self.evaluate(rig, math.inf).entropy
 
-    def judge(self, rig, below):
+    def evaluate(self, rig, cutoff):
         value = self.landscape(rig)
         self.rigs.append(rig)
         self.values.append(value)
-        self.below.append(below)
-        told = below if self.bounds and value >= below else value
-        return Judgement(told, told != value)
+        self.cutoff.append(cutoff)
+        told = cutoff if self.bounds and value >= cutoff else value
+        return Evaluation(told, told != value)
 
     def of(self, sensor):
         """Coordinates of one sensor in every rig asked for, by axis: metres and radians."""

@@ -433,7 +433,7 @@ BACKDROP = ((-10, 9, 0), (10, 9.1, 6))
 
 @pytest.mark.parametrize("rooms", [[FLOOR], [STUDIO], [FLOOR, BACKDROP]])
 def test_a_part_as_large_as_a_room(sedan, rooms):
-    """It is named; the vehicle in it is judged without it, and nobody is inside the body."""
+    """It is named; the vehicle in it is evaluated without it, and nobody is inside the body."""
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
     found = advice.warnings(rig, in_room(sedan, *rooms), SPACE, PRIOR)
     ours = [(each.code, each.part) for each in found if each.subject is None]

@@ -19,7 +19,7 @@ from pathlib import Path
 import pytest
 
 import pe_core as pe
-from pe_core.scoring import Judgement
+from pe_core.scoring import Evaluation
 from pe_core.search import Processes, evaluate_all, processes, start_processes
 from pe_core.search.payload import Payload
 from pe_tools.cli.executors import Here
@@ -62,14 +62,14 @@ class Landscape:
         vars(self).update(state)
         (self.folder / f"unpacked {os.getpid()} {time.monotonic_ns()}").touch()
 
-    def judge(self, rig, below):
+    def evaluate(self, rig, cutoff):
         x = rig.sensors[0].pose.position[0]
         if x > 0.5:
             for number in range(self.deaths):
                 self.die_unless(self.folder / f"death {number}")
             if self.error:
                 raise self.error
-        return Judgement(x, False)
+        return Evaluation(x, False)
 
     def die_unless(self, it_was):
         if not it_was.exists():
@@ -82,15 +82,15 @@ class Landscape:
         return [path.name.split()[1] for path in self.folder.glob("unpacked *")]
 
 
-def test_results_do_not_depend_on_who_judges(evaluator, rigs, pool):
+def test_results_do_not_depend_on_who_evaluates(evaluator, rigs, pool):
     """To the bit: here, in one process, in two, in threads, in any order, after anything."""
     alone = [evaluator.entropy(rig) for rig in rigs]
     assert len(set(alone)) == CANDIDATES
     foreign = ProcessPoolExecutor(1, get_context("spawn"))
     with ThreadPoolExecutor(3) as threads, foreign:
         for executor in (None, threads, foreign, pool):
-            judged = evaluate_all(evaluator, rigs, math.inf, executor)
-            assert judged == [(entropy, False) for entropy in alone]
+            evaluated = evaluate_all(evaluator, rigs, math.inf, executor)
+            assert evaluated == [(entropy, False) for entropy in alone]
         backward = evaluate_all(evaluator, rigs[::-1], math.inf, pool)
     assert [found.entropy for found in backward[::-1]] == alone
 
@@ -98,12 +98,12 @@ def test_results_do_not_depend_on_who_judges(evaluator, rigs, pool):
 def test_what_is_not_below_is_reported_alike_by_all(evaluator, rigs, pool):
     """Whether an evaluator needs the vehicle to tell so depends on what it measured before."""
     alone = [evaluator.entropy(rig) for rig in rigs]
-    below = sorted(alone)[2]
-    expected = [(e, False) if e < below else (below, True) for e in alone]
+    cutoff = sorted(alone)[2]
+    expected = [(e, False) if e < cutoff else (cutoff, True) for e in alone]
     assert sum(bound for _, bound in expected) == CANDIDATES - 2
     for executor in (None, pool):
-        assert evaluate_all(evaluator, rigs, below, executor) == expected
-        assert evaluate_all(evaluator, rigs[::-1], below, executor) == expected[::-1]
+        assert evaluate_all(evaluator, rigs, cutoff, executor) == expected
+        assert evaluate_all(evaluator, rigs[::-1], cutoff, executor) == expected[::-1]
 
 
 def test_an_objective_is_sent_to_a_process_once(tmp_path, rigs, pool):
@@ -140,14 +140,14 @@ def test_a_cluster_scatters_an_objective(tmp_path, evaluator, rigs):
         executor, calls, objective = client.get_executor(pure=False), [], Landscape(tmp_path)
         submit = executor.submit
         executor.submit = lambda *call: calls.append(call) or submit(*call)
-        expected = [objective.judge(rig, math.inf) for rig in rigs]
+        expected = [objective.evaluate(rig, math.inf) for rig in rigs]
         for _ in range(2):
             assert evaluate_all(objective, rigs, math.inf, executor) == expected
         assert 1 <= len(objective.unpacked) <= 2
         assert len(calls) == 2 * CANDIDATES
         assert all(isinstance(call[2], distributed.Future) for call in calls)
-        judged = evaluate_all(evaluator, rigs, math.inf, executor)
-    assert [j.entropy for j in judged] == [evaluator.entropy(rig) for rig in rigs]
+        evaluated = evaluate_all(evaluator, rigs, math.inf, executor)
+    assert [j.entropy for j in evaluated] == [evaluator.entropy(rig) for rig in rigs]
 
 
 def test_what_objectives_and_rigs_share_is_sent_once(evaluator, rigs):
@@ -161,10 +161,10 @@ def test_what_objectives_and_rigs_share_is_sent_once(evaluator, rigs):
     assert b"Lidar" in Payload([evaluator]).pickled((evaluator, rigs[1]))
 
 
-def test_a_worker_that_dies_is_replaced_and_its_rig_judged_again(tmp_path, rigs, pool):
+def test_a_worker_that_dies_is_replaced_and_its_rig_evaluated_again(tmp_path, rigs, pool):
     objective = Landscape(tmp_path, deaths=1)
-    judged = evaluate_all(objective, rigs, math.inf, pool)
-    assert [j.entropy for j in judged] == [rig.sensors[0].pose.position[0] for rig in rigs]
+    evaluated = evaluate_all(objective, rigs, math.inf, pool)
+    assert [j.entropy for j in evaluated] == [rig.sensors[0].pose.position[0] for rig in rigs]
     assert (tmp_path / "death 0").exists()
 
 
@@ -184,10 +184,10 @@ def test_what_an_objective_raises_in_a_worker_is_raised(tmp_path, rigs, pool):
     assert str(raised.value) == str(error)
     with pytest.raises(ZeroDivisionError) as fault:
         evaluate_all(Landscape(tmp_path, error=ZeroDivisionError()), rigs, math.inf, pool)
-    assert "in judge" in fault.value.__notes__[0], "the worker's traceback comes along"
+    assert "in evaluate" in fault.value.__notes__[0], "the worker's traceback comes along"
 
 
-def test_an_objective_that_cannot_be_sent_judges_here(tmp_path, rigs, pool):
+def test_an_objective_that_cannot_be_sent_evaluates_here(tmp_path, rigs, pool):
     objective = Landscape(tmp_path)
     objective.cannot_be_pickled = lambda: None
     assert evaluate_all(objective, rigs, math.inf, pool) == evaluate_all(objective, rigs)

@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 
 import pe_core as pe
-from pe_core.scoring import Judgement
+from pe_core.scoring import Evaluation
 from pe_core.search import Parametrization, pose_values
 from pe_core.search.methods import METHODS, block_descent
 from pe_core.search.methods.method import Given, Phase
@@ -81,7 +81,7 @@ def test_sensors_on_a_rack_take_the_best_slots():
     assert not any(coding.broken(rig) for rig in recorder.rigs)
 
 
-def test_the_last_placements_are_judged_on_all_voxels_of_the_search():
+def test_the_last_placements_are_evaluated_on_all_voxels_of_the_search():
     assert METHOD.samples(65_536) == (16_384, 65_536)
     assert METHOD.samples(4_096) == (2_048, 4_096)
     assert METHOD.samples(1_024) == (1_024, 1_024)
@@ -134,7 +134,7 @@ def driven(part, landscape):
         question = next(part)
         while True:
             counts.append(len(question.candidates))
-            answers = [Judgement(landscape(c.rig), False) for c in question.candidates]
+            answers = [Evaluation(landscape(c.rig), False) for c in question.candidates]
             question = part.send(answers)
     return counts
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.scoring import Judgement
+from pe_core.scoring import Evaluation
 from pe_core.scoring.targets import ObjectEvaluator
 from pe_core.scoring.targets.bound_log import BoundLog
 from pe_core.search import SearchSpace
@@ -29,13 +29,13 @@ def sensors(rng):
     )
 
 
-def is_right_bound(found, exact, below):
-    """Check a judgement against the entropy; return whether it is a lower bound."""
+def is_right_bound(found, exact, cutoff):
+    """Check a evaluation against the entropy; return whether it is a lower bound."""
     if found.is_lower_bound:
-        assert below <= found.entropy <= exact
+        assert cutoff <= found.entropy <= exact
     else:
         assert found.entropy == exact
-    assert (found.entropy < below) == (exact < below)
+    assert (found.entropy < cutoff) == (exact < cutoff)
     return found.is_lower_bound
 
 
@@ -50,8 +50,8 @@ def test_a_bound_is_one_and_is_reported_only_where_it_settles_the_matter(blind):
     for _ in range(tries(10, 25)):
         rig = sensors(rng)
         exact = plain.entropy(rig)
-        for below in (exact - 1.0, exact - 0.01, exact, exact + 1e-6, exact + 1.0, math.inf):
-            bounds += is_right_bound(evaluator.judge(rig, below), exact, below)
+        for cutoff in (exact - 1.0, exact - 0.01, exact, exact + 1e-6, exact + 1.0, math.inf):
+            bounds += is_right_bound(evaluator.evaluate(rig, cutoff), exact, cutoff)
     assert bounds > 10
 
 
@@ -60,7 +60,7 @@ def test_after_a_bound_the_score_is_exact():
     first, second = sensors(rng), sensors(rng)
     evaluator = pe.Evaluator(SPACE, pe.Prior.road(), VEHICLE, samples=4096)
     start = evaluator.score(first).to_dict()
-    assert evaluator.judge(second, below=-10.0).is_lower_bound
+    assert evaluator.evaluate(second, cutoff=-10.0).is_lower_bound
     assert evaluator.score(first).to_dict() == start
     fresh = pe.Evaluator(SPACE, pe.Prior.road(), VEHICLE, samples=4096)
     assert evaluator.score(second).to_dict() == fresh.score(second).to_dict()
@@ -68,8 +68,8 @@ def test_after_a_bound_the_score_is_exact():
 
 def test_a_search_finds_the_same_with_bounds_and_without():
     class Plain(pe.Evaluator):
-        def judge(self, rig, below):
-            return Judgement(super().entropy(rig), False)
+        def evaluate(self, rig, cutoff):
+            return Evaluation(super().entropy(rig), False)
 
     rig = sensors(np.random.default_rng(7))
     space = SearchSpace.on_vehicle(rig, VEHICLE)
@@ -86,7 +86,7 @@ def test_a_search_finds_the_same_with_bounds_and_without():
 def test_a_grid_score_takes_the_limit_and_stays_exact():
     rig = sensors(np.random.default_rng(8))
     evaluator = pe.Evaluator(SPACE, pe.Prior.road(), VEHICLE)
-    assert evaluator.judge(rig, below=-99.0) == (evaluator.entropy(rig), False)
+    assert evaluator.evaluate(rig, cutoff=-99.0) == (evaluator.entropy(rig), False)
 
 
 def test_a_lidar_beside_a_voxels_axis_warns_of_nothing():
@@ -113,16 +113,16 @@ def test_a_bound_on_objects_is_one_and_never_rejects_what_is_better(traffic, bli
     for _ in range(tries(5, 25)):
         rig = sensors(rng)
         exact = plain.entropy(rig)
-        for below in (exact - 4.0, exact - 2.0, exact - 1.0, exact, exact + 1e-9, math.inf):
+        for cutoff in (exact - 4.0, exact - 2.0, exact - 1.0, exact, exact + 1e-9, math.inf):
             evaluator.entropy(elsewhere)  # all sensors have moved
-            bounds += is_right_bound(evaluator.judge(rig, below), exact, below)
+            bounds += is_right_bound(evaluator.evaluate(rig, cutoff), exact, cutoff)
     assert bounds > 5
 
 
 def test_a_search_in_traffic_finds_the_same_with_bounds_and_without():
     class Plain(ObjectEvaluator):
-        def judge(self, rig, below=math.inf):
-            return Judgement(super().entropy(rig), False)
+        def evaluate(self, rig, cutoff=math.inf):
+            return Evaluation(super().entropy(rig), False)
 
     rig = sensors(np.random.default_rng(7))
     space, found, bounds = SearchSpace.on_vehicle(rig, VEHICLE), [], []

@@ -82,9 +82,9 @@ def test_hidden_voxels_are_those_whose_ray_is_stopped(case, monkeypatch):
     count, areas = counted(monkeypatch), []
     for many in (NEVER, ALWAYS):
         monkeypatch.setattr(grid_areas, "MANY_RAYS", many)
-        count["judged"] = 0
+        count["evaluated"] = 0
         areas.append(whole_grid(sensor, SPACE, vehicle, 20).reshape(-1))
-        assert (count["judged"] == 8) == (many == ALWAYS)
+        assert (count["evaluated"] == 8) == (many == ALWAYS)
     area = areas[0]
     assert area.tobytes() == areas[1].tobytes()
     seen = np.flatnonzero(free)
@@ -99,18 +99,18 @@ def test_hidden_voxels_are_those_whose_ray_is_stopped(case, monkeypatch):
 
 def counted(monkeypatch):
     """Count how often the cover is asked, and how many rays are cast."""
-    count = {"judged": 0, "cast": 0}
-    judge, hidden = VoxelOcclusion.classify, grid_areas.hidden
+    count = {"evaluated": 0, "cast": 0}
+    evaluator, hidden = VoxelOcclusion.classify, grid_areas.hidden
 
-    def count_judged(*args):
-        count["judged"] += 1
-        return judge(*args)
+    def count_evaluated(*args):
+        count["evaluated"] += 1
+        return evaluator(*args)
 
     def count_cast(seen, offsets):
         count["cast"] += len(offsets)
         return hidden(seen, offsets)
 
-    monkeypatch.setattr(VoxelOcclusion, "classify", count_judged)
+    monkeypatch.setattr(VoxelOcclusion, "classify", count_evaluated)
     monkeypatch.setattr(grid_areas, "hidden", count_cast)
     return count
 
@@ -119,7 +119,7 @@ def test_the_cover_is_asked_where_very_many_rays_would_be_cast(monkeypatch):
     """A camera 5 cm over a roof in fine voxels: few of its rays are left; over a bonnet none is."""
     space, count = pe.PerceptionSpace((-20, 20), (-10, 10), (0, 4), 0.1), counted(monkeypatch)
     whole_grid(shapes.camera(60.0, (0.0, 0.0, 3.05), (0, 0, 0)), space, pe.Vehicle(roof()), 32)
-    assert count["judged"] > 1
+    assert count["evaluated"] > 1
     assert count["cast"] < 0.2 * _cast_without_cover(space, monkeypatch)
 
 
@@ -127,7 +127,7 @@ def _cast_without_cover(space, monkeypatch):
     monkeypatch.setattr(grid_areas, "MANY_RAYS", NEVER)
     count = counted(monkeypatch)
     whole_grid(shapes.camera(60.0, (0.0, 0.0, 3.05), (0, 0, 0)), space, pe.Vehicle(roof()), 32)
-    assert count["judged"] == 0
+    assert count["evaluated"] == 0
     return count["cast"]
 
 

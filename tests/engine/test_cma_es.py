@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.search import Judgement, Parametrization
+from pe_core.search import Evaluation, Parametrization
 from pe_core.search.methods import Given
 from pe_core.search.methods.cma_es import Evolution, SymmetricCma
 from pe_core.search.methods.method import Phase
@@ -57,9 +57,9 @@ def test_no_lower_bound_is_ranked_before_an_entropy():
     evolution._cma.tell = told.extend
     question = next(asking)
     assert question.cutoff == math.inf and len(question.candidates) == 4
-    question = asking.send([Judgement(v, False) for v in (4.0, 2.0, 3.0, 1.0)])
+    question = asking.send([Evaluation(v, False) for v in (4.0, 2.0, 3.0, 1.0)])
     assert question.cutoff == 4.0 and len(question.candidates) == 4
-    answers = [Judgement(4.0, True), Judgement(0.5, False), Judgement(9.0, True), None]
+    answers = [Evaluation(4.0, True), Evaluation(0.5, False), Evaluation(9.0, True), None]
     with pytest.raises(StopIteration):
         asking.send(answers)
     assert [value for _, value in told] == [4.0, 2.0, 3.0, 1.0, 4.0, 0.5, 4.0, math.inf]

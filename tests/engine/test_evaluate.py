@@ -242,6 +242,6 @@ def test_rigs_together_are_their_mean_unless_the_worst_is_asked_for():
     rigs = [pe.Rig([sensor]) for sensor in rig_of_all_kinds()]
     entropies = evaluator.entropies(rigs)
     assert len(set(entropies)) == 4
-    mean = evaluator.judge_together(rigs, math.inf).entropy
-    worst = evaluator.judge_together(rigs, math.inf, worst=True).entropy
+    mean = evaluator.evaluate_together(rigs, math.inf).entropy
+    worst = evaluator.evaluate_together(rigs, math.inf, worst=True).entropy
     assert (mean, worst) == (pytest.approx(sum(entropies) / 4, abs=1e-8), max(entropies))

@@ -86,14 +86,16 @@ def test_the_value_is_minus_the_ap_of_a_score_in_traffic_and_bounds_are_below_it
     settled = 0
     for rig, value in zip(placed(given, 12), values, strict=True):
         for cutoff in (value - 0.01, value + 0.01, min(values)):
-            judged = search_evaluator(given, given.search.samples).judge(rig, cutoff)
-            assert judged.entropy <= value and (judged.is_lower_bound or judged.entropy == value)
-            assert not judged.is_lower_bound or judged.entropy >= cutoff
-            settled += judged.is_lower_bound
+            evaluated = search_evaluator(given, given.search.samples).evaluate(rig, cutoff)
+            assert evaluated.entropy <= value and (
+                evaluated.is_lower_bound or evaluated.entropy == value
+            )
+            assert not evaluated.is_lower_bound or evaluated.entropy >= cutoff
+            settled += evaluated.is_lower_bound
     assert settled
     again = pickle.loads(pickle.dumps(evaluator))
     assert isinstance(again, ExpectedApEvaluator) and again.entropy(rig) == values[-1]
-    together = evaluator.judge_together(placed(given, 3), 0.0, worst=True)
+    together = evaluator.evaluate_together(placed(given, 3), 0.0, worst=True)
     assert together.entropy == max(values[:3])
 
 
@@ -118,7 +120,7 @@ def test_a_search_raises_the_ap_and_tells_both(plain):
     text = summary(plain)
     assert text.startswith(f"expected AP in traffic  {first.ap:.4f} -> {last.ap:.4f} (standard ")
     assert f"{plain.before.entropy:.4f} -> {plain.after.entropy:.4f} nats" in text
-    assert "30 placements judged on 8 scenes of objects" in text
+    assert "30 placements evaluated on 8 scenes of objects" in text
 
 
 def test_a_search_goes_by_half_of_the_scenes_and_its_result_is_scored_on_all():
@@ -180,7 +182,7 @@ def test_workers_do_not_change_the_result(method):
 
 def test_a_search_goes_on_from_its_journal():
     whole = finished(study())
-    again = finished(study(), journal=Journal(whole.judged[:11]))
+    again = finished(study(), journal=Journal(whole.evaluated[:11]))
     assert {**result_dict(again), "run": 0} == {**result_dict(whole), "run": 0}
 
 
@@ -204,11 +206,11 @@ def test_the_analysis_is_of_the_ap_on_fresh_scenes():
     shifts = [(0.5 + (k + 1) * GOLDEN[0]) % 1.0 for k in range(SAMPLES)]
     rule = pe.TargetRule("objects", traffic=True, scenes=8)
     given = outcome.study
-    judges = [
+    evaluates = [
         pe.ObjectEvaluator(given.space, given.prior, given.vehicle, targets=rule, shift=x)
         for x in shifts
     ]
-    aps = [[judge.score(rig).objects.ap for judge in judges] for rig in (best, moved)]
+    aps = [[evaluator.score(rig).objects.ap for evaluator in evaluates] for rig in (best, moved)]
     assert change.mean == pytest.approx(np.mean(aps[0]) - np.mean(aps[1]), abs=1e-9)
     assert change.mean > 0.0, "lower is worse"
     table = result_dict(outcome)["sensitivity"]
@@ -296,7 +298,7 @@ def test_the_command_line_and_a_job_find_the_same_bits(tmp_path, capsys):
     assert "Best entropy so far" not in page
     begun = jobs.read_search(tmp_path / "out")
     jobs.SearchState(begun.study, begun.inputs).save(
-        tmp_path / "out", begun.study, begun.judged[:7]
+        tmp_path / "out", begun.study, begun.evaluated[:7]
     )
     resume = ["optimize", str(tmp_path / "study.toml"), "--resume", str(tmp_path / "out")]
     capsys.readouterr()

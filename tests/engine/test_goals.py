@@ -46,7 +46,7 @@ def test_a_search_stops_at_its_target_with_the_steps_of_the_whole_one(plain):
         r.entropy for r in plain.history[:3]
     ]
     assert outcome.evaluations < plain.evaluations
-    assert outcome.judged == plain.judged[: len(outcome.judged)]
+    assert outcome.evaluated == plain.evaluated[: len(outcome.evaluated)]
     assert f"ended at its target of {target:g} nats" in summary(outcome)
     assert result_dict(outcome)["stop_reason"] == "target"
 
@@ -68,7 +68,7 @@ def test_blind_ground_is_kept_by_key_or_option(tmp_path):
 def test_a_search_stops_for_want_of_gain(plain):
     outcome = finished(study(Goals(Stop(gain=100.0, over=20))))
     assert outcome.stop_reason == "gain" and outcome.evaluations == 21
-    assert finished(study(Goals(Stop(gain=1e-9, over=1000)))).judged == plain.judged
+    assert finished(study(Goals(Stop(gain=1e-9, over=1000)))).evaluated == plain.evaluated
 
 
 def test_a_search_stops_after_seconds():
@@ -131,7 +131,7 @@ def test_values_of_fewer_samples_are_shifted_to_those_of_more():
 
 
 def journal_of(outcome, count):
-    return pe.search.Journal(outcome.judged[:count])
+    return pe.search.Journal(outcome.evaluated[:count])
 
 
 GOALS = Goals(

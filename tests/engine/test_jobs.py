@@ -69,7 +69,7 @@ def test_an_optimize_job_improves_and_tells_its_history():
     assert stages[-1] == "done" and "optimizing" in stages
 
 
-def test_start_and_result_are_judged_by_one_evaluator(monkeypatch):
+def test_start_and_result_are_evaluated_by_one_evaluator(monkeypatch):
     made, plain = [], pe.Study.evaluator
 
     def counted(self, samples=None, workers=None):

@@ -129,7 +129,7 @@ def test_what_a_bound_took_is_not_counted_again(monkeypatch):
     monkeypatch.setattr(voxel_beams, "bracket", lambda *a: calls.append(a) or plain(*a))
     evaluator = pe.Evaluator(SPACE, pe.Prior.uniform(), CAR, samples=2048)
     rig = pe.Rig([lidar(POSES["tilted"])])
-    assert evaluator.judge(rig, math.nextafter(28.0, 30.0)) == (evaluator.entropy(rig), False)
+    assert evaluator.evaluate(rig, math.nextafter(28.0, 30.0)) == (evaluator.entropy(rig), False)
     assert len(calls) == 1
     moved = pe.Rig([lidar(POSES["corner"])])
     assert evaluator.entropy(moved) == pe.Evaluator(

@@ -68,7 +68,7 @@ def test_an_unknown_method_is_refused_in_one_line():
         pe.Search(method="annealing")
 
 
-def test_on_another_level_the_best_so_far_is_judged_anew(monkeypatch):
+def test_on_another_level_the_best_so_far_is_evaluated_anew(monkeypatch):
     """A method that asks twice for one better placement: on few voxels, then on many."""
     rig, space = mounting.space(can())
     better = Parametrization(rig, space).candidate([0.5, 0.0, 1.5, 0.0])
@@ -105,6 +105,6 @@ def test_what_a_method_asks_follows_from_its_answers_alone():
             for number in range(8):
                 questions.append([c and c.vector for c in question.candidates])
                 values = [math.sin(number + k) for k in range(len(question.candidates))]
-                question = asking.send([pe.scoring.Judgement(v, False) for v in values])
+                question = asking.send([pe.scoring.Evaluation(v, False) for v in values])
             asked.append(questions)
         assert asked[0] == asked[1]

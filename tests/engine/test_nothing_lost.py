@@ -71,7 +71,7 @@ SIGNALS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 
 
 @pytest.mark.parametrize("signum", SIGNALS)
-def test_the_first_signal_judges_and_keeps_the_best(study, out, signum):
+def test_the_first_signal_evaluates_and_keeps_the_best(study, out, signum):
     with Command("optimize", "--no-review", study, "-o", out, *ENDLESS) as command:
         command.wait_for_better()
         command.send(signum)

@@ -32,14 +32,14 @@ def rig(*more):
     return pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(32, 360)), *more])
 
 
-def judge(prior=ROAD, targets=FEW, **more):
+def scorer(prior=ROAD, targets=FEW, **more):
     return pe.ObjectEvaluator(SPACE, prior, None, targets=targets, **more)
 
 
 @pytest.fixture(scope="module")
 def whole():
     """An evaluator, and the score of a LiDAR and a camera on it."""
-    evaluator = judge()
+    evaluator = scorer()
     return evaluator, evaluator.score(rig(shapes.camera()))
 
 
@@ -55,7 +55,7 @@ def test_two_boxes_by_hand():
     ahead = pe.Lidar("ahead", elevations, 360, 50.0, None, (-math.pi / 2, math.pi / 2))
     boxes = [("car", 11.0, 0.0, 1.0, 2.0, 2.0, 2.0, 0.0), ("car", -9.0, 0.0, 1.0, 2.0, 2.0, 2.0, 0)]
     one = pe.Rig([pe.Sensor("eye", ahead, pe.Pose((0.0, 0.0, 1.0)))])
-    score = judge(pe.Prior.from_boxes(boxes)).score(one)
+    score = scorer(pe.Prior.from_boxes(boxes)).score(one)
     m = 5 * 11  # channels times azimuths from -5 to 5 deg
     seen = entropy_by_hand(0.237, -0.516, m)
     assert score.entropy == pytest.approx((seen + 16.651) / 2, abs=1e-3)
@@ -118,9 +118,9 @@ def test_every_way_of_asking_gives_the_same_bits(whole):
     both = rig(shapes.camera())
     moved = both.with_poses([pe.Pose((0.5, 0.0, 1.8)), both["camera"].pose])
     assert evaluator.entropy(both) == evaluator.summary(both).entropy == score.entropy
-    assert evaluator.judge(both, -99.0) == (score.entropy, False)
+    assert evaluator.evaluate(both, -99.0) == (score.entropy, False)
     together = evaluator.entropies([both, moved, pe.Rig([both["roof"]])])
-    assert together == [judge().entropy(r) for r in (both, moved, pe.Rig([both["roof"]]))]
+    assert together == [scorer().entropy(r) for r in (both, moved, pe.Rig([both["roof"]]))]
     again = pickle.loads(pickle.dumps(evaluator))
     assert again.score(both).to_dict() == score.to_dict()
 
@@ -128,10 +128,10 @@ def test_every_way_of_asking_gives_the_same_bits(whole):
 def test_traffic_hides_and_a_lone_object_is_hidden_by_none():
     """One object a scene: with traffic as without. Many: what traffic takes is never given."""
     alone = pe.Prior("road", ROAD.classes[:1], density={"car": 1.0})
-    scores = [judge(alone, replace(FEW, traffic=t)).score(rig()).to_dict() for t in (False, True)]
+    scores = [scorer(alone, replace(FEW, traffic=t)).score(rig()).to_dict() for t in (False, True)]
     assert [s["objects"].pop("traffic") for s in scores] == [False, True]
     assert scores[0] == scores[1]
-    free, hidden = (judge(targets=replace(FEW, traffic=t)).score(rig()) for t in (False, True))
+    free, hidden = (scorer(targets=replace(FEW, traffic=t)).score(rig()) for t in (False, True))
     assert hidden.entropy > free.entropy and hidden.objects.ap < free.objects.ap
     for name, own in hidden.objects.per_class.items():
         assert own.ap <= free.objects.per_class[name].ap
@@ -142,7 +142,7 @@ def test_traffic_hides_and_a_lone_object_is_hidden_by_none():
 def test_sight_tells_the_same_reach_as_the_score(traffic):
     """Maps, views and tables of a study on objects have one reach; of one on voxels another."""
     targets, both = replace(FEW, traffic=traffic), rig(shapes.camera())
-    score = judge(targets=targets).score(both)
+    score = scorer(targets=targets).score(both)
     asked = (SPACE, ROAD, None)
     view = pe.Sight(*asked, targets=targets)
     for name, own in score.objects.per_class.items():
@@ -161,7 +161,7 @@ def test_sight_tells_the_same_reach_as_the_score(traffic):
 
 def test_the_standard_error_is_honest():
     """It is not below the scatter of other scrambles, and not three times as large."""
-    evaluators = [judge(shift=k / 12 + 0.02) for k in range(12)]
+    evaluators = [scorer(shift=k / 12 + 0.02) for k in range(12)]
     found = [e.summary(rig()) for e in evaluators]
     scatter = np.std([each.entropy for each in found], ddof=1)
     told = np.mean([each.stderr for each in found])
@@ -181,7 +181,7 @@ def test_the_standard_error_by_hand():
 
 def test_a_golden_case():
     """Figures of November 2026; they move only where a definition does."""
-    score = judge(targets=replace(FEW, traffic=True)).score(rig())
+    score = scorer(targets=replace(FEW, traffic=True)).score(rig())
     assert (score.entropy, score.objects.ap) == pytest.approx(GOLDEN, abs=1e-8)
 
 
@@ -190,7 +190,7 @@ GOLDEN = (9.218613081, 0.205050669)
 
 def test_objects_that_are_all_alike_leave_something_to_doubt():
     behind = pe.Rig([pe.Sensor("eye", shapes.small_lidar(max_range=0.5), pe.Pose((0, 0, 2)))])
-    score = judge().score(behind)
+    score = scorer().score(behind)
     assert score.entropy == pytest.approx(16.651, abs=1e-3) and score.coverage == 0.0
     assert 0.0 < score.stderr < 0.2
     assert set(score.objects.per_class["car"].reach.values()) == {0.0}
@@ -199,7 +199,7 @@ def test_objects_that_are_all_alike_leave_something_to_doubt():
 def test_reach_is_reported_of_the_side_that_a_sensor_looks_to():
     """A LiDAR over a quarter to the left: a car is found there, and on no other side."""
     left = shapes.small_lidar(32, 360, horizontal_fov=(math.pi / 4, 3 * math.pi / 4))
-    reach = judge().score(pe.Rig([shapes.lidar_on_roof(left)])).objects.per_class["car"].reach
+    reach = scorer().score(pe.Rig([shapes.lidar_on_roof(left)])).objects.per_class["car"].reach
     assert reach["left"] > 5.0
     assert all(reach[side] == 0.0 for side in ("front", "rear", "right", "front right"))
 
@@ -238,17 +238,17 @@ def test_a_class_without_a_curve_is_reported_unless_it_weighs_nothing():
     with_tram = pe.Prior("road", (*ROAD.classes, TRAM), density={"tram": 1})
     told = r"\[ap\.lidar\.objects\.tram\]: expected a and b of 'tram' as an object"
     with pytest.raises(pe.InputError, match=told):
-        judge(with_tram).score(rig())
+        scorer(with_tram).score(rig())
     unweighed = replace(with_tram, focus=(pe.Focus(0.0, classes=["tram"]),))
-    assert "tram" not in judge(unweighed).score(rig()).objects.per_class
+    assert "tram" not in scorer(unweighed).score(rig()).objects.per_class
     own = pe.PerceptionModel(objects={"lidar": {"tram": pe.ApCurve(0.2, -0.4)}})
-    assert judge(with_tram, model=own).score(rig()).objects.per_class["tram"].ap > 0.0
+    assert scorer(with_tram, model=own).score(rig()).objects.per_class["tram"].ap > 0.0
 
 
 def test_a_sensor_s_own_curve_is_of_voxels():
     own = replace(shapes.lidar_on_roof(), curve=pe.ApCurve(0.2, 0.5))
     with pytest.raises(pe.InputError, match=r"sensor 'roof': ap: expected none: objects have"):
-        judge().entropy(pe.Rig([own]))
+        scorer().entropy(pe.Rig([own]))
 
 
 # --- studies --------------------------------------------------------------------------------------
@@ -262,7 +262,7 @@ def test_a_study_s_keys_make_its_evaluator():
     study = study_from_dict(data)
     assert study.targets == pe.TargetRule("objects", True, 8)
     assert study.model.object_curve("lidar", "car") == pe.ApCurve(0.3, -0.5)
-    evaluator = study.evaluator()
+    evaluator = study.scorer()
     assert len(evaluator.drawn.objects) == 16 and evaluator.targets.traffic
     assert study.looks_at(0) == study.looks_at(65_536) == 8
 
@@ -270,7 +270,7 @@ def test_a_study_s_keys_make_its_evaluator():
 def test_a_search_s_coarser_levels_have_fewer_scenes():
     study = study_from_dict({"sensor": [SENSOR], "metric": {"targets": "objects"}})
     assert [study.looks_at(n) for n in (0, 65_536, 16_384, 1024)] == [256, 256, 64, 32]
-    assert study.evaluator(16_384).targets.scenes == 64
+    assert study.scorer(16_384).targets.scenes == 64
 
 
 @pytest.mark.parametrize(
@@ -321,7 +321,7 @@ def test_reach_by_hand():
 def test_a_class_without_objects_hides_no_other():
     """Between cars and trucks no pedestrian and no cyclist is sampled; trucks are found."""
     few = pe.Prior("road", ROAD.classes, density={"pedestrian": 0, "cyclist": 0})
-    score = judge(few).score(rig())
+    score = scorer(few).score(rig())
     assert list(score.objects.per_class) == ["car", "truck", "cone"]
     assert score.objects.per_class["truck"].reach["front"] > 5.0
     assert (score.per_sensor["roof"].beams, score.per_sensor["roof"].occluded) == (0, 0)

@@ -53,10 +53,10 @@ def test_ap_and_reach_stand_side_by_side():
     assert "expected AP" not in comparison(["a"], advice.compare({"a": voxels}))
 
 
-def test_the_summary_says_what_was_judged():
+def test_the_summary_says_what_was_evaluated():
     study = pe.Study(pe.Rig([shapes.lidar_on_roof()]), targets=pe.TargetRule("objects", scenes=64))
     own = pe.SensorScore(3.0, 0.5, 1.0, 0, 0, {})
     score = replace(scored(), per_sensor={"roof": own})
     text = summary(pe.Outcome("optimize", study, study, score, score, evaluations=7))
     assert "expected AP 0.33" in text and "on 80 objects in 8 scenes, in traffic" in text
-    assert "7 placements judged on 32, then 64 scenes of objects" in text
+    assert "7 placements evaluated on 32, then 64 scenes of objects" in text

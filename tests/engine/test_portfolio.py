@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.search import METHODS, Judgement, Parametrization, pose_values
+from pe_core.search import METHODS, Evaluation, Parametrization, pose_values
 from pe_core.search.methods import portfolio
 from pe_core.search.methods.block_descent import PLACEMENTS_PER_START, race
 from pe_core.search.methods.method import Given, Phase
@@ -35,7 +35,7 @@ def answered(part, landscape):
         question = next(part)
         while True:
             sizes.append(len(question.candidates))
-            question = part.send([Judgement(landscape(c.rig), False) for c in question.candidates])
+            question = part.send([Evaluation(landscape(c.rig), False) for c in question.candidates])
     except StopIteration:
         return sizes
 
@@ -215,7 +215,7 @@ def test_a_survey_asks_for_one_sensor_at_a_time_and_tells_what_the_next_has_to_b
     question = next(part)
     assert (len(question.candidates), question.cutoff) == (4, 5.0)
     assert {c.rig["b"].pose for c in question.candidates} == {rig["b"].pose}
-    question = part.send([Judgement(value, False) for value in (6.0, 3.0, 4.0, 7.0)])
+    question = part.send([Evaluation(value, False) for value in (6.0, 3.0, 4.0, 7.0)])
     assert question.cutoff == 3.0
     assert len({c.rig["roof"].pose for c in question.candidates}) == 1
     exact = Survey(Given(coding, coding.start, 5.0), exact=True)

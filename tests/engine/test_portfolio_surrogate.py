@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.search import Judgement, Parametrization, pose_values
+from pe_core.search import Evaluation, Parametrization, pose_values
 from pe_core.search.methods import portfolio_surrogate as surrogate
 from pe_core.search.methods.method import Given, Phase, Question
 from pe_core.search.methods.portfolio_linear import LinearDescent
@@ -45,7 +45,7 @@ def descent(landscape, rig, space, seed=0, step=0.2):
             except StopIteration:
                 return asked
             asked += [candidate.rig for candidate in question.candidates]
-            answers = [Judgement(landscape(c.rig), False) for c in question.candidates]
+            answers = [Evaluation(landscape(c.rig), False) for c in question.candidates]
 
     return found, run
 
@@ -105,7 +105,7 @@ def test_among_small_valleys_it_ends_lower_than_a_linear_descent():
     question = next(part)
     with pytest.raises(StopIteration):
         while True:
-            question = part.send([Judgement(rugged(c.rig), False) for c in question.candidates])
+            question = part.send([Evaluation(rugged(c.rig), False) for c in question.candidates])
     assert np.median(ends) < 0.12 and max(ends) < linear.entropy
 
 
@@ -192,7 +192,7 @@ def test_a_history_keeps_values_and_no_bounds():
     questions = history.follow(asks())
     next(questions)
     with pytest.raises(StopIteration):
-        questions.send([Judgement(1.0, False), None, Judgement(2.5, True)])
+        questions.send([Evaluation(1.0, False), None, Evaluation(2.5, True)])
     assert history.vectors == [coding.start.vector, near.vector]
     assert history.values == [3.0, 1.0]
 

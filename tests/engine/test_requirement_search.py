@@ -220,15 +220,15 @@ def test_workers_and_cutoffs_keep_the_same_blind_ground():
     again = pickle.loads(pickle.dumps(limit))
     assert again.violation(level) == limit.violation(level)
     value = objective.entropy(level)
-    assert value == INFEASIBLE + limit.violation(level) == objective.judge(level).entropy
+    assert value == INFEASIBLE + limit.violation(level) == objective.evaluate(level).entropy
     entropy = given.evaluator().entropy(given.rig)
     for cutoff in (entropy - 0.5, entropy, entropy + 0.5, INFEASIBLE + 2.0):
         for rig in (given.rig, level):
-            found = objective.judge(rig, cutoff)
+            found = objective.evaluate(rig, cutoff)
             assert (found.entropy < cutoff) == (objective.entropy(rig) < cutoff)
             assert found.is_lower_bound or found.entropy == objective.entropy(rig)
     one, two = (finished(pe.OptimizeJob(given, workers)) for workers in (1, 2))
-    assert one.judged == two.judged and one.after == two.after
+    assert one.evaluated == two.evaluated and one.after == two.after
 
 
 def test_redundancy_is_what_each_sensor_sees_alone():

@@ -260,7 +260,7 @@ def _plain_margin(own, one, cases):
         checks = BodyChecks(
             [(own, Samples(placed, points, distance))], pe.PerceptionModel(), SceneCaches(van())
         )
-        passed = checks.judged(one, cases)[0].passed
+        passed = checks.results(one, cases)[0].passed
         margin = margin_of(distance, passed, own.criterion.zone_share, own.zone.step, looked)
         if not margin[1] or looked >= 10.0:
             return margin

@@ -76,10 +76,10 @@ def test_every_method_goes_on_to_the_bits_of_an_unbroken_search(method):
     data, expected = pe.result_dict(end), pe.result_dict(whole)
     del data["run"], expected["run"]
     assert data == expected
-    assert end.judged == whole.judged
+    assert end.evaluated == whole.evaluated
 
 
-def test_what_the_journal_knows_is_not_judged_again():
+def test_what_the_journal_knows_is_not_evaluated_again():
     study = a_study()
     plain = Recorder(distance_to({"x": 0.1, "z": 1.9}))
     journal = Journal()
@@ -90,7 +90,7 @@ def test_what_the_journal_knows_is_not_judged_again():
     assert [placed(rig) for rig in again.rigs] == [placed(rig) for rig in plain.rigs[50:]]
 
 
-def test_candidates_judged_together_are_known_as_well():
+def test_candidates_evaluated_together_are_known_as_well():
     study, journal = a_study(), Journal()
     rigs = [shapes.lidar_on_roof(shapes.small_lidar(16, 90), (0.1 * k, 0.0, 1.8)) for k in range(6)]
     rigs = [pe.Rig([sensor]) for sensor in rigs]
@@ -120,7 +120,7 @@ def test_a_journal_of_other_placements_is_refused():
     list(search(study, journal.wrap([Recorder(distance_to({"x": 0.1}))])))
     other = replace(study, search=replace(study.search, seed=4))
     again = Journal(journal.entries, "out/search.json")
-    with pytest.raises(pe.InputError, match=r"judged\[1\]: expected the placements"):
+    with pytest.raises(pe.InputError, match=r"evaluated\[1\]: expected the placements"):
         list(search(other, again.wrap([Recorder(distance_to({"x": 0.1}))])))
 
 
@@ -177,8 +177,8 @@ def test_a_kill_at_any_moment_loses_at_most_a_round(path, tmp_path, out):
     begin = (path, "-o", out)
     for moment in (("told", 20), ("replaced", 2), ("told", 71)):
         told = broken_off(signal.SIGKILL, moment, "optimize", "--no-review", *begin)
-        kept = len(read_search(out).judged)
-        assert kept >= told - CANDIDATES - 1, "a round, and the candidate that had been judged"
+        kept = len(read_search(out).evaluated)
+        assert kept >= told - CANDIDATES - 1, "a round, and the candidate that had been evaluated"
         begin = ("--resume", out)
     assert main(["optimize", "--no-review", "--resume", str(out)]) == 0
     assert result(out) == result(tmp_path / "whole")
@@ -188,7 +188,7 @@ def test_a_search_that_ctrl_c_stopped_goes_on(path, tmp_path, out):
     assert main(["optimize", "--no-review", str(path), "-o", str(tmp_path / "whole")]) == 0
     told = broken_off(signal.SIGINT, ("told", 31), "optimize", "--no-review", path, "-o", out)
     assert json.loads((out / "result.json").read_text("utf-8"))["stopped"]
-    assert 31 <= told <= len(read_search(out).judged) < 40, "all is kept, not just whole rounds"
+    assert 31 <= told <= len(read_search(out).evaluated) < 40, "all is kept, not just whole rounds"
     assert main(["optimize", "--no-review", "--resume", str(out)]) == 0
     assert result(out) == result(tmp_path / "whole")
 
@@ -211,13 +211,16 @@ def begun_in(folder, **changes):
         ({"study": "a = 1"}, "sensor: expected at least one [[sensor]], found none"),
         ({"study_sha256": "0"}, "study: expected unchanged files beside the study, found"),
         (
-            {"judged": [[1.0, False, "a"], [1, 2]]},
-            "judged[1]: expected an entropy, a truth value, a digest",
+            {"evaluated": [[1.0, False, "a"], [1, 2]]},
+            "evaluated[1]: expected an entropy, a truth value, a digest",
         ),
-        ({"judged": [[math.nan, False, "a"]]}, "file: expected valid JSON, found NaN"),
-        ({"judged": [[1.0, False, "\ud800"]]}, "file: expected valid JSON, found half a"),
+        ({"evaluated": [[math.nan, False, "a"]]}, "file: expected valid JSON, found NaN"),
+        ({"evaluated": [[1.0, False, "\ud800"]]}, "file: expected valid JSON, found half a"),
         ({"inputs": {"study": "\udfff"}}, "file: expected valid JSON, found half a surrogate"),
-        ({"judged": None}, "judged[0]: expected an entropy, a truth value, a digest, found None"),
+        (
+            {"evaluated": None},
+            "evaluated[0]: expected an entropy, a truth value, a digest, found None",
+        ),
     ],
 )
 def test_a_state_that_is_none_is_refused_in_one_line(out, changes, complaint, capsys):

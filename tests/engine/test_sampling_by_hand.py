@@ -212,14 +212,14 @@ def test_previews_and_bounds_say_what_they_are():
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
     for samples, vehicle in ((0, shapes.box_car()), (2048, None)):
         evaluator = pe.Evaluator(shapes.small_space(), pe.Prior.road(), vehicle, samples=samples)
-        told = evaluator.judge(rig, -99.0)
+        told = evaluator.evaluate(rig, -99.0)
         assert (told.entropy, told.is_lower_bound) == (evaluator.entropy(rig), False)
     bounded = pe.Evaluator(shapes.small_space(), pe.Prior.road(), shapes.box_car(), samples=2048)
-    told = bounded.judge(rig, -99.0)
+    told = bounded.evaluate(rig, -99.0)
     free = pe.Evaluator(shapes.small_space(), pe.Prior.road(), samples=2048)
     assert told.is_lower_bound and -99.0 <= told.entropy < bounded.entropy(rig)
     assert abs(told.entropy - free.entropy(rig)) < 0.5  # not the same voxels: none in the car
-    exact = bounded.judge(rig, math.inf)
+    exact = bounded.evaluate(rig, math.inf)
     assert (exact.entropy, exact.is_lower_bound) == (bounded.entropy(rig), False)
 
 
@@ -236,6 +236,6 @@ def test_a_candidate_that_cannot_be_good_enough_costs_no_ray(monkeypatch):
 
     monkeypatch.setattr(pe.Vehicle, "seen_from", seen_from)
     moved = pe.Rig([s.moved(pe.Pose((k, 0.0, 1.9))) for k, s in enumerate(sensors)])
-    assert evaluator.judge(moved, -99.0).is_lower_bound and asked == []
-    assert not evaluator.judge(moved, 99.0).is_lower_bound
+    assert evaluator.evaluate(moved, -99.0).is_lower_bound and asked == []
+    assert not evaluator.evaluate(moved, 99.0).is_lower_bound
     assert asked == [(0.0, 0.0, 1.9), (1.0, 0.0, 1.9)]

@@ -202,8 +202,8 @@ def test_the_best_is_the_first_of_the_lowest_so_far():
 
 def test_a_candidate_has_to_be_below_the_best_so_far():
     recorder, steps = searched(distance_to({"x": 2.0}), {"a": WIDE})
-    assert recorder.below[0] == math.inf
-    assert recorder.below[1:] == [before.entropy for before in steps[:-1]]
+    assert recorder.cutoff[0] == math.inf
+    assert recorder.cutoff[1:] == [before.entropy for before in steps[:-1]]
 
 
 def test_lower_bounds_in_place_of_entropies_change_nothing():

@@ -31,8 +31,8 @@ class Noted:
     def entropy(self, rig):
         return self.evaluator.entropy(rig)
 
-    def judge(self, rig, below=np.inf):
-        return self.evaluator.judge(rig, below)
+    def evaluate(self, rig, cutoff=np.inf):
+        return self.evaluator.evaluate(rig, cutoff)
 
 
 @pytest.fixture(scope="module")
@@ -60,11 +60,11 @@ class Evaluated:
         return (self.evaluator,)
 
     def entropy(self, rig):
-        return self.judge(rig).entropy
+        return self.evaluate(rig).entropy
 
-    def judge(self, rig, below=np.inf):
+    def evaluate(self, rig, cutoff=np.inf):
         self.here.append(rig)
-        return self.evaluator.judge(rig, below)
+        return self.evaluator.evaluate(rig, cutoff)
 
 
 def steps(objective, study, executor=None):
@@ -126,7 +126,7 @@ def test_a_job_sends_the_mesh_once_for_both_levels_of_its_search(study, client):
     for each in (job, alone):
         for _ in each:
             pass
-    assert job.outcome.judged == alone.outcome.judged
+    assert job.outcome.evaluated == alone.outcome.evaluated
     assert len(sent) == 1 and sent[0] > study.vehicle.triangles.nbytes // 2
 
 
@@ -141,7 +141,7 @@ def test_a_worker_that_joins_later_has_the_payload_and_none_is_left_on_the_sched
         distributed.Client(cluster) as client,
     ):
         executor = ClusterExecutor(client.get_executor(pure=False))
-        here = [evaluator.judge(rig) for rig in rigs]
+        here = [evaluator.evaluate(rig) for rig in rigs]
         assert evaluate_all(evaluator, rigs, executor=executor) == here
         (first,) = client.scheduler_info()["workers"]
         cluster.scale(2)

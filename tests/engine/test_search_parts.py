@@ -4,7 +4,7 @@ from typing import ClassVar
 
 import pytest
 
-from pe_core.search import Judgement, Parametrization
+from pe_core.search import Evaluation, Parametrization
 from pe_core.search.design_variable import RADIAN
 from pe_core.search.methods import block_descent
 from pe_core.search.methods.block_descent import Descent, corner_start, random_start
@@ -25,7 +25,7 @@ def answered(asking, value):
     try:
         question = next(asking)
         while True:
-            answers = [c and Judgement(value(c), False) for c in question.candidates]
+            answers = [c and Evaluation(value(c), False) for c in question.candidates]
             question = asking.send(answers)
     except StopIteration as stop:
         return stop.value

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.search import Goals, Judgement, Parametrization
+from pe_core.search import Evaluation, Goals, Parametrization
 from pe_tools.cli.terminal import summary
 from pe_tools.jobs import result_dict
 from pe_tools.sensitivity import (
@@ -63,7 +63,7 @@ def test_costs_are_those_of_plain_evaluations_and_the_result_is_not_touched(outc
     assert row.status == "free"
     assert {a.axis for a in found.axes if a.status == "fixed"} == {"x", "y", "roll", "yaw"}
     without = finished(pe.OptimizeJob(study("off"), 1))
-    assert without.sensitivity is None and without.judged == outcome.judged
+    assert without.sensitivity is None and without.evaluated == outcome.evaluated
     assert without.study.rig["roof"].pose == pose and without.after.entropy == outcome.after.entropy
 
 
@@ -203,8 +203,8 @@ def test_another_optimum_is_told_from_the_flank_of_the_same_one():
     archive = Archive()
     for x in (-1.0, -0.98, -0.4, -0.1, 0.7, 1.0, 1.05):
         rig = at(given.rig, x)
-        archive.note(rig, 0, Judgement(Wells(best).value(rig), False))
-    archive.note(at(given.rig, 1.9), 0, Judgement(0.0, True))  # a lower bound is none to rank by
+        archive.note(rig, 0, Evaluation(Wells(best).value(rig), False))
+    archive.note(at(given.rig, 1.9), 0, Evaluation(0.0, True))  # a lower bound is none to rank by
     xs = [rig["roof"].pose.position[0] for rig in archive.placements()]
     assert xs == [-1.0, 1.05, 0.7, -0.4, -0.1]
     endings = Basins(Wells(best), given.search_space()).endings(archive.placements())
@@ -216,7 +216,7 @@ def test_another_optimum_is_told_from_the_flank_of_the_same_one():
 
 def test_a_search_that_resumes_says_the_same(outcome):
     job = pe.OptimizeJob(study(), 1)
-    job.journal = pe.search.Journal(outcome.judged[:11])
+    job.journal = pe.search.Journal(outcome.evaluated[:11])
     again = result_dict(finished(job))
     assert again["sensitivity"] == result_dict(outcome)["sensitivity"]
 

@@ -36,9 +36,9 @@ def test_a_summary_and_a_score_agree(preview):
 
 def test_a_summary_at_objects_has_the_ap_of_the_score():
     rule = pe.TargetRule("objects", traffic=True, scenes=8)
-    judge = pe.ObjectEvaluator(SPACE, pe.Prior.road(), CAR, targets=rule)
+    evaluator = pe.ObjectEvaluator(SPACE, pe.Prior.road(), CAR, targets=rule)
     rig = rig_at((0.0, 0.0, 1.9))
-    assert judge.summary(rig).ap == judge.score(rig).objects.ap
+    assert evaluator.summary(rig).ap == evaluator.score(rig).objects.ap
 
 
 def test_an_exact_summary_after_previews_is_that_of_a_new_evaluator():

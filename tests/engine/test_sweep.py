@@ -283,9 +283,9 @@ def noted(monkeypatch):
     """Placements that a search evaluated, rather than took from its journal."""
     noted, record = [], Journal.record
 
-    def watched(self, rig, level, judged):
+    def watched(self, rig, level, evaluated):
         noted.append(rig)
-        record(self, rig, level, judged)
+        record(self, rig, level, evaluated)
 
     monkeypatch.setattr(Journal, "record", watched)
     return noted
@@ -306,13 +306,13 @@ def test_a_run_continues_the_search_in_its_folder(study, out, noted):
         if job.evaluations >= 5:
             break
     Checkpoint(job).save(out)
-    begun = len(read_search(out).judged)
+    begun = len(read_search(out).evaluated)
     noted.clear()
     task = RunTask(pe.load_study(study), True, 1, FolderCheckpoints(out))
     found = run_task(task)
-    assert (found.after.entropy, found.judged) == (whole.after.entropy, whole.judged)
+    assert (found.after.entropy, found.evaluated) == (whole.after.entropy, whole.evaluated)
     assert len(noted) == evaluated - begun < evaluated
-    assert begun < len(read_search(out).judged) <= evaluated, "checkpoints go on as well"
+    assert begun < len(read_search(out).evaluated) <= evaluated, "checkpoints go on as well"
     noted.clear()
     other = replace(task, study=replace(task.study, search=replace(task.study.search, seed=9)))
     assert run_task(other).after.entropy and len(noted) > 5, "another study's are not taken"
@@ -340,7 +340,7 @@ def test_a_sweep_that_is_ended_keeps_what_is_under_way(study, out, ending, capsy
         assert command.complaints == [f"pe: interrupted; {kept}\n"]
         assert [row["status"] for row in table(out)] == ["begun", "waiting"]
     assert not list(out.rglob(".*.tmp"))
-    judged = len(read_search(first).judged)
+    kept = len(read_search(first).evaluated)
     noted.clear()
     assert main([*argv, "-o", str(out)]) == 0
     err = capsys.readouterr().err
@@ -349,7 +349,7 @@ def test_a_sweep_that_is_ended_keeps_what_is_under_way(study, out, ending, capsy
     noted.clear()
     whole = [searched(replace_seed(pe.load_study(study), seed)) for seed in (3, 4)]
     assert [float(row["entropy"]) for row in table(out)] == [each.after.entropy for each in whole]
-    assert evaluated == len(noted) - judged
+    assert evaluated == len(noted) - kept
 
 
 def replace_seed(study, seed):

@@ -136,7 +136,7 @@ def test_a_worker_that_is_killed_costs_no_result(study, cluster, tmp_path, monke
 
 
 def test_searches_on_a_cluster_leave_checkpoints_here(cluster, tmp_path, monkeypatch):
-    """Workers send what they judged; a worker that begins anew sends the same again."""
+    """Workers send what they evaluated; a worker that begins anew sends the same again."""
     (cluster.folder / "go").touch()
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90))])
     schedule = pe.Schedule(candidates=2)
@@ -148,17 +148,17 @@ def test_searches_on_a_cluster_leave_checkpoints_here(cluster, tmp_path, monkeyp
 
     def watched(self, folder, best, entries, *, meshes=True):
         save(self, folder, best, entries, meshes=meshes)
-        saved.append((folder, read_search(folder).judged))
+        saved.append((folder, read_search(folder).evaluated))
 
     monkeypatch.setattr(SearchState, "save", watched)
     argv = ["sweep", str(path), "--optimize", "-o", str(out), "--scheduler", cluster.address]
     assert main(argv) == 0
     whole = pe.OptimizeJob(pe.load_study(path))
     list(whole)
-    judged = read_search(out / "car").judged
-    assert judged == whole.outcome.judged  # events that come after the result change nothing
+    evaluated = read_search(out / "car").evaluated
+    assert evaluated == whole.outcome.evaluated  # events that come after the result change nothing
     assert saved and all(folder == out / "car" for folder, _ in saved)
-    assert all(entries == judged[: len(entries)] for _, entries in saved)
+    assert all(entries == evaluated[: len(entries)] for _, entries in saved)
     assert json.loads((out / "car" / "result.json").read_text())["entropy"] == (
         whole.outcome.after.entropy
     )

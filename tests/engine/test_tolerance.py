@@ -135,7 +135,7 @@ def test_a_candidate_is_worth_the_mean_or_the_worst_of_its_cases(tolerance, eval
     expected = max(each) if tolerance.worst else sum(each) / len(each)
     objective = RobustObjective(evaluator, tolerance, 3)
     assert objective.entropy(rig()) == pytest.approx(expected, abs=1e-9)
-    assert objective.judge(rig()) == (objective.entropy(rig()), False)
+    assert objective.evaluate(rig()) == (objective.entropy(rig()), False)
 
 
 def test_failures_are_the_loss_of_each_sensor():
@@ -171,19 +171,19 @@ def test_a_bound_is_no_higher_than_the_truth_and_told_only_where_it_settles(chan
     for above in (2.0, 0.01, 0.0, -0.01):
         objective, below = RobustObjective(evaluator, tolerance), exact - above
         objective.entropy(elsewhere)  # nothing of the candidate is known any more
-        found = objective.judge(rig(), below)
+        found = objective.evaluate(rig(), below)
         assert found.is_lower_bound or found.entropy == exact
         assert below <= found.entropy <= exact or not found.is_lower_bound
         assert (found.entropy < below) == (above < 0.0)
         assert found.is_lower_bound or above < 2.0  # where much is to spare, it is not measured
 
 
-def test_a_grid_judges_as_a_sample_does():
+def test_a_grid_evaluates_as_a_sample_does():
     space = pe.PerceptionSpace((-4, 4), (-4, 4), (0, 2), 0.5)
     grid = pe.Evaluator(space, pe.Prior.uniform(), shapes.box_car())
     each = [grid.entropy(case) for case in BOTH.cases(rig())]
     objective = RobustObjective(grid, BOTH)
-    assert objective.judge(rig(), 0.0) == (pytest.approx(np.mean(each), abs=1e-9), False)
+    assert objective.evaluate(rig(), 0.0) == (pytest.approx(np.mean(each), abs=1e-9), False)
 
 
 def test_an_objective_can_be_sent_to_a_worker(evaluator):

@@ -25,7 +25,7 @@ from .bodies import Body
 from .criteria import Criterion, Requirement, levels_of
 from .definition import body_has_enough, parts_of, placed, visible_share
 from .reasons import columns_of
-from .verdict import Judged, Samples
+from .verdict import Samples, ZoneResult
 
 CountsBySensor = Mapping[str, Floats]
 NOTHING = np.zeros(0)
@@ -96,22 +96,22 @@ class BodyChecks:
         if self._joined is not None and weights is not None and weights.any():
             self._fused = FusedObjects(self._joined, weights, model)
 
-    def judged(self, rig: Rig, cases: Sequence[Rig] = ()) -> list[Judged]:
+    def results(self, rig: Rig, cases: Sequence[Rig] = ()) -> list[ZoneResult]:
         """Return for each requirement which samples pass, with the rig as it stands and in all.
 
         `cases` are the rig with mounting errors, for requirements that ask for them.
         """
         measured = self._measured(0, rig)
-        found = [self._judged(k, rig, measured) for k in range(len(self._wanted))]
+        found = [self._result(k, rig, measured) for k in range(len(self._wanted))]
         asking = [k for k, (own, _) in enumerate(self._wanted) if own.under.mounting]
         for number, case in enumerate(cases if asking else (), start=1):
             measured = self._measured(number, case)
             for k in asking:
-                found[k].passed[:] &= self._judged(k, case, measured).passed
+                found[k].passed[:] &= self._result(k, case, measured).passed
         return found
 
     def measuring(self, rig: Rig, cases: Sequence[Rig] = ()) -> Iterator[None]:
-        """Measure what `judged` needs; yield after each sensor of each scene."""
+        """Measure what `results` needs; yield after each sensor of each scene."""
         asked = cases if any(own.under.mounting for own, _ in self._wanted) else ()
         for number, case in enumerate((rig, *asked)):
             for sensor in case if self._joined is not None else ():
@@ -128,7 +128,7 @@ class BodyChecks:
         ]
         return self._seen(0, sensor, _PointsByBand(found[0], found[-1] if len(found) > 1 else {}))
 
-    def _judged(self, number: int, rig: Rig, measured: _PointsByBand) -> Judged:
+    def _result(self, number: int, rig: Rig, measured: _PointsByBand) -> ZoneResult:
         requirement, _ = self._wanted[number]
         names = [s.name for s in rig]
         seen = {s.name: self._seen(number, s, measured) for s in rig}
@@ -140,7 +140,7 @@ class BodyChecks:
         passed = whole.copy()
         if requirement.under.one_lost:
             passed &= np.logical_and.reduce(list(without.values()))
-        return Judged(passed, whole, without, seen)
+        return ZoneResult(passed, whole, without, seen)
 
     def _measured(self, number: int, rig: Rig) -> _PointsByBand:
         """Return m of all bodies, and of their cells where a share is asked for, in a scene."""

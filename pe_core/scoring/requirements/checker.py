@@ -223,14 +223,14 @@ class _CheckedSet:
         for _ in self._bodies.measuring(rig, cases):
             done += 1
             yield CheckStep(done / total)
-        judged = dict(zip(self._numbers, self._bodies.judged(rig, cases), strict=True))
+        results = dict(zip(self._numbers, self._bodies.results(rig, cases), strict=True))
         pairs = dict(zip(self._numbers, self._pairs, strict=True))
         for number in sorted([*pairs, *self._grounds]):
             if number in pairs:
-                given = *pairs[number], judged[number], rig, self._vehicle, preview
+                given = *pairs[number], results[number], rig, self._vehicle, preview
                 verdict = body_verdict(*given)
                 if verdict.at_least:
-                    growing = self._growths[number].margin(judged[number], rig, cases)
+                    growing = self._growths[number].margin(results[number], rig, cases)
                     margin, at_least = yield from _at(done / total, growing)
                     verdict = replace(verdict, margin=margin, at_least=at_least)
             else:
@@ -241,8 +241,8 @@ class _CheckedSet:
     def shortfalls(self, rig: Rig, cases: Sequence[Rig]) -> tuple[float, ...]:
         """Return how far a rig is off each requirement, 0 where it is met."""
         found = {k: ground.shortfall(rig, cases) for k, ground in self._grounds.items()}
-        for number, judged in enumerate(self._bodies.judged(rig, cases)):
-            found[self._numbers[number]] = shortfall(*self._pairs[number], judged, rig)
+        for number, result in enumerate(self._bodies.results(rig, cases)):
+            found[self._numbers[number]] = shortfall(*self._pairs[number], result, rig)
         return tuple(found[number] for number in sorted(found))
 
 

@@ -10,25 +10,25 @@ from numpy.typing import NDArray
 from ...scene.rig import Rig
 from .body_checks import counted
 from .criteria import Requirement
-from .verdict import Judged, Samples
+from .verdict import Samples, ZoneResult
 from .zones import INSIDE_M
 
 SHARE_WEIGHT, LACKING_WEIGHT, AWAY_WEIGHT = 0.45, 0.45, 0.1
 """Weights of the samples that fail, of sensors and kinds that lack, and of the angle."""
 
 
-def shortfall(requirement: Requirement, samples: Samples, judged: Judged, rig: Rig) -> float:
+def shortfall(requirement: Requirement, samples: Samples, result: ZoneResult, rig: Rig) -> float:
     """Return 0 where a requirement is met, else how far it is off, above 0 to 1."""
     criterion, inside = requirement.criterion, samples.inside
-    share = float(judged.passed[inside].mean())
+    share = float(result.passed[inside].mean())
     if share >= criterion.zone_share:
         return 0.0
-    counts, kinds = counted(rig, judged.seen, criterion, [s.name for s in rig])
+    counts, kinds = counted(rig, result.seen, criterion, [s.name for s in rig])
     spare = int(requirement.under.one_lost)
     wanted = criterion.sensors + spare + criterion.kinds
     has = np.minimum(counts, criterion.sensors + spare) + np.minimum(kinds, criterion.kinds)
     lacks = 1.0 - float(has.mean()) / wanted
-    away = _turned_away(requirement, samples, rig, ~judged.passed & inside)
+    away = _turned_away(requirement, samples, rig, ~result.passed & inside)
     fails = 1.0 - share / criterion.zone_share
     return SHARE_WEIGHT * fails + LACKING_WEIGHT * lacks + AWAY_WEIGHT * away
 

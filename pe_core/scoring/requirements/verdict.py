@@ -42,7 +42,7 @@ class Samples:
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class ZoneResult:
     """Which samples (N,) of a zone pass.
 
     Attributes
@@ -233,20 +233,20 @@ class Verdict:
 def body_verdict(
     requirement: Requirement,
     samples: Samples,
-    judged: Judged,
+    result: ZoneResult,
     rig: Rig,
     vehicle: Vehicle | None,
     preview: bool,
 ) -> Verdict:
     """Return the verdict on a requirement on bodies, from its samples; a preview has no margin."""
     wanted, inside = requirement.criterion.zone_share, samples.inside
-    share = float(judged.passed[inside].mean())
+    share = float(result.passed[inside].mean())
     met = share >= wanted
     margin, at_least = None, False
     if not (preview if met else samples.zone.kind in LINES):
         step, looked = requirement.zone.step, samples.zone.grow
-        margin, at_least = margin_of(samples.distance, judged.passed, wanted, step, looked)
-    counts = np.sum([flags.astype(np.int64) for flags in judged.seen.values()], axis=0)
+        margin, at_least = margin_of(samples.distance, result.passed, wanted, step, looked)
+    counts = np.sum([flags.astype(np.int64) for flags in result.seen.values()], axis=0)
     at = counts[inside]
     return Verdict(
         requirement,
@@ -254,12 +254,12 @@ def body_verdict(
         margin,
         at_least,
         share,
-        **_worst_place(requirement, samples, judged, counts, rig, vehicle, met),
-        without={k: bool(flags[inside].mean() >= wanted) for k, flags in judged.without.items()},
+        **_worst_place(requirement, samples, result, counts, rig, vehicle, met),
+        without={k: bool(flags[inside].mean() >= wanted) for k, flags in result.without.items()},
         sensors=(int(at.min()), int(at.max())),
         samples=samples,
-        passed=judged.passed,
-        met_whole=bool(judged.whole[inside].mean() >= wanted),
+        passed=result.passed,
+        met_whole=bool(result.whole[inside].mean() >= wanted),
         preview=preview,
     )
 
@@ -267,14 +267,14 @@ def body_verdict(
 def _worst_place(
     requirement: Requirement,
     samples: Samples,
-    judged: Judged,
+    result: ZoneResult,
     counts: NDArray[np.int64],
     rig: Rig,
     vehicle: Vehicle | None,
     met: bool,
 ) -> dict[str, Any]:
     """Return the worst sample and body, who sees the body, and what says why the others do not."""
-    failing = samples.inside if met else samples.inside & ~judged.passed
+    failing = samples.inside if met else samples.inside & ~result.passed
     worst = worst_sample(samples.points, samples.distance, counts, failing)
     column = int(np.argmin(counts[worst]))
     body = columns_of(requirement)[column]
@@ -282,7 +282,7 @@ def _worst_place(
 
     def why() -> dict[str, str]:
         foot = (x, y, requirement.zone.z[0])
-        blind = [s for s in rig if not judged.seen[s.name][worst, column]]
+        blind = [s for s in rig if not result.seen[s.name][worst, column]]
         counts = requirement.criterion.counts
         reasons = {
             s.name: why_not(s, body, foot, vehicle) if counts(s.kind) else NO_COUNT for s in blind
@@ -291,5 +291,5 @@ def _worst_place(
             return reasons
         return {name: IN_PART if r == TOO_FEW else r for name, r in reasons.items()}
 
-    seen_by = tuple(s.name for s in rig if judged.seen[s.name][worst, column])
+    seen_by = tuple(s.name for s in rig if result.seen[s.name][worst, column])
     return {"worst": (x, y), "body": body.name, "seen_by": seen_by, "why": why}

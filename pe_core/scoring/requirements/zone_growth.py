@@ -4,7 +4,7 @@ decide that.
 The ground round a zone is looked at from the zone outwards, part by part, until the requirement
 fails. In a part the sensors are asked one after the other, those first that saw most so far, and
 only about samples that the ones before leave undecided. A sensor more that sees a body makes no
-sample fail, so the samples that pass are those of `BodyChecks.judged`.
+sample fail, so the samples that pass are those of `BodyChecks.results`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .body_checks import BodyChecks, SceneCaches, counted
 from .criteria import Requirement, levels_of
 from .margins import growth, margin_of
 from .reasons import columns_of
-from .verdict import Judged, Samples
+from .verdict import Samples, ZoneResult
 from .zones import INSIDE_M
 
 MAX_GROWN = 30_000
@@ -57,7 +57,7 @@ class ZoneGrowth:
         }
 
     def margin(
-        self, judged: Judged, rig: Rig, cases: Sequence[Rig]
+        self, result: ZoneResult, rig: Rig, cases: Sequence[Rig]
     ) -> Generator[None, None, tuple[float, bool]]:
         """Return the margin of a zone that meets its requirement, and whether it could grow more.
 
@@ -65,8 +65,8 @@ class ZoneGrowth:
         a part is measured.
         """
         wanted, step = self._requirement.criterion.zone_share, self._requirement.zone.step
-        distance, passed = self._inside.distance, judged.passed
-        saw = {name: int(np.count_nonzero(flags)) for name, flags in judged.seen.items()}
+        distance, passed = self._inside.distance, result.passed
+        saw = {name: int(np.count_nonzero(flags)) for name, flags in result.seen.items()}
         margin, inner = (0.0, True), 0.0
         for outer in (self._inside.zone.grow, *growth(self._inside.zone)):
             parts = self._ring(inner, outer)
@@ -122,14 +122,14 @@ class RingPart:
         self._known: dict[tuple[int, str], tuple[Sensor, Flags, Flags]] = {}
 
     def passed(self, rig: Rig, cases: Sequence[Rig], saw: dict[str, int]) -> Flags:
-        """Return which samples (N,) pass, as `Judged.passed`.
+        """Return which samples (N,) pass, as `ZoneResult.passed`.
 
         `saw` is what each sensor saw so far, by name; what is measured here is added.
         """
         own = self._requirement
         if own.criterion.ap is not None:  # all sensors count together
             self._whole = self._whole or self._checks(own, self.samples.points)
-            return self._whole.judged(rig, cases)[0].passed
+            return self._whole.results(rig, cases)[0].passed
         passing = np.arange(len(self.samples.points))
         for number, case in enumerate((rig, *(cases if own.under.mounting else ()))):
             passing = self._passing(number, case, passing, saw)

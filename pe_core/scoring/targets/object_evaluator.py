@@ -18,7 +18,7 @@ from ...prior.prior import Prior
 from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...sensors import ObjectMeasurementCache, PerceptionModel, kind_of
-from ..protocol import Judgement
+from ..protocol import Evaluation
 from ..scenarios import Scenarios, mean_or_worst
 from ..score import ObjectScore, Score, ScoreStopped, SensorScore, SummaryScore, Watch
 from .bound_log import BoundLog
@@ -92,8 +92,8 @@ class ObjectEvaluator:
             self._fused.check(rig)
             return self._value(rig, self._sensors.measure(rig))
 
-    def judge(self, rig: Rig, below: float = inf) -> Judgement:
-        """Return a rig's entropy, or a lower bound that is not below `below`.
+    def evaluate(self, rig: Rig, cutoff: float = inf) -> Evaluation:
+        """Return a rig's entropy, or a lower bound that is not below `cutoff`.
 
         Objects and the vehicle occlude beams and pixels and add none, so without occlusion the
         entropy is no higher. Sensors that have moved are measured without it first, then with it,
@@ -101,12 +101,12 @@ class ObjectEvaluator:
         """
         with self._lock:
             self._fused.check(rig)
-            if below < inf and self._bounds.pay():
-                bound = self._lower_bound(rig, below)
-                self._bounds.note(bound >= below)
-                if bound >= below:
-                    return Judgement(bound, True)
-            return Judgement(self._value(rig, self._sensors.measure(rig)), False)
+            if cutoff < inf and self._bounds.pay():
+                bound = self._lower_bound(rig, cutoff)
+                self._bounds.note(bound >= cutoff)
+                if bound >= cutoff:
+                    return Evaluation(bound, True)
+            return Evaluation(self._value(rig, self._sensors.measure(rig)), False)
 
     def _lower_bound(self, rig: Rig, cutoff: float) -> float:
         """Return a lower bound of a rig's entropy, which may already reach the cutoff."""
@@ -134,9 +134,11 @@ class ObjectEvaluator:
             m = self._sensors.measure(scenarios.all)
             return [self._value(part, m) for part in scenarios.parts]
 
-    def judge_together(self, rigs: Sequence[Rig], below: float, worst: bool = False) -> Judgement:
+    def evaluate_together(
+        self, rigs: Sequence[Rig], cutoff: float, worst: bool = False
+    ) -> Evaluation:
         """Return the mean of several rigs' entropies, or the highest, whatever the cutoff."""
-        return Judgement(mean_or_worst(self.entropies(rigs), worst), False)
+        return Evaluation(mean_or_worst(self.entropies(rigs), worst), False)
 
     def summary(self, rig: Rig, *, preview: bool = False) -> SummaryScore:
         """Return the score of a rig without the part by sensor."""
@@ -180,7 +182,7 @@ class ObjectEvaluator:
         )
 
     def _value(self, rig: Rig, m: MByName) -> float:
-        """Return what `entropy` and `judge` return; a subclass may have another value."""
+        """Return what `entropy` and `evaluate` return; a subclass may have another value."""
         return self._sums.part(*self._fused.entropies(rig, m)).entropy
 
     def _sensor(self, name: str, rig: Rig, m: MByName, entropy: float) -> SensorScore:

@@ -24,7 +24,7 @@ from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from ...scoring.protocol import Judgement
+from ...scoring.protocol import Evaluation
 from ..parametrization import Candidate, Parametrization
 from ..search_space import Schedule
 
@@ -88,8 +88,8 @@ class Question:
     level: int = 0
 
 
-JudgedVectors = list[Judgement | None]
-QuestionStream = Generator[Question, JudgedVectors, None]
+Evaluations = list[Evaluation | None]
+QuestionStream = Generator[Question, Evaluations, None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +116,7 @@ class Method:
 T = TypeVar("T")
 Evaluated = list[tuple[Candidate, float]]
 """Placements, and their entropies or lower bounds [nats]."""
-MethodPart = Generator[Question, JudgedVectors, T]
+MethodPart = Generator[Question, Evaluations, T]
 """A part of a method: it yields questions, and returns its result."""
 
 

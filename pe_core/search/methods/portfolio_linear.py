@@ -34,7 +34,7 @@ FAR = 1.1
 FLAT = 1e-3
 """A new corner is at least so high above the others, in the old one's heights."""
 SLACK, DIGITS = 1e-9, 9
-"""Rounding: a simplex is judged alike on every system."""
+"""Rounding: a simplex is evaluated alike on every system."""
 NO_EDGE = 0.01
 """Length of an edge along a variable that cannot be changed, in radii."""
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..design_variable import METRE, RADIAN, SHARE
 from ..parametrization import Candidate
-from .method import Given, JudgedVectors, Question, QuestionStream, sampled_candidate
+from .method import Evaluations, Given, Question, QuestionStream, sampled_candidate
 
 SHARE_REACH = 0.5
 """Half width of the first neighbourhood in a list: all of it, because a list is cyclic."""
@@ -46,7 +46,7 @@ def _neighbour(
 
 
 def _incumbent(
-    best: Candidate, entropy: float, candidates: list[Candidate | None], answers: JudgedVectors
+    best: Candidate, entropy: float, candidates: list[Candidate | None], answers: Evaluations
 ) -> tuple[Candidate, float]:
     """Return the candidate of lowest entropy, the first of equal ones, and its entropy."""
     for candidate, answer in zip(candidates, answers, strict=True):

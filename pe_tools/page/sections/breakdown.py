@@ -167,7 +167,7 @@ def _losses(context: ReportContext) -> tuple[SensorLoss, ...]:
 
 
 def _loss_of(
-    context: ReportContext, name: str, evaluator: pe.RigJudge, whole: pe.SummaryScore
+    context: ReportContext, name: str, evaluator: pe.RigEvaluator, whole: pe.SummaryScore
 ) -> SensorLoss:
     remaining = pe.Rig([sensor for sensor in context.rig if sensor.name != name])
     score = evaluator.summary(remaining)

@@ -12,7 +12,7 @@ from pe_core import sensors as kinds
 from pe_core import study as studies
 from pe_core.base import Flags, Floats, Ints, Singles
 from pe_core.scoring import requirements, sight
-from pe_tools import advice, exchange, graphics, jobs, outputs, page
+from pe_tools import advice, exchange, graphics, jobs, outputs, page, wording
 from pe_tools import cli as app
 
 __all__ = [
@@ -37,4 +37,5 @@ __all__ = [
     "sight",
     "studies",
     "text",
+    "wording",
 ]

@@ -32,6 +32,7 @@ from pe_tools.page import ReportContext, page_bytes  # noqa: E402
 from pe_tools.page.pictures.requirement_plans import requirement_plan  # noqa: E402
 from pe_tools.page.pictures.svg import STYLE  # noqa: E402
 from pe_tools.page.pictures.vehicle_picture import vehicle_picture  # noqa: E402
+from pe_tools.wording import verdict_text  # noqa: E402
 
 FOLDER, PAGES = ROOT / "examples", ROOT / "docs" / "examples"
 IMAGES = ROOT / "docs" / "images"
@@ -189,7 +190,9 @@ def plan(study: pe.Study, name: str) -> str:
     """Return the plan of a requirement of a study, as SVG on its own."""
     asked = tuple(each for each in study.requirements if each.name == name)
     (verdict,) = verdicts_of(replace(study, requirements=asked))
-    drawn = str(requirement_plan(verdict, study.vehicle, f"{name}: {verdict.text}"))
+    drawn = str(
+        requirement_plan(verdict, study.vehicle, f"{name}: {verdict_text(verdict.summary)}")
+    )
     head = f'<svg xmlns="http://www.w3.org/2000/svg" style="background:#fff"><style>{STYLE}</style>'
     return re.sub(r"^<svg (.*?)>", lambda f: head.replace("<svg ", f"<svg {f[1]} ", 1), drawn)
 

@@ -16,7 +16,7 @@ from typing import Any
 
 import bpy
 
-from ..engine import pe, requirements, studies, text
+from ..engine import pe, requirements, studies, text, wording
 
 UNKNOWN, NOT_MET, MET = -1, 0, 1
 """Verdicts as a row stores them."""
@@ -168,7 +168,9 @@ def store_verdicts(
                 row.verdict = f"not checked: {reason}"
             continue
         row.met = MET if verdict.met else NOT_MET
-        row.margin_text, row.verdict = verdict.margin_text, verdict.text
+        summary = verdict.summary
+        row.margin_text = wording.margin_text(summary)
+        row.verdict = wording.verdict_text(summary)
         row.has_worst = verdict.worst is not None
         row.worst = verdict.worst or (0.0, 0.0)
 

@@ -10,7 +10,7 @@ from bpy.props import EnumProperty, IntProperty
 
 from .. import bridge, signals, vehicle_cache
 from ..choices import free_name
-from ..engine import jobs, pe, requirements, studies
+from ..engine import jobs, pe, requirements, studies, wording
 from ..overlay.layer_cache import shown
 from ..overlay.requirement_zones import VerdictShape
 from . import running_job
@@ -257,8 +257,12 @@ def shown_verdicts(scene: bpy.types.Scene) -> dict[str, ShownVerdict]:
         if row.name in unplaced:
             found[row.name] = ShownVerdict(None, "", f"not checked: {unplaced[row.name]}")
         elif verdict is not None:
-            text = verdict.margin_text if verdict.margin_text or verdict.preview else ""
-            found[row.name] = ShownVerdict(verdict.met, text, verdict.text, verdict.preview)
+            found[row.name] = ShownVerdict(
+                verdict.met,
+                wording.margin_text(verdict.summary),
+                wording.verdict_text(verdict.summary),
+                verdict.preview,
+            )
         else:
             met = None if row.met < 0 else bool(row.met)
             found[row.name] = ShownVerdict(met, row.margin_text, row.verdict)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..engine import Floats, graphics, requirements
+from ..engine import Floats, graphics, requirements, wording
 
 Verdict = requirements.Verdict
 
@@ -202,7 +202,8 @@ def _legend(
         news = "" if was == verdict.met else "won: " if verdict.met else "lost: "
         if verdict.met and not news:
             continue
-        margin = f", {verdict.margin_text}" if verdict.margin_text and not news else ""
+        margin = wording.margin_text(verdict.summary)
+        margin = f", {margin}" if margin and not news else ""
         rows.append((MET if verdict.met else NOT_MET, f"{news}{_short(verdict.name)}{margin}"))
     rows += [(NOT_CHECKED, f"not checked: {_short(name)}") for name in unplaced]
     if len(rows) > MAX_ROWS:

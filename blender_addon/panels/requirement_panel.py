@@ -52,7 +52,7 @@ class PE_UL_requirements(bpy.types.UIList):
         after.active = False
         after.label(text=after_of(item), icon="BLANK1", translate=False)
         margin.alignment = "RIGHT"
-        draw_label(margin, "" if verdict is None else verdict.margin.removeprefix("margin "))
+        draw_label(margin, "" if verdict is None else verdict.margin)
 
 
 class PE_PT_requirements(Tab, bpy.types.Panel):

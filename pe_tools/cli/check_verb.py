@@ -20,6 +20,7 @@ from pe_core.study.requirement_help import Suggestion, suggestions
 
 from ..advice import curve_note
 from ..jobs import CheckJob
+from ..wording import hidden_text, margin_text, reason_text
 from .command import add_curve_option, with_curves
 from .interrupts import stop_at_first
 from .run_job import drive, print_vehicle
@@ -185,7 +186,7 @@ def verdict_lines(verdicts: Sequence[Verdict], unchecked: dict[str, str]) -> lis
 
 def _row(verdict: Verdict) -> tuple[str, str, str, str, str, str]:
     name = verdict.name if len(verdict.name) <= LONGEST else verdict.name[: LONGEST - 3] + "..."
-    margin = verdict.margin_text
+    margin = margin_text(verdict.summary)
     if verdict.margin is not None:
         blind = "" if verdict.blind_m2 is None else f"blind {verdict.blind_m2:.2f} m2, "
         margin = f"{blind}{'>= ' if verdict.at_least else ''}{verdict.margin:+.2f} m"
@@ -204,8 +205,9 @@ def _reason(verdict: Verdict) -> str:
     if verdict.worst is None:
         return ""
     x, y = verdict.worst
+    hidden = hidden_text(verdict.hidden)
     what = f"{verdict.body or 'nearest blind ground'} at "
-    return f"{what}({x:.2f}, {y:.2f}){f': {verdict.hidden_text}' if verdict.hidden else ''}"
+    return f"{what}({x:.2f}, {y:.2f}){f': {hidden}' if hidden else ''}"
 
 
 def verdicts_csv(verdicts: Sequence[Verdict]) -> str:
@@ -218,7 +220,7 @@ def verdicts_csv(verdicts: Sequence[Verdict]) -> str:
             "worst_x": x,
             "worst_y": y,
             "seen_by": "; ".join(verdict.seen_by),
-            "hidden": "; ".join(f"{k}: {v}" for k, v in verdict.hidden.items()),
+            "hidden": "; ".join(f"{k}: {reason_text(v)}" for k, v in verdict.hidden.items()),
             "breaks_without": "; ".join(verdict.breaks_without),
         }
         rows.append([(data | listed)[c] for c in COLUMNS])

@@ -13,6 +13,7 @@ from pe_core.study import Robustness
 
 from ..advice import hidden_sensors, hidden_words, object_words, objects_looked_at, off_by
 from ..jobs import Outcome, condition_lines, searched_on, sureness_lines
+from ..wording import margin_text
 
 DONE, BAD_INPUT, USAGE, INTERRUPTED = 0, 1, 2, 130
 Answer = tuple[str, int]
@@ -169,7 +170,7 @@ def _requirements(outcome: Outcome) -> list[str]:
         return []
     count = len(outcome.verdicts)
     lines = [f"requirements  {count - len(broken)} of {count} met"]
-    return lines + [f"not met: {each.name}, {each.margin_text}" for each in broken]
+    return lines + [f"not met: {each.name}, {margin_text(each.summary)}" for each in broken]
 
 
 def _moves(found: Robustness | None) -> list[str]:

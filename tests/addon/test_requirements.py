@@ -12,9 +12,10 @@ from blender_addon import bridge, requirement_checkers
 from blender_addon.operators import requirements as operators
 from blender_addon.operators import score_jobs
 from blender_addon.overlay.requirement_zones import FILL_ALPHA, MET, NOT_MET
+from pe_core.scoring.requirements import VerdictSummary
 from pe_core.sensors import ObjectMeasurementCache
 from pe_core.study import requirement_file
-from pe_tools import graphics
+from pe_tools import graphics, wording
 from tests.addon import scenes
 from tests.addon.command_line import pe_here, run_here
 from tests.engine.shapes import box
@@ -185,7 +186,7 @@ def test_a_changed_preset_is_said_to_be_changed(held):
     assert operators.source_of(row).check == shown
     row.points = 7
     assert operators.source_of(row).check == f"{shown}, changed"
-    assert f"after {shown}, changed:" in scenes.study().verdicts()[0].text
+    assert scenes.study().verdicts()[0].summary.check == f"{shown}, changed"
 
 
 def test_states_and_weathers_of_a_requirement_are_those_of_the_study_file(held, tmp_path):
@@ -206,7 +207,9 @@ def test_states_and_weathers_of_a_requirement_are_those_of_the_study_file(held, 
     assert again.requirements == study.requirements
     bpy.ops.pe.check_requirements()
     verdicts = again.verdicts()
-    assert [row.verdict for row in rows(held)] == [v.text for v in verdicts]
+    assert [row.verdict for row in rows(held)] == [
+        wording.verdict_text(v.summary) for v in verdicts
+    ]
     assert fog.name in verdicts[1].condition and not verdicts[1].met
     row.weathers = "drizzle"
     with pytest.raises(pe.InputError, match="drizzle"):
@@ -315,8 +318,8 @@ def test_check_stores_the_verdicts_of_the_engine(held):
     verdicts = scenes.study().verdicts()
     assert {verdict.met for verdict in verdicts} == {True, False}, "both are tried"
     for row, verdict in zip(rows(held), verdicts, strict=True):
-        assert (bool(row.met), row.verdict) == (verdict.met, verdict.text)
-        assert row.margin_text == verdict.margin_text
+        assert (bool(row.met), row.verdict) == (verdict.met, wording.verdict_text(verdict.summary))
+        assert row.margin_text == wording.margin_text(verdict.summary)
         assert tuple(row.worst) == pytest.approx(verdict.worst)
     shown = operators.shown_verdicts(held)
     assert [shown[v.name].met for v in verdicts] == [v.met for v in verdicts]
@@ -379,7 +382,10 @@ def test_view_check_and_score_measure_nothing_twice(held, first, monkeypatch):
 def test_a_score_stores_them_too_and_an_edit_forgets_one(held):
     assert bpy.ops.pe.score() == {"FINISHED"}
     told = json.loads(held.perception_entropy.result_json)["requirements"]
-    assert [row.verdict for row in rows(held)] == [each["text"] for each in told]
+    assert [row.verdict for row in rows(held)] == [
+        wording.verdict_text(VerdictSummary(**{k: each[k] for k in VerdictSummary.__slots__}))
+        for each in told
+    ]
     rows(held)[1].step = 0.4
     assert rows(held)[1].met == -1 and rows(held)[0].met >= 0
     assert operators.shown_verdicts(held)[rows(held)[1].name].met is None

@@ -262,7 +262,7 @@ def test_a_study_s_keys_make_its_evaluator():
     study = study_from_dict(data)
     assert study.targets == pe.TargetRule("objects", True, 8)
     assert study.model.object_curve("lidar", "car") == pe.ApCurve(0.3, -0.5)
-    evaluator = study.scorer()
+    evaluator = study.evaluator()
     assert len(evaluator.drawn.objects) == 16 and evaluator.targets.traffic
     assert study.looks_at(0) == study.looks_at(65_536) == 8
 
@@ -270,7 +270,7 @@ def test_a_study_s_keys_make_its_evaluator():
 def test_a_search_s_coarser_levels_have_fewer_scenes():
     study = study_from_dict({"sensor": [SENSOR], "metric": {"targets": "objects"}})
     assert [study.looks_at(n) for n in (0, 65_536, 16_384, 1024)] == [256, 256, 64, 32]
-    assert study.scorer(16_384).targets.scenes == 64
+    assert study.evaluator(16_384).targets.scenes == 64
 
 
 @pytest.mark.parametrize(

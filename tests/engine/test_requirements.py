@@ -1,5 +1,6 @@
 """Verdicts: blind ground, margins, losses, previews, and mounting errors."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -9,10 +10,12 @@ import pe_core as pe
 from pe_core.scoring.requirements import (
     BODIES,
     Criterion,
+    Reason,
     Requirement,
     RequirementChecker,
     Samples,
     Under,
+    VerdictSummary,
     Zone,
     margin_of,
     zone_growth,
@@ -21,6 +24,7 @@ from pe_core.scoring.requirements.body_checks import BodyChecks, SceneCaches
 from pe_core.scoring.sight import Sight
 from pe_core.search import Tolerance, mounted_off
 from pe_core.sensors import ObjectMeasurementCache
+from pe_tools.wording import hidden_text, margin_text, reason_text, verdict_text
 from tests.engine import shapes
 from tests.engine.requirement_scene import AHEAD, MIDDLE, check, rig, van
 
@@ -140,9 +144,26 @@ def test_margins_of_blind_ground_are_those_of_its_squares():
     beside = verdict(replace(zone, x=(-2.0, 2.0), y=("left + 0.2", "left + 2")))
     assert not beside.met and beside.margin < 0.0 and beside.ground.spare_m2 < 0.0
     inner = verdict(replace(zone, x=(-2.0, 2.0), y=("left + 0.2", "left + 2")), blind_m2=1e3)
-    assert inner.met and "blind" in inner.margin_text
+    assert inner.met and inner.summary.blind_m2 is not None
     out = verdict(zone, blind_m2=None, blind_out=0.0)
     assert out.ground.spare_out == pytest.approx(-out.ground.blind_out, abs=0.011)
+
+
+def test_texts_come_from_values_that_survive_json():
+    def texts(**values):
+        plain = {"name": "ahead", "check": "", "met": True, "margin_m": None, "share": 0.5}
+        plain |= {"margin_at_least": False, "samples": 4000, "failing": 2000, "blind_m2": None}
+        plain |= {"condition": "", "preview": False, "worst": None, **values}
+        summary = VerdictSummary(**json.loads(json.dumps(plain)))
+        return margin_text(summary), verdict_text(summary)
+
+    assert texts(preview=True) == ("", "ahead: met (preview)")
+    assert texts(margin_m=0.5) == ("0.50 m", "ahead: met, margin 0.50 m")
+    found = texts(margin_m=0.3, margin_at_least=True, blind_m2=0.4, condition="rain", check="R159")
+    checked = "geometric check after R159: met, blind 0.40 m2, margin at least 0.30 m, in rain"
+    assert found == ("blind 0.40 m2, at least 0.30 m", checked)
+    assert texts(met=False, margin_m=-0.15)[0] == "fails 0.15 m inside"
+    assert texts(met=False)[0] == "fails at 2,000 of 4,000 places"
 
 
 def test_losses_hidden_parts_and_the_worst_place_are_named():
@@ -155,12 +176,13 @@ def test_losses_hidden_parts_and_the_worst_place_are_named():
     alone = pe.Rig([rig()["top"], rig()["front"]])
     (lost,) = check(behind, of=alone)
     assert not lost.met and lost.margin < 0.0 and lost.worst is not None
-    assert set(lost.hidden) == {"top", "front"} and "body" in lost.hidden.values()
-    parts = [part.removesuffix(")").split(" (") for part in lost.hidden_text.split("; ")]
-    told = {name: reason for reason, names in parts for name in names.split(", ")}
-    assert told == lost.hidden
-    assert "not met, fails" in lost.text
-    assert lost.to_dict()["worst"] == list(lost.worst)
+    assert (
+        set(lost.hidden) == {"top", "front"} and Reason("occluded", "body") in lost.hidden.values()
+    )
+    told = [part.removesuffix(")").split(" (") for part in hidden_text(lost.hidden).split("; ")]
+    texts = {name: text for text, names in told for name in names.split(", ")}
+    assert texts == {name: reason_text(reason) for name, reason in lost.hidden.items()}
+    assert lost.to_dict()["worst"] == lost.worst
 
 
 def test_a_stricter_requirement_is_never_easier():
@@ -184,7 +206,7 @@ def test_a_stricter_requirement_is_never_easier():
 def test_a_preview_asks_of_the_zone_alone_and_says_so():
     requirement = Requirement("ahead", MIDDLE, (BODIES["child"],))
     (whole,), (preview,) = check(requirement), check(requirement, preview=True)
-    assert preview.preview and preview.text.endswith("(preview)") and preview.margin is None
+    assert preview.summary.preview and preview.margin is None
     assert len(preview.passed) == whole.samples.inside.sum()
     assert preview.passed.tolist() == whole.passed[whole.samples.inside].tolist()
 

@@ -168,7 +168,7 @@ def test_a_folder_of_results_is_reviewed_as_the_search_it_was(study, tmp_path, c
     assert main(["optimize", str(study), "-o", str(out)]) == 0
     told = json.loads((out / "result.json").read_text("utf-8"))["requirements"]
     again = outcome_of_folder(out, lambda each: outcome_of(pe.ScoreJob(each)))
-    assert [verdict.text for verdict in again.verdicts] == [each["text"] for each in told] != []
+    assert json.loads(json.dumps([v.to_dict() for v in again.verdicts])) == told != []
     left = (out / PAGE).read_text("utf-8").replace("a &lt;b&gt; &amp; c.npz", "vehicle.npz")
     assert main(["review", str(out), "-o", str(tmp_path / "again")]) == 0
     assert (tmp_path / "again" / PAGE).read_text("utf-8") == left

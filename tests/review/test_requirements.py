@@ -15,6 +15,7 @@ from pe_tools.page.pictures.requirement_plans import MET_RGBA, NOT_MET_RGBA, req
 from pe_tools.page.pictures.test_bodies import worst_bodies
 from pe_tools.page.sections.redundancy import HEIGHT_M, STEP_M, WITHIN_M, redundancy
 from pe_tools.page.sections.requirement_verdicts import CSS, requirement_verdicts
+from pe_tools.wording import margin_text
 from tests.review.conftest import NAMES, outcome_of, small_study
 from tests.review.test_maps import pixels_of
 
@@ -61,7 +62,7 @@ def test_each_requirement_has_its_row_and_plan_with_the_verdict_of_the_engine(co
     assert "<b>1 of 3 requirements are met.</b>" in html
     assert html.count('<svg class="drawn"') >= 3
     for verdict in verdicts:
-        shown = verdict.margin_text.removeprefix("margin ").replace("m2", "m²").split(" blind")[0]
+        shown = margin_text(verdict.summary).replace("m2", "m²").split(" blind")[0]
         assert shown.removeprefix("blind ") in html
 
 

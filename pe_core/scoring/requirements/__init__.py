@@ -7,8 +7,9 @@ from .definition import body_met, sees
 from .margins import FARTHEST_M, margin_of
 from .mesh_shape import MeshShape
 from .planes import VehiclePlanes
+from .reasons import Reason
 from .redundancy import Redundancy, RedundancyMap
-from .verdict import GroundFigures, Samples, Verdict
+from .verdict import GroundFigures, Samples, Verdict, VerdictSummary
 from .zones import PlacedZone, Zone, signed_distance
 
 __all__ = [
@@ -20,6 +21,7 @@ __all__ = [
     "GroundFigures",
     "MeshShape",
     "PlacedZone",
+    "Reason",
     "Redundancy",
     "RedundancyMap",
     "Requirement",
@@ -28,6 +30,7 @@ __all__ = [
     "Under",
     "VehiclePlanes",
     "Verdict",
+    "VerdictSummary",
     "Zone",
     "body_met",
     "checkable",

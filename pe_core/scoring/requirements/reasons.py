@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,10 +14,18 @@ from ...sensors import kind_of
 from .bodies import Body
 from .criteria import Requirement, levels_of
 
-TOO_FEW, IN_PART = "too few on it", "seen in part at most"
-NO_COUNT = "of a kind that does not count"
+OCCLUDED, TOO_FEW, IN_PART, NO_COUNT = "occluded", "too few", "in part", "not counted"
+"""Codes of reasons, beside those of `Kind.missed`. In part: a share has to be visible, and less may
+be. Not counted: the criterion leaves out sensors of this kind."""
 CUBE_M = 0.1
 """Side of the cubes by which it is told why a sensor does not see a body."""
+
+
+class Reason(NamedTuple):
+    """Why a sensor does not see a body: a code, and the part of the vehicle that occludes it."""
+
+    code: str
+    part: str = ""
 
 
 def worst_sample(points: Floats, distance: Floats, counts: Ints, among: Flags) -> int:
@@ -34,8 +43,8 @@ def columns_of(requirement: Requirement) -> list[Body]:
     return [body for body in requirement.bodies for _ in range(levels) for _ in body.headings]
 
 
-def why_not(sensor: Sensor, body: Body, foot: tuple[float, ...], vehicle: Vehicle | None) -> str:
-    """Return why a sensor does not see a body: a part of the vehicle, or another reason.
+def why_not(sensor: Sensor, body: Body, foot: tuple[float, ...], vehicle: Vehicle | None) -> Reason:
+    """Return why a sensor does not see a body.
 
     Cubes along the middle of the body, from its foot to its top, are asked for: the part that most
     of the rays end on to cubes that the sensor would see without the vehicle.
@@ -47,12 +56,14 @@ def why_not(sensor: Sensor, body: Body, foot: tuple[float, ...], vehicle: Vehicl
     centers = np.column_stack([np.full(count, x), np.full(count, y), z + body.low + heights])
     in_view = kind.measure(sensor, centers, CUBE_M, None) > 0.0
     if not in_view.any():
-        return kind.missed(sensor, centers[count // 2], CUBE_M)
+        return Reason(kind.missed(sensor, centers[count // 2], CUBE_M))
     rays = [kind.rays_to(sensor, center, CUBE_M) for center in centers[in_view]]
     directions, lengths = (np.concatenate([ray[k] for ray in rays]) for k in (0, 1))
     if vehicle is None or not len(directions):
-        return TOO_FEW
+        return Reason(TOO_FEW)
     glass = sensor.model.sees_through_glass
     hits = vehicle.first_hit(sensor.pose.position, directions, glass)
     parts = vehicle.parts[hits.face[hits.distance < lengths]]
-    return str(vehicle.part_names[int(np.bincount(parts).argmax())]) if len(parts) else TOO_FEW
+    if not len(parts):
+        return Reason(TOO_FEW)
+    return Reason(OCCLUDED, str(vehicle.part_names[int(np.bincount(parts).argmax())]))

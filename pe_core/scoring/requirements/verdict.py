@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
 
@@ -16,7 +16,7 @@ from ...scene.vehicle import Vehicle
 from ..sight.ground_cells import GroundCells
 from .criteria import Requirement
 from .margins import margin_of
-from .reasons import IN_PART, NO_COUNT, TOO_FEW, columns_of, why_not, worst_sample
+from .reasons import IN_PART, NO_COUNT, TOO_FEW, Reason, columns_of, why_not, worst_sample
 from .zones import INSIDE_M, PlacedZone
 
 LINES = ("path", "spots")
@@ -85,6 +85,29 @@ class GroundFigures:
     cells: GroundCells
 
 
+@dataclass(frozen=True, slots=True)
+class VerdictSummary:
+    """A verdict in plain values, which a front end may store as JSON and say in its own words.
+
+    `margin_m`, `margin_at_least`, `share`, `blind_m2`, `condition` and `preview` are as in
+    `Verdict`. Of the zone's `samples`, `failing` do not pass. `check` is the text that the
+    requirement is after, "" for an own one.
+    """
+
+    name: str
+    check: str
+    met: bool
+    margin_m: float | None
+    margin_at_least: bool
+    share: float
+    samples: int
+    failing: int
+    blind_m2: float | None
+    condition: str
+    preview: bool
+    worst: tuple[float, float] | None
+
+
 @dataclass(frozen=True, eq=False)
 class Verdict:
     """A verdict on one requirement.
@@ -134,7 +157,7 @@ class Verdict:
     worst: tuple[float, float] | None
     body: str | None
     seen_by: tuple[str, ...]
-    why: Callable[[], Mapping[str, str]]
+    why: Callable[[], Mapping[str, Reason]]
     without: Mapping[str, bool]
     sensors: tuple[int, int]
     samples: Samples
@@ -150,22 +173,9 @@ class Verdict:
         return self.requirement.name
 
     @cached_property
-    def hidden(self) -> Mapping[str, str]:
-        """Why each other sensor does not see that body, by name; computed when asked.
-
-        A part of the vehicle, or "out of view", "out of range", "between beams", "too few on it";
-        where a share has to be visible also "seen in part at most"; of a sensor that the criterion
-        leaves out "of a kind that does not count".
-        """
+    def hidden(self) -> Mapping[str, Reason]:
+        """Why each other sensor does not see that body, by name; computed when asked."""
         return self.why()
-
-    @property
-    def hidden_text(self) -> str:
-        """`hidden` in words: "roof (left, right); out of view (rear)"."""
-        by_reason: dict[str, list[str]] = {}
-        for name, reason in self.hidden.items():
-            by_reason.setdefault(reason, []).append(name)
-        return "; ".join(f"{reason} ({', '.join(names)})" for reason, names in by_reason.items())
 
     @property
     def blind_m2(self) -> float | None:
@@ -173,27 +183,23 @@ class Verdict:
         return None if self.ground is None else self.ground.blind_m2
 
     @property
-    def margin_text(self) -> str:
-        """The margin in words: "margin 0.42 m", "fails 0.15 m inside", "blind 0.40 m2"."""
-        parts = [] if self.ground is None else [f"blind {self.ground.blind_m2:.2f} m2"]
-        if self.margin is not None:
-            more = "at least " if self.at_least else ""
-            grows, fails = f"margin {more}{self.margin:.2f} m", f"fails {-self.margin:.2f} m inside"
-            parts.append(grows if self.met else fails)
-        elif self.ground is None and not self.met:
-            inside = self.passed[self.samples.inside]
-            parts.append(f"fails at {int((~inside).sum()):,} of {len(inside):,} places")
-        return ", ".join(parts)
-
-    @property
-    def text(self) -> str:
-        """One line: "geometric check after R159 Annex 3: met, margin 0.42 m"."""
-        after = self.requirement.after
-        what = f"geometric check after {after}" if after else self.name
-        parts = ["met" if self.met else "not met", self.margin_text]
-        parts.append(f"in {self.condition}" if self.condition else "")
-        preview = " (preview)" if self.preview else ""
-        return f"{what}: {', '.join(p for p in parts if p)}{preview}"
+    def summary(self) -> VerdictSummary:
+        """The verdict in plain values."""
+        inside = self.passed[self.samples.inside]
+        return VerdictSummary(
+            self.name,
+            self.requirement.after,
+            self.met,
+            self.margin,
+            self.at_least,
+            round(self.share, 6),
+            len(inside),
+            int((~inside).sum()),
+            self.blind_m2,
+            self.condition,
+            self.preview,
+            self.worst,
+        )
 
     @property
     def breaks_without(self) -> tuple[str, ...]:
@@ -203,30 +209,20 @@ class Verdict:
     def to_dict(self) -> dict[str, Any]:
         """Return the verdict as plain data, as in result.json."""
         return {
-            "name": self.name,
+            **asdict(self.summary),
             "preset": self.requirement.preset,
-            "check": self.requirement.after or None,
             "source": self.requirement.source or None,
-            "met": self.met,
             "met_whole": self.met_whole,
-            **({"condition": self.condition} if self.condition else {}),
-            "margin_m": self.margin,
-            "margin_at_least": self.at_least,
-            "share": round(self.share, 6),
-            "samples": int(self.samples.inside.sum()),
-            "worst": None if self.worst is None else list(self.worst),
             "worst_body": self.body,
             "seen_by": list(self.seen_by),
-            "hidden": dict(self.hidden),
+            "hidden": {name: reason._asdict() for name, reason in self.hidden.items()},
             "without": dict(self.without),
             "fewest_sensors": self.sensors[0],
             "most_sensors": self.sensors[1],
-            "blind_m2": self.blind_m2,
             "blind_out_m": self.ground and self.ground.blind_out,
             "spare_m2": self.ground and self.ground.spare_m2,
             "spare_out_m": self.ground and self.ground.spare_out,
             "planes": dict(self.samples.zone.planes.found),
-            "text": self.text,
         }
 
 
@@ -280,16 +276,17 @@ def _worst_place(
     body = columns_of(requirement)[column]
     x, y = samples.points[worst].tolist()
 
-    def why() -> dict[str, str]:
+    def why() -> dict[str, Reason]:
         foot = (x, y, requirement.zone.z[0])
         blind = [s for s in rig if not result.seen[s.name][worst, column]]
         counts = requirement.criterion.counts
         reasons = {
-            s.name: why_not(s, body, foot, vehicle) if counts(s.kind) else NO_COUNT for s in blind
+            s.name: why_not(s, body, foot, vehicle) if counts(s.kind) else Reason(NO_COUNT)
+            for s in blind
         }
         if requirement.criterion.share is None:
             return reasons
-        return {name: IN_PART if r == TOO_FEW else r for name, r in reasons.items()}
+        return {n: Reason(IN_PART) if r.code == TOO_FEW else r for n, r in reasons.items()}
 
     seen_by = tuple(s.name for s in rig if result.seen[s.name][worst, column])
     return {"worst": (x, y), "body": body.name, "seen_by": seen_by, "why": why}

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import pe_core as pe
 from pe_core.scoring import requirements
 
+from ...wording import hidden_text, margin_text, verdict_text
 from ..markup import Markup, escaped, joined, number, percent, table
 from ..pictures.requirement_plans import requirement_plan
 from ..pictures.sensor_views import sensor_view
@@ -70,23 +71,23 @@ def _row(number_of: int, verdict: requirements.Verdict) -> list[object]:
         TAGS[verdict.met],
         _margin(verdict),
         place,
-        "" if verdict.met else verdict.hidden_text,
+        "" if verdict.met else hidden_text(verdict.hidden),
         joined(list(verdict.breaks_without)),
     ]
 
 
 def _margin(verdict: requirements.Verdict) -> str:
     if verdict.blind_m2 is not None:
-        return verdict.margin_text.replace("m2", "m²").replace("margin ", "")
+        return margin_text(verdict.summary).replace("m2", "m²")
     share = "" if verdict.met else f"; {percent(verdict.share)} of the zone pass"
-    return f"{verdict.margin_text}{share}".removeprefix("margin ")
+    return f"{margin_text(verdict.summary)}{share}"
 
 
 def _plan(context: ReportContext, number_of: int, verdict: requirements.Verdict) -> Markup:
     alt = f"Zone of {verdict.name} from above: {'met' if verdict.met else 'not met'}"
     drawing = requirement_plan(verdict, context.vehicle, alt)
     caption = f"<b>{number_of} {escaped(verdict.name)}</b> {TAGS[verdict.met]}<br>"
-    return figure(drawing, Markup(f"{caption}{escaped(verdict.text)}"))
+    return figure(drawing, Markup(f"{caption}{escaped(verdict_text(verdict.summary))}"))
 
 
 def _seen_bodies(context: ReportContext, bodies: tuple[WorstBody, ...]) -> str:

@@ -15,6 +15,7 @@ import sys
 import tempfile
 import tomllib
 import zipfile
+from importlib.metadata import distribution
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -25,6 +26,8 @@ MANIFEST = ADDON / "blender_manifest.toml"
 PACKED = (ENGINE.name, TOOLS.name)
 REPORTS = ("plots",)
 """Rooms of the tools that the extension has no use for: they plot with Matplotlib."""
+BUNDLED = ("ruamel.yaml",)
+"""Libraries of the engine and the tools that Blender does not have, as wheels in the extension."""
 EXAMPLE = "assets/examples/sedan.blend"
 """What the button *Open an Example* opens; a copy of that in `blend_assets`."""
 FROM_PACKED = re.compile(r"^(\s*)from ((?:pe_core|pe_tools)\b[\w.]*) import", re.MULTILINE)
@@ -75,6 +78,10 @@ def stage(target: Path) -> None:
     for room in REPORTS:
         shutil.rmtree(target / TOOLS.name / room)
     shutil.copy(ROOT / "LICENSE", target / "LICENSE")
+    wheels = [add_wheel(target / "wheels", name) for name in BUNDLED]
+    listed = ", ".join(f'"./wheels/{wheel.name}"' for wheel in wheels)
+    manifest = read(MANIFEST).replace("[permissions]", f"wheels = [{listed}]\n\n[permissions]", 1)
+    (target / MANIFEST.name).write_text(manifest, "utf-8")
     (target / EXAMPLE).parent.mkdir(parents=True, exist_ok=True)
     shutil.copy(ROOT / "blend_assets" / Path(EXAMPLE).name, target / EXAMPLE)
     for path in target.rglob("*.py"):
@@ -82,6 +89,26 @@ def stage(target: Path) -> None:
         relative = with_relative_imports(source, len(path.relative_to(target).parts))
         if relative != source:
             path.write_text(relative, "utf-8")
+
+
+def add_wheel(folder: Path, name: str) -> Path:
+    """Pack the installed files of a library in pure Python as a wheel again; return its path."""
+    library = distribution(name)
+    files = [f for f in library.files or () if "__pycache__" not in f.parts and ".." not in f.parts]
+    packed = [file for file in files if file.name not in ("INSTALLER", "REQUESTED", "RECORD")]
+    if not packed or any(file.suffix in (".so", ".pyd") for file in packed):
+        raise BuildError(f"{name} is not installed in pure Python")
+    info = next(file.parent for file in files if file.name == "WHEEL")
+    folder.mkdir(exist_ok=True)
+    path = folder / f"{info.name.removesuffix('.dist-info')}-py3-none-any.whl"
+    record = [f"{file.as_posix()},{file.hash.mode}={file.hash.value},{file.size}"
+              for file in packed if file.hash is not None]  # fmt: skip
+    contents = {file.as_posix(): file.read_binary() for file in packed}
+    contents[f"{info.name}/RECORD"] = "\n".join([*record, f"{info.name}/RECORD,,", ""]).encode()
+    with zipfile.ZipFile(path, "w") as wheel:
+        for file_name in sorted(contents):
+            wheel.writestr(zip_entry(file_name), contents[file_name], zipfile.ZIP_DEFLATED)
+    return path
 
 
 def with_relative_imports(source: str, dots: int) -> str:
@@ -158,10 +185,15 @@ def repack(source: Path, target: Path) -> None:
     """Write the files of an archive again in a fixed order, without times and owners."""
     with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w") as new:
         for name in sorted(name for name in old.namelist() if not name.endswith("/")):
-            entry = zipfile.ZipInfo(name, ZIP_TIME)
-            entry.external_attr = ZIP_FILE_MODE
-            entry.create_system = 3  # Unix, on whatever system it is built
-            new.writestr(entry, old.read(name), zipfile.ZIP_DEFLATED, compresslevel=9)
+            new.writestr(zip_entry(name), old.read(name), zipfile.ZIP_DEFLATED, compresslevel=9)
+
+
+def zip_entry(name: str) -> zipfile.ZipInfo:
+    """Return an entry that is the same on whatever system and whenever it is built."""
+    entry = zipfile.ZipInfo(name, ZIP_TIME)
+    entry.external_attr = ZIP_FILE_MODE
+    entry.create_system = 3  # Unix
+    return entry
 
 
 def build() -> Path:

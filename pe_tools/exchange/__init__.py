@@ -2,7 +2,7 @@
 
 from pe_core.study.passthrough import Passthrough
 
-from .autoware_kit import read_vehicle_info
+from .autoware import read_vehicle_info
 from .exporting import export_rig, rig_files, write_files
 from .foreign_values import MAX_BEAMS, Written, require_at_most
 from .frames import pose_from_quaternion

@@ -7,7 +7,7 @@ like Argoverse's own reader, this module ignores the distortion coefficients k1,
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -21,13 +21,13 @@ from pe_core.geometry.poses import METRES
 
 from .foreign_values import COEFFICIENT, FOCAL, PIXELS, PRINCIPAL_POINT, Written
 from .frames import BODY_FROM_OPTICAL, from_quaternion, pose_of, product, quaternion
-from .lens_pictures import Picture, pinhole_picture
+from .lens_pictures import pinhole_picture
 from .portable import PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
 MAX_TABLE_BYTES = 64_000_000
 """Maximum size of a table's values: a few kB that are compressed may be gigabytes."""
-POSES, INTRINSICS = "egovehicle_SE3_sensor.feather", "intrinsics.feather"
+FILES = POSES, INTRINSICS = "egovehicle_SE3_sensor.feather", "intrinsics.feather"
 TITLE, NAME = "Argoverse 2", "sensor_name"
 TURN, SHIFT = ("qw", "qx", "qy", "qz"), ("tx_m", "ty_m", "tz_m")
 LENS, BENT = ("fx_px", "fy_px", "cx_px", "cy_px"), ("k1", "k2", "k3")
@@ -41,54 +41,28 @@ CONVENTIONS = {
 NO_BEND = "the file's k1, k2, k3 are not applied: Argoverse's own reader projects without them"
 
 
-def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
-    """Return the tables of poses and of intrinsics, and no messages.
-
-    Raises
-    ------
-    InputError
-        When the library for feather files is not installed.
-    """
-    feather = _feather()
-    poses = [_pose_row(sensor) for sensor in sensors]
-    intrinsics = [_lens_row(s.name, s.picture) for s in sensors if s.picture is not None]
+def write(
+    sensors: tuple[PortableSensor, ...], _texts: Mapping[str, str]
+) -> tuple[Written, list[str]]:
+    """Return the tables of poses and of intrinsics, and no messages."""
+    feather, poses, intrinsics = _feather(), [], []
+    for sensor in sensors:
+        rotation, p = sensor.pose.ground_from_sensor, sensor.picture
+        if sensor.kind == CAMERA:
+            rotation = product(rotation, BODY_FROM_OPTICAL)
+        poses.append((sensor.name, *quaternion(rotation), *sensor.pose.position))
+        if p is not None:
+            size = (p.size or (0, 0))[::-1]
+            intrinsics.append((sensor.name, p.fx, p.fy, *p.center, 0.0, 0.0, 0.0, *size))
     columns = (NAME, *TURN, *SHIFT), (NAME, *LENS, *BENT, *SIZE)
-    tables = zip((POSES, INTRINSICS), columns, (poses, intrinsics), strict=True)
     return {
-        file: feather.table_bytes(_by_column(names, rows), SIZE, CONVENTIONS)
-        for file, names, rows in tables
+        file: feather.table_bytes(names, rows, SIZE, CONVENTIONS)
+        for file, names, rows in zip(FILES, columns, (poses, intrinsics), strict=True)
     }, []
 
 
-def _by_column(names: Sequence[str], rows: Sequence[Sequence[Any]]) -> dict[str, list[Any]]:
-    return {name: [row[k] for row in rows] for k, name in enumerate(names)}
-
-
-def _pose_row(sensor: PortableSensor) -> list[Any]:
-    rotation = sensor.pose.ground_from_sensor
-    if sensor.kind == CAMERA:
-        rotation = product(rotation, BODY_FROM_OPTICAL)
-    return [sensor.name, *quaternion(rotation), *sensor.pose.position]
-
-
-def _lens_row(name: str, picture: Picture) -> list[Any]:
-    width, height = picture.size or (0, 0)
-    return [name, picture.fx, picture.fy, *picture.center, 0.0, 0.0, 0.0, height, width]
-
-
 def read(path: Path) -> tuple[PortableSensor, ...]:
-    """Read the sensors from the table of poses and the table of intrinsics beside it.
-
-    Parameters
-    ----------
-    path : Path
-        The table of poses, or the folder that holds both tables.
-
-    Raises
-    ------
-    InputError
-        When a table is missing or malformed, or the library for feather files is not installed.
-    """
+    """Read the sensors from the table of poses, or its folder, and the intrinsics beside it."""
     path = path / POSES if path.is_dir() else path
     beside = path.with_name(INTRINSICS)
     cameras = {row.text(NAME): row for row in _rows(beside)}

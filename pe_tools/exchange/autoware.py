@@ -1,160 +1,54 @@
-"""Autoware's sensor kit: sensors_calibration.yaml and sensor_kit_calibration.yaml.
+"""Autoware's sensor kit: sensors_calibration.yaml and a file for the kit, or one for each unit.
 
 The origin base_link is the middle of the rear axle, projected to the ground. Units are metres and
 radians. A camera's frame is called NAME/camera_link and has the axes of the ground frame. A LiDAR's
 frame is called NAME_base_link; it is at the base of the housing where the catalogue knows that
-height. A sensor name that ends in _link is used as the frame name unchanged. The module
-`autoware_kit` updates an existing kit.
+height. A sensor name that ends in _link is used as the frame name unchanged.
+
+In an existing kit, frames that did not move keep their numbers. All files keep their comments,
+order and structure. The pose of the kit, the parent of each frame, and frames that are no sensors
+do not change either.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 from pe_core import catalog
 from pe_core.base.errors import InputError
 from pe_core.base.table_reader import Table
 from pe_core.geometry.poses import Pose
-from pe_tools.exchange.yaml_text import comments_of, parse_yaml_blocks
+from pe_core.scene.vehicle_description import Reference
+from pe_tools.formats.yaml_text import KeyPath, YamlText, parse_yaml
 
-from .camera_info import info_files, with_info
+from .camera_info import info_files, info_name, picture_of_info, with_info
 from .foreign_values import Written, named_numbers, plain_number, pose_from, text_of
 from .frame_tree import with_legal_frames
 from .frames import composed, seen_from
+from .lens_pictures import alike
+from .passthrough import is_there, is_turned_so
 from .portable import PortableSensor, merged_lines
 from .portable_kinds import CAMERA, LIDAR, RADAR
 
 BASE, KIT = "base_link", "sensor_kit_base_link"
 TO_KIT, IN_KIT = "sensors_calibration.yaml", "sensor_kit_calibration.yaml"
-LENS_FRAME, FOOT_FRAME, OWN_FRAME = "/camera_link", "_base_link", "_link"
-RADAR_FRAME = "/radar_link"
-FRAMES = {CAMERA: LENS_FRAME, LIDAR: FOOT_FRAME, RADAR: RADAR_FRAME}
+FILES = IN_KIT, TO_KIT
+FRAMES = {CAMERA: "/camera_link", LIDAR: "_base_link", RADAR: "/radar_link"}
+"""Suffixes of frame names, by kind."""
 POSITION_KEYS, ROTATION_KEYS = ("x", "y", "z"), ("roll", "pitch", "yaw")
-KitUnit = tuple[str, dict[str, Pose]]
-"""File name of a unit, and the poses of its frames by frame name."""
 HEAD = "# Metres and radians; R = Rz(yaw) Ry(pitch) Rx(roll); x forward, y left, z up.\n"
+NO_INFO = "the kit has no camera_info of it; its lens is not written"
 
 
-def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
-    """Return the two files of a new kit and a camera_info file per camera, with messages."""
-    named, lines = with_legal_frames(sensors, slashes=True, frames=frames_of, taken=(BASE, KIT))
-    kit = _kit(named)
-    frames = {frame_of(s): (seen_from(kit, base_frame(s)), s.known_model or "") for s in named}
-    files = {TO_KIT: _yaml(BASE, {KIT: (kit, "")}), IN_KIT: _yaml(KIT, frames)}
-    return {**files, **info_files(named)}, [*lines, *base_lines(named)]
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A file of a kit: frames on one parent, which is on base_link."""
 
-
-def _kit(sensors: Sequence[PortableSensor]) -> Pose:
-    """Return the pose of the kit: the mean sensor position, rounded to centimetres, not rotated."""
-    middle = [sum(s.pose.position[k] for s in sensors) / len(sensors) for k in range(3)]
-    x, y, z = (round(v, 2) for v in middle)
-    return Pose((x, y, z))
-
-
-def frame_of(sensor: PortableSensor) -> str:
-    """Return the name of a sensor's frame."""
-    if sensor.name.endswith(OWN_FRAME):
-        return sensor.name
-    return sensor.name + FRAMES.get(sensor.kind or "", "")
-
-
-def frames_of(sensor: PortableSensor) -> tuple[str, ...]:
-    """Return all frame names of a sensor; in Autoware a sensor has exactly one frame."""
-    return (frame_of(sensor),)
-
-
-def base_frame(sensor: PortableSensor) -> Pose:
-    """Return the pose of a sensor's frame; a LiDAR's frame is at the base of its housing."""
-    height = _height(sensor)
-    return composed(sensor.pose, Pose((0.0, 0.0, -height))) if height else sensor.pose
-
-
-def _height(sensor: PortableSensor) -> float:
-    """Return the height of a sensor's origin above its frame [m]."""
-    return catalog.scan_above_base(sensor.model) if sensor.kind == LIDAR else 0.0
-
-
-def base_lines(sensors: Sequence[PortableSensor]) -> list[str]:
-    """Return messages that say, for each LiDAR, where its frame is relative to the scan centre."""
-    return merged_lines(
-        (sensor.name, _base_text(sensor)) for sensor in sensors if sensor.kind == LIDAR
-    )
-
-
-def _base_text(sensor: PortableSensor) -> str:
-    if height := _height(sensor):
-        return (
-            f"its frame is {1000.0 * height:.1f} mm below the centre of its scan ({sensor.model})"
-        )
-    return (
-        f"its frame is written at the centre of its scan; Autoware's description of {sensor.model} "
-        "may want the base of the housing"
-    )
-
-
-def _yaml(parent: str, frames: Mapping[str, tuple[Pose, str]]) -> bytes:
-    lines = [f"{parent}:"]
-    for name, (pose, model) in frames.items():
-        lines += [f"  {line}" for line in frame_lines(name, pose, model)]
-    return (HEAD + "\n".join(lines) + "\n").encode()
-
-
-def frame_lines(name: str, pose: Pose, model: str) -> list[str]:
-    """Return the YAML lines of a frame; the model name becomes a comment."""
-    return [
-        f"{name}:" + (f"  # {model}" if model else ""),
-        *(f"  {key}: {value}" for key, value in pose_texts(pose).items()),
-    ]
-
-
-def pose_texts(pose: Pose) -> dict[str, str]:
-    """Return the coordinates and angles of a pose as text, by YAML key."""
-    numbers = zip((*POSITION_KEYS, *ROTATION_KEYS), (*pose.position, *pose.rpy), strict=True)
-    return {key: plain_number(value) for key, value in numbers}
-
-
-def read(path: Path) -> tuple[PortableSensor, ...]:
-    """Read the sensors of a kit.
-
-    LiDAR poses are those of the frames in the files. `lifted` moves a pose from the base of the
-    housing to the scan centre, once the model is known.
-
-    Parameters
-    ----------
-    path : Path
-        Folder of the kit, or one of its files.
-
-    Raises
-    ------
-    InputError
-        When a file is missing or wrong.
-    """
-    folder = path if path.is_dir() else path.parent
-    texts = kit_texts(folder)
-    base, units = units_of(folder, texts)
-    inside = {
-        name: composed(base[parent], pose)
-        for parent, (_, frames) in units.items()
-        for name, pose in frames.items()
-    }
-    rest = {name: pose for name, pose in base.items() if name not in units}
-    models = models_of(texts.values())
-    sensors = [_sensor(frame, pose, models) for frame, pose in {**inside, **rest}.items()]
-    return with_info(folder, sensors)
-
-
-def models_of(texts: Iterable[str]) -> dict[str, str]:
-    """Return catalogue model names by frame, read from the comments that `write` adds to frames."""
-    catalogued = catalog.entries()
-    return {
-        path[-1]: comment
-        for text in texts
-        for path, comment in comments_of(text).items()
-        if comment in catalogued
-    }
+    text: YamlText
+    parent: str
+    frames: Mapping[str, Pose] = field(default_factory=dict)
 
 
 def kit_texts(folder: Path) -> dict[str, str]:
@@ -165,62 +59,250 @@ def kit_texts(folder: Path) -> dict[str, str]:
     return {name: text_of(folder / name) for name in (TO_KIT, *kit, *units)}
 
 
-def units_of(folder: Path, texts: Mapping[str, str]) -> tuple[dict[str, Pose], dict[str, KitUnit]]:
-    """Return the poses of the frames on base_link, and the units by the name of their root frame.
+def _units(folder: Path, texts: Mapping[str, str]) -> dict[str, Unit]:
+    """Return the parts of a kit by file name: the frames on base_link first, then its units.
 
     A unit is the sensor kit itself or one of several groups, each in a file UNIT_calibration.yaml.
     The kit aip_x2 of TIER IV, for example, has the units top_unit and front_unit.
     """
-    base = dict(_frames(folder / TO_KIT, texts[TO_KIT], BASE))
-    units = {}
-    for name, text in texts.items():
-        if name == TO_KIT:
-            continue
-        parent = _parent(folder / name, text)
-        if parent not in base:
-            raise InputError(folder / TO_KIT, BASE, parent, ", ".join(base))
-        units[parent] = name, dict(_frames(folder / name, text, parent))
-    return base, units
+    units: dict[str, Unit] = {}
+    for file, text in texts.items():
+        path = folder / file
+        yaml = YamlText(str(path), text)
+        parents = [BASE] if file == TO_KIT else list(yaml.data)
+        if len(parents) != 1:
+            found = ", ".join(parents) or "none"
+            raise InputError(path, "file", "one frame, and others on it", found)
+        (parent,) = parents
+        if file != TO_KIT and parent not in units[TO_KIT].frames:
+            raise InputError(folder / TO_KIT, BASE, parent, ", ".join(units[TO_KIT].frames))
+        units[file] = Unit(yaml, parent, dict(_frames(path, yaml, parent)))
+    return units
 
 
-def _parent(path: Path, text: str) -> str:
-    """Return the parent of all frames in a unit's file; there must be exactly one."""
-    parents = list(parse_yaml_blocks(str(path), text))
-    if len(parents) != 1:
-        raise InputError(path, "file", "one frame, and others on it", ", ".join(parents) or "none")
-    return parents[0]
-
-
-def _frames(path: Path, text: str, parent: str) -> Iterator[tuple[str, Pose]]:
+def _frames(path: Path, yaml: YamlText, parent: str) -> Iterator[tuple[str, Pose]]:
     """Yield the name of each frame below a parent, and its pose in the parent's frame."""
-    data: Any = parse_yaml_blocks(str(path), text)
-    top = Table(data, str(path))
-    if parent not in top:
+    if parent not in yaml.data:
         raise InputError(path, parent, "a mapping of frames", "nothing")
-    frames = top.raw(parent)
-    table = Table(frames, str(path), parent)
-    for name in frames:
+    table = Table(yaml.data, str(path)).table(parent)
+    for name in table.names:
         row = table.table(name)
         position, angles = (named_numbers(row, keys) for keys in (POSITION_KEYS, ROTATION_KEYS))
         yield name, pose_from(path, row.path, position, angles)
 
 
-def _sensor(frame: str, pose: Pose, models: Mapping[str, str]) -> PortableSensor:
-    model = models.get(frame)
-    if frame.endswith(LENS_FRAME):
-        return PortableSensor(frame.removesuffix(LENS_FRAME), pose, CAMERA, model)
-    if frame.endswith(RADAR_FRAME):
-        return PortableSensor(frame.removesuffix(RADAR_FRAME), pose, RADAR, model)
-    name = frame.removesuffix(FOOT_FRAME)
-    return PortableSensor(name, pose, LIDAR if name != frame else None, model)
+def _models(unit: Unit) -> dict[str, str]:
+    """Return catalogue model names by frame, from the comments that `write` adds to frames."""
+    catalogued = catalog.entries()
+    return {path[-1]: text for path, text in unit.text.comments().items() if text in catalogued}
+
+
+def read(path: Path) -> tuple[PortableSensor, ...]:
+    """Read the sensors of a kit: `path` is its folder, or one of its files.
+
+    LiDAR poses are those of the frames in the files. `lifted` moves a pose from the base of the
+    housing to the scan centre, once the model is known.
+    """
+    folder = path if path.is_dir() else path.parent
+    base, *units = _units(folder, kit_texts(folder)).values()
+    poses = {
+        name: composed(base.frames[unit.parent], pose)
+        for unit in units
+        for name, pose in unit.frames.items()
+    }
+    parents = {unit.parent for unit in units}
+    poses |= {name: pose for name, pose in base.frames.items() if name not in parents}
+    models = {frame: model for unit in (base, *units) for frame, model in _models(unit).items()}
+    return with_info(folder, [_sensor(f, pose, models.get(f)) for f, pose in poses.items()])
+
+
+def _sensor(frame: str, pose: Pose, model: str | None) -> PortableSensor:
+    for kind, suffix in FRAMES.items():
+        if frame.endswith(suffix):
+            return PortableSensor(frame.removesuffix(suffix), pose, kind, model)
+    return PortableSensor(frame, pose, None, model)
+
+
+def source(path: Path) -> dict[str, str]:
+    """Return the texts of a kit's calibration and camera_info files by file name."""
+    folder = path if path.is_dir() else path.parent
+    texts = kit_texts(folder)
+    for unit in _units(folder, texts).values():
+        for frame in unit.frames:
+            name = info_name(frame.removesuffix(FRAMES[CAMERA]))
+            if (folder / name).is_file():
+                texts[name] = text_of(folder / name)
+    return texts
 
 
 def lifted(sensor: PortableSensor) -> PortableSensor:
-    """Return a sensor whose pose is moved from its frame to the scan centre.
-
-    Only a LiDAR with a known model is moved; other sensors are returned unchanged.
-    """
+    """Return a LiDAR of a known model with the pose of its scan centre instead of its frame."""
     if not (height := _height(sensor)):
         return sensor
     note = f"{1000.0 * height:.1f} mm from its frame up to the centre of its scan ({sensor.model})"
     return replace(sensor, pose=composed(sensor.pose, Pose((0.0, 0.0, height))), told=note)
+
+
+def _height(sensor: PortableSensor) -> float:
+    """Return the height of a sensor's origin above its frame [m]."""
+    return catalog.scan_above_base(sensor.model) if sensor.kind == LIDAR else 0.0
+
+
+def _frame_of(sensor: PortableSensor) -> str:
+    suffix = "" if sensor.name.endswith("_link") else FRAMES.get(sensor.kind or "", "")
+    return sensor.name + suffix
+
+
+def _base_frame(sensor: PortableSensor) -> Pose:
+    """Return the pose of a sensor's frame; a LiDAR's frame is at the base of its housing."""
+    height = _height(sensor)
+    return composed(sensor.pose, Pose((0.0, 0.0, -height))) if height else sensor.pose
+
+
+def _base_text(sensor: PortableSensor) -> str:
+    """Return where a LiDAR's frame is relative to the centre of its scan."""
+    if height := _height(sensor):
+        return (
+            f"its frame is {1000.0 * height:.1f} mm below the centre of its scan ({sensor.model})"
+        )
+    return (
+        f"its frame is written at the centre of its scan; Autoware's description of {sensor.model} "
+        "may want the base of the housing"
+    )
+
+
+def _frame_lines(name: str, pose: Pose, model: str) -> list[str]:
+    """Return the YAML lines of a frame; the model name becomes a comment."""
+    head = f"{name}:" + (f"  # {model}" if model else "")
+    return [head, *(f"  {key}: {value}" for key, value in _pose_texts(pose).items())]
+
+
+def _pose_texts(pose: Pose) -> dict[str, str]:
+    """Return the coordinates and angles of a pose as text, by YAML key."""
+    numbers = zip((*POSITION_KEYS, *ROTATION_KEYS), (*pose.position, *pose.rpy), strict=True)
+    return {key: plain_number(value) for key, value in numbers}
+
+
+def write(
+    sensors: tuple[PortableSensor, ...], texts: Mapping[str, str]
+) -> tuple[Written, list[str]]:
+    """Return the files of a new kit, or of the kit of these texts with its sensors updated.
+
+    A new kit has a camera_info file per camera; messages say where the LiDARs' frames are.
+    """
+    calibrations = {name: text for name, text in texts.items() if "/" not in name}
+    units = _units(Path(), calibrations) if texts else {}
+    parents = [unit.parent for unit in units.values()] or [BASE, KIT]
+    included = [sensor for sensor in sensors if not sensor.is_left_out]
+    named, lines = with_legal_frames(
+        included, slashes=True, frames=lambda sensor: (_frame_of(sensor),), taken=parents
+    )
+    files, own_lines = _updated(units, texts, named) if units else (_new(named), [])
+    pairs = ((sensor.name, _base_text(sensor)) for sensor in named if sensor.kind == LIDAR)
+    written = {name: text.encode() for name, text in files.items()}
+    return written, [*lines, *own_lines, *merged_lines(pairs)]
+
+
+def _new(sensors: Sequence[PortableSensor]) -> dict[str, str]:
+    """Return a kit whose pose is the mean sensor position, rounded to centimetres, not rotated."""
+    middle = [sum(s.pose.position[k] for s in sensors) / len(sensors) for k in range(3)]
+    x, y, z = (round(v, 2) for v in middle)
+    kit = Pose((x, y, z))
+    frames = [(_frame_of(s), seen_from(kit, _base_frame(s)), s.known_model or "") for s in sensors]
+    files = {}
+    for file, parent, rows in ((TO_KIT, BASE, [(KIT, kit, "")]), (IN_KIT, KIT, frames)):
+        lines = [f"  {line}\n" for row in rows for line in _frame_lines(*row)]
+        files[file] = f"{HEAD}{parent}:\n{''.join(lines)}"
+    return files | info_files(sensors)
+
+
+def _updated(
+    units: Mapping[str, Unit], texts: Mapping[str, str], named: Sequence[PortableSensor]
+) -> tuple[dict[str, str], list[str]]:
+    """Return the files of an existing kit with the sensors' poses, models and lenses."""
+    by_frame = {_frame_of(sensor): sensor for sensor in named}
+    parents = {unit.parent for unit in units.values()}
+    base, known = units[TO_KIT].frames, {f for unit in units.values() for f in unit.frames}
+    added = [sensor for frame, sensor in by_frame.items() if frame not in known]
+    files, is_first = {}, True
+    for file, unit in units.items():
+        pose = None if file == TO_KIT else base[unit.parent]
+        new_lines = []
+        if pose is not None and is_first:  # added sensors go into the first unit
+            for sensor in added:
+                frame_pose = seen_from(pose, _base_frame(sensor))
+                new_lines += _frame_lines(_frame_of(sensor), frame_pose, sensor.known_model or "")
+            is_first = False
+        files[file] = _patched(unit, pose, by_frame, new_lines)
+    infos, lines = _infos(texts, named, added)
+    if kept := sorted(known - by_frame.keys() - parents):
+        lines = [f"kept as they stood in the kit: {', '.join(kept)}", *lines]
+    return files | infos, lines
+
+
+def _patched(
+    unit: Unit, pose: Pose | None, by_frame: Mapping[str, PortableSensor], added: Sequence[str]
+) -> str:
+    """Return the text of a file with the new poses of the frames that moved.
+
+    `pose` is that of the unit on base_link; None for frames directly on base_link.
+    """
+    values: dict[KeyPath, str] = {}
+    for frame in unit.frames.keys() & by_frame.keys():
+        now = _base_frame(by_frame[frame])
+        now = now if pose is None else seen_from(pose, now)
+        texts = _pose_texts(now)
+        changed = _changed(unit.frames[frame], now)
+        values |= {(unit.parent, frame, key): texts[key] for key in changed}
+    comments: dict[KeyPath, str] = {}
+    for frame in _models(unit).keys() & by_frame.keys():
+        model = by_frame[frame].known_model or ""
+        if model in catalog.entries():
+            comments[unit.parent, frame] = model
+        elif by_frame[frame].kind != CAMERA:  # such a camera is described by its camera_info
+            comments[unit.parent, frame] = ""
+    return unit.text.edited(values, comments, ((unit.parent,), added))
+
+
+def _changed(old: Pose, now: Pose) -> Iterator[str]:
+    """Yield the keys to rewrite: changed coordinates, or all angles if the rotation changed."""
+    for key, a, b in zip(POSITION_KEYS, old.position, now.position, strict=True):
+        if not is_there(a, b):
+            yield key
+    if not is_turned_so(old, now):
+        yield from ROTATION_KEYS
+
+
+def _infos(
+    texts: Mapping[str, str], named: Sequence[PortableSensor], added: Sequence[PortableSensor]
+) -> tuple[dict[str, str], list[str]]:
+    """Return the camera_info files, and messages on cameras that have none.
+
+    A file is rewritten only when the lens has changed, and created only for an added camera.
+    """
+    files = {name: text for name, text in texts.items() if "/" in name}
+    fresh, lines = info_files(named), []
+    for sensor in named:
+        name = info_name(sensor.name)
+        if sensor.kind != CAMERA or sensor.picture is None:
+            continue
+        if name not in files and sensor not in added:
+            lines.append(f"{sensor.name}: {NO_INFO}")
+        elif name not in files or not alike(picture_of_info(name, files[name]), sensor.picture):
+            files[name] = fresh[name]
+    return files, lines
+
+
+def read_vehicle_info(path: str | Path) -> Reference:
+    """Return the reference points of a vehicle from Autoware's vehicle_info file.
+
+    The origin of the ground frame is below the middle of the vehicle's length. A file that cannot
+    be read, or a number that is missing or impossible, raises `InputError`.
+    """
+    path = Path(path)
+    top = Table(parse_yaml(str(path), text_of(path)), str(path))
+    nodes = top.table("/**") if "/**" in top else top
+    keys = ("wheel_radius", "wheel_base", "front_overhang", "rear_overhang")
+    radius, base, front, rear = named_numbers(nodes.table("ros__parameters"), keys)
+    middle = (rear + base + front) / 2.0
+    return Reference(rear - middle, radius, base, front, rear)

@@ -29,18 +29,18 @@ from .foreign_values import (
     pose_from,
 )
 from .frame_tree import with_legal_frames
-from .lens_pictures import Picture, picture_of_fov
+from .lens_pictures import picture_of_fov
 from .passthrough import ORIGIN, entry_row
 from .portable import FieldOfView, PortableSensor, Scan, uneven
 from .portable_kinds import CAMERA, LIDAR, RADAR
 
 FILE = "objects.json"
+FILES = (FILE,)
 TYPES = {
     CAMERA: "sensor.camera.rgb",
     LIDAR: "sensor.lidar.ray_cast",
     RADAR: "sensor.other.radar",
 }
-VEHICLE = {"type": "vehicle.*", "id": "ego_vehicle"}
 FRAMES_A_SECOND = 10
 TINY_DEG = 1e-6
 SCAN_KEYS = (
@@ -59,39 +59,25 @@ FIGURES = ("image_size_x", "image_size_y", "fov", *SCAN_KEYS, ACROSS, UPWARDS)
 POSITION_KEYS, ROTATION_KEYS = ("x", "y", "z"), ("roll", "pitch", "yaw")
 
 
-def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
-    """Return a document with an ego vehicle that carries the rig, and messages on losses."""
-    return _written({"objects": [dict(VEHICLE)]}, sensors)
-
-
-def write_over(
-    texts: Mapping[str, str], sensors: tuple[PortableSensor, ...]
+def write(
+    sensors: tuple[PortableSensor, ...], texts: Mapping[str, str]
 ) -> tuple[Written, list[str]]:
-    """Return the imported document with the rig on its vehicle, and messages on losses."""
-    return _written(parse_json("passthrough", texts.get(FILE, "")), sensors)
-
-
-def _written(document: Any, sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
     """Return a document whose first vehicle carries the rig, and messages on losses."""
+    document: Any = {"objects": [{"type": "vehicle.*", "id": "ego_vehicle"}]}
+    if texts:
+        document = parse_json("passthrough", texts.get(FILE, ""))
     named, lines = with_legal_frames(sensors)
     supported = [sensor for sensor in named if sensor.is_left_out or sensor.kind in TYPES]
     lines += [f"{s.name}: CARLA has no {s.kind}; left out" for s in named if s not in supported]
-    rows = [entry_row(sensor, _row, (SPAWN,), FIGURES) for sensor in supported]
     vehicle, key = _place_of_sensors("passthrough", document)
-    vehicle[key] = rows
-    lines += [line for sensor in named if (line := _turned_line(sensor))]
+    vehicle[key] = [entry_row(sensor, _row, (SPAWN,), FIGURES) for sensor in supported]
+    for sensor in named:
+        low, high = sensor.scan.fov if sensor.scan is not None else (0.0, 0.0)
+        if abs(math.degrees(low + high)) >= TINY_DEG:
+            ends = f"{math.degrees(low):g} to {math.degrees(high):g} deg"
+            text = f"CARLA's horizontal_fov is to both sides alike; its azimuths are {ends}"
+            lines.append(f"{sensor.name}: {text}")
     return {FILE: json_bytes(document)}, lines + uneven(named, "CARLA")
-
-
-def _turned_line(sensor: PortableSensor) -> str:
-    """Return a message if a LiDAR's azimuth range is not symmetric; CARLA cannot express it."""
-    low, high = sensor.scan.fov if sensor.scan is not None else (0.0, 0.0)
-    if abs(math.degrees(low + high)) < TINY_DEG:
-        return ""
-    ends = " to ".join(f"{math.degrees(end):g}" for end in (low, high))
-    return (
-        f"{sensor.name}: CARLA's horizontal_fov is to both sides alike; its azimuths are {ends} deg"
-    )
 
 
 def _place_of_sensors(source: object, document: Any) -> tuple[dict[str, Any], str]:
@@ -123,27 +109,21 @@ def _row(sensor: PortableSensor) -> dict[str, Any]:
         fov = math.degrees(2.0 * math.atan(width / (2.0 * sensor.picture.fx)))
         row |= {"image_size_x": width, "image_size_y": height, "fov": fov}
     if sensor.scan is not None:
-        row |= _lidar(sensor.scan)
+        across = math.degrees(sensor.scan.fov[1] - sensor.scan.fov[0])
+        row |= {
+            **({ACROSS: across} if across < 360.0 - TINY_DEG else {}),
+            "range": sensor.scan.max_range,
+            "channels": sensor.scan.channels,
+            "points_per_second": sensor.scan.beam_count * FRAMES_A_SECOND,
+            "upper_fov": math.degrees(sensor.scan.high),
+            "lower_fov": math.degrees(sensor.scan.low),
+            "rotation_frequency": FRAMES_A_SECOND,
+        }
     if sensor.field is not None:
-        angles = (
-            math.degrees(2.0 * max(map(abs, a))) for a in (sensor.field.across, sensor.field.up)
-        )
-        row |= dict(zip((ACROSS, UPWARDS), angles, strict=True)) | {"range": sensor.field.max_range}
+        for key, ends in ((ACROSS, sensor.field.across), (UPWARDS, sensor.field.up)):
+            row[key] = math.degrees(2.0 * max(map(abs, ends)))
+        row["range"] = sensor.field.max_range
     return row
-
-
-def _lidar(scan: Scan) -> dict[str, Any]:
-    low, high = scan.fov
-    across = math.degrees(high - low)
-    return {
-        **({ACROSS: across} if across < 360.0 - TINY_DEG else {}),
-        "range": scan.max_range,
-        "channels": scan.channels,
-        "points_per_second": scan.beam_count * FRAMES_A_SECOND,
-        "upper_fov": math.degrees(scan.high),
-        "lower_fov": math.degrees(scan.low),
-        "rotation_frequency": FRAMES_A_SECOND,
-    }
 
 
 def source(path: Path) -> dict[str, str]:
@@ -155,13 +135,7 @@ def source(path: Path) -> dict[str, str]:
 
 
 def read(path: Path) -> tuple[PortableSensor, ...]:
-    """Read the sensors of the first vehicle that has a list of sensors.
-
-    Raises
-    ------
-    InputError
-        When there is no such vehicle, no sensor has a spawn point, or a value is out of range.
-    """
+    """Read the sensors of the first vehicle that has a list of sensors, one with a spawn point."""
     document = json_of(path)
     vehicle, key = _place_of_sensors(path, document)
     rows = json_rows(path, vehicle.get(key, []), f"{vehicle.get('id', 'vehicle')}.{key}")
@@ -176,45 +150,31 @@ def _sensor(path: Path, row: Table) -> PortableSensor:
     if SPAWN not in row:  # a pseudo sensor: CARLA's own view of the world
         return PortableSensor(row.text("id"), ORIGIN, "pseudo", entry=json_entry(row.data))
     spawn = row.table(SPAWN)
-    position, angles = (
-        [spawn.number(key, 0.0) for key in ROTATION_KEYS]
-        if keys is ROTATION_KEYS
-        else named_numbers(spawn, keys)
-        for keys in (POSITION_KEYS, ROTATION_KEYS)
-    )
+    position = named_numbers(spawn, POSITION_KEYS)
+    angles = [spawn.number(key, 0.0) for key in ROTATION_KEYS]
     pose = pose_from(path, row.field(SPAWN), position, angles, degrees=True)
     kind = next((kind for kind in (CAMERA, LIDAR) if f".{kind}." in type_name), None)
     kind = kind or type_name.removeprefix("sensor.").removeprefix("other.")
     sensor = PortableSensor(row.text("id"), pose, kind, entry=json_entry(row.data))
     if kind == CAMERA and all(key in row for key in ("image_size_x", "image_size_y", "fov")):
-        return replace(sensor, picture=_picture(row))
+        size = row.whole("image_size_x", rule=PIXELS), row.whole("image_size_y", rule=PIXELS)
+        picture = picture_of_fov(math.radians(row.number("fov", rule=FOV)), size)
+        return replace(sensor, picture=picture)
     if kind == LIDAR and all(key in row for key in SCAN_KEYS):
         return replace(sensor, scan=_scan(row))
-    if kind == RADAR and any(key in row for key in (ACROSS, UPWARDS, "range")):
-        return replace(sensor, field=_field(row))
+    if kind == RADAR and any(key in row for key in (ACROSS, UPWARDS, "range")):  # to both sides
+        across, up = (
+            math.radians(row.number(key, RADAR_FOV_DEG, rule=rule)) / 2.0
+            for key, rule in ((ACROSS, AROUND), (UPWARDS, FOV))
+        )
+        reach = row.number("range", RADAR_RANGE_M, rule=RANGE)
+        return replace(sensor, field=FieldOfView((-across, across), (-up, up), reach))
     return sensor
 
 
-def _field(row: Table) -> FieldOfView:
-    """Return a radar's field of view, to both sides alike."""
-    keys = (ACROSS, AROUND), (UPWARDS, FOV)
-    across, up = (
-        math.radians(row.number(key, RADAR_FOV_DEG, rule=rule)) / 2.0 for key, rule in keys
-    )
-    reach = row.number("range", RADAR_RANGE_M, rule=RANGE)
-    return FieldOfView((-across, across), (-up, up), reach)
-
-
-def _picture(row: Table) -> Picture:
-    size = row.whole("image_size_x", rule=PIXELS), row.whole("image_size_y", rule=PIXELS)
-    return picture_of_fov(math.radians(row.number("fov", rule=FOV)), size)
-
-
 def _scan(row: Table) -> Scan:
-    frames, channels = (
-        row.number("rotation_frequency", rule=TURNS),
-        row.whole("channels", rule=CHANNELS),
-    )
+    frames = row.number("rotation_frequency", rule=TURNS)
+    channels = row.whole("channels", rule=CHANNELS)
     beams = row.number("points_per_second", rule=RATE) / frames
     low, high = (math.radians(row.number(key, rule=UP)) for key in ("lower_fov", "upper_fov"))
     if low > high:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import csv
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from pe_core.base.csv_text import csv_text, unmarked
 from pe_core.base.errors import InputError
-from pe_core.base.values import Number, choice
+from pe_core.base.values import FINITE, Number, choice
 from pe_core.sensors.camera.kind import FOV_DEG
 from pe_core.sensors.camera.lens_models import LENSES
 from pe_core.study.passthrough import json_entry
@@ -25,6 +26,7 @@ from .foreign_values import (
     plain_number,
     pose_from,
     require_at_most,
+    spaced,
     text_of,
     whole_figure,
 )
@@ -34,6 +36,7 @@ from .portable import PortableSensor
 from .portable_kinds import has_model
 
 FILE = "rig.csv"
+FILES = (FILE,)
 POSITION_KEYS, ROTATION_KEYS = ("x_m", "y_m", "z_m"), ("roll_deg", "pitch_deg", "yaw_deg")
 FIGURES = ("width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px")
 LENS = (*FIGURES, "lens", "coefficients", "fov_deg")
@@ -49,7 +52,9 @@ HEAD = """\
 """
 
 
-def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
+def write(
+    sensors: tuple[PortableSensor, ...], _texts: Mapping[str, str]
+) -> tuple[Written, list[str]]:
     """Return the table of a rig, and no messages."""
     rows = [
         entry_row(sensor, lambda _: {}, (), ()) if sensor.is_left_out else _row(sensor)
@@ -61,8 +66,15 @@ def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
 
 
 def _row(sensor: PortableSensor) -> dict[str, str]:
-    """Return the cells of a sensor by column."""
+    """Return the cells of a sensor by column; those of the lens are empty without one."""
     numbers = (*sensor.pose.position, *sensor.pose.rotation_deg)
+    lens_cells, picture = [""] * len(LENS), sensor.picture
+    if picture is not None and picture.size is not None:
+        lens = picture.lens
+        figures = [plain_number(v) for v in (lens.fx, lens.fy, lens.cx, lens.cy)]
+        values = spaced([getattr(lens, key) for key in lens.coefficients])
+        fov = "" if lens.fov is None else plain_number(math.degrees(lens.fov))
+        lens_cells = [*map(str, picture.size), *figures, lens.model, values, fov]
     ranges = (sensor.min_range, sensor.max_range)
     cells = (
         sensor.name,
@@ -70,99 +82,75 @@ def _row(sensor: PortableSensor) -> dict[str, str]:
         sensor.known_model or "",
         *map(plain_number, numbers),
         sensor.fusion or "",
-        *_lens_cells(sensor.picture),
+        *lens_cells,
         *("" if v is None else plain_number(v) for v in ranges),
         sensor.parameters,
     )
     return dict(zip((*COLUMNS, PARAMETERS), cells, strict=True))
 
 
-def _lens_cells(picture: Picture | None) -> list[str]:
-    """Return the cells of the lens columns; they are empty for a sensor without a lens."""
-    if picture is None or picture.size is None:
-        return [""] * len(LENS)
-    lens = picture.lens
-    figures = [plain_number(v) for v in (lens.fx, lens.fy, lens.cx, lens.cy)]
-    values = " ".join(plain_number(getattr(lens, key)) for key in lens.coefficients)
-    fov = "" if lens.fov is None else plain_number(math.degrees(lens.fov))
-    return [*map(str, picture.size), *figures, lens.model, values, fov]
-
-
 def read(path: Path) -> tuple[PortableSensor, ...]:
-    """Read a table of sensors. Only the columns of name, position and angles are required.
-
-    Raises
-    ------
-    InputError
-        When a required column is missing, or a cell is malformed or out of range.
-    """
+    """Read a table of sensors. Only the columns of name, position and angles are required."""
     lines = [line for line in text_of(path).splitlines() if line and not line.startswith("#")]
     require_at_most(path, "file", len(lines), MAX_FRAMES, "rows")
     rows = csv.DictReader(lines)
     try:
-        missing = [
-            key
-            for key in ("name", *POSITION_KEYS, *ROTATION_KEYS)
-            if key not in (rows.fieldnames or ())
-        ]
-        if missing:
-            expected = f"the columns {', '.join(COLUMNS)}"
-            raise InputError(path, missing[0], expected, "none of that name")
-        texts = ({key: _text(cell) for key, cell in row.items()} for row in rows)
-        return tuple(_read_row(path, k, row) for k, row in enumerate(texts))
+        for key in ("name", *POSITION_KEYS, *ROTATION_KEYS):
+            if key not in (rows.fieldnames or ()):
+                expected = f"the columns {', '.join(COLUMNS)}"
+                raise InputError(path, key, expected, "none of that name")
+        return tuple(_Row(path, f"row {k}", row).sensor() for k, row in enumerate(rows, 1))
     except csv.Error as error:
         raise InputError(path, "file", "a table (CSV)", error) from None
 
 
-def _text(cell: Any) -> Any:
-    """Return a cell's text; cells that a row lacks or has too many stay what the reader makes."""
-    return unmarked(cell) if isinstance(cell, str) else cell
+class _Row:
+    """The cells of a row by column; `place` is its name in messages."""
 
+    def __init__(self, path: Path, place: str, cells: Mapping[str, Any]) -> None:
+        # Cells that a row lacks or has too many are no texts.
+        self.cells = {k: unmarked(c) if isinstance(c, str) else c for k, c in cells.items()}
+        self.path, self.place = path, place
 
-def _read_row(path: Path, number: int, row: dict[str, str]) -> PortableSensor:
-    numbers = [_number(path, number, row, key) for key in (*POSITION_KEYS, *ROTATION_KEYS)]
-    pose = pose_from(path, f"row {number + 1}", numbers[:3], numbers[3:], degrees=True)
-    kind, model, fusion = (row.get(key) or None for key in ("kind", "model", "fusion"))
-    nearest = _range(path, number, row, RANGES[0], MIN_RANGE)
-    farthest = _range(path, number, row, RANGES[1], FARTHEST)
-    properties = kind, model, _picture(path, number, row), None, fusion, nearest, farthest
-    sensor = PortableSensor(row["name"], pose, *properties, parameters=row.get(PARAMETERS) or "")
-    if kind is None or has_model(sensor):
-        return sensor
-    cells = {key: row.get(key) for key in (*COLUMNS, PARAMETERS) if key in row}
-    return replace(sensor, entry=json_entry(cells))
+    def number(self, key: str, rule: Number = FINITE) -> float:
+        """Return the number of a cell, or raise `InputError`."""
+        return figure(self.path, f"{self.place}, {key}", self.cells[key], rule)
 
+    def sensor(self) -> PortableSensor:
+        """Return the sensor; one of unknown kind has its cells as entry."""
+        numbers = [self.number(key) for key in (*POSITION_KEYS, *ROTATION_KEYS)]
+        pose = pose_from(self.path, self.place, numbers[:3], numbers[3:], degrees=True)
+        kind, model, fusion = (self.cells.get(key) or None for key in ("kind", "model", "fusion"))
+        ranges = (
+            self.number(key, rule) if self.cells.get(key) else None
+            for key, rule in zip(RANGES, (MIN_RANGE, FARTHEST), strict=True)
+        )
+        properties = kind, model, self._picture(), None, fusion, *ranges
+        parameters = self.cells.get(PARAMETERS) or ""
+        sensor = PortableSensor(self.cells["name"], pose, *properties, parameters=parameters)
+        if kind is None or has_model(sensor):
+            return sensor
+        cells = {key: self.cells[key] for key in (*COLUMNS, PARAMETERS) if key in self.cells}
+        return replace(sensor, entry=json_entry(cells))
 
-def _range(path: Path, number: int, row: dict[str, str], key: str, rule: Number) -> float | None:
-    """Return a range [m]; None if its cell is empty."""
-    return figure(path, f"row {number + 1}, {key}", row[key], rule) if row.get(key) else None
-
-
-def _number(path: Path, number: int, row: dict[str, str], key: str) -> float:
-    return figure(path, f"row {number + 1}, {key}", row[key])
-
-
-def _picture(path: Path, number: int, row: dict[str, str]) -> Picture | None:
-    """Return the lens of a row; None if one of its columns is empty."""
-    if not all(row.get(key) for key in FIGURES):
-        return None
-    keys = FIGURES[:2]
-    size = [whole_figure(path, f"row {number + 1}, {key}", row[key], PIXELS) for key in keys]
-    fx, fy, cx, cy = (_number(path, number, row, key) for key in FIGURES[2:])
-    lens = LENSES[choice(path, f"row {number + 1}, lens", row.get("lens") or "pinhole", LENSES)]
-    coefficient_texts, field = (
-        (row.get("coefficients") or "").split(),
-        f"row {number + 1}, coefficients",
-    )
-    if len(coefficient_texts) > len(lens.coefficients):
-        expected = f"at most {len(lens.coefficients)} of a {lens.model} lens"
-        raise InputError(path, field, expected, len(coefficient_texts))
-    values = [
-        _number(path, number, {"coefficients": word}, "coefficients") for word in coefficient_texts
-    ]
-    fov = None
-    if row.get("fov_deg"):
-        degrees = _number(path, number, row, "fov_deg")
-        fov = math.radians(FOV_DEG.checked(path, f"row {number + 1}, fov_deg", degrees))
-    figures = dict(zip(lens.coefficients, values, strict=False))
-    return Picture(lens(fx, fy, cx, cy, fov, **figures), (size[0], size[1]))
+    def _picture(self) -> Picture | None:
+        """Return the lens of a row; None if one of its columns is empty."""
+        cells, path = self.cells, self.path
+        if not all(cells.get(key) for key in FIGURES):
+            return None
+        width, height = (
+            whole_figure(path, f"{self.place}, {key}", cells[key], PIXELS) for key in FIGURES[:2]
+        )
+        fx, fy, cx, cy = map(self.number, FIGURES[2:])
+        lens = LENSES[choice(path, f"{self.place}, lens", cells.get("lens") or "pinhole", LENSES)]
+        field, words = f"{self.place}, coefficients", (cells.get("coefficients") or "").split()
+        if len(words) > len(lens.coefficients):
+            expected = f"at most {len(lens.coefficients)} of a {lens.model} lens"
+            raise InputError(path, field, expected, len(words))
+        values = [figure(path, field, word) for word in words]
+        fov = None
+        if cells.get("fov_deg"):
+            degrees = self.number("fov_deg")
+            fov = math.radians(FOV_DEG.checked(path, f"{self.place}, fov_deg", degrees))
+        figures = dict(zip(lens.coefficients, values, strict=False))
+        return Picture(lens(fx, fy, cx, cy, fov, **figures), (width, height))

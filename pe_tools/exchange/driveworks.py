@@ -43,6 +43,7 @@ from .portable import PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
 FILE = "rig.json"
+FILES = (FILE,)
 POSE_KEY, ROTATION_KEY, POSITION_KEY = "nominalSensor2Rig_FLU", "roll-pitch-yaw", "t"
 TURN_CORRECTION, SHIFT_CORRECTION = "correction_sensor_R_FLU", "correction_rig_T"
 PROTOCOLS = {CAMERA: "camera.gmsl", LIDAR: "lidar.virtual"}
@@ -52,26 +53,13 @@ UNKNOWN = ("", "virtual")
 FIGURES, CORRECTION = ("properties", "parameter"), "correction_"
 
 
-def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
-    """Return a new rig file, and messages on sensor kinds that DriveWorks does not have."""
-    return _written({"rig": {}, "version": 2}, sensors)
-
-
-def write_over(
-    texts: Mapping[str, str], sensors: tuple[PortableSensor, ...]
+def write(
+    sensors: tuple[PortableSensor, ...], texts: Mapping[str, str]
 ) -> tuple[Written, list[str]]:
-    """Return the imported file with the sensors of the rig, and messages as in `write`."""
-    return _written(parse_json("passthrough", texts.get(FILE, "")), sensors)
-
-
-def source(path: Path) -> dict[str, str]:
-    """Return the document without its sensors, as text by file name, for `write_over`."""
-    document = json_of(path)
-    document["rig"]["sensors"] = []
-    return {FILE: json_entry(document)}
-
-
-def _written(document: Any, sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
+    """Return the rig file, and messages on sensor kinds that DriveWorks does not have."""
+    document: Any = {"rig": {}, "version": 2}
+    if texts:
+        document = parse_json("passthrough", texts.get(FILE, ""))
     rig = document.get("rig") if isinstance(document, dict) else None
     if not isinstance(rig, dict):
         raise InputError("passthrough", FILE, "a rig", "none")
@@ -79,6 +67,13 @@ def _written(document: Any, sensors: tuple[PortableSensor, ...]) -> tuple[Writte
     lines = [f"{s.name}: DriveWorks has no {s.kind}" for s in sensors
              if s.kind not in PROTOCOLS and not s.is_left_out]  # fmt: skip
     return {FILE: json_bytes(document)}, lines
+
+
+def source(path: Path) -> dict[str, str]:
+    """Return the document without its sensors, as text by file name, for `write_over`."""
+    document = json_of(path)
+    document["rig"]["sensors"] = []
+    return {FILE: json_entry(document)}
 
 
 def _row_over(sensor: PortableSensor) -> dict[str, Any]:
@@ -107,14 +102,9 @@ def _row(sensor: PortableSensor) -> dict[str, Any]:
 
 
 def read(path: Path) -> tuple[PortableSensor, ...]:
-    """Read the sensors of a rig.
+    """Read the sensors of a rig, one of which has a pose.
 
     A sensor without a pose (CAN, GPS) takes its kind from its protocol.
-
-    Raises
-    ------
-    InputError
-        When no sensor has a pose, or a value is malformed.
     """
     rig = Table(json_of(path), str(path)).table("rig")
     rows = json_rows(path, rig.raw("sensors"), "rig.sensors")
@@ -148,10 +138,10 @@ def _sensor(path: Path, row: Table) -> PortableSensor:
     position, angles = pose.raw(POSITION_KEY), pose.raw(ROTATION_KEY)
     kind = None if protocol in UNKNOWN else protocol
     _, _, model = row.text("parameter", "").partition("model=")
-    sensor_pose = _corrected(path, row, pose_from(path, pose.path, position, angles, degrees=True))
-    picture_and_note = read_properties(row.table("properties")) if kind == CAMERA else (None, "")
-    attributes = row.text("name"), sensor_pose, kind, model.split(",")[0] or None
-    return PortableSensor(*attributes, picture_and_note[0], told=picture_and_note[1], entry=entry)
+    placed = _corrected(path, row, pose_from(path, pose.path, position, angles, degrees=True))
+    picture, note = read_properties(row.table("properties")) if kind == CAMERA else (None, "")
+    attributes = row.text("name"), placed, kind, model.split(",")[0] or None
+    return PortableSensor(*attributes, picture, told=note, entry=entry)
 
 
 PINHOLE, F_THETA = "pinhole", "ftheta"
@@ -187,27 +177,27 @@ def write_properties(picture: Picture) -> dict[str, str]:
 
 
 def read_properties(properties: Table) -> tuple[Picture | None, str]:
-    """Return a camera's intrinsics, and a note on the accuracy of the conversion.
+    """Return a camera's intrinsics, and a note on the accuracy of the conversion (may be empty).
 
-    The intrinsics are None if properties are missing or belong to another lens model. The note is
-    empty if there is nothing to report.
-
-    Raises
-    ------
-    InputError
-        When a number is malformed or out of range, or pixels are not square.
+    The intrinsics are None if properties are missing or belong to another lens model.
     """
     if not all(key in properties for key in (*MIDDLE, *SIZE)):
         return None, ""
     cx, cy = (_number(properties, key, PRINCIPAL_POINT) for key in MIDDLE)
-    width, height = size = _pixels(properties, SIZE[0]), _pixels(properties, SIZE[1])
+    width, height = size = tuple(
+        whole_figure(properties.source, properties.field(key), properties.raw(key), PIXELS)
+        for key in SIZE
+    )
     key = next((name for name in POLYNOMIALS if name in properties), None)
     if key is not None:
         coefficients = _rising(properties, key)
         max_radius = math.hypot(max(cx, width - cx), max(cy, height - cy))
         _check_square(properties)
         note, forward = "", coefficients
-        if not _is_forward(properties, key, coefficients):
+        direction = properties.text("polynomial-type", "", choices=("", FORWARD, BACKWARD))
+        if not direction and key == POLYNOMIALS[0] and coefficients[1] >= GENTLE:
+            direction = FORWARD
+        if direction != FORWARD:
             forward, error_px = _turned_round(coefficients, max_radius)
             note = TURNED.format(error_px) if error_px > NOTICED_PX else ""
         return Picture(FTheta(1.0, 1.0, cx, cy, None, *forward[1:]), size), note
@@ -215,13 +205,6 @@ def read_properties(properties: Table) -> tuple[Picture | None, str]:
         return None, ""
     fx, fy = (_number(properties, name, FOCAL) for name in FOCAL_KEYS)
     return pinhole_picture(fx, fy, cx, cy, size), ""
-
-
-def _is_forward(properties: Table, key: str, coefficients: list[float]) -> bool:
-    direction = properties.text("polynomial-type", "", choices=("", FORWARD, BACKWARD))
-    if direction:
-        return direction == FORWARD
-    return key == POLYNOMIALS[0] and coefficients[1] >= GENTLE
 
 
 def _rising(properties: Table, key: str) -> list[float]:
@@ -239,16 +222,15 @@ def _rising(properties: Table, key: str) -> list[float]:
 def _check_square(properties: Table) -> None:
     """Raise `InputError` for sheared or stretched pixels: one polynomial serves both axes."""
     for key, default in (("linear-c", 1.0), ("linear-d", 0.0), ("linear-e", 0.0)):
-        if key in properties and abs(_number(properties, key) - default) > 0.01:
-            number = _number(properties, key)
+        number = _number(properties, key) if key in properties else default
+        if abs(number - default) > 0.01:
             raise properties.error(key, f"{default:g}, within 0.01", f"{number:g}")
 
 
 def _turned_round(coefficients: list[float], max_radius: float) -> tuple[list[float], float]:
     """Return the polynomial from angles to radii of one from radii to angles, and its error [px].
 
-    The result is a least-squares fit over radii from 0 to `max_radius` [px], as far as the angle
-    rises with the radius.
+    It is a least-squares fit up to `max_radius` [px], as far as the angle rises with the radius.
     """
     radius = np.linspace(0.0, max_radius, PLACES + 1)[1:]
     theta = np.polyval(coefficients[::-1], radius)
@@ -264,7 +246,3 @@ def _turned_round(coefficients: list[float], max_radius: float) -> tuple[list[fl
 
 def _number(properties: Table, key: str, rule: Number = FINITE) -> float:
     return figure(properties.source, properties.field(key), properties.raw(key), rule)
-
-
-def _pixels(properties: Table, key: str) -> int:
-    return whole_figure(properties.source, properties.field(key), properties.raw(key), PIXELS)

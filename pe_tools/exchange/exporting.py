@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace as with_
 from pathlib import Path
 
 from pe_core.base.errors import InputError
@@ -14,7 +15,7 @@ from pe_core.study.passthrough import Passthrough
 from .frames import origin_in_ground, seen_from, shifted
 from .losses import lost_line
 from .passthrough import listed_kinds, model_text, restored
-from .portable import PortableSensor, with_pictures
+from .portable import with_pictures
 from .portable_kinds import portable_sensors
 from .rig_formats import RigFormat, rig_format
 
@@ -48,11 +49,8 @@ def rig_files(
     InputError
         When the format is unknown, needs the rear axle, or cannot express the rig.
     """
-    format_row = rig_format(name)
-    matching = passthrough if passthrough is not None and passthrough.format == name else None
-    return _written(
-        rig, format_row, reference, matching, {} if matching is None else matching.files
-    )
+    kept = passthrough if passthrough is not None and passthrough.format == name else None
+    return _written(rig, rig_format(name), reference, kept, {} if kept is None else kept.files)
 
 
 def _written(
@@ -63,31 +61,19 @@ def _written(
     texts: Mapping[str, str],
 ) -> tuple[Mapping[str, bytes], list[str]]:
     """Return the files of a rig and messages; existing `texts` are updated if there are any."""
-    sensors, lens_lines = _sensors(rig, row, reference, passthrough)
-    if texts and row.write_over is not None:
-        files, lines = row.write_over(texts, sensors)
-    else:
-        files, lines = row.write(sensors)
-    if passthrough is not None and passthrough.left_out:
-        left_out = listed_kinds((sensor.kind, sensor.name) for sensor in passthrough.left_out)
-        lens_lines = [*lens_lines, f"as they came in: {left_out}"]
-    return files, [*lines, *lens_lines]
-
-
-def _sensors(
-    rig: Rig, row: RigFormat, reference: Reference | None, passthrough: Passthrough | None
-) -> tuple[tuple[PortableSensor, ...], list[str]]:
-    """Return the sensors in a format's frame, reduced to what it can express, and the losses."""
     back = [-value for value in origin_in_ground(row.origin, reference, row.title)]
-    moved = tuple(s.moved(shifted(s.pose, back)) for s in portable_sensors(rig))
+    moved = tuple(with_(s, pose=shifted(s.pose, back)) for s in portable_sensors(rig))
+    left_out_lines = []
     if passthrough is not None:
-        if passthrough.placed is not None:
-            moved = tuple(s.moved(seen_from(passthrough.placed, s.pose)) for s in moved)
-        moved = restored(
-            passthrough, moved, {sensor.name: model_text(sensor.model) for sensor in rig}
-        )
-    sensors, lines = with_pictures(moved, row.keeps, row.title)
-    return sensors, lines + lost_line(rig, row.title, row.holds)
+        if (placed := passthrough.placed) is not None:
+            moved = tuple(with_(s, pose=seen_from(placed, s.pose)) for s in moved)
+        models = {sensor.name: model_text(sensor.model) for sensor in rig}
+        moved = restored(passthrough, moved, models)
+        if left_out := listed_kinds((each.kind, each.name) for each in passthrough.left_out):
+            left_out_lines = [f"as they came in: {left_out}"]
+    sensors, lens_lines = with_pictures(moved, row.keeps, row.title)
+    files, lines = row.code.write(sensors, texts)
+    return files, [*lines, *lens_lines, *lost_line(rig, row.title, row.holds), *left_out_lines]
 
 
 def export_rig(
@@ -129,36 +115,23 @@ def export_rig(
         As `rig_files`, and when a file exists and `replace` is False, or cannot be written.
     """
     row, output = rig_format(name), Path(output)
-    matching = passthrough if passthrough is not None and passthrough.format == name else None
-    texts: Mapping[str, str] = {} if matching is None else matching.files
+    kept = passthrough if passthrough is not None and passthrough.format == name else None
+    texts: Mapping[str, str] = {} if kept is None else kept.files
     # The last of a format's files tells whether the folder already holds this format.
     if replace and len(row.files) > 1 and (output / row.files[-1]).is_file():
         texts = row.source(output) or texts
-    files, lines = _written(rig, row, reference, matching, texts)
+    files, lines = _written(rig, row, reference, kept, texts)
     return write_files(files, output, inside=len(row.files) > 1, replace=replace), lines
 
 
 def write_files(
     files: Mapping[str, bytes], output: Path, *, inside: bool, replace: bool
 ) -> list[Path]:
-    """Write several files, all or none, and return their paths.
+    """Write several files, given by name, all or none, and return their paths.
 
-    Parameters
-    ----------
-    files : mapping of str to bytes
-        Bytes by file name.
-    output : Path
-        Folder, or path of the first file.
-    inside : bool
-        Whether `output` is a folder for all files. Otherwise the first file is written to `output`
-        and the others beside it.
-    replace : bool
-        Whether existing files may be overwritten.
-
-    Raises
-    ------
-    InputError
-        When a file exists and `replace` is False, or cannot be written. No file is written then.
+    They go into the folder `output` if `inside`; otherwise the first file is `output` and the
+    others are beside it. Unless `replace`, a file that exists raises `InputError`, as does one that
+    cannot be written.
     """
     folder = output if inside or output.is_dir() else output.parent
     paths = {folder / file: data for file, data in files.items()}
@@ -168,13 +141,9 @@ def write_files(
     for path in paths:
         require_new(path, replace=replace)
     for folder in {path.parent for path in paths}:
-        _make_folder(folder)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise InputError(folder, "folder", "a path that can be written", error) from None
     write_all_bytes(paths)
     return list(paths)
-
-
-def _make_folder(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(folder, "folder", "a path that can be written", error) from None

@@ -24,23 +24,21 @@ MAX_ROWS = 100_000
 
 
 def table_bytes(
-    columns: Mapping[str, Sequence[Any]], whole: Collection[str], metadata: Mapping[str, str]
+    columns: Sequence[str],
+    rows: Sequence[Sequence[Any]],
+    whole: Collection[str],
+    metadata: Mapping[str, str],
 ) -> bytes:
     """Return the bytes of a feather table.
 
-    Parameters
-    ----------
-    columns : mapping of str to sequence
-        Values by column name, all of one length.
-    whole : collection of str
-        Names of the columns of integers. Other columns hold floats; sensor_name holds text.
-    metadata : mapping of str to str
-        Metadata of the table.
+    The columns of `whole` hold integers, sensor_name text, and all others floats.
     """
-    types = {name: _kind(name, values, whole) for name, values in columns.items()}
-    schema = pyarrow.schema(types.items(), metadata=dict(metadata))
+    own = {"sensor_name": pyarrow.string(), **dict.fromkeys(whole, pyarrow.int64())}
+    types = [(name, own.get(name, pyarrow.float64())) for name in columns]
+    schema = pyarrow.schema(types, metadata=dict(metadata))
+    by_column = {name: [row[k] for row in rows] for k, name in enumerate(columns)}
     data = io.BytesIO()
-    table = pyarrow.table(dict(columns), schema=schema)
+    table = pyarrow.table(by_column, schema=schema)
     feather.write_feather(table, data, compression="uncompressed")
     return data.getvalue()
 
@@ -129,9 +127,3 @@ class _Flat:
             at += struct.unpack_from("<I", self._data, at)[0]
             for k in range(struct.unpack_from("<I", self._data, at)[0]):
                 yield struct.unpack_from("<qq", self._data, at + 4 + 16 * k)
-
-
-def _kind(name: str, values: Sequence[Any], whole: Collection[str]) -> Any:
-    if name in whole:
-        return pyarrow.int64()
-    return pyarrow.string() if name == "sensor_name" else pyarrow.float64()

@@ -14,11 +14,14 @@ from pe_core.base.serialization import dump_json, parse_json
 from pe_core.base.table_reader import Table
 from pe_core.base.values import FINITE, Number, Whole, vector
 from pe_core.geometry.poses import METRES, ROTATION, ROTATION_DEG, Pose
-from pe_core.sensors.camera.lens import COEFFICIENT, FOCAL
-from pe_core.sensors.camera.lens import PLACE as PRINCIPAL_POINT
-from pe_core.sensors.camera.model import FARTHEST, PIXELS
-from pe_core.sensors.field_of_view import MIN_RANGE
-from pe_core.sensors.lidar.model import RANGE, STEPS
+from pe_core.sensors.camera.lens import COEFFICIENT as COEFFICIENT
+from pe_core.sensors.camera.lens import FOCAL as FOCAL
+from pe_core.sensors.camera.lens import PLACE
+from pe_core.sensors.camera.model import FARTHEST as FARTHEST
+from pe_core.sensors.camera.model import PIXELS as PIXELS
+from pe_core.sensors.field_of_view import MIN_RANGE as MIN_RANGE
+from pe_core.sensors.lidar.model import RANGE as RANGE
+from pe_core.sensors.lidar.model import STEPS as STEPS
 
 Written = Mapping[str, bytes]
 """Bytes by file name."""
@@ -60,30 +63,15 @@ def spaced(values: Sequence[float]) -> str:
 def pose_from(
     source: object, field: str, position: Any, angles: Any, *, degrees: bool = False
 ) -> Pose:
-    """Return the pose of a position and of roll, pitch, yaw.
+    """Return the pose of a position [m] and of roll, pitch, yaw, in radians unless `degrees`.
 
-    Parameters
-    ----------
-    source, field : object, str
-        File and place in it, for messages.
-    position : (3,) sequence of float
-        Position [m].
-    angles : (3,) sequence of float
-        Roll, pitch, yaw [rad], or [deg] if `degrees`.
-    degrees : bool
-        Whether the angles are in degrees.
-
-    Raises
-    ------
-    InputError
-        When a value is missing, not finite or out of range.
+    A value that is missing, not finite or out of range raises `InputError`.
     """
-    checked_position = vector(source, f"{field} position", position, 3, METRES)
+    x, y, z = vector(source, f"{field} position", position, 3, METRES)
+    rule = ROTATION_DEG if degrees else ROTATION
+    roll, pitch, yaw = vector(source, f"{field} rotation", angles, 3, rule)
     if degrees:
-        checked_angles = vector(source, f"{field} rotation", angles, 3, ROTATION_DEG)
-        return Pose.from_degrees(checked_position, checked_angles)
-    x, y, z = checked_position
-    roll, pitch, yaw = vector(source, f"{field} rotation", angles, 3, ROTATION)
+        return Pose.from_degrees((x, y, z), (roll, pitch, yaw))
     return Pose((x, y, z), (roll, pitch, yaw))
 
 
@@ -92,23 +80,10 @@ def named_numbers(table: Table, keys: Sequence[str]) -> tuple[float, ...]:
     return tuple(table.number(key, rule=FINITE) for key in keys)
 
 
-__all__ = [
-    "COEFFICIENT",
-    "FARTHEST",
-    "FOCAL",
-    "MIN_RANGE",
-    "PIXELS",
-    "PRINCIPAL_POINT",
-    "RANGE",
-    "STEPS",
-]
-__all__ += ["AZIMUTH", "CHANNELS", "ELEVATION", "FOV_RAD", "figure", "figures", "whole_figure"]
-
+PRINCIPAL_POINT = PLACE
 QUARTER = math.pi / 2.0
 ELEVATION = Number(-QUARTER, QUARTER, unit="rad", noun="angle")
 AZIMUTH = Number(-4.0 * math.pi, 4.0 * math.pi, unit="rad", noun="angle")
-FOV_RAD = Number(0.0, math.pi, above=True, below=True, unit="rad", noun="angle")
-"""Field of view of a pinhole."""
 CHANNELS = Whole(1, 10_000, "channels")
 PLAIN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
 """Syntax of a number in a file. Python's float() also accepts 1_0 and non-ASCII digits."""
@@ -117,32 +92,18 @@ MAX_LENGTH = 400
 
 
 def figure(source: object, field: str, value: Any, rule: Number = FINITE) -> float:
-    """Return a value, a number or its text, as a float that satisfies a rule.
-
-    Raises
-    ------
-    InputError
-        When the value is not a number, not finite or out of the rule's range.
-    """
+    """Return a value, a number or its text, as a float that meets a rule, or raise `InputError`."""
     if not isinstance(value, str):
         return rule.checked(source, field, value)
     text = value.strip()
-    if len(text) > MAX_LENGTH or not PLAIN.fullmatch(text):
-        raise InputError(source, field, rule.expected_text(), shown(value))
-    number = float(text)
+    number = float(text) if len(text) <= MAX_LENGTH and PLAIN.fullmatch(text) else math.nan
     if not rule.holds(number):
         raise InputError(source, field, rule.expected_text(number), shown(value))
     return number
 
 
 def whole_figure(source: object, field: str, value: Any, rule: Whole = PIXELS) -> int:
-    """Return a value, a number or its text, as an integer that satisfies a rule.
-
-    Raises
-    ------
-    InputError
-        When the value is not an integer or out of the rule's range.
-    """
+    """Return a value, a number or its text, as an int that meets a rule, or raise `InputError`."""
     if isinstance(value, str) and len(value) <= MAX_LENGTH and PLAIN.fullmatch(value.strip()):
         number = float(value)
         return rule.checked(source, field, number if math.isfinite(number) else value)
@@ -150,30 +111,15 @@ def whole_figure(source: object, field: str, value: Any, rule: Whole = PIXELS) -
 
 
 def figures(
-    source: object, field: str, text: Any, counts: Sequence[int] | None, rule: Number = FINITE
+    source: object, field: str, text: Any, count: int | None, rule: Number = FINITE
 ) -> list[float]:
-    """Return the numbers in a text, which are separated by blanks.
+    """Return the `count` numbers in a text, separated by blanks, that meet a rule each.
 
-    Parameters
-    ----------
-    source, field : object, str
-        File and place in it, for messages.
-    text : str
-        The numbers.
-    counts : sequence of int or None
-        Allowed counts of numbers; None allows any count.
-    rule : Number
-        Rule for each number.
-
-    Raises
-    ------
-    InputError
-        When the count is not allowed, or a number is malformed, not finite or out of range.
+    None allows any count. Another count, or a number that breaks the rule, raises `InputError`.
     """
-    words = str(text).split() if isinstance(text, str) else [text]
-    if counts is not None and len(words) not in counts:
-        expected_counts = " or ".join(map(str, counts))
-        raise InputError(source, field, f"{expected_counts} numbers", shown(text))
+    words = text.split() if isinstance(text, str) else [text]
+    if count not in (None, len(words)):
+        raise InputError(source, field, f"{count} numbers", shown(text))
     return [figure(source, field, word, rule) for word in words]
 
 

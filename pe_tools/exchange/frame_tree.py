@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from pe_core.base.errors import InputError
@@ -22,26 +23,11 @@ Hung = Mapping[str, tuple[str, Pose]]
 
 
 def poses_from_root(path: Path, hung: Hung, frames: Collection[str], noun: str) -> dict[str, Pose]:
-    """Return the poses of all frames in the root frame, by name, ordered by depth.
+    """Return the poses of all `frames` in the root frame, by name, ordered by depth.
 
-    Frames of equal depth are in the order of `hung`. The pose of each frame is computed once, from
-    the pose of its parent, so the time is linear in the number of frames.
-
-    Parameters
-    ----------
-    path : Path
-        The file, for messages.
-    hung : mapping of str to (str, Pose)
-        Parent frame and pose in the parent frame, by frame name.
-    frames : collection of str
-        Names of all frames, including those without a parent.
-    noun : str
-        The word for a frame in this format.
-
-    Raises
-    ------
-    InputError
-        When there are more than `MAX_FRAMES` frames, not exactly one root, or a cycle.
+    Frames of equal depth are in the order of `hung`. Each pose is computed once, from that of its
+    parent, so the time is linear in the number of frames. `noun` is the word for a frame in this
+    format. More than `MAX_FRAMES`, not exactly one root or a cycle raise `InputError`.
     """
     require_at_most(path, noun, len(frames), MAX_FRAMES, f"{noun}s")
     roots = [name for name in frames if name not in hung]
@@ -59,10 +45,8 @@ def poses_from_root(path: Path, hung: Hung, frames: Collection[str], noun: str) 
             parent, pose = hung[name]
             poses[name] = composed(poses[parent], pose)
     if len(poses) < len(frames):
-        unreached = next(name for name in hung if name not in poses)
-        raise InputError(
-            path, f"{noun} {unreached}", "a chain of parents that ends at the root", "a circle"
-        )
+        field = f"{noun} {next(name for name in hung if name not in poses)}"
+        raise InputError(path, field, "a chain of parents that ends at the root", "a circle")
     return poses
 
 
@@ -93,27 +77,17 @@ def with_legal_frames(
 ) -> tuple[tuple[PortableSensor, ...], list[str]]:
     """Return sensors with legal names and unique frames, and a message for each renamed sensor.
 
-    Parameters
-    ----------
-    sensors : sequence of PortableSensor
-    slashes : bool
-        Whether names may contain ``/``.
-    frames : callable
-        Function of a sensor that returns the names of all its frames; a camera may have an optical
-        frame beside its own.
-    taken : collection of str
-        Frame names that are already in use.
-    not_ending : str
-        Suffix that no sensor name may have, because it marks another sort of frame.
+    `frames` returns the names of all frames of a sensor, `taken` are names in use. No name may have
+    the suffix `not_ending`, which marks another sort of frame. For `slashes` see `legal_frame`.
     """
     used, renamed, lines = set(taken), [], []
     for sensor in sensors:
         legal = legal_frame(sensor.name, slashes=slashes)
         if not_ending and legal.endswith(not_ending):
             legal += "_sensor"
-        named, number = sensor.called(legal), 2
+        named, number = replace(sensor, name=legal), 2
         while used & set(frames(named)):
-            named, number = sensor.called(f"{legal}_{number}"), number + 1
+            named, number = replace(sensor, name=f"{legal}_{number}"), number + 1
         used |= set(frames(named))
         renamed.append(named)
         if named.name != sensor.name:
@@ -125,8 +99,8 @@ def with_optical_frames(
     sensors: Sequence[PortableSensor], taken: Collection[str]
 ) -> tuple[tuple[PortableSensor, ...], list[str]]:
     """Return sensors with legal names; each camera also has an optical frame (REP 103)."""
-    return with_legal_frames(sensors, frames=_own_and_optical, taken=taken, not_ending=OPTICAL)
 
+    def own_and_optical(sensor: PortableSensor) -> tuple[str, ...]:
+        return (sensor.name, sensor.name + OPTICAL) if sensor.kind == CAMERA else (sensor.name,)
 
-def _own_and_optical(sensor: PortableSensor) -> tuple[str, ...]:
-    return (sensor.name, sensor.name + OPTICAL) if sensor.kind == CAMERA else (sensor.name,)
+    return with_legal_frames(sensors, frames=own_and_optical, taken=taken, not_ending=OPTICAL)

@@ -118,10 +118,7 @@ def origin_in_ground(
 ) -> tuple[float, ...]:
     """Return the position of an origin in the ground frame, (3,) [m].
 
-    Raises
-    ------
-    InputError
-        When the origin is at the rear axle, and the position of the axle is not known.
+    An origin at a rear axle whose position is not known raises `InputError`.
     """
     if origin == GROUND:
         return 0.0, 0.0, 0.0

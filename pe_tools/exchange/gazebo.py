@@ -57,7 +57,7 @@ class SensorElement:
     def pair(self, key: str, rule: Number) -> list[float] | None:
         """Return two numbers of one element; None if missing. Raise `InputError` if invalid."""
         text = self._text(key)
-        return None if text is None else figures(self.path, self._field(key), text, (2,), rule)
+        return None if text is None else figures(self.path, self._field(key), text, 2, rule)
 
     def numbers(self, keys: tuple[str, ...], rule: Number) -> list[float] | None:
         """Return the numbers at several keys; None if one of them is missing."""
@@ -118,11 +118,6 @@ def picture_in(sensor: SensorElement) -> Picture | None:
     Without intrinsics in the file, the principal point is the centre of the distortion, which is
     given as a fraction of the image size. A field of view of 180 degrees or more is not that of a
     pinhole; the result is None and the user has to choose a model.
-
-    Raises
-    ------
-    InputError
-        When a number is none or impossible.
     """
     fov = sensor.number("camera/horizontal_fov", WIDEST)
     width, height = (sensor.whole(f"image/{key}", PIXELS) for key in ("width", "height"))
@@ -151,13 +146,13 @@ ENDS = ("min_angle", "max_angle")
 def write_scan(element: Element, scan: Scan) -> None:
     """Write a scan into a ``<lidar>`` element."""
     block = SubElement(element, "scan")
-    ranges = (
-        ("horizontal", scan.azimuths, *scan.fov),
-        ("vertical", scan.channels, scan.low, scan.high),
-    )
-    for name, samples, min_angle, max_angle in ranges:
+    parts = {
+        "horizontal": (scan.azimuths, *scan.fov),
+        "vertical": (scan.channels, scan.low, scan.high),
+    }
+    for name, values in parts.items():
         part = SubElement(block, name)
-        for key, value in (("samples", samples), *zip(ENDS, (min_angle, max_angle), strict=True)):
+        for key, value in zip(("samples", *ENDS), values, strict=True):
             SubElement(part, key).text = repr(value)
     range_element = SubElement(element, "range")
     if scan.min_range:
@@ -168,10 +163,7 @@ def write_scan(element: Element, scan: Scan) -> None:
 def scan_in(sensor: SensorElement) -> Scan | None:
     """Return a LiDAR's scan; None if it is incomplete. Without ``<vertical>`` it has one channel.
 
-    Raises
-    ------
-    InputError
-        When a number is not valid or not possible, or angles end before they begin.
+    Angles that end before they begin raise `InputError`.
     """
     azimuths = sensor.whole("horizontal/samples", STEPS)
     across = sensor.numbers(tuple(f"horizontal/{end}" for end in ENDS), AZIMUTH)
@@ -182,11 +174,7 @@ def scan_in(sensor: SensorElement) -> Scan | None:
     low, high = sensor.numbers(tuple(f"vertical/{end}" for end in ENDS), ELEVATION) or (0.0, 0.0)
     for name, (min_angle, max_angle) in (("horizontal", across), ("vertical", (low, high))):
         if min_angle > max_angle:
-            field = f"sensor of {sensor.name}, {name}"
-            raise InputError(
-                sensor.path, field, f"{ENDS[0]} up to {ENDS[1]}", f"{min_angle:g}, {max_angle:g}"
-            )
-    min_range = sensor.number("range/min", MIN_RANGE) or 0.0
-    return Scan(
-        channels, low, high, azimuths, (across[0], across[1]), max_range, min_range=min_range
-    )
+            field, found = f"sensor of {sensor.name}, {name}", f"{min_angle:g}, {max_angle:g}"
+            raise InputError(sensor.path, field, f"{ENDS[0]} up to {ENDS[1]}", found)
+    nearest, fov = sensor.number("range/min", MIN_RANGE) or 0.0, (across[0], across[1])
+    return Scan(channels, low, high, azimuths, fov, max_range, min_range=nearest)

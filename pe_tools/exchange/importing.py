@@ -37,8 +37,6 @@ STAND_INS = {kind: row.stand_in for kind, row in PORTABLE_KINDS.items() if row.s
 CHOOSE = "choose its model"
 Modelled = tuple[PortableSensor, SensorModel, str]
 """A sensor, its model, and a message about the model (may be empty)."""
-LENS_NAMES = ("cam", "fisheye", "rgb", "image")
-"""Parts of a name that identify a camera, if the file does not state the kind."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,13 +89,12 @@ def import_rig(
     """
     path = Path(path)
     if not path.exists():
-        raise InputError(
-            path, "file", "an existing file or folder", "no file or folder of that name"
-        )
+        found = "no file or folder of that name"
+        raise InputError(path, "file", "an existing file or folder", found)
     row = detect_format(path) if name is None else rig_format(name)
     origin = origin_in_ground(row.origin, reference, row.title, path)
     with _in_file(path), report_memory_errors(path):
-        return _imported(path, row, _FileOrigin(origin, placed), models or {})
+        return _imported(path, row, origin, placed, models or {})
 
 
 @contextmanager
@@ -112,72 +109,48 @@ def _in_file(path: Path) -> Iterator[None]:
         raise InputError(path, field, error.expected, error.found) from None
 
 
-@dataclass(frozen=True, slots=True)
-class _FileOrigin:
-    """Transform from the file's frame to the ground frame.
-
-    `origin` is the format's origin in the ground frame [m]; `placed` is the pose that the user gave
-    the file's frame, if any.
-    """
-
-    origin: tuple[float, ...]
-    placed: Pose | None
-
-    def __call__(self, pose: Pose) -> Pose:
-        return shifted(pose if self.placed is None else composed(self.placed, pose), self.origin)
-
-
 def _imported(
-    path: Path, row: RigFormat, file_origin: _FileOrigin, models: Mapping[str, str]
+    path: Path,
+    row: RigFormat,
+    origin: Sequence[float],
+    placed: Pose | None,
+    models: Mapping[str, str],
 ) -> ImportedRig:
-    sensors = row.read(path)
+    sensors = row.code.read(path)
     require_at_most(path, "sensors", len(sensors), MAX_SENSORS, "sensors")
     for number, sensor in enumerate(sensors, 1):
         A_NAME.checked(path, f"name of sensor {number}", sensor.name)
     names = named_apart([sensor.name for sensor in sensors])
-    named = [sensor.called(name) for sensor, name in zip(sensors, names, strict=True)]
+    named = [replace(s, name=name) for s, name in zip(sensors, names, strict=True)]
     included, left_out = parted(named, models)
+    left_out_names = listed_kinds((sensor.kind or "", sensor.name) for sensor in left_out)
     if not included:
-        names_of_left_out = listed_kinds((sensor.kind or "", sensor.name) for sensor in left_out)
-        raise InputError(path, "sensors", "cameras or LiDARs", names_of_left_out or "none")
-    _check_chosen(path, models, included, left_out)
+        raise InputError(path, "sensors", "cameras or LiDARs", left_out_names or "none")
+    _check_chosen(path, models, [sensor.name for sensor in included], left_out)
     modelled = [_with_model(sensor, models.get(sensor.name), row) for sensor in included]
-    rig = Rig([Sensor(s.name, model, file_origin(s.pose), s.fusion) for s, model, _ in modelled])
+    rig = []
+    for sensor, model, _ in modelled:
+        pose = sensor.pose if placed is None else composed(placed, sensor.pose)
+        rig.append(Sensor(sensor.name, model, shifted(pose, origin), sensor.fusion))
     sources = _kept(named, left_out, modelled, models)
-    passthrough = Passthrough(row.name, sources, row.source(path), file_origin.placed)
-    left_out_lines = [_left_out_line(left_out, row)] if left_out else []
+    passthrough = Passthrough(row.name, sources, row.source(path), placed)
+    hint = f"; an export to {row.title} has them again" if row.passes_through else ""
+    left_out_lines = [f"left out: {left_out_names}{hint}"] if left_out else []
     notes = merged_lines(((sensor.name, sensor.told) for sensor, _, _ in modelled), len(modelled))
     lines = (*left_out_lines, *notes, *(line for _, _, line in modelled if line))
     to_choose = tuple(sensor.name for sensor, _, line in modelled if line.endswith(CHOOSE))
-    return ImportedRig(rig, to_choose, lines, passthrough if passthrough.holds else None)
+    return ImportedRig(Rig(rig), to_choose, lines, passthrough if passthrough.holds else None)
 
 
 def _check_chosen(
-    path: Path,
-    models: Mapping[str, str],
-    included: Sequence[PortableSensor],
-    left_out: Sequence[PortableSensor],
+    path: Path, models: Mapping[str, str], names: list[str], left_out: Sequence[PortableSensor]
 ) -> None:
     """Raise `InputError` if a model was chosen for a name that is no sensor of the rig."""
-    names, left_out_kinds = (
-        [sensor.name for sensor in included],
-        {sensor.name: sensor.kind for sensor in left_out},
-    )
+    kinds = {sensor.name: sensor.kind for sensor in left_out}
     for key in models:
         if key not in names:
-            description = (
-                f"a {left_out_kinds[key]}, which is left out"
-                if key in left_out_kinds
-                else "no sensor"
-            )
-            raise InputError(path, f"model of {key}", f"one of {', '.join(names)}", description)
-
-
-def _left_out_line(left_out: Sequence[PortableSensor], row: RigFormat) -> str:
-    """Return the message that lists the sensors left out, and whether an export restores them."""
-    names = listed_kinds((sensor.kind or "", sensor.name) for sensor in left_out)
-    hint = f"; an export to {row.title} has them again" if row.passes_through else ""
-    return f"left out: {names}{hint}"
+            found = f"a {kinds[key]}, which is left out" if key in kinds else "no sensor"
+            raise InputError(path, f"model of {key}", f"one of {', '.join(names)}", found)
 
 
 def _kept(
@@ -187,10 +160,7 @@ def _kept(
     models: Mapping[str, str],
 ) -> tuple[SourceSensor, ...]:
     """Return the passthrough record of each sensor, in the file's order."""
-    sources = {
-        sensor.name: SourceSensor(sensor.name, sensor.kind or "", sensor.entry)
-        for sensor in left_out
-    }
+    sources = {s.name: SourceSensor(s.name, s.kind or "", s.entry) for s in left_out}
     for sensor, model, line in modelled:
         text = "" if sensor.name in models else model_text(model)
         fields = sensor.name, model.kind, sensor.entry, sensor.pose, text
@@ -208,8 +178,10 @@ def _with_model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> M
 def _model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> tuple[SensorModel, str]:
     if chosen is not None:
         return catalog.load(chosen), ""
-    if (catalogue_name := _known(sensor)) is not None:
-        model, line = _known_or_own(sensor, catalog.load(catalogue_name), row)
+    normalized = NO_WORD.sub("", (sensor.model or "").lower())
+    names = {NO_WORD.sub("", name.lower()): name for name in catalog.names(sensor.kind)}
+    if normalized and normalized in names:
+        model, line = _known_or_own(sensor, catalog.load(names[normalized]), row)
         return with_ranges(model, sensor), line
     if (own := portable_kind(sensor.kind).model(sensor, row.usual_size)) is not None:
         return own
@@ -219,13 +191,6 @@ def _model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> tuple[
         f"no {shown(sensor.model)} in the catalogue" if sensor.model else "no model in the file"
     )
     return catalog.load(stand_in), f"{sensor.name}: {reason}; {stand_in} stands in: {CHOOSE}"
-
-
-def _known(sensor: PortableSensor) -> str | None:
-    """Return the catalogue name that matches the model name in the file, or None."""
-    normalized = NO_WORD.sub("", (sensor.model or "").lower())
-    names = {NO_WORD.sub("", name.lower()): name for name in catalog.names(sensor.kind)}
-    return names.get(normalized) if normalized else None
 
 
 def _known_or_own(

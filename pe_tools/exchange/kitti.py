@@ -7,6 +7,7 @@ orientation.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,7 @@ from .portable import PortableSensor
 from .portable_kinds import CAMERA, LIDAR, cameras, lidars
 
 FILE, MAX_CAMERAS = "calib.txt", 4
+FILES = (FILE,)
 RECTIFIED, TO_CAMERA = ("R0_rect", "R_rect"), ("Tr_velo_to_cam", "Tr_velo_cam", "Tr")
 ODOMETRY = "Tr"
 """Key of the transform to the rectified first camera; odometry files have no R_rect beside it."""
@@ -33,13 +35,12 @@ ENTRY = Number(cap=1e9)
 """An entry of a matrix."""
 
 
-def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
+def write(
+    sensors: tuple[PortableSensor, ...], _texts: Mapping[str, str]
+) -> tuple[Written, list[str]]:
     """Return the calibration of one LiDAR and up to four cameras, and a message.
 
-    Raises
-    ------
-    InputError
-        When there is not exactly one LiDAR, not 1 to 4 cameras, or orientations differ.
+    Another number of LiDARs or cameras, or orientations that differ, raise `InputError`.
     """
     rig_cameras, rig_lidars = cameras(sensors), lidars(sensors)
     if len(rig_lidars) != 1 or not 1 <= len(rig_cameras) <= MAX_CAMERAS:
@@ -51,26 +52,31 @@ def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
         axes = product(sensor.pose.ground_from_sensor, BODY_FROM_OPTICAL)
         if np.abs(axes - first).max() > PARALLEL:
             expected = f"a camera that looks as {rig_cameras[0].name!r} does, as KITTI's do"
-            raise InputError(
-                f"sensor {sensor.name!r}", "rotation", expected, sensor.pose.rotation_deg
-            )
-    rows = {
-        f"P{k}": _projection(sensor, rig_cameras[0], first) for k, sensor in enumerate(rig_cameras)
-    }
+            found = sensor.pose.rotation_deg
+            raise InputError(f"sensor {sensor.name!r}", "rotation", expected, found)
+    origin = rig_cameras[0].pose.position
+    rows = {f"P{k}": _projection(sensor, origin, first) for k, sensor in enumerate(rig_cameras)}
     rows[RECTIFIED[0]] = np.eye(3)
-    rows[TO_CAMERA[0]] = _to_camera(rig_lidars[0], rig_cameras[0], first)
+    lidar = rig_lidars[0].pose
+    shift = _seen(first, origin, lidar.position)
+    rotation = product(first.T, lidar.ground_from_sensor)
+    rows[TO_CAMERA[0]] = np.hstack([rotation, np.array(shift)[:, None]])
     text = "".join(f"{key}: {spaced(matrix.ravel().tolist())}\n" for key, matrix in rows.items())
     names = ", ".join(f"P{k} {sensor.name}" for k, sensor in enumerate(rig_cameras))
     lines = [f"KITTI's file has no vehicle: poses are to {rig_lidars[0].name}; {names}"]
     return {FILE: text.encode()}, lines
 
 
-def _projection(sensor: PortableSensor, first: PortableSensor, axes: Floats) -> Floats:
+def _seen(axes: Floats, origin: Sequence[float], position: Sequence[float]) -> tuple[float, ...]:
+    """Return a position in the frame with these axes and origin [m]."""
+    return turned(axes.T, [a - b for a, b in zip(position, origin, strict=True)])
+
+
+def _projection(sensor: PortableSensor, origin: Sequence[float], axes: Floats) -> Floats:
     """Return P = K [I | -t], (3, 4); t is the position in the first camera's optical frame [m]."""
     p = sensor.picture or pinhole_picture(1.0, 1.0, 0.0, 0.0)
     cx, cy = p.center
-    offset = [a - b for a, b in zip(sensor.pose.position, first.pose.position, strict=True)]
-    x, y, z = turned(axes.T, offset)
+    x, y, z = _seen(axes, origin, sensor.pose.position)
     return np.array(
         [
             [p.fx, 0.0, cx, -(p.fx * x + cx * z)],
@@ -80,21 +86,8 @@ def _projection(sensor: PortableSensor, first: PortableSensor, axes: Floats) -> 
     )
 
 
-def _to_camera(lidar: PortableSensor, camera: PortableSensor, axes: Floats) -> Floats:
-    """Return the transform (3, 4) from the LiDAR's frame to the first camera's optical frame."""
-    rotation = product(axes.T, lidar.pose.ground_from_sensor)
-    offset = [a - b for a, b in zip(lidar.pose.position, camera.pose.position, strict=True)]
-    return np.hstack([rotation, np.array(turned(axes.T, offset))[:, None]])
-
-
 def read(path: Path) -> tuple[PortableSensor, ...]:
-    """Read the LiDAR, which is the origin, and the cameras.
-
-    Raises
-    ------
-    InputError
-        When a matrix is missing, malformed or no rotation, or a focal length is not positive.
-    """
+    """Read the LiDAR, which is the origin, and the cameras."""
     rows = _rows(path)
     is_odometry = ODOMETRY in rows and not any(key in rows for key in RECTIFIED)
     rectified = np.eye(3) if is_odometry else _matrix(path, rows, RECTIFIED, (3, 3))

@@ -75,11 +75,6 @@ def picture_of_fov(fov: float, size: Size, fov_down: float | None = None) -> Pic
     return pinhole_picture(fx, fy, width / 2.0, height / 2.0, size)
 
 
-def whole(p: Picture) -> Picture:
-    """Return the intrinsics unchanged."""
-    return p
-
-
 def straight(p: Picture) -> Picture:
     """Return the pinhole with the same focal lengths on the axis and principal point."""
     return p if p.lens.is_straight else pinhole_picture(p.fx, p.fy, *p.center, p.size)
@@ -101,7 +96,7 @@ def square(p: Picture) -> Picture:
 
 
 def opencv(p: Picture) -> Picture:
-    """Return a lens model of OpenCV and ROS, without its image circle; a pinhole for others."""
+    """Return a lens of OpenCV and ROS, without its image circle; a pinhole for others."""
     if isinstance(p.lens, BrownConrady | KannalaBrandt):
         return replace(p, lens=replace(p.lens, fov=None))
     return straight(p)
@@ -115,9 +110,9 @@ def opencv_of_five(p: Picture) -> Picture:
 
 
 def f_theta_of_five(p: Picture) -> Picture:
-    """Return the f-theta lens if it has square pixels and degree 5 at most; a pinhole for others.
+    """Return an f-theta lens of square pixels and degree 5 at most, its focal length multiplied in.
 
-    Its focal length is multiplied into the coefficients.
+    Others become a pinhole.
     """
     lens = p.lens
     if not isinstance(lens, FTheta) or lens.fx != lens.fy or lens.k6:
@@ -142,23 +137,17 @@ def lost(p: Picture, kept: Picture) -> list[str]:
 
 def alike(a: Picture, b: Picture) -> bool:
     """Whether two cameras have the same intrinsics within rounding."""
-    if (
-        a.size != b.size
-        or a.lens.model != b.lens.model
-        or (a.lens.fov is None) != (b.lens.fov is None)
-    ):
-        return a.size == b.size and _straight_alike(a, b)
-    keys = ("fx", "fy", "cx", "cy", *a.lens.coefficients)
-    differences = [abs(getattr(a.lens, key) - getattr(b.lens, key)) for key in keys]
-    return max(*differences, abs((a.lens.fov or 0.0) - (b.lens.fov or 0.0))) <= ALIKE_PX
-
-
-def _straight_alike(a: Picture, b: Picture) -> bool:
-    """Whether both lenses are without distortion and have the same parameters."""
-    if not (a.lens.is_straight and b.lens.is_straight):
+    if a.size != b.size:
         return False
-    figures = zip((a.fx, a.fy, *a.center), (b.fx, b.fy, *b.center), strict=True)
-    return all(abs(x - y) <= ALIKE_PX for x, y in figures)
+    if a.lens.model == b.lens.model and (a.lens.fov is None) == (b.lens.fov is None):
+        keys = ("fx", "fy", "cx", "cy", *a.lens.coefficients)
+        pairs = [(getattr(a.lens, key), getattr(b.lens, key)) for key in keys]
+        pairs.append((a.lens.fov or 0.0, b.lens.fov or 0.0))
+    elif a.lens.is_straight and b.lens.is_straight:
+        pairs = list(zip((a.fx, a.fy, *a.center), (b.fx, b.fy, *b.center), strict=True))
+    else:
+        return False
+    return all(abs(x - y) <= ALIKE_PX for x, y in pairs)
 
 
 LAST_SQUARE = 10.0
@@ -170,23 +159,15 @@ NOTICED_PX = 0.1
 def with_fourth(
     picture: Picture, radial: tuple[float, float, float, float], tangential: tuple[float, float]
 ) -> tuple[Picture, str]:
-    """Return a pinhole with a distortion of four radial coefficients, and a note on the fit error.
+    """Return a pinhole with a distortion k1 to k4 and p1, p2, and a note on the error of the fit.
 
-    The Brown-Conrady model has no fourth polynomial coefficient, so a quotient is fitted. The note
+    The Brown-Conrady model has no fourth polynomial coefficient, so a quotient is fitted as far as
+    the image's corner; without a size, the image is symmetric about the principal point. The note
     is empty if the error is below `NOTICED_PX`.
-
-    Parameters
-    ----------
-    picture : Picture
-        A pinhole; without a size, the image is assumed symmetric about the principal point.
-    radial : (4,) float
-        k1 to k4.
-    tangential : (2,) float
-        p1, p2.
     """
     lens = picture.lens
     square = _squares(math.hypot(lens.cx / lens.fx, lens.cy / lens.fy), radial)
-    wanted = _factor(square, radial)
+    wanted = 1.0 + _power_sum(square, radial)
     top, bottom = _quotient(square, wanted)
     fitted = (1.0 + _power_sum(square, top)) / (1.0 + _power_sum(square, bottom))
     error_px = float(np.abs((fitted - wanted) * np.sqrt(square)).max()) * max(lens.fx, lens.fy)
@@ -199,15 +180,10 @@ def with_fourth(
 def _squares(corner: float, radial: tuple[float, ...]) -> Floats:
     """Return r^2 from the axis to the image corner, or as far as the distortion is monotonic."""
     square = np.linspace(0.0, LAST_SQUARE, PLACES + 1)[1:]
-    reached = np.sqrt(square) * _factor(square, radial)
-    grows = np.diff(reached, prepend=0.0) > 0.0
-    inside = grows & (reached <= corner)
+    reached = np.sqrt(square) * (1.0 + _power_sum(square, radial))
+    inside = (np.diff(reached, prepend=0.0) > 0.0) & (reached <= corner)
     count = len(square) if inside.all() else max(int(np.argmin(inside)), 1)
     return np.linspace(0.0, float(square[min(count, len(square) - 1)]), PLACES + 1)[1:]
-
-
-def _factor(square: Floats, radial: tuple[float, ...]) -> Floats:
-    return 1.0 + _power_sum(square, radial)
 
 
 def _power_sum(square: Floats, values: tuple[float, ...] | Floats) -> Floats:

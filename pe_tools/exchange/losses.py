@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pe_core import catalog
-from pe_core.scene.rig import Rig, Sensor, SensorModel
+from pe_core.scene.rig import Rig, Sensor
 
 from .portable import PortableSensor
 from .portable_kinds import portable_sensors
@@ -26,16 +26,7 @@ EVERYTHING = (BEAMS, PARAMETERS, MIN_RANGE, MAX_RANGE, FUSION, CURVE)
 
 
 def lost_line(rig: Rig, title: str, holds: frozenset[str]) -> list[str]:
-    """Return one message with the properties of a rig that a format loses; empty list if none.
-
-    Parameters
-    ----------
-    rig : Rig
-    title : str
-        Title of the format.
-    holds : frozenset of str
-        Properties that the format holds, from `MODEL` and `EVERYTHING`.
-    """
+    """Return one message with the properties of a rig that are not in `holds`; [] if none."""
     pairs = zip(rig, portable_sensors(rig), strict=True)
     lost = {sensor.name: set(_owned(sensor, portable, holds)) - holds for sensor, portable in pairs}
     parts = []
@@ -52,8 +43,11 @@ def _owned(sensor: Sensor, portable: PortableSensor, holds: frozenset[str]) -> I
         yield FUSION
     if sensor.curve is not None:
         yield CURVE
-    if MODEL in holds and _is_catalogued(sensor.model):
-        return
+    model = sensor.model
+    if MODEL in holds and model.name in catalog.names(model.kind):
+        known = catalog.load(model.name)
+        if known is model or catalog.to_table(known) == catalog.to_table(model):
+            return
     if portable.scan is not None:
         yield BEAMS
         if BEAMS not in holds:
@@ -65,11 +59,3 @@ def _owned(sensor: Sensor, portable: PortableSensor, holds: frozenset[str]) -> I
         yield MIN_RANGE
     if portable.max_range is not None and portable.scan is None:
         yield MAX_RANGE
-
-
-def _is_catalogued(model: SensorModel) -> bool:
-    """Whether the catalogue has an equal model of the same name."""
-    if model.name not in catalog.names(model.kind):
-        return False
-    catalogued = catalog.load(model.name)
-    return catalogued is model or catalog.to_table(catalogued) == catalog.to_table(model)

@@ -8,10 +8,10 @@ nuImages, camera_distortion: k1, k2, p1, p2, k3, and k4 for fisheyes.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError, shown
 from pe_core.base.table_reader import Table
 from pe_core.base.values import numbers, vector
@@ -33,14 +33,16 @@ from .passthrough import entry_row
 from .portable import PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
-CALIBRATED, SENSORS = "calibrated_sensor.json", "sensor.json"
+FILES = CALIBRATED, SENSORS = "calibrated_sensor.json", "sensor.json"
 FIVE = ("k1", "k2", "p1", "p2", "k3")
 POSE, FIGURES = ("translation", "rotation"), ("camera_intrinsic", "camera_distortion")
 AXES = {CAMERA: BODY_FROM_OPTICAL, LIDAR: BODY_FROM_RIGHT_FORWARD}
 """Rotation from nuScenes' sensor axes to those of this project, by kind; others have the same."""
 
 
-def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
+def write(
+    sensors: tuple[PortableSensor, ...], _texts: Mapping[str, str]
+) -> tuple[Written, list[str]]:
     """Return the two tables, and messages on image sizes, which the tables cannot hold."""
     calibrated = [entry_row(sensor, _calibrated, POSE, FIGURES, CALIBRATED) for sensor in sensors]
     sensor_rows = [entry_row(sensor, _known, (), (), SENSORS) for sensor in sensors]
@@ -80,19 +82,9 @@ def _token(table: str, name: str) -> str:
 
 
 def read(path: Path) -> tuple[PortableSensor, ...]:
-    """Read the sensors from calibrated_sensor.json and the sensor.json beside it.
+    """Read the sensors from calibrated_sensor.json, or its folder, and the sensor.json beside it.
 
     The last calibration of a sensor is used.
-
-    Parameters
-    ----------
-    path : Path
-        The file calibrated_sensor.json, or the folder that holds both files.
-
-    Raises
-    ------
-    InputError
-        When a file is missing or malformed, or a sensor token is unknown.
     """
     path = path / CALIBRATED if path.is_dir() else path
     beside = path.with_name(SENSORS)
@@ -114,32 +106,27 @@ def _sensor(path: Path, row: Table, sensor_row: Table) -> PortableSensor:
     rotation = from_quaternion(path, row.field("rotation"), rotation_values)
     if kind in AXES:
         rotation = product(rotation, AXES[kind].T)
-    picture = _picture(path, row.field("camera_intrinsic"), row.raw("camera_intrinsic", []))
-    note = ""
-    if picture is not None and row.raw("camera_distortion", []):
-        picture, note = _bent(path, row, picture)
+    picture, note, value = None, "", row.raw("camera_intrinsic", [])
+    if value != []:
+        matrix = numbers(value)
+        if matrix is None or matrix.shape != (3, 3):
+            raise row.error("camera_intrinsic", "a 3 x 3 matrix, or []", shown(value))
+        fx, fy, cx, cy = (float(matrix[k]) for k in ((0, 0), (1, 1), (0, 2), (1, 2)))
+        picture = pinhole_picture(fx, fy, cx, cy)
+        if row.raw("camera_distortion", []):
+            picture, note = _bent(row, picture)
     entry = json_entry({CALIBRATED: row.data, SENSORS: sensor_row.data})
-    return PortableSensor(
-        name, pose_of(rotation, position), kind, None, picture, told=note, entry=entry
-    )
+    pose = pose_of(rotation, position)
+    return PortableSensor(name, pose, kind, None, picture, told=note, entry=entry)
 
 
-def _picture(path: Path, field: str, value: Any) -> Picture | None:
-    if value == []:
-        return None
-    matrix: Floats | None = numbers(value)
-    if matrix is None or matrix.shape != (3, 3):
-        raise InputError(path, field, "a 3 x 3 matrix, or []", shown(value))
-    fx, fy, cx, cy = (float(matrix[k]) for k in ((0, 0), (1, 1), (0, 2), (1, 2)))
-    return pinhole_picture(fx, fy, cx, cy)
-
-
-def _bent(path: Path, row: Table, picture: Picture) -> tuple[Picture, str]:
+def _bent(row: Table, picture: Picture) -> tuple[Picture, str]:
     """Return the intrinsics with nuImages' distortion, and a note on accuracy (may be empty)."""
-    field, values = row.field("camera_distortion"), row.raw("camera_distortion")
+    values = row.raw("camera_distortion")
     coefficients = numbers(values)
     if coefficients is None or coefficients.ndim != 1 or len(coefficients) not in (4, 5, 6):
-        raise InputError(path, field, "4 to 6 numbers: k1, k2, p1, p2, k3, k4", shown(values))
+        expected = "4 to 6 numbers: k1, k2, p1, p2, k3, k4"
+        raise row.error("camera_distortion", expected, shown(values))
     k1, k2, p1, p2, k3, k4 = [*map(float, coefficients), 0.0, 0.0][:6]
     if k4:
         return with_fourth(picture, (k1, k2, k3, k4), (p1, p2))

@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from itertools import count
 from pathlib import Path
@@ -43,6 +43,7 @@ from .portable import FieldOfView, PortableSensor, Scan
 from .portable_kinds import CAMERA, LIDAR, RADAR, ULTRASONIC
 
 FILE = "sensor_view_configuration.json"
+FILES = (FILE,)
 OTHER_KINDS = (RADAR, ULTRASONIC)
 """Kinds whose entries an export keeps: OSI has fields of theirs that are not read."""
 COUNTS = ("number_of_rays_horizontal", "number_of_rays_vertical", "max_number_of_interactions")
@@ -62,58 +63,45 @@ STAND_IN_RANGE_M = 100.0
 """Range of a LiDAR if the file states none; it is that of the stand-in model."""
 
 
-def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
-    """Return a configuration with all sensors, and messages; ids count from 0 in rig order.
+def write(
+    sensors: tuple[PortableSensor, ...], _texts: Mapping[str, str]
+) -> tuple[Written, list[str]]:
+    """Return a configuration with all sensors, and messages on names and ranges it cannot hold.
 
-    Raises
-    ------
-    InputError
-        When the LiDARs have more than `MAX_BEAMS` beams, because every beam is written.
+    Ids count from 0 in rig order, around those of imported entries. Every beam is written, so more
+    than `MAX_BEAMS` raise `InputError`.
     """
     beams = sum(s.scan.beam_count for s in sensors if s.scan is not None)
     require_at_most("osi", "sensors", beams, MAX_BEAMS, "beams, each of which is written")
     figures = ((s.name, s.scan or s.field) for s in sensors)
     ranges = {name: own.max_range for name, own in figures if own is not None}
-    top: dict[str, Any] = {"range": max(ranges.values())} if ranges else {}
-    left_out = [
+    farthest = max(ranges.values(), default=0.0)
+    rows = [
         (sensor, entry_row(sensor, _row, ("mounting_position",), FIGURES))
         for sensor in sensors
         if sensor.is_left_out or sensor.entry
     ]
-    used_ids = {_id_of(row) for _, row in left_out}
+    used_ids = {_id_of(Message(row, "passthrough")) for _, row in rows}
     free_ids = (number for number in count() if number not in used_ids)
-    sensor_by_id = {
-        number: sensor for number, sensor in zip(free_ids, _ours(sensors), strict=False)
-    }
-    for number, sensor in sensor_by_id.items():
-        row = {"sensor_id": {"value": number}, **_row(sensor)}
-        top.setdefault(LISTS.get(sensor.kind or "", OTHER), []).append(row)
-    for sensor, row in left_out:
+    ours = [sensor for sensor in sensors if not (sensor.is_left_out or sensor.entry)]
+    by_id = dict(zip(free_ids, ours, strict=False))
+    own_rows = [(s, {"sensor_id": {"value": number}, **_row(s)}) for number, s in by_id.items()]
+    top: dict[str, Any] = {"range": farthest} if ranges else {}
+    for sensor, row in (*own_rows, *rows):
         top.setdefault(LISTS.get(sensor.kind or "", OTHER), []).append(row)
     text = json.dumps(top, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-    return {FILE: text.encode()}, _lines(sensor_by_id, ranges)
-
-
-def _ours(sensors: Sequence[PortableSensor]) -> list[PortableSensor]:
-    return [sensor for sensor in sensors if not (sensor.is_left_out or sensor.entry)]
-
-
-def _id_of(row: Mapping[str, Any]) -> int | None:
-    """Return the id of an entry; None if it has none."""
-    return Message(row, "passthrough").message("sensor_id").whole_figure("value", IDENTIFIER)
-
-
-def _lines(sensor_by_id: Mapping[int, PortableSensor], ranges: dict[str, float]) -> list[str]:
-    """Return messages on names and ranges, which the configuration cannot hold."""
-    order = ", ".join(f"{number} {sensor.name}" for number, sensor in sensor_by_id.items())
+    order = ", ".join(f"{number} {sensor.name}" for number, sensor in by_id.items())
     lines = [f"OSI numbers sensors, it has no names: {order}"]
-    farthest = max(ranges.values(), default=0.0)
     shorter = [f"{name} {reach:g} m" for name, reach in ranges.items() if reach != farthest]
     if shorter:
-        lines.append(
-            f"OSI has one range for all sensors, {farthest:g} m; left out: {', '.join(shorter)}"
-        )
-    return lines
+        left_out = f"left out: {', '.join(shorter)}"
+        lines.append(f"OSI has one range for all sensors, {farthest:g} m; {left_out}")
+    return {FILE: text.encode()}, lines
+
+
+def _id_of(row: Message) -> int | None:
+    """Return the id of an entry; None if it has none."""
+    return row.message("sensor_id").whole_figure("value", IDENTIFIER)
 
 
 def _row(sensor: PortableSensor) -> dict[str, Any]:
@@ -157,18 +145,13 @@ def read(path: Path) -> tuple[PortableSensor, ...]:
     """Read the sensors of a configuration; a sensor's name is its kind and id.
 
     Fields may have the names of the schema (snake case) or of protobuf's JSON (camel case).
-
-    Raises
-    ------
-    InputError
-        When a value is malformed, an id occurs twice, or there are more than `MAX_BEAMS` beams.
     """
     top = Message(json_of(path, BEAM_BYTES), str(path))
     max_range = top.figure("range", RANGE)
     sensors: dict[int, PortableSensor] = {}
     for kind, key in (*LISTS.items(), (None, OTHER)):
         for row in top.messages(key):
-            number = row.message("sensor_id").whole_figure("value", IDENTIFIER)
+            number = _id_of(row)
             number = len(sensors) if number is None else number
             if number in sensors:
                 raise InputError(path, row.field("sensor_id"), "an id used once", number)
@@ -196,7 +179,12 @@ def _sensor(
         row.whole_figure(key, COUNT)
     if kind == CAMERA:
         return _camera(row, sensor)
-    return _lidar(path, row, sensor, max_range) if kind == LIDAR and "directions" in row else sensor
+    if kind != LIDAR or "directions" not in row:
+        return sensor
+    # No release of OSI has a range per LiDAR, but configurations written by hand do.
+    reach = row.figure("range", RANGE) or max_range
+    note = "" if reach else f"no range in the file; {STAND_IN_RANGE_M:g} m stands in"
+    return replace(sensor, scan=_scan(path, row, reach or STAND_IN_RANGE_M), told=note)
 
 
 def _field(row: Message, max_range: float | None) -> FieldOfView | None:
@@ -209,30 +197,12 @@ def _field(row: Message, max_range: float | None) -> FieldOfView | None:
 
 def _camera(row: Message, sensor: PortableSensor) -> PortableSensor:
     """Return a camera with its intrinsics, if image size and field of view are given."""
-    directions = ("horizontal", "vertical")
-    width, height = (
-        row.whole_figure(f"number_of_pixels_{direction}", PIXELS) for direction in directions
-    )
-    across, down = (row.figure(f"field_of_view_{direction}", WIDEST) for direction in directions)
+    sides = ("horizontal", "vertical")
+    width, height = (row.whole_figure(f"number_of_pixels_{side}", PIXELS) for side in sides)
+    across, down = (row.figure(key, WIDEST) for key in FIGURES)
     if width is None or height is None or across is None or max(across, down or 0.0) >= math.pi:
         return sensor
     return replace(sensor, picture=picture_of_fov(across, (width, height), down))
-
-
-def _lidar(
-    path: Path, row: Message, sensor: PortableSensor, max_range: float | None
-) -> PortableSensor:
-    """Return a LiDAR with its beams, and a note if its range is the default."""
-    # No release of OSI has a range per LiDAR, but configurations written by hand do.
-    sensor_range = row.figure("range", RANGE)
-    note = (
-        ""
-        if sensor_range or max_range
-        else f"no range in the file; {STAND_IN_RANGE_M:g} m stands in"
-    )
-    return replace(
-        sensor, scan=_scan(path, row, sensor_range or max_range or STAND_IN_RANGE_M), told=note
-    )
 
 
 def _component(value: Any) -> float:
@@ -244,32 +214,22 @@ def _component(value: Any) -> float:
 
 def _scan(path: Path, row: Message, max_range: float) -> Scan:
     beams, field = row.raw("directions"), row.field("directions")
-    are_tables = isinstance(beams, list) and all(isinstance(beam, dict) for beam in beams)
-    if are_tables:
+    directions = None
+    if isinstance(beams, list) and all(isinstance(beam, dict) for beam in beams):
         require_at_most(path, field, len(beams), MAX_BEAMS, "beams")
-    directions = (
-        numbers([[_component(beam.get(k)) for k in POSITION_KEYS] for beam in beams])
-        if are_tables
-        else None
-    )
-    if directions is None or not len(directions) or not _are_directions(directions):
+        directions = numbers([[_component(beam.get(k)) for k in POSITION_KEYS] for beam in beams])
+    low, high = DIRECTION
+    lengths = np.zeros(0) if directions is None else np.abs(directions)
+    # NaN is in no range.
+    if not lengths.size or not (lengths <= high).all() or not (lengths.max(axis=1) >= low).all():
         raise InputError(path, field, "a list of vectors {x, y, z} of length 1", shown(beams))
+    assert directions is not None
     count = row.whole_figure("num_of_pixels", Whole(1))
     if count is not None and count != len(directions):
-        raise InputError(
-            path, row.field("num_of_pixels"), f"{len(directions)}, one a direction", count
-        )
+        raise row.error("num_of_pixels", f"{len(directions)}, one a direction", count)
     elevations = np.arctan2(directions[:, 2], np.hypot(directions[:, 0], directions[:, 1]))
     fov, ends = (-math.pi, math.pi), (float(elevations.min()), float(elevations.max()))
     return Scan(len(directions), *ends, 1, fov, max_range, False, directions)
-
-
-def _are_directions(vectors: np.ndarray) -> bool:
-    """Whether vectors (B, 3) are finite, and neither 0 nor huge."""
-    low, high = DIRECTION
-    if not (np.abs(vectors) <= high).all():  # NaN, too
-        return False
-    return bool((np.abs(vectors).max(axis=1) >= low).all())
 
 
 CAPITAL = re.compile(r"(?<=[a-z0-9])([A-Z])")
@@ -278,17 +238,19 @@ CAPITAL = re.compile(r"(?<=[a-z0-9])([A-Z])")
 class Message(Table):
     """A protobuf message: a table with the schema's field names, ``like_this``.
 
-    A field that is null is absent. Numbers may be given as text. The names of nested messages are
-    converted when these are accessed.
-
-    Raises
-    ------
-    InputError
-        When the data are no table, or a field occurs under both of its names.
+    A field that is null is absent; one that occurs under both of its names raises `InputError`.
+    Numbers may be given as text. Names in nested messages are converted when these are accessed.
     """
 
     def __init__(self, data: Any, source: str, path: str = "") -> None:
-        super().__init__(_as_in_schema(source, path, data), source, path)
+        fields: dict[str, Any] = {}
+        super().__init__(fields if isinstance(data, dict) else data, source, path)
+        for key, value in data.items():
+            name = CAPITAL.sub(r"_\1", key).lower()
+            if name in fields:
+                raise self.error(name, "a field once", "both snake_case and camelCase")
+            if value is not None:
+                fields[name] = value
 
     def figure(self, key: str, rule: Number) -> float | None:
         """Return a number; None if the field is absent. Raise `InputError` if it is invalid."""
@@ -310,18 +272,3 @@ class Message(Table):
         if not isinstance(rows, list):
             raise self.error(key, "a list", type(rows).__name__)
         return [Message(row, self.source, f"{self.field(key)}[{k}]") for k, row in enumerate(rows)]
-
-
-def _as_in_schema(source: str, path: str, data: Any) -> Any:
-    """Return the fields of a message that are set, by their names in the schema."""
-    if not isinstance(data, dict):
-        return data
-    fields: dict[str, Any] = {}
-    for key, value in data.items():
-        name = CAPITAL.sub(r"_\1", key).lower()
-        if name in fields:
-            field = f"{path}.{name}" if path else name
-            raise InputError(source, field, "a field once", "both snake_case and camelCase")
-        if value is not None:
-            fields[name] = value
-    return fields

@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 
 from pe_core import catalog
-from pe_core.base.errors import InputError, shown
+from pe_core.base.errors import InputError, plural, shown
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import SensorModel
 from pe_core.sensors import KINDS
-from pe_core.study.passthrough import Passthrough, SourceSensor, json_entry
+from pe_core.study.passthrough import Passthrough, json_entry
 
 from .foreign_values import pose_from
 from .portable import PortableSensor
@@ -37,39 +37,31 @@ MAX_MODEL_LENGTH = 50_000
 """Characters of a model's figures; of more (single beams) a digest is kept."""
 
 
-def restored_sensor(source: SourceSensor, sensor: PortableSensor, model: str) -> PortableSensor:
-    """Return a sensor with its imported entry, and without properties that have not changed."""
-    untouched = bool(source.entry or source.is_stand_in) and same_model(source.model, model)
-    if untouched:
-        sensor = replace(sensor, picture=None, scan=None, field=None, parameters="")
-        sensor = replace(sensor, is_stand_in=source.is_stand_in)
-        sensor = replace(sensor, min_range=None, max_range=None)
-    unmoved = source.pose is not None and same_pose(source.pose, sensor.pose)
-    return replace(sensor, entry=source.entry, is_unmoved=unmoved)
-
-
 def restored(
     passthrough: Passthrough, sensors: Iterable[PortableSensor], models: Mapping[str, str]
 ) -> tuple[PortableSensor, ...]:
     """Return a rig's sensors with their imported entries, and the sensors left out at import.
 
-    Sensors are in the order of the file; sensors added since follow.
-
-    `models` are the `model_text` of the rig's models by the sensors' names.
+    Sensors are in the order of the file; sensors added since follow. `models` are the `model_text`
+    of the rig's models by the sensors' names; properties of a model that is still the imported one
+    are left out.
     """
     by_name, result = {sensor.name: sensor for sensor in sensors}, []
     for source in passthrough.sensors:
         if source.pose is None:
-            values = source.name, ORIGIN, source.kind
-            result.append(PortableSensor(*values, entry=source.entry, is_left_out=True))
+            left_out = PortableSensor(source.name, ORIGIN, source.kind)
+            result.append(replace(left_out, entry=source.entry, is_left_out=True))
         elif source.name in by_name:
-            result.append(restored_sensor(source, by_name.pop(source.name), models[source.name]))
+            sensor = by_name.pop(source.name)
+            kept = bool(source.entry or source.is_stand_in)
+            if kept and _is_same_model(source.model, models[source.name]):
+                sensor = replace(sensor, picture=None, scan=None, field=None, parameters="")
+                sensor = replace(sensor, min_range=None, max_range=None)
+                sensor = replace(sensor, is_stand_in=source.is_stand_in)
+            is_there_still = all(map(is_there, source.pose.position, sensor.pose.position))
+            unmoved = is_there_still and is_turned_so(source.pose, sensor.pose)
+            result.append(replace(sensor, entry=source.entry, is_unmoved=unmoved))
     return (*result, *by_name.values())
-
-
-def same_pose(a: Pose, b: Pose) -> bool:
-    """Whether two poses are the same, but for rounding."""
-    return all(map(is_there, a.position, b.position)) and is_turned_so(a, b)
 
 
 def is_there(a: float, b: float) -> bool:
@@ -92,7 +84,7 @@ def model_text(model: SensorModel) -> str:
     return text if len(text) <= MAX_MODEL_LENGTH else hashlib.sha256(text.encode()).hexdigest()
 
 
-def same_model(a: str, b: str) -> bool:
+def _is_same_model(a: str, b: str) -> bool:
     """Whether two model texts identify the same model within rounding."""
     if not (a.startswith("{") and b.startswith("{")):
         return a == b
@@ -121,19 +113,15 @@ def entry_row(
 ) -> dict[str, Any]:
     """Return a sensor's JSON object: its imported entry with the changed keys updated.
 
-    Parameters
-    ----------
-    each : PortableSensor
-    fresh : callable
-        Function of a sensor that returns its JSON object without regard to an entry.
-    pose_keys, figure_keys : sequence of str
-        Keys of the pose, and keys of the model.
-    part : str
-        Key of this object, if the entry has several objects.
+    `fresh` returns the object of a sensor without an entry; `pose_keys` and `figure_keys` are the
+    keys of the pose and of the model in it. `part` is its key, if the entry has several objects.
     """
     if not sensor.entry:
         return dict(fresh(sensor))
-    row = _object_of(sensor, part)
+    row = json.loads(sensor.entry)
+    row = row.get(part) if part else row
+    if not isinstance(row, dict):
+        raise InputError("passthrough", f"entry of {sensor.name}", "a JSON object", shown(row))
     if sensor.is_left_out:
         return row
     changed = [*([] if sensor.is_unmoved else pose_keys)]
@@ -144,14 +132,6 @@ def entry_row(
             row[key] = current[key]
         else:
             row.pop(key, None)
-    return row
-
-
-def _object_of(sensor: PortableSensor, part: str) -> dict[str, Any]:
-    row = json.loads(sensor.entry)
-    row = row.get(part) if part else row
-    if not isinstance(row, dict):
-        raise InputError("passthrough", f"entry of {sensor.name}", "a JSON object", shown(row))
     return row
 
 
@@ -183,24 +163,17 @@ def parted(
     """
     included, left_out = [], []
     for sensor in sensors:
-        kind = sensor.kind or ("" if sensor.name in chosen else _kind_in_name(sensor))
-        if (
-            not kind
-            or has_model(replace(sensor, kind=kind))
-            or (kind in KINDS and sensor.name in chosen)
-        ):
+        kind = sensor.kind or ""
+        if not (kind or sensor.name in chosen or sensor.model or sensor.has_figures):
+            words = NO_WORD.sub(" ", sensor.name.lower()).split()
+            kind = next((named for named in NAMED_KINDS if named in words), "")
+        is_chosen = kind in KINDS and sensor.name in chosen
+        if not kind or is_chosen or has_model(replace(sensor, kind=kind)):
             included.append(sensor)
         else:
             entry = sensor.entry or pose_entry(sensor)
             left_out.append(replace(sensor, kind=kind, entry=entry, is_left_out=True))
     return included, left_out
-
-
-def _kind_in_name(sensor: PortableSensor) -> str:
-    if sensor.model is not None or sensor.has_figures:
-        return ""
-    words = NO_WORD.sub(" ", sensor.name.lower()).split()
-    return next((kind for kind in NAMED_KINDS if kind in words), "")
 
 
 def listed_kinds(sensors: Iterable[tuple[str, str]]) -> str:
@@ -209,11 +182,6 @@ def listed_kinds(sensors: Iterable[tuple[str, str]]) -> str:
     for kind, name in sensors:
         names.setdefault(kind, []).append(name)
     return ", ".join(
-        f"{len(kind_names)} {_noun(kind, len(kind_names))} ({', '.join(kind_names)})"
-        for kind, kind_names in names.items()
+        f"{plural(len(own), kind if kind in NOUNS else f'{kind} sensor')} ({', '.join(own)})"
+        for kind, own in names.items()
     )
-
-
-def _noun(kind: str, count: int) -> str:
-    noun = kind if kind in NOUNS else f"{kind} sensor"
-    return noun if count == 1 else f"{noun}s"

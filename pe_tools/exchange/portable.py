@@ -19,10 +19,10 @@ EVEN_RAD = 1e-4
 class Scan:
     """A LiDAR's scan pattern, in the terms of formats with evenly spaced channels.
 
-    Angles are in radians, ranges in metres. `low` and `high` are the elevations of the outer
-    channels, `fov` is the azimuth range. `even` tells whether the channels are evenly spaced.
-    `directions` (B, 3) are the beams of an imported file that lists them; for a LiDAR of a rig,
-    `compute_beams` computes them. Its channels have azimuth offsets of up to `offset_rad`.
+    `low` and `high` are the elevations of the outer channels, `fov` is the azimuth range [rad];
+    ranges are in metres. `even` tells whether the channels are evenly spaced; their azimuth offsets
+    are up to `offset_rad`. `directions` (B, 3) are the beams of an imported file that lists them;
+    for a LiDAR of a rig, `compute_beams` computes them.
     """
 
     channels: int
@@ -50,9 +50,9 @@ class Scan:
 
 @dataclass(frozen=True, slots=True)
 class FieldOfView:
-    """The field of view of a radar or an ultrasonic sensor: azimuths and elevations [rad], ranges.
+    """The field of view of a radar or an ultrasonic sensor: lowest and highest angles, ranges.
 
-    `across` and `up` are the lowest and the highest angle; ranges are in metres.
+    `across` are azimuths and `up` elevations [rad]; ranges are in metres.
     """
 
     across: tuple[float, float]
@@ -67,35 +67,29 @@ class PortableSensor:
 
     Attributes
     ----------
-    name : str
-        Name in the other program.
+    name, model : str
+        Its name, and that of its model, in the file.
     pose : Pose
         Axes are those of this project (a camera looks along x); the origin is the format's.
     kind : str or None
         ``"camera"``, ``"lidar"``, another one that the file names, or None if unknown.
-    model : str or None
-        Name of its model in the file.
-    picture : Picture or None
-    scan : Scan or None
-    fusion : str or None
     min_range, max_range : float or None
         [m]; None if the file has none.
     told : str
-        Note on how it was read; may be empty.
+        Note on how it was read.
     entry : str
-        The sensor's entry in the imported file, a JSON object of its format; empty if the format
-        keeps none. An export writes it again with the changes.
+        Its entry in the imported file, a JSON object of its format, which an export writes again
+        with the changes; empty if the format keeps none.
     is_left_out : bool
-        Whether the sensor is of an unknown kind; an export then writes only its entry.
+        Whether it is of an unknown kind; an export then writes only its entry.
     is_unmoved : bool
-        Whether the sensor has the pose of its entry.
+        Whether it has the pose of its entry.
     is_stand_in : bool
         Whether the model is a stand-in because the file names none.
     parameters : str
-        Table of its model in a study (JSON), of a kind that has neither picture nor scan; may be
-        empty.
+        Table of its model in a study (JSON), of a kind that has neither picture nor scan.
     field : FieldOfView or None
-        Of a kind whose parameters formats without room for them reduce to it.
+        To what a kind reduces in formats without room for its parameters.
     """
 
     name: str
@@ -125,14 +119,6 @@ class PortableSensor:
     def known_model(self) -> str | None:
         """Name of the model; None if it is a stand-in."""
         return None if self.is_stand_in else self.model
-
-    def moved(self, pose: Pose) -> PortableSensor:
-        """Return the sensor with another pose."""
-        return replace(self, pose=pose)
-
-    def called(self, name: str) -> PortableSensor:
-        """Return the sensor with another name."""
-        return replace(self, name=name)
 
 
 def uneven(sensors: Iterable[PortableSensor], title: str) -> list[str]:

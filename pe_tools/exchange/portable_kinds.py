@@ -16,9 +16,9 @@ import numpy as np
 
 from pe_core import catalog
 from pe_core.base.errors import InputError
-from pe_core.scene.rig import Rig, Sensor, SensorModel
+from pe_core.scene.rig import Rig, SensorModel
 from pe_core.sensors import KINDS
-from pe_core.sensors.camera import Camera, Lens
+from pe_core.sensors.camera import Camera
 from pe_core.sensors.camera.lens import fold_angle
 from pe_core.sensors.lidar import Lidar
 from pe_core.sensors.radar import Radar, RadarMode
@@ -93,17 +93,15 @@ def kind_by_name(name: str) -> str:
 
 def portable_sensors(rig: Rig) -> tuple[PortableSensor, ...]:
     """Return the sensors of a rig, in the ground frame."""
-    return tuple(_portable(sensor) for sensor in rig)
-
-
-def _portable(sensor: Sensor) -> PortableSensor:
-    model = sensor.model
-    figures = dict(portable_kind(sensor.kind).figures(model))
-    for key, default in RANGES.items():
-        if (value := getattr(model, key, default)) != default:
-            figures[key] = value
-    identity = (sensor.name, sensor.pose, sensor.kind, model.name)
-    return PortableSensor(*identity, fusion=sensor.fusion, **figures)
+    sensors = []
+    for sensor in rig:
+        figures = dict(portable_kind(sensor.kind).figures(sensor.model))
+        for key, default in RANGES.items():
+            if (value := getattr(sensor.model, key, default)) != default:
+                figures[key] = value
+        identity = sensor.name, sensor.pose, sensor.kind, sensor.model.name
+        sensors.append(PortableSensor(*identity, fusion=sensor.fusion, **figures))
+    return tuple(sensors)
 
 
 def cameras(sensors: Iterable[PortableSensor]) -> list[PortableSensor]:
@@ -137,13 +135,24 @@ def camera_of(name: str, p: Picture, usual: Size | None = None) -> tuple[Camera,
 
     Intrinsics without an image size get the usual size of the format, if the principal point is
     near its middle, or else the size whose middle is the principal point. If the lens folds inside
-    the image, the field of view is limited to the part before the fold.
+    the image, the field of view is limited to the part before the fold, to 0.1 degrees.
     """
-    if p.size is not None:
-        return _camera(name, p, p.size)
-    (width, height), reason = _made_up_size(p, usual)
-    model, _ = _camera(name, p, (width, height))
-    return model, f"{name}: no size in the file; {width} x {height} px {reason}"
+    if p.size is None:
+        size, reason = _made_up_size(p, usual)
+        model, _ = camera_of(name, replace(p, size=size))
+        return model, f"{name}: no size in the file; {size[0]} x {size[1]} px {reason}"
+    if p.is_plain:
+        return Camera(name, *p.size, 2.0 * math.atan(p.size[0] / (2.0 * p.fx))), ""
+    try:
+        return Camera(name, *p.size, lens=p.lens), ""
+    except InputError:
+        if p.lens.fov is not None:
+            raise
+    fov_deg = max(math.floor(math.degrees(2.0 * fold_angle(p.lens)) * 10.0) / 10.0, 0.1)
+    unfolded = replace(p.lens, fov=math.radians(fov_deg))
+    half = math.degrees(unfolded.fov or 0.0) / 2.0
+    line = f"{name}: its lens folds inside the picture; what is farther than {half:g} deg from the "
+    return Camera(name, *p.size, lens=unfolded), f"{line}axis is left out"
 
 
 def _made_up_size(p: Picture, usual: Size | None) -> tuple[Size, str]:
@@ -151,34 +160,11 @@ def _made_up_size(p: Picture, usual: Size | None) -> tuple[Size, str]:
     doubled = [2.0 * middle for middle in p.center]
     width, height = (round(side) for side in doubled)
     is_centred = max(abs(doubled[0] - width), abs(doubled[1] - height)) < ALIKE_PX
-    if usual is None or is_centred:  # calibrations do not have half pixels by chance
-        return (width, height), "has its middle there"
-    offset = max(abs(side / whole - 1.0) / 2.0 for side, whole in zip(doubled, usual, strict=True))
-    if offset < OFF_CENTER:
-        return usual, "is usual there"
+    if usual is not None and not is_centred:  # calibrations do not have half pixels by chance
+        offsets = [abs(a / b - 1.0) / 2.0 for a, b in zip(doubled, usual, strict=True)]
+        if max(offsets) < OFF_CENTER:
+            return usual, "is usual there"
     return (width, height), "has its middle there"
-
-
-def _camera(name: str, p: Picture, size: tuple[int, int]) -> tuple[Camera, str]:
-    if replace(p, size=size).is_plain:
-        return Camera(name, *size, 2.0 * math.atan(size[0] / (2.0 * p.fx))), ""
-    try:
-        return Camera(name, *size, lens=p.lens), ""
-    except InputError:
-        if p.lens.fov is not None:
-            raise
-    unfolded = _unfolded(p.lens)
-    message = (
-        f"{name}: its lens folds inside the picture; what is farther than {{:g}} deg from the "
-    )
-    line = message.format(math.degrees(unfolded.fov or 0.0) / 2.0) + "axis is left out"
-    return Camera(name, *size, lens=unfolded), line
-
-
-def _unfolded(lens: Lens) -> Lens:
-    """Return the lens limited to the field of view where it is invertible, to 0.1 degrees."""
-    degrees = math.floor(math.degrees(2.0 * fold_angle(lens)) * 10.0) / 10.0
-    return replace(lens, fov=math.radians(max(degrees, 0.1)))
 
 
 def lidar_of(name: str, scan: Scan) -> Lidar:
@@ -194,25 +180,20 @@ def lidar_of(name: str, scan: Scan) -> Lidar:
         return Lidar.from_directions(name, np.stack(beams, axis=1), *ranges)
     share = min((high - low) / (2.0 * math.pi), 1.0)
     steps = max(round(scan.azimuths / share), 1)
-    fov = scan.fov
-    return Lidar(
-        name, elevations, steps, scan.max_range, horizontal_fov=fov, min_range=scan.min_range
-    )
+    return Lidar(name, elevations, steps, ranges[0], horizontal_fov=scan.fov, min_range=ranges[1])
 
 
 def _scan(model: Lidar) -> Scan:
     angles = sorted(model.elevations.tolist())
     step = (angles[-1] - angles[0]) / max(len(angles) - 1, 1)
-    even = all(abs(b - a - step) < EVEN_RAD for a, b in pairwise(angles))
-    offset = float(np.abs(model.azimuth_offsets).max())
     figures = (len(angles), angles[0], angles[-1], len(model.azimuth_steps), model.horizontal_fov)
     return Scan(
         *figures,
         model.max_range,
-        even,
+        even=all(abs(b - a - step) < EVEN_RAD for a, b in pairwise(angles)),
         min_range=model.min_range,
         compute_beams=lambda: model.directions,
-        offset_rad=offset,
+        offset_rad=float(np.abs(model.azimuth_offsets).max()),
     )
 
 
@@ -221,10 +202,6 @@ def _camera_model(sensor: PortableSensor, usual: Size | None) -> OwnModel | None
         return None
     model, line = camera_of(sensor.name, sensor.picture, usual)
     return with_ranges(model, sensor), line
-
-
-def _lidar_model(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
-    return None if sensor.scan is None else (lidar_of(sensor.name, sensor.scan), "")
 
 
 def _model_by_table(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
@@ -262,7 +239,11 @@ def _with_field(model: Radar | Ultrasonic) -> dict[str, Any]:
 
 
 PORTABLE_KINDS: dict[str, PortableKind] = {
-    LIDAR: PortableKind(lambda model: {"scan": _scan(model)}, _lidar_model, "Velodyne VLP-16 Puck"),
+    LIDAR: PortableKind(
+        lambda model: {"scan": _scan(model)},
+        lambda sensor, _: sensor.scan and (lidar_of(sensor.name, sensor.scan), ""),
+        "Velodyne VLP-16 Puck",
+    ),
     CAMERA: PortableKind(
         lambda model: {"picture": picture_of(model)},
         _camera_model,

@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
+from typing import Protocol
 
 from pe_core.base.errors import InputError, shown
 
 from . import (
     argoverse2,
     autoware,
-    autoware_kit,
     carla,
     csv_table,
     driveworks,
@@ -33,13 +33,29 @@ from .lens_pictures import (
     opencv_of_five,
     square,
     straight,
-    whole,
 )
 from .losses import BEAMS, FUSION, MAX_RANGE, MIN_RANGE, MODEL, PARAMETERS
 from .portable import PortableSensor
 
 Carried = tuple[PortableSensor, ...]
 FileTexts = Mapping[str, str]
+
+
+class Codec(Protocol):
+    """A module that reads and writes a format.
+
+    `FILES` are the names of the written files. `write` takes sensors in the format's frame, and the
+    texts of imported or existing files whose other content it keeps; it returns bytes by file name,
+    and messages. `read` takes a path and returns sensors in the format's frame.
+    """
+
+    FILES: tuple[str, ...]
+
+    def read(self, path: Path, /) -> Carried:
+        """Return the sensors of a file or folder."""
+
+    def write(self, sensors: Carried, texts: FileTexts, /) -> tuple[Written, list[str]]:
+        """Return the files of sensors, and messages."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,26 +68,20 @@ class RigFormat:
         Name in commands, and title in messages.
     origin : str
         Origin of its frame on the vehicle; `GROUND` is the origin of the ground frame.
-    files : tuple of str
-        Names of the written files; the first one identifies the format.
-    write : callable
-        Function of sensors in the format's frame; returns bytes by file name, and messages.
-    read : callable
-        Function of a path; returns sensors in the format's frame.
-    settled : callable
-        Function that adjusts a sensor once its model is known.
-    keeps : callable
-        Function that reduces a camera's intrinsics to what the format can express.
+    code : Codec
+        Module that reads and writes it.
     holds : frozenset of str
         Properties that it holds besides poses and lenses, from `losses`.
+    keeps : callable
+        Function that reduces a camera's intrinsics to what the format can express.
+    settled : callable
+        Function that adjusts a sensor once its model is known.
+    source : callable
+        Function of an imported path; returns the texts that `write` takes, by file name.
     usual_size : (int, int) or None
         Image size of the format's data set [px], for a format that states no size.
     beside : bool
         Whether files with camera intrinsics are beside the main file.
-    write_over : callable, optional
-        As `write`, but updates existing texts and keeps their other content.
-    source : callable
-        Function of an imported path; returns the texts for `write_over` by file name.
     passes_through : bool
         Whether an export restores imported sensors of unknown kinds.
     """
@@ -79,136 +89,75 @@ class RigFormat:
     name: str
     title: str
     origin: str
-    files: tuple[str, ...]
-    write: Callable[[Carried], tuple[Written, list[str]]]
-    read: Callable[[Path], Carried]
-    settled: Callable[[PortableSensor], PortableSensor] = lambda each: each
-    keeps: KeptPicture = whole
+    code: Codec
     holds: frozenset[str] = frozenset()
+    keeps: KeptPicture = lambda picture: picture
+    settled: Callable[[PortableSensor], PortableSensor] = lambda sensor: sensor
+    source: Callable[[Path], FileTexts] = lambda path: {}
     usual_size: Size | None = None
     beside: bool = False
-    write_over: Callable[[FileTexts, Carried], tuple[Written, list[str]]] | None = None
-    source: Callable[[Path], FileTexts] = lambda path: {}
-    passes_through: bool = False
+    passes_through: bool = True
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Names of the written files; the first one identifies the format."""
+        return self.code.FILES
 
 
+_TABLE = frozenset({MODEL, PARAMETERS, FUSION, MIN_RANGE, MAX_RANGE})
+_BEAMS = frozenset({BEAMS})
 _ROWS = (
-    RigFormat(
-        "csv",
-        "table (CSV)",
-        GROUND,
-        (csv_table.FILE,),
-        csv_table.write,
-        csv_table.read,
-        passes_through=True,
-        holds=frozenset({MODEL, PARAMETERS, FUSION, MIN_RANGE, MAX_RANGE}),
-    ),
-    RigFormat(
-        "urdf",
-        "URDF",
-        GROUND,
-        (urdf.FILE,),
-        urdf.write,
-        urdf.read,
-        keeps=opencv_of_five,
-        holds=frozenset({MODEL, BEAMS, PARAMETERS, FUSION, MIN_RANGE, MAX_RANGE}),
-        write_over=urdf.write_over,
-        source=urdf.source,
-        passes_through=True,
-    ),
+    RigFormat("csv", "table (CSV)", GROUND, csv_table, _TABLE),
+    RigFormat("urdf", "URDF", GROUND, urdf, _TABLE | _BEAMS, opencv_of_five, source=urdf.source),
     RigFormat(
         "ros",
         "ROS 2 static transforms",
         GROUND,
-        (ros_transforms.FILE,),
-        ros_transforms.write,
-        ros_transforms.read,
+        ros_transforms,
         keeps=opencv,
-        beside=True,
-        write_over=ros_transforms.write_over,
         source=ros_transforms.source,
-        passes_through=True,
+        beside=True,
     ),
     RigFormat(
         "autoware",
         "Autoware sensor kit",
         REAR_AXLE_GROUND,
-        (autoware.IN_KIT, autoware.TO_KIT),
-        autoware.write,
-        autoware.read,
-        autoware.lifted,
+        autoware,
         keeps=opencv,
+        settled=autoware.lifted,
+        source=autoware.source,
         beside=True,
-        write_over=autoware_kit.write_over,
-        source=autoware_kit.source,
-        passes_through=True,
     ),
     RigFormat(
         "nuscenes",
         "nuScenes",
         REAR_AXLE_GROUND,
-        (nuscenes.CALIBRATED, nuscenes.SENSORS),
-        nuscenes.write,
-        nuscenes.read,
+        nuscenes,
         keeps=opencv_of_five,
-        passes_through=True,
         usual_size=(1600, 900),
     ),
     RigFormat(
-        "argoverse2",
-        argoverse2.TITLE,
-        REAR_AXLE,
-        (argoverse2.POSES, argoverse2.INTRINSICS),
-        argoverse2.write,
-        argoverse2.read,
-        keeps=straight,
+        "argoverse2", argoverse2.TITLE, REAR_AXLE, argoverse2, keeps=straight, passes_through=False
     ),
-    RigFormat(
-        "carla",
-        "CARLA objects.json",
-        GROUND,
-        (carla.FILE,),
-        carla.write,
-        carla.read,
-        keeps=square,
-        write_over=carla.write_over,
-        source=carla.source,
-        passes_through=True,
-        holds=frozenset({BEAMS}),
-    ),
+    RigFormat("carla", "CARLA objects.json", GROUND, carla, _BEAMS, square, source=carla.source),
     RigFormat(
         "kitti",
         "KITTI calibration",
         GROUND,
-        (kitti.FILE,),
-        kitti.write,
-        kitti.read,
+        kitti,
         keeps=straight,
         usual_size=(1242, 375),
+        passes_through=False,
     ),
-    RigFormat(
-        "osi",
-        "ASAM OSI mounting positions",
-        REAR_AXLE,
-        (osi.FILE,),
-        osi.write,
-        osi.read,
-        keeps=centred,
-        passes_through=True,
-        holds=frozenset({BEAMS}),
-    ),
+    RigFormat("osi", "ASAM OSI mounting positions", REAR_AXLE, osi, _BEAMS, centred),
     RigFormat(
         "driveworks",
         "DriveWorks rig.json",
         REAR_AXLE_GROUND,
-        (driveworks.FILE,),
-        driveworks.write,
-        driveworks.read,
-        keeps=f_theta_of_five,
-        write_over=driveworks.write_over,
+        driveworks,
+        frozenset({MODEL}),
+        f_theta_of_five,
         source=driveworks.source,
-        passes_through=True,
-        holds=frozenset({MODEL}),
     ),
 )
 RIG_FORMATS = MappingProxyType({row.name: row for row in _ROWS})
@@ -237,8 +186,7 @@ def format_of_file(output: Path, files: Mapping[str, str], chosen: str | None = 
     Raises
     ------
     InputError
-        When the suffix is that of another format than `chosen`, or names no single format; when
-        the name has none and the format is one file.
+        When the suffix is that of another format than `chosen` or of no single one, or is missing.
     """
     suffix = output.suffix.lower()
     fitting = [name for name, file in files.items() if Path(file).suffix == suffix]

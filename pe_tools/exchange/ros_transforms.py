@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
@@ -34,46 +34,29 @@ from .portable import PortableSensor
 from .portable_kinds import CAMERA
 
 FILE, ROOT = "rig.launch.xml", "base_link"
+FILES = (FILE,)
 AXES = (
     "x forward, y left, z up; metres, radians. NAME_optical looks along z, x right, y down (REP "
     "103). "
 )
 OURS, THEIRS = " is on the ground under the vehicle's centre: ", " is that of the imported file: "
 PUBLISHER = "static_transform_publisher"
-POSITION_KEYS, ROTATION_KEYS, QUATERNION = (
-    ("x", "y", "z"),
-    ("roll", "pitch", "yaw"),
-    ("qw", "qx", "qy", "qz"),
-)
+POSITION_KEYS, ROTATION_KEYS = ("x", "y", "z"), ("roll", "pitch", "yaw")
+QUATERNION = ("qw", "qx", "qy", "qz")
 ENDS = ("frame-id", "child-frame-id")
 EQUALS = re.compile(r"(--[a-z-]+)=")
 """Between an option and its value, in place of a blank."""
 ARGS = re.compile(rf"{PUBLISHER}[\"']?(?:\s+args=[\"'])?([^<\"'\n]*)")
 
 
-def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
-    """Return a launch file with a publisher for each sensor."""
-    return _written(sensors, ROOT, OURS)
-
-
-def write_over(
-    texts: Mapping[str, str], sensors: tuple[PortableSensor, ...]
+def write(
+    sensors: tuple[PortableSensor, ...], texts: Mapping[str, str]
 ) -> tuple[Written, list[str]]:
-    """Return a launch file as `write`, with the root frame of the imported file."""
-    launch = parse_xml("passthrough", texts.get(FILE, "").encode())
-    return _written(sensors, launch.get("root", ROOT), THEIRS)
-
-
-def source(path: Path) -> dict[str, str]:
-    """Return an empty launch file that stores the root frame of this file, for `write_over`."""
-    links = _links(path / FILE if path.is_dir() else path)
-    root = next(parent for parent, _ in links.values() if parent not in links)
-    return {FILE: tostring(Element("launch", {"root": root}), "unicode")}
-
-
-def _written(
-    sensors: tuple[PortableSensor, ...], root: str, origin_text: str
-) -> tuple[Written, list[str]]:
+    """Return a launch file with a publisher for each sensor, with the root of an imported one."""
+    root, origin_text = ROOT, OURS
+    if texts:
+        launch = parse_xml("passthrough", texts.get(FILE, "").encode())
+        root, origin_text = launch.get("root", ROOT), THEIRS
     left_out = [sensor for sensor in sensors if sensor.is_left_out]
     included = [sensor for sensor in sensors if not sensor.is_left_out]
     named, lines = with_optical_frames(included, (root, *(sensor.name for sensor in left_out)))
@@ -86,8 +69,16 @@ def _written(
     for sensor in left_out:
         _publisher(launch, root, sensor.name, pose_of_entry(sensor))
     indent(launch)
-    text = f"<!-- {root}{origin_text}{AXES}-->\n{tostring(launch, 'unicode')}\n"
-    return {FILE: text.encode(), **info_files(named)}, lines
+    files = {FILE: f"<!-- {root}{origin_text}{AXES}-->\n{tostring(launch, 'unicode')}\n"}
+    files |= info_files(named)
+    return {name: text.encode() for name, text in files.items()}, lines
+
+
+def source(path: Path) -> dict[str, str]:
+    """Return an empty launch file that stores the root frame of this file, for `write_over`."""
+    links = _links(path / FILE if path.is_dir() else path)
+    root = next(parent for parent, _ in links.values() if parent not in links)
+    return {FILE: tostring(Element("launch", {"root": root}), "unicode")}
 
 
 def _publisher(launch: Element, parent: str, child: str, pose: Pose) -> None:
@@ -101,11 +92,6 @@ def read(path: Path) -> tuple[PortableSensor, ...]:
     """Read the transforms of all calls of the publisher in a file, in the frame of their root.
 
     A frame with an optical frame below it is a camera; the kind of others is unknown.
-
-    Raises
-    ------
-    InputError
-        When there is no call, a number is malformed, or frames have two roots or a cycle.
     """
     path = path / FILE if path.is_dir() else path
     links = _links(path)
@@ -124,10 +110,9 @@ def _links(path: Path) -> dict[str, tuple[str, Pose]]:
     require_at_most(path, "file", len(calls), MAX_FRAMES, f"calls of {PUBLISHER}")
     links: dict[str, tuple[str, Pose]] = {}
     for number, arguments in enumerate(calls):
-        require_at_most(
-            path, f"transform {number + 1}", len(arguments), MAX_LINE_LENGTH, "characters"
-        )
-        parent, child, pose = _transform(path, f"transform {number + 1}", arguments)
+        field = f"transform {number + 1}"
+        require_at_most(path, field, len(arguments), MAX_LINE_LENGTH, "characters")
+        parent, child, pose = _transform(path, field, arguments)
         if child in links:
             raise InputError(path, f"frame {child}", "one parent", "two")
         links[child] = parent, pose
@@ -146,33 +131,23 @@ def _transform(path: Path, field: str, args: str) -> tuple[str, str, Pose]:
     ends = [options.get(f"--{end}", "") for end in ENDS]
     if not all(ends):
         raise InputError(path, field, "--frame-id and --child-frame-id", shown(args.strip()))
-    position = [_number(path, field, options, key) for key in POSITION_KEYS]
+
+    def values(keys: Sequence[str]) -> list[float]:
+        defaults = {"qw": "1"}
+        return [
+            figure(path, f"{field}, {key}", options.get(f"--{key}", defaults.get(key, "0")))
+            for key in keys
+        ]
+
+    position = values(POSITION_KEYS)
     if any(f"--{key}" in options for key in QUATERNION):
-        default = {"qw": "1"}
-        rotation = [_number(path, field, default | _bare(options), key, "") for key in QUATERNION]
-        pose = pose_of(from_quaternion(path, field, rotation), position)
+        pose = pose_of(from_quaternion(path, field, values(QUATERNION)), position)
     else:
-        pose = pose_from(
-            path, field, position, [_number(path, field, options, key) for key in ROTATION_KEYS]
-        )
+        pose = pose_from(path, field, position, values(ROTATION_KEYS))
     return ends[0], ends[1], pose
-
-
-def _bare(options: dict[str, str]) -> dict[str, str]:
-    return {key.removeprefix("--"): value for key, value in options.items()}
-
-
-def _number(path: Path, field: str, options: dict[str, str], key: str, dashes: str = "--") -> float:
-    return figure(path, f"{field}, {key}", options.get(f"{dashes}{key}", "0"))
 
 
 def without_comments(text: str) -> str:
     """Return XML without its comments, in one pass; an unclosed comment extends to the end."""
-    parts, begin = [], 0
-    while (start := text.find("<!--", begin)) >= 0:
-        parts.append(text[begin:start])
-        end = text.find("-->", start + 4)
-        if end < 0:
-            return "".join(parts)
-        begin = end + 3
-    return "".join([*parts, text[begin:]])
+    first, *parts = text.split("<!--")
+    return first + "".join(part.partition("-->")[2] for part in parts)

@@ -38,6 +38,7 @@ from .portable_kinds import CAMERA, LIDAR, has_model
 
 RANGES = ("min_range", "max_range")
 FILE, ROOT, NAME = "rig.urdf", "base_link", "rig"
+FILES = (FILE,)
 ON_GROUND = "base_footprint"
 """The link on the ground under a robot (REP 120)."""
 AXES = (
@@ -54,32 +55,19 @@ MASS_KG, INERTIA = 0.01, 1e-5
 """Of every link [kg, kg m2]: Gazebo has none without (sdformat's issue 199), nor below 1e-5 kg."""
 
 
-def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
-    """Return a robot that consists of the rig alone, and messages on losses."""
-    return _written(sensors, NAME, ROOT, OURS)
-
-
-def write_over(
-    texts: Mapping[str, str], sensors: tuple[PortableSensor, ...]
+def write(
+    sensors: tuple[PortableSensor, ...], texts: Mapping[str, str]
 ) -> tuple[Written, list[str]]:
-    """Return a robot as `write`, with the name and root link of the imported one."""
-    robot = parse_xml("passthrough", texts.get(FILE, "").encode())
-    link = robot.find("link")
-    root = ROOT if link is None else link.get("name", ROOT)
-    return _written(sensors, robot.get("name", NAME), root, THEIRS)
+    """Return a robot that consists of the rig alone, and messages on losses.
 
-
-def source(path: Path) -> dict[str, str]:
-    """Return a robot of the same name with only the origin link, for `write_over`."""
-    robot = _robot(path)
-    skeleton = Element("robot", {"name": robot.get("name", NAME)})
-    SubElement(skeleton, "link", {"name": _origin_of(_poses(path, robot))})
-    return {FILE: tostring(skeleton, "unicode")}
-
-
-def _written(
-    sensors: tuple[PortableSensor, ...], name: str, root: str, origin_text: str
-) -> tuple[Written, list[str]]:
+    Its name and its root link are those of an imported one, if there is one.
+    """
+    name, root, origin_text = NAME, ROOT, OURS
+    if texts:
+        imported = parse_xml("passthrough", texts.get(FILE, "").encode())
+        link = imported.find("link")
+        root = ROOT if link is None else link.get("name", ROOT)
+        name, origin_text = imported.get("name", NAME), THEIRS
     left_out = [sensor for sensor in sensors if sensor.is_left_out]
     included = [sensor for sensor in sensors if not sensor.is_left_out]
     named, lines = with_optical_frames(included, (root, *(sensor.name for sensor in left_out)))
@@ -90,13 +78,22 @@ def _written(
         if sensor.kind == CAMERA:
             _joint(robot, sensor.name, sensor.name + OPTICAL, Pose((0.0, 0.0, 0.0), OPTICAL_RPY))
         _gazebo(robot, sensor)
-    for sensor in left_out:
-        _as_it_came(robot, root, sensor)
+    for sensor in left_out:  # with its imported Gazebo elements
+        _joint(robot, root, sensor.name, pose_of_entry(sensor))
+        for block in entry_row(sensor, lambda _: {}, (), ()).get("gazebo", ()):
+            robot.append(parse_xml("passthrough", str(block).encode()))
     indent(robot)
-    text = (
-        f'<?xml version="1.0"?>\n<!-- {root}{origin_text}{AXES}-->\n{tostring(robot, "unicode")}\n'
-    )
+    head = f'<?xml version="1.0"?>\n<!-- {root}{origin_text}{AXES}-->\n'
+    text = f"{head}{tostring(robot, 'unicode')}\n"
     return {FILE: text.encode()}, lines + uneven(named, "Gazebo")
+
+
+def source(path: Path) -> dict[str, str]:
+    """Return a robot of the same name with only the origin link, for `write_over`."""
+    robot = _robot(path)
+    skeleton = Element("robot", {"name": robot.get("name", NAME)})
+    SubElement(skeleton, "link", {"name": _origin_of(_poses(path, robot))})
+    return {FILE: tostring(skeleton, "unicode")}
 
 
 def _link(robot: Element, name: str) -> None:
@@ -144,24 +141,11 @@ def _gazebo(robot: Element, sensor: PortableSensor) -> None:
         write_scan(SubElement(element, LIDAR), sensor.scan)
 
 
-def _as_it_came(robot: Element, root: str, sensor: PortableSensor) -> None:
-    """Add the link of a sensor of unknown kind with its imported Gazebo elements."""
-    _joint(robot, root, sensor.name, pose_of_entry(sensor))
-    entry = entry_row(sensor, lambda _: {}, (), ())
-    for block in entry.get("gazebo", ()):
-        robot.append(parse_xml("passthrough", str(block).encode()))
-
-
 def read(path: Path) -> tuple[PortableSensor, ...]:
     """Read the sensors of a robot, in the frame of its root.
 
     Sensors are the links with a Gazebo sensor. If there are none, they are the links with an
     optical frame, and the links without children and without a mass.
-
-    Raises
-    ------
-    InputError
-        When it is no URDF, has not exactly one root, has a cycle, or has no sensor.
     """
     robot = _robot(path)
     in_root = _poses(path, robot)
@@ -193,15 +177,11 @@ def _origin_of(poses: dict[str, Pose]) -> str:
 
 def _origin_line(origin: str, poses: dict[str, Pose]) -> str:
     """Return where poses of a robot of another program are taken."""
+    place, under = f"the robot's root, {next(iter(poses))}", "on the ground under"
     if origin == ON_GROUND:
-        return (
-            f"taken in {ON_GROUND}, which is on the ground; if that is not under the middle of the "
-            "vehicle, --at says where it is"
-        )
-    return (
-        f"taken in the robot's root, {next(iter(poses))}; if that is not on the ground under the "
-        "middle of the vehicle, --at says where it is"
-    )
+        place, under = f"{ON_GROUND}, which is on the ground", "under"
+    middle = "the middle of the vehicle, --at says where it is"
+    return f"taken in {place}; if that is not {under} {middle}"
 
 
 def _with_entry(sensor: PortableSensor, robot: Element) -> PortableSensor:
@@ -244,7 +224,7 @@ def _origin(path: Path, joint: Element) -> Pose:
     element, field = joint.find("origin"), f"joint {joint.get('name', '')!r}"
     values = {} if element is None else element.attrib
     keys = ("xyz", "rpy")
-    numbers = [figures(path, f"{field}, {k}", values.get(k, "0 0 0"), (3,)) for k in keys]
+    numbers = [figures(path, f"{field}, {k}", values.get(k, "0 0 0"), 3) for k in keys]
     return pose_from(path, field, *numbers)
 
 

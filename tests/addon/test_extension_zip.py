@@ -14,6 +14,7 @@ SEDAN = ROOT / "blend_assets" / "sedan.blend"
 TIMEOUT_S = 300
 
 INSTALL_AND_SCORE = """
+import pathlib
 import sys
 import bpy
 archive, blend, study = sys.argv[1:]
@@ -22,6 +23,8 @@ bpy.ops.extensions.package_install_files(
 )
 import bl_ext.user_default.perception_entropy as addon
 assert addon.engine.pe.__name__.startswith("bl_ext."), addon.engine.pe
+wheels = [path for path in sys.path if "extensions" in path and path.endswith("site-packages")]
+assert any(pathlib.Path(path, "ruamel", "yaml").is_dir() for path in wheels), sys.path
 bpy.ops.wm.open_mainfile(filepath=blend)
 settings = bpy.context.scene.perception_entropy
 settings.score_samples = 8192

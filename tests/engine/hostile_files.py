@@ -305,8 +305,9 @@ def angles() -> dict[str, Case]:
         "digits": ("elevation\n" + "9" * 1_000_000 + "x\n", "a finite number"),
         "a unit of a million": (f"elevation{'_deg' * 200_000}x\n", "a column named elevation"),
         "an id of 5,000": (flow.replace("_id: 0", f"_id: {HUGE}") % 0, "a whole number"),
-        "YAML of braces": ("lasers:\n- " + "{" * 1_000_000, "a laser between { and }"),
-        "YAML digits": (flow % ("9" * 1_000_000 + "x"), "a finite number"),
+        "YAML of braces": ("lasers:\n- " + "{" * 100_000, "too many levels"),
+        "YAML digits": (flow % ("9" * 100_000 + "x"), "a finite number"),
+        "much YAML": (flow % ("9" * 1_000_000), "YAML of at most 262,144 characters"),
         "YAML 1e308": (flow % "1e308", "an azimuth offset within"),
     }
     return {f"angles: {k}": ("angles", holding("a", d), words) for k, (d, words) in files.items()}

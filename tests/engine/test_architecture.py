@@ -74,6 +74,7 @@ MAX_LINES = 91_700
 LIBRARIES = {
     "collada": {"pe_tools/formats"},
     "pxr": {"pe_tools/formats"},
+    "ruamel": {"pe_tools/formats"},
     "pyarrow": {"pe_tools/exchange"},
     "rerun": {"pe_tools/outputs"},
     "matplotlib": {"pe_tools/plots"},

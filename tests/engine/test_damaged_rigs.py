@@ -9,7 +9,7 @@ import pytest
 
 import pe_core as pe
 from pe_tools.exchange import RIG_FORMATS
-from pe_tools.exchange.yaml_text import parse_yaml_blocks
+from pe_tools.formats.yaml_text import parse_yaml
 from tests.engine.test_damaged_files import damaged
 from tests.thorough import tries
 
@@ -159,16 +159,24 @@ GREAT = {
 }
 
 
-def test_a_line_of_yaml_takes_one_pass_however_many_blanks_are_in_it():
-    """A key or a value is looked through once: these took hours."""
-    blanks = " " * 300_000
-    for line in (f"a{blanks}b", f"a: b{blanks}c: d", f"a: {blanks}#b c: d", f"a{blanks}b: 1"):
-        try:
-            found = parse_yaml_blocks("kit.yaml", line)
-        except pe.InputError as error:
-            assert "line 1" in str(error)
-        else:
-            assert found in ({f"a{blanks}b": 1.0}, {"a": f"b{blanks}c: d"}, {"a": None})
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("a:\n" + "  b: 1\n" * 50_000, "YAML of at most 262,144 characters, found 350,003"),
+        ("a: " + "[" * 100_000, "YAML, found too many levels"),
+        ("a: &x [1, 2]\nb: [*x, *x]", "line 1: expected YAML without aliases"),
+        ("a: 1\na: 2", "line 2: expected a key used once, found 'a'"),
+        ("a: [1, 2", "line 1: expected YAML"),
+        ("a: *x", "expected YAML, found undefined alias"),
+        ("- 1", "a mapping"),
+        ("a: \x00", "YAML"),
+    ],
+)
+def test_yaml_that_is_out_to_do_harm_is_refused_in_one_line(text, words):
+    with pytest.raises(pe.InputError) as caught:
+        parse_yaml("kit.yaml", text)
+    line = str(caught.value)
+    assert words in line and line.isprintable() and len(line) < 600
 
 
 @pytest.mark.parametrize("case", GREAT)

@@ -373,9 +373,9 @@ ALL_SIX = "".join(f"    {key}: 0\n" for key in ("x", "y", "z", "roll", "pitch", 
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("base_link: [1, 2]\n", "line 1"),
+        ("base_link: [1, 2]\n", "base_link: expected a table"),
         ("base_link:\n    a:\n  b:\n", "line 3"),
-        ("base_link:\n  a: &x 1\n", "line 2"),
+        ("base_link:\n  a: &x 1\n", "base_link.a: expected a table"),
         ("base_link:\n  a: 1\n  a: 2\n", "a key used once"),
         ("base_link:\n  sensor_kit_base_link:\n    x: 1\n", "base_link.sensor_kit_base_link.y"),
         (f"base_link:\n  other:\n{ALL_SIX}", "sensor_kit_base_link, found other"),

@@ -11,7 +11,7 @@ import pytest
 
 import pe_core as pe
 from pe_core import catalog
-from pe_tools.exchange.yaml_text import parse_yaml_blocks
+from pe_tools.formats.yaml_text import parse_yaml
 from pe_tools.outputs import scene_files
 from tests.engine.conftest import CHECKOUT, EXAMPLE_PLUGIN
 
@@ -81,7 +81,7 @@ def test_nebula_gets_positions_angles_and_the_damping_of_covers(example_plugin):
     rear = pe.Sensor("rear", model, pe.Pose.from_degrees((-2.9, 0, 0.5), (2, 0, 180)))
     study = pe.Study(pe.Rig([front, rear]), car, reference=pe.Reference(-1.4, 0.3, 2.8))
     files, lines = scene_files(study, "nebula")
-    found = parse_yaml_blocks("nebula", files["nebula_radars.yaml"].decode())
+    found = parse_yaml("nebula", files["nebula_radars.yaml"].decode())
     assert found["front"] == {
         "model": "lossy", "longitudinal": 2.0, "lateral": 0.1, "vertical": 0.5,
         "yaw": pytest.approx(math.radians(30), abs=1e-6),

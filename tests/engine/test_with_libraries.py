@@ -182,8 +182,8 @@ def test_distortion_in_an_argoverse_table_is_reported(tmp_path):
 
     path = tmp_path / "intrinsics.feather"
     (row,) = feather.rows_of(path.read_bytes())
-    columns = {key: [-0.25 if key == "k1" else value] for key, value in row.items()}
-    path.write_bytes(feather.table_bytes(columns, ("height_px", "width_px"), {}))
+    rows = [[-0.25 if key == "k1" else value for key, value in row.items()]]
+    path.write_bytes(feather.table_bytes(list(row), rows, ("height_px", "width_px"), {}))
     assert any(
         "k1, k2, k3 are not applied" in line for line in pe.import_rig(tmp_path, None, AXLE).lines
     )

@@ -37,18 +37,9 @@ LAYOUTS = "a column named elevation, or Hesai or Velodyne channel angles"
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """A channel's angles.
+    """A channel's angles [deg]: above the horizon, and counter-clockwise seen from above.
 
-    Parameters
-    ----------
-    where : str
-        Location in the file, for messages (``line 3``).
-    number : int or None
-        The channel's id, if the file has ids.
-    elevation_deg : float
-        Angle above the horizon [deg].
-    azimuth_offset_deg : float
-        Angle counter-clockwise seen from above [deg].
+    `where` is its location in the file, for messages; `number` its id, if the file has ids.
     """
 
     where: str
@@ -98,17 +89,8 @@ def sorted_by_id(source: str, channels: Sequence[Channel], first: int) -> list[C
     return [channel_by_id[number] for number in ids]
 
 
-@dataclass(frozen=True, slots=True)
-class Line:
-    """A line's number and cells."""
-
-    line: int
-    cells: tuple[str, ...]
-
-    @property
-    def where(self) -> str:
-        """The location, for messages."""
-        return f"line {self.line}"
+Row = tuple[str, tuple[str, ...]]
+"""A line's location, for messages, and its cells."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,19 +112,21 @@ class Layout:
 def read_columns(source: str, text: str) -> list[Channel]:
     """Read channels from columns separated by commas, semicolons, tabs or spaces.
 
-    Raises
-    ------
-    InputError
-        When there is no column of elevations, or a row is invalid.
+    No column of elevations, or a row that is invalid, raises `InputError`.
     """
-    rows = _rows(text)
-    if not rows:
+    lines = numbered_lines(text)
+    while lines and lines[0][1].strip().lower().startswith(PREAMBLE):
+        lines = lines[1:]
+    if not lines:
         raise InputError(source, "file", "channel angles", "only comments")
-    if any(_is_number(cell) for cell in rows[0].cells):
+    separator = next((s for s in ";,\t" if s in lines[0][1]), None)  # of all lines
+    rows = [(f"line {n}", _cells(line, separator)) for n, line in lines]
+    if any(map(_is_number, rows[0][1])):
         layout = _without_header(source, rows)
     else:
-        layout = _from_header(source, rows[0])
-        rows = _without_checksum(rows[1:]) if layout.is_hesai else rows[1:]
+        layout, rows = _from_header(source, rows[0]), rows[1:]
+        if layout.is_hesai and rows and CHECKSUM.fullmatch(rows[-1][1][0]):
+            rows.pop()
     if not rows:
         raise InputError(source, "file", "at least one channel", "a header alone")
     channels = [_channel(source, layout, row) for row in rows]
@@ -152,25 +136,12 @@ def read_columns(source: str, text: str) -> list[Channel]:
     return sorted_by_id(source, channels, first)
 
 
-def _rows(text: str) -> list[Line]:
-    """Split the lines, without Hesai's preamble; the first line decides the separator."""
-    lines = numbered_lines(text)
-    while lines and lines[0][1].strip().lower().startswith(PREAMBLE):
-        lines = lines[1:]
-    separator = next((s for s in ";,\t" if lines and s in lines[0][1]), None)
-    return [Line(n, _cells(line, separator)) for n, line in lines]
-
-
 def _cells(line: str, separator: str | None) -> tuple[str, ...]:
     """Split a line into cells without blanks and quotes; empty cells at the end are dropped."""
     cells = [cell.strip().strip('"').strip() for cell in line.strip().split(separator)]
     while len(cells) > 1 and not cells[-1]:
         cells.pop()
     return tuple(cells)
-
-
-def _without_checksum(rows: list[Line]) -> list[Line]:
-    return rows[:-1] if rows and CHECKSUM.fullmatch(rows[-1].cells[0]) else rows
 
 
 def _is_number(cell: str) -> bool:
@@ -182,28 +153,39 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def _without_header(source: str, rows: Sequence[Line]) -> Layout:
+def _without_header(source: str, rows: Sequence[Row]) -> Layout:
     """Return the layout of one or two columns: elevation, azimuth offset."""
-    width = len(rows[0].cells)
+    first, width = rows[0][0], len(rows[0][1])
     if width > 2:
         expected = "one or two columns (elevation, azimuth offset), or a header"
-        raise InputError(source, rows[0].where, expected, f"{width} columns")
-    for row in rows:
-        if len(row.cells) != width:
-            expected = f"as many columns as in {rows[0].where}, {width}"
-            raise InputError(source, row.where, expected, len(row.cells))
+        raise InputError(source, first, expected, f"{width} columns")
+    for where, cells in rows:
+        if len(cells) != width:
+            expected = f"as many columns as in {first}, {width}"
+            raise InputError(source, where, expected, len(cells))
     return Layout(width, 0, 1 if width == 2 else None)
 
 
-def _from_header(source: str, header: Line) -> Layout:
-    names = [_normalized(cell) for cell in header.cells]
-    columns = {role: _column(source, header, names, role) for role in NAMES}
-    elevation, azimuth, number = (columns[role] for role in NAMES)
+def _from_header(source: str, header: Row) -> Layout:
+    where, cells = header
+    names = [_normalized(cell) for cell in cells]
+    columns: list[int | None] = []
+    for role, known in NAMES.items():
+        fitting = [k for k, name in enumerate(names) if name in known]
+        if len(fitting) > 1:
+            both = " and ".join(repr(cells[k]) for k in fitting)
+            raise InputError(source, where, f"one column of the {role}", both)
+        columns.append(fitting[0] if fitting else None)
+    elevation, azimuth, number = columns
     if elevation is None:
-        raise InputError(source, header.where, LAYOUTS, quoted(", ".join(header.cells)))
-    _check_unknown(source, header, names)
+        raise InputError(source, where, LAYOUTS, quoted(", ".join(cells)))
+    known_names = set().union(*NAMES.values())
+    for cell, name in zip(cells, names, strict=True):
+        if name not in known_names and name.startswith(ANGLE_PREFIXES):
+            expected = "elevation_deg or azimuth_offset_deg as the name of a column of angles"
+            raise InputError(source, where, expected, quoted(cell))
     # Hesai's header has an id and the bare name Azimuth; a user's own table says azimuth_offset.
-    bare = azimuth is not None and header.cells[azimuth].lower() == "azimuth"
+    bare = azimuth is not None and cells[azimuth].lower() == "azimuth"
     sign = -1.0 if bare and number is not None else 1.0
     return Layout(len(names), elevation, azimuth, number, sign)
 
@@ -215,35 +197,15 @@ def _normalized(name: str) -> str:
     return UNIT.sub("", name) if len(name) <= MAX_QUOTE else name
 
 
-def _column(source: str, header: Line, names: Sequence[str], role: str) -> int | None:
-    """Index of the only column of a role; None if there is none."""
-    columns = [i for i, name in enumerate(names) if name in NAMES[role]]
-    if len(columns) > 1:
-        both = " and ".join(repr(header.cells[i]) for i in columns)
-        raise InputError(source, header.where, f"one column of the {role}", both)
-    return columns[0] if columns else None
-
-
-def _check_unknown(source: str, header: Line, names: Sequence[str]) -> None:
-    """Reject a column that looks like an angle but has no known name."""
-    known_names = set().union(*NAMES.values())
-    for cell, name in zip(header.cells, names, strict=True):
-        if name not in known_names and name.startswith(ANGLE_PREFIXES):
-            expected = "elevation_deg or azimuth_offset_deg as the name of a column of angles"
-            raise InputError(source, header.where, expected, quoted(cell))
-
-
-def _channel(source: str, layout: Layout, row: Line) -> Channel:
-    if len(row.cells) > layout.width:
+def _channel(source: str, layout: Layout, row: Row) -> Channel:
+    where, cells = row
+    if len(cells) > layout.width:
         expected = f"no more columns than the header, {layout.width}"
-        raise InputError(source, row.where, expected, len(row.cells))
-
-    def cell(index: int) -> str:
-        return row.cells[index] if index < len(row.cells) else ""
-
-    number = None if layout.number is None else parse_id(source, row.where, cell(layout.number))
-    elevation = parse_number(source, row.where, "the elevation", cell(layout.elevation))
+        raise InputError(source, where, expected, len(cells))
+    cells += ("",) * (layout.width - len(cells))
+    number = None if layout.number is None else parse_id(source, where, cells[layout.number])
+    elevation = parse_number(source, where, "the elevation", cells[layout.elevation])
     offset = 0.0
     if layout.azimuth is not None:
-        offset = parse_number(source, row.where, "the azimuth offset", cell(layout.azimuth))
-    return checked_channel(source, row.where, number, elevation, layout.azimuth_sign * offset)
+        offset = parse_number(source, where, "the azimuth offset", cells[layout.azimuth])
+    return checked_channel(source, where, number, elevation, layout.azimuth_sign * offset)

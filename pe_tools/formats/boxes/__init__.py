@@ -7,14 +7,14 @@ from dataclasses import replace
 from pathlib import Path
 
 from pe_core.base.errors import InputError
-from pe_core.base.files import LABEL_BYTES, decode_text, quoted, read_bytes
+from pe_core.base.files import LABEL_BYTES, decode_text, quoted, read_bytes, write_bytes
 from pe_core.base.memory import report_memory_errors, require_memory, size_text
 from pe_core.prior.boxes import Boxes
 
 from .kitti import looks_like_kitti, read_kitti
 from .labels import Labels, joined
 from .nuscenes import read_nuscenes
-from .plain import looks_like_csv, read_csv, write_csv
+from .plain import SEPARATORS, csv_bytes, read_csv
 
 __all__ = ["read_boxes", "write_boxes"]
 
@@ -53,7 +53,7 @@ def read_boxes(path: str | Path, origin: tuple[float, float, float] | None = Non
 
 def write_boxes(path: str | Path, boxes: Boxes) -> None:
     """Write boxes as CSV, atomically; `read_boxes` gives them back to the bit."""
-    write_csv(Path(path), boxes)
+    write_bytes(Path(path), csv_bytes(boxes))
 
 
 def _read_folder(path: Path) -> list[Labels]:
@@ -84,19 +84,16 @@ def _read_file(path: Path, may_be_empty: bool = False) -> Labels:
     require_memory(source, "size", len(data) * (JSON_UNFOLDS if is_json else ROWS_UNFOLD))
     if is_json:
         return read_nuscenes(source, _parsed(source, text))
-    lines = [(n, line) for n, line in enumerate(text.split("\n"), 1) if _has_content(line)]
+    numbered = enumerate(text.split("\n"), 1)
+    lines = [(n, line) for n, line in numbered if line.strip() and line.lstrip()[0] != "#"]
     if not lines:
         raise InputError(source, "file", LAYOUTS, "only comments")
     first = lines[0][1]
-    if looks_like_csv(first):
+    if any(separator in first for separator in SEPARATORS):
         return read_csv(source, lines)
     if looks_like_kitti(first):
         return read_kitti(source, lines)
     raise InputError(source, f"line {lines[0][0]}", LAYOUTS, quoted(first.strip()))
-
-
-def _has_content(line: str) -> bool:
-    return bool(line.strip()) and not line.lstrip().startswith("#")
 
 
 def _parsed(source: str, text: str) -> object:

@@ -44,16 +44,9 @@ def looks_like_kitti(line: str) -> bool:
 
 
 def read_kitti(source: str, lines: Sequence[tuple[int, str]]) -> Labels:
-    """Read labels from numbered lines.
-
-    Raises
-    ------
-    InputError
-        When a line has the wrong number of columns, or a number is wrong.
-    """
+    """Read labels from numbered lines."""
     labels = Labels(source)
-    first = lines[0][1].split()
-    tracking = _is_number(first[0])
+    tracking = _is_number(lines[0][1].split()[0])
     skipped = 2 if tracking else 0
     expected = "frame, id and 15 columns" if tracking else "15 columns"
     for number, line in lines:
@@ -61,22 +54,18 @@ def read_kitti(source: str, lines: Sequence[tuple[int, str]]) -> Labels:
         if len(cells) - skipped not in (COLUMNS, COLUMNS + 1):
             kitti = f"KITTI's {expected}, and perhaps a score"
             raise InputError(source, where, kitti, f"{len(cells)} columns")
-        _add(labels, where, cells[skipped:])
+        name, cells = cells[skipped].lower(), cells[skipped:]
+        if name == UNLABELLED:
+            labels.left_out["marked DontCare"] += 1
+            continue
+        if _is_number(name):
+            raise InputError(source, where, "a class before the numbers", quoted(name))
+        row = _in_ground_axes(source, where, cells)
+        if name in CLASSES:
+            labels.add(where, CLASSES[name], row, CAMERA)
+        else:
+            labels.leave_unknown(cells[0])
     return labels
-
-
-def _add(labels: Labels, where: str, cells: Sequence[str]) -> None:
-    name = cells[0].lower()
-    if name == UNLABELLED:
-        labels.leave_out("marked DontCare")
-        return
-    if _is_number(name):
-        raise InputError(labels.source, where, "a class before the numbers", quoted(name))
-    row = _in_ground_axes(labels.source, where, cells)
-    if name in CLASSES:
-        labels.add(where, CLASSES[name], row, CAMERA)
-    else:
-        labels.leave_unknown(cells[0])
 
 
 def _in_ground_axes(source: str, where: str, cells: Sequence[str]) -> BoxNumbers:

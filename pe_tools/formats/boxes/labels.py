@@ -49,15 +49,14 @@ class Labels:
         self.rows.append(row)
         self.origins.append(origin)
 
-    def leave_out(self, reason: str) -> None:
-        """Count a box that is left out."""
-        self.left_out[reason] += 1
-
     def leave_unknown(self, name: str) -> None:
-        """Count a box of an unknown class; beyond `MAX_REASONS`, classes are counted together."""
-        reason = f"of unknown class {quoted(name)}"
+        """Count a box of an unknown class."""
+        self.count_left_out(f"of unknown class {quoted(name)}", 1)
+
+    def count_left_out(self, reason: str, count: int) -> None:
+        """Count boxes that are left out; beyond `MAX_REASONS`, reasons are counted together."""
         is_listed = reason in self.left_out or len(self.left_out) < MAX_REASONS
-        self.leave_out(reason if is_listed else OTHER_CLASSES)
+        self.left_out[reason if is_listed else OTHER_CLASSES] += count
 
     def boxes(self, origin: Origin | None = None) -> Boxes:
         """Return the boxes in the ground frame; `origin` replaces the layouts' own."""
@@ -66,10 +65,7 @@ class Labels:
         left_out = tuple(self.left_out.items())
         names = np.array(self.names)
         try:
-            x, y, z, length, width, height, yaw = columns
-            return Boxes(
-                names, x, y, z, length, width, height, yaw, origin=origin, left_out=left_out
-            )
+            return Boxes(names, *columns, origin=origin, left_out=left_out)
         except InputError as error:
             raise error.at(self.source) from None
 
@@ -82,6 +78,5 @@ def joined(parts: Iterable[Labels], source: str) -> Labels:
         whole.rows += part.rows
         whole.origins += part.origins
         for reason, count in part.left_out.items():
-            is_listed = reason in whole.left_out or len(whole.left_out) < MAX_REASONS
-            whole.left_out[reason if is_listed else OTHER_CLASSES] += count
+            whole.count_left_out(reason, count)
     return whole

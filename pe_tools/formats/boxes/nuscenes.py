@@ -14,6 +14,7 @@ from typing import Any
 
 from pe_core.base.errors import InputError, shown
 from pe_core.base.files import MAX_QUOTE
+from pe_core.base.values import real
 
 from .labels import BoxNumbers, Labels
 
@@ -39,18 +40,17 @@ LIST = 'a list of boxes, or {"results": {sample: [boxes]}}'
 
 
 def read_nuscenes(source: str, data: Any) -> Labels:
-    """Read labels from JSON data.
-
-    Raises
-    ------
-    InputError
-        When the data is no list of boxes, or a value of a box is missing or wrong.
-    """
+    """Read labels from JSON data."""
     labels = Labels(source)
     for where, box in _boxes(source, data):
         if not isinstance(box, Mapping):
             raise InputError(source, where, "a table", shown(box))
-        name = _name(source, where, box)
+        key = next((key for key in NAMES if key in box), None)
+        if key is None:
+            raise InputError(source, where, f"one of {', '.join(NAMES)}", "none")
+        name = box[key]
+        if not isinstance(name, str) or not name:
+            raise InputError(source, f"{where}.{key}", "a text", shown(name))
         row = _row(source, where, box)
         if class_name := _class_of(name):
             labels.add(where, class_name, row)
@@ -75,16 +75,6 @@ def _listed(source: str, where: str, boxes: Any) -> Iterator[tuple[str, Any]]:
     if not isinstance(boxes, list):
         raise InputError(source, where or "file", LIST, shown(boxes))
     yield from ((f"{where}[{i}]", box) for i, box in enumerate(boxes))
-
-
-def _name(source: str, where: str, box: Mapping[str, Any]) -> str:
-    for key in NAMES:
-        if key in box:
-            name = box[key]
-            if not isinstance(name, str) or not name:
-                raise InputError(source, f"{where}.{key}", "a text", shown(name))
-            return name
-    raise InputError(source, where, f"one of {', '.join(NAMES)}", "none")
 
 
 def _class_of(name: str) -> str | None:
@@ -112,16 +102,8 @@ def _numbers(
     source: str, where: str, box: Mapping[str, Any], key: str, count: int
 ) -> Sequence[float]:
     values = box.get(key)
-    if not isinstance(values, list) or len(values) != count or not all(map(_is_finite, values)):
+    numbers = [real(v) for v in values] if isinstance(values, list) else []
+    if len(numbers) != count or not all(map(math.isfinite, numbers)):
         found = "nothing" if values is None else shown(values)
         raise InputError(source, f"{where}.{key}", f"{count} finite numbers", found)
-    return [float(v) for v in values]
-
-
-def _is_finite(value: Any) -> bool:
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        return False
-    try:
-        return math.isfinite(value)
-    except OverflowError:  # an integer with hundreds of digits
-        return False
+    return numbers

@@ -7,11 +7,10 @@ import math
 import re
 from collections.abc import Sequence
 from functools import lru_cache
-from pathlib import Path
 
 from pe_core.base.csv_text import csv_text, unmarked
 from pe_core.base.errors import InputError
-from pe_core.base.files import MAX_QUOTE, parse_number, quoted, write_bytes
+from pe_core.base.files import MAX_QUOTE, parse_number, quoted
 from pe_core.prior.boxes import COLUMNS, Boxes, degrees_of
 
 from .labels import BoxNumbers, Labels
@@ -21,19 +20,8 @@ SEPARATORS = ",;\t"
 UNIT = re.compile(r"[ _]*[(\[]?(deg|degrees|m)[)\]]?$")
 
 
-def looks_like_csv(line: str) -> bool:
-    """Whether a line has separators."""
-    return any(s in line for s in SEPARATORS)
-
-
 def read_csv(source: str, lines: Sequence[tuple[int, str]]) -> Labels:
-    """Read boxes from numbered lines; columns are in any order, other columns are ignored.
-
-    Raises
-    ------
-    InputError
-        When the header lacks a column, a line has another number of cells, or a number is wrong.
-    """
+    """Read boxes from numbered lines; columns are in any order, other columns are ignored."""
     separator = next(s for s in ";\t," if s in lines[0][1])
     header = _header(source, lines[0], separator)
     where_is = {name: header.index(name) for name in (CLASS, *COLUMNS)}
@@ -47,16 +35,11 @@ def read_csv(source: str, lines: Sequence[tuple[int, str]]) -> Labels:
     return labels
 
 
-def write_csv(path: Path, boxes: Boxes) -> None:
-    """Write boxes; reading the file gives the same bits."""
-    write_bytes(path, _csv_bytes(boxes))
-
-
 @lru_cache(maxsize=1)
-def _csv_bytes(boxes: Boxes) -> bytes:
-    """The file's bytes, cached for the last boxes: a search writes them every few seconds.
+def csv_bytes(boxes: Boxes) -> bytes:
+    """Return boxes as a file that gives the same bits when it is read.
 
-    The cache is valid because boxes do not change.
+    It is cached for the last boxes, which do not change: a search writes them every few seconds.
     """
     columns = [getattr(boxes, c) for c in COLUMNS[:-1]] + [degrees_of(boxes.yaw)]
     rows = zip(boxes.names.tolist(), *(c.tolist() for c in columns), strict=True)
@@ -65,7 +48,9 @@ def _csv_bytes(boxes: Boxes) -> bytes:
 
 def _header(source: str, line: tuple[int, str], separator: str) -> list[str]:
     cells = _cells(source, *line, separator)
-    names = [_without_unit(cell.lower()) for cell in cells]
+    # Known names are short; on a long one the pattern takes time by the square of its length.
+    lowered = [cell.lower() for cell in cells]
+    names = [UNIT.sub("", name) if len(name) <= MAX_QUOTE else name for name in lowered]
     required = (CLASS, *COLUMNS)
     for name in required:
         if names.count(name) != 1:
@@ -73,11 +58,6 @@ def _header(source: str, line: tuple[int, str], separator: str) -> list[str]:
             found = f"{name} twice" if name in names else f"no {name} in {quoted(line[1].strip())}"
             raise InputError(source, f"line {line[0]}", expected, found)
     return names
-
-
-def _without_unit(name: str) -> str:
-    # Known names are short; on a long one the pattern takes time by the square of its length.
-    return UNIT.sub("", name) if len(name) <= MAX_QUOTE else name
 
 
 def _cells(source: str, number: int, line: str, separator: str) -> list[str]:

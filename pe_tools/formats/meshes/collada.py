@@ -15,7 +15,7 @@ import numpy as np
 from pe_core.base.errors import InputError, shown
 
 from .. import FoundMesh
-from .mesh import Piece, cut, found, placed
+from .mesh import Piece, fan, found, placed
 
 UP = {"X_UP": "+x", "Y_UP": "+y", "Z_UP": "+z"}
 MAX_NODES = 200_000
@@ -27,14 +27,7 @@ NO_INDEX = re.compile(r"[^\d\s]\S{0,20}|\d{10,30}")
 
 
 def check_document(source: str, root: Any) -> None:
-    """Check up axis, unit, accessors and the number of nodes of a document's XML root.
-
-    Raises
-    ------
-    InputError
-        An invalid word or number, an accessor that reaches beyond its data, nodes that instance
-        each other in a circle, or more than `MAX_NODES`.
-    """
+    """Check up axis, unit, accessors and nodes of a document's XML root, or raise `InputError`."""
     for up in _each(root, "up_axis"):
         if (up.text or "").strip() not in UP:
             raise InputError(source, "up_axis", f"one of {', '.join(UP)}", shown(up.text))
@@ -131,11 +124,6 @@ def read_dae(path: Path, data: bytes) -> FoundMesh:
     """Read the scene of a Collada file with its up axis and unit; each node is a part.
 
     Skins, morphs, cameras and lights are ignored.
-
-    Raises
-    ------
-    InputError
-        The file is not Collada, or pycollada cannot read it.
     """
     source = str(path)
     if b"<!DOCTYPE" in data[:PROLOGUE_BYTES] or b"<!ENTITY" in data[:PROLOGUE_BYTES]:
@@ -167,12 +155,8 @@ def _pieces(root: Any) -> Iterator[Piece]:
         for child in getattr(node, "children", []):
             if isinstance(child, collada.scene.GeometryNode):
                 yield from _geometry(node, child.geometry, matrix)
-        children = [
-            child_node
-            for child_node in getattr(node, "children", [])
-            if hasattr(child_node, "children")
-        ]
-        waiting += [(child_node, matrix) for child_node in reversed(children)]
+        inner = [child for child in getattr(node, "children", []) if hasattr(child, "children")]
+        waiting += [(child, matrix) for child in reversed(inner)]
 
 
 def _geometry(node: Any, geometry: Any, matrix: Any) -> Iterator[Piece]:
@@ -181,15 +165,13 @@ def _geometry(node: Any, geometry: Any, matrix: Any) -> Iterator[Piece]:
         if isinstance(primitive, collada.lineset.LineSet) or primitive.vertex is None:
             continue
         points, corners = np.asarray(primitive.vertex, float), primitive.vertex_index
-        if isinstance(primitive, collada.triangleset.TriangleSet):
-            counts = np.full(len(corners), 3)
-        else:
-            counts = primitive.vcounts
+        is_triangles = isinstance(primitive, collada.triangleset.TriangleSet)
+        counts = np.full(len(corners), 3) if is_triangles else np.array(primitive.vcounts, np.int64)
         flat = np.asarray(corners, np.int64).ravel()
-        listed = int(np.asarray(counts, np.int64).sum())
-        if listed != flat.size or np.any(np.asarray(counts) < 0):
+        listed = int(counts.sum())
+        if listed != flat.size or np.any(counts < 0):
             raise InputError(name, "geometry", f"the {listed} corners it counts", str(flat.size))
         if flat.size and not 0 <= int(flat.min()) <= int(flat.max()) < len(points):
             expected = f"vertex indices within the {len(points)} vertices"
             raise InputError(name, "geometry", expected, int(flat.max()))
-        yield Piece(name, placed(cut(points, counts, flat), matrix))
+        yield Piece(name, placed(points[flat[fan(counts)[0]]], matrix))

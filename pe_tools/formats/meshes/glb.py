@@ -24,6 +24,7 @@ Faceted = tuple[Floats, NDArray[Any]]
 """Points (N, 3) and the corners (F, 3) among them of triangles."""
 
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
+_NONE = np.zeros((0, 3, 3))
 _HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quant")
 
 MAX_CHUNKS = 100
@@ -39,20 +40,18 @@ def read_glb(path: Path, data: bytes) -> Mesh:
     returned have these axes, too. The transforms of all nodes down to a mesh are applied. A
     transform that mirrors also reverses the triangles, so their outer sides stay outside. A
     part has the name of the node with the mesh, or of the mesh. Points and lines are ignored.
-
-    Raises
-    ------
-    InputError
-        The file is not binary glTF 2.0, incomplete, malformed or has an index out of range. It
-        needs a feature that is not supported (Draco or meshopt compression, sparse accessors,
-        skins, morph weights, buffers in other files). A coordinate is not finite, or there are
-        no triangles.
+    Draco or meshopt compression, sparse accessors, skins, morph weights, and buffers in other files
+    are refused.
     """
     source = str(path)
     text, binary = _chunks(source, data)
     try:
         document = Document(source, _parse(source, text), binary)
-        _require_known(document)
+        # For an extension that is used but not required, the file has a fallback.
+        for name in document.root.get("extensionsRequired", []):
+            if not str(name).startswith(_HARMLESS):
+                expected = "a file without compression or other geometry extensions"
+                raise document.error("extensionsRequired", expected, str(name))
         return _scene(document)
     except InputError:
         raise
@@ -71,25 +70,20 @@ def _chunks(source: str, data: bytes) -> tuple[bytes, memoryview]:
     if length > len(data):
         raise InputError(source, "length", f"{length} bytes", f"{len(data)}")
     chunks: dict[bytes, memoryview] = {}
-    for kind, chunk in _each_chunk(source, memoryview(data)[:length]):
-        chunks.setdefault(kind, chunk)
-    if b"JSON" not in chunks:
-        raise InputError(source, "chunk JSON", "one", "none")
-    return bytes(chunks[b"JSON"]), chunks.get(b"BIN\0", memoryview(b""))
-
-
-def _each_chunk(source: str, data: memoryview) -> Iterator[tuple[bytes, memoryview]]:
     offset, count = 12, 0
-    while offset + 8 <= len(data):
+    while offset + 8 <= length:
         size, kind = struct.unpack_from("<I4s", data, offset)
         offset, count = offset + 8, count + 1
-        if offset + size > len(data):
-            found = f"{len(data) - offset} left"
+        if offset + size > length:
+            found = f"{length - offset} left"
             raise InputError(source, f"chunk {kind!r}", f"{size} bytes", found)
         if count > MAX_CHUNKS:
             raise InputError(source, "chunks", f"at most {MAX_CHUNKS}", "more")
-        yield kind, data[offset : offset + size]
+        chunks.setdefault(kind, memoryview(data)[offset : offset + size])
         offset += size
+    if b"JSON" not in chunks:
+        raise InputError(source, "chunk JSON", "one", "none")
+    return bytes(chunks[b"JSON"]), chunks.get(b"BIN\0", memoryview(b""))
 
 
 def _parse(source: str, text: bytes) -> Item:
@@ -110,14 +104,6 @@ def _no_number(word: str) -> None:
     raise ValueError(f"{word}, which JSON has no number for")
 
 
-def _require_known(document: Document) -> None:
-    # For an extension that is used but not required, the file has a fallback.
-    for name in document.root.get("extensionsRequired", []):
-        if not str(name).startswith(_HARMLESS):
-            expected = "a file without compression or other geometry extensions"
-            raise document.error("extensionsRequired", expected, str(name))
-
-
 def _scene(document: Document) -> Mesh:
     """All placed meshes; the number of triangles is checked before any is created."""
     placed = list(placed_meshes(document))
@@ -125,15 +111,11 @@ def _scene(document: Document) -> Mesh:
     require_room(document.source, sum(sizes[index] for _, index, _ in placed))
     # Each mesh is read once, even if several nodes use it.
     shapes = {index: _shape(document, index) for index in sizes}
-    triangles = [
-        triangles_of_mesh
-        for _, m, world in placed
-        for triangles_of_mesh in _place(shapes[m], world)
-    ]
+    surfaces = [each for _, m, world in placed for each in _place(shapes[m], world)]
+    triangles = surfaces[0] if len(surfaces) == 1 else np.concatenate([_NONE, *surfaces])
     counts = [sizes[index] for _, index, _ in placed]
     parts = np.repeat(np.arange(len(placed), dtype=np.int32), counts)
-    names = [name for name, _, _ in placed]
-    return make_mesh(document.source, _joined(triangles), parts, names)
+    return make_mesh(document.source, triangles, parts, [name for name, _, _ in placed])
 
 
 def _size(document: Document, index: int) -> int:
@@ -158,12 +140,6 @@ def _corner_list(primitive: Item) -> Any:
     """Index of the accessor that lists a primitive's corners, one after the other."""
     indexed = "indices" in primitive
     return primitive["indices"] if indexed else primitive["attributes"]["POSITION"]
-
-
-def _joined(triangles: list[Floats]) -> Floats:
-    if len(triangles) == 1:
-        return triangles[0]
-    return np.concatenate([np.zeros((0, 3, 3)), *triangles])
 
 
 def _shape(document: Document, index: int) -> list[Faceted]:

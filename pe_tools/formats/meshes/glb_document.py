@@ -42,11 +42,8 @@ class Document:
     def accessor(self, index: Any, kind: str) -> NDArray[Any]:
         """Return the accessor's values, (N, 1) for SCALAR or (N, 3) for VEC3; not copied.
 
-        Raises
-        ------
-        InputError
-            The accessor is sparse, has no data, has another type, or reaches beyond its buffer
-            view.
+        One that is sparse, has no data or another type, or reaches beyond its buffer view, raises
+        `InputError`.
         """
         accessor = self.item("accessors", index)
         field = f"accessors[{index}]"
@@ -56,22 +53,7 @@ class Document:
         if accessor.get("type") != kind or accessor.get("componentType") not in _COMPONENTS:
             found = f"{accessor.get('type')} of {accessor.get('componentType')}"
             raise self.error(field, f"{kind} of a known componentType", found)
-        code = np.dtype(_COMPONENTS[accessor["componentType"]])
-        return self._elements(field, accessor, code, _WIDTHS[kind])
-
-    def numbers(self, index: Any, values: NDArray[Any]) -> NDArray[np.float64]:
-        """Return values of an accessor as numbers: fractions, if the accessor is normalized."""
-        if self.item("accessors", index).get("normalized") and values.dtype.kind in "iu":
-            return np.maximum(values / np.iinfo(values.dtype).max, -1.0)
-        return values.astype(np.float64)
-
-    def count(self, index: Any) -> int:
-        """Return the number of elements that an accessor states."""
-        return self._whole(f"accessors[{index}]", self.item("accessors", index), "count")
-
-    def _elements(
-        self, field: str, accessor: Item, code: np.dtype[Any], width: int
-    ) -> NDArray[Any]:
+        code, width = np.dtype(_COMPONENTS[accessor["componentType"]]), _WIDTHS[kind]
         view_index = accessor["bufferView"]
         view = self.item("bufferViews", view_index)
         data = self._view(f"bufferViews[{view_index}]", view)
@@ -85,6 +67,16 @@ class Document:
             found = f"{count} from {offset}, {stride} apart"
             raise self.error(field, expected, found)
         return np.ndarray((count, width), code, data, offset, (stride, code.itemsize))
+
+    def numbers(self, index: Any, values: NDArray[Any]) -> NDArray[np.float64]:
+        """Return values of an accessor as numbers: fractions, if the accessor is normalized."""
+        if self.item("accessors", index).get("normalized") and values.dtype.kind in "iu":
+            return np.maximum(values / np.iinfo(values.dtype).max, -1.0)
+        return values.astype(np.float64)
+
+    def count(self, index: Any) -> int:
+        """Return the number of elements that an accessor states."""
+        return self._whole(f"accessors[{index}]", self.item("accessors", index), "count")
 
     def _view(self, field: str, view: Item) -> memoryview:
         if self._whole(field, view, "buffer") != 0 or "uri" in self.item("buffers", 0):
@@ -111,19 +103,20 @@ MAX_PLACED, MAX_PRIMITIVES = 20_000, 100_000
 def placed_meshes(document: Document) -> Iterator[tuple[str, Any, NDArray[np.float64]]]:
     """Yield each mesh of the default scene, depth first in the file's order.
 
-    Yields
-    ------
-    name : str
-        Name of the node, or of the mesh, or "node N".
-    mesh : int
-        Index of the mesh, not checked yet.
-    world : (4, 4) float64
-        From the mesh's coordinates to the scene's [m], glTF axes.
+    Yields its name (of the node or of the mesh, or "node N"), its index, and the transform (4, 4)
+    from its coordinates to the scene's [m], glTF axes.
     """
-    count = len(document.root.get("nodes", []))
-    if count > MAX_NODES:
-        raise document.error("nodes", f"at most {MAX_NODES:,}", f"{count:,}")
-    _require_few_pieces(document)
+    nodes = document.root.get("nodes", [])
+    held = sum(isinstance(node, dict) and "mesh" in node for node in nodes)
+    primitives = sum(len(mesh["primitives"]) for mesh in document.root.get("meshes", []))
+    hint = " with a mesh (join meshes in the program that wrote it)"
+    for field, count, most, more in (
+        ("nodes", len(nodes), MAX_NODES, ""),
+        ("nodes", held, MAX_PLACED, hint),
+        ("primitives", primitives, MAX_PRIMITIVES, ""),
+    ):
+        if count > most:
+            raise document.error(field, f"at most {most:,}{more}", f"{count:,}")
     waiting = [(index, np.eye(4)) for index in reversed(_roots(document))]
     seen: set[int] = set()
     while waiting:
@@ -137,20 +130,15 @@ def placed_meshes(document: Document) -> Iterator[tuple[str, Any, NDArray[np.flo
         waiting += [(child, world) for child in reversed(node.get("children", []))]
         if "mesh" in node:
             mesh = document.item("meshes", node["mesh"])
-            _require_rigid(document, field, node, mesh)
-            yield _name(node, mesh, f"node {index}"), node["mesh"], world
-
-
-def _require_few_pieces(document: Document) -> None:
-    """Count nodes with a mesh, and primitives, before any is placed."""
-    nodes = document.root.get("nodes", [])
-    placed = sum(isinstance(node, dict) and "mesh" in node for node in nodes)
-    if placed > MAX_PLACED:
-        expected = f"at most {MAX_PLACED:,} with a mesh (join meshes in the program that wrote it)"
-        raise document.error("nodes", expected, f"{placed:,}")
-    primitives = sum(len(mesh["primitives"]) for mesh in document.root.get("meshes", []))
-    if primitives > MAX_PRIMITIVES:
-        raise document.error("primitives", f"at most {MAX_PRIMITIVES:,}", f"{primitives:,}")
+            # These move vertices; ignoring them would give a wrong shape without a message.
+            if "skin" in node:
+                raise document.error(field, "a mesh without a skin", "a skin")
+            weights: Any = node.get("weights", mesh.get("weights", []))
+            if any(weights):
+                raise document.error(field, "a mesh in its basic shape", "morph weights")
+            names = node.get("name"), mesh.get("name")
+            named = (name for name in names if isinstance(name, str) and name)
+            yield next(named, f"node {index}"), node["mesh"], world
 
 
 def _roots(document: Document) -> list[Any]:
@@ -160,20 +148,6 @@ def _roots(document: Document) -> list[Any]:
     nodes = range(len(document.root.get("nodes", [])))
     children = {c for n in nodes for c in document.item("nodes", n).get("children", [])}
     return [n for n in nodes if n not in children]
-
-
-def _require_rigid(document: Document, field: str, node: Item, mesh: Item) -> None:
-    # These move vertices; ignoring them would give a wrong shape without a message.
-    if "skin" in node:
-        raise document.error(field, "a mesh without a skin", "a skin")
-    weights: Any = node.get("weights", mesh.get("weights", []))
-    if any(weights):
-        raise document.error(field, "a mesh in its basic shape", "morph weights")
-
-
-def _name(node: Item, mesh: Item, default: str) -> str:
-    names = (node.get("name"), mesh.get("name"))
-    return next((name for name in names if isinstance(name, str) and name), default)
 
 
 def _local(document: Document, field: str, node: Item) -> NDArray[np.float64]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -36,22 +37,9 @@ TEXT_UNFOLDS = 20
 def make_mesh(source: str, triangles: ArrayLike, parts: ArrayLike, names: Sequence[str]) -> Mesh:
     """Return a checked mesh with unique part names, from the output of a reader.
 
-    Parameters
-    ----------
-    source : str
-        Name of the file for messages.
-    triangles : (F, 3, 3) array_like
-        Corner coordinates in metres, ground frame.
-    parts : (F,) array_like of int
-        Index of each triangle's part in `names`.
-    names : sequence of str
-        Part names; parts with the same name are merged, names without triangles are dropped.
-
-    Raises
-    ------
-    InputError
-        There is no triangle, a shape is wrong, a coordinate is NaN or infinite,
-        or a part index is out of range.
+    `triangles` (F, 3, 3) are in metres, `parts` (F,) are indices into `names`; parts with the same
+    name are merged, names without triangles are dropped. No triangle, a wrong shape, a coordinate
+    that is not finite or an index out of range raises `InputError`.
     """
     corners = np.ascontiguousarray(triangles, dtype=np.float64)
     labels = np.asarray(parts)
@@ -59,21 +47,27 @@ def make_mesh(source: str, triangles: ArrayLike, parts: ArrayLike, names: Sequen
         raise InputError(source, "triangles", "at least one triangle", "none")
     if corners.shape[1:] != (3, 3):
         raise InputError(source, "triangles", "shape (F, 3, 3)", f"shape {corners.shape}")
-    _require_finite(source, corners)
+    if not np.isfinite(corners).all():
+        row = int(np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))[0])
+        found = str(corners[row].tolist())
+        raise InputError(source, f"triangles[{row}]", "finite coordinates", found)
     require_labels(source, labels.shape, labels.dtype, len(corners))
-    _require_within(source, labels, len(names))
-    tidy, kept = _tidy_parts(labels, names)
-    return Mesh(corners, tidy, kept)
+    if labels.size and not 0 <= int(labels.min()) <= int(labels.max()) < len(names):
+        row = int(np.flatnonzero((labels < 0) | (labels >= len(names)))[0])
+        expected = f"an index into the {len(names)} part names"
+        raise InputError(source, f"parts[{row}]", expected, str(labels[row]))
+    if len(names) == 1:
+        return Mesh(corners, np.zeros(len(labels), np.int32), tuple(names))
+    used = np.bincount(labels.astype(np.int64), minlength=len(names)) > 0
+    used_names = [name for name, has_triangles in zip(names, used, strict=True) if has_triangles]
+    new_index = {name: new for new, name in enumerate(dict.fromkeys(used_names))}
+    # Unused names are never looked up, so their number is arbitrary.
+    renumber = np.array([new_index.get(name, -1) for name in names], dtype=np.int32)
+    return Mesh(corners, renumber[labels], tuple(new_index))
 
 
 def require_room(source: str, triangles: int) -> None:
-    """Raise `InputError` for too many triangles, before they are created.
-
-    Raises
-    ------
-    InputError
-        One line with their number, or with the memory that they need.
-    """
+    """Raise `InputError` for too many triangles, or too little memory, before they are created."""
     if triangles > MAX_TRIANGLES:
         found = f"{triangles:,}" if triangles < 10**18 else "more than 10^18"
         raise InputError(source, "triangles", f"at most {MAX_TRIANGLES:,}", found)
@@ -95,19 +89,10 @@ def fan_size(counts: NDArray[Any]) -> int:
 
 
 def fan(counts: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Cut polygons into triangle fans; the corners of all polygons are in one list.
+    """Cut polygons of `counts` (P,) corners, all in one list, into triangle fans.
 
-    Parameters
-    ----------
-    counts : (P,) int
-        Corners of each polygon; fewer than three give no triangle.
-
-    Returns
-    -------
-    corners : (T, 3) int64
-        Positions of each triangle's corners in the list.
-    polygons : (T,) int64
-        The polygon of each triangle.
+    Returns the positions (T, 3) of each triangle's corners in the list, and the polygon (T,) of
+    each triangle. Polygons of fewer than three corners give none.
     """
     sizes = counts.astype(np.int64)
     if (sizes == 3).all():  # the usual case
@@ -119,36 +104,9 @@ def fan(counts: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     return np.stack([first, first + step + 1, first + step + 2], axis=1), polygons
 
 
-def _require_finite(source: str, corners: NDArray[np.float64]) -> None:
-    if not np.isfinite(corners).all():
-        row = int(np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))[0])
-        found = str(corners[row].tolist())
-        raise InputError(source, f"triangles[{row}]", "finite coordinates", found)
-
-
 def gathered(points: NDArray[np.float64], corners: NDArray[Any]) -> NDArray[np.float64]:
     """Triangles (T, 3, 3) of points (N, 3) at valid indices (T, 3)."""
     return np.take(points, corners, axis=0, mode="clip")  # mode="clip" needs no buffer
-
-
-def _require_within(source: str, labels: NDArray[Any], names: int) -> None:
-    if labels.size and not 0 <= int(labels.min()) <= int(labels.max()) < names:
-        row = int(np.flatnonzero((labels < 0) | (labels >= names))[0])
-        expected = f"an index into the {names} part names"
-        raise InputError(source, f"parts[{row}]", expected, str(labels[row]))
-
-
-def _tidy_parts(
-    labels: NDArray[Any], names: Sequence[str]
-) -> tuple[NDArray[np.int32], tuple[str, ...]]:
-    if len(names) == 1:
-        return np.zeros(len(labels), np.int32), tuple(names)
-    used = np.bincount(labels.astype(np.int64), minlength=len(names)) > 0
-    used_names = [name for name, has_triangles in zip(names, used, strict=True) if has_triangles]
-    new_index = {name: new for new, name in enumerate(dict.fromkeys(used_names))}
-    # Unused names are never looked up, so their number is arbitrary.
-    renumber = np.array([new_index.get(name, -1) for name in names], dtype=np.int32)
-    return renumber[labels], tuple(new_index)
 
 
 INSTEAD = "?"
@@ -158,28 +116,18 @@ MAX_NUMBER_DIGITS = 12
 
 
 def fit_names(names: Sequence[str]) -> tuple[str, ...]:
-    """Return a name for each part: all different, printable, on one line and not too long.
+    """Return a name for each of different names: printable, on one line and not too long.
 
     Valid names are unchanged. In other names `INSTEAD` replaces characters that cannot be printed
     (line ends, controls, changes of the text direction, halves of a surrogate pair). Long names are
     cut at the end. A number makes names different that would become equal.
-
-    Parameters
-    ----------
-    names : sequence of str
-        All different.
     """
-    taken = {name for name in names if _is_fit(name)}
+    taken = set()
+    for name in names:
+        with suppress(InputError):
+            taken.add(A_NAME.checked("mesh", "part", name))
     used: Counter[str] = Counter()
     return tuple(name if name in taken else _new_name(name, taken, used) for name in names)
-
-
-def _is_fit(name: str) -> bool:
-    try:
-        A_NAME.checked("mesh", "part", name)
-    except InputError:
-        return False
-    return True
 
 
 def _new_name(name: str, taken: set[str], used: Counter[str]) -> str:
@@ -198,17 +146,6 @@ class Piece(NamedTuple):
 
     name: str
     triangles: Floats
-
-
-def cut(points: Floats, counts: NDArray[Any], corners: NDArray[Any]) -> Floats:
-    """Cut polygons into fans: triangles (F, 3, 3); all corners are in one list."""
-    sizes = np.asarray(counts, np.int64)
-    fans = np.maximum(sizes - 2, 0)
-    polygons = np.repeat(np.arange(len(sizes)), fans)
-    step = np.arange(len(polygons)) - np.repeat(np.cumsum(fans) - fans, fans)
-    first = (np.cumsum(sizes) - sizes)[polygons]
-    order = np.stack([first, first + step + 1, first + step + 2], axis=1)
-    return points[np.asarray(corners, np.int64)[order]]
 
 
 def placed(triangles: Floats, matrix: Floats) -> Floats:
@@ -246,11 +183,8 @@ class FoundMesh(NamedTuple):
 def read_with_plugin(path: Path, data: bytes) -> tuple[Mesh, SaidAxes]:
     """Read a mesh with the plugin for its suffix.
 
-    Raises
-    ------
-    InputError
-        There is no plugin, its library is missing (the message says how to install it), or the
-        plugin raises an error.
+    No plugin, a missing library (the message says how to install it), or an error of the plugin
+    raises `InputError`.
     """
     suffix = path.suffix.lower()
     hint = install_hint(MESH_PLUGIN, suffix[1:])

@@ -13,7 +13,7 @@ from pxr import Ar, Sdf, Tf, Usd, UsdGeom, UsdUtils
 from pe_core.base.errors import InputError
 
 from .. import MESH_BYTES, FoundMesh
-from .mesh import Piece, cut, found, placed
+from .mesh import Piece, fan, found, placed
 
 MAX_LAYERS = 1_000
 MAX_PRIMS = 200_000
@@ -28,13 +28,10 @@ for _open, _close in ("()", "[]", "{}"):
 
 
 def check_layers(path: Path) -> None:
-    """Check a stage's root layer and all layers that it refers to.
+    """Check a stage's root layer and all layers that it refers to, or raise `InputError`.
 
-    Raises
-    ------
-    InputError
-        A file is missing, not a regular file, not USD or too deeply nested. References form a
-        circle. There are more layers or prims than the limits.
+    None may be missing, no regular file, not USD or too deeply nested; references may not form a
+    circle, nor layers and prims be more than the limits.
     """
     _UsdLayers(str(path)).prims_below(str(path), Sdf.Path.absoluteRootPath, ())
 
@@ -153,12 +150,6 @@ def read_usd(path: Path, _data: bytes) -> FoundMesh:
     A part has the name of the transform above its mesh, as Blender and others name objects, or
     the mesh's name. Invisible prims, guides and proxies are ignored. A subdivision surface is
     represented by its cage.
-
-    Raises
-    ------
-    InputError
-        The file is not USD, a layer is missing or not USD, there are more prims than `MAX_PRIMS`,
-        or a mesh has indices out of range.
     """
     source = str(path)
     diagnostics = UsdUtils.CoalescingDiagnosticDelegate()  # while it exists, USD prints nothinghing
@@ -181,19 +172,15 @@ def _pieces(source: str, stage: Any) -> Iterator[Piece]:
     cache = UsdGeom.XformCache(Usd.TimeCode.EarliestTime())
     for prim in stage.Traverse(Usd.TraverseInstanceProxies()):
         mesh = UsdGeom.Mesh(prim)
-        if not mesh or _is_hidden(mesh):
+        if not mesh or mesh.ComputePurpose() in HIDDEN_PURPOSES:
+            continue
+        if mesh.ComputeVisibility(Usd.TimeCode.EarliestTime()) == UsdGeom.Tokens.invisible:
             continue
         # USD multiplies rows by matrices, we columns.
         matrix = np.array(cache.GetLocalToWorldTransform(prim), float).T
         triangles = _triangles(source, prim, mesh)
         if len(triangles):
             yield Piece(_name(prim), placed(triangles, matrix))
-
-
-def _is_hidden(mesh: Any) -> bool:
-    if mesh.ComputeVisibility(Usd.TimeCode.EarliestTime()) == UsdGeom.Tokens.invisible:
-        return True
-    return mesh.ComputePurpose() in HIDDEN_PURPOSES
 
 
 def _triangles(source: str, prim: Any, mesh: Any) -> Any:
@@ -211,7 +198,7 @@ def _triangles(source: str, prim: Any, mesh: Any) -> Any:
     if not (within and counted):
         expected = f"as many indices as it counts, within its {len(points)} points"
         raise InputError(source, str(prim.GetPath()), expected, f"{len(corners)}")
-    triangles = cut(points, counts, corners)
+    triangles = points[corners[fan(counts)[0]]]
     is_left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
     return triangles[:, ::-1] if is_left_handed else triangles
 

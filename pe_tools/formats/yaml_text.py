@@ -1,0 +1,164 @@
+"""YAML of other programs: read with ruamel.yaml, and edited where keys and values stand.
+
+Aliases are refused: a few lines of them can unfold to gigabytes. The library is imported when a
+file is read, not with this module.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pe_core.base.errors import InputError, shown
+
+KeyPath = tuple[str, ...]
+"""Keys of nested mappings, the outermost first; items of a list have their number as key."""
+MAX_LENGTH = 1 << 18
+"""Maximum characters of a file: kits and lists of lasers have some ten thousand."""
+WORDS = {"bool": {"true": True, "false": False}, "null": {}}
+TAG = "tag:yaml.org,2002:"
+
+
+class YamlText:
+    """A YAML text with its plain `data`; an edited copy keeps every byte that is not edited.
+
+    `data` are nested dicts and lists of texts, numbers (float), booleans and None.
+
+    Raises
+    ------
+    InputError
+        When it is no YAML, no mapping, too long or too deep, a key is there twice, or has aliases.
+    """
+
+    def __init__(self, source: str, text: str) -> None:
+        self.source, self.text = source, text
+        self._nodes: dict[KeyPath, tuple[Any, Any]] = {}
+        self._seen: set[int] = set()
+        if len(text) > MAX_LENGTH:
+            expected = f"YAML of at most {MAX_LENGTH:,} characters"
+            raise InputError(source, "file", expected, f"{len(text):,}")
+        try:
+            root = self._composed()
+            self.data: dict[str, Any] = {} if root is None else self._plain(root, ())
+        except RecursionError:
+            raise InputError(source, "file", "YAML", "too many levels") from None
+        if not isinstance(self.data, dict):
+            raise InputError(source, "file", "a mapping", shown(self.data))
+
+    def _composed(self) -> Any:
+        from ruamel.yaml import YAML
+        from ruamel.yaml.error import MarkedYAMLError, YAMLError
+
+        text = self.text
+        if text.startswith("%YAML"):  # OpenCV writes it without a blank before the version
+            text = "#" + text[1:]
+        try:
+            return YAML(typ="safe", pure=True).compose(text)
+        except MarkedYAMLError as error:
+            mark = error.problem_mark
+            field = "file" if mark is None else f"line {mark.line + 1}"
+            found = str(error.problem or error).removeprefix("found ")
+            raise InputError(self.source, field, "YAML", found) from None
+        except (YAMLError, ValueError) as error:
+            raise InputError(self.source, "file", "YAML", error) from None
+
+    def _plain(self, node: Any, path: KeyPath) -> Any:
+        """Return the data of a node, and note where the keys and values below it are."""
+        where = f"line {node.start_mark.line + 1}"
+        if id(node) in self._seen:
+            raise InputError(self.source, where, "YAML without aliases", "an alias")
+        self._seen.add(id(node))
+        if isinstance(node.value, str):
+            return _scalar(node)
+        is_table = node.tag.rpartition(":")[2] != "seq"
+        pairs = node.value if is_table else [(None, item) for item in node.value]
+        data: dict[str, Any] = {}
+        for number, (key, value) in enumerate(pairs):
+            name = str(number) if key is None else key.value
+            if not isinstance(name, str) or name in data:
+                line = f"line {key.start_mark.line + 1}"
+                raise InputError(self.source, line, "a key used once", shown(name))
+            self._nodes[(*path, name)] = key, value
+            data[name] = self._plain(value, (*path, name))
+        return data if is_table else list(data.values())
+
+    def line(self, path: KeyPath) -> int:
+        """Return the number of the line in which a value begins."""
+        return int(self._nodes[path][1].start_mark.line) + 1
+
+    def word(self, path: KeyPath) -> str:
+        """Return a value as it is written; empty for one that is absent, a mapping or a list."""
+        value = self._nodes.get(path, (None, None))[1]
+        return value.value if value is not None and isinstance(value.value, str) else ""
+
+    def comments(self) -> dict[KeyPath, str]:
+        """Return the comments after keys of mappings, on the key's line, by path."""
+        return {p: c for p in self._nodes if (c := self._comment(p)[1])}
+
+    def _comment(self, path: KeyPath) -> tuple[int, str]:
+        """Return where the text after a mapping's key begins, and the comment in it."""
+        key, value = self._nodes[path]
+        if (
+            key is None
+            or isinstance(value.value, str)
+            or value.start_mark.line == key.end_mark.line
+        ):
+            return 0, ""
+        start = self.text.index(":", key.end_mark.index) + 1
+        mark = self.text[start : self._end_of_line(start)].partition("#")
+        return start + len(mark[0]), mark[2].strip()
+
+    def _end_of_line(self, start: int) -> int:
+        end = self.text.find("\n", start)
+        return len(self.text) if end < 0 else end
+
+    def edited(
+        self,
+        values: Mapping[KeyPath, str],
+        comments: Mapping[KeyPath, str],
+        added: tuple[KeyPath, Sequence[str]] | None = None,
+    ) -> str:
+        """Return the text with other values and comments, and lines added to a mapping.
+
+        An empty comment removes the old one; where there is none, none is written. The lines of
+        `added` are indented as the keys of the mapping at its path.
+        """
+        edits = []
+        for path, new in values.items():
+            value = self._nodes[path][1]
+            edits.append((value.start_mark.index, value.end_mark.index, new))
+        for path, comment in comments.items():
+            start, old = self._comment(path)
+            if old:
+                end, new = self._end_of_line(start), f"# {comment}"
+                if not comment:
+                    start, new = len(self.text[:start].rstrip(" \t")), ""
+                edits.append((start, end, new))
+        if added is not None and added[1]:
+            path, lines = added
+            inside = [(key, value) for p, (key, value) in self._nodes.items() if p[:-1] == path]
+            leaves = [v for p, (_, v) in self._nodes.items() if p[: len(path)] == path]
+            last = max(v.end_mark.index for v in leaves if isinstance(v.value, str))
+            end, indent = self._end_of_line(last), " " * inside[0][0].start_mark.column
+            edits.append((end, end, "".join(f"\n{indent}{line}" for line in lines)))
+        text = self.text
+        for start, end, new in sorted(edits, reverse=True):
+            text = text[:start] + new + text[end:]
+        return text
+
+
+def parse_yaml(source: str, text: str) -> dict[str, Any]:
+    """Return the data of a YAML text as nested dicts and lists; see `YamlText`."""
+    return YamlText(source, text).data
+
+
+def _scalar(node: Any) -> Any:
+    sort, text = str(node.tag).removeprefix(TAG), node.value
+    if sort in WORDS:
+        return WORDS[sort].get(text.lower())
+    if sort in ("int", "float"):
+        try:
+            return float(text)
+        except ValueError:  # of another base, or .inf and .nan
+            return text
+    return text

@@ -284,7 +284,10 @@ def test_the_file_is_beside_the_study(write):
         (FLOW.replace("laser_id: 1", "laser_id: 1.5"), "line 5: expected a whole number.*'1.5'"),
         (FLOW.replace("lasers: 2", "lasers: 3"), "lasers: expected 3 of them, .*found 2"),
         (BLOCK.replace("laser_id: 1", "laser_id"), r"line \d+: expected YAML, found"),
-        (BLOCK.replace("laser_id: 1", "laser_id: 1\n  laser_id: 1"), "line 10: expected a key used once"),
+        (
+            BLOCK.replace("laser_id: 1", "laser_id: 1\n  laser_id: 1"),
+            "line 10: expected a key used once",
+        ),
         (XML[:-9], "file: expected well-formed XML, found"),
         ("<a>\n</a>", "file: expected Velodyne's db.xml, with lasers in <px>, found <a>"),
         (XML.replace("<id_>1</id_>", ""), "laser in <px> 2: expected a value of id_, found none"),

@@ -65,7 +65,10 @@ class Labels:
         left_out = tuple(self.left_out.items())
         names = np.array(self.names)
         try:
-            return Boxes(names, *columns, origin=origin, left_out=left_out)
+            x, y, z, length, width, height, yaw = columns
+            return Boxes(
+                names, x, y, z, length, width, height, yaw, origin=origin, left_out=left_out
+            )
         except InputError as error:
             raise error.at(self.source) from None
 

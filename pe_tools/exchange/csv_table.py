@@ -121,11 +121,11 @@ class _Row:
         numbers = [self.number(key) for key in (*POSITION_KEYS, *ROTATION_KEYS)]
         pose = pose_from(self.path, self.place, numbers[:3], numbers[3:], degrees=True)
         kind, model, fusion = (self.cells.get(key) or None for key in ("kind", "model", "fusion"))
-        ranges = (
+        nearest, farthest = (
             self.number(key, rule) if self.cells.get(key) else None
             for key, rule in zip(RANGES, (MIN_RANGE, FARTHEST), strict=True)
         )
-        properties = kind, model, self._picture(), None, fusion, *ranges
+        properties = kind, model, self._picture(), None, fusion, nearest, farthest
         parameters = self.cells.get(PARAMETERS) or ""
         sensor = PortableSensor(self.cells["name"], pose, *properties, parameters=parameters)
         if kind is None or has_model(sensor):

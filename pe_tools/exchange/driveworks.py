@@ -184,10 +184,11 @@ def read_properties(properties: Table) -> tuple[Picture | None, str]:
     if not all(key in properties for key in (*MIDDLE, *SIZE)):
         return None, ""
     cx, cy = (_number(properties, key, PRINCIPAL_POINT) for key in MIDDLE)
-    width, height = size = tuple(
+    width, height = (
         whole_figure(properties.source, properties.field(key), properties.raw(key), PIXELS)
         for key in SIZE
     )
+    size = width, height
     key = next((name for name in POLYNOMIALS if name in properties), None)
     if key is not None:
         coefficients = _rising(properties, key)

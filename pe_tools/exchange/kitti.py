@@ -52,8 +52,8 @@ def write(
         axes = product(sensor.pose.ground_from_sensor, BODY_FROM_OPTICAL)
         if np.abs(axes - first).max() > PARALLEL:
             expected = f"a camera that looks as {rig_cameras[0].name!r} does, as KITTI's do"
-            found = sensor.pose.rotation_deg
-            raise InputError(f"sensor {sensor.name!r}", "rotation", expected, found)
+            turn = sensor.pose.rotation_deg
+            raise InputError(f"sensor {sensor.name!r}", "rotation", expected, turn)
     origin = rig_cameras[0].pose.position
     rows = {f"P{k}": _projection(sensor, origin, first) for k, sensor in enumerate(rig_cameras)}
     rows[RECTIFIED[0]] = np.eye(3)

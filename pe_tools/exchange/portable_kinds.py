@@ -241,7 +241,7 @@ def _with_field(model: Radar | Ultrasonic) -> dict[str, Any]:
 PORTABLE_KINDS: dict[str, PortableKind] = {
     LIDAR: PortableKind(
         lambda model: {"scan": _scan(model)},
-        lambda sensor, _: sensor.scan and (lidar_of(sensor.name, sensor.scan), ""),
+        lambda sensor, _: None if sensor.scan is None else (lidar_of(sensor.name, sensor.scan), ""),
         "Velodyne VLP-16 Puck",
     ),
     CAMERA: PortableKind(

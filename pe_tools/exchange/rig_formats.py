@@ -49,7 +49,9 @@ class Codec(Protocol):
     and messages. `read` takes a path and returns sensors in the format's frame.
     """
 
-    FILES: tuple[str, ...]
+    @property
+    def FILES(self) -> tuple[str, ...]:
+        """Names of the written files."""
 
     def read(self, path: Path, /) -> Carried:
         """Return the sensors of a file or folder."""

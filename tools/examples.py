@@ -29,8 +29,8 @@ import release  # noqa: E402
 import pe_core as pe  # noqa: E402
 from pe_core import advice  # noqa: E402
 from pe_tools.page import ReportContext, page_bytes  # noqa: E402
+from pe_tools.page.document import STYLES  # noqa: E402
 from pe_tools.page.pictures.requirement_plans import requirement_plan  # noqa: E402
-from pe_tools.page.pictures.svg import STYLE  # noqa: E402
 from pe_tools.page.pictures.vehicle_picture import vehicle_picture  # noqa: E402
 from pe_tools.wording import verdict_text  # noqa: E402
 
@@ -193,7 +193,8 @@ def plan(study: pe.Study, name: str) -> str:
     drawn = str(
         requirement_plan(verdict, study.vehicle, f"{name}: {verdict_text(verdict.summary)}")
     )
-    head = f'<svg xmlns="http://www.w3.org/2000/svg" style="background:#fff"><style>{STYLE}</style>'
+    style = (STYLES / "drawn.css").read_text("utf-8")
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" style="background:#fff"><style>{style}</style>'
     return re.sub(r"^<svg (.*?)>", lambda f: head.replace("<svg ", f"<svg {f[1]} ", 1), drawn)
 
 

@@ -8,7 +8,7 @@ blind ground. A search for the largest smallest distance in CIE Lab chose them.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -64,9 +64,9 @@ def rgb_of(color: str) -> Rgb:
     return red, green, blue
 
 
-def color_text(rgb: Iterable[float]) -> str:
-    """Return sRGB values, 0 to 1, as the text of a colour."""
-    return "#" + "".join(f"{round(255.0 * min(max(each, 0.0), 1.0)):02x}" for each in rgb)
+def color_text(color: Sequence[float]) -> str:
+    """Return sRGB values, 0 to 1, as the text of a colour; an alpha is left out."""
+    return "#" + "".join(f"{round(255.0 * min(max(v, 0.0), 1.0)):02x}" for v in color[:3])
 
 
 def sensor_colors(sensors: Iterable[Sensor]) -> dict[str, Rgb]:

@@ -1,8 +1,4 @@
-"""What a section of the review page works from and what it returns.
-
-`ReportContext` is one study with its results; `Section` is the HTML, data and scripts that a
-section adds to the page; `About` is what the head of the page says: title, author, date, revision.
-"""
+"""What the review page shows: studies with their results, and the head of the page."""
 
 from __future__ import annotations
 
@@ -14,12 +10,14 @@ from typing import Any, TypeVar
 
 import pe_core as pe
 from pe_core import search
+from pe_core.scoring import sight
 
 from .. import advice, graphics, jobs
 
 T = TypeVar("T")
 MAX_TRIANGLES = 200_000
 """Of the vehicle in pictures on the page; rays are cast at all triangles."""
+MAP_STEP_M = 1.0
 MAX_STUDIES = 6
 """On one page, side by side."""
 
@@ -118,6 +116,11 @@ class ReportContext:
         return self.cached("sight", self.study.sight)
 
     @property
+    def ground(self) -> sight.GroundSight:
+        """What the sensors see of the ground, in cells of a metre."""
+        return self.cached("ground", lambda: self.sight.ground(self.rig, step=MAP_STEP_M))
+
+    @property
     def outlook(self) -> advice.Outlook:
         """How far and how well the sensors see."""
         return self.cached("outlook", lambda: advice.outlook(self.sight, self.rig))
@@ -128,10 +131,6 @@ class ReportContext:
             self.cache[what] = compute()
         value: T = self.cache[what]
         return value
-
-    def evaluator(self, samples: int | None = None) -> pe.RigEvaluator:
-        """Return the evaluator of this study; `samples` replaces the study's own number."""
-        return self.study.evaluator(samples)
 
 
 def keyed_contexts(contexts: Sequence[ReportContext]) -> tuple[ReportContext, ...]:
@@ -148,37 +147,6 @@ def keyed_contexts(contexts: Sequence[ReportContext]) -> tuple[ReportContext, ..
         replace(context, key=key, study_count=len(contexts))
         for context, key in zip(contexts, ascii_lowercase, strict=False)
     )
-
-
-@dataclass(frozen=True, slots=True)
-class Section:
-    """What a section adds to the page.
-
-    Attributes
-    ----------
-    anchor : str
-        Id of the section, the target of links: lower-case letters and hyphens.
-    title : str
-        Plain text; the page writes the heading.
-    html : str
-        The content: whole and well formed, names escaped (`markup`). Headings begin at h3. Ids end
-        in ``-KEY`` of the `ReportContext`, since a page may show several studies. If it is empty,
-        the section is left out.
-    data : dict
-        Plain JSON for the scripts, the text of ``#data-ANCHOR-KEY``.
-    scripts : tuple of str
-        Whole JavaScript programs. The page contains each once, at its end, however many sections
-        name it; a program looks for ``[data-section=ANCHOR]``, whose ``data-key`` is KEY.
-    styles : tuple of str
-        CSS; the page contains each once.
-    """
-
-    anchor: str
-    title: str
-    html: str
-    data: Mapping[str, Any] = field(default_factory=dict)
-    scripts: tuple[str, ...] = ()
-    styles: tuple[str, ...] = ()
 
 
 TODAY = "today"

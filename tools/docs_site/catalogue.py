@@ -12,7 +12,7 @@ from pe_core import catalog
 from pe_core.scene import Pose, Sensor
 from pe_core.sensors import kind_of
 from pe_tools import graphics
-from pe_tools.page.pictures.svg import Canvas, hexadecimal
+from pe_tools.page.pictures.svg import Canvas
 
 FOLDER = "reference/catalogue"
 WIDTH, HEIGHT, GAP = 260.0, 240.0, 20.0
@@ -148,8 +148,8 @@ def _view(canvas: Canvas, shapes: Shapes, left: float) -> None:
     for corners, points, color in shapes:
         flat = points * [scale, -scale] + middle
         thin = min(1.0, 0.6 + 20.0 / len(points))
-        look = {"fill": hexadecimal(color), "fill_opacity": "0.2"}
+        look = {"fill": graphics.color_text(color), "fill_opacity": "0.2"}
         if corners == 2:
-            look = {"stroke": hexadecimal(color), "fill": "none", "stroke_width": f"{thin:.2f}"}
+            look = {"stroke": graphics.color_text(color), "fill": "none", "stroke_width": f"{thin:.2f}"}
         canvas.path(flat, closed=corners == 3, **look)
     canvas.add("circle", cx=middle[0], cy=middle[1], r=2.5, fill=INK)

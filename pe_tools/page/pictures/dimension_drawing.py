@@ -13,7 +13,7 @@ from pe_core.base.arrays import Floats
 from ... import graphics
 from ..markup import Markup, number
 from .ground_plan import outline_of
-from .svg import Canvas, hexadecimal
+from .svg import Canvas
 
 Extent1d = tuple[float, float]
 
@@ -104,7 +104,7 @@ def top_view(rig: pe.Rig, vehicle: pe.Vehicle, axle_x: float | None, alt: str) -
 
 
 def _colors(rig: pe.Rig) -> list[str]:
-    return [hexadecimal(color) for color in graphics.sensor_colors_on_paper(rig).values()]
+    return [graphics.color_text(color) for color in graphics.sensor_colors_on_paper(rig).values()]
 
 
 def spread_labels(positions: Sequence[float], gap: float, low: float, high: float) -> list[float]:

@@ -16,7 +16,7 @@ from pe_core.scoring import sight
 
 from ... import graphics
 from ..markup import Markup, number
-from .svg import Canvas, hexadecimal
+from .svg import Canvas
 
 PlanBounds = tuple[tuple[float, float], tuple[float, float]]
 
@@ -277,13 +277,13 @@ def _draw_key(canvas: Canvas, layer: MapLayer, left: float, top: float) -> None:
     if layer.classes:
         at = left
         for color, name in zip(layer.scale, layer.classes, strict=True):
-            canvas.add("rect", x=at, y=top, width=11.0, height=11.0, fill=hexadecimal(color))
+            canvas.add("rect", x=at, y=top, width=11.0, height=11.0, fill=graphics.color_text(color))
             canvas.text(at + 16.0, top + 10.0, name)
             at += 34.0 + 7.5 * len(name)
         return
     for k, color in enumerate(layer.scale):
         size = {"width": width + 0.4, "height": 9.0}
-        canvas.add("rect", x=left + k * width, y=top, fill=hexadecimal(color), **size)
+        canvas.add("rect", x=left + k * width, y=top, fill=graphics.color_text(color), **size)
     anchors = ("start", "middle", "end") if len(layer.ticks) == 3 else ("start", "end")
     for k, (tick, anchor) in enumerate(zip(layer.ticks, anchors, strict=True)):
         position = left + KEY_WIDTH * k / (len(layer.ticks) - 1)

@@ -21,12 +21,12 @@ from pe_core import sensors as kinds
 from pe_core.base.arrays import Floats
 
 from ... import graphics
-from ..markup import Markup, escaped, number, signed
+from ..markup import Markup, number, signed
 from .painted_mesh import painted_vehicle
 from .ray_scene import RayCamera, RayScene
 from .reference_figures import DISTANCES, ReferenceFigure, reference_figures
 from .rendering import Environment, from_srgb, render
-from .svg import LETTER_WIDTH, Canvas, LabelledPicture, TextLabel, figure, hexadecimal
+from .svg import LETTER_WIDTH, Canvas, LabelledPicture, TextLabel
 
 MAX_WIDTH, MAX_HEIGHT = 640, 480
 """Size of a camera's image on the page [px]."""
@@ -52,6 +52,7 @@ SMALL_BOX = scene.Housing("box", (0.05, 0.06, 0.05), (0.025, 0.0, 0.025))
 """About the size of a camera module."""
 
 
+ViewFigure = tuple[Markup | list[str], str]
 PictureMaker = Callable[[pe.Sensor, "pe.Vehicle | None", list[ReferenceFigure]], LabelledPicture]
 
 
@@ -62,7 +63,8 @@ class SensorView:
     Attributes
     ----------
     figure : callable
-        Takes a sensor and the vehicle or None; returns a figure of what the sensor sees.
+        Takes a sensor and the vehicle or None; returns a drawing of what the sensor sees, or lines
+        of text, and a caption.
     picture : callable or None
         Takes a sensor, the vehicle or None and figures; returns the picture with these in it.
     housing : Housing
@@ -71,7 +73,7 @@ class SensorView:
         Takes a model; returns width and height of its image [deg], None if it has no image.
     """
 
-    figure: Callable[[pe.Sensor, pe.Vehicle | None], Markup]
+    figure: Callable[[pe.Sensor, pe.Vehicle | None], ViewFigure]
     picture: PictureMaker | None = None
     housing: scene.Housing = SMALL_BOX
     image_field: Callable[[Any], tuple[float, float] | None] = lambda _model: None
@@ -82,25 +84,23 @@ def sensor_view(kind: str) -> SensorView:
     return SENSOR_VIEWS.get(kind, OTHER_KIND)
 
 
-def _parameter_figure(sensor: pe.Sensor, _vehicle: pe.Vehicle | None) -> Markup:
+def _parameter_figure(sensor: pe.Sensor, _vehicle: pe.Vehicle | None) -> ViewFigure:
     """Return the parameters of a sensor whose kind has no picture."""
     kind = kinds.kind_of(sensor)
     lines = [*kind.data_sheet(sensor.model), *kind.plot(sensor.model)]
-    text = "\n".join(escaped(line) for line in lines)
-    caption = f"{escaped(kind.label)}: no picture is available for this kind of sensor."
-    return figure(Markup(f"<pre>{text}</pre>"), caption)
+    return lines, f"{kind.label}: no picture is available for this kind of sensor."
 
 
-def camera_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Markup:
+def camera_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> ViewFigure:
     """Return a camera's image with a caption."""
     camera = _camera_of(sensor)
     lens = camera.projection.model.replace("_", " ")
     alt = f"Image of {sensor.name}: persons on the left and cars on the right"
     caption = f"{camera.width} × {camera.height} px, {lens} lens, rendered through this lens."
-    return figure(camera_picture(sensor, vehicle).svg(alt), caption)
+    return camera_picture(sensor, vehicle).svg(alt), caption
 
 
-def lidar_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Markup:
+def lidar_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> ViewFigure:
     """Return a LiDAR's range image with its key and a caption."""
     lidar = _lidar_of(sensor)
     alt = f"Ranges of {sensor.name} by azimuth: persons left of ahead and cars right of it"
@@ -110,7 +110,7 @@ def lidar_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Markup:
         f"A row for each channel ({len(lidar.elevations)}), a column for each azimuth; "
         f"range {min_range}{lidar.max_range:g} m."
     )
-    return figure(Markup(drawing), caption)
+    return drawing, caption
 
 
 def camera_picture(
@@ -308,7 +308,7 @@ def _elevation_labels(ranges: kinds.RangePicture, height: int) -> tuple[tuple[fl
     return labels if len(ranges.elevations) > 1 else labels[:1]
 
 
-def field_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Markup:
+def field_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> ViewFigure:
     """Return what a radar or an ultrasonic sensor detects by range and azimuth, with a caption."""
     kind = kinds.kind_of(sensor)
     picture = kind.field_picture(sensor, vehicle)
@@ -333,7 +333,7 @@ def field_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Markup:
         f"middle is {picture.height_m:.2f} m high. Bright is many; orange: occluded by the "
         "vehicle; grey: not detected."
     )
-    return figure(shown.svg(alt), caption)
+    return shown.svg(alt), caption
 
 
 def range_key(far_m: float) -> Markup:
@@ -343,13 +343,13 @@ def range_key(far_m: float) -> Markup:
     scale = graphics.RANGES
     width = KEY_WIDTH / 24
     for k in range(24):
-        fill = hexadecimal(graphics.on_scale(k / 23.0, scale).tolist())
+        fill = graphics.color_text(graphics.on_scale(k / 23.0, scale).tolist())
         canvas.add("rect", x=k * width, y=0.0, width=width + 0.4, height=10.0, fill=fill)
     canvas.text(0.0, 27.0, "0.5 m and nearer", css="mark")
     canvas.text(KEY_WIDTH, 27.0, f"{far_m:g} m", text_anchor="end", css="mark")
     at = KEY_WIDTH + 30.0
     for color, name in ((graphics.BODY_NEAR, "own body"), (graphics.NO_ECHO, "no return")):
-        canvas.add("rect", x=at, y=0.0, width=14.0, height=14.0, fill=hexadecimal(color))
+        canvas.add("rect", x=at, y=0.0, width=14.0, height=14.0, fill=graphics.color_text(color))
         canvas.text(at + 20.0, 12.0, name, css="mark")
         at += 44.0 + LETTER_WIDTH * len(name)
     return canvas.svg()

@@ -15,7 +15,6 @@ from pe_core.scoring import sight
 from ... import graphics
 from ..markup import Markup
 from .ground_plan import PlanBounds, PlanDrawing
-from .svg import hexadecimal
 
 RIG, BEFORE = "#0b5cad", "#8c959f"
 GRID = "#c8cfd6"
@@ -140,7 +139,7 @@ def reach_plan(
     size: dict[str, Any] = {"fill": "none", "stroke_linejoin": "round"}
     colors = graphics.sensor_colors_on_paper(rig)
     for sensor in rig:
-        color = hexadecimal(colors[sensor.name])
+        color = graphics.color_text(colors[sensor.name])
         line = plan.points(_reach_outline(reach, reach.per_sensor[sensor.name], bounds))
         plan.canvas.path([line], stroke=color, stroke_width=1.2, stroke_opacity="0.85", **size)
     if before is not None:
@@ -151,7 +150,7 @@ def reach_plan(
     plan.vehicle(vehicle)
     _write_distances(plan, reach)
     plan.frame()
-    _draw_key(plan, before is not None, hexadecimal(next(iter(colors.values()))))
+    _draw_key(plan, before is not None, graphics.color_text(next(iter(colors.values()))))
     return plan.canvas.svg()
 
 
@@ -163,11 +162,6 @@ def reach_text(reach: sight.Reach, bearing_deg: float) -> str:
     if distance <= 0.0:
         return "none"
     return f"{'≥ ' if _ends_at_space(reach, k) else ''}{distance:.0f} m"
-
-
-def reach_key(rig: pe.Rig) -> list[tuple[str, str]]:
-    """Return each sensor's colour and name."""
-    return [(hexadecimal(c), name) for name, c in graphics.sensor_colors_on_paper(rig).items()]
 
 
 def _reach_outline(reach: sight.Reach, distance: Floats, bounds: PlanBounds) -> Floats:

@@ -1,12 +1,11 @@
-"""SVG drawings inside the page: canvas, figures, grids of figures, and labelled pictures."""
+"""SVG drawings inside the page: a canvas, and pictures with labels."""
 
 from __future__ import annotations
 
 import base64
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
@@ -24,17 +23,17 @@ FOOT_HEIGHT = 26.0
 """Space below a picture for the labels of its lower edge."""
 
 
-STYLE = Path(__file__).with_name("drawn.css").read_text("utf-8")
-"""CSS of drawings and of grids of figures."""
-
-
 @dataclass(eq=False)
 class Canvas:
-    """An SVG drawing; `width` and `height` are its view box, `alt` is its text alternative."""
+    """An SVG drawing; `width` and `height` are its view box, `alt` is its text alternative.
+
+    A drawing of the class ``drawn`` is as wide as what it is in, others are as wide as their box.
+    """
 
     width: float
     height: float
     alt: str
+    css: str = "drawn"
     parts: list[str] = field(default_factory=list)
 
     def add(self, name: str, **attributes: object) -> None:
@@ -58,9 +57,11 @@ class Canvas:
 
     def svg(self) -> Markup:
         """Return the drawing as markup."""
-        box = f"0 0 {_svg_number(self.width)} {_svg_number(self.height)}"
-        head = f'<svg class="drawn" viewBox="{box}" role="img" aria-label="{escaped(self.alt)}">'
-        return Markup(f"{head}{''.join(self.parts)}</svg>")
+        head: dict[str, object] = {"css": self.css}
+        head["viewBox"] = f"0 0 {_svg_number(self.width)} {_svg_number(self.height)}"
+        head |= {} if self.css == "drawn" else {"width": self.width}
+        head |= {"role": "img", "aria_label": self.alt}
+        return Markup(f"<svg{_attributes(head)}>{''.join(self.parts)}</svg>")
 
 
 def path_of(line: Floats, closed: bool) -> str:
@@ -78,22 +79,6 @@ def path_of(line: Floats, closed: bool) -> str:
         return ""
     steps = " ".join(f"{_svg_number(x)} {_svg_number(y)}" for x, y in points.tolist())
     return f"M{steps}{'z' if closed else ''}"
-
-
-def figure(drawing: Markup, caption: Markup | str = "") -> Markup:
-    """Return a drawing with its caption (HTML) as a figure."""
-    below = f"<figcaption>{caption}</figcaption>" if caption else ""
-    return Markup(f"<figure>{drawing}{below}</figure>")
-
-
-def figure_grid(figures: Iterable[Markup], min_rem: float = 21.0) -> Markup:
-    """Return a responsive grid of figures, each at least `min_rem` wide [rem]."""
-    return Markup(f'<div class="maps" style="--min:{min_rem:g}rem">{"".join(figures)}</div>')
-
-
-def hexadecimal(rgb: Sequence[float]) -> str:
-    """Return a colour of components 0 to 1 as "#0072b2"."""
-    return "#" + "".join(f"{round(255.0 * min(max(float(c), 0.0), 1.0)):02x}" for c in rgb[:3])
 
 
 def _attributes(values: dict[str, object]) -> str:

@@ -16,19 +16,20 @@ from pe_core import catalog, scene
 from pe_core.base.arrays import Floats
 
 from ... import graphics
-from ..markup import Markup, escaped
+from ..markup import Markup
 from ..report_context import ReportContext
 from .painted_mesh import Paint, PaintedMesh, lathe, painted_vehicle, rounded_box
 from .ray_scene import RayScene, Viewpoint
 from .rendering import Environment, from_srgb, render
 from .sensor_views import sensor_view
-from .svg import Canvas, figure, hexadecimal
+from .svg import Canvas
 
 SIZE = (960, 540)
 """Width and height of the picture [px]."""
 FOV_DEG = 26.0
 VIEW_DIRECTION = np.array([0.80, -0.58, 0.29])
 """From the vehicle to the default viewpoint: ahead, on the right, a little above."""
+KeyRow = tuple[int, str, str, str]
 PAPER = from_srgb(np.array([0.965, 0.97, 0.975]))
 FLOOR = from_srgb(np.array([0.905, 0.912, 0.92]))
 SUN = np.array([0.45, -0.62, 1.05])
@@ -44,18 +45,6 @@ BEHIND_M = 0.12
 PROUD_M = 0.0005
 """Height of a window above the housing's surface."""
 WINDOW = Paint((0.02, 0.022, 0.025), 0.9)
-
-
-def picture_of(context: ReportContext) -> bytes:
-    """Return the picture of a study's rig on its vehicle, PNG; rendered once for all sections."""
-    return context.cached(
-        "still", lambda: vehicle_picture(context.display_vehicle[0], context.rig, SIZE)
-    )
-
-
-def labelled_picture_of(context: ReportContext, alt: str) -> Markup:
-    """Return the picture of a study's rig with numbered sensors, as a figure."""
-    return labelled_picture(context.display_vehicle[0], context.rig, alt, picture_of(context))
 
 
 def vehicle_picture(
@@ -134,21 +123,23 @@ def _studio(bounds: tuple[Floats, Floats]) -> Environment:
     return Environment(ground, lambda rays: np.tile(PAPER, (len(rays), 1)), SUN, haze)
 
 
-def labelled_picture(
-    vehicle: pe.Vehicle | None, rig: pe.Rig, alt: str, picture: bytes | None = None
-) -> Markup:
-    """Return a picture of a rig on its vehicle with numbered sensors, as a figure.
+class LabelledVehicle(NamedTuple):
+    """The picture of a rig on its vehicle with numbered sensors, and the key of their numbers."""
 
-    `picture` is its `vehicle_picture`, if it is rendered already.
-    """
-    view = default_view(vehicle, rig)
+    drawing: Markup
+    key: list[KeyRow]
+
+
+def labelled_picture(context: ReportContext, alt: str) -> LabelledVehicle:
+    """Return the picture of a study; it is rendered once for all pages that show the study."""
+    vehicle, rig = context.display_vehicle[0], context.rig
+    png = context.cached("still", lambda: vehicle_picture(vehicle, rig, SIZE))
     width, height = map(float, SIZE)
     canvas = Canvas(width, height, alt)
-    png = picture or vehicle_picture(vehicle, rig, SIZE, view)
     canvas.picture(png, (0.0, 0.0, width, height))
-    for label in labels(vehicle, rig, view):
+    for label in labels(vehicle, rig, default_view(vehicle, rig)):
         _draw_number(canvas, label)
-    return figure(canvas.svg(), sensor_key(rig))
+    return LabelledVehicle(canvas.svg(), sensor_key(rig))
 
 
 class NumberLabel(NamedTuple):
@@ -172,16 +163,13 @@ def labels(vehicle: pe.Vehicle | None, rig: pe.Rig, view: Viewpoint) -> list[Num
     return [NumberLabel(number, *row) for number, row in enumerate(rows, 1)]
 
 
-def sensor_key(rig: pe.Rig) -> Markup:
-    """Return a list of the sensors' numbers, colours and names."""
+def sensor_key(rig: pe.Rig) -> list[KeyRow]:
+    """Return number, name, model and colour of each sensor."""
     colors = graphics.sensor_colors_on_paper(rig)
-    items = "".join(
-        '<li><span class="swatch" '
-        f'style="background:{hexadecimal(colors[sensor.name])}"></span>'
-        f"{k + 1} {escaped(sensor.name)} <small>({escaped(sensor.model.name)})</small></li>"
-        for k, sensor in enumerate(rig)
-    )
-    return Markup(f'<ul class="key">{items}</ul>')
+    return [
+        (number, sensor.name, sensor.model.name, graphics.color_text(colors[sensor.name]))
+        for number, sensor in enumerate(rig, 1)
+    ]
 
 
 def spread_apart(positions: Floats) -> Floats:
@@ -202,7 +190,7 @@ def spread_apart(positions: Floats) -> Floats:
 
 def _draw_number(canvas: Canvas, label: NumberLabel) -> None:
     """Draw a disc with a number, and a line to its sensor: dashed if the vehicle hides it."""
-    end, disc, color = label.end, label.disc, hexadecimal(label.color)
+    end, disc, color = label.end, label.disc, graphics.color_text(label.color)
     line = f"M{disc[0]:.1f} {disc[1]:.1f}L{end[0]:.1f} {end[1]:.1f}"
     dashes = "4 4" if label.is_hidden else "none"
     canvas.add("path", d=line, stroke="#1b1f24", stroke_width=1.5, stroke_dasharray=dashes)

@@ -6,7 +6,6 @@ render it with three.js, which is vendored: the page loads nothing from elsewher
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -18,9 +17,8 @@ import pe_core as pe
 from pe_core import sensors as kinds
 
 from ... import graphics
-from ..markup import escaped, percent
 from ..pictures.sensor_views import sensor_view
-from ..report_context import ReportContext, Section
+from ..report_context import ReportContext
 from .packed_data import css_color, housing_data, maps_data, packed_primitives, vehicle_data
 
 HERE = Path(__file__).parent
@@ -30,46 +28,22 @@ SCRIPTS = (
     *("user_input", "panel", "print", "view"),
 )
 """The view's scripts, concatenated to one program in this order."""
-VIEWS = {
-    "quarter": "Reset",
-    "above": "Above",
-    "front": "Front",
-    "rear": "Rear",
-    "left": "Left",
-    "right": "Right",
-}
-LAYERS = {"fov": "View", "occluded": "Occluded", "ground": "Ground"}
-"""Layers of a sensor by key, with the heading of their column."""
-LAYER_TEXT = {
-    "fov": "field of view",
-    "occluded": "occluded by the vehicle",
-    "ground": "footprint on the ground",
-}
 TEXTS = {
     "look_from": "Look from {name}",
     "from": "From {name}",
     "from_middle": "From {name}, the middle of its view",
 }
 """Texts of the view's program; {name} is a sensor's name."""
-INITIAL_LAYERS = {"fov", "occluded"}
-LABEL = (
-    "3-D view of the vehicle and its sensors. Arrow keys turn it, plus and minus change the "
-    "distance, 0 resets it."
-)
-NO_WEBGL = (
-    "This browser has no WebGL, which the 3-D view needs. The vehicle with its sensors is in the "
-    '<a href="#summary">picture at the top</a>.'
-)
 
-__all__ = ["scene_data", "view3d"]
+__all__ = ["scene_data", "scripts", "view"]
 
 
-def view3d(context: ReportContext) -> Section:
-    """Return the section with the 3-D view."""
-    data = scene_data(context)
-    html = view_html(data) + _simplified_note(data)
-    css = (HERE / "scene3d.css").read_text("utf-8")
-    return Section("view", "3-D view", html, data, _scripts(), (css,))
+def view(context: ReportContext) -> dict[str, Any]:
+    """Return what the 3-D view and its panel show."""
+    return {
+        "script_data": scene_data(context),
+        "occluded_color": css_color(graphics.PAPER.stopped),
+    }
 
 
 def scene_data(context: ReportContext) -> dict[str, Any]:
@@ -88,122 +62,11 @@ def scene_data(context: ReportContext) -> dict[str, Any]:
 
 
 @cache
-def _scripts() -> tuple[str, ...]:
+def scripts() -> tuple[str, ...]:
     """Return three.js, and the view's own program."""
-    scripts = "\n".join((HERE / f"{name}.js").read_text("utf-8") for name in SCRIPTS)
-    program = f'(() => {{\n"use strict";\nconst T = PE_THREE;\n\n{scripts}\n}})();'
-    return THREE.read_text("utf-8"), program
-
-
-def _simplified_note(data: dict[str, Any]) -> str:
-    """Return a note on the simplification of the vehicle; empty if it is complete."""
-    vehicle = data["vehicle"]
-    if vehicle is None or vehicle["shown"] == vehicle["all"]:
-        return ""
-    error_mm = max(1000.0 * vehicle["error"], 0.1)
-    return (
-        f'<p class="note">The vehicle is drawn with {vehicle["shown"]:,} of its '
-        f"{vehicle['all']:,} triangles; its surface deviates by at most {error_mm:.1f} mm. Rays "
-        "were cast at all triangles.</p>"
-    )
-
-
-def view_html(data: Mapping[str, Any]) -> str:
-    """Return the HTML of the view, and a note that the script replaces if WebGL works."""
-    return (
-        f'<p class="v3-still note">{NO_WEBGL}</p>'
-        '<div class="v3-live" hidden>'
-        f'<div class="v3-stage" tabindex="0" role="group" aria-label="{LABEL}">'
-        '<canvas class="v3-canvas"></canvas><div class="v3-labels"></div>'
-        '<p class="v3-caption" hidden><span></span>'
-        '<button type="button" data-view="quarter">Back</button></p>'
-        '<p class="v3-hint">Tap to turn</p><div class="v3-legend" hidden></div></div>'
-        f'<div class="v3-panel">{_panel(data)}</div></div>'
-        '<canvas class="v3-paper" aria-hidden="true" width="1" height="1"></canvas>'
-        '<div class="v3-paper-words" aria-hidden="true"></div>'
-    )
-
-
-def _panel(data: Mapping[str, Any]) -> str:
-    views = "".join(
-        f'<button type="button" data-view="{name}">{text}</button>' for name, text in VIEWS.items()
-    )
-    body = (
-        '<label class="v3-check"><input type="checkbox" data-body>See through the body</label>'
-        if data["vehicle"]
-        else ""
-    )
-    return (
-        f'<h3>View</h3><div class="v3-views">{views}</div>'
-        f"<h3>Sensors</h3>{_table(data['sensors'])}{body}"
-        f"<h3>Ground map</h3>{_maps(data['maps'])}{_key(data)}"
-    )
-
-
-def _table(sensors: Sequence[Mapping[str, Any]]) -> str:
-    heads = "".join(f'<th scope="col">{text}</th>' for text in LAYERS.values())
-    rows = "".join(_row(number, sensor) for number, sensor in enumerate(sensors))
-    all_of = "".join(
-        f"<td>{_box(f'all: {LAYER_TEXT[layer]}', layer, f'data-all={layer}')}</td>"
-        for layer in LAYERS
-    )
-    all_row = f'<tr><th scope="row">All</th>{all_of}</tr>' if len(sensors) > 1 else ""
-    return (
-        '<table class="v3-table"><caption class="hidden">Layers of each sensor</caption>'
-        f'<thead><tr><th scope="col">Look from</th>{heads}</tr></thead>'
-        f"<tbody>{all_row}{rows}</tbody></table>"
-    )
-
-
-def _row(number: int, sensor: Mapping[str, Any]) -> str:
-    name = escaped(sensor["name"])
-    look = (
-        f'<button type="button" data-look="{number}" style="--tint:{sensor["color"]}">'
-        f"<i></i><span>{name}</span></button>"
-    )
-    cells = "".join(f"<td>{_cell(number, sensor, layer)}</td>" for layer in LAYERS)
-    return f'<tr><th scope="row">{look}</th>{cells}</tr>'
-
-
-def _cell(number: int, sensor: Mapping[str, Any], layer: str) -> str:
-    target = f'data-sensor="{number}" data-layer="{layer}"'
-    label = f"{sensor['name']}: {LAYER_TEXT[layer]}"
-    box = _box(label, layer, target) if sensor["layers"].get(layer) else ""
-    return box + (_share(sensor["share"]) if layer == "occluded" else "")
-
-
-def _box(label: str, layer: str, target: str) -> str:
-    checked = " checked" if layer in INITIAL_LAYERS else ""
-    return (
-        f'<label><input type="checkbox" {target}{checked} autocomplete="off" '
-        f'aria-label="{escaped(label)}"></label>'
-    )
-
-
-def _share(share: float | None) -> str:
-    if share is None:
-        return ""
-    text = "none" if share == 0.0 else "< 0.1%" if share < 0.001 else percent(share, 1)
-    return f"<small>{escaped(text)}</small>"
-
-
-def _maps(maps: Sequence[Mapping[str, Any]]) -> str:
-    options = "".join(f'<option value="{m["name"]}">{m["label"]}</option>' for m in maps)
-    return (
-        '<select data-map autocomplete="off" aria-label="Map on the ground">'
-        f'<option value="">none</option>{options}</select>'
-    )
-
-
-def _key(data: Mapping[str, Any]) -> str:
-    """Return the key of the lines."""
-    first = data["sensors"][0]["color"]
-    occluded = css_color(graphics.PAPER.stopped)
-    rows = (
-        f'<li><i style="--tint:{first}"></i>in a sensor\'s colour: its field of view</li>'
-        f'<li><i class="dashed" style="--tint:{occluded}"></i>occluded by the vehicle</li>'
-    )
-    return f'<ul class="v3-key">{rows}<li>Grid of 1 m, darker every 5 m.</li></ul>'
+    program = "\n".join((HERE / f"{name}.js").read_text("utf-8") for name in SCRIPTS)
+    own = f'(() => {{\n"use strict";\nconst T = PE_THREE;\n\n{program}\n}})();'
+    return THREE.read_text("utf-8"), own
 
 
 MAX_BEAMS = 60_000

@@ -1,11 +1,20 @@
-"""The sections of the page, in order: a row each."""
+"""The sections of the page, in order: a row each.
+
+A section is a function from a study (or, if it is `joint`, from all studies of the page) to the
+values that its template shows; None leaves it out.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
-from ..report_context import ReportContext, Section
-from ..scene3d import view3d
+from markupsafe import Markup
+
+from .. import scene3d
+from ..markup import render
+from ..report_context import ReportContext
 from .bill_of_materials import bill_of_materials
 from .breakdown import by_class_and_zone, objects, sensor_loss
 from .comparison import comparison
@@ -16,28 +25,67 @@ from .requirement_verdicts import requirement_verdicts
 from .search_history import search_history
 from .sensitivity import sensitivity
 from .sensor_details import dimensions, sensor_details
-from .traceability import assumptions, rerun
+from .traceability import assumptions, copy_script, reproduction
 from .visibility import visibility
 
-TOP_SECTIONS: tuple[Callable[[tuple[ReportContext, ...]], Section], ...] = (
-    *(overview, comparison, bill_of_materials),
-)
-"""Sections on all studies together, at the top of the page."""
-STUDY_SECTIONS: tuple[Callable[[ReportContext], Section], ...] = (
-    *(
-        view3d,
-        dimensions,
-        requirement_verdicts,
-        conditions,
-        visibility,
-        redundancy,
-        by_class_and_zone,
-        objects,
-    ),
-    *(sensor_details, sensor_loss, search_history, sensitivity, warnings_and_text, rerun),
-)
-"""Sections that each study has; several studies stand side by side. Empty ones are left out."""
-BOTTOM_SECTIONS: tuple[Callable[[tuple[ReportContext, ...]], Section], ...] = (assumptions,)
-"""Sections on all studies together, at the bottom of the page."""
 
-__all__ = ["BOTTOM_SECTIONS", "STUDY_SECTIONS", "TOP_SECTIONS"]
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A section of the page.
+
+    Attributes
+    ----------
+    anchor : str
+        Id of the section, the target of links: lower-case letters and hyphens. The template has
+        this name, if it has no `template` of its own.
+    title : str
+        Plain text.
+    data : callable
+        Takes a `ReportContext`, or a tuple of all if the section is joint; returns the values of
+        the template, or None. ``script_data`` is plain JSON for the scripts, the text of
+        ``#data-ANCHOR-KEY``.
+    joint : bool
+        One section for all studies; several studies have the others side by side.
+    template : str
+        Headings in it begin at h3. Ids end in ``-KEY`` of the `ReportContext`, since a page may
+        show several studies.
+    scripts : callable
+        Returns whole JavaScript programs, of which the page contains each once; a program looks
+        for ``[data-section=ANCHOR]``, whose ``data-key`` is KEY.
+    """
+
+    anchor: str
+    title: str
+    data: Callable[..., Mapping[str, Any] | None]
+    joint: bool = False
+    template: str = ""
+    scripts: Callable[[], Sequence[str]] = tuple
+
+    def html(self, contexts: Sequence[ReportContext], data: Mapping[str, Any]) -> Markup:
+        """Return the template with these values, and the studies."""
+        template = f"{self.template or self.anchor}.html"
+        return render(template, contexts=contexts, context=contexts[0], **data)
+
+
+SECTIONS = (
+    Section("summary", "Summary", overview, True, "overview"),
+    Section("summary", "Comparison", comparison, True, "comparison"),
+    Section("bill", "Bill of materials", bill_of_materials, True),
+    Section("view", "3-D view", scene3d.view, scripts=scene3d.scripts),
+    Section("plan", "Dimensions", dimensions),
+    Section("requirements", "Requirements", requirement_verdicts),
+    Section("conditions", "Conditions", conditions),
+    Section("maps", "Visibility", visibility),
+    Section("redundancy", "Redundancy", redundancy),
+    Section("parts", "By class and zone", by_class_and_zone),
+    Section("objects", "Objects", objects),
+    Section("sensors", "Sensors", sensor_details),
+    Section("sensor-loss", "Loss of one sensor", sensor_loss),
+    Section("search", "Search", search_history),
+    Section("sensitivity", "How sure the search is", sensitivity),
+    Section("advice", "Warnings", warnings_and_text),
+    Section("again", "Reproduction", reproduction, scripts=copy_script),
+    Section("basis", "Assumptions", assumptions, True),
+)
+
+__all__ = ["SECTIONS", "Section"]

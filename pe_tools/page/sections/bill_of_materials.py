@@ -5,14 +5,13 @@ Prices come from the study's choices (``[[choice]]``); the catalogue has none.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from typing import Any
 
 import pe_core as pe
 from pe_core import sensors as kinds
-from pe_core.base.errors import plural
 
-from ..markup import Markup, escaped, joined, table
-from ..report_context import ReportContext, Section
+from ..markup import macros
+from ..report_context import ReportContext
 
 NO_PRICE = "no price"
 ModelPrice = tuple[str, float | None]
@@ -44,10 +43,37 @@ def currency_of(study: pe.Study) -> str:
     return study.selection.currency or ""
 
 
-def bill_of_materials(contexts: tuple[ReportContext, ...]) -> Section:
+def bill_of_materials(contexts: tuple[ReportContext, ...]) -> dict[str, Any]:
     """Return the bill of materials of a study, or of several in one table."""
-    inside = _single_table(contexts[0]) if len(contexts) == 1 else _joint_table(contexts)
-    return Section("bill", "Bill of materials", f"{inside}{_price_note(contexts)}")
+    bold, study_name = macros().bold, macros().study_name
+    by_model = [_sensors_by_model(context) for context in contexts]
+    models = dict.fromkeys(key for own in by_model for key in own)
+    currency = currency_of(contexts[0].study)
+    counts = [str(len(tuple(context.rig))) for context in contexts]
+    rows: list[list[str]]
+    if len(contexts) == 1:
+        caption = "Sensors"
+        heads = ["Sensor model", "Kind", "Sensors", "Count", "Unit price", "Sum"]
+        rows = [
+            [
+                *(model, kinds.kind_of(sensors[0]).label, ", ".join(s.name for s in sensors)),
+                str(len(sensors)),
+                *(_priced(price, currency), _priced(price, currency, len(sensors))),
+            ]
+            for (model, price), sensors in by_model[0].items()
+        ]
+        rows.append([bold("All sensors"), "", "", bold(counts[0]), "", bold(_total(contexts[0]))])
+    else:
+        caption = "Sensors of each study"
+        heads = ["Sensor model", "Unit price", *map(study_name, contexts)]
+        rows = [
+            [key[0], _priced(key[1], currency), *(str(len(o.get(key, ())) or "–") for o in by_model)]
+            for key in models
+        ]
+        rows.append([bold("Count"), "", *map(bold, counts)])
+        rows.append([bold("Sum"), "", *(bold(_total(context)) for context in contexts)])
+    no_price = list(dict.fromkeys(model for model, price in models if price is None))
+    return {"caption": caption, "heads": heads, "rows": rows, "no_price": no_price}
 
 
 def _sensors_by_model(context: ReportContext) -> dict[ModelPrice, list[pe.Sensor]]:
@@ -59,37 +85,8 @@ def _sensors_by_model(context: ReportContext) -> dict[ModelPrice, list[pe.Sensor
     return by_model
 
 
-def _single_table(context: ReportContext) -> str:
-    heads = ("Sensor model", "Kind", "Sensors", "Count", "Unit price", "Sum")
-    return table("Sensors", heads, _rows(context), css="bill")
-
-
-def _rows(context: ReportContext) -> Iterator[list[str | Markup]]:
-    currency = currency_of(context.study)
-    for (model, price), sensors in _sensors_by_model(context).items():
-        names = ", ".join(sensor.name for sensor in sensors)
-        yield [
-            *(model, kinds.kind_of(sensors[0]).label, names, str(len(sensors))),
-            NO_PRICE if price is None else price_text(price, currency),
-            NO_PRICE if price is None else price_text(price * len(sensors), currency),
-        ]
-    total = str(len(tuple(context.rig)))
-    yield [_bold("All sensors"), "", "", _bold(total), "", _bold(_total(context))]
-
-
-def _joint_table(contexts: Sequence[ReportContext]) -> str:
-    models = dict.fromkeys(key for context in contexts for key in _sensors_by_model(context))
-    heads: list[str | Markup] = ["Sensor model", "Unit price"]
-    heads += [_study_name(context) for context in contexts]
-    rows: list[list[str | Markup]] = []
-    currency = currency_of(contexts[0].study)
-    for key in models:
-        model, price = key
-        counts = [str(len(_sensors_by_model(c).get(key, ())) or "–") for c in contexts]
-        rows.append([model, NO_PRICE if price is None else price_text(price, currency), *counts])
-    rows.append([_bold("Count"), "", *(_bold(str(len(tuple(c.rig)))) for c in contexts)])
-    rows.append([_bold("Sum"), "", *(_bold(_total(context)) for context in contexts)])
-    return table("Sensors of each study", heads, rows)
+def _priced(price: float | None, currency: str, count: int = 1) -> str:
+    return NO_PRICE if price is None else price_text(price * count, currency)
 
 
 def _total(context: ReportContext) -> str:
@@ -100,33 +97,3 @@ def _total(context: ReportContext) -> str:
         return NO_PRICE
     total = price_text(sum(known), currency_of(context.study))
     return total if len(known) == len(prices) else f"at least {total}"
-
-
-def _price_note(contexts: Sequence[ReportContext]) -> str:
-    """Return a note on the source of prices, and on the models without a price."""
-    models = list(
-        dict.fromkeys(
-            model
-            for context in contexts
-            for model, price in _sensors_by_model(context)
-            if price is None
-        )
-    )
-    source = (
-        "Prices are those of the study's choices; the catalogue has none. "
-        "Mounts, cables and computers are not included."
-    )
-    if not models:
-        return f'<p class="note">{source}</p>'
-    names = joined([f"<b>{escaped(model)}</b>" for model in models])
-    missing = f"No price is known for {plural(len(models), 'model')}: {names}."
-    return f'<p class="note">{missing} {source}</p>'
-
-
-def _bold(text: str) -> Markup:
-    return Markup(f"<b>{escaped(text)}</b>")
-
-
-def _study_name(context: ReportContext) -> Markup:
-    swatch = '<span class="swatch"></span>'
-    return Markup(f'<span class="whose-{context.key}">{swatch} {escaped(context.name)}</span>')

@@ -2,74 +2,78 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
+from typing import Any, NamedTuple
+
+from markupsafe import Markup
 
 import pe_core as pe
+from pe_core import catalog
 from pe_core.scoring import sight
 
 from ... import advice
-from ..markup import Markup, capitalized, escaped, number, percent, signed, table
+from ..markup import capitalized, escaped, macros, number
 from ..pictures.ground_plan import difference_map
-from ..pictures.svg import STYLE, figure, figure_grid
-from ..pictures.vehicle_picture import labelled_picture_of
-from ..report_context import ReportContext, Section
+from ..pictures.vehicle_picture import labelled_picture
+from ..report_context import ReportContext
+from .bill_of_materials import currency_of, price_of, price_text
 from .overview import hidden_sensor_lines
-from .sensor_differences import sensor_differences
 
 SIDES = {"front": "ahead", "rear": "behind", "left": "left", "right": "right"}
-STEP_M = 1.0
-"""Cell size of the difference maps."""
-DIGITS = {"entropy": 2, "coverage": 1, "ap": 3}
-MEASURES = {
-    "entropy": "Perception entropy in nats: lower is better",
-    "coverage": "Coverage: share of expected objects that is seen, higher is better",
-    "ap": "Expected AP: higher is better",
-}
-"""Measures that have a table of their own, with its caption."""
 PAGE_NOTATION = advice.Notation(number, plus_minus="±")
-NOT_MOUNTED = "not mounted"
-TITLE = "Comparison"
-GROUPS = {"rig": "", "zone": "By zone", "class": "By class"}
+METRE_DIGITS, DEGREE_DIGITS = 3, 2
+MAP_ENDS = ("8 nats less here", "8 nats less here")
 
 
-def comparison(contexts: tuple[ReportContext, ...]) -> Section:
-    """Return the comparison of several studies; an empty section for a single one."""
+def comparison(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
+    """Return the comparison of several studies; None for a single one."""
     if len(contexts) < 2:
-        return Section("summary", TITLE, "")
+        return None
+    first, *others = contexts
     rows = advice.compare({context.key: context.after for context in contexts})
-    lines = "".join(f"<li>{line}</li>" for line in _summary_lines(contexts, rows))
-    inside = "".join(
-        [
-            f'<ul class="brief">{lines}</ul>',
-            sensor_differences(contexts),
-            _pictures(contexts),
-            _difference_maps(contexts),
-            *(_measure_table(contexts, rows, measure) for measure in MEASURES),
-            _voxel_ap_table(contexts),
-            _pairwise_table(contexts, rows),
-            _blind_ground_table(contexts),
-            _contribution_table(contexts),
-        ]
-    )
-    return Section("summary", TITLE, inside, styles=(STYLE,))
+    blind = [context.outlook.blind for context in contexts]
+    return {
+        "names": [macros().bold_study(context) for context in contexts],
+        "rows": rows,
+        "overall": next(row for row in rows if (row.group, row.measure) == ("rig", "entropy")),
+        "lines": [Markup(line) for line in _summary_lines(contexts, rows)],
+        **sensor_differences(contexts),
+        "pictures": [
+            labelled_picture(context, f"{context.name}: the vehicle with its sensors")
+            for context in contexts
+        ],
+        "maps": [
+            difference_map(
+                other.ground,
+                first.ground,
+                first.vehicle,
+                f"Map of the difference in entropy between {first.name} and {other.name}",
+                MAP_ENDS,
+            )
+            for other in others
+        ],
+        "voxel_ap": _voxel_ap(contexts),
+        "blind_height": max(each.height for each in blind),
+        "blind_extents": [
+            [capitalized(words), *(_blind_extent(each, side) for each in blind)]
+            for side, words in SIDES.items()
+        ],
+    }
 
 
 def _summary_lines(
     contexts: Sequence[ReportContext], rows: Sequence[advice.ComparedRow]
 ) -> Iterator[str]:
-    """Yield which rig is better overall and where, and what limits the comparison."""
-    names = [_study_name(contexts, context.key) for context in contexts]
+    """Yield, as HTML, which rig is better overall and where, and what limits the comparison."""
+    names = [macros().bold_study(context) for context in contexts]
     yield from advice.ranking(names, rows, PAGE_NOTATION)
-    yield from advice.win_words(names, [_escaped_row(row) for row in rows])
-    for context in contexts:
-        yield from (
-            f"{_study_name(contexts, context.key)}: {line}."
-            for line in hidden_sensor_lines(context)
-        )
-    vehicles = {context.study.vehicle_line for context in contexts}
-    if len(vehicles) > 1:
+    yield from advice.win_words(names, [replace(row, name=escaped(row.name)) for row in rows])
+    for name, context in zip(names, contexts, strict=True):
+        yield from (f"{name}: {line}." for line in hidden_sensor_lines(context))
+    if len({context.study.vehicle_line for context in contexts}) > 1:
         yield "The vehicles differ."
     if note := advice.hardware_note([s.model for s in context.rig] for context in contexts):
         yield escaped(note)
@@ -82,182 +86,88 @@ def _summary_lines(
         )
 
 
-def _escaped_row(row: advice.ComparedRow) -> advice.ComparedRow:
-    """Return a row with its name escaped for HTML."""
-    return replace(row, name=escaped(row.name))
-
-
-def _study_name(contexts: Sequence[ReportContext], key: str) -> str:
-    name = next(escaped(context.name) for context in contexts if context.key == key)
-    return f'<span class="whose-{key}"><span class="swatch"></span> <b>{name}</b></span>'
-
-
-def _pictures(contexts: Sequence[ReportContext]) -> str:
-    """Return pictures of the vehicles with their sensors."""
-    pictures = [
-        f"<div>{_study_name(contexts, context.key)}{_vehicle_picture(context)}</div>"
-        for context in contexts
-    ]
-    return str(figure_grid([Markup(picture) for picture in pictures], 17.0))
-
-
-def _vehicle_picture(context: ReportContext) -> Markup:
-    return labelled_picture_of(context, f"{context.name}: the vehicle with its sensors")
-
-
-def _difference_maps(contexts: Sequence[ReportContext]) -> str:
-    """Return a map for each other study: where the first study is better, and where the other."""
-    first, *others = contexts
-    maps = [
-        figure(_difference_map_of(first, context), _color_caption(contexts, first, context))
-        for context in others
-    ]
-    grid = figure_grid(maps, 30.0)
-    narrow = f'<div class="narrow">{grid}</div>' if len(maps) == 1 else grid
-    return f"<h3>Maps of the difference</h3>{narrow}"
-
-
-def _difference_map_of(first: ReportContext, other: ReportContext) -> Markup:
-    alt = f"Map of the difference in entropy between {first.name} and {other.name}"
-    ends = ("8 nats less here", "8 nats less here")
-    return difference_map(_ground_sight(other), _ground_sight(first), first.vehicle, alt, ends)
-
-
-def _color_caption(
-    contexts: Sequence[ReportContext], first: ReportContext, other: ReportContext
-) -> Markup:
-    """Return the meaning of the map's colours, which are those of the first two studies."""
-    blue, orange = _study_name(contexts, first.key), _study_name(contexts, other.key)
-    return Markup(f"Blue: {blue} is better there. Orange: {orange} is better there.")
-
-
-def _ground_sight(context: ReportContext) -> sight.GroundSight:
-    return context.cached("ground", lambda: context.sight.ground(context.rig, step=STEP_M))
-
-
-def _heads(contexts: Sequence[ReportContext], first: str) -> list[str | Markup]:
-    return [first, *(Markup(_study_name(contexts, context.key)) for context in contexts)]
-
-
-def _measure_table(
-    contexts: Sequence[ReportContext], rows: Sequence[advice.ComparedRow], measure: str
-) -> str:
-    body: list[list[str | Markup]] = []
-    for group, heading in GROUPS.items():
-        inside = [row for row in rows if (row.group, row.measure) == (group, measure)]
-        body += [[heading]] if heading and inside else []
-        for row in inside:
-            name = capitalized(advice.WHERE.get(row.name, row.name)) or "Overall"
-            body.append([name, *(_cell(contexts, row, k) for k in range(len(contexts)))])
-    return table(MEASURES[measure], _heads(contexts, ""), body) if body else ""
-
-
-def _voxel_ap_table(contexts: Sequence[ReportContext]) -> str:
+def _voxel_ap(contexts: Sequence[ReportContext]) -> list[list[str]]:
     """Return the expected AP by class of studies on voxels; scores on objects have their own."""
     if any(context.study.targets.are_objects for context in contexts):
-        return ""
-    by_class = [context.cached("ap", partial(_expected_ap, context)) for context in contexts]
-    rows = [
+        return []
+    by_class = [
+        context.cached("ap", partial(context.sight.expected_ap, context.rig))
+        for context in contexts
+    ]
+    return [
         [capitalized(n), *(number(each[n], 3) if n in each else "none" for each in by_class)]
         for n in by_class[0]
     ]
-    title = "Expected AP of voxels by class, without traffic: higher is better"
-    return table(title, _heads(contexts, ""), rows)
 
 
-def _expected_ap(context: ReportContext) -> dict[str, float]:
-    return context.sight.expected_ap(context.rig)
-
-
-def _cell(contexts: Sequence[ReportContext], row: advice.ComparedRow, k: int) -> str | Markup:
-    value, difference = row.values[k], row.differences[k]
-    if value is None:
-        return "none"
-    text = escaped(_value_text(row.measure, value))
-    if row.best[k]:
-        best = '<span class="hidden"> best</span>'
-        text = f'<span class="wins whose-{contexts[k].key}-ink">{text}{best}</span>'
-    if k and difference is not None:
-        css = {-1: "better", 1: "worse"}.get(row.sense(k), "noise")
-        text += f' <span class="{css}">({escaped(_signed_text(row.measure, difference))})</span>'
-    return Markup(text)
-
-
-def _value_text(measure: str, value: float) -> str:
-    return percent(value, 1) if measure == "coverage" else number(value, DIGITS[measure])
-
-
-def _signed_text(measure: str, value: float) -> str:
-    return signed(100.0 * value if measure == "coverage" else value, DIGITS[measure])
-
-
-def _pairwise_table(contexts: Sequence[ReportContext], rows: Sequence[advice.ComparedRow]) -> str:
-    """Return the differences of all pairs, for three studies or more."""
-    if len(contexts) < 3:
-        return ""
-    row = next(row for row in rows if (row.group, row.measure) == ("rig", "entropy"))
-    body = [
-        [
-            Markup(_study_name(contexts, context.key)),
-            *(_pairwise_cell(row, i, j) for j in range(len(contexts))),
-        ]
-        for i, context in enumerate(contexts)
-    ]
-    title = (
-        "Entropy of the row minus entropy of the column, in nats; bold if the difference is clear "
-        f"(more than {number(row.factor, 1)} standard errors, corrected for the number of pairs)"
-    )
-    return table(title, _heads(contexts, ""), body)
-
-
-def _pairwise_cell(row: advice.ComparedRow, i: int, j: int) -> str | Markup:
-    a, b = row.values[i], row.values[j]
-    if i == j or a is None or b is None:
-        return ""
-    error = row.errors[i][j]
-    plus_minus = f" ± {number(max(error, 0.01))}" if error else ""
-    text = escaped(f"{signed(a - b)}{plus_minus}")
-    return Markup(f"<b>{text}</b>") if row.differ(i, j) else Markup(text)
-
-
-def _blind_ground_table(contexts: Sequence[ReportContext]) -> str:
-    """Return how far the ground next to the body is blind, by side."""
-    rows = [
-        [capitalized(words), *(_blind_extent(context, side) for context in contexts)]
-        for side, words in SIDES.items()
-    ]
-    height = max(context.outlook.blind.height for context in contexts)
-    title = f"Extent of blind ground at the body, for objects {height:g} m tall"
-    return table(title, _heads(contexts, ""), rows)
-
-
-def _blind_extent(context: ReportContext, side: str) -> str:
-    blind = context.outlook.blind
+def _blind_extent(blind: sight.BlindGround, side: str) -> str:
     end = blind.zone[side]
     if end is None:
         return f"more than {blind.within:g} m"
     return "none" if end == 0.0 else f"{number(sight.shown_end(end), 1)} m"
 
 
-def _contribution_table(contexts: Sequence[ReportContext]) -> str:
-    """Return the contribution of each sensor in each study, in one table."""
-    names = list(dict.fromkeys(sensor.name for context in contexts for sensor in context.rig))
-    rows: list[list[str]] = []
-    for heading, cell in CONTRIBUTIONS.items():
-        rows.append([heading])
-        for name in names:
-            scores = [context.after.per_sensor.get(name) for context in contexts]
-            rows.append([name, *(NOT_MOUNTED if s is None else cell(s) for s in scores)])
-    return table("Contribution of each sensor", _heads(contexts, ""), rows)
+def sensor_differences(contexts: Sequence[ReportContext]) -> dict[str, Any]:
+    """Return the mountings of each sensor, and how they differ from its first one."""
+    names = dict.fromkeys(sensor.name for context in contexts for sensor in context.rig)
+    sensors = {name: _mountings(contexts, name) for name in names}
+    prices = [price_of(context.study, sensor) for context in contexts for sensor in context.rig]
+    return {
+        "sensors": sensors,
+        "differing": [name for name, mountings in sensors.items() if len(mountings) > 1],
+        "has_prices": any(price is not None for price in prices),
+        "lacks_prices": any(price is None for price in prices),
+    }
 
 
-def _occluded_share(score: pe.SensorScore) -> str:
-    return percent(score.occluded / score.beams, 1) if score.beams else "not known"
+class Mounting(NamedTuple):
+    """Model and pose of a sensor as the table shows them, rounded.
+
+    `values` holds the model's parameters, its fusion group and AP curve as text, for comparison.
+    """
+
+    model: str
+    values: str
+    price: float | None
+    position: tuple[float, ...]
+    rotation: tuple[float, ...]
 
 
-CONTRIBUTIONS: dict[str, Callable[[pe.SensorScore], str]] = {
-    "Rise of entropy without the sensor [nats]": lambda score: signed(score.lost),
-    "Coverage of the sensor alone": lambda score: percent(score.coverage, 1),
-    "Occluded by the vehicle, of its pixels or beams": _occluded_share,
-}
-"""Rows of the table of contributions, by heading."""
+def _mountings(contexts: Sequence[ReportContext], name: str) -> list[dict[str, Any]]:
+    """Return a row for each different mounting of a sensor, with its studies."""
+    studies_by_mounting: dict[Mounting | None, list[ReportContext]] = {}
+    for context in contexts:
+        sensor = next((s for s in context.rig if s.name == name), None)
+        mounting = None if sensor is None else _mounting_of(context.study, sensor)
+        studies_by_mounting.setdefault(mounting, []).append(context)
+    first = next(mounting for mounting in studies_by_mounting if mounting is not None)
+    return [_row(*pair, first) for pair in studies_by_mounting.items()]
+
+
+def _mounting_of(study: pe.Study, sensor: pe.Sensor) -> Mounting:
+    position = tuple(round(v, METRE_DIGITS) + 0.0 for v in sensor.pose.position)
+    rotation = tuple(round(v, DEGREE_DIGITS) + 0.0 for v in sensor.pose.rotation_deg)
+    values = repr((catalog.to_table(sensor.model), sensor.fusion, sensor.curve))
+    return Mounting(sensor.model.name, values, price_of(study, sensor), position, rotation)
+
+
+def _row(
+    mounting: Mounting | None, studies: list[ReportContext], first: Mounting
+) -> dict[str, Any]:
+    """Return what the table has of a mounting, None: without the sensor, beside the first one."""
+    if mounting is None:
+        return {"studies": studies, "model": None}
+    same_name, price = mounting.model == first.model, mounting.price
+    modified = same_name and mounting.values != first.values
+    turned = zip(mounting.rotation, first.rotation, strict=True)
+    return {
+        "studies": studies,
+        "model": f"{mounting.model} (other values)" if modified else mounting.model,
+        "is_other_model": modified or not same_name,
+        "price": "" if price is None else price_text(price, currency_of(studies[0].study)),
+        "is_other_price": price != first.price,
+        "position": mounting.position,
+        "moved": [a - b for a, b in zip(mounting.position, first.position, strict=True)],
+        "rotation": mounting.rotation,
+        "turned": [math.remainder(a - b, 360.0) for a, b in turned],
+    }

@@ -7,6 +7,8 @@ relative: an extension may not add packages to the top level. The same sources g
 """
 
 import ast
+import base64
+import hashlib
 import importlib.util
 import re
 import shutil
@@ -26,8 +28,11 @@ MANIFEST = ADDON / "blender_manifest.toml"
 PACKED = (ENGINE.name, TOOLS.name)
 REPORTS = ("plots",)
 """Rooms of the tools that the extension has no use for: they plot with Matplotlib."""
-BUNDLED = ("ruamel.yaml",)
+BUNDLED = ("jinja2", "markupsafe", "ruamel.yaml")
 """Libraries of the engine and the tools that Blender does not have, as wheels in the extension."""
+OPTIONAL = "_speedups"
+"""Start of the names of compiled modules that are left out: the same is there in Python."""
+WHEEL = b"Wheel-Version: 1.0\nGenerator: build\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
 EXAMPLE = "assets/examples/sedan.blend"
 """What the button *Open an Example* opens; a copy of that in `blend_assets`."""
 FROM_PACKED = re.compile(r"^(\s*)from ((?:pe_core|pe_tools)\b[\w.]*) import", re.MULTILINE)
@@ -95,20 +100,26 @@ def add_wheel(folder: Path, name: str) -> Path:
     """Pack the installed files of a library in pure Python as a wheel again; return its path."""
     library = distribution(name)
     files = [f for f in library.files or () if "__pycache__" not in f.parts and ".." not in f.parts]
-    packed = [file for file in files if file.name not in ("INSTALLER", "REQUESTED", "RECORD")]
+    left_out = ("INSTALLER", "REQUESTED", "RECORD", "WHEEL")
+    packed = [f for f in files if f.name not in left_out and not f.name.startswith(OPTIONAL)]
     if not packed or any(file.suffix in (".so", ".pyd") for file in packed):
         raise BuildError(f"{name} is not installed in pure Python")
-    info = next(file.parent for file in files if file.name == "WHEEL")
-    folder.mkdir(exist_ok=True)
-    path = folder / f"{info.name.removesuffix('.dist-info')}-py3-none-any.whl"
-    record = [f"{file.as_posix()},{file.hash.mode}={file.hash.value},{file.size}"
-              for file in packed if file.hash is not None]  # fmt: skip
+    info = next(file.parent for file in files if file.name == "WHEEL").name
     contents = {file.as_posix(): file.read_binary() for file in packed}
-    contents[f"{info.name}/RECORD"] = "\n".join([*record, f"{info.name}/RECORD,,", ""]).encode()
+    contents[f"{info}/WHEEL"] = WHEEL
+    record = [f"{path},sha256={record_hash(data)},{len(data)}" for path, data in contents.items()]
+    contents[f"{info}/RECORD"] = "\n".join([*record, f"{info}/RECORD,,", ""]).encode()
+    folder.mkdir(exist_ok=True)
+    path = folder / f"{info.removesuffix('.dist-info')}-py3-none-any.whl"
     with zipfile.ZipFile(path, "w") as wheel:
         for file_name in sorted(contents):
             wheel.writestr(zip_entry(file_name), contents[file_name], zipfile.ZIP_DEFLATED)
     return path
+
+
+def record_hash(data: bytes) -> str:
+    """Return a file's digest as a wheel's RECORD has it."""
+    return base64.urlsafe_b64encode(hashlib.sha256(data).digest()).decode().rstrip("=")
 
 
 def with_relative_imports(source: str, dots: int) -> str:
@@ -220,7 +231,7 @@ def check_contents(archive: Path) -> None:
         names = set(packed.namelist())
     presets = {path.relative_to(ROOT).as_posix() for path in ENGINE.glob("**/*.toml")}
     always = {"__init__.py", "blender_manifest.toml", "LICENSE", "pe_core/__init__.py", EXAMPLE}
-    always |= {path.relative_to(ROOT).as_posix() for path in TOOLS.glob("page/**/*.[cj]s*")}
+    always |= {path.relative_to(ROOT).as_posix() for path in TOOLS.glob("page/**/*.[cjh][st]*")}
     always |= {path.relative_to(ADDON).as_posix() for path in ADDON.glob("languages/*.po")}
     assets = {path.relative_to(ADDON).as_posix() for path in ADDON.glob("assets/*")}
     for wanted in sorted(always | presets | assets):

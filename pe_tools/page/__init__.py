@@ -1,8 +1,7 @@
 """The review page: one HTML file that shows a rig, its score and what its sensors see.
 
-It needs NumPy and the engine alone, so the page is the same from Blender and from a command line. A
-section is a function from a `ReportContext` to a `Section`; `document` puts sections together.
-Names are imported at first use: the other verbs of `pe` start without the page.
+It is the same from Blender and from a command line. `sections` lists its parts, `document` puts them
+together. Names are imported at first use: the other verbs of `pe` start without the page and jinja2.
 """
 
 from __future__ import annotations
@@ -17,36 +16,22 @@ if TYPE_CHECKING:
     from pe_core import Outcome
 
     from ..cli import Answer
-    from .build import review_studies
-    from .document import PAGE, page_bytes, write_page
-    from .pictures.picture_file import picture_file
-    from .report_context import About, ReportContext, Section, keyed_contexts
+    from .build import review_studies as review_studies
+    from .document import PAGE as PAGE
+    from .document import page_bytes as page_bytes
+    from .document import write_page as write_page
+    from .pictures.picture_file import picture_file as picture_file
+    from .report_context import About as About
+    from .report_context import ReportContext as ReportContext
+    from .report_context import keyed_contexts as keyed_contexts
 
 _MODULES = {
     "review_studies": "build",
-    "PAGE": "document",
-    "page_bytes": "document",
-    "write_page": "document",
+    **dict.fromkeys(("PAGE", "page_bytes", "write_page"), "document"),
     "picture_file": "pictures.picture_file",
-    "About": "report_context",
-    "ReportContext": "report_context",
-    "Section": "report_context",
-    "keyed_contexts": "report_context",
+    **dict.fromkeys(("About", "ReportContext", "keyed_contexts"), "report_context"),
 }
-
-__all__ = [
-    "PAGE",
-    "About",
-    "ReportContext",
-    "Section",
-    "add_page",
-    "add_review_options",
-    "keyed_contexts",
-    "page_bytes",
-    "picture_file",
-    "review_studies",
-    "write_page",
-]
+__all__ = [*sorted(_MODULES), "add_page", "add_review_options"]
 
 
 def __getattr__(name: str) -> Any:

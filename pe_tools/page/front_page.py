@@ -15,6 +15,7 @@ from .markup import capitalized, render
 from .pictures.charts import four_digits, pareto_plot
 
 DesignRow = Mapping[str, Any]
+BELOW = "; the figures are in the table below"
 
 
 def write_front_page(data: Mapping[str, Any], folder: Path) -> None:
@@ -59,7 +60,7 @@ def front_page(data: Mapping[str, Any]) -> bytes:
                 [(_figure(d, x) or 0.0, _figure(d, y) or 0.0) for d in front],
                 [(_figure(d, x) or 0.0, _figure(d, y) or 0.0) for d in others],
                 (labels[x], labels[y]),
-                f"{OBJECTIVES[x][0]} against {OBJECTIVES[y][0]}; the figures are in the table below",
+                f"{OBJECTIVES[x][0]} against {OBJECTIVES[y][0]}{BELOW}",
             )
             for x, y in combinations(names, 2)
         ],

@@ -78,8 +78,10 @@ LIBRARIES = {
     "pyarrow": {"pe_tools/exchange"},
     "rerun": {"pe_tools/outputs"},
     "matplotlib": {"pe_tools/plots"},
+    "jinja2": {"pe_tools/page"},
+    "markupsafe": {"pe_tools/page"},
 }
-"""Optional libraries, and the rooms in which they are imported."""
+"""Libraries besides NumPy, and the rooms in which they are imported."""
 FACES_ONLY = ("benchmarks", "blend_assets", "tools")
 """Programs outside both packages: they take names from the faces of rooms."""
 BY_NAME = {

@@ -28,6 +28,7 @@ from pe_tools.page.sections.sensitivity import sensitivity as sensitivity_sectio
 from pe_tools.sensitivity import sensitivity_from_dict
 from pe_tools.sensitivity.fresh_samples import GOLDEN, SAMPLES, FreshSamples
 from tests.engine import shapes
+from tests.review.conftest import html_of
 
 pytestmark = pytest.mark.usefixtures("few_errors")
 AP = "expected_ap"
@@ -218,7 +219,7 @@ def test_the_analysis_is_of_the_ap_on_fresh_scenes():
     assert sensitivity_from_dict(table, best).to_dict() == table
     text = summary(outcome)
     assert "nats: " not in text and "fresh voxels" not in text
-    page = sensitivity_section(ReportContext("by AP", outcome)).html
+    page = html_of(sensitivity_section, ReportContext("by AP", outcome))
     assert "What a step costs [expected AP]" in page and "nats" not in page
 
 

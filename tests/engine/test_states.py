@@ -19,7 +19,8 @@ from pe_core.study import (
 from pe_core.study.condition_file import read_conditions, state_table
 from pe_core.study.condition_search import study_objective
 from pe_tools.jobs import conditions_csv
-from pe_tools.page.sections.conditions import content as conditions_html
+from pe_tools.page.markup import render
+from pe_tools.page.sections.conditions import table_values
 from tests.engine import shapes
 
 BODY, DOOR, WHEEL = range(3)
@@ -155,7 +156,7 @@ def test_the_table_has_the_figures_of_each_condition_scored_alone():
     assert table.worst.entropy == max(alone)
     assert table.rows[2].covered["mirror"]["body"] > 0.05  # turned with its door, it faces the body
     assert table.rows[0].covered is None
-    html = conditions_html(table)
+    html = render("conditions.html", **table_values(table))
     assert html.count("heat worst") in (1, 2) and f"{abs(table.mean):.4f}" in html
     assert "without mirror" in html and "open, fog" in html
     rows = conditions_csv(table).splitlines()

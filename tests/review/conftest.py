@@ -9,6 +9,7 @@ import pe_core as pe
 from pe_core.catalog import load
 from pe_tools.page import ReportContext, page_bytes
 from pe_tools.page.pictures import sensor_views, vehicle_picture
+from pe_tools.page.sections import SECTIONS
 from tests.review.browser import started
 
 NAMES = ("</script><b>roof", "front & left / 60°")
@@ -22,6 +23,13 @@ def small_pictures():
         patch.setattr(vehicle_picture, "SIZE", (192, 108))
         patch.setattr(sensor_views, "MAX_WIDTH", 128)
         yield
+
+
+def html_of(function, *contexts):
+    """The HTML of the section that a function has the values of; empty if it is left out."""
+    section = next(section for section in SECTIONS if section.data is function)
+    data = function(contexts if section.joint else contexts[0])
+    return "" if data is None else str(section.html(contexts, data))
 
 
 def box(low, high):

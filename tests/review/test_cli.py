@@ -1,5 +1,6 @@
 """The verb, and the page beside a search's results, as a user runs them."""
 
+import dataclasses
 import html
 import json
 import os
@@ -15,8 +16,8 @@ from pe_tools import jobs
 from pe_tools.cli.verbs import main
 from pe_tools.page import PAGE
 from pe_tools.page.build import outcome_of_folder
-from pe_tools.page.sections.search_history import search_history
-from pe_tools.page.sections.traceability import rerun
+from pe_tools.page.markup import escaped
+from pe_tools.page.sections import SECTIONS
 from tests.review.conftest import outcome_of, small_study
 
 NAMED = "a <b> & c"
@@ -26,9 +27,8 @@ NAMED = "a <b> & c"
 @pytest.fixture(autouse=True)
 def few_sections(monkeypatch):
     """What the page says is tested elsewhere."""
-    monkeypatch.setattr("pe_tools.page.document.TOP_SECTIONS", ())
-    monkeypatch.setattr("pe_tools.page.document.BOTTOM_SECTIONS", ())
-    monkeypatch.setattr("pe_tools.page.document.STUDY_SECTIONS", (search_history, rerun))
+    kept = [each for each in SECTIONS if each.anchor in ("search", "again")]
+    monkeypatch.setattr("pe_tools.page.document.SECTIONS", kept)
 
 
 @pytest.fixture
@@ -48,7 +48,7 @@ def test_a_study_s_page_is_written_and_its_path_printed(study, tmp_path, capsys)
     assert "a &lt;b&gt; &amp; c" in text and NAMED not in text
     assert "<h1>Roof</h1>" in text and "A &lt;b&gt;, May, Revision 3</p>" in text
     given = shlex.join(["pe", "review", str(study), "-o", str(path.parent), *said])
-    assert f"<pre>{html.escape(given)}</pre>" in text
+    assert f"<pre>{escaped(given)}</pre>" in text
     assert [each.name for each in path.parent.glob("*.html")] == [PAGE]
 
 
@@ -71,7 +71,8 @@ def test_ctrl_c_while_the_page_is_written_leaves_all_as_it_was(
 
     (tmp_path / PAGE).write_text("mine")
     before = sorted(path.name for path in tmp_path.iterdir())
-    monkeypatch.setattr("pe_tools.page.document.STUDY_SECTIONS", (search_history, interrupted))
+    broken = dataclasses.replace(SECTIONS[-1], data=interrupted)
+    monkeypatch.setattr("pe_tools.page.document.SECTIONS", (broken,))
     assert main(["review", str(study), "-o", str(tmp_path), "--replace"]) == 130
     assert sorted(path.name for path in tmp_path.iterdir()) == before
     assert (tmp_path / PAGE).read_text() == "mine"
@@ -151,7 +152,7 @@ def test_a_search_leaves_its_page_unless_it_is_not_wanted(study, tmp_path, capsy
     text = (out / PAGE).read_text("utf-8")
     assert "Moves of the sensors" in text
     told = shlex.join(["pe", "optimize", str(study), "-o", str(out)])
-    assert f"<pre>{html.escape(told)}</pre>" in text
+    assert f"<pre>{escaped(told)}</pre>" in text
     given = html.unescape(re.search(r'<pre id="study-a"[^>]*>(.*?)</pre>', text, re.S)[1])
     assert tomllib.loads(given)["sensor"] == tomllib.loads(study.read_text("utf-8"))["sensor"]
     assert jobs.files_of_other_runs(out) == []

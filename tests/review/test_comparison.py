@@ -8,22 +8,30 @@ import pytest
 import pe_core as pe
 from pe_core.catalog import load
 from pe_tools.page import ReportContext, keyed_contexts
-from pe_tools.page.markup import escaped
+from pe_tools.page.markup import escaped, render
 from pe_tools.page.sections.bill_of_materials import price_of, price_text
 from pe_tools.page.sections.comparison import comparison as comparison_section
-from pe_tools.page.sections.overview import cautions, overview
+from pe_tools.page.sections.comparison import sensor_differences
+from pe_tools.page.sections.overview import overview
 from pe_tools.page.sections.sensor_details import sensor_details
-from pe_tools.page.sections.sensor_differences import sensor_differences
-from tests.review.conftest import NAMES, outcome_of, small_study
+from tests.review.conftest import NAMES, html_of, outcome_of, small_study
 
 LIDAR, CAMERA = NAMES
 
 
 def cells(html):
     """The texts of a table's rows."""
-    rows = re.findall(r"<tr>(.*?)</tr>", html.partition("<tbody>")[2].partition("</tbody>")[0])
-    texts = (re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in rows)
+    body = html.partition("<tbody>")[2].partition("</tbody>")[0]
+    texts = (
+        re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row, re.S)
+        for row in re.findall(r"<tr>(.*?)</tr>", body, re.S)
+    )
     return [[re.sub(r"<[^>]*>", "", text).strip() for text in row] for row in texts]
+
+
+def differences(contexts):
+    """The sensors of all studies, as HTML."""
+    return render("sensor_differences.html", contexts=contexts, **sensor_differences(contexts))
 
 
 def beside(*rigs, **changes):
@@ -45,7 +53,7 @@ def rig(*, x=0.0, yaw=170.0, camera="Camera 60 deg", without=()):
 
 def test_a_row_a_sensor_with_what_differs():
     each = beside(rig(), rig(x=-1.5, yaw=-175.0), rig(camera="Camera 120 deg"))
-    html = sensor_differences(each)
+    html = differences(each)
     lidar, moved, eye, turned, other = cells(html)
     assert lidar[1:] == ["A C", "small LiDAR", "0.000", "0.000", "1.800", *["0.00"] * 3]
     assert moved[3] == "−1.500 (−1.500)" and moved[1] == "B"
@@ -57,14 +65,14 @@ def test_a_row_a_sensor_with_what_differs():
 
 
 def test_what_is_alike_stands_once_and_what_is_missing_is_reported():
-    html = sensor_differences(beside(rig(), rig()))
+    html = differences(beside(rig(), rig()))
     assert "All sensors have the same models and poses." in html
     assert [row[1] for row in cells(html)] == ["all", "all"]
-    missing = cells(sensor_differences(beside(rig(without=[CAMERA]), rig())))
+    missing = cells(differences(beside(rig(without=[CAMERA]), rig())))
     assert missing[1][1:3] == ["A", "not mounted"] and missing[2][1] == "B"
     model = dataclasses.replace(rig()[LIDAR].model, max_range=50.0)
     own = pe.Rig([dataclasses.replace(rig()[LIDAR], model=model), rig()[CAMERA]])
-    assert "small LiDAR (other values)" in sensor_differences(beside(rig(), own))
+    assert "small LiDAR (other values)" in differences(beside(rig(), own))
 
 
 def test_prices_are_those_of_the_study_s_choices():
@@ -73,7 +81,7 @@ def test_prices_are_those_of_the_study_s_choices():
     each = beside(
         rig(), rig(camera="Camera 120 deg"), selection=pe.Selection([choice], currency="EUR")
     )
-    html = sensor_differences(each)
+    html = differences(each)
     assert [row[3] for row in cells(html)] == ["", "1,200 EUR", "99.50 EUR"]
     assert "Where a price is empty" in html
     assert price_of(each[0].study, each[0].rig[LIDAR]) is None and price_text(5.0, "") == "5"
@@ -85,7 +93,7 @@ PRICES = {"Camera 60 deg": 1200.0, "Camera 120 deg": 99.5}
 @pytest.fixture(scope="module")
 def comparison(scored, other):
     """The comparison of two studies, as HTML."""
-    return comparison_section(keyed_contexts([scored, other])).html
+    return html_of(comparison_section, *keyed_contexts([scored, other]))
 
 
 def test_the_comparison_says_the_engine_s_sentences(scored, other, comparison):
@@ -113,14 +121,14 @@ def test_other_hardware_is_a_line_of_the_comparison():
     wide = outcome_of(pe.ScoreJob(small_study().with_rig(rig(camera="Camera 120 deg"))))
     narrow = outcome_of(pe.ScoreJob(small_study().with_rig(rig())))
     both = [ReportContext("wide", wide), ReportContext("narrow", narrow)]
-    assert escaped(pe.advice.OTHER_HARDWARE) in comparison_section(keyed_contexts(both)).html
+    assert escaped(pe.advice.OTHER_HARDWARE) in html_of(comparison_section, *keyed_contexts(both))
 
 
 def test_tables_of_several_studies_are_one(scored, other, comparison):
     """What each sensor is worth stands in the comparison, and in no column beside it."""
     both = keyed_contexts([scored, other])
-    assert "Contribution of each sensor" in sensor_details(scored).html
-    assert "Contribution of each sensor" not in sensor_details(both[0]).html
+    assert "Contribution of each sensor" in html_of(sensor_details, scored)
+    assert "Contribution of each sensor" not in html_of(sensor_details, both[0])
     lost = [one.after.per_sensor[LIDAR].lost for one in both]
     row = next(row for row in cells(comparison.rpartition("<table")[2]) if row and "roof" in row[0])
     assert row[1:] == [f"+{value:.2f}" for value in lost]
@@ -134,7 +142,7 @@ def test_a_camera_in_the_body_is_named_in_the_summary(scored):
         pass
     one = ReportContext("inside", job.outcome)
     said = f"<b>{CAMERA.replace('&', '&amp;')}</b> (inside the body, 100% of its picture occluded)"
-    assert cautions(one).startswith(f"{said} sees nothing.")
-    assert said in overview((one,)).html and "sees nothing" not in overview((scored,)).html
-    named = comparison_section(keyed_contexts([scored, one])).html
+    assert f"{said} sees nothing." in html_of(overview, one)
+    assert "sees nothing" not in html_of(overview, scored)
+    named = html_of(comparison_section, *keyed_contexts([scored, one]))
     assert f"{said} sees nothing." in named

@@ -8,7 +8,7 @@ import numpy as np
 import pe_core as pe
 from pe_tools.page import ReportContext, report_context
 from pe_tools.page.sections.overview import warnings_and_text
-from tests.review.conftest import outcome_of, small_study
+from tests.review.conftest import html_of, outcome_of, small_study
 
 ACROSS, FEW = 120, 4_000
 """Squares along each side of the hood, and the page's limit: two million meet the same code."""
@@ -31,7 +31,7 @@ def test_it_is_drawn_with_fewer_and_the_page_says_so(monkeypatch):
     shown, moved = one.display_vehicle
     assert len(shown.triangles) <= FEW and moved > 0.0
     assert len(one.vehicle.triangles) == 2 * ACROSS**2, "beams are cast at all"
-    words = re.sub(r"<[^>]+>", "", warnings_and_text(one).html)
+    words = re.sub(r"<[^>]+>", "", html_of(warnings_and_text, one))
     assert f"all {2 * ACROSS**2:,} triangles" in words
     assert f"draws {len(shown.triangles):,} of them" in words
     assert np.abs(np.subtract(shown.bounds, one.vehicle.bounds)).max() <= moved

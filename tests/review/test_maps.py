@@ -22,10 +22,10 @@ from pe_tools.page.pictures.ground_plan import (
     outline_of,
 )
 from pe_tools.page.pictures.sight_plans import reach_text, side_text
-from pe_tools.page.pictures.svg import Canvas, hexadecimal, path_of
+from pe_tools.page.pictures.svg import Canvas, path_of
 from pe_tools.page.sections.visibility import visibility
 from tests.engine.test_png import decoded
-from tests.review.conftest import box
+from tests.review.conftest import box, html_of
 
 
 def seen(entropy, sensors=None):
@@ -59,8 +59,8 @@ def test_the_key_has_the_colours_of_the_map():
     svg = ground_map(seen(entropy, sensors), SENSORS, None, "alt")
     pixels = pixels_of(svg)
     for (i, j), number in np.ndenumerate(sensors):
-        color = hexadecimal(graphics.COUNTS[min(number, 3)])
-        assert hexadecimal(pixels[1 - j, i] / 255.0) == color
+        color = graphics.color_text(graphics.COUNTS[min(number, 3)])
+        assert graphics.color_text(pixels[1 - j, i] / 255.0) == color
         assert f'fill="{color}"' in svg
     assert [t for t in ("none", "3 or more") if t in svg] == ["none", "3 or more"]
 
@@ -114,16 +114,16 @@ def test_what_stands_in_a_drawing_is_escaped():
 
 
 def test_the_section_tells_what_the_engine_found(scored):
-    section = visibility(scored)
-    assert section.html.count("<svg") == 9  # four maps, three heights, two classes
-    ET.fromstring(f"<div>{section.html}</div>")
+    html = html_of(visibility, scored)
+    assert html.count("<svg") == 9  # four maps, three heights, two classes
+    ET.fromstring(f"<div>{html}</div>")
     blind = scored.sight.blind(scored.rig, 0.5)
     for side in ("front", "left"):
-        assert f"<td>{side_text(blind, side)}</td>" in section.html
+        assert f"<td>{side_text(blind, side)}</td>" in html
     reach = scored.sight.reach(scored.rig, "pedestrian")
-    assert f"<td>{reach_text(reach, 0.0)}</td>" in section.html
+    assert f"<td>{reach_text(reach, 0.0)}</td>" in html
 
 
 def test_a_search_shows_before_and_what_changed(searched, bare):
-    assert visibility(searched).html.count("<svg") == 12
-    assert visibility(bare).html.count("<svg") == 9  # also without a vehicle
+    assert html_of(visibility, searched).count("<svg") == 12
+    assert html_of(visibility, bare).count("<svg") == 9  # also without a vehicle

@@ -10,8 +10,9 @@ from html.parser import HTMLParser
 import pytest
 
 import pe_core as pe
-from pe_tools.page import PAGE, About, Section, page_bytes, write_page
-from pe_tools.page.markup import escaped, script_json, table
+from pe_tools.page import PAGE, About, page_bytes, write_page
+from pe_tools.page.markup import escaped, macros
+from pe_tools.page.sections import Section
 from tests.review.conftest import NAMES
 
 VOID = {"meta", "img", "br", "link", "input", "hr", "wbr", "path", "rect", "circle", "line"}
@@ -85,10 +86,10 @@ def test_the_policy_names_every_script_and_style_by_its_hash(which, request):
 
 
 def test_a_page_says_what_it_is(scored, monkeypatch):
-    monkeypatch.setattr("pe_tools.page.document.STUDY_SECTIONS", ())
+    monkeypatch.setattr("pe_tools.page.document.SECTIONS", ())
     about = About('<b>Roof & "rails"\\</b>', "A. Author", "2026-05-04", "B")
     text = page_bytes([scored], about=about).decode()
-    assert "<h1>&lt;b&gt;Roof &amp; &quot;rails&quot;\\&lt;/b&gt;</h1>" in text
+    assert "<h1>&lt;b&gt;Roof &amp; &#34;rails&#34;\\&lt;/b&gt;</h1>" in text
     assert '<p class="about">A. Author, 2026-05-04, Revision B</p>' in text
     assert '<p class="of">a/b &lt;i&gt;c&lt;/i&gt;</p>' in text
     assert '@bottom-left { content: "\\00003cb\\00003eRoof \\000026 ' in text
@@ -105,31 +106,30 @@ def test_names_end_no_element_and_no_script(page):
     assert NAMES[0] not in page and "<i>c</i>" not in page
 
 
-def test_data_of_scripts_is_read_back_as_it_was():
-    data = {"name": "</script><!--\u2028&", "x": [1.5, None]}
-    text = script_json(data)
-    assert not set(text) & set("<>&\u2028") and json.loads(text) == data
-
-
 def test_what_does_not_print_is_written_out():
     assert escaped("a\x1b[31m\u202eb\ud800") == "a\\x1b[31m\\u202eb\\ud800"
-    assert "<td>1 &lt; 2</td>" in table("t", ["a", "b"], [["x", "1 < 2"]])
+    assert "<td>1 &lt; 2</td>" in macros().table("t", ["a", "b"], [["x", "1 < 2"]])
 
 
 def test_scripts_and_styles_stand_once_and_data_by_study(scored, other, monkeypatch):
-    def section(one):
-        data, script = {"key": one.key}, "const a = '</script>';"
-        return Section("try", "Try", "<p>x</p>", data, (script,), ("p {}",))
+    name = "</script><!--\u2028&"
 
-    monkeypatch.setattr("pe_tools.page.document.STUDY_SECTIONS", (section,))
+    def values(one):
+        return {"error": "x", "script_data": {"key": one.key, "name": name, "x": [1.5, None]}}
+
+    row = Section("try", "Try", values, False, "redundancy", lambda: ("const a = '</script>';",))
+    monkeypatch.setattr("pe_tools.page.document.SECTIONS", (row,))
     text = page_bytes([scored, other]).decode()
-    assert text.count("const a = '<\\/script>';") == text.count("p {}\n</style>") == 1
+    assert text.count("const a = '<\\/script>';") == text.count("@page { margin") == 1
     found = dict(re.findall(r'id="data-try-(\w)">(.*?)</script>', text))
-    assert {key: json.loads(data)["key"] for key, data in found.items()} == {"a": "a", "b": "b"}
+    assert not any(set(data) & set("<>&\u2028") for data in found.values())
+    for key, data in found.items():
+        assert json.loads(data) == {"key": key, "name": name, "x": [1.5, None]}
+    assert set(found) == {"a", "b"}
 
 
 def test_a_page_of_ours_is_replaced_another_is_not(scored, tmp_path, monkeypatch):
-    monkeypatch.setattr("pe_tools.page.document.STUDY_SECTIONS", ())
+    monkeypatch.setattr("pe_tools.page.document.SECTIONS", ())
     path = write_page([scored], tmp_path)
     assert path == tmp_path / PAGE and write_page([scored], tmp_path) == path
     path.write_text("mine")

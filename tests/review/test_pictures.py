@@ -5,7 +5,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.catalog import load
-from pe_tools.page import picture_file
+from pe_tools.page import ReportContext, picture_file
 from pe_tools.page.pictures import vehicle_picture as picture_module
 from pe_tools.page.pictures.drawn_pixels import DrawnPixels, text_width, tile_of
 from pe_tools.page.pictures.painted_mesh import Paint, PaintedMesh, corner_normals, painted_vehicle
@@ -129,12 +129,14 @@ def test_numbers_stand_apart_and_in_the_picture():
 
 
 def test_a_sensor_behind_the_body_is_reported_apart(car):
-    """From ahead on the right: the one behind the box is dashed; names are escaped."""
+    """From ahead on the right: the one behind the box is dashed."""
     vehicle, rig = car
     behind = pe.Sensor("a <b>", rig["right"].model, pe.Pose((-2.3, 0.5, 0.6)))
-    text = picture_module.labelled_picture(vehicle, pe.Rig([rig["right"], behind]), "alt")
-    assert text.count('stroke-dasharray="4 4"') == 1 and text.count("<circle") == 3
-    assert "a &lt;b&gt;" in text and "2 a" in text
+    study = pe.Study(pe.Rig([rig["right"], behind]), vehicle)
+    shown = ReportContext("car", pe.Outcome("score", study, study, None, None))
+    drawing, key = picture_module.labelled_picture(shown, "alt")
+    assert drawing.count('stroke-dasharray="4 4"') == 1 and drawing.count("<circle") == 3
+    assert [row[:2] for row in key] == [(1, "right"), (2, "a <b>")]
 
 
 def test_the_picture_s_file_has_figures_above_and_a_key_below(car):

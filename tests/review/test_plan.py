@@ -16,7 +16,7 @@ from pe_tools.page.pictures.sight_plans import blind_plan
 from pe_tools.page.sections.bill_of_materials import bill_of_materials
 from pe_tools.page.sections.sensor_details import dimensions
 from pe_tools.page.sections.traceability import VALIDITY, VALIDITY_PAGE, assumptions
-from tests.review.conftest import NAMES, small_study
+from tests.review.conftest import NAMES, html_of, small_study
 from tests.review.test_comparison import beside, cells, rig
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -65,11 +65,11 @@ def test_both_views_have_the_vehicle_s_size_and_the_sensors_ordinates():
 def test_the_section_measures_from_ground_front_axle_and_middle():
     axle = pe.Reference(-1.5, 0.35, 2.8)
     (one,) = beside(rig(), reference=axle)
-    html = dimensions(one).html
+    html = html_of(dimensions, one)
     assert cells(html)[1] == ["2 front &amp; left / 60°", "1.200", "−0.100", "3.800", "0.200 left"]
     assert "The rear axle is 0.350 m above the ground, wheelbase 2.800 m" in html
     (bare,) = beside(rig(), vehicle=None)
-    assert dimensions(bare).html == ""
+    assert html_of(dimensions, bare) == ""
 
 
 CHOICE = pe.Choice([pe.Option(load("Camera 60 deg"), 1200.0)], sensors=[NAMES[1]])
@@ -78,7 +78,7 @@ CHOICE = pe.Choice([pe.Option(load("Camera 60 deg"), 1200.0)], sensors=[NAMES[1]
 def test_the_bill_counts_and_says_what_has_no_price():
     priced = pe.Selection([CHOICE], currency="EUR")
     (one,) = beside(rig(), selection=priced)
-    html = bill_of_materials((one,)).html
+    html = html_of(bill_of_materials, one)
     assert cells(html) == [
         ["small LiDAR", "LiDAR", "&lt;/script&gt;&lt;b&gt;roof", "1", "no price", "no price"],
         ["Camera 60 deg", "Camera", "front &amp; left / 60°", "1", "1,200 EUR", "1,200 EUR"],
@@ -86,7 +86,7 @@ def test_the_bill_counts_and_says_what_has_no_price():
     ]
     assert "No price is known for 1 model: <b>small LiDAR</b>" in html
     each = beside(rig(), rig(without=[NAMES[0]]), selection=priced)
-    assert cells(bill_of_materials(each).html) == [
+    assert cells(html_of(bill_of_materials, *each)) == [
         ["small LiDAR", "no price", "1", "–"],
         ["Camera 60 deg", "1,200 EUR", "1", "1"],
         ["Count", "", "2", "1"],
@@ -95,7 +95,7 @@ def test_the_bill_counts_and_says_what_has_no_price():
 
 
 def test_the_page_says_what_it_rests_on_and_what_it_does_not_say(scored):
-    html = assumptions((scored,)).html
+    html = html_of(assumptions, scored)
     assert "PointPillars on KITTI" in html and "RTM3D on KITTI" in html
     assert "validation scenes of nuScenes" in html and "Only the vehicle itself occludes" in html
     assert "space extends 14 m ahead, 14 m behind, 12 m to the left" in html
@@ -105,7 +105,7 @@ def test_the_page_says_what_it_rests_on_and_what_it_does_not_say(scored):
     (other,) = keyed_contexts(
         [ReportContext("own", pe.Outcome("score", study, study, score, score))]
     )
-    html = assumptions((other,)).html
+    html = html_of(assumptions, other)
     assert "given by the study" in html and "the values are too good" in html
 
 

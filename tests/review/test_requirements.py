@@ -10,13 +10,14 @@ import pe_core as pe
 from pe_core.scoring import requirements
 from pe_tools import graphics
 from pe_tools.page import ReportContext, page_bytes
+from pe_tools.page.document import STYLES
 from pe_tools.page.markup import percent
 from pe_tools.page.pictures.requirement_plans import MET_RGBA, NOT_MET_RGBA, requirement_plan
 from pe_tools.page.pictures.test_bodies import worst_bodies
 from pe_tools.page.sections.redundancy import HEIGHT_M, STEP_M, WITHIN_M, redundancy
-from pe_tools.page.sections.requirement_verdicts import CSS, requirement_verdicts
+from pe_tools.page.sections.requirement_verdicts import requirement_verdicts
 from pe_tools.wording import margin_text
-from tests.review.conftest import NAMES, outcome_of, small_study
+from tests.review.conftest import NAMES, html_of, outcome_of, small_study
 from tests.review.test_maps import pixels_of
 
 AHEAD = requirements.Requirement(
@@ -47,7 +48,7 @@ def context():
 
 @pytest.fixture(scope="module")
 def html(context):
-    return requirement_verdicts(context).html
+    return html_of(requirement_verdicts, context)
 
 
 def test_each_requirement_has_its_row_and_plan_with_the_verdict_of_the_engine(context, html):
@@ -67,7 +68,7 @@ def test_each_requirement_has_its_row_and_plan_with_the_verdict_of_the_engine(co
 
 
 def test_a_study_without_requirements_has_no_section(scored):
-    assert requirement_verdicts(scored).html == ""
+    assert html_of(requirement_verdicts, scored) == ""
     assert b'id="requirements"' not in page_bytes([scored])
 
 
@@ -125,9 +126,8 @@ def test_blind_ground_is_drawn_where_the_engine_has_it(context):
     verdict = context.outcome.verdicts[1]
     pixels = pixels_of(requirement_plan(verdict, context.vehicle, "alt"))
     assert (pixels == NOT_MET_RGBA).all(axis=-1).any()
-    assert (
-        verdict.ground.blind.any()
-        and f"{verdict.blind_m2:.2f}" in requirement_verdicts(context).html
+    assert verdict.ground.blind.any() and f"{verdict.blind_m2:.2f}" in html_of(
+        requirement_verdicts, context
     )
 
 
@@ -145,8 +145,9 @@ def test_bodies_have_the_points_that_the_engine_counts(context):
 
 
 def test_colours_are_those_of_the_tags():
+    css = (STYLES / "parts.css").read_text("utf-8")
     for rgba, name in ((MET_RGBA, "met"), (NOT_MET_RGBA, "not-met")):
-        found = re.search(rf"\.tag\.{name} {{ background: (#\w+)", CSS)
+        found = re.search(rf"\.tag\.{name} {{ background: (#\w+)", css)
         assert found[1] == "#" + "".join(f"{value:02x}" for value in rgba[:3])
 
 
@@ -156,7 +157,7 @@ def test_the_redundancy_section_has_the_engine_s_map_and_shares():
     other = pe.Sensor("other", camera.model, pe.Pose((2.3, -0.6, 1.2)))
     study = dataclasses.replace(small_study(), rig=pe.Rig([camera, other]))
     context = ReportContext("two", outcome_of(pe.ScoreJob(study)))
-    html = redundancy(context).html
+    html = html_of(redundancy, context)
     seen = requirements.Redundancy(study.vehicle, study.space, HEIGHT_M, WITHIN_M, STEP_M)
     found = seen.map(context.rig)
     one, left = found.share(1), found.share(1, one_lost=True)
@@ -173,4 +174,4 @@ def test_the_redundancy_section_has_the_engine_s_map_and_shares():
 def test_a_rig_of_one_sensor_has_no_redundancy():
     study = small_study()
     study = dataclasses.replace(study, rig=pe.Rig(study.rig.sensors[:1]))
-    assert redundancy(ReportContext("one", outcome_of(pe.ScoreJob(study)))).html == ""
+    assert html_of(redundancy, ReportContext("one", outcome_of(pe.ScoreJob(study)))) == ""

@@ -9,13 +9,14 @@ import pytest
 
 import pe_core as pe
 from pe_tools import graphics
-from pe_tools.page.scene3d import SCRIPTS, THREE, scene_data, view3d
+from pe_tools.page.scene3d import SCRIPTS, THREE, scene_data, scripts, view
 from pe_tools.page.scene3d.packed_data import (
     housing_data,
     packed_points,
     packed_primitives,
     vehicle_data,
 )
+from tests.review.conftest import html_of
 
 THREE_SHA256 = "3e322f986588f7ebb331c039f732ec0f5284e86a643f09eade7be1cd4eba5fd8"
 """Of what tools/vendor_three.sh makes of the versions that it names."""
@@ -124,13 +125,12 @@ def test_a_camera_s_own_vehicle_is_drawn_where_it_sees_it(scored):
 
 def test_without_a_vehicle_sensors_are_drawn_alone(bare):
     found = scene_data(bare)
-    assert found["vehicle"] is None and "See through" not in view3d(bare).html
+    assert found["vehicle"] is None and "See through" not in html_of(view, bare)
     assert "lines" not in found["sensors"][0]["layers"]["occluded"]
 
 
 def test_it_is_small_and_a_whole_program(scored):
-    section = view3d(scored)
-    assert len(json.dumps(section.data)) < 5e5 and sum(map(len, section.scripts)) < 1e6
+    assert len(json.dumps(scene_data(scored))) < 5e5 and sum(map(len, scripts())) < 1e6
     files = {path.stem for path in THREE.parent.parent.glob("*.js")}
     assert files == set(SCRIPTS)
 

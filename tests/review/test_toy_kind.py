@@ -8,13 +8,12 @@ import pe_core as pe
 from pe_core import scene
 from pe_core import sensors as kinds
 from pe_tools.page import ReportContext, page_bytes
-from pe_tools.page.markup import Markup
 from pe_tools.page.pictures.sensor_views import SENSOR_VIEWS, SensorView
 from pe_tools.page.pictures.vehicle_picture import housing_of
 from pe_tools.page.scene3d import scene_data
 from pe_tools.page.sections.sensor_details import sensor_details
-from tests.engine.toy_kind import Ring, RingKind
-from tests.review.conftest import outcome_of, small_study
+from tests.engine.toy_kind import RING, Ring
+from tests.review.conftest import html_of, outcome_of, small_study
 from tests.review.test_page import Elements
 
 HOUSING = scene.Housing("box", (0.02, 0.2, 0.02), (0.0, 0.0, 0.0))
@@ -23,7 +22,7 @@ HOUSING = scene.Housing("box", (0.02, 0.2, 0.02), (0.0, 0.0, 0.0))
 @pytest.fixture
 def bumper():
     """A study with a LiDAR, a camera and a toy ring, scored."""
-    kinds.register(RingKind())
+    kinds.register(RING)
     study = dataclasses.replace(small_study(), samples=1024)
     ring = pe.Sensor("bumper", Ring("park pilot", 4.0), pe.Pose((2.3, 0.0, 0.5)))
     study = study.with_rig(pe.Rig([*study.rig, ring]))
@@ -50,10 +49,11 @@ def test_the_3d_view_shows_it_as_a_ring_without_image(bumper):
 
 def test_a_row_gives_the_kind_a_figure_a_housing_and_an_image(bumper, monkeypatch):
     def drawn(sensor, vehicle):
-        return Markup(f"<figure>{sensor.model.range_m:g} m around {vehicle is not None}</figure>")
+        return [f"{sensor.model.range_m:g} m"], f"around {vehicle is not None}"
 
     view = SensorView(drawn, None, HOUSING, lambda model: (120.0, 10.0 * model.range_m))
     monkeypatch.setitem(SENSOR_VIEWS, "toyring", view)
-    assert "<figure>4 m around True</figure>" in sensor_details(bumper).html
+    html = html_of(sensor_details, bumper)
+    assert "<pre>4 m</pre><figcaption>around True</figcaption>" in html
     assert housing_of(bumper.rig["bumper"]) is HOUSING
     assert scene_data(bumper)["sensors"][-1]["field"] == [120.0, 40.0]

@@ -23,9 +23,9 @@ from pe_tools.page.pictures.reference_figures import (
 )
 from pe_tools.page.pictures.sensor_views import camera_picture, lidar_picture, ray_camera
 from pe_tools.page.pictures.svg import LabelledPicture, stacked
-from pe_tools.page.sections.sensor_details import position_tables, sensor_details
+from pe_tools.page.sections.sensor_details import sensor_details
 from tests.engine.test_png import decoded
-from tests.review.conftest import box
+from tests.review.conftest import box, html_of
 
 SMALL = Camera("small", 128, 72, math.radians(60.0))
 FISHEYE = Camera("fish", 96, 96, lens=KannalaBrandt(30.0, 30.0, 48.0, 48.0, fov=math.radians(170)))
@@ -150,18 +150,18 @@ def test_words_that_would_lie_on_each_other_are_lifted():
 
 
 def test_the_section_tells_where_and_how_much(scored):
-    section = sensor_details(scored)
-    ET.fromstring(f"<div>{section.html}</div>")
-    assert section.html.count("<svg") == 3  # a LiDAR with its key, and a camera
+    html = html_of(sensor_details, scored)
+    ET.fromstring(f"<div>{html}</div>")
+    assert html.count("<svg") == 3  # a LiDAR with its key, and a camera
     for name, score in scored.after.per_sensor.items():
-        assert f"<td>{percent(score.coverage, 1)}</td>" in section.html, name
-    assert "no [reference]" in section.html
+        assert f"<td>{percent(score.coverage, 1)}</td>" in html, name
+    assert "no [reference]" in html
 
 
 def test_places_are_reported_from_the_rear_axle_where_it_is_known(scored):
     study = dataclasses.replace(scored.study, reference=pe.Reference(-1.4, 0.33))
     outcome = dataclasses.replace(scored.outcome, study=study)
-    html = position_tables(dataclasses.replace(scored, outcome=outcome))
+    html = html_of(sensor_details, dataclasses.replace(scored, outcome=outcome))
     assert "<td>3.700</td>" in html and "<td>0.870</td>" in html  # 2.3 + 1.4, and 1.2 - 0.33
 
 

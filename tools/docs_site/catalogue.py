@@ -150,6 +150,10 @@ def _view(canvas: Canvas, shapes: Shapes, left: float) -> None:
         thin = min(1.0, 0.6 + 20.0 / len(points))
         look = {"fill": graphics.color_text(color), "fill_opacity": "0.2"}
         if corners == 2:
-            look = {"stroke": graphics.color_text(color), "fill": "none", "stroke_width": f"{thin:.2f}"}
+            look = {
+                "stroke": graphics.color_text(color),
+                "fill": "none",
+                "stroke_width": f"{thin:.2f}",
+            }
         canvas.path(flat, closed=corners == 3, **look)
     canvas.add("circle", cx=middle[0], cy=middle[1], r=2.5, fill=INK)

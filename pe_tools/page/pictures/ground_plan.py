@@ -277,7 +277,9 @@ def _draw_key(canvas: Canvas, layer: MapLayer, left: float, top: float) -> None:
     if layer.classes:
         at = left
         for color, name in zip(layer.scale, layer.classes, strict=True):
-            canvas.add("rect", x=at, y=top, width=11.0, height=11.0, fill=graphics.color_text(color))
+            canvas.add(
+                "rect", x=at, y=top, width=11.0, height=11.0, fill=graphics.color_text(color)
+            )
             canvas.text(at + 16.0, top + 10.0, name)
             at += 34.0 + 7.5 * len(name)
         return

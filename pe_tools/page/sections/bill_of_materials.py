@@ -67,7 +67,11 @@ def bill_of_materials(contexts: tuple[ReportContext, ...]) -> dict[str, Any]:
         caption = "Sensors of each study"
         heads = ["Sensor model", "Unit price", *map(study_name, contexts)]
         rows = [
-            [key[0], _priced(key[1], currency), *(str(len(o.get(key, ())) or "–") for o in by_model)]
+            [
+                key[0],
+                _priced(key[1], currency),
+                *(str(len(o.get(key, ())) or "–") for o in by_model),
+            ]
             for key in models
         ]
         rows.append([bold("Count"), "", *map(bold, counts)])

@@ -35,7 +35,10 @@ def objects(context: ReportContext) -> dict[str, Any] | None:
         "sample": advice.objects_looked_at(score),
         "thresholds": [f"{n} points or more" for n in (first.points if first else ())],
         "reach": [
-            [capitalized(direction), *(advice.lone_reach(each.reach[direction]) for each in classes)]
+            [
+                capitalized(direction),
+                *(advice.lone_reach(each.reach[direction]) for each in classes),
+            ]
             for direction in (first.reach if first else ())
         ],
     }

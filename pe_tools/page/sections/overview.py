@@ -60,9 +60,7 @@ def hidden_sensor_lines(context: ReportContext) -> list[str]:
     """Return lines, as HTML, on the sensors that see nothing or are mostly hidden."""
     sensors = advice.hidden_sensors(context.rig, context.after, context.warnings)
     bold = macros().bold
-    named = [
-        replace(sensor, name=bold(sensor.name), why=escaped(sensor.why)) for sensor in sensors
-    ]
+    named = [replace(sensor, name=bold(sensor.name), why=escaped(sensor.why)) for sensor in sensors]
     return list(advice.hidden_words(named))
 
 

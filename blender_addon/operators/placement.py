@@ -31,7 +31,6 @@ from .surface_pose import (
     view_under,
 )
 
-SHOWN_BEAMS = graphics.BeamChoice(96, graphics.ChannelMode.FEW)
 LENGTH_M, RING_M, ALOFT_M = 2.0, 0.12, 100.0
 STEM_COLOR = (1.0, 1.0, 1.0, 0.8)
 HELD_PALETTE = replace(graphics.VIEWPORT, free=(1.0, 0.93, 0.55, 0.5), other=(1.0, 0.93, 0.55, 0.9))
@@ -204,13 +203,13 @@ def sensor_shape(name: str, model: Any) -> tuple[graphics.Primitives, graphics.P
     They are computed high above the ground, because lines end at the ground, and moved back down.
     """
     sensor = pe.Sensor(name, model, pe.Pose((0.0, 0.0, ALOFT_M)))
-    sketch = graphics.drawing_of(sensor.kind).sketch(sensor, None, SHOWN_BEAMS)
+    drawing = graphics.drawing_of(sensor.kind)
     lines = [
-        sketch.lines(LENGTH_M, HELD_PALETTE),
+        drawing.lines(sensor, LENGTH_M, HELD_PALETTE),
         graphics.ring_lines(sensor, RING_M, HELD_PALETTE),
     ]
     low = np.array([0.0, 0.0, ALOFT_M], np.float32)
-    both = graphics.Primitives.joined(lines), sketch.faces(LENGTH_M, HELD_PALETTE)
+    both = graphics.Primitives.joined(lines), drawing.faces(sensor, LENGTH_M, HELD_PALETTE)
     moved = [graphics.Primitives(primitives.points - low, primitives.colors) for primitives in both]
     return moved[0], moved[1]
 

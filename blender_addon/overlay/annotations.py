@@ -165,7 +165,7 @@ def _ghost_outline(
     if drawing.beams:
         drawn = graphics.ring_lines(sensor, RING_M, palette)
     else:
-        drawn = drawing.sketch(sensor, None, graphics.BeamChoice(1)).lines(VIEW_M, palette)
+        drawn = drawing.lines(sensor, VIEW_M, palette)
     return graphics.Primitives.of(drawn.points, graphics.with_alpha(PALE, GHOST_ALPHA))
 
 

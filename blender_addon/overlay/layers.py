@@ -204,9 +204,10 @@ def _view_keys(request: ViewRequest) -> dict[str, Hashable]:
 def _views(request: ViewRequest, _cache: LayerCache, name: str) -> graphics.LayerShape:
     of = next(each for each in request.sensors if each.sensor.name == name)
     drawing = graphics.drawing_of(of.sensor.kind)
-    sketch = drawing.sketch(of.sensor, None, graphics.BeamChoice(1))
     palette = graphics.sensor_palette(of.color)
-    lines, faces = [sketch.lines(FRUSTUM_M, palette)], [sketch.faces(FRUSTUM_M, palette)]
+    lines, faces = (
+        [draw(of.sensor, FRUSTUM_M, palette)] for draw in (drawing.lines, drawing.faces)
+    )
     if drawing.footprint is not None and request.view.footprints:
         outline = drawing.footprint(of.sensor, request.view.view_range)
         lines.append(graphics.footprint_lines(outline, palette.camera))

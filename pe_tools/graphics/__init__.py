@@ -4,175 +4,73 @@ Blender's 3D view, the review picture and the web page render the same arrays, e
 means. Nothing here needs a Blender scene or a GPU.
 """
 
-from .beams import (
-    MAX_BEAMS,
-    PREVIEW_BEAMS,
-    BeamChoice,
-    Beams,
-    Cast,
-    ChannelMode,
-    cast,
-    channels_of,
-    shown_beams,
-)
-from .colors import (
-    CIVIDIS,
-    COUNTS,
-    DIFFERENCE,
-    PAPER,
-    VIEWPORT,
-    VIRIDIS,
-    Palette,
-    Rgb,
-    Rgba,
-    linear,
-    on_scale,
-    with_alpha,
-)
-from .fields import FieldSketch, field_colors
-from .frustums import (
-    footprint,
-    footprint_faces,
-    footprint_lines,
-    frustum_faces,
-    frustum_lines,
-    frustum_points,
-    outline,
-    ring_lines,
-)
-from .ground import (
-    AS_SCORED,
-    COUNT_NAMES,
-    COVERAGE,
-    ENTROPY,
-    QUANTITIES,
-    SENSORS,
-    SWATCHES,
-    AsScored,
-    as_scored,
-    difference_map,
-    fitted_bound,
-    fitted_bounds,
-    ground_map,
-)
-from .kinds import DRAWINGS, Look, Sketch, beam_budget, drawing_of
-from .png import as_bytes, png_bytes
-from .primitives import (
-    ColorKey,
-    GroundSheet,
-    LayerShape,
-    Primitives,
-    Tag,
-    boxes_overlap,
-    fan,
-    polyline,
-)
-from .rays import RING_FAR_M, free_lines, ground_distance, ground_rings, stopped_lines
-from .sensor_images import (
-    BODY_NEAR,
-    NO_ECHO,
-    RANGES,
-    even_angles,
-    hidden_lines,
-    range_colors,
-    range_share,
-)
-from .simplify import simplified
-from .surroundings import Surroundings, surroundings
-from .tints import (
-    color_text,
-    free_tint,
-    is_foreign_tint,
-    on_paper,
-    rgb_of,
-    sensor_colors,
-    sensor_colors_on_paper,
-    sensor_palette,
-)
-from .verdicts import painted_samples
-
-__all__ = [
-    "AS_SCORED",
-    "BODY_NEAR",
-    "CIVIDIS",
-    "COUNTS",
-    "COUNT_NAMES",
-    "COVERAGE",
-    "DIFFERENCE",
-    "DRAWINGS",
-    "ENTROPY",
-    "MAX_BEAMS",
-    "NO_ECHO",
-    "PAPER",
-    "PREVIEW_BEAMS",
-    "QUANTITIES",
-    "RANGES",
-    "RING_FAR_M",
-    "SENSORS",
-    "SWATCHES",
-    "VIEWPORT",
-    "VIRIDIS",
-    "AsScored",
-    "BeamChoice",
-    "Beams",
-    "Cast",
-    "ChannelMode",
-    "ColorKey",
-    "FieldSketch",
-    "GroundSheet",
-    "LayerShape",
-    "Look",
-    "Palette",
-    "Primitives",
-    "Rgb",
-    "Rgba",
-    "Sketch",
-    "Surroundings",
-    "Tag",
-    "as_bytes",
-    "as_scored",
-    "beam_budget",
-    "boxes_overlap",
-    "cast",
-    "channels_of",
-    "color_text",
-    "difference_map",
-    "drawing_of",
-    "even_angles",
-    "fan",
-    "field_colors",
-    "fitted_bound",
-    "fitted_bounds",
-    "footprint",
-    "footprint_faces",
-    "footprint_lines",
-    "free_lines",
-    "free_tint",
-    "frustum_faces",
-    "frustum_lines",
-    "frustum_points",
-    "ground_distance",
-    "ground_map",
-    "ground_rings",
-    "hidden_lines",
-    "is_foreign_tint",
-    "linear",
-    "on_paper",
-    "on_scale",
-    "outline",
-    "painted_samples",
-    "png_bytes",
-    "polyline",
-    "range_colors",
-    "range_share",
-    "rgb_of",
-    "ring_lines",
-    "sensor_colors",
-    "sensor_colors_on_paper",
-    "sensor_palette",
-    "shown_beams",
-    "simplified",
-    "stopped_lines",
-    "surroundings",
-    "with_alpha",
-]
+from .beams import MAX_BEAMS as MAX_BEAMS
+from .beams import PREVIEW_BEAMS as PREVIEW_BEAMS
+from .beams import RING_FAR_M as RING_FAR_M
+from .beams import BeamChoice as BeamChoice
+from .beams import Cast as Cast
+from .beams import ChannelMode as ChannelMode
+from .beams import cast as cast
+from .beams import channels_of as channels_of
+from .beams import free_lines as free_lines
+from .beams import ground_distance as ground_distance
+from .beams import ground_rings as ground_rings
+from .beams import shown_beams as shown_beams
+from .beams import stopped_lines as stopped_lines
+from .colors import CIVIDIS as CIVIDIS
+from .colors import COUNTS as COUNTS
+from .colors import DIFFERENCE as DIFFERENCE
+from .colors import PAPER as PAPER
+from .colors import VIEWPORT as VIEWPORT
+from .colors import VIRIDIS as VIRIDIS
+from .colors import Palette as Palette
+from .colors import Rgb as Rgb
+from .colors import Rgba as Rgba
+from .colors import linear as linear
+from .colors import linear_of_srgb as linear_of_srgb
+from .colors import on_scale as on_scale
+from .colors import srgb_of_linear as srgb_of_linear
+from .colors import with_alpha as with_alpha
+from .fields import field_colors as field_colors
+from .frustums import footprint_faces as footprint_faces
+from .frustums import footprint_lines as footprint_lines
+from .frustums import ring_lines as ring_lines
+from .ground import AS_SCORED as AS_SCORED
+from .ground import COVERAGE as COVERAGE
+from .ground import ENTROPY as ENTROPY
+from .ground import QUANTITIES as QUANTITIES
+from .ground import SENSORS as SENSORS
+from .ground import SWATCHES as SWATCHES
+from .ground import AsScored as AsScored
+from .ground import as_scored as as_scored
+from .ground import difference_map as difference_map
+from .ground import fitted_bounds as fitted_bounds
+from .ground import ground_map as ground_map
+from .kinds import beam_budget as beam_budget
+from .kinds import drawing_of as drawing_of
+from .png import as_bytes as as_bytes
+from .png import png_bytes as png_bytes
+from .primitives import ColorKey as ColorKey
+from .primitives import GroundSheet as GroundSheet
+from .primitives import LayerShape as LayerShape
+from .primitives import Primitives as Primitives
+from .primitives import Tag as Tag
+from .primitives import boxes_overlap as boxes_overlap
+from .primitives import polyline as polyline
+from .sensor_images import BODY_NEAR as BODY_NEAR
+from .sensor_images import NO_ECHO as NO_ECHO
+from .sensor_images import RANGES as RANGES
+from .sensor_images import even_angles as even_angles
+from .sensor_images import hidden_lines as hidden_lines
+from .sensor_images import range_colors as range_colors
+from .simplify import simplified as simplified
+from .surroundings import Surroundings as Surroundings
+from .surroundings import surroundings as surroundings
+from .tints import color_text as color_text
+from .tints import free_tint as free_tint
+from .tints import is_foreign_tint as is_foreign_tint
+from .tints import rgb_of as rgb_of
+from .tints import sensor_colors as sensor_colors
+from .tints import sensor_colors_on_paper as sensor_colors_on_paper
+from .tints import sensor_palette as sensor_palette
+from .verdicts import painted_samples as painted_samples

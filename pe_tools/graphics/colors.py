@@ -10,6 +10,7 @@ them with alpha.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -89,11 +90,19 @@ def on_scale(shares: ArrayLike, scale: Scale) -> NDArray[np.float32]:
     return table[below] * (1.0 - part) + table[below + 1] * part
 
 
+def linear_of_srgb(rgb: NDArray[Any]) -> NDArray[Any]:
+    """Return linear light of sRGB values, 0 to 1 (IEC 61966-2-1)."""
+    return np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+
+
+def srgb_of_linear(light: NDArray[Any]) -> NDArray[Any]:
+    """Return sRGB values of linear light, 0 to 1."""
+    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1.0 / 2.4) - 0.055)
+
+
 def linear(colors: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return sRGB colours (..., 4) as linear light; alpha stays (IEC 61966-2-1)."""
-    rgb = colors[..., :3]
-    low, high = rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4
-    return np.concatenate([np.where(rgb <= 0.04045, low, high), colors[..., 3:]], axis=-1)
+    """Return sRGB colours (..., 4) as linear light; alpha stays."""
+    return np.concatenate([linear_of_srgb(colors[..., :3]), colors[..., 3:]], axis=-1)
 
 
 def with_alpha(color: tuple[float, ...], alpha: float) -> Rgba:

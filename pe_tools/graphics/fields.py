@@ -11,7 +11,7 @@ from pe_core.base.arrays import Floats
 from pe_core.scene import Sensor
 from pe_core.sensors import FieldPicture, Radar, Ultrasonic
 
-from .colors import VIEWPORT, Palette, on_scale, with_alpha
+from .colors import Palette, on_scale, with_alpha
 from .primitives import Primitives, polyline
 from .sensor_images import BODY_NEAR, NO_ECHO, RANGES
 
@@ -69,45 +69,32 @@ def _arcs(sensor: Sensor, lobe: Lobe, length_m: float) -> Floats:
     return lobe.directions * far @ sensor.pose.ground_from_sensor.T + sensor.pose.position
 
 
-@dataclass(frozen=True, slots=True)
-class FieldSketch:
-    """A radar's or an ultrasonic sensor's field of view: ranges by azimuth, for each mode."""
+def field_lines(sensor: Sensor, length_m: float, palette: Palette) -> Primitives:
+    """The middle arc of each mode with its two edges, and fainter arcs above and below it."""
+    strong, faint = [], []
+    place = np.asarray(sensor.pose.position, dtype=float)
+    for lobe in lobes_of(sensor):
+        low, middle, high = _arcs(sensor, lobe, length_m)
+        strong.append(polyline(np.vstack([place, middle, place])))
+        faint += [polyline(low), polyline(high)]
+        faint += [np.stack([low[k], high[k]]) for k in (0, -1)]
+    color = palette.other
+    edges = with_alpha(color, color[3] * EDGE_ALPHA)
+    return Primitives.joined(
+        [Primitives.of(np.vstack(strong), color), Primitives.of(np.vstack(faint), edges)]
+    )
 
-    sensor: Sensor
-    stopped = False
 
-    def lines(self, length_m: float, palette: Palette = VIEWPORT) -> Primitives:
-        """The middle arc of each mode with its two edges, and fainter arcs above and below it."""
-        strong, faint = [], []
-        place = np.asarray(self.sensor.pose.position, dtype=float)
-        for lobe in lobes_of(self.sensor):
-            low, middle, high = _arcs(self.sensor, lobe, length_m)
-            strong.append(polyline(np.vstack([place, middle, place])))
-            faint += [polyline(low), polyline(high)]
-            faint += [np.stack([low[k], high[k]]) for k in (0, -1)]
-        color = palette.other
-        return Primitives.joined(
-            [
-                Primitives.of(np.vstack(strong), color),
-                Primitives.of(np.vstack(faint), with_alpha(color, color[3] * EDGE_ALPHA)),
-            ]
-        )
-
-    def faces(self, length_m: float, palette: Palette = VIEWPORT) -> Primitives:
-        """The area of each mode between the sensor and its middle arc."""
-        place = np.asarray(self.sensor.pose.position, dtype=float)
-        parts = []
-        for lobe in lobes_of(self.sensor):
-            arc = _arcs(self.sensor, lobe, length_m)[1]
-            start = np.broadcast_to(place, arc[1:].shape)
-            parts.append(np.stack([start, arc[:-1], arc[1:]], axis=1).reshape(-1, 3))
-        color = palette.other
-        return Primitives.of(np.vstack(parts), with_alpha(color, color[3] * FACE_ALPHA))
-
-    def points(self, length_m: float) -> Floats:
-        """The ends of all arcs."""
-        arcs = [_arcs(self.sensor, lobe, length_m) for lobe in lobes_of(self.sensor)]
-        return np.vstack([np.asarray(self.sensor.pose.position), *(a.reshape(-1, 3) for a in arcs)])
+def field_faces(sensor: Sensor, length_m: float, palette: Palette) -> Primitives:
+    """The area of each mode between the sensor and its middle arc."""
+    place = np.asarray(sensor.pose.position, dtype=float)
+    parts = []
+    for lobe in lobes_of(sensor):
+        arc = _arcs(sensor, lobe, length_m)[1]
+        start = np.broadcast_to(place, arc[1:].shape)
+        parts.append(np.stack([start, arc[:-1], arc[1:]], axis=1).reshape(-1, 3))
+    color = palette.other
+    return Primitives.of(np.vstack(parts), with_alpha(color, color[3] * FACE_ALPHA))
 
 
 def field_footprint(sensor: Sensor, far_m: float) -> Floats:

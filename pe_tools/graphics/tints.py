@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from pe_core.base.arrays import Floats
 from pe_core.scene import Sensor
 
-from .colors import VIEWPORT, Palette, Rgb, with_alpha
+from .colors import VIEWPORT, Palette, Rgb, linear_of_srgb, srgb_of_linear, with_alpha
 
 TINTS = {
     "lidar": (
@@ -123,17 +123,13 @@ def on_paper(color: Rgb) -> Rgb:
         linear = _linear_of_lab([lightness, *(LESS**step * each for each in chroma)])
         if ((linear >= -1e-4) & (linear <= 1.0 + 1e-4)).all():
             break
-    linear = np.clip(linear, 0.0, 1.0)
-    shown = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1.0 / 2.4) - 0.055)
-    red, green, blue = shown.tolist()
+    red, green, blue = srgb_of_linear(np.clip(linear, 0.0, 1.0)).tolist()
     return red, green, blue
 
 
 def lab_of(color: ArrayLike) -> Floats:
     """Return the CIE Lab values (3,) of an sRGB colour (3,)."""
-    rgb = np.asarray(color, float)
-    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
-    xyz = XYZ_OF_RGB @ linear / WHITE
+    xyz = XYZ_OF_RGB @ linear_of_srgb(np.asarray(color, float)) / WHITE
     x, y, z = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16.0 / 116.0)
     return np.array([116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)])
 

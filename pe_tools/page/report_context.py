@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 import pe_core as pe
 from pe_core import search
-from pe_core.scoring import sight
+from pe_core.scoring.sight import GroundSight
 
 from .. import advice, graphics, jobs
 
@@ -116,7 +116,7 @@ class ReportContext:
         return self.cached("sight", self.study.sight)
 
     @property
-    def ground(self) -> sight.GroundSight:
+    def ground(self) -> GroundSight:
         """What the sensors see of the ground, in cells of a metre."""
         return self.cached("ground", lambda: self.sight.ground(self.rig, step=MAP_STEP_M))
 

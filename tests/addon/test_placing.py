@@ -152,8 +152,8 @@ def test_the_shape_is_worked_out_in_the_sensor_s_own_frame(car):
     shape = placement.sensor_shape("it", model)[0]
     placed = placement.moved_to(shape, pose)
     sensor = pe.Sensor("it", model, pose)
-    sketch = graphics.drawing_of("lidar").sketch(sensor, None, placement.SHOWN_BEAMS)
-    expected = sketch.lines(placement.LENGTH_M, placement.HELD_PALETTE).points
+    draw = graphics.drawing_of("lidar").lines
+    expected = draw(sensor, placement.LENGTH_M, placement.HELD_PALETTE).points
     assert placed.points[: len(expected)] == pytest.approx(expected, abs=1e-3)
 
 

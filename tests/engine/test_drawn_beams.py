@@ -7,7 +7,7 @@ import pytest
 
 import pe_core as pe
 from pe_core import catalog
-from pe_tools.graphics import beams, rays
+from pe_tools.graphics import beams
 from tests.engine.drawn import box, car, lidar, mounted
 
 ChannelMode, BeamChoice = beams.ChannelMode, beams.BeamChoice
@@ -144,7 +144,7 @@ COLOR = np.array([0.1, 0.2, 0.3, 0.5])
 
 def free_lines(sensor, found, vehicle=None):
     around = None if vehicle is None else vehicle.bounds
-    lines = rays.free_lines(sensor, found, LENGTH_M, np.tile(COLOR, (len(found.ends), 1)), around)
+    lines = beams.free_lines(sensor, found, LENGTH_M, np.tile(COLOR, (len(found.ends), 1)), around)
     return lines.points.reshape(-1, 4, 3), lines.colors.reshape(-1, 4, 4)
 
 
@@ -171,7 +171,7 @@ def test_free_beams_are_faint_over_the_vehicle_and_fade_beyond(vehicle):
     sensor = mounted(lidar(elevations_deg=(0,)))
     points, found = free_lines(sensor, shown(sensor, vehicle, 8), vehicle)
     ahead = points[0]  # out of the car's surroundings at its front and half a metre
-    assert ahead[1, 0] == pytest.approx(2.0 + rays.SURROUNDINGS_M)
+    assert ahead[1, 0] == pytest.approx(2.0 + beams.SURROUNDINGS_M)
     np.testing.assert_array_equal(points[:, 1], points[:, 2])
     alpha = found[..., 3]
     assert (alpha[:, 0] < 0.2 * alpha[:, 1]).all(), "the car is hidden"
@@ -188,7 +188,7 @@ def test_without_a_vehicle_beams_are_plain_from_the_start():
 def test_stopped_beams_end_on_the_vehicle(vehicle):
     sensor = mounted(position=(0.0, 0.0, 2.4))
     found = shown(sensor, vehicle, 2000)
-    lines = rays.stopped_lines(sensor, found, np.tile(COLOR, (len(found.ends), 1)))
+    lines = beams.stopped_lines(sensor, found, np.tile(COLOR, (len(found.ends), 1)))
     ends = lines.points.reshape(-1, 2, 3)[:, 1]
     assert len(ends) == found.stopped.sum() > 0
     np.testing.assert_allclose(ends[:, 2], 1.5, atol=1e-6)  # from above, only its roof is hit
@@ -199,14 +199,14 @@ def test_beams_that_are_stopped_at_once_still_show(vehicle):
     sensor = mounted(position=(2.0, 0.0, 0.9))
     found = shown(sensor, vehicle, 500)
     assert found.ends[found.stopped].min() < 0.1
-    lines = rays.stopped_lines(sensor, found, np.tile(COLOR, (len(found.ends), 1)))
+    lines = beams.stopped_lines(sensor, found, np.tile(COLOR, (len(found.ends), 1)))
     length = np.linalg.norm(np.diff(lines.points.reshape(-1, 2, 3), axis=1)[:, 0], axis=1)
-    assert length.min() >= rays.STUB_M - 1e-5
+    assert length.min() >= beams.STUB_M - 1e-5
 
 
 def rings(sensor, vehicle, rows):
     rows = np.array(rows)
-    lines = rays.ground_rings(beams.cast(sensor, vehicle), rows, np.tile(COLOR, (len(rows), 1)))
+    lines = beams.ground_rings(beams.cast(sensor, vehicle), rows, np.tile(COLOR, (len(rows), 1)))
     return lines.points.reshape(-1, 2, 3), lines.colors.reshape(-1, 2, 4)
 
 
@@ -218,7 +218,7 @@ def test_rings_lie_where_channels_meet_the_ground():
         far = 1.9 / math.tan(math.radians(degrees))
         ring = np.abs(radius - far).max(axis=1) < 1e-4
         assert ring.sum() == 360, "not closed"
-        expected = COLOR[3] * (1.0 - np.hypot(far, 1.9) / rays.RING_FAR_M)
+        expected = COLOR[3] * (1.0 - np.hypot(far, 1.9) / beams.RING_FAR_M)
         np.testing.assert_allclose(colors[ring, :, 3], expected, rtol=1e-5)
     assert len(points) == 720
 

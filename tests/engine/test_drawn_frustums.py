@@ -36,9 +36,11 @@ def test_frustum_is_as_wide_as_the_picture():
     np.testing.assert_allclose(np.linalg.norm(points[1:5], axis=1), 2.0)
 
 
-def test_a_sketch_is_lines_and_faces_in_the_right_shapes():
-    sketch = kinds.drawing_of("camera").sketch(mounted(SQUARE), None, None)
-    lines, faces = (f(2.0, colors.VIEWPORT) for f in (sketch.lines, sketch.faces))
+def test_a_drawing_is_lines_and_faces_in_the_right_shapes():
+    drawing = kinds.drawing_of("camera")
+    lines, faces = (
+        f(mounted(SQUARE), 2.0, colors.VIEWPORT) for f in (drawing.lines, drawing.faces)
+    )
     assert lines.points.shape == (22, 3) and faces.points.shape == (12, 3)
     for each in (lines, faces):
         assert each.points.dtype == each.colors.dtype == np.float32

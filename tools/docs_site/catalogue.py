@@ -129,12 +129,11 @@ def _thinned(rows: Floats, count: int) -> Floats:
 
 def _sketched_views(sensor: Sensor) -> Iterator[Shapes]:
     """Yield what the 3D view draws of a sensor: from the side and from above."""
-    kind = graphics.drawing_of(sensor.kind)
-    sketch = kind.sketch(sensor, None, graphics.BeamChoice(BEAMS))
+    drawing = graphics.drawing_of(sensor.kind)
     for axes in ((0, 2), (0, 1)):
         shapes = []
-        for corners, drawn in ((3, sketch.faces), (2, sketch.lines)):
-            primitives = drawn(1.0, graphics.PAPER)
+        for corners, drawn in ((3, drawing.faces), (2, drawing.lines)):
+            primitives = drawn(sensor, 1.0, graphics.PAPER)
             points = primitives.points.astype(float)[:, axes].reshape(-1, corners, 2)
             if len(points):
                 shapes.append((corners, points, tuple(primitives.colors[0])))

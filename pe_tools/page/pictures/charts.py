@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 
+from markupsafe import Markup
+
 from ... import sensitivity as sure
-from ..markup import MINUS, Markup, number
+from ..markup import MINUS, number
 from .svg import Canvas
 
 AxisMap = Callable[[float], float]

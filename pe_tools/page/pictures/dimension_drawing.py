@@ -6,12 +6,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from markupsafe import Markup
 
 import pe_core as pe
 from pe_core.base.arrays import Floats
 
 from ... import graphics
-from ..markup import Markup, number
+from ..markup import number
 from .ground_plan import outline_of
 from .svg import Canvas
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from markupsafe import Markup
 from numpy.typing import NDArray
 
 import pe_core as pe
@@ -15,7 +16,7 @@ from pe_core.base.arrays import Floats
 from pe_core.scoring import sight
 
 from ... import graphics
-from ..markup import Markup, number
+from ..markup import number
 from .svg import Canvas
 
 PlanBounds = tuple[tuple[float, float], tuple[float, float]]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from pe_core.base.arrays import Flags, Floats
 
+from ... import graphics
 from .illumination import skylight, sun_position, sunlight
 from .painted_mesh import unit
 from .ray_scene import GROUND, NOTHING, SKY, RayCamera, RayHits, RayScene
@@ -159,14 +160,7 @@ def to_srgb(linear: Floats) -> Floats:
     """Return sRGB of linear light; values above `KNEE` approach white smoothly."""
     room, over = 1.0 - KNEE, np.maximum(linear - KNEE, 0.0)
     soft = np.where(over > 0.0, KNEE + room * (1.0 - np.exp(-over / room)), linear)
-    soft = np.clip(soft, 0.0, 1.0)
-    return np.where(soft <= 0.0031308, 12.92 * soft, 1.055 * soft ** (1.0 / 2.4) - 0.055)
-
-
-def from_srgb(color: Floats) -> Floats:
-    """Return linear light of sRGB."""
-    c = np.asarray(color, float)
-    return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
+    return graphics.srgb_of_linear(np.clip(soft, 0.0, 1.0))
 
 
 def _ground(

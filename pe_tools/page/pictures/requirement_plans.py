@@ -6,13 +6,14 @@ import math
 from itertools import pairwise
 
 import numpy as np
+from markupsafe import Markup
 
 import pe_core as pe
 from pe_core.base.arrays import Flags, Floats
 from pe_core.scoring import requirements, sight
 
 from ... import graphics
-from ..markup import Markup, number
+from ..markup import number
 from .ground_plan import PlanBounds, PlanDrawing
 
 MET, NOT_MET, INK = "#1a7f4b", "#c4320a", "#1b1f24"

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from markupsafe import Markup
 from numpy.typing import NDArray
 
 import pe_core as pe
@@ -21,17 +22,23 @@ from pe_core import sensors as kinds
 from pe_core.base.arrays import Floats
 
 from ... import graphics
-from ..markup import Markup, number, signed
+from ..markup import number, signed
 from .painted_mesh import painted_vehicle
 from .ray_scene import RayCamera, RayScene
 from .reference_figures import DISTANCES, ReferenceFigure, reference_figures
-from .rendering import Environment, from_srgb, render
+from .rendering import Environment, render
 from .svg import LETTER_WIDTH, Canvas, LabelledPicture, TextLabel
 
 MAX_WIDTH, MAX_HEIGHT = 640, 480
 """Size of a camera's image on the page [px]."""
-ROAD, RING = from_srgb(np.array([0.50, 0.51, 0.52])), from_srgb(np.array([0.93, 0.94, 0.95]))
-ZENITH, HORIZON = from_srgb(np.array([0.62, 0.74, 0.86])), from_srgb(np.array([0.90, 0.92, 0.93]))
+ROAD, RING = (
+    graphics.linear_of_srgb(np.array([0.50, 0.51, 0.52])),
+    graphics.linear_of_srgb(np.array([0.93, 0.94, 0.95])),
+)
+ZENITH, HORIZON = (
+    graphics.linear_of_srgb(np.array([0.62, 0.74, 0.86])),
+    graphics.linear_of_srgb(np.array([0.90, 0.92, 0.93])),
+)
 SUN = np.array([-0.35, 0.5, 1.0])
 """Direction to the sun relative to the sensor's heading: from behind, on the left."""
 RING_M = 0.05

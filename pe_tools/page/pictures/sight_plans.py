@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from markupsafe import Markup
 
 import pe_core as pe
 from pe_core.base.arrays import Floats
 from pe_core.scoring import sight
 
 from ... import graphics
-from ..markup import Markup
 from .ground_plan import PlanBounds, PlanDrawing
 
 RIG, BEFORE = "#0b5cad", "#8c959f"

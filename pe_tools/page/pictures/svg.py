@@ -8,10 +8,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
+from markupsafe import Markup
 
 from pe_core.base.arrays import Floats
 
-from ..markup import Markup, escaped
+from ..markup import escaped
 
 PictureBox = tuple[float, float, float, float]
 """Left, top, width and height."""

@@ -9,6 +9,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from markupsafe import Markup
 from numpy.typing import NDArray
 
 import pe_core as pe
@@ -16,11 +17,10 @@ from pe_core import catalog, scene
 from pe_core.base.arrays import Floats
 
 from ... import graphics
-from ..markup import Markup
 from ..report_context import ReportContext
 from .painted_mesh import Paint, PaintedMesh, lathe, painted_vehicle, rounded_box
 from .ray_scene import RayScene, Viewpoint
-from .rendering import Environment, from_srgb, render
+from .rendering import Environment, render
 from .sensor_views import sensor_view
 from .svg import Canvas
 
@@ -30,8 +30,8 @@ FOV_DEG = 26.0
 VIEW_DIRECTION = np.array([0.80, -0.58, 0.29])
 """From the vehicle to the default viewpoint: ahead, on the right, a little above."""
 KeyRow = tuple[int, str, str, str]
-PAPER = from_srgb(np.array([0.965, 0.97, 0.975]))
-FLOOR = from_srgb(np.array([0.905, 0.912, 0.92]))
+PAPER = graphics.linear_of_srgb(np.array([0.965, 0.97, 0.975]))
+FLOOR = graphics.linear_of_srgb(np.array([0.905, 0.912, 0.92]))
 SUN = np.array([0.45, -0.62, 1.05])
 NO_VEHICLE_BOUNDS = (np.array([-2.0, -1.0, 0.0]), np.array([2.0, 1.0, 1.5]))
 """Bounds that the picture shows without a vehicle [m]."""
@@ -225,7 +225,7 @@ def housing_of(sensor: pe.Sensor) -> scene.Housing:
 
 def _solid(sensor: pe.Sensor, rgb: tuple[float, float, float]) -> PaintedMesh:
     housing = housing_of(sensor)
-    paint = Paint(tuple(from_srgb(np.array(rgb)).tolist()), 0.25)
+    paint = Paint(tuple(graphics.linear_of_srgb(np.array(rgb)).tolist()), 0.25)
     shape = _cylinder_parts if housing.shape == "cylinder" else _box_parts
     parts = shape(np.array(housing.size))
     triangles = np.concatenate(parts) + housing.center

@@ -128,10 +128,10 @@ def _view_layers(
 ) -> dict[str, Any]:
     """Return the field of view, what the vehicle occludes of it, and its footprint."""
     drawing = graphics.drawing_of(sensor.kind)
-    sketch = drawing.sketch(sensor, vehicle, graphics.BeamChoice(1))
     edge, side = graphics.with_alpha(color, EDGE), graphics.with_alpha(color, SIDE)
     palette = replace(PALETTE, camera=edge, camera_face=side, other=edge)
-    layers = {"fov": _layer(sketch.lines(VIEW_M, palette), sketch.faces(VIEW_M, palette))}
+    lines, faces = (draw(sensor, VIEW_M, palette) for draw in (drawing.lines, drawing.faces))
+    layers = {"fov": _layer(lines, faces)}
     if drawing.footprint is None:
         return layers
     outline = drawing.footprint(sensor, FOOT_M)

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from markupsafe import Markup
+
 from pe_core.scoring import requirements
 
 from ...wording import hidden_text, margin_text, verdict_text
-from ..markup import Markup, percent
+from ..markup import percent
 from ..pictures.requirement_plans import requirement_plan
 from ..pictures.sensor_views import sensor_view
 from ..pictures.test_bodies import WorstBody, count_text, worst_bodies

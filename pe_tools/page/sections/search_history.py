@@ -6,11 +6,13 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from markupsafe import Markup
+
 import pe_core as pe
 from pe_core import scene
 
 from ... import advice, jobs
-from ..markup import Markup, capitalized, number, triple
+from ..markup import capitalized, number, triple
 from ..pictures.charts import step_curve
 from ..report_context import ReportContext
 

@@ -31,13 +31,10 @@ from .svg import LETTER_WIDTH, Canvas, LabelledPicture, TextLabel
 
 MAX_WIDTH, MAX_HEIGHT = 640, 480
 """Size of a camera's image on the page [px]."""
-ROAD, RING = (
-    graphics.linear_of_srgb(np.array([0.50, 0.51, 0.52])),
-    graphics.linear_of_srgb(np.array([0.93, 0.94, 0.95])),
-)
-ZENITH, HORIZON = (
-    graphics.linear_of_srgb(np.array([0.62, 0.74, 0.86])),
-    graphics.linear_of_srgb(np.array([0.90, 0.92, 0.93])),
+ROAD, RING, ZENITH, HORIZON = graphics.linear_of_srgb(
+    np.array(
+        [(0.50, 0.51, 0.52), (0.93, 0.94, 0.95), (0.62, 0.74, 0.86), (0.90, 0.92, 0.93)],
+    )
 )
 SUN = np.array([-0.35, 0.5, 1.0])
 """Direction to the sun relative to the sensor's heading: from behind, on the left."""

@@ -68,6 +68,6 @@ def test_headless_blender_writes_the_page_of_the_command_line(car, tmp_path, sma
 
 def without_hosts(text):
     """A page without the programs it was made with, the command line, and the mesh's name."""
-    text = re.sub(r"<p>Where its files are, run.*?</pre>", "", text)
-    text = re.sub(r'<tr><th scope="row">blender</th>.*?</tr>', "", text)
+    text = re.sub(r"<p>Where its files are, run.*?</pre>\s*", "", text)
+    text = re.sub(r"<tr><th scope=\"row\">blender</th>.*?</tr>\s*", "", text)
     return text.replace("study.npz", "vehicle.npz")

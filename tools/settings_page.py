@@ -7,14 +7,17 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
+from pe_core.base.setting import Several, Texts, Triple  # noqa: E402
 from pe_core.study import (  # noqa: E402
     REQUIRED,
+    Name,
     Number,
     OneOf,
     Pair,
@@ -55,7 +58,7 @@ def row(key: str, setting: Setting) -> str:
     panel = "" if setting.panel is None else setting.panel.label
     kind = type_text(setting.rule)
     cells = f"`{key}`", kind, range_text(setting.rule), default_text(setting), setting.text, panel
-    return f"| {' | '.join(cells)} |\n".replace("|  |", "| |")
+    return re.sub(" +", " ", f"| {' | '.join(cells)} |\n")
 
 
 def type_text(rule: object) -> str:
@@ -63,15 +66,19 @@ def type_text(rule: object) -> str:
     match rule:
         case Toggle():
             return "switch"
-        case OneOf():
+        case OneOf() | Name():
             return "text"
+        case Several() | Texts():
+            return "list of texts"
         case Pair():
             return f"two numbers{_unit(rule.rule.unit)}"
+        case Triple():
+            return f"three numbers{_unit(rule.rule.unit)}"
         case Whole():
             return f"whole number{_unit(rule.unit)}"
         case Number():
             return f"number{_unit(rule.unit)}"
-    raise TypeError(f"no words for {type(rule).__name__}")
+    return str(getattr(rule, "words", type(rule).__name__))
 
 
 def _unit(unit: str) -> str:
@@ -83,7 +90,7 @@ def default_text(setting: Setting) -> str:
     if setting.default is REQUIRED:
         return "required"
     value = value_in_file(setting, setting.default)
-    return "" if value is None else f"`{json.dumps(value)}`"
+    return "" if value is None else f"`{json.dumps(value)}`".replace("Infinity", "inf")
 
 
 def range_text(rule: object) -> str:
@@ -91,15 +98,17 @@ def range_text(rule: object) -> str:
     match rule:
         case Toggle():
             return "true or false"
-        case OneOf():
+        case OneOf() | Several():
             return " or ".join(f'"{text}"' for text in rule.among)
         case Pair():
             return "low before high"
+        case Triple():
+            return range_text(rule.rule)
         case Whole():
             return f"{rule.minimum:,} to {rule.maximum:,}"
-        case Number():
+        case Number() if rule.minimum > -float("inf"):
             return f"{_low(rule)}{_high(rule)}"
-    raise TypeError(f"no words for {type(rule).__name__}")
+    return ""
 
 
 def _low(rule: Number) -> str:

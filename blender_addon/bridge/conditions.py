@@ -12,14 +12,14 @@ import contextlib
 import json
 import math
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import bpy
 import numpy as np
 
 from ..engine import geometry, pe, studies
 from .rig import pose_of_matrix, sensor_objects, view_layer_of
-from .scene_settings import as_typed
+from .scene_settings import as_typed, values_of, write_values
 from .vehicle import vehicle_from_collection
 
 LENGTH_DIGITS, ANGLE_DIGITS = 5, 4
@@ -95,10 +95,8 @@ def write_conditions(settings: bpy.types.PropertyGroup, conditions: pe.Condition
     settings.weathers.clear()
     for weather in conditions.weathers:
         row = settings.weathers.add()
-        row.name, row.weight, row.night = weather.name, weather.weight, weather.night
-        row.rain_mm_h, row.snow_mm_h = weather.rain_mm_h, weather.snow_mm_h
-        row.fog_mor_m, row.lit_m = weather.fog_mor_m or 0.0, weather.lit_m or 0.0
-        row.reflectivity = weather.reflectivity
+        row.name = weather.name
+        write_values(row, weather)
 
 
 def write_state(row: bpy.types.PropertyGroup, state: geometry.State) -> None:
@@ -112,15 +110,8 @@ def write_state(row: bpy.types.PropertyGroup, state: geometry.State) -> None:
 def conditions_signature(settings: bpy.types.PropertyGroup) -> list[object]:
     """Return what a table of conditions depends on; empty without conditions."""
     states = [(r.name, as_typed(r.weight), r.table) for r in settings.states if r.enabled]
-    weathers = [
-        (r.name, r.night, *(as_typed(getattr(r, key)) for key in WEATHER_NUMBERS))
-        for r in settings.weathers
-        if r.enabled
-    ]
+    weathers = [(r.name, values_of(r, pe.Weather)) for r in settings.weathers if r.enabled]
     return [states, weathers] if states or weathers else []
-
-
-WEATHER_NUMBERS = ("weight", "rain_mm_h", "snow_mm_h", "fog_mor_m", "lit_m", "reflectivity")
 
 
 def _state_of(row: bpy.types.PropertyGroup) -> geometry.State:
@@ -134,12 +125,10 @@ def _state_of(row: bpy.types.PropertyGroup) -> geometry.State:
 
 
 def _weather_of(row: bpy.types.PropertyGroup) -> pe.Weather:
-    values: dict[str, Any] = {key: as_typed(getattr(row, key)) for key in WEATHER_NUMBERS}
-    for key in ("fog_mor_m", "lit_m"):
-        values[key] = values[key] or None
+    values = values_of(row, pe.Weather)
     if not row.night:
         values["lit_m"] = None
-    return pe.Weather(row.name, night=row.night, **values)
+    return pe.Weather(row.name, **values)
 
 
 def read_states(scene: bpy.types.Scene) -> list[str]:

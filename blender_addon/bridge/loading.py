@@ -22,7 +22,7 @@ from .prior import write_prior
 from .requirements import write_requirements
 from .rig import place_at, view_layer_of
 from .scene_record import SceneRecord, study_from_scene, vehicle_of_scene, write_options
-from .scene_settings import KEEP, write_goals, write_passthrough, write_reference, write_values
+from .scene_settings import write_goals, write_passthrough, write_reference, write_values
 from .sensor_records import NO_BOUNDS, ZEROS, ModelOption, SensorRecord
 from .vehicle import make_body, paint_area, same_body
 
@@ -221,10 +221,7 @@ def _write_settings(settings: bpy.types.PropertyGroup, record: SceneRecord) -> N
     for instance in instances:
         write_values(settings, instance)
     settings.score_samples, settings.method = record.samples, own.method
-    settings.keep_requirements = own.requirements == KEEP
     write_goals(settings, own.goals)
-    settings.search_conditions = own.conditions or "none"
-    settings.currency = record.selection.currency
     settings.mounting_errors = tolerance.position > 0.0 or tolerance.angle > 0.0
     names = () if settings.mounting_errors else ("failures", "worst")
     write_values(settings, tolerance, names)  # without errors their fields keep their values
@@ -233,7 +230,8 @@ def _write_settings(settings: bpy.types.PropertyGroup, record: SceneRecord) -> N
     for kind in kinds.KINDS:
         if (curve := record.model.curve(kind)) != default.curve(kind):
             row = settings.curves.add()
-            row.name, row.own, row.a, row.b = kind, True, curve.a, curve.b
+            row.name, row.own = kind, True
+            write_values(row, curve)
     write_reference(settings, record.reference)
     write_passthrough(settings, record.passthrough)
 
@@ -248,7 +246,7 @@ def _write_mounts(scene: bpy.types.Scene, mounts: Mapping[str, search.AnyMount])
         if isinstance(mount, pe.SlotMount):
             row.kind, row.slots = ON_SLOTS, _slots(scene, name, mount)
             continue
-        row.standoff, row.orientation = mount.standoff, mount.orientation
+        write_values(row, mount)
         if mount.area is None:
             row.faces = BY_PARTS
             for part in mount.parts:

@@ -15,7 +15,7 @@ import numpy as np
 from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, ON_SLOTS, ON_SURFACE
 from ..engine import pe, search, studies
 from .rig import pose_of
-from .scene_settings import as_typed, values_of
+from .scene_settings import values_of
 from .sensor_records import SensorRecord, bounds_by_axis
 from .transform_constraints import free_axes, limit_constraints, search_bounds
 from .vehicle import drawn_meshes, placed_triangles, triangles_of
@@ -82,15 +82,15 @@ def mount_of_row(
     """
     if row.kind == ON_SLOTS:
         return pe.SlotMount(_slots(row, depsgraph))
-    standoff = as_typed(row.standoff)
+    own = values_of(row, pe.SurfaceMount)
     if row.faces == BY_PARTS:
-        return pe.SurfaceMount(part_names(row), standoff, row.orientation)
+        return pe.SurfaceMount(part_names(row), **own)
     vehicle = scene.perception_entropy.vehicle
     faces = painted_area(vehicle, depsgraph, row)
     if not len(faces):
         raise area_problem(row)
     area = pe.MountArea(faces, studies.AREAS, (row.name,))
-    return pe.SurfaceMount((), standoff, row.orientation, area)
+    return pe.SurfaceMount((), **own, area=area)
 
 
 def mounted(records: Sequence[SensorRecord]) -> dict[str, str]:

@@ -11,7 +11,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ..engine import catalog, geometry, graphics, pe, search
-from .scene_settings import as_typed
+from .scene_settings import values_of
 
 SCALE_TOLERANCE = 1e-4
 """How far a sensor's axes may be from unit length and from right angles."""
@@ -252,7 +252,7 @@ def curve_of(settings: bpy.types.PropertyGroup) -> pe.ApCurve | None:
     """
     if not settings.own_curve:
         return None
-    return pe.ApCurve(as_typed(settings.curve_a), as_typed(settings.curve_b))
+    return pe.ApCurve(**values_of(settings, pe.ApCurve, prefix="curve_"))
 
 
 def put_curve(settings: bpy.types.PropertyGroup, curve: pe.ApCurve | None) -> None:

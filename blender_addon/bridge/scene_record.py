@@ -275,7 +275,7 @@ def selection_of(records: Sequence[SensorRecord], limits: pe.Selection) -> pe.Se
 
 def selection_limits(settings: bpy.types.PropertyGroup) -> pe.Selection:
     """Return a scene's limits on all sensors that are chosen, without the choices."""
-    return pe.Selection(currency=settings.currency.strip(), **values_of(settings, pe.Selection))
+    return pe.Selection(**values_of(settings, pe.Selection))
 
 
 def write_options(settings: bpy.types.PropertyGroup, record: SensorRecord) -> None:

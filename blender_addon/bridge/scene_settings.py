@@ -30,58 +30,77 @@ def pair_as_typed(values: Sequence[float]) -> tuple[float, float]:
 
 LARGEST_INT = 2**31 - 1
 """A property holds no larger whole number."""
-KEEP = "keep"
-"""Value of `Search.requirements`: placements that meet the requirements come first."""
 PLACED = frozenset({"score_samples", "targets", "traffic", "scenes"})
 """Settings with a place of their own in the signature of a scene."""
 
 
 def values_of(
-    settings: bpy.types.PropertyGroup, cls: Any, names: Iterable[str] = ()
+    settings: bpy.types.PropertyGroup, cls: Any, names: Iterable[str] = (), prefix: str = ""
 ) -> dict[str, Any]:
-    """Return the settings of a dataclass that a scene holds, by the names of its fields.
+    """Return the settings of a dataclass that a group of properties holds, by their fields' names.
 
-    An optional setting is None if its property is 0; angles are converted to radians.
+    An optional setting is None if its property is 0, off or at the menu's entry for it; angles are
+    converted to radians. `prefix` is before the properties' names.
     """
     return {
-        setting.name: _value(setting, getattr(settings, _property(setting)))
-        for setting in _in_panel(cls, names)
+        setting.name: value_of_property(setting, getattr(settings, f"{prefix}{name}"))
+        for name, setting in _in_panel(cls, names)
     }
 
 
 def write_values(
-    settings: bpy.types.PropertyGroup, instance: Any, names: Iterable[str] = ()
+    settings: bpy.types.PropertyGroup, instance: Any, names: Iterable[str] = (), prefix: str = ""
 ) -> None:
-    """Write the settings of a dataclass to a scene."""
-    for setting in _in_panel(type(instance), names):
-        value = getattr(instance, setting.name)
-        if isinstance(setting.rule, studies.Angle):
-            value = math.degrees(value)
-        elif isinstance(setting.rule, studies.Whole):
-            value = min(value or 0, LARGEST_INT)
-        setattr(settings, _property(setting), 0 if value is None else value)
+    """Write the settings of a dataclass to a group of properties: the inverse of `values_of`."""
+    for name, setting in _in_panel(type(instance), names):
+        value = property_value(setting, getattr(instance, setting.name))
+        setattr(settings, f"{prefix}{name}", value)
 
 
-def _in_panel(cls: Any, names: Iterable[str] = ()) -> Iterator[studies.Setting]:
+def _in_panel(cls: Any, names: Iterable[str] = ()) -> Iterator[tuple[str, studies.Setting]]:
+    """Yield the settings of a dataclass that have a property, with the property's name."""
     declared = studies.settings_of(cls)
-    return (declared[name] for name in names or declared if declared[name].panel is not None)
+    for name in names or declared:
+        if (panel := declared[name].panel) is not None:
+            yield panel.property, declared[name]
 
 
-def _property(setting: studies.Setting) -> str:
-    """Return the name of the property that stores a setting of the panel."""
-    assert setting.panel is not None
-    return setting.panel.property
-
-
-def _value(setting: studies.Setting, value: Any) -> Any:
+def value_of_property(setting: studies.Setting, value: Any) -> Any:
     """Return a property's value in the unit and type of the engine."""
-    if isinstance(setting.rule, studies.Pair):
+    rule, panel = setting.rule, setting.panel
+    if isinstance(rule, studies.Pair):
         return pair_as_typed(value)
-    if isinstance(setting.rule, studies.Number):
+    if isinstance(rule, studies.Several):
+        return tuple(text for text in rule.among if text in value)
+    if isinstance(rule, studies.Texts):
+        return tuple(text.strip() for text in value.split(",") if text.strip())
+    if isinstance(rule, studies.Name):
+        return value.strip()
+    if studies.is_switch(setting):
+        return rule.among[0] if value else None
+    if panel is not None and panel.absent is not None and value == panel.absent[0]:
+        return None
+    if isinstance(rule, studies.Number):
         value = as_typed(value)
     if setting.is_optional and not value:
         return None
-    return math.radians(value) if isinstance(setting.rule, studies.Angle) else value
+    return math.radians(value) if isinstance(rule, studies.Angle) else value
+
+
+def property_value(setting: studies.Setting, value: Any) -> Any:
+    """Return an engine's value as its property holds it."""
+    rule, panel = setting.rule, setting.panel
+    if isinstance(rule, studies.Several):
+        return set(value)
+    if isinstance(rule, studies.Texts):
+        return ", ".join(value)
+    if studies.is_switch(setting):
+        return value is not None
+    if value is None:
+        return 0 if panel is None or panel.absent is None else panel.absent[0]
+    if isinstance(rule, studies.Whole):
+        return min(value, LARGEST_INT)
+    return math.degrees(value) if isinstance(rule, studies.Angle) else value
 
 
 def space_of(settings: bpy.types.PropertyGroup) -> pe.PerceptionSpace:
@@ -101,7 +120,7 @@ def space_of(settings: bpy.types.PropertyGroup) -> pe.PerceptionSpace:
 def perception_of(settings: bpy.types.PropertyGroup) -> pe.PerceptionModel:
     """Return the AP curves of a scene; a kind without a curve has its default curve."""
     curves: dict[str, Any] = {
-        row.name: pe.ApCurve(as_typed(row.a), as_typed(row.b))
+        row.name: pe.ApCurve(**values_of(row, pe.ApCurve))
         for row in settings.curves
         if row.own and row.name in kinds.KINDS
     }
@@ -144,15 +163,9 @@ def search_of(settings: bpy.types.PropertyGroup, *, is_choice: bool) -> pe.Searc
         schedule=schedule,
         method=settings.method,
         tolerance=tolerance_of(settings),
-        requirements=KEEP if settings.keep_requirements else None,
         goals=goals_of(settings),
-        conditions=None if settings.search_conditions == "none" else settings.search_conditions,
         **values_of(settings, pe.Search),
     )
-
-
-AUTO = "auto"
-"""Value of the menu of the analysis that a study does not have: as much as the search allows."""
 
 
 def goals_of(settings: bpy.types.PropertyGroup) -> search.Goals:
@@ -163,24 +176,18 @@ def goals_of(settings: bpy.types.PropertyGroup) -> search.Goals:
     InputError
         When only one objective is chosen.
     """
-    names = [name for name in search.Front.KNOWN if name in settings.front_objectives]
-    chosen = settings.sensitivity
     return search.Goals(
         search.Stop(**values_of(settings, search.Stop)),
         starts=search.Start.of_text(settings.start_poses),
-        front=search.Front(names, **values_of(settings, search.Front)),
-        sensitivity=None if chosen == AUTO else chosen,
-        blind_ground=KEEP if settings.keep_blind_ground else None,
+        front=search.Front(**values_of(settings, search.Front)),
+        **values_of(settings, search.Goals),
     )
 
 
 def write_goals(settings: bpy.types.PropertyGroup, goals: search.Goals) -> None:
     """Write the goals of a search to a scene; further starts as JSON text."""
-    write_values(settings, goals.stop)
-    write_values(settings, goals.front)
-    settings.front_objectives = set(goals.front.objectives)
-    settings.sensitivity = goals.sensitivity or AUTO
-    settings.keep_blind_ground = goals.blind_ground == KEEP
+    for each in (goals.stop, goals.front, goals):
+        write_values(settings, each)
     settings.start_poses = search.Start.text_of(goals.starts)
     settings.start_variants = False
 
@@ -222,7 +229,7 @@ def settings_signature(settings: bpy.types.PropertyGroup) -> list[object]:
     """Return the settings of a score that were set, including invalid ones."""
     scored = (
         setting.panel.property
-        for _, setting in studies.setting_keys()
+        for _, setting in studies.setting_keys(of_scene=True)
         if setting.scored and setting.panel is not None
     )
     names = [each for each in scored if each not in PLACED and settings.is_property_set(each)]

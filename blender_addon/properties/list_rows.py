@@ -21,53 +21,23 @@ from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, ON_SLOTS, ON_SURFACE, REG
 from ..engine import pe
 from ..sensor_kinds import own_kinds
 from .callbacks import changed, model_suggestions, redraw
-
-DEFAULT_FOCUS = 2.0
+from .declared import group_of
 
 DEFAULT_REGION = "front"
-
-RANGE_DECIMALS = 3
 
 OBJECT_CLASSES = tuple(
     (name, name.capitalize(), f"Weigh {name}s") for name in pe.Prior.road().class_names
 )
 
 
-class PE_FocusSettings(bpy.types.PropertyGroup):
+class PE_FocusSettings(group_of(pe.Focus), bpy.types.PropertyGroup):
     """A focus weight: a region and classes that count more or less than the prior says."""
 
-    factor: FloatProperty(
-        name="Factor",
-        description="Factor of the weight: 2 doubles the weight, 0 leaves the objects out. Where "
-        "several regions overlap, their factors multiply",
-        default=DEFAULT_FOCUS,
-        min=0.0,
-        soft_max=10.0,
-        update=changed,
-    )
     region: EnumProperty(
         items=REGION_ITEMS,
         name="Region",
         description="Region of the ground",
         default=DEFAULT_REGION,
-        update=changed,
-    )
-    x_range: FloatVectorProperty(
-        name="X",
-        description="Begin and end ahead of the origin; negative is behind it",
-        size=2,
-        default=pe.PerceptionSpace().x,
-        unit="LENGTH",
-        precision=RANGE_DECIMALS,
-        update=changed,
-    )
-    y_range: FloatVectorProperty(
-        name="Y",
-        description="Begin and end to the left of the origin; negative is to the right",
-        size=2,
-        default=pe.PerceptionSpace().y,
-        unit="LENGTH",
-        precision=RANGE_DECIMALS,
         update=changed,
     )
     classes: EnumProperty(
@@ -80,19 +50,13 @@ class PE_FocusSettings(bpy.types.PropertyGroup):
     )
 
 
-class PE_CurveSettings(bpy.types.PropertyGroup):
+class PE_CurveSettings(group_of(pe.ApCurve), bpy.types.PropertyGroup):
     """The AP curve of a kind of sensor: AP = a ln m + b. The row has the name of the kind."""
 
     own: BoolProperty(
         name="Own",
         description="Use these numbers, for example from pe fit, instead of the default curve",
         update=changed,
-    )
-    a: FloatProperty(
-        name="a", description="AP = a ln m + b: slope", precision=4, min=1e-12, update=changed
-    )
-    b: FloatProperty(
-        name="b", description="AP = a ln m + b: value at one point", precision=4, update=changed
     )
 
 
@@ -185,7 +149,7 @@ class PE_OwnSensorSettings(bpy.types.PropertyGroup):
     known_as: StringProperty(name="Known As", description="Last known name")
 
 
-class PE_SensorOption(bpy.types.PropertyGroup):
+class PE_SensorOption(group_of(pe.Option), bpy.types.PropertyGroup):
     """A model that may be chosen, and its price."""
 
     model: StringProperty(
@@ -193,14 +157,6 @@ class PE_SensorOption(bpy.types.PropertyGroup):
         description="Name of the sensor in the catalogue",
         search=model_suggestions,
         search_options={"SUGGESTION"},
-    )
-    price: FloatProperty(
-        name="Price",
-        description="Price of one sensor. The catalogue has no prices",
-        min=0.0,
-        soft_max=100_000.0,
-        precision=2,
-        step=1000,
     )
 
 
@@ -217,12 +173,6 @@ FACES = (
     (BY_GROUP, "Painted", "Faces of the vehicle's meshes whose corners all weigh more than a half "
      "in a vertex group"),
 )  # fmt: skip
-
-ORIENTATIONS = (
-    ("upright", "Upright", "Angles are to the ground, however the surface slants"),
-    ("normal", "Follows Normal", "Angles are to a base plate that lies on the surface"),
-    ("facing", "Looks Out", "Angles are to the surface's normal, as of a camera in a bumper"),
-)
 
 
 def _keep_apart(mount: PE_MountSettings, _context: bpy.types.Context) -> None:
@@ -257,7 +207,7 @@ class PE_MountPart(bpy.types.PropertyGroup):
     )
 
 
-class PE_MountSettings(bpy.types.PropertyGroup):
+class PE_MountSettings(group_of(pe.SurfaceMount), bpy.types.PropertyGroup):
     """A mount: surfaces or slots for sensors."""
 
     name: StringProperty(
@@ -289,19 +239,6 @@ class PE_MountSettings(bpy.types.PropertyGroup):
         search=groups_of_vehicle,
         search_options={"SUGGESTION"},
         update=redraw,
-    )
-    standoff: FloatProperty(
-        name="Stand-off",
-        description="From the surface to the middle of the housing's base; a base plate of 40 mm "
-        "is 0.04",
-        default=0.0,
-        min=0.0,
-        max=10.0,
-        precision=3,
-        unit="LENGTH",
-    )
-    orientation: EnumProperty(
-        items=ORIENTATIONS, name="Orientation", description="Reference of the sensor's angles"
     )
     slots: PointerProperty(
         type=bpy.types.Collection,

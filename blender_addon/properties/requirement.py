@@ -20,6 +20,7 @@ from .. import bridge, signals
 from ..engine import kinds, requirements, studies
 from . import requirement_fields as fields
 from .callbacks import changed
+from .declared import mixin, property_of
 
 BODIES = (
     *(
@@ -45,12 +46,15 @@ AXES = (
     (fields.AS_IN_FILE, "As in the File", "As the file states it, or as is usual for its format"),
     *((axis, axis.upper(), f"The file's {axis.upper()}") for axis in fields.AXIS_NAMES),
 )
-SIDES = (
-    ("right", "Right", "As in countries that drive on the right"),
-    ("left", "Left", "As in the UK"),
-)
-ZONE, CRITERION = requirements.Zone, requirements.Criterion
-PLACE = "A number [m], or a plane with an offset outwards: front + 0.8, near, rear_axle, 25 %"
+SECTIONS = {
+    "zone": requirements.Zone,
+    "criterion": requirements.Criterion,
+    "under": requirements.Under,
+}
+ZERO_COUNTS = ("blind_m2",)
+"""Settings that are asked for at 0, too."""
+PLACE = "a number [m], or a plane with an offset outwards: front + 0.8, near, rear_axle, 25 %"
+HIGH: dict[str, Any] = {"min": 0.0, "unit": "LENGTH"}
 EditedRow = bpy.types.PropertyGroup
 Getter = Callable[[EditedRow], Any]
 Change = Callable[[dict[str, Any], Any], None]
@@ -78,41 +82,63 @@ def _choice(
     return {"items": items, **view}
 
 
-def _key(
-    section: str, key: str, default: Any, *, none: bool = False, whole: bool = False
-) -> dict[str, Any]:
-    """Return the callbacks of a value of a section; with `none`, the default removes the key."""
-
-    def put(table: dict[str, Any], value: Any) -> None:
-        if isinstance(value, float):
-            value = int(value) if whole else round(value, 6)
-        if none and value == default:
-            table.get(section, {}).pop(key, None)
-        else:
-            table.setdefault(section, {})[key] = value
-
-    return _view(lambda t: t.get(section, {}).get(key, default), put)
+def _declared() -> Any:
+    """Return a mixin with views of all that is declared for a zone, a criterion and conditions."""
+    return mixin(
+        "Requirement",
+        {
+            setting.panel.property: property_of(setting, **_declared_view(section, setting))
+            for section, cls in SECTIONS.items()
+            for setting in studies.settings_of(cls).values()
+            if setting.panel is not None
+        },
+    )
 
 
-def _setting(cls: type, section: str, key: str, *, none: bool = True) -> dict[str, Any]:
-    """Return description, limits and callbacks of a number that is declared with its dataclass."""
-    declared = studies.settings_of(cls)[key]
-    whole = isinstance(declared.default, int) and not isinstance(declared.default, bool)
-    default = declared.default if declared.default is not None else 0.0
-    view = _key(section, key, default, none=none, whole=whole)
-    return {"description": declared.text, "min": 1 if whole else 0.0, **view}
-
-
-def _pair(section: str, key: str, end: int, usual: tuple[Any, Any]) -> dict[str, Any]:
-    """Return the callbacks of one of the two ends of a range."""
-
-    def put(table: dict[str, Any], value: Any) -> None:
-        ends = list(table.setdefault(section, {}).get(key) or usual)
-        ends[end] = fields.place_of(value) if isinstance(value, str) else round(value, 6)
-        table[section][key] = ends
+def _declared_view(section: str, setting: studies.Setting) -> dict[str, Any]:
+    """Return the callbacks of a declared setting; its default removes the key."""
+    name, default = setting.name, setting.default
 
     def get(table: dict[str, Any]) -> Any:
-        ends = table.get(section, {}).get(key)
+        value = table.get(section, {}).get(name, default)
+        return bridge.property_value(setting, value)
+
+    def put(table: dict[str, Any], value: Any) -> None:
+        found = bridge.value_of_property(setting, value)
+        own = table.setdefault(section, {})
+        own.pop(name, None)
+        if name in ZERO_COUNTS or found != default:
+            own[name] = value if found is None else studies.value_in_file(setting, found)
+
+    is_menu = isinstance(setting.rule, studies.OneOf)
+    return _choice(studies.menu_of(setting), get, put) if is_menu else _view(get, put)
+
+
+def _ends(name: str, labels: tuple[str, str], usual: tuple[Any, Any], **options: Any) -> Any:
+    """Return a mixin with views of both ends of a range of the zone."""
+    kind = StringProperty if isinstance(usual[0], str) else FloatProperty
+    texts = zip(("from", "to"), (f"{labels[0]} From", "To"), ("From: ", "To: "), strict=True)
+    return mixin(
+        name,
+        {
+            f"{name}_{end}": kind(
+                name=label, description=before + labels[1], **options, **_end(name, number, usual)
+            )
+            for number, (end, label, before) in enumerate(texts)
+        },
+    )
+
+
+def _end(key: str, end: int, usual: tuple[Any, Any]) -> dict[str, Any]:
+    """Return the callbacks of one of the two ends of a range of the zone."""
+
+    def put(table: dict[str, Any], value: Any) -> None:
+        ends = list(table.setdefault("zone", {}).get(key) or usual)
+        ends[end] = fields.place_of(value) if isinstance(value, str) else round(value, 6)
+        table["zone"][key] = ends
+
+    def get(table: dict[str, Any]) -> Any:
+        ends = table.get("zone", {}).get(key)
         missing = "" if isinstance(usual[end], str) else usual[end]
         return (
             missing if ends is None else str(ends[end]) if isinstance(missing, str) else ends[end]
@@ -156,7 +182,16 @@ def _set_kind_flags(table: dict[str, Any], flags: int) -> None:
         del table["criterion"]["of"]
 
 
-class PE_Requirement(bpy.types.PropertyGroup):
+class PE_Requirement(
+    _declared(),
+    _ends("x", ("X", PLACE), ("0", "1")),
+    _ends("y", ("Y", PLACE), ("0", "1")),
+    _ends("ring", ("Ring", "distance from the outline of the vehicle's body"), (0.0, 1.0), **HIGH),
+    _ends(
+        "z", ("Height", "height of the foot of the body; sampled at the step"), (0.0, 0.0), **HIGH
+    ),
+    bpy.types.PropertyGroup,
+):
     """A requirement, and its last verdict."""
 
     enabled: BoolProperty(
@@ -242,109 +277,23 @@ class PE_Requirement(bpy.types.PropertyGroup):
         description="Shape of the zone",
         **_choice(SHAPES, fields.shape_of, fields.reshape),
     )
-    x_from: StringProperty(name="X From", description=PLACE, **_pair("zone", "x", 0, ("0", "1")))
-    x_to: StringProperty(name="To", description="As X From", **_pair("zone", "x", 1, ("0", "1")))
-    y_from: StringProperty(name="Y From", description=PLACE, **_pair("zone", "y", 0, ("0", "1")))
-    y_to: StringProperty(name="To", description="As Y From", **_pair("zone", "y", 1, ("0", "1")))
     corners: StringProperty(
         name="Corners",
         description="x, y of each corner or spot, separated by semicolons: front + 1, left; "
         "front + 5, left + 1",
         **_view(fields.corners_text, fields.set_corners),
     )
-    ring_from: FloatProperty(
-        name="Ring From",
-        description="Smallest distance from the outline of the vehicle's body",
-        min=0.0,
-        unit="LENGTH",
-        **_pair("zone", "ring", 0, (0.0, 1.0)),
-    )
-    ring_to: FloatProperty(
-        name="To",
-        description="Largest distance from the outline",
-        min=0.0,
-        unit="LENGTH",
-        **_pair("zone", "ring", 1, (0.0, 1.0)),
-    )
-    z_from: FloatProperty(
-        name="Height From",
-        description="Lowest height of the foot of the body above the ground",
-        min=0.0,
-        unit="LENGTH",
-        **_pair("zone", "z", 0, (0.0, 0.0)),
-    )
-    z_to: FloatProperty(
-        name="To",
-        description="Greatest height of the foot of the body; sampled at the step",
-        min=0.0,
-        unit="LENGTH",
-        **_pair("zone", "z", 1, (0.0, 0.0)),
-    )
-    step: FloatProperty(
-        name="Step",
-        unit="LENGTH",
-        **_setting(ZONE, "zone", "step") | {"min": 0.02, "soft_max": 2.0},
-    )
-    below: FloatProperty(name="Planes Below", unit="LENGTH", **_setting(ZONE, "zone", "below"))
-    near_side: EnumProperty(
-        name="Near Side",
-        description="The side of the kerb",
-        **_choice(SIDES, *fields.NEAR_SIDE),
-    )
     eyes: StringProperty(
         name="Driver's Eyes X",
         description="x of the driver's eyes [m], for the plane eyes; empty: not known",
         **_view(fields.eyes_text, fields.set_eyes),
     )
-    sensors: IntProperty(name="Sensors", soft_max=6, **_setting(CRITERION, "criterion", "sensors"))
-    kinds: IntProperty(name="Kinds", soft_max=3, **_setting(CRITERION, "criterion", "kinds"))
     of: EnumProperty(
         name="Only",
         description="Only these kinds of sensors count; none chosen: all",
         items=_kind_items,
         options={"ENUM_FLAG"},
         **_view(_kind_flags, _set_kind_flags),
-    )
-    points: IntProperty(name="Points", **_setting(CRITERION, "criterion", "points"))
-    pixels: FloatProperty(name="Pixels", **_setting(CRITERION, "criterion", "pixels"))
-    pixels_high: FloatProperty(
-        name="Pixels in Height", **_setting(CRITERION, "criterion", "pixels_high")
-    )
-    per_degree: FloatProperty(name="Per Degree", **_setting(CRITERION, "criterion", "per_degree"))
-    share: FloatProperty(name="Visible Share", max=1.0, **_setting(CRITERION, "criterion", "share"))
-    ap: FloatProperty(name="AP", max=1.0, **_setting(CRITERION, "criterion", "ap"))
-    zone_share: FloatProperty(
-        name="Share of Zone", max=1.0, **_setting(CRITERION, "criterion", "zone_share")
-    )
-    blind_m2: FloatProperty(
-        name="Blind Area", unit="AREA", **_setting(CRITERION, "criterion", "blind_m2", none=False)
-    )
-    blind_out: FloatProperty(
-        name="Blind At Most Out", unit="LENGTH", **_setting(CRITERION, "criterion", "blind_out")
-    )
-    blind_height: FloatProperty(
-        name="Height", unit="LENGTH", **_setting(CRITERION, "criterion", "blind_height")
-    )
-    one_lost: BoolProperty(
-        name="One Sensor Lost",
-        description="It has to be met without any one of the sensors, too",
-        **_key("under", "one_lost", False, none=True),
-    )
-    mounting: BoolProperty(
-        name="Mounting Errors",
-        description="It has to be met with the mounting errors of the search, too",
-        **_key("under", "mounting", False, none=True),
-    )
-    states: StringProperty(
-        name="States",
-        description="It has to be met in these states of the vehicle, too: names separated by "
-        "commas; *: all",
-        **_view(*fields.names_under("states")),
-    )
-    weathers: StringProperty(
-        name="Weathers",
-        description="It has to be met in these weathers, too: names separated by commas; *: all",
-        **_view(*fields.names_under("weathers")),
     )
     met: IntProperty(name="Met", description="-1 unknown, 0 not met, 1 met", default=-1)
     verdict: StringProperty(name="Verdict", description="The last verdict, in words")

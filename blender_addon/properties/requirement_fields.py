@@ -258,31 +258,6 @@ def set_mesh_scale(table: TableData, scale: float) -> None:
     _own(table)["scale"] = round(scale, 6)
 
 
-# --- the conditions -----------------------------------------------------------------------------
-
-
-def names_under(key: str) -> tuple[Callable[[TableData], str], Callable[[TableData, str], None]]:
-    """Return how the names of states or weathers are read and set: "door open, loaded"."""
-
-    def put(table: TableData, text: str) -> None:
-        under = table.setdefault("under", {})
-        under[key] = [name.strip() for name in text.split(",") if name.strip()]
-        if not under[key]:
-            del under[key]
-
-    return (lambda table: ", ".join(table.get("under", {}).get(key, ()))), put
-
-
-# --- what is read and set as it is --------------------------------------------------------------
-
-
-NEAR_SIDE: tuple[Callable[[TableData], str], Callable[[TableData, str], None]] = (
-    lambda table: str(table.get("zone", {}).get("near_side", "right")),
-    lambda table, side: table.setdefault("zone", {}).update(near_side=side),
-)
-"""How the side of the kerb is read and set."""
-
-
 def _bodies(table: TableData) -> list[Any]:
     value = table.get("body", [])
     return value if isinstance(value, list) else [value]

@@ -14,7 +14,8 @@ from bpy.props import (
 )
 
 from ..choices import free_name
-from ..engine import search
+from ..engine import pe, search
+from .declared import group_of
 
 
 class PE_ResultPart(bpy.types.PropertyGroup):
@@ -71,15 +72,13 @@ def _keep_apart(variant: PE_Variant, _context: bpy.types.Context) -> None:
         variant.name = name
 
 
-class PE_VariantSensor(bpy.types.PropertyGroup):
+class PE_VariantSensor(group_of(pe.ApCurve, prefix="curve_", update=None), bpy.types.PropertyGroup):
     """A sensor as a variant stores it: see `bridge.SensorRecord`."""
 
     name: StringProperty(name="Name", description="Name of the sensor's object")
     model: StringProperty(name="Model", description="Name of the sensor in the catalogue")
     fusion: StringProperty(name="Fusion", description="Fusion group; empty for the default")
     own_curve: BoolProperty(name="Own AP Curve", description="The sensor has its own AP curve")
-    curve_a: FloatProperty(name="a", description="AP = a ln m + b: slope")
-    curve_b: FloatProperty(name="b", description="AP = a ln m + b: value at one point")
     pose: FloatVectorProperty(
         name="Placement",
         description="x, y, z [m], roll, pitch, yaw [deg]",

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
 import zlib
-from typing import Any, cast
 
 import bpy
 from bpy.props import (
@@ -19,7 +17,7 @@ from bpy.props import (
 )
 
 from ..choices import PRIORS
-from ..engine import search, studies
+from ..engine import search
 from .callbacks import (
     changed,
     kinds_to_add,
@@ -29,86 +27,17 @@ from .callbacks import (
     selected_object_index,
 )
 from .condition import PE_State, PE_Weather
+from .declared import scene_group
 from .list_rows import PE_CurveSettings, PE_FocusSettings, PE_MountSettings, PE_OwnSensorSettings
 from .requirement import PE_Requirement
 from .results import PE_FrontRow, PE_ResultPart, PE_Variant, PE_Warning
 from .view import PE_LiveSettings, PE_ViewSettings
-
-LARGEST_INT = 2**31 - 1
-"""The largest whole number that a property can hold."""
-DRAWN = "reference."
-"""Settings whose keys begin so change the picture in the 3D view, and no score."""
-
-
-def property_of(key: str, setting: studies.Setting) -> Any:
-    """Return the property that a setting is stored in; its values are those of the panel."""
-    panel, rule = setting.panel, cast(Any, setting.rule)
-    assert panel is not None  # asked for those alone that have one
-    options: dict[str, Any] = {
-        "name": panel.label,
-        "description": setting.tooltip,
-        "default": studies.panel_default(setting),
-        "soft_max": panel.soft_max,
-        "precision": panel.precision,
-        "step": panel.step,
-        "update": changed if setting.scored else redraw if key.startswith(DRAWN) else None,
-    }
-    if isinstance(rule, studies.OneOf):
-        return _made(EnumProperty, {**options, "items": _menu(rule, panel)})
-    if isinstance(rule, studies.Toggle):
-        return _made(BoolProperty, options)
-    if isinstance(rule, studies.Pair):
-        return _made(FloatVectorProperty, {**options, "size": 2, "unit": _unit(rule.rule)})
-    least = 0 if setting.is_optional else rule.minimum
-    low = least if panel.min is None else panel.min
-    high = rule.maximum if panel.max is None else panel.max
-    if isinstance(rule, studies.Whole):
-        high = LARGEST_INT if high is None else min(high, LARGEST_INT)
-        return _made(IntProperty, {**options, "min": low, "max": high})
-    ends = {"min": low, "max": high if math.isfinite(high) else None}
-    return _made(FloatProperty, {**options, **ends, "unit": _unit(rule)})
-
-
-def _menu(rule: studies.OneOf, panel: studies.Panel) -> tuple[tuple[str, str, str, int], ...]:
-    """Return the texts of a rule in the form of a Blender menu."""
-    rows = zip(rule.among, panel.menu, strict=True)
-    return tuple((text, *about, number) for number, (text, about) in enumerate(rows))
-
-
-def _unit(rule: Any) -> str:
-    return "LENGTH" if rule.unit == "m" else "NONE"
-
-
-def _made(kind: Any, options: dict[str, Any]) -> Any:
-    return kind(**{key: value for key, value in options.items() if value is not None})
-
-
-StudySettings: Any = type(
-    "StudySettings",
-    (),
-    {
-        "__doc__": "A part of the scene's settings: all that the engine declares.",
-        "__module__": __name__,
-        "__annotations__": {
-            setting.panel.property: property_of(key, setting)
-            for key, setting in studies.setting_keys()
-            if setting.panel is not None
-        },
-    },
-)
-
 
 METHODS = tuple(
     (name, method.label, method.about, 1 + zlib.crc32(name.encode()) % 2**30)
     for name, method in search.METHODS.items()
 )
 """Of searches; a file holds a number that stays a method's whatever others there are."""
-
-FRONT_LABELS = {
-    name: (label[:1].upper() + label[1:], unit)
-    for name, (label, unit) in search.Front.KNOWN.items()
-}
-"""Labels and units of what may be on a Pareto front."""
 
 DEFAULT_BEAM_LIMIT = 5_000
 
@@ -118,7 +47,7 @@ DEFAULT_BEAM_LENGTH_M = 8.0
 PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) else set()
 
 
-class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
+class PE_SceneSettings(scene_group(), bpy.types.PropertyGroup):
     """The study's settings, and the last result."""
 
     version: IntProperty(
@@ -209,45 +138,14 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
         type=PE_Weather, name="Weathers", description="Weathers in which the rig is scored, too"
     )
     weather_index: IntProperty(name="Weather", description="Row of the list", min=0)
-    search_conditions: EnumProperty(
-        items=(
-            ("none", "As Drawn", "A search minimizes the score as drawn, in clear air"),
-            ("mean", "Mean of Conditions", "A search minimizes the mean by weights"),
-            ("worst", "Worst Condition", "A search minimizes the worst of the conditions"),
-        ),
-        name="Search For",
-        description="What a search minimizes where there are states or weathers",
-    )
     result_conditions: StringProperty(
         name="Conditions", description="Scores of the last run by condition"
-    )
-    keep_requirements: BoolProperty(
-        name="Keep in Searches",
-        description="Placements that meet all requirements are better than those that do not; "
-        "without it, a search minimizes the entropy alone",
-    )
-    keep_blind_ground: BoolProperty(
-        name="No More Blind Ground",
-        description="Placements with no more blind ground than now come first: ground within 10 m "
-        "of the vehicle where no sensor sees what is 0.5 m tall. A candidate takes longer",
-        default=True,
     )
     method: EnumProperty(
         items=METHODS,
         name="Method",
         description="Method of the search",
         default=search.DEFAULT_METHOD,
-    )
-    sensitivity: EnumProperty(
-        items=(
-            ("auto", "As Far As Cheap", "As much as an eighth of the search's evaluations allow"),
-            ("full", "Full", "Also after a short search"),
-            ("off", "Off", "The result is not analysed"),
-        ),
-        name="Analyse",
-        description="How sure a search is: what 1 cm and 1 degree cost, which constraints are "
-        "active, which other optima there are",
-        default="auto",
     )
     start_variants: BoolProperty(
         name="From Variants",
@@ -258,22 +156,10 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
         description="Placements of an imported study that searches also start from, as JSON",
         options={"HIDDEN"},
     )
-    front_objectives: EnumProperty(
-        items=tuple(
-            (name, label, f"{label} is on the front", 1 << number)
-            for number, (name, (label, _)) in enumerate(FRONT_LABELS.items())
-        ),
-        name="Objectives",
-        description="Two or more: the search looks for their Pareto front",
-        options={"ENUM_FLAG"},
-    )
     mounting_errors: BoolProperty(
         name="Mounting Errors",
         description="Evaluate each candidate by its mean over small mounting errors, so the result "
         "is not sensitive to them. A candidate takes about eight times as long",
-    )
-    currency: StringProperty(
-        name="Currency", description="Currency of prices", default="", maxlen=12
     )
 
     passthrough: StringProperty(

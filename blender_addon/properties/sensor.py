@@ -31,6 +31,7 @@ from .callbacks import (
     recolored,
     redraw,
 )
+from .declared import group_of
 from .list_rows import PE_SensorOption
 from .results import PE_StoppingPart
 
@@ -119,7 +120,7 @@ def racks_of_scene(
     return sorted({obj.perception_entropy.rack for obj in context.scene.objects} - {""})
 
 
-class PE_ObjectSettings(GroundPose, bpy.types.PropertyGroup):
+class PE_ObjectSettings(GroundPose, group_of(pe.ApCurve, prefix="curve_"), bpy.types.PropertyGroup):
     """What makes an object a sensor, and its part in the last result."""
 
     is_sensor: BoolProperty(
@@ -160,12 +161,6 @@ class PE_ObjectSettings(GroundPose, bpy.types.PropertyGroup):
         description="Use the numbers below for this sensor instead of those of its kind. Sensors of"
         " one fusion group have the same curve",
         update=own_curve_switched,
-    )
-    curve_a: FloatProperty(
-        name="a", description="AP = a ln m + b: slope", precision=4, min=1e-12, update=changed
-    )
-    curve_b: FloatProperty(
-        name="b", description="AP = a ln m + b: value at one point", precision=4, update=changed
     )
     free: BoolVectorProperty(
         name="Free Axes",

@@ -15,7 +15,7 @@ from dataclasses import MISSING, dataclass, field, fields
 from typing import Any, Protocol, TypeVar
 
 from .errors import InputError, shown
-from .values import Number, choice, pair
+from .values import A_NAME, Name, Number, choice, listed, pair, vector
 
 T = TypeVar("T")
 _KEY = "setting"
@@ -52,16 +52,59 @@ class OneOf:
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """Two numbers that meet one rule, the lower one first."""
+    """Two numbers that meet one rule, the lower one first; `same`: they may be equal."""
 
     rule: Number
+    same: bool = False
 
     def checked(self, source: object, field: str, value: Any) -> tuple[float, float]:
         """Return the value, or raise `InputError`."""
-        return pair(source, field, value, self.rule)
+        return pair(source, field, value, self.rule, same=self.same)
 
 
-FLAG = Toggle()
+@dataclass(frozen=True, slots=True)
+class Triple:
+    """Three numbers that meet one rule."""
+
+    rule: Number
+
+    def checked(self, source: object, field: str, value: Any) -> tuple[float, float, float]:
+        """Return the value, or raise `InputError`."""
+        first, second, third = vector(source, field, value, 3, self.rule)
+        return first, second, third
+
+
+@dataclass(frozen=True, slots=True)
+class Texts:
+    """A list of texts that meet one rule."""
+
+    rule: Name = A_NAME
+
+    def checked(self, source: object, field: str, value: Any) -> tuple[str, ...]:
+        """Return the value, or raise `InputError`."""
+        if (items := listed(value)) is None:
+            raise InputError(source, field, "a list of texts", shown(value))
+        return tuple(self.rule.checked(source, field, item) for item in items)
+
+
+@dataclass(frozen=True, slots=True)
+class Several:
+    """A list of some of several texts, each once."""
+
+    among: tuple[str, ...]
+
+    def checked(self, source: object, field: str, value: Any) -> tuple[str, ...]:
+        """Return the value, or raise `InputError`."""
+        expected = f"some of {', '.join(self.among)}, each once"
+        if (items := listed(value)) is None or any(items.count(item) > 1 for item in items):
+            raise InputError(source, field, expected, shown(value))
+        for item in items:
+            if item not in self.among:
+                raise InputError(source, field, expected, shown(item))
+        return tuple(items)
+
+
+FLAG, NAMES = Toggle(), Texts()
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +127,9 @@ class Panel:
     menu : tuple of (label, meaning)
         Of a rule `OneOf`: how a menu shows each of its texts, in their order. The order never
         changes, and new ones go last: .blend files store numbers.
+    absent : tuple of (text, label, meaning)
+        The menu's first entry, for an optional setting that is absent. Without it an optional
+        setting with one possible text is a switch.
     """
 
     property: str
@@ -96,6 +142,7 @@ class Panel:
     precision: int | None = None
     step: float | None = None
     menu: tuple[tuple[str, str], ...] = ()
+    absent: tuple[str, str, str] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,9 +195,11 @@ def setting(
     return made
 
 
-def required_setting(rule: ValueRule, text: str, panel: Panel | None = None) -> Any:
+def required_setting(
+    rule: ValueRule, text: str, panel: Panel | None = None, *, scored: bool = False
+) -> Any:
     """Return the field of a dataclass that is a setting without a default."""
-    return field(metadata={_KEY: (rule, text, panel, False)})
+    return field(metadata={_KEY: (rule, text, panel, scored)})
 
 
 def settings_of(cls: Any) -> dict[str, Setting]:

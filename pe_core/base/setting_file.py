@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from typing import Any
 
 from .degrees import degrees_in_file
-from .setting import REQUIRED, OneOf, Pair, Setting, Toggle, settings_of
+from .setting import REQUIRED, Setting, Triple, settings_of
 from .table_reader import REQUIRED as NEEDED
 from .table_reader import Table
-from .values import Angle, Number, Whole
+from .values import ANY, Angle, listed
 
 
 def key_of(name: str) -> str:
@@ -18,8 +18,12 @@ def key_of(name: str) -> str:
     return name.replace("_rad", "_deg")
 
 
-def read_settings(table: Table, cls: type, names: Iterable[str] = ()) -> dict[str, Any]:
+def read_settings(
+    table: Table, cls: type, names: Iterable[str] = (), default: object = None
+) -> dict[str, Any]:
     """Return the settings of a dataclass that a table has, defaults for the others.
+
+    An instance as `default` has the defaults in place of the declared ones.
 
     Raises
     ------
@@ -27,7 +31,10 @@ def read_settings(table: Table, cls: type, names: Iterable[str] = ()) -> dict[st
         When a value breaks its rule; the line names the key in the file.
     """
     settings = settings_of(cls)
-    return {name: _read(table, settings[name]) for name in names or settings}
+    return {
+        name: _read(table, settings[name], getattr(default, name, settings[name].default))
+        for name in names or settings
+    }
 
 
 def settings_table(instance: Any, names: Iterable[str] = ()) -> dict[str, Any]:
@@ -39,31 +46,39 @@ def settings_table(instance: Any, names: Iterable[str] = ()) -> dict[str, Any]:
     }
 
 
+def changed_settings(instance: Any, names: Iterable[str] = ()) -> dict[str, Any]:
+    """Return the table that `read_settings` reads, without what has its default."""
+    settings = settings_of(type(instance))
+    changed = [n for n in names or settings if getattr(instance, n) != settings[n].default]
+    return settings_table(instance, changed) if changed else {}
+
+
 def value_in_file(setting: Setting, value: Any) -> Any:
-    """Return a value as a file holds it: angles in degrees, ranges as lists."""
-    if value is not None and isinstance(setting.rule, Angle):
-        return degrees_in_file(value)
-    return list(value) if isinstance(value, tuple) else value
+    """Return a value as a file holds it: angles in degrees, lists for tuples."""
+    if isinstance(value, tuple):
+        return [value_in_file(setting, each) for each in value]
+    return degrees_in_file(value) if value is not None and _is_angle(setting) else value
 
 
-def _read(table: Table, setting: Setting) -> Any:
-    key, rule = key_of(setting.name), setting.rule
-    default = NEEDED if setting.default is REQUIRED else setting.default
-    match rule:
-        case Angle():
-            if key not in table:
-                return table.raw(key, default)
-            radians = math.radians(table.number(key))
-            return rule.checked(table.source, table.field(key), radians)
-        case Number():
-            return table.number(key, default, rule)
-        case Whole():
-            return table.whole(key, default, rule)
-        case OneOf():
-            return table.text(key, default, rule.among)
-        case Pair():
-            return table.numbers(key, 2, default)
-        case Toggle():
-            value = table.raw(key, default)
-            return rule.checked(table.source, table.field(key), value)
-    raise TypeError(f"no way to read {type(rule).__name__} of {key}")
+def _is_angle(setting: Setting) -> bool:
+    rule = setting.rule
+    return isinstance(rule.rule if isinstance(rule, Triple) else rule, Angle)
+
+
+def _read(table: Table, setting: Setting, default: Any) -> Any:
+    key = key_of(setting.name)
+    value = table.raw(key, NEEDED if default is REQUIRED else default)
+    if key not in table:
+        return value
+    source, field = table.source, table.field(key)
+    if _is_angle(setting):
+        value = _radians(source, field, value)
+    return setting.rule.checked(source, field, value)
+
+
+def _radians(source: str, field: str, value: Any) -> Any:
+    """Return degrees as radians: a number, or each number of a list."""
+    items = listed(value)
+    if items is not None:
+        return [_radians(source, field, item) for item in items]
+    return math.radians(ANY.checked(source, field, value))

@@ -149,13 +149,16 @@ class Whole:
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """A text on one line: printable, not blank, and of limited length."""
+    """A text on one line: printable, of limited length, and not blank unless it may be empty."""
 
     expected: str = "a name in printable letters"
     max_length: int = MAX_NAME
+    empty: bool = False
 
     def checked(self, source: object, field: str, value: Any) -> str:
         """Return the value as a plain str, or raise `InputError`."""
+        if self.empty and value == "":
+            return ""
         if not isinstance(value, str) or len(value) > self.max_length:
             long = f"; {len(value):,} characters" if isinstance(value, str) else ""
             most = f" ({self.max_length} at most)" if long else ""

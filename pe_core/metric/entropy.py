@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
+from ..base.setting import Panel, check_settings, required_setting
 from ..base.values import Number
 
 AP_MIN, AP_MAX = 0.001, 0.999
@@ -29,12 +30,15 @@ OFFSET = Number(cap=1e3)
 class ApCurve:
     """AP = a ln m + b of one perception algorithm."""
 
-    a: float
-    b: float
+    a: float = required_setting(
+        SLOPE, "AP = a ln m + b: slope", Panel("a", "a", precision=4), scored=True
+    )
+    b: float = required_setting(
+        OFFSET, "AP = a ln m + b: value at one point", Panel("b", "b", precision=4), scored=True
+    )
 
     def __post_init__(self) -> None:
-        for name, rule in (("a", SLOPE), ("b", OFFSET)):
-            object.__setattr__(self, name, rule.checked("AP curve", name, getattr(self, name)))
+        check_settings(self, "AP curve")
 
     @property
     def saturation(self) -> float:

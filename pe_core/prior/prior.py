@@ -16,7 +16,8 @@ import numpy as np
 from ..base.arrays import Floats
 from ..base.errors import InputError, shown
 from ..base.memory import require_memory
-from ..base.values import A_NAME, ANY, WEIGHT, Number, choice, listed, pair
+from ..base.setting import NAMES, Pair, Panel, check_settings, required_setting, setting
+from ..base.values import WEIGHT, Number, choice
 from ..geometry.grids import PerceptionSpace
 from .box_density import voxelised
 from .boxes import Boxes, BoxReport
@@ -89,6 +90,10 @@ CLASS_BYTES = 32
 """Memory of a score per class and column of the space [bytes] (measured: 29)."""
 
 
+EVERYWHERE = (-math.inf, math.inf)
+ALONG = Number(infinite=True, unit="m")
+
+
 @dataclass(frozen=True, slots=True)
 class Focus:
     """A factor of the focus weight w(s, c): a region, or some classes, count more or less.
@@ -103,22 +108,31 @@ class Focus:
         Which classes; all by default.
     """
 
-    factor: float
-    x: tuple[float, float] = (-math.inf, math.inf)
-    y: tuple[float, float] = (-math.inf, math.inf)
-    classes: tuple[str, ...] | None = None
+    factor: float = required_setting(
+        WEIGHT,
+        "Factor of the weight: 2 doubles the weight, 0 leaves the objects out. Where several "
+        "regions overlap, their factors multiply",
+        Panel("factor", "Factor", default=2.0, soft_max=10.0),
+        scored=True,
+    )
+    x: tuple[float, float] = setting(
+        EVERYWHERE,
+        Pair(ALONG),
+        "Begin and end ahead of the origin; negative is behind it",
+        Panel("x_range", "X", default=PerceptionSpace().x, precision=3),
+        scored=True,
+    )
+    y: tuple[float, float] = setting(
+        EVERYWHERE,
+        Pair(ALONG),
+        "Begin and end to the left of the origin; negative is to the right",
+        Panel("y_range", "Y", default=PerceptionSpace().y, precision=3),
+        scored=True,
+    )
+    classes: tuple[str, ...] | None = setting(None, NAMES, "Classes of objects; by default all")
 
     def __post_init__(self) -> None:
-        factor = WEIGHT.checked("focus", "factor", self.factor)
-        object.__setattr__(self, "factor", factor)
-        for name in "xy":
-            object.__setattr__(self, name, pair("focus", name, getattr(self, name), ANY))
-        if self.classes is not None:
-            names = listed(self.classes)
-            if names is None:
-                raise InputError("focus", "classes", "a list of names", shown(self.classes))
-            checked = tuple(A_NAME.checked("focus", "classes", n) for n in names)
-            object.__setattr__(self, "classes", checked)
+        check_settings(self, "focus")
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,23 +9,24 @@ from __future__ import annotations
 import difflib
 import fnmatch
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from ..base.arrays import Floats
 from ..base.errors import InputError, shown
-from ..base.setting import check_settings, setting
-from ..base.values import A_NAME, WEIGHT, Angle, Number, Whole, vector
+from ..base.setting import NAMES, Panel, Triple, check_settings, required_setting, setting
+from ..base.values import A_NAME, WEIGHT, Angle, Number, Whole
 from ..geometry.poses import Pose, rotate, rotation_matrix, rpy_from_matrix
 from .rig import Rig, Sensor
 from .vehicle import Vehicle, closest_points
 
 Vector3 = tuple[float, float, float]
 
-METRES = Number(-100.0, 100.0, unit="m")
-TURN = Angle(-360.0, 360.0)
+METRES = Triple(Number(-100.0, 100.0, unit="m"))
+TURN = Triple(Angle(-360.0, 360.0))
+WEIGHED = "Part in the weighted mean of all conditions"
 ZERO: Vector3 = (0.0, 0.0, 0.0)
 ATTACHED_M = 0.15
 """A sensor stands on the part whose surface is nearest to it, at most this far away [m]."""
@@ -56,24 +57,20 @@ class Motion:
         When there is no part, or a number is out of its range.
     """
 
-    parts: Sequence[str]
-    rotation: Vector3 = ZERO
-    about: Vector3 = ZERO
-    move: Vector3 = ZERO
-    sensors: Sequence[str] | None = None
+    parts: Sequence[str] = required_setting(
+        NAMES, "Names of the vehicle's parts that move; `*` stands for any letters"
+    )
+    rotation: Vector3 = setting(ZERO, TURN, "Roll, pitch and yaw, about the axes of the ground")
+    about: Vector3 = setting(ZERO, METRES, "A point that the rotation leaves where it is: a hinge")
+    move: Vector3 = setting(ZERO, METRES, "A translation, after the rotation")
+    sensors: Sequence[str] | None = setting(
+        None, NAMES, "Sensors that move with the parts; by default those that stand on them"
+    )
 
     def __post_init__(self) -> None:
-        parts = tuple(A_NAME.checked("state", "move.parts", name) for name in self.parts)
-        if not parts and not self.sensors:
+        check_settings(self, "state", "move.")
+        if not self.parts and not self.sensors:
             raise InputError("state", "move.parts", "at least one part of the vehicle", "none")
-        put = object.__setattr__
-        put(self, "parts", parts)
-        put(self, "rotation", vector("state", "move.rotation", self.rotation, 3, TURN))
-        for name in ("about", "move"):
-            put(self, name, vector("state", f"move.{name}", getattr(self, name), 3, METRES))
-        if self.sensors is not None:
-            names = (A_NAME.checked("state", "move.sensors", name) for name in self.sensors)
-            put(self, "sensors", tuple(names))
 
     @property
     def matrix(self) -> Floats:
@@ -121,13 +118,15 @@ class State:
 
     name: str
     motions: Sequence[Motion] = ()
-    weight: float = setting(1.0, WEIGHT, "Part of this state in the weighted mean")
+    weight: float = setting(1.0, WEIGHT, WEIGHED, Panel("weight", "Weight"), scored=True)
     heave: float = setting(0.0, Number(-1.0, 1.0, unit="m"), "How far the body is raised [m]")
     roll_rad: float = setting(0.0, Angle(-45.0, 45.0), "How far the body leans to the right")
     pitch_rad: float = setting(0.0, Angle(-45.0, 45.0), "How far the body's nose is down")
     frame: int | None = setting(None, Whole(0, 1_048_574), "Frame of the scene with this state")
-    about: Vector3 = ZERO
-    unsprung: Sequence[str] = field(default=())
+    about: Vector3 = setting(ZERO, METRES, "A point that roll and pitch leave where it is")
+    unsprung: Sequence[str] = setting(
+        (), NAMES, "Parts that stay on the ground: wheels, axles, a trailer"
+    )
 
     def __post_init__(self) -> None:
         put = object.__setattr__
@@ -135,9 +134,6 @@ class State:
         who = f"state {self.name!r}"
         check_settings(self, who)
         put(self, "motions", tuple(self.motions))
-        put(self, "about", vector(who, "body.about", self.about, 3, METRES))
-        names = (A_NAME.checked(who, "body.unsprung", name) for name in self.unsprung)
-        put(self, "unsprung", tuple(names))
 
     @property
     def is_as_drawn(self) -> bool:

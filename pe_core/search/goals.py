@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 
 from ..base.errors import InputError, shown
 from ..base.read_only import ReadOnlyDict
-from ..base.setting import OneOf, Panel, check_settings, setting
+from ..base.setting import NAMES, OneOf, Panel, Several, check_settings, setting
 from ..base.values import A_NAME, Number, Whole, listed
 from ..geometry.poses import Pose
 from ..scene.rig import Rig
@@ -103,7 +103,19 @@ class Front:
 
     KNOWN: ClassVar[Mapping[str, tuple[str, str]]] = OBJECTIVES
 
-    objectives: Sequence[str] = ()
+    objectives: Sequence[str] = setting(
+        (),
+        Several(tuple(OBJECTIVES)),
+        "Two or more: the search looks for their Pareto front",
+        Panel(
+            "front_objectives",
+            "Objectives",
+            menu=tuple(
+                (label[:1].upper() + label[1:], f"{label[:1].upper() + label[1:]} is on the front")
+                for label, _ in OBJECTIVES.values()
+            ),
+        ),
+    )
     points: int = setting(
         6,
         Whole(2, 64),
@@ -113,15 +125,10 @@ class Front:
     )
 
     def __post_init__(self) -> None:
-        names = listed(self.objectives)
-        known = f"two or more of {', '.join(OBJECTIVES)}"
-        if names is None or len(names) == 1 or len(set(names)) < len(names):
-            raise InputError("optimize", "front.objectives", known, shown(self.objectives))
-        for name in names:
-            if name not in OBJECTIVES:
-                raise InputError("optimize", "front.objectives", known, shown(name))
-        object.__setattr__(self, "objectives", tuple(names))
         check_settings(self, "optimize", "front.")
+        if len(self.objectives) == 1:
+            expected = f"two or more of {', '.join(OBJECTIVES)}"
+            raise InputError("optimize", "front.objectives", expected, shown(self.objectives))
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,7 +201,9 @@ class Goals:
     """
 
     stop: Stop = field(default_factory=Stop)
-    fixed: Sequence[str] = ()
+    fixed: Sequence[str] = setting(
+        (), NAMES, "Sensors that stay where they are, with those that follow them"
+    )
     starts: Sequence[Start] = ()
     front: Front = field(default_factory=Front)
     sensitivity: str | None = setting(
@@ -202,26 +211,29 @@ class Goals:
         OneOf((FULL, OFF)),
         "The analysis of a search's result (flatness, active constraints, other optima): all of "
         "it or none; without the key as much as an eighth of the evaluations allow",
+        Panel(
+            "sensitivity",
+            "Analyse",
+            absent=("auto", "As Far As Cheap", "As much as an eighth of the evaluations allow"),
+            menu=(("Full", "Also after a short search"), ("Off", "The result is not analysed")),
+        ),
     )
     blind_ground: str | None = setting(
         None,
         OneOf(("keep",)),
         "Placements with no more blind ground than the start's come first: ground within 10 m of "
-        "the vehicle where no sensor sees what is 0.5 m tall",
+        "the vehicle where no sensor sees what is 0.5 m tall. A candidate takes longer",
+        Panel("keep_blind_ground", "No More Blind Ground", default=True),
     )
 
     def __post_init__(self) -> None:
-        put, names = object.__setattr__, listed(self.fixed)
-        if names is None:
-            raise InputError("optimize", "fixed", "names of sensors", shown(self.fixed))
-        put(self, "fixed", tuple(A_NAME.checked("optimize", "fixed", name) for name in names))
         for key, value, kind in (("stop", self.stop, Stop), ("front", self.front, Front)):
             if not isinstance(value, kind):
                 raise InputError("optimize", key, f"a {kind.__name__}", type(value).__name__)
         starts: Any = listed(self.starts)
         if starts is None or not all(isinstance(each, Start) for each in starts):
             raise InputError("optimize", "start", "a list of starts", shown(self.starts))
-        put(self, "starts", tuple(starts))
+        object.__setattr__(self, "starts", tuple(starts))
         check_settings(self, "optimize")
 
     def of_rig(self, rig: Rig, mounting: Mounting) -> Goals:

@@ -12,8 +12,8 @@ import numpy as np
 from ..base.arrays import Floats
 from ..base.errors import InputError, shown
 from ..base.read_only import ReadOnlyDict
-from ..base.setting import FLAG, Panel, check_settings, setting
-from ..base.values import A_NAME, A_PATH, ANY, LENGTH, Number, choice, listed, pair
+from ..base.setting import FLAG, OneOf, Pair, Panel, check_settings, setting
+from ..base.values import A_NAME, A_PATH, ANY, LENGTH, Number, listed
 from ..geometry.poses import Pose
 from ..scene.vehicle import Vehicle
 
@@ -67,6 +67,7 @@ class MountArea:
 ORIENTATIONS = ("upright", "normal", "facing")
 STANDOFF = Number(0.0, 10.0, unit="m")
 DISTANCE = Number(0.0, cap=1e4, unit="m")
+SIDES = Pair(ANY)
 Range = tuple[float, float]
 NO_MOUNT = "the name of an [[optimize.mount]]"
 
@@ -91,8 +92,26 @@ class SurfaceMount:
     """
 
     parts: Sequence[str] = ()
-    standoff: float = 0.0
-    orientation: str = "upright"
+    standoff: float = setting(
+        0.0,
+        STANDOFF,
+        "From the surface to the middle of the housing's base; a base plate of 40 mm is 0.04",
+        Panel("standoff", "Stand-off", precision=3),
+    )
+    orientation: str = setting(
+        "upright",
+        OneOf(ORIENTATIONS),
+        "Reference of the sensor's angles",
+        Panel(
+            "orientation",
+            "Orientation",
+            menu=(
+                ("Upright", "Angles are to the ground, however the surface slants"),
+                ("Follows Normal", "Angles are to a base plate that lies on the surface"),
+                ("Looks Out", "Angles are to the surface's normal, as of a camera in a bumper"),
+            ),
+        ),
+    )
     area: MountArea | None = None
 
     def __post_init__(self) -> None:
@@ -104,9 +123,7 @@ class SurfaceMount:
             found = shown(self.parts) if self.area is None else "parts and an area"
             raise InputError(who, "parts", "names of the vehicle's parts", found)
         put(self, "parts", tuple(A_NAME.checked(who, "parts", name) for name in names))
-        put(self, "standoff", STANDOFF.checked(who, "standoff", self.standoff))
-        chosen = choice(who, "orientation", self.orientation, ORIENTATIONS)
-        put(self, "orientation", chosen)
+        check_settings(self, who)
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,16 +165,13 @@ class NoGo:
     """A box where no part of a sensor may be [m]; an axis without a range is unbounded."""
 
     name: str
-    x: Range | None = None
-    y: Range | None = None
-    z: Range | None = None
+    x: Range | None = setting(None, SIDES, "From and to along x")
+    y: Range | None = setting(None, SIDES, "From and to along y")
+    z: Range | None = setting(None, SIDES, "From and to along z")
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", A_NAME.checked("no_go", "name", self.name))
-        for axis in "xyz":
-            if (sides := getattr(self, axis)) is not None:
-                who = f"no_go {self.name!r}"
-                object.__setattr__(self, axis, pair(who, axis, sides, ANY))
+        check_settings(self, f"no_go {self.name!r}")
         if self.x is None and self.y is None and self.z is None:
             raise InputError(f"no_go {self.name!r}", "x, y, z", "at least one of them", "none")
 

@@ -7,13 +7,14 @@ from dataclasses import dataclass, field
 
 from ..base.errors import InputError, shown
 from ..base.read_only import ReadOnlyDict
-from ..base.setting import Panel, check_settings, setting
-from ..base.values import A_NAME, Number, Whole, listed
+from ..base.setting import Panel, check_settings, required_setting, setting
+from ..base.values import A_NAME, Name, Number, Whole, listed
 from ..scene.rig import Rig, SensorModel
 from .mounts import NO_MOUNT, Mounting
 
 PRICE = Number(0.0, cap=1e12, noun="price")
 COUNT = Whole(0, 10_000)
+CURRENCY = Name("a currency", empty=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,12 +29,16 @@ class Option:
     """
 
     model: SensorModel
-    price: float
+    price: float = required_setting(
+        PRICE,
+        "Price of one sensor. The catalogue has no prices",
+        Panel("price", "Price", soft_max=1e5, precision=2, step=1000),
+    )
 
     def __post_init__(self) -> None:
         if not isinstance(self.model, SensorModel):
             raise InputError("option", "model", "the model of a sensor", shown(self.model))
-        object.__setattr__(self, "price", PRICE.checked("option", "price", self.price))
+        check_settings(self, "option")
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +119,7 @@ class Selection:
         Panel("max_sensors", "Max Sensors", soft_max=20, zero="no limit"),
     )
     max_of_kind: Mapping[str, int] = field(default_factory=dict)
-    currency: str = ""
+    currency: str = setting("", CURRENCY, "Currency of prices", Panel("currency", "Currency"))
 
     def __post_init__(self) -> None:
         put, who = object.__setattr__, "selection"
@@ -130,8 +135,6 @@ class Selection:
             for kind, n in self.max_of_kind.items()
         }
         put(self, "max_of_kind", ReadOnlyDict(counts))
-        if self.currency != "":
-            put(self, "currency", A_NAME.checked(who, "currency", self.currency))
 
 
 @dataclass(frozen=True, slots=True)

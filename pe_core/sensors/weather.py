@@ -20,13 +20,14 @@ from functools import lru_cache
 from typing import Any
 
 from ..base.errors import InputError, shown
-from ..base.setting import FLAG, check_settings, setting
+from ..base.setting import FLAG, Panel, check_settings, setting
 from ..base.values import A_NAME, WEIGHT, Number
 from ..scene.rig import Rig, SensorModel
 from .field_of_view import LIGHT_M_S
 from .kind import kind_of
 
 RAIN, SNOW = Number(0.0, 300.0, unit="mm/h"), Number(0.0, 50.0, unit="mm/h")
+WEIGHED = "Part in the weighted mean of all conditions"
 MOR = Number(1.0, 1e5, unit="m", noun="length")
 RAIN_KM = ((0.0, 0.0), (5.0, 1.00), (10.0, 1.56), (25.0, 2.77), (50.0, 4.29), (100.0, 6.64))
 """Rain [mm/h] and extinction of light [1/km]: drops of Marshall and Palmer, efficiency 2."""
@@ -75,16 +76,36 @@ class Weather:
     """
 
     name: str
-    weight: float = setting(1.0, WEIGHT, "Part of this weather in the weighted mean")
-    rain_mm_h: float = setting(0.0, RAIN, "Rate of rain [mm/h]")
-    snow_mm_h: float = setting(0.0, SNOW, "Rate of snow, as water [mm/h]")
-    fog_mor_m: float | None = setting(None, MOR, "Visibility in fog: meteorological range [m]")
-    night: bool = setting(False, FLAG, "Cameras see what headlamps light")
-    lit_m: float | None = setting(None, MOR, "At night, how far objects are lit [m]")
+    weight: float = setting(1.0, WEIGHT, WEIGHED, Panel("weight", "Weight"), scored=True)
+    rain_mm_h: float = setting(
+        0.0, RAIN, "Rate of rain", Panel("rain_mm_h", "Rain mm/h"), scored=True
+    )
+    snow_mm_h: float = setting(
+        0.0, SNOW, "Rate of snow, as water", Panel("snow_mm_h", "Snow mm/h"), scored=True
+    )
+    fog_mor_m: float | None = setting(
+        None,
+        MOR,
+        "Visibility in fog: the meteorological optical range",
+        Panel("fog_mor_m", "Visibility in Fog", zero="no fog"),
+        scored=True,
+    )
+    night: bool = setting(
+        False, FLAG, "Cameras see what headlamps light", Panel("night", "Night"), scored=True
+    )
+    lit_m: float | None = setting(
+        None,
+        MOR,
+        "How far objects are lit at night",
+        Panel("lit_m", "Lit", zero="as two headlamps of UN R112 light"),
+        scored=True,
+    )
     reflectivity: float = setting(
         1.0,
         Number(0.0, 10.0, above=True),
         "Reflectivity of targets, relative to that for which sensors state their range",
+        Panel("reflectivity", "Reflectivity", min=0.001),
+        scored=True,
     )
 
     def __post_init__(self) -> None:

@@ -19,18 +19,12 @@ def read_goals(table: Table) -> Goals:
     """Return the goals in the table `[optimize]`; an `InputError` names the key in the file."""
     stop, front = table.table("stop"), table.table("front")
     stops, points = read_settings(stop, Stop), read_settings(front, Front)
-    objectives = front.texts("objectives", ())
     stop.finish()
     front.finish()
     starts = [_read_start(each) for each in table.tables("start")]
     with table.naming():
-        return Goals(
-            Stop(**stops),
-            table.texts("fixed", ()),
-            starts,
-            Front(objectives, **points),
-            **read_settings(table, Goals),
-        )
+        goals = read_settings(table, Goals)
+        return Goals(Stop(**stops), starts=starts, front=Front(**points), **goals)
 
 
 def _read_start(table: Table) -> Start:
@@ -50,13 +44,13 @@ def _read_start(table: Table) -> Start:
 def goals_tables(goals: Goals) -> dict[str, Any]:
     """Return the keys that `read_goals` reads; None for those at their default."""
     default = Goals()
-    front = {"objectives": list(goals.front.objectives), **settings_table(goals.front)}
+    own = settings_table(goals)
     return {
         "stop": None if goals.stop == default.stop else settings_table(goals.stop),
-        "fixed": list(goals.fixed) or None,
+        "fixed": own.pop("fixed") or None,
         "start": [_start_table(each) for each in goals.starts] or None,
-        "front": None if goals.front == default.front else front,
-        **settings_table(goals),
+        "front": None if goals.front == default.front else settings_table(goals.front),
+        **own,
     }
 
 

@@ -34,7 +34,7 @@ def read_model(curves: Table, fusion: Table) -> PerceptionModel:
     default = PerceptionModel()
     tables = {kind: curves.table(kind) for kind in KINDS}
     objects = {kind: _read_objects(table.table(CLASSES)) for kind, table in tables.items()}
-    own = {kind: _read_curve(table, default.curve(kind)) for kind, table in tables.items()}
+    own = {kind: read_curve(table, default.curve(kind)) for kind, table in tables.items()}
     blind = fusion.text("blind", default.blind, BLIND_RULES)
     chosen = read_settings(curves, PerceptionModel)["model"]
     model = PerceptionModel(blind, objects=objects, model=chosen, **own)
@@ -47,26 +47,25 @@ def curves_table(model: PerceptionModel) -> dict[str, Any]:
     """Return the table [ap]: all curves by kind, and the model and classes that are not default."""
     named = settings_table(model) if model.model != PerceptionModel().model else {}
     return named | {
-        kind: {"a": c.a, "b": c.b, CLASSES: _objects_table(model, kind)}
-        for kind, c in model.curves.items()
+        kind: {**settings_table(curve), CLASSES: _objects_table(model, kind)}
+        for kind, curve in model.curves.items()
     }
 
 
 def _read_objects(table: Table) -> dict[str, ApCurve]:
     found = {}
     for name in table.names:
-        own = table.table(name)
-        found[name] = ApCurve(own.number("a"), own.number("b"))
-        own.finish()
+        found[name] = read_curve(table.table(name))
     return found
 
 
 def _objects_table(model: PerceptionModel, kind: str) -> dict[str, Any] | None:
     own = model.objects.get(kind, {})
-    return {name: {"a": c.a, "b": c.b} for name, c in own.items()} or None
+    return {name: settings_table(curve) for name, curve in own.items()} or None
 
 
-def _read_curve(table: Table, default: ApCurve) -> ApCurve:
-    curve = ApCurve(table.number("a", default.a), table.number("b", default.b))
+def read_curve(table: Table, default: ApCurve | None = None) -> ApCurve:
+    """Return an AP curve from its table; keys that are absent are those of the default."""
+    curve = ApCurve(**read_settings(table, ApCurve, default=default))
     table.finish()
     return curve

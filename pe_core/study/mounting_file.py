@@ -49,7 +49,7 @@ def mounting_tables(mounting: Mounting) -> dict[str, Any]:
     limits = mounting.constraints
     return {
         **settings_table(limits),
-        "no_go": [_no_go_table(area) for area in limits.no_go] or None,
+        "no_go": [{"name": area.name} | settings_table(area) for area in limits.no_go] or None,
         "mount": [_mount_table(*mount) for mount in mounting.mounts.items()] or None,
         "pair": [{"sensors": list(names)} for names in mounting.pairs] or None,
         "group": [{"sensors": list(names)} for names in mounting.groups] or None,
@@ -95,12 +95,11 @@ def _read_mount(table: Table, folder: Path) -> tuple[str, AnyMount]:
 def _read_surface(table: Table, folder: Path) -> SurfaceMount:
     file = table.text("area", None, rule=A_PATH)
     parts = table.texts("parts", ()) if file else table.texts("parts")
-    standoff = table.number("standoff", 0.0)
-    orientation = table.text("orientation", "upright")
+    own = read_settings(table, SurfaceMount)
     if file is None:
-        return _made(table, lambda: SurfaceMount(parts, standoff, orientation))
+        return _made(table, lambda: SurfaceMount(parts, **own))
     area = _read_area(table, folder, file, parts)
-    return _made(table, lambda: SurfaceMount((), standoff, orientation, area))
+    return _made(table, lambda: SurfaceMount((), **own, area=area))
 
 
 def _read_area(table: Table, folder: Path, file: str, parts: tuple[str, ...]) -> MountArea:
@@ -139,9 +138,9 @@ def _read_constraints(table: Table) -> Constraints:
 
 def _read_no_go(table: Table) -> NoGo:
     name = table.text("name", rule=A_NAME)
-    sides = [table.numbers(axis, 2, None) for axis in "xyz"]
+    sides = read_settings(table, NoGo)
     table.finish()
-    return _made(table, lambda: NoGo(name, *sides))  # type: ignore[arg-type]  # checked when made
+    return _made(table, lambda: NoGo(name, **sides))
 
 
 def _made(table: Table, make: Callable[[], T]) -> T:
@@ -154,19 +153,9 @@ def _made(table: Table, make: Callable[[], T]) -> T:
         raise table.error(error.field, error.expected, error.found) from None
 
 
-def _no_go_table(area: NoGo) -> dict[str, Any]:
-    sides = {axis: getattr(area, axis) for axis in "xyz"}
-    return {"name": area.name} | {a: None if s is None else list(s) for a, s in sides.items()}
-
-
 def _mount_table(name: str, mount: AnyMount) -> dict[str, Any]:
     if isinstance(mount, SurfaceMount):
-        return {
-            "name": name,
-            **_faces_table(mount),
-            "standoff": mount.standoff,
-            "orientation": mount.orientation,
-        }
+        return {"name": name, **_faces_table(mount), **settings_table(mount)}
     return {"name": name, "slot": [_slot_table(slot) for slot in mount.slots]}
 
 

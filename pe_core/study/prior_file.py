@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ..base.plugins import shipped
+from ..base.setting_file import read_settings, settings_table
 from ..base.table_reader import REQUIRED, Table
 from ..base.values import A_NAME, A_PATH, vector
 from ..prior.boxes import ORIGIN
@@ -35,7 +35,7 @@ def read_prior(table: Table, folder: Path) -> Prior:
 
 def prior_table(prior: Prior) -> dict[str, Any]:
     """Return the table of a prior; keys that the file leaves out are None."""
-    focus = [_focus_table(f) for f in prior.focus]
+    focus = [settings_table(each) for each in prior.focus]
     if prior.boxes is not None:
         named, origin = prior.boxes.file or BOXES, prior.boxes.origin
         where = {FROM_BOXES: named, "origin": None if origin is None else list(origin)}
@@ -129,17 +129,6 @@ def _names(shipped: Sequence[ObjectClass], classes: Sequence[ObjectClass]) -> li
 
 
 def _read_focus(table: Table) -> Focus:
-    everywhere = (-math.inf, math.inf)
-    x, y = (table.numbers(a, 2, everywhere) for a in "xy")
-    focus = Focus(table.number("factor"), (x[0], x[1]), (y[0], y[1]), table.texts("classes", None))
+    focus = Focus(**read_settings(table, Focus))
     table.finish()
     return focus
-
-
-def _focus_table(focus: Focus) -> dict[str, Any]:
-    return {
-        "factor": focus.factor,
-        "x": list(focus.x),
-        "y": list(focus.y),
-        "classes": None if focus.classes is None else list(focus.classes),
-    }

@@ -14,12 +14,12 @@ from functools import cache
 from importlib import resources
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TypeVar
 
 from ..base.degrees import as_in_file, degrees_in_file
 from ..base.errors import InputError, shown
 from ..base.setting import settings_of
-from ..base.setting_file import read_settings, settings_table
+from ..base.setting_file import changed_settings, read_settings
 from ..base.table_reader import Table
 from ..base.values import A_NAME, listed
 from ..scoring import requirements as room
@@ -31,6 +31,9 @@ SHAPES = ("x", "y", "polygon", "ring", "path", "spots")
 TABLES = ("zone", "criterion", "under")
 CUSTOM = "own"
 MAX_REQUIREMENTS = 200
+OF_FIRST = ("of", *(key for key in settings_of(Criterion) if key != "of"))
+"""The order of keys is part of a study's fingerprint."""
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -165,12 +168,10 @@ def _merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
 def _read(table: Table, identifier: str | None, folder: Path) -> Requirement:
     table.raw("preset", None)
     name = table.text("name", rule=A_NAME)
-    zone = _read_zone(table.table("zone"))
-    criterion = _read_criterion(table.table("criterion"))
-    own = table.table("under")
-    named: dict[str, Any] = {key: own.texts(key, ()) for key in ("states", "weathers")}
-    under = Under(**read_settings(own, Under), **named)
-    own.finish()
+    zone, criterion, under = (
+        _made_of(table.table(key), cls)
+        for key, cls in (("zone", Zone), ("criterion", Criterion), ("under", Under))
+    )
     headings = table.raw("headings", None)
     bodies = tuple(_with_headings(b, headings, table) for b in _read_bodies(table, folder))
     source, check = table.text("source", ""), table.text("check", "")
@@ -179,31 +180,12 @@ def _read(table: Table, identifier: str | None, folder: Path) -> Requirement:
         return Requirement(name, zone, bodies, criterion, under, identifier, source, check)
 
 
-def _read_zone(table: Table) -> Zone:
-    values: dict[str, Any] = read_settings(table, Zone)
-    for key in ("x", "y", "ring"):
-        if key in table:
-            items = listed(table.raw(key), 2)
-            if items is None or len(items) != 2:
-                raise table.error(key, "a list of two", shown(table.raw(key)))
-            values[key] = tuple(items)
-    for key in ("polygon", "path", "spots"):
-        rows = listed(table.raw(key, []))
-        if rows is None:
-            raise table.error(key, "a list of pairs [x, y]", shown(table.raw(key)))
-        values[key] = tuple(rows)
-    values["z"] = table.numbers("z", 2, (0.0, 0.0))
+def _made_of(table: Table, cls: type[T]) -> T:
+    """Return what a table declares; errors of several keys together name the table."""
+    values = read_settings(table, cls)
     table.finish()
     with table.naming():
-        return Zone(**values)
-
-
-def _read_criterion(table: Table) -> Criterion:
-    values = read_settings(table, Criterion)
-    kinds = table.texts("of", ())
-    table.finish()
-    with table.naming():
-        return Criterion(**values, of=kinds)
+        return cls(**values)
 
 
 def _read_bodies(table: Table, folder: Path) -> list[Body]:
@@ -256,7 +238,6 @@ def _with_headings(body: Body, headings: Any, table: Table) -> Body:
 
 def full_table(requirement: Requirement) -> dict[str, Any]:
     """Return all of a requirement as plain data, without what has its default."""
-    zone = requirement.zone
     table: dict[str, Any] = {
         "name": requirement.name,
         "preset": requirement.preset,
@@ -264,32 +245,11 @@ def full_table(requirement: Requirement) -> dict[str, Any]:
         "source": requirement.source or None,
         "body": _bodies_value(requirement.bodies) or None,
         "headings": _headings(requirement),
-        "zone": {
-            **{k: list(v) for k in ("x", "y", "ring") if (v := getattr(zone, k)) is not None},
-            **{
-                k: [list(xy) for xy in v]
-                for k in ("polygon", "path", "spots")
-                if (v := getattr(zone, k))
-            },
-            **({"z": list(zone.z)} if zone.z != (0.0, 0.0) else {}),
-            **_changed(zone, Zone),
-        },
-        "criterion": {
-            **({"of": list(requirement.criterion.of)} if requirement.criterion.of else {}),
-            **_changed(requirement.criterion, Criterion),
-        },
-        "under": {
-            **_changed(requirement.under, Under),
-            **{k: list(v) for k in ("states", "weathers") if (v := getattr(requirement.under, k))},
-        },
+        "zone": changed_settings(requirement.zone),
+        "criterion": changed_settings(requirement.criterion, OF_FIRST),
+        "under": changed_settings(requirement.under),
     }
     return {k: v for k, v in table.items() if v is not None and v != {}}
-
-
-def _changed(instance: Any, cls: type) -> dict[str, Any]:
-    """Return the settings that differ from their defaults."""
-    table = settings_table(instance)
-    return {k: table[k] for k, s in settings_of(cls).items() if getattr(instance, k) != s.default}
 
 
 def _bodies_value(bodies: Sequence[Body]) -> list[Any]:

@@ -153,23 +153,25 @@ def read_selection(table: Table, model: Read) -> Selection:
     choices = [_read_choice(each, model) for each in table.tables("choice")]
     own = table.table("selection")
     limits = read_settings(own, Selection)
-    kinds, currency = own.table("max_of_kind"), own.text("currency", "")
+    kinds = own.table("max_of_kind")
     counts = {kind: kinds.whole(kind, None) for kind in KINDS}
     kinds.finish()
     own.finish()
     max_of_kind = {kind: count for kind, count in counts.items() if count is not None}
     with own.naming():
-        return Selection(choices, max_of_kind=max_of_kind, currency=currency, **limits)
+        return Selection(choices, max_of_kind=max_of_kind, **limits)
 
 
 def selection_tables(
     selection: Selection, model: Callable[[SensorModel], str | dict[str, Any]]
 ) -> dict[str, Any]:
     """Return the tables that `read_selection` reads; None where there is nothing to choose."""
+    limits = settings_table(selection)
+    currency = limits.pop("currency")
     own = {
-        **settings_table(selection),
+        **limits,
         "max_of_kind": dict(selection.max_of_kind) or None,
-        "currency": selection.currency or None,
+        "currency": currency or None,
     }
     choices = [_choice_table(choice, model) for choice in selection.choices]
     has_limits = any(value is not None for value in own.values())
@@ -191,12 +193,9 @@ def _read_choice(table: Table, model: Read) -> Choice:
 def _read_option(table: Table, model: Read) -> Option:
     with table.naming():
         chosen = model(table)
-    if "price" not in table:
-        raise table.error("price", "the price of a sensor of this model", "nothing")
-    price = table.number("price")
+    price = read_settings(table, Option)
     table.finish()
-    with table.naming():
-        return Option(chosen, price)
+    return Option(chosen, **price)
 
 
 def _choice_table(
@@ -209,5 +208,5 @@ def _choice_table(
         **several,
         "mount": choice.mount,
         "optional": choice.optional,
-        "option": [{"model": model(o.model), "price": o.price} for o in choice.options],
+        "option": [{"model": model(o.model), **settings_table(o)} for o in choice.options],
     }

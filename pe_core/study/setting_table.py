@@ -6,16 +6,32 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from ..base.setting import Setting, settings_of
+from ..base.setting import REQUIRED, OneOf, Setting, Several, settings_of
 from ..base.setting_file import key_of
 from ..geometry.grids import PerceptionSpace
+from ..metric.entropy import ApCurve
+from ..prior.prior import Focus
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference
+from ..scene.vehicle_state import Motion, State
 from ..scoring.requirements import Criterion, Under, Zone
 from ..scoring.targets import TargetRule
-from ..search import Constraints, Front, Goals, Schedule, Selection, Stop, Tolerance
+from ..search import (
+    Constraints,
+    Front,
+    Goals,
+    NoGo,
+    Option,
+    Schedule,
+    Selection,
+    Stop,
+    SurfaceMount,
+    Tolerance,
+)
 from ..search.tolerance import CASES, ERRORS
 from ..sensors import PerceptionModel
+from ..sensors.weather import Weather
+from .condition_file import BODY, OF_STATE
 from .study import Search, Study
 
 
@@ -23,12 +39,14 @@ from .study import Search, Study
 class StudyTable:
     """A table of the study file, and the dataclass whose settings stand in it.
 
-    `names` are those of the settings, where the table has not all of the dataclass's.
+    `names` are those of the settings, where the table has not all of the dataclass's. Of `rows`
+    there are several in a study: each is a row, or an object, of a Blender scene, not the scene.
     """
 
     table: str
     cls: type
     names: tuple[str, ...] = ()
+    rows: bool = False
 
     @property
     def settings(self) -> list[Setting]:
@@ -53,9 +71,18 @@ SECTIONS = (
     StudyTable("optimize.stop", Stop),
     StudyTable("optimize.front", Front),
     StudyTable("selection", Selection),
-    StudyTable("requirement.zone", Zone),
-    StudyTable("requirement.criterion", Criterion),
-    StudyTable("requirement.under", Under),
+    StudyTable("optimize.mount", SurfaceMount, rows=True),
+    StudyTable("optimize.no_go", NoGo, rows=True),
+    StudyTable("choice.option", Option, rows=True),
+    StudyTable("prior.focus", Focus, rows=True),
+    StudyTable("ap.KIND", ApCurve, rows=True),
+    StudyTable("requirement.zone", Zone, rows=True),
+    StudyTable("requirement.criterion", Criterion, rows=True),
+    StudyTable("requirement.under", Under, rows=True),
+    StudyTable("weather", Weather, rows=True),
+    StudyTable("state", State, OF_STATE, rows=True),
+    StudyTable("state.body", State, BODY, rows=True),
+    StudyTable("state.move", Motion, rows=True),
 )
 
 
@@ -66,10 +93,10 @@ class Key(NamedTuple):
     setting: Setting
 
 
-def setting_keys() -> Iterator[Key]:
-    """Yield all settings by their key in the file: ``optimize.seed``."""
+def setting_keys(*, of_scene: bool = False) -> Iterator[Key]:
+    """Yield settings by their key in the file: ``optimize.seed``; all, or those of a scene."""
     for section in SECTIONS:
-        for setting in section.settings:
+        for setting in () if of_scene and section.rows else section.settings:
             yield Key(".".join(filter(None, (section.table, key_of(setting.name)))), setting)
 
 
@@ -77,4 +104,20 @@ def panel_default(setting: Setting) -> Any:
     """Return the value that a setting has in a new scene, as the panel shows it."""
     assert setting.panel is not None
     default = setting.default if setting.panel.default is None else setting.panel.default
+    if default is REQUIRED:
+        return None
     return default if default is not None else 0
+
+
+def is_switch(setting: Setting) -> bool:
+    """Whether an optional text is shown as a switch: it has one value, or is absent."""
+    return setting.is_optional and isinstance(setting.rule, OneOf) and len(setting.rule.among) == 1
+
+
+def menu_of(setting: Setting) -> tuple[tuple[str, str, str], ...]:
+    """Return text, label and meaning of each entry of a setting's menu."""
+    panel, rule = setting.panel, setting.rule
+    assert panel is not None and isinstance(rule, OneOf | Several)
+    rows = zip(rule.among, panel.menu, strict=True)
+    absent = () if panel.absent is None else (panel.absent,)
+    return (*absent, *((text, label, about) for text, (label, about) in rows))

@@ -124,11 +124,26 @@ class Search:
     )
     tolerance: Tolerance = field(default_factory=Tolerance)
     requirements: str | None = setting(
-        None, OneOf(("keep",)), "Placements that meet the study's requirements come first"
+        None,
+        OneOf(("keep",)),
+        "Placements that meet all requirements are better than those that do not; without it, a "
+        "search minimizes the entropy alone",
+        Panel("keep_requirements", "Keep in Searches"),
     )
     goals: Goals = field(default_factory=Goals)
     conditions: str | None = setting(
-        None, OneOf(("mean", "worst")), "Minimise the mean, or the worst, over states and weathers"
+        None,
+        OneOf(("mean", "worst")),
+        "What a search minimizes where there are states or weathers",
+        Panel(
+            "search_conditions",
+            "Search For",
+            absent=("none", "As Drawn", "A search minimizes the score as drawn, in clear air"),
+            menu=(
+                ("Mean of Conditions", "A search minimizes the mean by weights"),
+                ("Worst Condition", "A search minimizes the worst of the conditions"),
+            ),
+        ),
     )
     objective: str = OBJECTIVE
 

@@ -17,7 +17,6 @@ from ..base.table_reader import Table
 from ..base.values import A_NAME, A_PATH, ANY
 from ..geometry.grids import PerceptionSpace
 from ..geometry.poses import Pose
-from ..metric.entropy import ApCurve
 from ..scene.body_shape import require_vehicle_size
 from ..scene.mesh import MeshAxes
 from ..scene.rig import Rig, Sensor, SensorModel
@@ -26,7 +25,7 @@ from ..scene.vehicle_description import Reference
 from ..search import PAPER_FREE, checked_axes
 from .catalog_lookup import same_model
 from .condition_file import condition_tables, read_conditions
-from .metric_file import curves_table, read_model, read_targets, targets_table
+from .metric_file import curves_table, read_curve, read_model, read_targets, targets_table
 from .mounting_file import areas_of
 from .passthrough import passthrough_table, read_passthrough
 from .prior_file import prior_table, read_prior
@@ -204,19 +203,10 @@ def _read_sensor(table: Table, folder: Path) -> Sensor:
     with table.naming():
         pose = Pose.from_degrees(position, rotation)
         intrinsics = _read_intrinsics(table, name, folder)
-    curve, color = _own_curve(table), table.text("color", None)
+    curve = read_curve(table.table("ap")) if "ap" in table else None
+    color = table.text("color", None)
     with table.naming():
         return Sensor(name, intrinsics, pose, fusion, curve, color)
-
-
-def _own_curve(table: Table) -> ApCurve | None:
-    """Return a sensor's own AP curve; None without."""
-    if "ap" not in table:
-        return None
-    own = table.table("ap")
-    curve = ApCurve(own.number("a"), own.number("b"))
-    own.finish()
-    return curve
 
 
 def _read_intrinsics(table: Table, sensor: str, folder: Path) -> SensorModel:
@@ -259,7 +249,7 @@ def _sensor_table(sensor: Sensor, search: Search) -> dict[str, Any]:
         "position": list(sensor.pose.position),
         "rotation": list(sensor.pose.rotation_deg),
         "fusion": sensor.fusion,
-        "ap": None if sensor.curve is None else {"a": sensor.curve.a, "b": sensor.curve.b},
+        "ap": None if sensor.curve is None else settings_table(sensor.curve),
         "color": sensor.color,
         "free": list(search.free.get(sensor.name, PAPER_FREE)),
         "bounds": limits or None,

@@ -142,7 +142,7 @@ def test_a_saved_study_is_the_same_study_to_the_bit(write, tmp_path, text):
         ),
         ("[space]\n", r"sensor: expected at least one \[\[sensor\]\]"),
         (MINIMAL + MINIMAL, "'roof'"),
-        (MINIMAL + "[space]\nx = [3, 3]\n", "space: x: expected two finite numbers"),
+        (MINIMAL + "[space]\nx = [3, 3]\n", "space.x: expected two finite numbers"),
         (MINIMAL + "[space]\ninterval = 0.3\n", "space: interval: expected a length that divides"),
         (MINIMAL + '[prior]\nmodel = "city"\n', "prior.model: expected one of road, highway"),
         (MINIMAL + "[[prior.focus]]\nx = [0, 1]\n", r"prior.focus\[0\].factor: expected a value"),

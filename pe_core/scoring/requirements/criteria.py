@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from ...base.errors import InputError, shown
-from ...base.setting import FLAG, check_settings, setting, settings_of
+from ...base.setting import FLAG, NAMES, Panel, check_settings, setting, settings_of
 from ...base.values import A_NAME, A_TEXT, SHARE, Number, Whole
 from ...scene.rig import Rig
 from ...sensors import KINDS, kind_named
@@ -65,47 +65,78 @@ class Criterion:
         When a value is none.
     """
 
-    sensors: int = setting(1, COUNT, "At least so many sensors see the body")
-    kinds: int = setting(1, COUNT, "These sensors are of at least so many kinds")
-    of: tuple[str, ...] = ()
-    points: int = setting(1, COUNT, "A LiDAR sees a body with at least so many points on it")
+    sensors: int = setting(
+        1, COUNT, "At least so many sensors see the body", Panel("sensors", "Sensors", soft_max=6)
+    )
+    kinds: int = setting(
+        1,
+        COUNT,
+        "These sensors are of at least so many kinds",
+        Panel("kinds", "Kinds", soft_max=3),
+    )
+    of: tuple[str, ...] = setting((), NAMES, "Only these kinds of sensors count; by default all")
+    points: int = setting(
+        1,
+        COUNT,
+        "A LiDAR sees a body with at least so many points on it",
+        Panel("points", "Points"),
+    )
     pixels: float = setting(
         1.0,
         Number(1e-6, 1e9, unit="px"),
         "A camera sees a body with at least so many pixels of it",
+        Panel("pixels", "Pixels"),
     )
     pixels_high: float | None = setting(
         None,
         Number(0.0, 1e6, above=True, unit="px"),
         "A camera sees a body with at least so many pixels in height",
+        Panel("pixels_high", "Pixels in Height"),
     )
     per_degree: float | None = setting(
         None,
         Number(0.0, 1e4, above=True),
         "A sensor sees a body with at least so many beams or pixels on a degree",
+        Panel("per_degree", "Per Degree"),
     )
     share: float | None = setting(
-        None, POSITIVE_SHARE, "At least this share of the body is visible"
+        None,
+        POSITIVE_SHARE,
+        "At least this share of the body is visible",
+        Panel("share", "Visible Share"),
     )
     ap: float | None = setting(
-        None, SHARE, "AP of the body's class is at least this, all sensors fused"
+        None,
+        SHARE,
+        "AP of the body's class is at least this, all sensors fused",
+        Panel("ap", "AP"),
     )
     zone_share: float = setting(
-        1.0, POSITIVE_SHARE, "For at least this share of the zone's samples"
+        1.0,
+        POSITIVE_SHARE,
+        "For at least this share of the zone's samples",
+        Panel("zone_share", "Share of Zone"),
     )
     blind_m2: float | None = setting(
-        None, AREA, "At most so many square metres of the zone's ground are blind"
+        None,
+        AREA,
+        "At most so many square metres of the zone's ground are blind",
+        Panel("blind_m2", "Blind Area"),
     )
     blind_out: float | None = setting(
-        None, DISTANCE, "Blind ground in the zone is at most this far from the vehicle"
+        None,
+        DISTANCE,
+        "Blind ground in the zone is at most this far from the vehicle",
+        Panel("blind_out", "Blind At Most Out"),
     )
-    blind_height: float = setting(0.0, DISTANCE, "Blind ground is that of what is so tall")
+    blind_height: float = setting(
+        0.0, DISTANCE, "Blind ground is that of what is so tall", Panel("blind_height", "Height")
+    )
 
     def __post_init__(self) -> None:
         check_settings(self, "criterion")
         for kind in self.of:
             kind_named(kind, "criterion", "of")
-        object.__setattr__(self, "of", tuple(self.of))
         changed = [k for k in OF_BODIES if getattr(self, k) != settings_of(Criterion)[k].default]
         if self.is_of_ground and changed:
             expected = "no key of bodies: blind_m2 and blind_out are of ground"
@@ -172,16 +203,33 @@ class Under:
         Also in these states and weathers of the study, by name; "*": in all.
     """
 
-    one_lost: bool = setting(False, FLAG, "Also with any one sensor lost")
-    mounting: bool = setting(False, FLAG, "Also with the mounting errors of the tolerance")
-    states: tuple[str, ...] = ()
-    weathers: tuple[str, ...] = ()
+    one_lost: bool = setting(
+        False,
+        FLAG,
+        "It has to be met without any one of the sensors, too",
+        Panel("one_lost", "One Sensor Lost"),
+    )
+    mounting: bool = setting(
+        False,
+        FLAG,
+        "It has to be met with the mounting errors of the search, too",
+        Panel("mounting", "Mounting Errors"),
+    )
+    states: tuple[str, ...] = setting(
+        (),
+        NAMES,
+        'It has to be met in these states of the vehicle, too; "*": in all',
+        Panel("states", "States"),
+    )
+    weathers: tuple[str, ...] = setting(
+        (),
+        NAMES,
+        'It has to be met in these weathers, too; "*": in all',
+        Panel("weathers", "Weathers"),
+    )
 
     def __post_init__(self) -> None:
         check_settings(self, "under")
-        for key in ("states", "weathers"):
-            names = (A_NAME.checked("under", key, name) for name in getattr(self, key))
-            object.__setattr__(self, key, tuple(names))
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,8 @@ import numpy as np
 
 from ...base.arrays import Floats
 from ...base.errors import InputError, shown
-from ...base.setting import OneOf, check_settings, setting
-from ...base.values import Number, listed, pair
+from ...base.setting import OneOf, Pair, Panel, check_settings, setting
+from ...base.values import Number, listed
 from ...scene.vehicle import Vehicle
 from ...scene.vehicle_description import Reference
 from .planes import DECIMALS, SIDES, Place, VehiclePlanes, parsed
@@ -41,7 +41,38 @@ GROWN_M = 0.6
 INSIDE_M = 1e-6
 """A sample this far outside of a zone is on its edge: rounding."""
 WHO = "zone"
+SIDES_MENU = (("Right", "As in countries that drive on the right"), ("Left", "As in the UK"))
 SHAPES = ("x and y", "polygon", "ring", "path", "spots")
+
+
+@dataclass(frozen=True, slots=True)
+class PlacePairRule:
+    """Two places along one axis: numbers [m], or planes of the vehicle with offsets."""
+
+    axis: int
+    words = "two places"
+
+    def checked(self, source: str, field: str, value: Any) -> PlacePair:
+        """Return the value, or raise `InputError`."""
+        return _places((value,), (self.axis, self.axis), source, field)[0]
+
+
+ALONG, ACROSS = PlacePairRule(0), PlacePairRule(1)
+
+
+@dataclass(frozen=True, slots=True)
+class CornersRule:
+    """A list of corners [x, y], each two places; none, or at least so many."""
+
+    fewest: int
+    words = "list of places [x, y]"
+
+    def checked(self, source: str, field: str, value: Any) -> tuple[PlacePair, ...]:
+        """Return the value, or raise `InputError`."""
+        corners = _places(value, (0, 1), source, field)
+        if corners and len(corners) < self.fewest:
+            raise InputError(source, field, f"at least {self.fewest} corners", len(corners))
+        return corners
 
 
 @dataclass(frozen=True)
@@ -77,36 +108,43 @@ class Zone:
         When it has no shape or several, or a value is none.
     """
 
-    x: PlacePair | None = None
-    y: PlacePair | None = None
-    polygon: tuple[PlacePair, ...] = ()
-    ring: tuple[float, float] | None = None
-    path: tuple[PlacePair, ...] = ()
-    spots: tuple[PlacePair, ...] = ()
-    z: tuple[float, float] = (0.0, 0.0)
-    step: float = setting(STEP_M, STEP, "Largest distance of two samples of the zone")
-    below: float | None = setting(
-        None, HEIGHT, "What of the vehicle is higher than this does not count for its planes"
+    x: PlacePair | None = setting(None, ALONG, "A rectangle: from and to along x")
+    y: PlacePair | None = setting(None, ACROSS, "A rectangle: from and to along y")
+    polygon: tuple[PlacePair, ...] = setting((), CornersRule(3), "Corners of an area")
+    ring: tuple[float, float] | None = setting(
+        None, Pair(RING), "All ground at these distances from the vehicle's outline"
     )
-    near_side: str = setting("right", OneOf(SIDES), "The side of the kerb")
+    path: tuple[PlacePair, ...] = setting(
+        (), CornersRule(2), "Corners of a line along which a body moves"
+    )
+    spots: tuple[PlacePair, ...] = setting((), CornersRule(1), "Single places")
+    z: tuple[float, float] = setting(
+        (0.0, 0.0), Pair(HEIGHT, same=True), "Heights of the foot of the body above the ground"
+    )
+    step: float = setting(
+        STEP_M,
+        STEP,
+        "Largest distance of two samples of the zone",
+        Panel("step", "Step", soft_max=2.0),
+    )
+    below: float | None = setting(
+        None,
+        HEIGHT,
+        "What of the vehicle is higher than this does not count for its planes",
+        Panel("below", "Planes Below"),
+    )
+    near_side: str = setting(
+        "right",
+        OneOf(SIDES[::-1]),
+        "The side of the kerb",
+        Panel("near_side", "Near Side", menu=SIDES_MENU),
+    )
     eyes: float | None = setting(
         None, Number(cap=1e3, unit="m"), "The x of the driver's eyes, for the plane eyes"
     )
 
     def __post_init__(self) -> None:
         check_settings(self, WHO)
-        put = object.__setattr__
-        for axis, name in enumerate("xy"):
-            if (value := getattr(self, name)) is not None:
-                put(self, name, _places((value,), (axis, axis), WHO, name)[0])
-        for name, fewest in (("polygon", 3), ("path", 2), ("spots", 1)):
-            corners = _places(getattr(self, name), (0, 1), WHO, name)
-            if corners and len(corners) < fewest:
-                raise InputError(WHO, name, f"at least {fewest} corners", len(corners))
-            put(self, name, corners)
-        if self.ring is not None:
-            put(self, "ring", pair(WHO, "ring", self.ring, RING))
-        put(self, "z", pair(WHO, "z", self.z, HEIGHT, same=True))
         if (self.x is None) != (self.y is None):
             raise InputError(WHO, "x, y", "both, or neither", "one of them")
         shapes = [self.x is not None, *map(bool, (self.polygon, self.ring, self.path, self.spots))]

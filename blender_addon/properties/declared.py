@@ -1,0 +1,122 @@
+"""Blender properties of settings that the engine declares: name, tooltip, range, unit and menu."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from typing import Any, cast
+
+from bpy.props import (
+    BoolProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    StringProperty,
+)
+
+from ..engine import studies
+from .callbacks import changed, redraw
+
+LARGEST_INT = 2**31 - 1
+"""The largest whole number that a property can hold."""
+DRAWN = "reference."
+"""Settings whose keys begin so change the picture in the 3D view, and no score."""
+UNITS = {"m": "LENGTH", "m2": "AREA"}
+More = Callable[[studies.Setting], dict[str, Any]]
+
+
+def property_of(setting: studies.Setting, **more: Any) -> Any:
+    """Return the property that a setting is stored in; `more` goes before what is declared."""
+    panel, rule = setting.panel, cast(Any, setting.rule)
+    assert panel is not None  # asked for those alone that have one
+    options: dict[str, Any] = {
+        "name": panel.label,
+        "description": setting.tooltip,
+        "default": studies.panel_default(setting),
+        "soft_max": panel.soft_max,
+        "precision": panel.precision,
+        "step": panel.step,
+        "update": changed if setting.scored else None,
+    }
+    kind, own = _kind_of(setting, rule, panel)
+    options |= own | more
+    if "get" in options:  # of a view of another text: its default is there
+        options |= {"default": None, "update": None}
+    return kind(**{key: value for key, value in options.items() if value is not None})
+
+
+def _kind_of(
+    setting: studies.Setting, rule: Any, panel: studies.Panel
+) -> tuple[Any, dict[str, Any]]:
+    """Return the kind of property, and what its rule says of it."""
+    if isinstance(rule, studies.Toggle) or studies.is_switch(setting):
+        return BoolProperty, {"default": bool(studies.panel_default(setting))}
+    if isinstance(rule, studies.OneOf):
+        default = {"default": panel.absent[0]} if panel.absent else {}
+        return EnumProperty, {"items": studies.menu_of(setting), **default}
+    if isinstance(rule, studies.Several):
+        items = [
+            (text, label, about, "NONE", 1 << number)
+            for number, (text, label, about) in enumerate(studies.menu_of(setting))
+        ]
+        return EnumProperty, {"items": items, "options": {"ENUM_FLAG"}, "default": None}
+    if isinstance(rule, studies.Name):
+        return StringProperty, {"maxlen": rule.max_length}
+    if isinstance(rule, studies.Texts):
+        return StringProperty, {"default": ""}
+    if isinstance(rule, studies.Pair):
+        return FloatVectorProperty, {"size": 2, "unit": UNITS.get(rule.rule.unit)}
+    low = 0 if setting.is_optional else rule.minimum
+    high = rule.maximum if panel.max is None else panel.max
+    low = low if panel.min is None else panel.min
+    if isinstance(rule, studies.Whole):
+        high = LARGEST_INT if high is None else min(high, LARGEST_INT)
+        return IntProperty, {"min": low, "max": high}
+    low, high = (end if math.isfinite(end) else None for end in (low, high))
+    return FloatProperty, {"min": low, "max": high, "unit": UNITS.get(rule.unit)}
+
+
+def group_of(cls: Any, names: Iterable[str] = (), *, prefix: str = "", **more: Any) -> Any:
+    """Return a mixin of a property group: all settings of a dataclass that the panel shows.
+
+    Parameters
+    ----------
+    cls : dataclass
+    names : iterable of str
+        Only these settings; all by default.
+    prefix : str
+        Before the properties' names.
+    **more
+        As of `property_of`, for each of them.
+    """
+    declared = studies.settings_of(cls)
+    chosen = [declared[name] for name in names or declared]
+    return mixin(
+        cls.__name__,
+        {
+            f"{prefix}{each.panel.property}": property_of(each, **more)
+            for each in chosen
+            if each.panel is not None
+        },
+    )
+
+
+def scene_group() -> Any:
+    """Return a mixin of the scene's settings: all that the engine declares for the whole study."""
+    return mixin(
+        "Study",
+        {
+            each.panel.property: property_of(
+                each, **({"update": redraw} if key.startswith(DRAWN) else {})
+            )
+            for key, each in studies.setting_keys(of_scene=True)
+            if each.panel is not None
+        },
+    )
+
+
+def mixin(name: str, properties: dict[str, Any]) -> Any:
+    """Return a class with properties, which a registered property group may inherit."""
+    content = {"__doc__": f"Declared settings: {name}.", "__module__": __name__}
+    return type(f"{name}Settings", (), {**content, "__annotations__": properties})

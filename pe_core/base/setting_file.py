@@ -71,14 +71,10 @@ def _read(table: Table, setting: Setting, default: Any) -> Any:
     if key not in table:
         return value
     source, field = table.source, table.field(key)
-    if _is_angle(setting):
-        value = _radians(source, field, value)
-    return setting.rule.checked(source, field, value)
-
-
-def _radians(source: str, field: str, value: Any) -> Any:
-    """Return degrees as radians: a number, or each number of a list."""
-    items = listed(value)
-    if items is not None:
-        return [_radians(source, field, item) for item in items]
-    return math.radians(ANY.checked(source, field, value))
+    if not _is_angle(setting):
+        return setting.rule.checked(source, field, value)
+    items = listed(value, 3) if isinstance(setting.rule, Triple) else None
+    if items is None:
+        return setting.rule.checked(source, field, math.radians(ANY.checked(source, field, value)))
+    radians = [math.radians(ANY.checked(source, field, item)) for item in items]
+    return setting.rule.checked(source, field, radians)

@@ -166,7 +166,7 @@ BAD = {
     "NaN": (
         [sensor()],
         {"mount": [AREA | {"standoff": math.nan}]},
-        "optimize.mount[0].standoff: expected a number, found nan",
+        "optimize.mount[0].standoff: expected a number from 0 to 10 m, found nan",
     ),
     "a negative stand-off": (
         [sensor()],
@@ -197,7 +197,7 @@ BAD = {
     "a no-go area of NaN": (
         [sensor()],
         {"no_go": [{"name": "hatch", "x": [math.nan, 1]}]},
-        "optimize.no_go[0].x: expected a list of 2 numbers, found [nan, 1]",
+        "optimize.no_go[0].x: expected two numbers, low before high, found [nan, 1]",
     ),
     "a no-go area everywhere": (
         [sensor()],

@@ -1,14 +1,16 @@
 """Settings that are declared once: their defaults, their keys, and the page that lists them."""
 
 import importlib.util
+import sys
+from dataclasses import is_dataclass
 from pathlib import Path
 
 import pytest
 
 import pe_core as pe
 from pe_core.base.setting import REQUIRED, check_settings, settings_of
-from pe_core.search import Front, Goals, Stop
 from pe_core.study import setting_keys
+from pe_core.study.setting_table import SECTIONS
 
 ROOT = Path(__file__).resolve().parents[2]
 SETTINGS = dict(setting_keys())
@@ -35,20 +37,23 @@ def test_a_default_is_one_that_its_rule_allows(key):
 
 
 def test_properties_and_keys_are_unique_and_texts_are_sentences():
-    properties = [s.panel.property for s in SETTINGS.values() if s.panel is not None]
-    assert len(properties) == len(set(properties)) and len(SETTINGS) == len(list(setting_keys()))
+    of_scene = [s.panel.property for _, s in setting_keys(of_scene=True) if s.panel is not None]
+    assert len(of_scene) == len(set(of_scene)) and len(SETTINGS) == len(list(setting_keys()))
     for setting in SETTINGS.values():
         assert setting.text[0].isupper() and not setting.text.endswith(".")
 
 
 def test_every_declared_setting_is_a_key_of_the_study_file():
     """A setting of a dataclass that no section lists would be declared for nothing."""
-    classes = (pe.Study, pe.Search, pe.Schedule, pe.Constraints, pe.Tolerance, pe.Selection)
-    classes += (pe.PerceptionSpace, pe.TargetRule, pe.Reference, pe.Vehicle)
-    classes += (Goals, Stop, Front, pe.PerceptionModel)
-    classes += (pe.requirements.Zone, pe.requirements.Criterion, pe.requirements.Under)
-    declared = sum(len(settings_of(cls)) for cls in classes)
-    assert declared == len(SETTINGS)
+    classes = {
+        cls
+        for name, module in sys.modules.items()
+        if name.startswith("pe_core.")
+        for cls in vars(module).values()
+        if isinstance(cls, type) and is_dataclass(cls) and settings_of(cls)
+    }
+    assert {section.cls for section in SECTIONS} == classes
+    assert sum(len(settings_of(cls)) for cls in classes) == len(SETTINGS)
 
 
 def test_an_absent_setting_is_not_checked_and_a_wrong_one_names_its_field():

@@ -147,7 +147,7 @@ def test_a_saved_study_is_the_same_study_to_the_bit(write, tmp_path, text):
         (MINIMAL + '[prior]\nmodel = "city"\n', "prior.model: expected one of road, highway"),
         (MINIMAL + "[[prior.focus]]\nx = [0, 1]\n", r"prior.focus\[0\].factor: expected a value"),
         (MINIMAL + '[vehicle]\nmesh = "none.obj"\n', "none.obj: file: expected an existing file"),
-        (MINIMAL + "[ap.lidar]\na = 0\n", "AP curve: a: expected a slope >= 1e-12"),
+        (MINIMAL + "[ap.lidar]\na = 0\n", "ap.lidar.a: expected a slope >= 1e-12"),
         (MINIMAL + '[fusion]\nblind = "maybe"\n', "fusion.blind: expected one of floor, literal"),
         (MINIMAL + 'free = ["up"]\n', r"sensor\[0\].free: expected some of x, y, z.*'up'"),
         (MINIMAL + "bounds = {z = [2, 3]}\n", "bounds of z: expected bounds around the start, 1.8"),

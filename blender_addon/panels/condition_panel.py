@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from .layout import Tab, columns, draw_properties, draw_sentence
-
-OF_WEATHER = ("weight", "rain_mm_h", "snow_mm_h", "fog_mor_m", "reflectivity", "night")
+from .layout import Tab, columns, draw_declared, draw_properties, draw_sentence
 
 
 class PE_UL_states(bpy.types.UIList):
@@ -64,8 +62,7 @@ class PE_PT_conditions(Tab, bpy.types.Panel):
             draw_sentence(layout, context, "Pose the vehicle at another frame, then add the frame")
         _draw_list(layout, settings, PE_UL_weathers, "weather", None)
         if settings.weather_index < len(settings.weathers):
-            weather = settings.weathers[settings.weather_index]
-            draw_properties(layout, weather, (*OF_WEATHER, *["lit_m"] * weather.night))
+            draw_declared(layout, settings.weathers[settings.weather_index], "weather")
         if settings.states or settings.weathers:
             draw_properties(layout, settings, ("search_conditions",))
         for line in settings.result_conditions.splitlines():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
+from collections.abc import Collection, Iterable
 from functools import lru_cache
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -12,6 +13,7 @@ import bpy
 
 from ..language import draw_label, shown
 from ..operators import FIX_LABELS, SAME, sense_icon, warnings_outdated
+from ..properties import ROWS, DeclaredRow, declared_rows
 
 # Blender registers the subclasses of Panel alone; for the checker of types this is one.
 if TYPE_CHECKING:
@@ -29,23 +31,54 @@ class Tab(_Panel):
 
 
 def draw_properties(
-    layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, names: tuple[str, ...]
+    layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, names: Iterable[str]
 ) -> None:
     """Draw properties below each other, their names in a column of its own."""
     layout.use_property_split = True
     layout.use_property_decorate = False
     for name in names:
-        layout.prop(settings, name)
+        _draw_row(layout, settings, ROWS.get(name) or DeclaredRow(name))
 
 
-def draw_with_zero(
-    layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, name: str, zero: str
+def draw_declared(
+    layout: bpy.types.UILayout,
+    settings: bpy.types.PropertyGroup,
+    part: str,
+    leave_out: Collection[str] = (),
 ) -> None:
-    """Draw a number, and beside it what 0 means while it is 0."""
-    row = layout.row(align=True)
-    row.prop(settings, name)
-    if not getattr(settings, name):
-        draw_label(row, zero)
+    """Draw what the engine declares for a part of the panel, each field where it is asked for."""
+    rows = (row for row in declared_rows(part) if row.name not in leave_out)
+    draw_properties(layout, settings, [row.name for row in rows if _is_asked(settings, row.when)])
+
+
+def _is_asked(settings: bpy.types.PropertyGroup, when: str) -> bool:
+    """Whether a condition holds: "night", "targets=objects"; an empty one does."""
+    name, _, value = when.partition("=")
+    found = getattr(settings, name) if name else True
+    return found == value if value else bool(found)
+
+
+def _draw_row(
+    layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, row: DeclaredRow
+) -> None:
+    """Draw a property; a range as two fields, marked where it is none."""
+    if row.is_list:
+        layout.column(align=True).prop(settings, row.name)
+    elif row.is_pair:
+        cells = layout.row(align=True)
+        cells.use_property_split = False
+        low, high = getattr(settings, row.name)
+        cells.alert = low >= high
+        draw_label(cells, settings.bl_rna.properties[row.name].name)
+        for index in (0, 1):
+            cells.prop(settings, row.name, index=index, text="")
+    elif row.beside:
+        cells = layout.row(align=True)
+        cells.prop(settings, row.name)
+        if not getattr(settings, row.name):
+            draw_label(cells, row.beside)
+    else:
+        layout.prop(settings, row.name)
 
 
 def draw_list(

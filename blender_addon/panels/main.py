@@ -25,7 +25,7 @@ from .layout import (
     BUTTON_PX,
     Tab,
     columns,
-    draw_properties,
+    draw_declared,
     draw_sentence,
     draw_warning,
 )
@@ -283,9 +283,6 @@ def draw_add(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> N
     row.menu(PE_MT_add_sensor.bl_idname, text="", icon="DOWNARROW_HLT")
 
 
-AXLES = ("rear_axle_x", "rear_axle_z", "wheelbase", "front_overhang", "rear_overhang")
-
-
 class PE_PT_export(Tab, bpy.types.Panel):
     """Files to take away, and rigs of other programs"""
 
@@ -317,7 +314,7 @@ def draw_axles(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) ->
     row.prop(settings, "axles_known", text="Axles")
     row.operator("pe.guess_axles", text="From Wheels", icon="VIEWZOOM")
     if settings.axles_known:
-        draw_properties(layout.column(), settings, AXLES)
+        draw_declared(layout.column(), settings, "reference")
 
 
 def draw_export(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:

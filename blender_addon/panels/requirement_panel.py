@@ -14,7 +14,7 @@ from ..properties.requirement_fields import (
     RING,
     SEVERAL,
 )
-from .layout import Tab, columns, draw_list, draw_properties, draw_sentence
+from .layout import Tab, columns, draw_declared, draw_list, draw_properties, draw_sentence
 
 ADD_REMOVE = ("pe.add_requirement", "pe.remove_requirement")
 
@@ -107,7 +107,7 @@ def draw_requirement(
         _draw_body(layout, row)
     _draw_zone(layout, row)
     _draw_criterion(layout, row)
-    draw_properties(layout, row, ("one_lost", "mounting", "states", "weathers"))
+    draw_declared(layout, row, "requirement.under")
 
 
 def _draw_source(
@@ -167,7 +167,8 @@ def _draw_zone(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup) -> None
     _, inside = _section(layout, "PE_requirement_planes", "Height and Planes")
     if inside is not None:
         _draw_pair(inside, row, "z")
-        draw_properties(inside, row, ("below", "near_side", "eyes"))
+        draw_declared(inside, row, "requirement.zone", ("step",))
+        draw_properties(inside, row, ("eyes",))
 
 
 def _draw_criterion(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup) -> None:
@@ -178,8 +179,8 @@ def _draw_criterion(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup) ->
     draw_properties(layout, row, ("sensors", "kinds"))
     _, inside = _section(layout, "PE_requirement_criterion", "Points, Pixels, Shares")
     if inside is not None:
-        draw_properties(inside, row, ("of", "points", "pixels", "pixels_high"))
-        draw_properties(inside, row, ("per_degree", "share", "ap", "zone_share"))
+        draw_properties(inside, row, ("of",))
+        draw_declared(inside, row, "requirement.criterion", ("sensors", "kinds", *OF_GROUND))
 
 
 def _section(

@@ -7,7 +7,7 @@ import bpy
 from ..choices import CUSTOM, FROM_BOXES, OBJECTS, REGIONS
 from ..language import draw_label, shown
 from ..operators import kind_label, own_fields
-from .layout import Tab, columns, draw_list, draw_properties, draw_sentence, draw_with_zero
+from .layout import Tab, columns, draw_declared, draw_list, draw_properties, draw_sentence
 
 
 class PE_PT_prior(Tab, bpy.types.Panel):
@@ -38,11 +38,8 @@ class PE_PT_targets(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.perception_entropy
-        draw_properties(self.layout, settings, ("targets",))
-        if settings.targets == OBJECTS:
-            draw_properties(self.layout, settings, ("traffic", "scenes", "ap_model"))
-        else:
-            draw_with_zero(self.layout, settings, "score_samples", "All")
+        draw_declared(self.layout, settings, "metric")
+        draw_declared(self.layout, settings, "ap" if settings.targets == OBJECTS else "score")
 
 
 def draw_chosen(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, name: str) -> None:
@@ -96,13 +93,7 @@ def draw_focus(layout: bpy.types.UILayout, focus: bpy.types.PropertyGroup) -> No
     """Draw the settings of one focus."""
     draw_properties(layout, focus, ("factor", "region"))
     if focus.region == CUSTOM:
-        for name in ("x_range", "y_range"):
-            low, high = getattr(focus, name)
-            pair = layout.column(align=True)
-            pair.alert = low >= high
-            label = focus.bl_rna.properties[name].name
-            pair.prop(focus, name, index=0, text=shown(f"{label} From"), translate=False)
-            pair.prop(focus, name, index=1, text="To")
+        draw_declared(layout, focus, "prior.focus", ("factor",))
     layout.column().prop(focus, "classes")
 
 
@@ -136,13 +127,8 @@ class PE_PT_advanced(Tab, bpy.types.Panel):
         draw_curves(self.layout, settings)
         column = self.layout.column()
         draw_label(column, "Space and Voxels")
-        for name in ("space_x", "space_y", "space_z"):
-            row = column.row(align=True)
-            row.alert = getattr(settings, name)[0] >= getattr(settings, name)[1]
-            row.label(text=name[-1].upper(), translate=False)
-            row.prop(settings, name, index=0, text="")
-            row.prop(settings, name, index=1, text="")
-        draw_properties(column, settings, ("space_interval", "clearance"))
+        draw_declared(column, settings, "space")
+        draw_declared(column, settings, "vehicle")
 
 
 def draw_own_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

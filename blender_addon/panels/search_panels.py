@@ -6,10 +6,16 @@ import bpy
 
 from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, EXPECTED_AP, OBJECTS, ON_SLOTS, RANDOM
 from ..language import shown
-from .layout import Tab, columns, draw_list, draw_properties, draw_with_zero
+from .layout import Tab, columns, draw_declared, draw_list, draw_properties
 from .variant_panels import draw_front
 
 ICONS = {BY_PARTS: "OBJECT_DATA", BY_MATERIAL: "MATERIAL", BY_GROUP: "WPAINT_HLT"}
+FIRST = ("objective", "keep_blind_ground", "method")
+ELSEWHERE = (
+    *("objective", "evaluations", "seed", "search_samples"),
+    *("keep_requirements", "search_conditions"),
+)
+"""Settings of a search that are drawn before the others, or in another panel."""
 SLOTS_ICON = "OUTLINER_COLLECTION"
 
 
@@ -21,18 +27,14 @@ class PE_PT_search(Tab, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        settings = context.scene.perception_entropy
+        settings, layout = context.scene.perception_entropy, self.layout
         own = ("candidates",) if settings.method == RANDOM else ()
-        names = ("objective", "keep_blind_ground", "method", *own)
-        draw_properties(self.layout, settings, names)
-        draw_with_zero(self.layout, settings, "evaluations", "All")
-        self.layout.prop(settings, "seed")
-        if settings.targets == OBJECTS:
-            return
-        if settings.objective == EXPECTED_AP:
-            draw_properties(self.layout, settings, ("scenes", "ap_model"))
-        else:
-            draw_with_zero(self.layout, settings, "search_samples", "All")
+        draw_properties(layout, settings, (*FIRST, *own, "evaluations", "seed"))
+        if settings.targets != OBJECTS:
+            by_ap = settings.objective == EXPECTED_AP
+            names = ("scenes", "ap_model") if by_ap else ("search_samples",)
+            draw_properties(layout, settings, names)
+        draw_declared(layout, settings, "search", ELSEWHERE)
 
 
 class PE_UL_mounts(bpy.types.UIList):
@@ -98,7 +100,8 @@ def draw_mount(layout: bpy.types.UILayout, mount: bpy.types.PropertyGroup) -> No
     if mount.faces == BY_PARTS:
         draw_parts(layout, mount)
     named = {BY_PARTS: (), BY_MATERIAL: ("material",), BY_GROUP: ("group",)}[mount.faces]
-    draw_properties(layout, mount, (*named, "standoff", "orientation"))
+    draw_properties(layout, mount, named)
+    draw_declared(layout, mount, "optimize.mount")
 
 
 def draw_parts(layout: bpy.types.UILayout, mount: bpy.types.PropertyGroup) -> None:
@@ -118,12 +121,8 @@ class PE_PT_constraints(Tab, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        settings = context.scene.perception_entropy
         layout = self.layout
-        draw_properties(layout, settings, ())
-        for name in ("max_height", "max_width"):
-            draw_with_zero(layout, settings, name, "Any")
-        draw_properties(layout, settings, ("min_distance", "clear_housings"))
+        draw_declared(layout, context.scene.perception_entropy, "constraints")
         layout.operator("pe.add_no_go", icon="CUBE")
         obj = context.active_object
         if obj is not None and not obj.perception_entropy.is_sensor:
@@ -141,14 +140,10 @@ class PE_PT_goals(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings, layout = context.scene.perception_entropy, self.layout
-        draw_properties(layout, settings, ())
-        for name in ("stop_target", "stop_seconds", "stop_gain"):
-            draw_with_zero(layout, settings, name, "Off")
-        if settings.stop_gain:
-            layout.prop(settings, "stop_over")
-        draw_properties(layout, settings, ("start_variants", "sensitivity"))
-        layout.column(align=True).prop(settings, "front_objectives")
-        layout.prop(settings, "front_points")
+        draw_declared(layout, settings, "optimize.stop")
+        draw_properties(layout, settings, ("start_variants",))
+        draw_declared(layout, settings, "goals", ("keep_blind_ground",))
+        draw_declared(layout, settings, "optimize.front")
         layout.operator("pe.choose_sensors", text="Find Front", icon="FCURVE")
         if settings.front and settings.front[0].figures:
             draw_front(layout, settings, context)
@@ -167,8 +162,8 @@ class PE_PT_tolerance(Tab, bpy.types.Panel):
         draw_properties(layout, settings, ("mounting_errors",))
         column = layout.column()
         column.active = settings.mounting_errors
-        draw_properties(column, settings, ("tolerance_position", "tolerance_angle"))
-        draw_properties(layout, settings, ("failures",))
+        draw_declared(column, settings, "optimize.tolerance")
+        draw_declared(layout, settings, "cases", ("worst",))
         row = layout.row()
         row.active = settings.mounting_errors or settings.failures
         row.prop(settings, "worst")

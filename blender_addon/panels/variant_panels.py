@@ -7,7 +7,7 @@ import bpy
 from ..choices import RANDOM
 from ..language import draw_label, shown
 from ..operators import known_rigs
-from .layout import Tab, columns, draw_list, draw_properties, draw_sentence, draw_with_zero
+from .layout import Tab, columns, draw_declared, draw_list, draw_properties, draw_sentence
 
 
 class PE_UL_variants(bpy.types.UIList):
@@ -150,8 +150,7 @@ def draw_limits(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -
     # Candidates of the screening; the method that has them, too, shows them beside itself.
     own = () if settings.method == RANDOM else ("candidates",)
     draw_properties(layout, settings, (*own, "currency"))
-    for name in ("max_price", "max_sensors"):
-        draw_with_zero(layout, settings, name, "No Limit")
+    draw_declared(layout, settings, "selection", ("currency",))
 
 
 def draw_front(

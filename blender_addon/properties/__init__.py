@@ -11,6 +11,7 @@ from bpy.props import PointerProperty
 from ..sensor_kinds import DEFAULT_MODEL
 from .callbacks import model_suggestions
 from .condition import PE_State, PE_Weather
+from .declared import ROWS, DeclaredRow, declared_rows
 from .list_rows import (
     DEFAULT_REGION,
     PE_CurveSettings,
@@ -39,6 +40,9 @@ __all__ = [
     "DEFAULT_MODEL",
     "DEFAULT_REGION",
     "FREE_BY_DEFAULT",
+    "ROWS",
+    "DeclaredRow",
+    "declared_rows",
     "model_suggestions",
 ]
 

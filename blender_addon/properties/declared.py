@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 from bpy.props import (
     BoolProperty,
@@ -120,3 +120,34 @@ def mixin(name: str, properties: dict[str, Any]) -> Any:
     """Return a class with properties, which a registered property group may inherit."""
     content = {"__doc__": f"Declared settings: {name}.", "__module__": __name__}
     return type(f"{name}Settings", (), {**content, "__annotations__": properties})
+
+
+class DeclaredRow(NamedTuple):
+    """A field of the panel: its property, the form it has, and when it is drawn.
+
+    `beside` is the word beside the field while it is 0, `when` as of `studies.Panel`.
+    """
+
+    name: str
+    is_pair: bool = False
+    is_list: bool = False
+    beside: str = ""
+    when: str = ""
+
+
+def declared_rows(part: str) -> tuple[DeclaredRow, ...]:
+    """Return the fields that the engine declares for a part of the panel, in their order."""
+    return tuple(_row_of(setting) for setting in studies.settings_of_part(part))
+
+
+def _row_of(setting: studies.Setting) -> DeclaredRow:
+    panel, rule = setting.panel, setting.rule
+    assert panel is not None
+    is_pair, is_list = isinstance(rule, studies.Pair), isinstance(rule, studies.Several)
+    return DeclaredRow(panel.property, is_pair, is_list, panel.beside, panel.when)
+
+
+ROWS = {
+    row.name: row for _, each in studies.setting_keys() if each.panel for row in [_row_of(each)]
+}
+"""By property; those of several groups that have one name have one form."""

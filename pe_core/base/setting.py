@@ -130,6 +130,11 @@ class Panel:
     absent : tuple of (text, label, meaning)
         The menu's first entry, for an optional setting that is absent. Without it an optional
         setting with one possible text is a switch.
+    beside : str
+        Word beside the field while it is 0.
+    when : str
+        The field is drawn while this property is not 0 (``night``), or has this value
+        (``targets=objects``).
     """
 
     property: str
@@ -143,6 +148,8 @@ class Panel:
     step: float | None = None
     menu: tuple[tuple[str, str], ...] = ()
     absent: tuple[str, str, str] | None = None
+    beside: str = ""
+    when: str = ""
 
 
 @dataclass(frozen=True, slots=True)

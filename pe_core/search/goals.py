@@ -60,25 +60,49 @@ class Stop:
         None,
         Number(-1e6, cap=1e6),
         "The search ends at this entropy or below; by expected AP, at this AP or above",
-        Panel("stop_target", "Target", min=-100.0, soft_max=5.0, zero="none", precision=3),
+        Panel(
+            "stop_target",
+            "Target",
+            min=-100.0,
+            soft_max=5.0,
+            zero="none",
+            beside="Off",
+            precision=3,
+        ),
     )
     seconds: float | None = setting(
         None,
         Number(0.0, above=True, cap=1e9, unit="s"),
         "The search ends after so many seconds; the result then depends on the machine",
-        Panel("stop_seconds", "Seconds", soft_max=3600.0, zero="no limit", precision=0, step=1000),
+        Panel(
+            "stop_seconds",
+            "Seconds",
+            soft_max=3600.0,
+            zero="no limit",
+            beside="Off",
+            precision=0,
+            step=1000,
+        ),
     )
     gain: float | None = setting(
         None,
         Number(0.0, above=True, cap=1e6),
         "The search ends when the last placements gained less than this",
-        Panel("stop_gain", "Gain Below", soft_max=0.1, zero="none", precision=4, step=0.1),
+        Panel(
+            "stop_gain",
+            "Gain Below",
+            soft_max=0.1,
+            zero="none",
+            beside="Off",
+            precision=4,
+            step=0.1,
+        ),
     )
     over: int = setting(
         OVER,
         Whole(1, 1_000_000_000),
         "Number of placements over which the gain is taken",
-        Panel("stop_over", "Over", soft_max=2000),
+        Panel("stop_over", "Over", soft_max=2000, when="stop_gain"),
     )
 
     def __post_init__(self) -> None:

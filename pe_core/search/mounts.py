@@ -198,13 +198,13 @@ class Constraints:
         None,
         LENGTH,
         "No housing's top is above this",
-        Panel("max_height", "Max Height", soft_max=5.0, zero="no limit", precision=3),
+        Panel("max_height", "Max Height", soft_max=5.0, zero="no limit", beside="Any", precision=3),
     )
     max_width: float | None = setting(
         None,
         LENGTH,
         "Overall width: no housing is farther than half of this from the middle",
-        Panel("max_width", "Max Width", soft_max=4.0, zero="no limit", precision=3),
+        Panel("max_width", "Max Width", soft_max=4.0, zero="no limit", beside="Any", precision=3),
     )
     min_distance: float = setting(
         0.0,

@@ -110,13 +110,21 @@ class Selection:
         None,
         PRICE,
         "Largest sum of the prices of all chosen sensors",
-        Panel("max_price", "Max Price", soft_max=1e6, zero="no limit", precision=2, step=1000),
+        Panel(
+            "max_price",
+            "Max Price",
+            soft_max=1e6,
+            zero="no limit",
+            beside="No Limit",
+            precision=2,
+            step=1000,
+        ),
     )
     max_sensors: int | None = setting(
         None,
         COUNT,
         "Largest number of sensors in a design",
-        Panel("max_sensors", "Max Sensors", soft_max=20, zero="no limit"),
+        Panel("max_sensors", "Max Sensors", soft_max=20, zero="no limit", beside="No Limit"),
     )
     max_of_kind: Mapping[str, int] = field(default_factory=dict)
     currency: str = setting("", CURRENCY, "Currency of prices", Panel("currency", "Currency"))

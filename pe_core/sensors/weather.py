@@ -97,7 +97,7 @@ class Weather:
         None,
         MOR,
         "How far objects are lit at night",
-        Panel("lit_m", "Lit", zero="as two headlamps of UN R112 light"),
+        Panel("lit_m", "Lit", zero="as two headlamps of UN R112 light", when="night"),
         scored=True,
     )
     reflectivity: float = setting(

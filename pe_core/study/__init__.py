@@ -22,7 +22,7 @@ from .condition_table import ConditionScore, ConditionTable, condition_table
 from .file_names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW_PAGE, SEARCH, STUDY
 from .objective_setting import OBJECTIVES
 from .passthrough import passthrough_of_text, passthrough_table, passthrough_text, read_passthrough
-from .setting_table import is_switch, menu_of, panel_default, setting_keys
+from .setting_table import is_switch, menu_of, panel_default, setting_keys, settings_of_part
 from .study import Search, Study, vehicle_digest
 from .study_file import load_study, load_study_data, save_study, study_from_dict, study_to_dict
 
@@ -51,5 +51,6 @@ __all__ += [
 ]
 __all__ += ["passthrough_of_text", "passthrough_table", "passthrough_text", "read_passthrough"]
 __all__ += ["requirement_file", "requirement_search", "save_study", "setting_keys", "settings_of"]
+__all__ += ["settings_of_part"]
 __all__ += ["state_from_dict", "state_table", "study_from_dict", "study_to_dict"]
 __all__ += ["value_in_file", "vehicle_digest"]

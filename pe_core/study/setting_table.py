@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -41,12 +42,14 @@ class StudyTable:
 
     `names` are those of the settings, where the table has not all of the dataclass's. Of `rows`
     there are several in a study: each is a row, or an object, of a Blender scene, not the scene.
+    `part` is the part of Blender's panel with these settings; that of the table if it is empty.
     """
 
     table: str
     cls: type
     names: tuple[str, ...] = ()
     rows: bool = False
+    part: str = ""
 
     @property
     def settings(self) -> list[Setting]:
@@ -56,17 +59,17 @@ class StudyTable:
 
 
 SECTIONS = (
-    StudyTable("", Study),
+    StudyTable("", Study, part="score"),
     StudyTable("space", PerceptionSpace),
     StudyTable("vehicle", Vehicle),
     StudyTable("metric", TargetRule),
     StudyTable("ap", PerceptionModel),
     StudyTable("reference", Reference),
-    StudyTable("optimize", Search),
-    StudyTable("optimize", Schedule),
-    StudyTable("optimize", Constraints),
-    StudyTable("optimize", Tolerance, CASES),
-    StudyTable("optimize", Goals),
+    StudyTable("optimize", Search, part="search"),
+    StudyTable("optimize", Schedule, part="schedule"),
+    StudyTable("optimize", Constraints, part="constraints"),
+    StudyTable("optimize", Tolerance, CASES, part="cases"),
+    StudyTable("optimize", Goals, part="goals"),
     StudyTable("optimize.tolerance", Tolerance, ERRORS),
     StudyTable("optimize.stop", Stop),
     StudyTable("optimize.front", Front),
@@ -98,6 +101,14 @@ def setting_keys(*, of_scene: bool = False) -> Iterator[Key]:
     for section in SECTIONS:
         for setting in () if of_scene and section.rows else section.settings:
             yield Key(".".join(filter(None, (section.table, key_of(setting.name)))), setting)
+
+
+@functools.cache
+def settings_of_part(part: str) -> tuple[Setting, ...]:
+    """Return the settings of a part of Blender's panel, in their order."""
+    sections = [each for each in SECTIONS if part == (each.part or each.table)]
+    own = (setting for each in sections for setting in each.settings)
+    return tuple(setting for setting in own if setting.panel is not None)
 
 
 def panel_default(setting: Setting) -> Any:

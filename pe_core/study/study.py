@@ -111,7 +111,7 @@ class Search:
         DEFAULT_SEARCH_SAMPLES,
         SAMPLES_OR_GRID,
         "Voxels on which a candidate is evaluated; 0: all, 64 million",
-        Panel("search_samples", "Search Voxels"),
+        Panel("search_samples", "Search Voxels", beside="All"),
     )
     schedule: Schedule = field(default_factory=Schedule)
     mounting: Mounting = field(default_factory=Mounting)
@@ -120,7 +120,7 @@ class Search:
         0,
         Whole(0, 1_000_000_000),
         "Largest number of placements to evaluate; 0: as many as the method takes",
-        Panel("evaluations", "Budget", soft_max=10_000),
+        Panel("evaluations", "Budget", soft_max=10_000, beside="All"),
     )
     tolerance: Tolerance = field(default_factory=Tolerance)
     requirements: str | None = setting(
@@ -196,7 +196,7 @@ class Study:
         0,
         SAMPLES_OR_GRID,
         "Voxels on which a score is evaluated; 0: all, 64 million",
-        Panel("score_samples", "Score Voxels", default=FIRST_SAMPLES),
+        Panel("score_samples", "Score Voxels", default=FIRST_SAMPLES, beside="All"),
         scored=True,
     )
     mesh: str | None = None

@@ -28,6 +28,12 @@ class Layout:
     def prop(self, _owner, name, **_):
         self.notes.append(("prop", name))
 
+    def operator_menu_enum(self, name, _property, **_):
+        self.notes.append(("menu", name))
+
+    def template_list(self, name, *_lists, **_):
+        self.notes.append(("list", name))
+
     def popover(self, panel, **_):
         self.notes.append(("popover", panel))
 

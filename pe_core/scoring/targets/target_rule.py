@@ -50,14 +50,14 @@ class TargetRule:
         False,
         FLAG,
         "Objects of a scene occlude each other from every sensor",
-        Panel("traffic", "Traffic"),
+        Panel("traffic", "Traffic", when="targets=objects"),
         scored=True,
     )
     scenes: int = setting(
         SCENES,
         COUNT,
         "Number of scenes with objects; the expected score is their mean",
-        Panel("scenes", "Scenes", soft_max=4096),
+        Panel("scenes", "Scenes", soft_max=4096, when="targets=objects"),
         scored=True,
     )
 

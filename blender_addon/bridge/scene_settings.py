@@ -67,7 +67,8 @@ def _in_panel(cls: Any, names: Iterable[str] = ()) -> Iterator[tuple[str, studie
 
 def value_of_property(setting: studies.Setting, value: Any) -> Any:
     """Return a property's value in the unit and type of the engine."""
-    rule, panel = setting.rule, setting.panel
+    rule: Any = setting.rule
+    panel = setting.panel
     if isinstance(rule, studies.Pair):
         return pair_as_typed(value)
     if isinstance(rule, studies.Several):

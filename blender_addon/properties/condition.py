@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
 from bpy.props import BoolProperty, IntProperty, StringProperty
 
@@ -9,8 +11,11 @@ from ..engine import geometry, kinds
 from .callbacks import changed
 from .declared import group_of
 
+StateFields: Any = group_of(geometry.State)
+WeatherFields: Any = group_of(kinds.Weather)
 
-class PE_State(group_of(geometry.State), bpy.types.PropertyGroup):
+
+class PE_State(StateFields, bpy.types.PropertyGroup):
     """A state of the vehicle: a frame of the scene, and the motions that were read there."""
 
     enabled: BoolProperty(
@@ -22,7 +27,7 @@ class PE_State(group_of(geometry.State), bpy.types.PropertyGroup):
     table: StringProperty(name="Motions", description="Motions as JSON", update=changed)
 
 
-class PE_Weather(group_of(kinds.Weather), bpy.types.PropertyGroup):
+class PE_Weather(WeatherFields, bpy.types.PropertyGroup):
     """A weather. At most one of rain, snow and fog is above 0."""
 
     enabled: BoolProperty(

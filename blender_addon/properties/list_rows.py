@@ -5,6 +5,8 @@ Lists belong to the scene, those of offered models to a sensor.
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
 from bpy.props import (
     BoolProperty,
@@ -30,7 +32,13 @@ OBJECT_CLASSES = tuple(
 )
 
 
-class PE_FocusSettings(group_of(pe.Focus), bpy.types.PropertyGroup):
+FocusFields: Any = group_of(pe.Focus)
+ApCurveFields: Any = group_of(pe.ApCurve)
+OptionFields: Any = group_of(pe.Option)
+SurfaceMountFields: Any = group_of(pe.SurfaceMount)
+
+
+class PE_FocusSettings(FocusFields, bpy.types.PropertyGroup):
     """A focus weight: a region and classes that count more or less than the prior says."""
 
     region: EnumProperty(
@@ -50,7 +58,7 @@ class PE_FocusSettings(group_of(pe.Focus), bpy.types.PropertyGroup):
     )
 
 
-class PE_CurveSettings(group_of(pe.ApCurve), bpy.types.PropertyGroup):
+class PE_CurveSettings(ApCurveFields, bpy.types.PropertyGroup):
     """The AP curve of a kind of sensor: AP = a ln m + b. The row has the name of the kind."""
 
     own: BoolProperty(
@@ -149,7 +157,7 @@ class PE_OwnSensorSettings(bpy.types.PropertyGroup):
     known_as: StringProperty(name="Known As", description="Last known name")
 
 
-class PE_SensorOption(group_of(pe.Option), bpy.types.PropertyGroup):
+class PE_SensorOption(OptionFields, bpy.types.PropertyGroup):
     """A model that may be chosen, and its price."""
 
     model: StringProperty(
@@ -207,7 +215,7 @@ class PE_MountPart(bpy.types.PropertyGroup):
     )
 
 
-class PE_MountSettings(group_of(pe.SurfaceMount), bpy.types.PropertyGroup):
+class PE_MountSettings(SurfaceMountFields, bpy.types.PropertyGroup):
     """A mount: surfaces or slots for sensors."""
 
     name: StringProperty(

@@ -182,16 +182,16 @@ def _set_kind_flags(table: dict[str, Any], flags: int) -> None:
         del table["criterion"]["of"]
 
 
-class PE_Requirement(
-    _declared(),
-    _ends("x", ("X", PLACE), ("0", "1")),
-    _ends("y", ("Y", PLACE), ("0", "1")),
-    _ends("ring", ("Ring", "distance from the outline of the vehicle's body"), (0.0, 1.0), **HIGH),
-    _ends(
-        "z", ("Height", "height of the foot of the body; sampled at the step"), (0.0, 0.0), **HIGH
-    ),
-    bpy.types.PropertyGroup,
-):
+RING = "distance from the outline of the vehicle's body"
+HEIGHT = "height of the foot of the body; sampled at the step"
+Declared: Any = _declared()
+X: Any = _ends("x", ("X", PLACE), ("0", "1"))
+Y: Any = _ends("y", ("Y", PLACE), ("0", "1"))
+Ring: Any = _ends("ring", ("Ring", RING), (0.0, 1.0), **HIGH)
+Height: Any = _ends("z", ("Height", HEIGHT), (0.0, 0.0), **HIGH)
+
+
+class PE_Requirement(Declared, X, Y, Ring, Height, bpy.types.PropertyGroup):
     """A requirement, and its last verdict."""
 
     enabled: BoolProperty(

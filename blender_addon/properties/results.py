@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
 from bpy.props import (
     BoolProperty,
@@ -72,7 +74,10 @@ def _keep_apart(variant: PE_Variant, _context: bpy.types.Context) -> None:
         variant.name = name
 
 
-class PE_VariantSensor(group_of(pe.ApCurve, prefix="curve_", update=None), bpy.types.PropertyGroup):
+CurveFields: Any = group_of(pe.ApCurve, prefix="curve_", update=None)
+
+
+class PE_VariantSensor(CurveFields, bpy.types.PropertyGroup):
     """A sensor as a variant stores it: see `bridge.SensorRecord`."""
 
     name: StringProperty(name="Name", description="Name of the sensor's object")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zlib
+from typing import Any
 
 import bpy
 from bpy.props import (
@@ -47,7 +48,10 @@ DEFAULT_BEAM_LENGTH_M = 8.0
 PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) else set()
 
 
-class PE_SceneSettings(scene_group(), bpy.types.PropertyGroup):
+StudyFields: Any = scene_group()
+
+
+class PE_SceneSettings(StudyFields, bpy.types.PropertyGroup):
     """The study's settings, and the last result."""
 
     version: IntProperty(

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import bpy
 import numpy as np
@@ -120,7 +121,10 @@ def racks_of_scene(
     return sorted({obj.perception_entropy.rack for obj in context.scene.objects} - {""})
 
 
-class PE_ObjectSettings(GroundPose, group_of(pe.ApCurve, prefix="curve_"), bpy.types.PropertyGroup):
+CurveFields: Any = group_of(pe.ApCurve, prefix="curve_")
+
+
+class PE_ObjectSettings(GroundPose, CurveFields, bpy.types.PropertyGroup):
     """What makes an object a sensor, and its part in the last result."""
 
     is_sensor: BoolProperty(

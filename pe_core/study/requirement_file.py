@@ -168,10 +168,9 @@ def _merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
 def _read(table: Table, identifier: str | None, folder: Path) -> Requirement:
     table.raw("preset", None)
     name = table.text("name", rule=A_NAME)
-    zone, criterion, under = (
-        _made_of(table.table(key), cls)
-        for key, cls in (("zone", Zone), ("criterion", Criterion), ("under", Under))
-    )
+    zone = _made_of(table.table("zone"), Zone)
+    criterion = _made_of(table.table("criterion"), Criterion)
+    under = _made_of(table.table("under"), Under)
     headings = table.raw("headings", None)
     bodies = tuple(_with_headings(b, headings, table) for b in _read_bodies(table, folder))
     source, check = table.text("source", ""), table.text("check", "")

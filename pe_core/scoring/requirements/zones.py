@@ -52,7 +52,7 @@ class PlacePairRule:
     axis: int
     words = "two places"
 
-    def checked(self, source: str, field: str, value: Any) -> PlacePair:
+    def checked(self, source: Any, field: str, value: Any) -> PlacePair:
         """Return the value, or raise `InputError`."""
         return _places((value,), (self.axis, self.axis), source, field)[0]
 
@@ -67,7 +67,7 @@ class CornersRule:
     fewest: int
     words = "list of places [x, y]"
 
-    def checked(self, source: str, field: str, value: Any) -> tuple[PlacePair, ...]:
+    def checked(self, source: Any, field: str, value: Any) -> tuple[PlacePair, ...]:
         """Return the value, or raise `InputError`."""
         corners = _places(value, (0, 1), source, field)
         if corners and len(corners) < self.fewest:

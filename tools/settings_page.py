@@ -14,7 +14,6 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from pe_core.base.setting import Several, Texts, Triple  # noqa: E402
 from pe_core.study import (  # noqa: E402
     REQUIRED,
     Name,
@@ -22,7 +21,10 @@ from pe_core.study import (  # noqa: E402
     OneOf,
     Pair,
     Setting,
+    Several,
+    Texts,
     Toggle,
+    Triple,
     Whole,
     setting_keys,
     value_in_file,

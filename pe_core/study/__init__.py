@@ -9,6 +9,7 @@ from ..base.setting import (
     Several,
     Texts,
     Toggle,
+    Triple,
     settings_of,
 )
 from ..base.setting_file import value_in_file
@@ -38,6 +39,7 @@ __all__ += [
     "Study",
     "Texts",
     "Toggle",
+    "Triple",
     "Whole",
     "condition_table",
 ]

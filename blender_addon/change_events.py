@@ -30,9 +30,13 @@ def change_count() -> int:
 
 def note_if_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """After an update or a change of frame: note a change where a sensor or the vehicle differs."""
-    if bpy.app.background or not _may_concern_rig(depsgraph):
+    kinds = ("OBJECT", "COLLECTION", "SCENE")  # of data that may concern sensors or the vehicle
+    if bpy.app.background or not any(map(depsgraph.id_type_updated, kinds)):
         return
-    present = _counted_objects(scene, depsgraph)
+    layer, vehicle = depsgraph.view_layer, scene.perception_entropy.vehicle
+    sensors = tuple((s.name, s.visible_get(view_layer=layer)) for s in sensor_cache.sensors(scene))
+    parts = () if vehicle is None else vehicle_cache.counted_members(vehicle, depsgraph)
+    present = sensors, parts, vehicle_cache.shared.version
     if _last_counted.get(scene.name) != present or _sensor_moved(depsgraph):
         _last_counted[scene.name] = present
         note_change()
@@ -75,19 +79,6 @@ def emit_idle() -> float | None:
         return max(left, 0.0)
     signals.idle.emit()
     return None if count == _change_count else IDLE_S
-
-
-def _may_concern_rig(depsgraph: bpy.types.Depsgraph) -> bool:
-    """Whether an update is of a data type that may concern sensors or the vehicle."""
-    return any(depsgraph.id_type_updated(kind) for kind in ("OBJECT", "COLLECTION", "SCENE"))
-
-
-def _counted_objects(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Hashable:
-    """Return the sensors and parts of the vehicle that count, and the vehicle's version."""
-    layer, vehicle = depsgraph.view_layer, scene.perception_entropy.vehicle
-    sensors = tuple((s.name, s.visible_get(view_layer=layer)) for s in sensor_cache.sensors(scene))
-    parts = () if vehicle is None else vehicle_cache.counted_members(vehicle, depsgraph)
-    return sensors, parts, vehicle_cache.shared.version
 
 
 def _sensor_moved(depsgraph: bpy.types.Depsgraph) -> bool:

@@ -67,15 +67,10 @@ def run_checks() -> None:
             bridge.store_warnings(settings, (*own, *warnings))
             if settings.vehicle_line != line:
                 settings.vehicle_line = line
-            _mark_outdated(_is_scheduled())
+            _mark_outdated(not bpy.app.background and bpy.app.timers.is_registered(run_checks))
             signals.view_changed.emit()
 
     background_worker.ask(WARNINGS, work, deliver, lambda _: None)
-
-
-def _is_scheduled() -> bool:
-    """Whether the checks will run again."""
-    return not bpy.app.background and bpy.app.timers.is_registered(run_checks)
 
 
 def _mark_outdated(behind: bool) -> None:

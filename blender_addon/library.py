@@ -44,15 +44,10 @@ def _is_ours(library: bpy.types.UserAssetLibrary) -> bool:
     return bool(path) and Path(path).resolve() == FOLDER
 
 
-def is_wanted() -> bool:
-    """Whether to show it: as the preferences say; without preferences, where there is a window."""
-    chosen = preferences.stored()
-    return not bpy.app.background if chosen is None else chosen.show_library
-
-
 def register() -> None:
-    """Show the library if it is wanted."""
-    if is_wanted():
+    """Show the library as the preferences say; without preferences, where there is a window."""
+    chosen = preferences.stored()
+    if not bpy.app.background if chosen is None else chosen.show_library:
         show()
 
 

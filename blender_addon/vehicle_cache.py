@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import bpy
 
-from . import bridge, requirement_checkers, simplified_vehicles
+from . import bridge, caches
 from .engine import pe
 
 
@@ -152,5 +152,4 @@ def invalidate(*_: object) -> None:
 def clear(*_: object) -> None:
     """Before another file is opened: drop all vehicles, and what is kept of them."""
     shared.clear()
-    simplified_vehicles.shared.clear()
-    requirement_checkers.shared.clear()
+    caches.clear()

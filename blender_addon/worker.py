@@ -1,4 +1,6 @@
-"""Work beside the window: two threads, the latest request of each topic, results by a timer.
+"""Work beside the window: a thread a worker, the latest request of each topic, results by a timer.
+
+All that is computed beside the window is asked for here, jobs included.
 
 Work is requested by topic. A request that has not begun when the next one of its topic comes is
 dropped: nothing queues up behind the mouse. Results are delivered by a timer, on the main thread,
@@ -133,9 +135,11 @@ background_worker = Worker()
 """For what may take long; all parts of the add-on share it, and take turns."""
 interactive_worker = Worker()
 """For what follows the mouse and takes a few hundredths of a second: it never waits."""
+job_worker = Worker()
+"""For jobs that a button starts, one at a time."""
 
 
 def unregister() -> None:
-    """End both threads."""
-    interactive_worker.stop()
-    background_worker.stop()
+    """End all threads."""
+    for each in (job_worker, interactive_worker, background_worker):
+        each.stop()

@@ -44,18 +44,15 @@ def import_objects(args: argparse.Namespace) -> app.Answer:
             catalog.load(model)
         stand_in = exchange.STAND_INS[LIDAR]
         found, lines = bridge.sensors_of_objects(scene, scene.objects, models, stand_in)
-        study = _study_of_rig(scene, pe.Rig(found))
+        rig, reference = pe.Rig(found), bridge.reference_of(scene.perception_entropy)
+        if scene.perception_entropy.vehicle is None:
+            study = pe.Study(rig, reference=reference)
+        else:
+            study = bridge.study_of_rig(scene, bpy.context.evaluated_depsgraph_get(), rig)
     pe.export_study(study, output, replace_study=args.replace)
     for line in lines:
         app.tell(line)
     return f"wrote {output}: {len(found)} sensor{'s' if len(found) > 1 else ''}", app.DONE
-
-
-def _study_of_rig(scene: bpy.types.Scene, rig: pe.Rig) -> pe.Study:
-    if scene.perception_entropy.vehicle is None:
-        return pe.Study(rig, reference=bridge.reference_of(scene.perception_entropy))
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    return bridge.study_of_rig(scene, depsgraph, rig)
 
 
 def export_objects(study: pe.Study, args: argparse.Namespace) -> app.Answer:
@@ -179,7 +176,7 @@ STUDIES = "studies"
 
 def sweep_scene(args: argparse.Namespace) -> app.Answer:
     """Write the studies to the sweep's folder, and sweep them as the command ``pe`` would."""
-    by_name = _studies_to_sweep(args.variants)
+    by_name = _chosen_studies(args.variants)
     folder = pe.prepare_folder(Path(args.output) / STUDIES)
     files = {}
     for number, (name, study) in enumerate(by_name.items()):
@@ -188,7 +185,7 @@ def sweep_scene(args: argparse.Namespace) -> app.Answer:
     return app.sweep(files, args)
 
 
-def _studies_to_sweep(variants: list[str]) -> dict[str, pe.Study]:
+def _chosen_studies(variants: list[str]) -> dict[str, pe.Study]:
     """Return the studies by name: of variants, or of what stands in the scene."""
     if not variants:
         return {Path(bpy.data.filepath).stem or "scene": opened_study()}
@@ -197,8 +194,4 @@ def _studies_to_sweep(variants: list[str]) -> dict[str, pe.Study]:
 
 def review_scene(args: argparse.Namespace) -> app.Answer:
     """Score what stands in the scene, or variants, and write the page."""
-    if args.variants:
-        by_name = studies_of(opened_scene(), args.variants)
-    else:
-        by_name = {Path(bpy.data.filepath).stem or "scene": opened_study()}
-    return page.review_studies(by_name, args, bridge.blender_version())
+    return page.review_studies(_chosen_studies(args.variants), args, bridge.blender_version())

@@ -6,87 +6,34 @@ the mouse waits for them. Figures of a rig are computed once.
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Hashable
 from dataclasses import replace
 from functools import partial
-from typing import NamedTuple
 
 import bpy
 
 from .. import bridge, signals, worker
+from ..caches import RecentCache
 from ..choices import NO_ANCHOR
 from ..engine import advice, catalog, pe, sight
-from .evaluation import EvaluatorCache, Problem, ScoreRequest
-from .state import Baseline, KnownRigScore, LiveScore, live_state, rig_key, states
+from .evaluation import EvaluatorCache
+from .state import (
+    Baseline,
+    FigureRequest,
+    KnownRigScore,
+    LiveScore,
+    Problem,
+    ScoreRequest,
+    ShownFigures,
+    live_state,
+    rig_key,
+    states,
+)
 
-MAX_RIGS = 24
-"""Rigs whose figures are kept: those of the last moves, and what they are compared with."""
-
-
-class FigureCache:
-    """Key figures by problem, rule and rig; those that were stored last are kept."""
-
-    def __init__(self) -> None:
-        self._figures: dict[Hashable, advice.KeyFigures] = {}
-        self._lock = threading.Lock()
-
-    def get(self, key: Hashable) -> advice.KeyFigures | None:
-        """Return the figures of a key, None where there are none."""
-        with self._lock:
-            return self._figures.get(key)
-
-    def put(self, key: Hashable, figures: advice.KeyFigures) -> None:
-        """Store figures; drop the oldest where there are too many."""
-        with self._lock:
-            self._figures.pop(key, None)
-            self._figures[key] = figures
-            while len(self._figures) > MAX_RIGS:
-                del self._figures[next(iter(self._figures))]
-
-    def clear(self) -> None:
-        """Drop all figures."""
-        with self._lock:
-            self._figures.clear()
-
-
-figure_cache = FigureCache()
-
-
-class SightCache:
-    """What computes visibility for the last problem. Used by one thread alone."""
-
-    def __init__(self) -> None:
-        self._key: Hashable = None
-        self._sight: sight.Sight | None = None
-
-    def sight_of(self, problem: Problem) -> sight.Sight:
-        """Return what computes it; made again for another problem."""
-        if self._sight is None or self._key != problem.key:
-            self._sight = None  # two of them need not fit in memory
-            place = problem.space, problem.prior, problem.vehicle
-            self._sight = sight.Sight(*place, model=problem.model)
-            self._key = problem.key
-        return self._sight
-
-
-_sight_cache = SightCache()
-
-
-class FigureRequest(NamedTuple):
-    """A request of key figures: for which score, compared with what, by which rule."""
-
-    request: ScoreRequest
-    baseline: Baseline | None
-    rule: bridge.FigureRule | None
-
-
-class ShownFigures(NamedTuple):
-    """Key figures to show, those they are compared with, and whether they are of the scene."""
-
-    now: advice.KeyFigures | None = None
-    before: advice.KeyFigures | None = None
-    current: bool = False
+figure_cache: RecentCache[advice.KeyFigures] = RecentCache(24)
+"""By problem, rule and rig: those of the last moves, and what they are compared with."""
+_sight_cache: RecentCache[sight.Sight] = RecentCache()
+"""By the problem's key."""
 
 
 def rule_of(scene: bpy.types.Scene, prior: pe.Prior) -> bridge.FigureRule | None:
@@ -97,8 +44,9 @@ def rule_of(scene: bpy.types.Scene, prior: pe.Prior) -> bridge.FigureRule | None
 def request(scene: bpy.types.Scene, score: ScoreRequest, baseline: Baseline | None) -> None:
     """Request the figures of an idle scene that are not known yet."""
     name, rule, problem = scene.name, rule_of(scene, score.problem.prior), score.problem
-    figures = live_state(name).figures = FigureRequest(score, baseline, rule)
-    missing = [r for r in _rigs_of(figures) if figure_cache.get(_key(problem, rule, r)) is None]
+    live_state(name).figures = FigureRequest(score, baseline, rule)
+    rigs = [score.rig, *([baseline.rig] if baseline is not None and baseline.rig else [])]
+    missing = [rig for rig in rigs if figure_cache.get(_key(problem, rule, rig)) is None]
     if rule is not None and missing:
         work = partial(_compute, problem, rule, missing)
         worker.background_worker.ask(f"live figures of {name}", work, _notify, _failed)
@@ -153,19 +101,13 @@ def _key(problem: Problem, rule: bridge.FigureRule | None, rig: pe.Rig) -> Hasha
     return problem.key, rule, rig_key(rig)
 
 
-def _rigs_of(figures: FigureRequest) -> list[pe.Rig]:
-    """Return the rig of the idle scene, and the one that it is compared with."""
-    other = None if figures.baseline is None else figures.baseline.rig
-    return [figures.request.rig, *([] if other is None else [other])]
-
-
 def _compute(problem: Problem, rule: bridge.FigureRule, rigs: list[pe.Rig]) -> None:
     """On the worker's thread: compute the figures of rigs."""
-    visibility, voxels = _sight_cache.sight_of(problem), not problem.targets.are_objects
+    place = problem.space, problem.prior, problem.vehicle
+    look = _sight_cache.made(problem.key, lambda: sight.Sight(*place, model=problem.model))
+    voxels = not problem.targets.are_objects
     for rig in rigs:
-        figures = advice.key_figures(
-            visibility, rig, rule.height, rule.class_name, of_voxels=voxels
-        )
+        figures = advice.key_figures(look, rig, rule.height, rule.class_name, of_voxels=voxels)
         figure_cache.put(_key(problem, rule, rig), figures)
 
 

@@ -19,52 +19,20 @@ preview on a vehicle would take 0.1 s instead of 2.9 s (0.7 s with 1.6 million).
 
 from __future__ import annotations
 
-from collections.abc import Hashable
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from dataclasses import replace
 
 import bpy
 
 from .. import bridge, sensor_cache, vehicle_cache
+from ..caches import RecentCache
 from ..engine import pe
-from .state import live_state
+from .state import Problem, ScoreRequest, live_state
 
 SAMPLES = 32_768
 """Voxels that a live score evaluates: an error of 0.02 nats on the sedan, 10 ms a move of a LiDAR.
 16,384 would save 2 ms at nearly twice the error; 65,536 cost 5 ms more for an error of 0.017."""
-DEFAULT_SPACE, VOXELS = pe.PerceptionSpace(), pe.TargetRule()
 MAX_SCENES = 64
 """Scenes of objects that a live score evaluates at most."""
-
-
-class Problem(NamedTuple):
-    """What an evaluator is made for; `key` identifies it by plain values."""
-
-    key: Hashable
-    prior: pe.Prior
-    vehicle: pe.Vehicle | None
-    space: pe.PerceptionSpace = DEFAULT_SPACE
-    model: pe.PerceptionModel | None = None
-    targets: pe.TargetRule = VOXELS
-
-
-@dataclass(frozen=True)
-class ScoreRequest:
-    """A rig to be scored; approximately, as a preview, where `preview`; `moving`: not idle."""
-
-    problem: Problem
-    rig: pe.Rig
-    preview: bool
-    prior_key: Hashable = None
-    moving: bool = False
-
-
-def read_prior(scene: bpy.types.Scene) -> tuple[Hashable, pe.Prior]:
-    """Return what identifies a scene's prior, and the prior; made anew when settings change."""
-    state, key = live_state(scene.name), bridge.prior_key(scene)
-    if state.prior is None or state.prior[0] != key:
-        state.prior = key, bridge.prior_from_scene(scene)
-    return state.prior
 
 
 def read_request(
@@ -79,7 +47,10 @@ def read_request(
     """
     bridge.check_scene(scene)
     rig = bridge.rig_from_objects(sensor_cache.sensors(scene), depsgraph)
-    prior_key, prior = read_prior(scene)
+    state, prior_key = live_state(scene.name), bridge.prior_key(scene)
+    if state.prior is None or state.prior[0] != prior_key:
+        state.prior = prior_key, bridge.prior_from_scene(scene)
+    prior = state.prior[1]
     vehicle, vehicle_key = vehicle_cache.shared.read(scene, depsgraph)
     if vehicle is None:
         collection = scene.perception_entropy.vehicle
@@ -92,35 +63,21 @@ def read_request(
     return ScoreRequest(problem, rig, moving, (prior_key, space, model, targets), moving)
 
 
-class CachedEvaluator(NamedTuple):
-    """An evaluator, and its problem's key."""
-
-    key: Hashable
-    evaluator: pe.RigEvaluator
-
-
 class EvaluatorCache:
     """One evaluator a scene, kept as long as vehicle and prior stay. Used by one thread alone."""
 
     def __init__(self) -> None:
-        self._kept: dict[str, CachedEvaluator] = {}
+        self._kept: dict[str, RecentCache[pe.RigEvaluator]] = {}
 
     def summary(self, scene_name: str, request: ScoreRequest) -> pe.SummaryScore:
         """Return the summary score of a rig; only sensors that have moved are measured again."""
-        evaluator = self._evaluator_of(scene_name, request.problem).evaluator
+        kept, problem = self._kept.setdefault(scene_name, RecentCache()), request.problem
+        evaluator = kept.made(problem.key, lambda: make_evaluator(problem))
         return evaluator.summary(request.rig, preview=request.preview)
 
     def clear(self) -> None:
         """Drop all evaluators."""
         self._kept.clear()
-
-    def _evaluator_of(self, scene_name: str, problem: Problem) -> CachedEvaluator:
-        cached = self._kept.get(scene_name)
-        if cached is None or cached.key != problem.key:
-            self._kept.pop(scene_name, None)  # two of them need not fit in memory
-            evaluator = make_evaluator(problem)
-            cached = self._kept[scene_name] = CachedEvaluator(problem.key, evaluator)
-        return cached
 
 
 def make_evaluator(problem: Problem) -> pe.RigEvaluator:

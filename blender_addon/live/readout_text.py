@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..engine import advice, pe
-from .background_figures import ShownFigures
-from .state import KnownRigScore, LiveScore, ShownScore
+from .state import KnownRigScore, LiveScore, ShownFigures, ShownScore
 
 MIN_CHANGE = 0.0005
 """Entropies nearer to each other than this are the same in the text [nats]."""

@@ -20,13 +20,13 @@ from .. import bridge, change_events, preferences, signals, vehicle_cache, worke
 from ..choices import BEFORE_MOVE, PINNED
 from ..engine import pe
 from . import background_figures
-from .evaluation import EvaluatorCache, ScoreRequest, read_request
+from .evaluation import EvaluatorCache, read_request
 from .state import (
     Baseline,
-    ChosenBaseline,
     LastRead,
     LiveScore,
     LiveState,
+    ScoreRequest,
     live_state,
     rig_key,
     states,
@@ -231,17 +231,17 @@ def baseline_of(scene: bpy.types.Scene, request: ScoreRequest) -> Baseline | Non
     """
     state, choice = live_state(scene.name), scene.perception_entropy.live.against
     chosen = state.chosen
-    if chosen is not None and request.moving and chosen.key[:2] == (choice, request.problem.key):
-        return chosen.baseline
+    if chosen is not None and request.moving and chosen[0][:2] == (choice, request.problem.key):
+        return chosen[1]
     rig_and_label = _chosen_rig(scene, state, choice)
     if rig_and_label is None:
         state.chosen = None
         return state.before_move
     rig, label = rig_and_label
     key = choice, request.problem.key, rig_key(rig), label
-    if chosen is None or chosen.key != key:
-        chosen = state.chosen = ChosenBaseline(key, Baseline(label, rig))
-    return chosen.baseline
+    if chosen is None or chosen[0] != key:
+        chosen = state.chosen = key, Baseline(label, rig)
+    return chosen[1]
 
 
 def _chosen_rig(scene: bpy.types.Scene, state: LiveState, choice: int) -> tuple[pe.Rig, str] | None:

@@ -9,17 +9,15 @@ from __future__ import annotations
 import math
 from collections.abc import Hashable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import bpy
 
 from .. import bridge
 from ..choices import BEFORE_MOVE
-from ..engine import pe
+from ..engine import advice, pe
 
-if TYPE_CHECKING:
-    from ..engine import advice
-    from .background_figures import FigureRequest
+DEFAULT_SPACE, VOXELS = pe.PerceptionSpace(), pe.TargetRule()
 
 
 def rig_key(rig: pe.Rig) -> Hashable:
@@ -44,13 +42,6 @@ class Baseline:
     label: str
     rig: pe.Rig | None
     summary: pe.SummaryScore | None = None
-
-
-class ChosenBaseline(NamedTuple):
-    """A baseline that the user chose, and what it was made from."""
-
-    key: tuple[Hashable, ...]
-    baseline: Baseline
 
 
 @dataclass(frozen=True)
@@ -96,6 +87,44 @@ class LiveScore:
     def before(self) -> pe.SummaryScore | None:
         """The score of the baseline, once it is known."""
         return None if self.baseline is None else self.baseline.summary
+
+
+class Problem(NamedTuple):
+    """What an evaluator is made for; `key` identifies it by plain values."""
+
+    key: Hashable
+    prior: pe.Prior
+    vehicle: pe.Vehicle | None
+    space: pe.PerceptionSpace = DEFAULT_SPACE
+    model: pe.PerceptionModel | None = None
+    targets: pe.TargetRule = VOXELS
+
+
+@dataclass(frozen=True)
+class ScoreRequest:
+    """A rig to be scored; approximately, as a preview, where `preview`; `moving`: not idle."""
+
+    problem: Problem
+    rig: pe.Rig
+    preview: bool
+    prior_key: Hashable = None
+    moving: bool = False
+
+
+class FigureRequest(NamedTuple):
+    """A request of key figures: for which score, compared with what, by which rule."""
+
+    request: ScoreRequest
+    baseline: Baseline | None
+    rule: bridge.FigureRule | None
+
+
+class ShownFigures(NamedTuple):
+    """Key figures to show, those they are compared with, and whether they are of the scene."""
+
+    now: advice.KeyFigures | None = None
+    before: advice.KeyFigures | None = None
+    current: bool = False
 
 
 class LastRead(NamedTuple):
@@ -152,8 +181,8 @@ class LiveState:
         The sensors before the last move.
     pinned : Rig or None
         Sensors to compare with, kept for this session.
-    chosen : ChosenBaseline or None
-        The pinned sensors or the variant that the settings choose.
+    chosen : (tuple, Baseline) or None
+        The pinned sensors or the variant that the settings choose, and what it was made from.
     figures : FigureRequest or None
         The last request of key figures.
     shown_figures : KeyFigures or None
@@ -174,7 +203,7 @@ class LiveState:
     operator: int = 0
     before_move: Baseline | None = None
     pinned: pe.Rig | None = None
-    chosen: ChosenBaseline | None = None
+    chosen: tuple[tuple[Hashable, ...], Baseline] | None = None
     figures: FigureRequest | None = None
     shown_figures: advice.KeyFigures | None = None
     known_rig: KnownRigScore | None = None

@@ -3,7 +3,7 @@
 Panels take from here the operators, and what menus list.
 """
 
-from ..bridge import after_of, shown_state
+from ..bridge import after_of, holder_of, shown_state
 from ..diagnostics import warnings_outdated
 from ..live import (
     BETTER,
@@ -17,49 +17,32 @@ from ..live import (
     shown_score,
     text_of,
 )
+from ..sensor_cache import sensors as listed_sensors
 from ..sensor_kinds import kind_label
 from . import (
-    add_sensor,
-    body_mesh,
     compare_variants,
     conditions,
     edit_sensors,
-    export_files,
-    export_job,
+    exports,
     first_steps,
-    fix_warnings,
     inset,
     look_through,
     mounts,
-    panel_rows,
     place_sensor,
     placement,
-    query_location,
-    replace_sensors,
-    requirements,
-    rig_files,
     running_job,
-    score_jobs,
     shortcuts,
     upright,
     variants,
 )
-from .add_sensor import (
-    Offer,
-    brief,
-    holder_of,
-    known_makers,
-    makers,
-    models,
-    offers,
-)
-from .edit_sensors import listed_sensors
+from .add_sensor import Offer, brief, known_makers, makers, models, offers
+from .declared import CLASSES
 from .fix_warnings import FIX_LABELS
+from .imports import known_rigs
+from .jobs import costs_nothing
 from .panel_rows import own_fields, reference_label
 from .query_location import answer
-from .replace_sensors import known_rigs
 from .requirements import ShownSource, ShownVerdict, shown_verdicts, source_of
-from .score_jobs import costs_nothing
 
 __all__ = [
     "BETTER",
@@ -74,19 +57,26 @@ __all__ = [
     "after_of",
     "answer",
     "brief",
+    "compare_variants",
+    "conditions",
     "costs_nothing",
-    "export_job",
+    "edit_sensors",
+    "exports",
+    "first_steps",
     "holder_of",
     "kind_label",
     "known_makers",
     "known_rigs",
     "listed_sensors",
     "live_lines",
+    "look_through",
     "makers",
     "models",
+    "mounts",
     "nats_text",
     "offers",
     "own_fields",
+    "place_sensor",
     "reference_label",
     "register",
     "running_job",
@@ -98,31 +88,10 @@ __all__ = [
     "source_of",
     "text_of",
     "unregister",
+    "upright",
+    "variants",
     "warnings_outdated",
 ]
-
-CLASSES = (
-    *first_steps.CLASSES,
-    *add_sensor.CLASSES,
-    *place_sensor.CLASSES,
-    *edit_sensors.CLASSES,
-    *mounts.CLASSES,
-    *panel_rows.CLASSES,
-    *requirements.CLASSES,
-    *body_mesh.CLASSES,
-    *conditions.CLASSES,
-    *look_through.CLASSES,
-    *upright.CLASSES,
-    *score_jobs.CLASSES,
-    *export_job.CLASSES,
-    *export_files.CLASSES,
-    *rig_files.CLASSES,
-    *replace_sensors.CLASSES,
-    *variants.CLASSES,
-    *compare_variants.CLASSES,
-    *fix_warnings.CLASSES,
-    *query_location.CLASSES,
-)
 
 
 def register() -> None:
@@ -135,6 +104,6 @@ def unregister() -> None:
     """End what is running, and what waits for the mouse; remove what `register` added."""
     running_job.unregister()
     placement.end()
-    export_job.unregister()
+    exports.unregister()
     inset.unregister()
     shortcuts.unregister()

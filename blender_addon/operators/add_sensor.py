@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import bpy
 import numpy as np
@@ -13,11 +14,10 @@ from mathutils import Vector
 from .. import bridge, preferences
 from ..engine import catalog, kinds, pe
 from ..housing import measured_housing
-from ..language import shown
 from ..properties import DEFAULT_MODEL, model_suggestions
 from ..sensor_kinds import Mount, mount_of
-from .reports import USER_ERRORS, OperatorResult, report_error
-from .surface_pose import nearest_spot, parts_of
+from .declared import INTERNAL, OperatorResult, operator
+from .surface_pose import is_part, nearest_spot, parts_of
 
 ROOF_DEPTH_M = 0.1
 """Points this near to the vehicle's highest point belong to the roof."""
@@ -39,16 +39,9 @@ def default_location(context: bpy.types.Context, mount: Mount) -> Vector:
     depsgraph = context.evaluated_depsgraph_get()
     if cursor.length > 0.0:
         parts = parts_of(collection, depsgraph) or set()
-        return moved_out_of_surface(cursor, mount.stand_off_m, parts, depsgraph)
+        spot = nearest_spot(depsgraph, parts, cursor, mount.stand_off_m)
+        return cursor.copy() if spot is None else spot.point + spot.normal * mount.stand_off_m
     return Vector(roof_location(bridge.vehicle_from_collection(collection, depsgraph), mount))
-
-
-def moved_out_of_surface(
-    point: Vector, stand_off_m: float, parts: set[str], depsgraph: bpy.types.Depsgraph
-) -> Vector:
-    """Return a point, moved away from any surface nearer than a sensor's stand-off."""
-    spot = nearest_spot(depsgraph, parts, point, stand_off_m)
-    return point.copy() if spot is None else spot.point + spot.normal * stand_off_m
 
 
 def roof_location(vehicle: pe.Vehicle, mount: Mount) -> tuple[float, float, float]:
@@ -86,11 +79,7 @@ def offers() -> Iterator[Offer]:
 
 def makers(kind: str | None) -> list[str]:
     """Return the makers of sensors of one kind or all kinds, in the order of the catalogue."""
-    return list(
-        dict.fromkeys(
-            entry.maker for entry in catalog.entries().values() if _is_of_kind(entry, kind)
-        )
-    )
+    return list(dict.fromkeys(entry.maker for entry in _entries(kind)))
 
 
 def known_makers() -> list[str]:
@@ -100,8 +89,7 @@ def known_makers() -> list[str]:
 
 def models(kind: str | None, maker: str | None = None) -> list[str]:
     """Return the names of sensors of a kind, of one maker or of all."""
-    entries = (entry for entry in catalog.entries().values() if _is_of_kind(entry, kind))
-    return [entry.name for entry in entries if maker in (None, entry.maker)]
+    return [entry.name for entry in _entries(kind) if maker in (None, entry.maker)]
 
 
 def brief(model: str) -> str:
@@ -120,59 +108,50 @@ def tooltip_of(model: str) -> str:
     return "\n".join([model, *lines])
 
 
-def _is_of_kind(entry: catalog.Entry, kind: str | None) -> bool:
-    return entry.kind in kinds.KINDS and kind in (None, entry.kind)
+def _entries(kind: str | None) -> list[catalog.Entry]:
+    """Return the catalogue's entries of a kind, or of all kinds that the engine has."""
+    found = catalog.entries().values()
+    return [each for each in found if each.kind in kinds.KINDS and kind in (None, each.kind)]
 
 
-def holder_of(obj: bpy.types.Object) -> str:
-    """Return the name of what fixes a sensor's pose; empty if the pose can be edited."""
-    return bridge.holder_of(obj)
+def with_data_sheet(about: str, chosen: bpy.types.OperatorProperties) -> str:
+    """Return the tooltip of an operator that adds a sensor."""
+    return f"{about}\n\n{tooltip_of(chosen.model)}"
 
 
-class PE_OT_add_sensor(bpy.types.Operator):
-    """Add a sensor at the 3D cursor, or on the roof while the cursor is at the origin"""
-
-    bl_idname = "pe.add_sensor"
-    bl_label = "Add Sensor"
-    bl_options = {"REGISTER", "UNDO"}
-
-    model: StringProperty(
+MODEL: dict[str, Any] = {
+    "model": StringProperty(
         name="Model",
         description="Name of the sensor in the catalogue",
         default=DEFAULT_MODEL,
         search=model_suggestions,
         search_options=set(),
-    )
-    housing: BoolProperty(
+    ),
+    "housing": BoolProperty(
         name="Housing",
         description="Show the sensor's own body in its true size, where a data sheet gives it",
         default=True,
-    )
+    ),
+}
+"""Properties of operators that add a sensor."""
 
-    @classmethod
-    def description(cls, _context: bpy.types.Context, chosen: bpy.types.OperatorProperties) -> str:
-        return f"{shown(str(cls.__doc__))}\n\n{tooltip_of(chosen.model)}"
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if context.mode != "OBJECT":
-            cls.poll_message_set(shown("Sensors are added in Object Mode"))
-            return False
-        return True
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        try:
-            kind = kinds.kind_of(catalog.load(self.model))
-            mount = mount_of(kind.name)
-            choose_vehicle(context.scene)
-            location = default_location(context, mount)
-        except USER_ERRORS as error:
-            return report_error(self, error)
-        body = measured_housing(self.model) if self.housing else None
-        obj = new_sensor(context, kind.label, self.model, mount, body)
-        obj.location = location
-        select_only(context, obj)
-        return {"FINISHED"}
+@operator(
+    "Add Sensor",
+    mode="Sensors are added in Object Mode",
+    tooltip=with_data_sheet,
+    **MODEL,
+)
+def add_sensor(context: bpy.types.Context, model: str, housing: bool) -> None:
+    """Add a sensor at the 3D cursor, or on the roof while the cursor is at the origin"""
+    kind = kinds.kind_of(catalog.load(model))
+    mount = mount_of(kind.name)
+    choose_vehicle(context.scene)
+    location = default_location(context, mount)
+    body = measured_housing(model) if housing else None
+    obj = new_sensor(context, kind.label, model, mount, body)
+    obj.location = location
+    select_only(context, obj)
 
 
 def choose_vehicle(scene: bpy.types.Scene) -> None:
@@ -184,11 +163,6 @@ def choose_vehicle(scene: bpy.types.Scene) -> None:
         ]
         if len(solid) == 1:
             settings.vehicle = solid[0]
-
-
-def is_part(obj: bpy.types.Object) -> bool:
-    """Whether an object may be a part of a vehicle."""
-    return obj.type == "MESH" and not bridge.mounted_on_sensor(obj)
 
 
 def new_sensor(
@@ -229,29 +203,22 @@ def _menu_items(
     return _listed
 
 
-class PE_OT_search_sensor(bpy.types.Operator):
-    """Type a part of a sensor's name, such as QT128, and place it by pointing"""
-
-    bl_idname = "pe.search_sensor"
-    bl_label = "Search Sensors"
-    bl_options = {"INTERNAL"}
-    bl_property = "model"
-
-    kind: StringProperty(name="Kind", description="Kind of sensors to list; all when empty")
-    model: EnumProperty(name="Model", description="Sensor of the catalogue", items=_menu_items)
-
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
-        context.window_manager.invoke_search_popup(self)
-        return {"FINISHED"}
-
-    def execute(self, _context: bpy.types.Context) -> OperatorResult:
-        if not self.model:
-            expected, found = "the name of a sensor of the catalogue", "an empty text"
-            return report_error(self, pe.InputError("search", "model", expected, found))
-        return bpy.ops.pe.place_sensor("INVOKE_DEFAULT", True, model=self.model)
+def _search(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
+    context.window_manager.invoke_search_popup(self)
+    return {"FINISHED"}
 
 
-CLASSES = (
-    PE_OT_add_sensor,
-    PE_OT_search_sensor,
+@operator(
+    "Search Sensors",
+    options=INTERNAL,
+    bl_property="model",
+    invoke=_search,
+    kind=StringProperty(name="Kind", description="Kind of sensors to list; all when empty"),
+    model=EnumProperty(name="Model", description="Sensor of the catalogue", items=_menu_items),
 )
+def search_sensor(_context: bpy.types.Context, model: str) -> OperatorResult:
+    """Type a part of a sensor's name, such as QT128, and place it by pointing"""
+    if not model:
+        expected, found = "the name of a sensor of the catalogue", "an empty text"
+        raise pe.InputError("search", "model", expected, found)
+    return bpy.ops.pe.place_sensor("INVOKE_DEFAULT", True, model=model)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from textwrap import wrap
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import bpy
 
@@ -13,8 +13,8 @@ from .. import bridge, result_staleness
 from ..engine import advice, pe
 from ..language import draw_label, shown
 from ..live import SAME, sense_icon
-from .reports import OperatorResult, report
-from .score_jobs import JobOperator, SceneJob
+from .declared import INTERNAL, OperatorResult, Told, operator
+from .jobs import JobRow, Task
 
 FIGURES_SHARE = 0.1
 """About which share of a score's time its key figures take."""
@@ -96,37 +96,12 @@ class CompareJob:
         return advice.key_figures(study.sight(), study.rig, *self.rule, of_voxels=voxels)
 
 
-class PE_OT_compare_variants(JobOperator, bpy.types.Operator):
-    """Compare all variants: entropy and coverage by zone and class, blind ground, reach.
-
-    Variants without a valid score are scored first"""
-
-    bl_idname = "pe.compare_variants"
-    bl_label = "Compare"
-    bl_options = {"REGISTER", "UNDO"}
-    asked_in_window = False
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if not context.scene.perception_entropy.variants:
-            cls.poll_message_set(shown("There is no variant yet"))
-            return False
-        return super().poll(context)
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        if not pending_variants(context.scene):
-            return {"FINISHED"}
-        return super().execute(context)
-
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
-        """Show the table at once where all scores are valid."""
-        self.asked_in_window = not bpy.app.background
-        if self.asked_in_window and not pending_variants(context.scene):
-            return open_table()
-        return super().invoke(context, event)
-
-    def _read(self, context: bpy.types.Context) -> SceneJob:
-        scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
+def compare_task(context: bpy.types.Context) -> Task | None:
+    """Read the variants without a valid score or figures; None where all are valid."""
+    scene = context.scene
+    with bridge.as_drawn(scene):
+        bridge.read_states(scene)
+        depsgraph = context.evaluated_depsgraph_get()
         pending: dict[int, PendingVariant] = {}
         refused: list[pe.InputError] = []
         for row in pending_variants(scene):
@@ -135,79 +110,90 @@ class PE_OT_compare_variants(JobOperator, bpy.types.Operator):
                 pending[row.key] = PendingVariant(row.name, study, not row.has_result or row.stale)
             except pe.InputError as error:
                 refused.append(error)
-        if not pending:
+        if refused and not pending:
             raise refused[0]
-        for problem in refused:
-            report(self, "WARNING", str(problem))
+        if not pending:
+            return None
         taken = result_staleness.fingerprint(scene, depsgraph)
         rule = bridge.figure_rule(scene, next(iter(pending.values())).study.prior)
-        self.figures_of = bridge.figures_signature(scene, taken)
-        return SceneJob(CompareJob(pending, rule), taken)
+        figures_of = bridge.figures_signature(scene, taken)
+    job = CompareJob(pending, rule)
 
-    def write(
-        self, scene: bpy.types.Scene, outcome: dict[int, ComparedVariant], taken: bridge.Fingerprint
-    ) -> list[str]:
-        """Store the scores and figures of the variants that still exist."""
-        for row in scene.perception_entropy.variants:
-            if row.key in outcome:
-                score, figures = outcome[row.key]
+    def finish(scene: bpy.types.Scene) -> Told:
+        found = job.outcome or {}
+        for row in scene.perception_entropy.variants:  # those that still exist
+            if row.key in found:
+                score, figures = found[row.key]
                 if score is not None:
                     bridge.store_variant_score(row, score, taken.surroundings)
-                bridge.write_figures(row, figures, self.figures_of)
-        if self.asked_in_window:
-            open_table()
-        return []
+                bridge.write_figures(row, figures, figures_of)
+        scored = sum(variant.score is not None for variant in found.values())
+        return Told(f"{scored} scored, {len(found)} compared", tuple(map(str, refused)))
 
-    def message(self, outcome: dict[int, ComparedVariant]) -> str:
-        """Return the result in a line."""
-        scored = sum(variant.score is not None for variant in outcome.values())
-        return f"{scored} scored, {len(outcome)} compared"
+    return Task(job, finish)
 
 
-class PE_OT_show_comparison(bpy.types.Operator):
+def open_table() -> None:
+    """Open the table."""
+    bpy.ops.pe.show_comparison("INVOKE_DEFAULT")
+
+
+COMPARE = JobRow(
+    "compare_variants",
+    "Compare",
+    "Compare all variants: entropy and coverage by zone and class, blind ground, reach.\n\n"
+    "Variants without a valid score are scored first",
+    compare_task,
+    unless=lambda context: (
+        None if context.scene.perception_entropy.variants else "There is no variant yet"
+    ),
+    show=open_table,
+).declare()
+
+
+def _open(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
+    """Compute the table, and open it in a window that stays until it is closed."""
+    self.names, self.rows = comparison_of(context.scene)
+    width = max(LABEL_PX + COLUMN_PX * len(self.names), MIN_WIDTH_PX)
+    letters = width // LETTER_PX
+    self.said = sentences(self.names, self.rows, letters)
+    self.said += wrap(shown(hardware_note(context.scene)), letters)
+    title, close = shown(self.bl_label), shown("Close")
+    return context.window_manager.invoke_props_dialog(
+        self, width=width, title=title, confirm_text=close, translate=False
+    )
+
+
+def _draw(self: Any, _context: bpy.types.Context) -> None:
+    """Draw the key figures, the scores in words, and the scores, a column for each variant."""
+    _draw_table(self.layout, self.names, [r for r in self.rows if r.measure in KEY_FIGURES])
+    said = self.layout.column(align=True)
+    for line in self.said:
+        draw_label(said, line)
+    _draw_table(self.layout, self.names, [r for r in self.rows if r.measure not in KEY_FIGURES])
+    text = (
+        f"A star marks the best; in brackets: the difference to {self.names[0]}, "
+        "blue for a gain, orange for a loss"
+    )
+    draw_label(self.layout, text)
+
+
+@operator("Variants Compared", options=INTERNAL, invoke=_open, draw=_draw)
+def show_comparison(_context: bpy.types.Context) -> None:
     """Show the scores of all variants side by side"""
 
-    bl_idname = "pe.show_comparison"
-    bl_label = "Variants Compared"
-    bl_options = {"INTERNAL"}
 
-    def execute(self, _context: bpy.types.Context) -> OperatorResult:
-        return {"FINISHED"}
-
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
-        """Compute the table, and open it in a window that stays until it is closed."""
-        self.names, self.rows = comparison_of(context.scene)
-        width = max(LABEL_PX + COLUMN_PX * len(self.names), MIN_WIDTH_PX)
-        letters = width // LETTER_PX
-        self.said = sentences(self.names, self.rows, letters)
-        self.said += wrap(shown(hardware_note(context.scene)), letters)
-        title, close = shown(self.bl_label), shown("Close")
-        return context.window_manager.invoke_props_dialog(
-            self, width=width, title=title, confirm_text=close, translate=False
-        )
-
-    def draw(self, _context: bpy.types.Context) -> None:
-        """Draw the key figures, the scores in words, and the scores, a column for each variant."""
-        self._draw_table([row for row in self.rows if row.measure in KEY_FIGURES])
-        said = self.layout.column(align=True)
-        for line in self.said:
-            draw_label(said, line)
-        self._draw_table([row for row in self.rows if row.measure not in KEY_FIGURES])
-        text = (
-            f"A star marks the best; in brackets: the difference to {self.names[0]}, "
-            "blue for a gain, orange for a loss"
-        )
-        draw_label(self.layout, text)
-
-    def _draw_table(self, rows: Sequence[advice.ComparedRow]) -> None:
-        if not rows:
-            return
-        split = self.layout.box().split(factor=LABEL_PX / (LABEL_PX + COLUMN_PX * len(self.names)))
-        names, *columns = columns_of(self.names, rows)
-        draw_column(split.column(align=True), names, "LEFT")
-        figures = split.row()
-        for column in columns:
-            draw_column(figures.column(align=True), column, "RIGHT")
+def _draw_table(
+    layout: bpy.types.UILayout, names: list[str], rows: Sequence[advice.ComparedRow]
+) -> None:
+    if not rows:
+        return
+    split = layout.box().split(factor=LABEL_PX / (LABEL_PX + COLUMN_PX * len(names)))
+    first, *columns = columns_of(names, rows)
+    draw_column(split.column(align=True), first, "LEFT")
+    figures = split.row()
+    for column in columns:
+        draw_column(figures.column(align=True), column, "RIGHT")
 
 
 class TextCell(NamedTuple):
@@ -237,34 +223,29 @@ def draw_column(column: bpy.types.UILayout, cells: list[TableCell], alignment: s
         draw_label(row, cell.text, "SOLO_ON" if cell.best else other)
 
 
-def open_table() -> OperatorResult:
-    """Open the table."""
-    bpy.ops.pe.show_comparison("INVOKE_DEFAULT")
-    return {"FINISHED"}
-
-
 def pending_variants(scene: bpy.types.Scene) -> list[bpy.types.PropertyGroup]:
     """Return variants without a valid score, or without figures of the present settings."""
     fingerprint = result_staleness.fingerprint(scene)
     bridge.check_variants(scene, fingerprint)
-    signature, rows = (
-        bridge.figures_signature(scene, fingerprint),
-        scene.perception_entropy.variants,
-    )
-    return [
-        row
-        for row in rows
-        if not row.has_result or row.stale or bridge.figures_of(row, signature) is None
-    ]
+    of = bridge.figures_signature(scene, fingerprint)
+    rows = scene.perception_entropy.variants
+    return [r for r in rows if not r.has_result or r.stale or bridge.figures_of(r, of) is None]
 
 
 def comparison_of(
     scene: bpy.types.Scene,
 ) -> tuple[list[str], tuple[advice.ComparedRow, ...]]:
-    """Return the names of the scored variants, the active one first, and the table's rows."""
+    """Return the names of the scored variants, the active one first, and the table's rows.
+
+    Of key figures there are rows if every variant has figures of the present settings.
+    """
     rows = compared_variants(scene)
     scores = {row.name: bridge.score_of(row) for row in rows}
-    return list(scores), (*advice.compare(scores), *figure_rows(scene, rows))
+    of = bridge.figures_signature(scene, result_staleness.fingerprint(scene))
+    figures = {row.name: bridge.figures_of(row, of) for row in rows}
+    known = {name: each for name, each in figures.items() if each is not None}
+    more = advice.compare_figures(known) if len(known) == len(figures) else ()
+    return list(scores), (*advice.compare(scores), *more)
 
 
 def compared_variants(scene: bpy.types.Scene) -> list[bpy.types.PropertyGroup]:
@@ -279,16 +260,6 @@ def hardware_note(scene: bpy.types.Scene) -> str:
     return bridge.hardware_note(compared_variants(scene))
 
 
-def figure_rows(
-    scene: bpy.types.Scene, rows: list[bpy.types.PropertyGroup]
-) -> tuple[advice.ComparedRow, ...]:
-    """Return rows of key figures, if every variant has these figures."""
-    of = bridge.figures_signature(scene, result_staleness.fingerprint(scene))
-    figures = {row.name: bridge.figures_of(row, of) for row in rows}
-    present = {name: each for name, each in figures.items() if each is not None}
-    return advice.compare_figures(present) if len(present) == len(figures) else ()
-
-
 def sentences(names: list[str], rows: tuple[advice.ComparedRow, ...], letters: int) -> list[str]:
     """Return sentences on the best variant by row, wrapped into lines of `letters` letters."""
     scored = [row for row in rows if row.factor]  # key figures have no standard error
@@ -298,27 +269,18 @@ def sentences(names: list[str], rows: tuple[advice.ComparedRow, ...], letters: i
 
 def columns_of(names: list[str], rows: Sequence[advice.ComparedRow]) -> list[list[TableCell]]:
     """Return the table by columns; the first column holds the names of the rows."""
-    columns: list[list[TableCell]] = [[TextCell(name)] for name in ("", *names)]
+    empty, gap = TextCell(""), [None] * (len(names) + 1)
+    table: list[list[TableCell]] = [[empty, *map(TextCell, names)]]
     for measure, title in TITLES.items():
-        if not any(row.measure == measure for row in rows):
-            continue
-        _add(columns, [TextCell(title)])
+        found = [row for row in rows if row.measure == measure]
+        table += [[TextCell(title), *[empty] * len(names)]] if found else []
         group = "rig"
-        for row in rows:
-            if row.measure != measure:
-                continue
-            if row.group != group:
-                _add(columns, [None] * len(columns))
-                group = row.group
-            label = f"    {row.name.capitalize() or WHOLE_RIG}"
-            _add(columns, [TextCell(label), *(_cell(row, k) for k in range(len(names)))])
-    return columns
-
-
-def _add(columns: list[list[TableCell]], cells: list[TableCell]) -> None:
-    """Append a row to the table; missing cells at its end are empty."""
-    for k, column in enumerate(columns):
-        column.append(cells[k] if k < len(cells) else TextCell(""))
+        for row in found:
+            table += [gap] if row.group != group else []
+            group = row.group
+            label = TextCell(f"    {row.name.capitalize() or WHOLE_RIG}")
+            table.append([label, *(_cell(row, k) for k in range(len(names)))])
+    return [list(column) for column in zip(*table, strict=True)]
 
 
 def _cell(row: advice.ComparedRow, k: int) -> TextCell:
@@ -331,9 +293,3 @@ def _cell(row: advice.ComparedRow, k: int) -> TextCell:
     is_visible = bool(change.strip("+-0."))
     change = f"({change})" if is_visible else ""
     return TextCell(f"{value:{way}}", row.best[k], change, row.sense(k))
-
-
-CLASSES = (
-    PE_OT_compare_variants,
-    PE_OT_show_comparison,
-)

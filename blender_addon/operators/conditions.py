@@ -6,10 +6,8 @@ import bpy
 from bpy.props import EnumProperty, IntProperty
 
 from .. import bridge, signals
-from ..choices import free_name
 from ..engine import pe
-from .list_rows import RemoveRow
-from .reports import USER_ERRORS, OperatorResult, report, report_error
+from .declared import RowList, operator
 
 DRAWN = -1
 WEATHERS = (
@@ -20,118 +18,60 @@ WEATHERS = (
     ("NIGHT", "Night", "Cameras see what headlamps light"),
 )
 STARTS = {"RAIN": ("rain_mm_h", 25.0), "SNOW": ("snow_mm_h", 2.5), "FOG": ("fog_mor_m", 100.0)}
+STATE_ROWS = RowList("states", "state_index", "state")
+WEATHER_ROWS = RowList("weathers", "weather_index", "weather")
+STATE_ROWS.operators(remove="Remove the selected state")
+WEATHER_ROWS.operators(remove="Remove the selected weather")
 
 
-class PE_OT_add_state(bpy.types.Operator):
+@operator("Add State of This Frame", signal=signals.study_changed)
+def add_state(context: bpy.types.Context) -> str:
     """Add the frame that is shown as a state of the vehicle; what has moved is read here"""
-
-    bl_idname = "pe.add_state"
-    bl_label = "Add State of This Frame"
-    bl_options = {"REGISTER", "UNDO"}
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        scene = context.scene
-        settings = scene.perception_entropy
-        row = settings.states.add()
-        is_drawn = scene.frame_current == settings.drawn_frame
-        names = {other.name for other in settings.states}
-        row.name = free_name("As Drawn" if is_drawn else f"Frame {scene.frame_current}", names)
-        row.frame = scene.frame_current
-        try:
-            bridge.read_states(scene)
-        except USER_ERRORS as error:
-            settings.states.remove(len(settings.states) - 1)
-            return report_error(self, error)
-        settings.state_index = len(settings.states) - 1
-        signals.study_changed.emit()
-        report(self, "INFO", f"Added state {row.name}")
-        return {"FINISHED"}
+    scene, settings = context.scene, context.scene.perception_entropy
+    before, frame = settings.state_index, scene.frame_current
+    is_drawn = frame == settings.drawn_frame
+    row = STATE_ROWS.add(scene, "As Drawn" if is_drawn else f"Frame {frame}")
+    name, row.frame = row.name, frame
+    try:
+        bridge.read_states(scene)
+    except pe.InputError:
+        settings.states.remove(len(settings.states) - 1)
+        settings.state_index = before
+        raise
+    return f"Added state {name}"
 
 
-class PE_OT_read_states(bpy.types.Operator):
+@operator("Read States Again")
+def read_states(context: bpy.types.Context) -> str:
     """Read what moves in all states again: the animation has changed"""
-
-    bl_idname = "pe.read_states"
-    bl_label = "Read States Again"
-    bl_options = {"REGISTER", "UNDO"}
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        try:
-            changed = bridge.read_states(context.scene)
-        except USER_ERRORS as error:
-            return report_error(self, error)
-        text = f"States changed: {', '.join(changed)}" if changed else "No state has changed"
-        report(self, "INFO", text)
-        return {"FINISHED"}
+    changed = bridge.read_states(context.scene)
+    return f"States changed: {', '.join(changed)}" if changed else "No state has changed"
 
 
-class PE_OT_show_state(bpy.types.Operator):
-    """Show this state in the 3D view; live score and maps are those of what is shown"""
-
-    bl_idname = "pe.show_state"
-    bl_label = "Show State"
-    bl_options = {"REGISTER", "UNDO"}
-
-    index: IntProperty(name="State", description="Row of the list; -1: as drawn", default=DRAWN)
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        scene = context.scene
-        settings = scene.perception_entropy
-        rows = settings.states
-        frame = rows[self.index].frame if 0 <= self.index < len(rows) else settings.drawn_frame
-        if frame < 0:
-            error = pe.InputError("scene", "state", "a state with a frame of the scene", "none")
-            return report_error(self, error)
-        scene.frame_set(frame)
-        signals.study_changed.emit()
-        return {"FINISHED"}
-
-
-class PE_OT_add_weather(bpy.types.Operator):
-    """Add a weather in which the rig is scored"""
-
-    bl_idname = "pe.add_weather"
-    bl_label = "Add Weather"
-    bl_options = {"REGISTER", "UNDO"}
-
-    weather: EnumProperty(items=WEATHERS, name="Weather", description="What it starts with")
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        settings = context.scene.perception_entropy
-        label = next(label for key, label, _ in WEATHERS if key == self.weather)
-        name = free_name(label, {row.name for row in settings.weathers})
-        row = settings.weathers.add()
-        row.name, row.night = name, self.weather == "NIGHT"
-        if self.weather in STARTS:
-            setattr(row, *STARTS[self.weather])
-        settings.weather_index = len(settings.weathers) - 1
-        signals.study_changed.emit()
-        return {"FINISHED"}
-
-
-class PE_OT_remove_state(RemoveRow, bpy.types.Operator):
-    """Remove the selected state"""
-
-    bl_idname = "pe.remove_state"
-    bl_label = "Remove State"
-    bl_options = {"REGISTER", "UNDO"}
-    ROWS, INDEX, NOUN = "states", "state_index", "state"
-
-
-class PE_OT_remove_weather(RemoveRow, bpy.types.Operator):
-    """Remove the selected weather"""
-
-    bl_idname = "pe.remove_weather"
-    bl_label = "Remove Weather"
-    bl_options = {"REGISTER", "UNDO"}
-    ROWS, INDEX, NOUN = "weathers", "weather_index", "weather"
-
-
-CLASSES = (
-    PE_OT_add_state,
-    PE_OT_read_states,
-    PE_OT_show_state,
-    PE_OT_add_weather,
-    PE_OT_remove_state,
-    PE_OT_remove_weather,
+@operator(
+    "Show State",
+    signal=signals.study_changed,
+    index=IntProperty(name="State", description="Row of the list; -1: as drawn", default=DRAWN),
 )
+def show_state(context: bpy.types.Context, index: int) -> None:
+    """Show this state in the 3D view; live score and maps are those of what is shown"""
+    settings = context.scene.perception_entropy
+    rows = settings.states
+    frame = rows[index].frame if 0 <= index < len(rows) else settings.drawn_frame
+    if frame < 0:
+        raise pe.InputError("scene", "state", "a state with a frame of the scene", "none")
+    context.scene.frame_set(frame)
+
+
+@operator(
+    "Add Weather",
+    signal=signals.study_changed,
+    weather=EnumProperty(items=WEATHERS, name="Weather", description="What it starts with"),
+)
+def add_weather(context: bpy.types.Context, weather: str) -> None:
+    """Add a weather in which the rig is scored"""
+    label = next(label for key, label, _ in WEATHERS if key == weather)
+    row = WEATHER_ROWS.add(context.scene, label)
+    row.night = weather == "NIGHT"
+    if weather in STARTS:
+        setattr(row, *STARTS[weather])

@@ -6,140 +6,89 @@ import bpy
 from bpy.props import BoolProperty, StringProperty
 from mathutils import Matrix
 
-from .. import bridge, sensor_cache, signals, vehicle_cache
+from .. import bridge, signals, vehicle_cache
 from ..engine import advice, pe
-from ..language import shown
 from .add_sensor import select_only
-from .reports import USER_ERRORS, OperatorResult, chosen_sensor, report, report_error
+from .declared import INTERNAL, Refused, Told, chosen_sensor, operator
+
+NAME = StringProperty(name="Name", description="Name of the sensor; the active one when empty")
 
 
-def listed_sensors(scene: bpy.types.Scene) -> list[bpy.types.Object]:
-    """Return all sensors of a scene by name, for a list of them."""
-    return sensor_cache.sensors(scene)
-
-
-class PE_OT_select_sensor(bpy.types.Operator):
+@operator(
+    "Select Sensor",
+    mode="Sensors are selected in Object Mode",
+    options=INTERNAL | {"UNDO"},
+    name=StringProperty(name="Name", description="Name of the sensor's object"),
+)
+def select_sensor(context: bpy.types.Context, name: str) -> None:
     """Select this sensor and show its settings"""
-
-    bl_idname = "pe.select_sensor"
-    bl_label = "Select Sensor"
-    bl_options = {"INTERNAL", "UNDO"}
-
-    name: StringProperty(name="Name", description="Name of the sensor's object")
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return context.mode == "OBJECT"
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        obj = context.view_layer.objects.get(self.name)
-        if obj is None or not obj.visible_get():
-            report(self, "WARNING", f"{self.name} is hidden")
-            return {"CANCELLED"}
-        select_only(context, obj)
-        return {"FINISHED"}
+    obj = context.view_layer.objects.get(name)
+    if obj is None or not obj.visible_get():
+        raise Refused(f"{name} is hidden")
+    select_only(context, obj)
 
 
-class PE_OT_select_part(bpy.types.Operator):
+@operator(
+    "Select Part",
+    mode="Parts are selected in Object Mode",
+    options=INTERNAL | {"UNDO"},
+    name=StringProperty(name="Name", description="Name of the part's object"),
+)
+def select_part(context: bpy.types.Context, name: str) -> None:
     """Select this part of the vehicle"""
-
-    bl_idname = "pe.select_part"
-    bl_label = "Select Part"
-    bl_options = {"INTERNAL", "UNDO"}
-
-    name: StringProperty(name="Name", description="Name of the part's object")
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return context.mode == "OBJECT"
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        # The name of a linked part includes its file; the view layer's objects have no such key.
-        matches = (o for o in context.view_layer.objects if self.name in (o.name_full, o.name))
-        obj = next(matches, None)
-        if obj is None or not obj.visible_get():
-            report(self, "WARNING", f"{self.name} is hidden, or was removed")
-            return {"CANCELLED"}
-        select_only(context, obj)
-        return {"FINISHED"}
+    # The name of a linked part includes its file; the view layer's objects have no such key.
+    matches = (o for o in context.view_layer.objects if name in (o.name_full, o.name))
+    obj = next(matches, None)
+    if obj is None or not obj.visible_get():
+        raise Refused(f"{name} is hidden, or was removed")
+    select_only(context, obj)
 
 
-class PE_OT_toggle_sensor(bpy.types.Operator):
+@operator(
+    "Show or Hide Sensor",
+    signal=signals.study_changed,
+    options=INTERNAL | {"UNDO"},
+    name=StringProperty(name="Name", description="Name of the sensor's object"),
+)
+def toggle_sensor(context: bpy.types.Context, name: str) -> Told | None:
     """Show or hide this sensor, like the Outliner's eye. A hidden sensor is not scored"""
-
-    bl_idname = "pe.toggle_sensor"
-    bl_label = "Show or Hide Sensor"
-    bl_options = {"INTERNAL", "UNDO"}
-
-    name: StringProperty(name="Name", description="Name of the sensor's object")
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        obj = context.scene.objects.get(self.name)
-        if obj is None or obj.name not in context.view_layer.objects:
-            report(
-                self,
-                "WARNING",
-                f"{self.name} is in a collection that is excluded from the view layer",
-            )
-            return {"CANCELLED"}
-        hide = obj.visible_get()
-        if not hide:
-            obj.hide_viewport = False
-        obj.hide_set(hide)
-        signals.study_changed.emit()
-        if hide == obj.visible_get():
-            report(self, "WARNING", f"{self.name} is hidden by its collection, or by local view")
-        return {"FINISHED"}
+    obj = context.scene.objects.get(name)
+    if obj is None or obj.name not in context.view_layer.objects:
+        raise Refused(f"{name} is in a collection that is excluded from the view layer")
+    hide = obj.visible_get()
+    if not hide:
+        obj.hide_viewport = False
+    obj.hide_set(hide)
+    if hide != obj.visible_get():
+        return None
+    return Told(f"{name} is hidden by its collection, or by local view", level="WARNING")
 
 
-class PE_OT_mirror_sensor(bpy.types.Operator):
-    """Add a mirrored copy of this sensor on the other side of the vehicle"""
-
-    bl_idname = "pe.mirror_sensor"
-    bl_label = "Mirror"
-    bl_options = {"REGISTER", "UNDO"}
-
-    name: StringProperty(name="Name", description="Name of the sensor; the active one when empty")
-    linked: BoolProperty(
+@operator(
+    "Mirror",
+    mode="Sensors are mirrored in Object Mode",
+    name=NAME,
+    linked=BoolProperty(
         name="Linked", description="The two stay mirror images: a move of one moves the other"
-    )
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if context.mode != "OBJECT":
-            cls.poll_message_set(shown("Sensors are mirrored in Object Mode"))
-            return False
-        return True
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        try:
-            obj = chosen_sensor(context, self.name)
-            made = mirrored_copy(context, obj)
-        except USER_ERRORS as error:
-            return report_error(self, error)
-        if self.linked:
-            bridge.unlink_mirror(obj)
-            bridge.link_mirror(obj, made)
-        select_only(context, made)
-        return {"FINISHED"}
-
-
-class PE_OT_unlink_mirror(bpy.types.Operator):
-    """Remove the link between this sensor and its mirror image"""
-
-    bl_idname = "pe.unlink_mirror"
-    bl_label = "Unlink"
-    bl_options = {"REGISTER", "UNDO"}
-
-    name: StringProperty(name="Name", description="Name of the sensor; the active one when empty")
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        obj = context.scene.objects.get(self.name) if self.name else context.active_object
-        if obj is None or not obj.perception_entropy.mirror_of:
-            report(self, "WARNING", "This sensor is not linked")
-            return {"CANCELLED"}
+    ),
+)
+def mirror_sensor(context: bpy.types.Context, name: str, linked: bool) -> None:
+    """Add a mirrored copy of this sensor on the other side of the vehicle"""
+    obj = chosen_sensor(context, name)
+    made = mirrored_copy(context, obj)
+    if linked:
         bridge.unlink_mirror(obj)
-        return {"FINISHED"}
+        bridge.link_mirror(obj, made)
+    select_only(context, made)
+
+
+@operator("Unlink", name=NAME)
+def unlink_mirror(context: bpy.types.Context, name: str) -> None:
+    """Remove the link between this sensor and its mirror image"""
+    obj = context.scene.objects.get(name) if name else context.active_object
+    if obj is None or not obj.perception_entropy.mirror_of:
+        raise Refused("This sensor is not linked")
+    bridge.unlink_mirror(obj)
 
 
 def mirrored_copy(context: bpy.types.Context, obj: bpy.types.Object) -> bpy.types.Object:
@@ -168,27 +117,14 @@ def mirrored_copy(context: bpy.types.Context, obj: bpy.types.Object) -> bpy.type
     return made
 
 
-class PE_OT_apply_scale(bpy.types.Operator):
+@operator("Apply Scale", mode="Sensors are scaled in Object Mode", name=NAME)
+def apply_scale(context: bpy.types.Context, name: str) -> None:
     """Remove scale and mirroring from this sensor; its position and direction do not change"""
-
-    bl_idname = "pe.apply_scale"
-    bl_label = "Apply Scale"
-    bl_options = {"REGISTER", "UNDO"}
-
-    name: StringProperty(name="Name", description="Name of the sensor; the active one when empty")
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return context.mode == "OBJECT"
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        obj = context.scene.objects.get(self.name) if self.name else context.active_object
-        if obj is None or not obj.perception_entropy.is_sensor:
-            report(self, "WARNING", "No sensor is selected")
-            return {"CANCELLED"}
-        obj.matrix_world = rigid(obj.matrix_world)
-        context.view_layer.update()
-        return {"FINISHED"}
+    obj = context.scene.objects.get(name) if name else context.active_object
+    if obj is None or not obj.perception_entropy.is_sensor:
+        raise Refused("No sensor is selected")
+    obj.matrix_world = rigid(obj.matrix_world)
+    context.view_layer.update()
 
 
 def rigid(matrix: Matrix) -> Matrix:
@@ -198,13 +134,3 @@ def rigid(matrix: Matrix) -> Matrix:
     left = up.cross(ahead).normalized()
     turned = Matrix((ahead, left, ahead.cross(left))).transposed()
     return Matrix.Translation(matrix.to_translation()) @ turned.to_4x4()
-
-
-CLASSES = (
-    PE_OT_select_sensor,
-    PE_OT_select_part,
-    PE_OT_toggle_sensor,
-    PE_OT_mirror_sensor,
-    PE_OT_unlink_mirror,
-    PE_OT_apply_scale,
-)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import bpy
 from bpy.props import EnumProperty
@@ -10,39 +11,22 @@ from bpy.props import EnumProperty
 from .. import bridge, library
 from ..engine import pe
 from ..language import draw_label, shown
-from .add_sensor import is_part
-from .reports import USER_ERRORS, OperatorResult, report, report_error
+from .declared import Failed, OperatorResult, Refused, operator
+from .surface_pose import is_part
 
 VEHICLE = "Vehicle"
 """Name of a new collection for the vehicle."""
 
 
-class PE_OT_use_selected(bpy.types.Operator):
+@operator("Use Selected Objects", mode="The vehicle is chosen in Object Mode")
+def use_selected(context: bpy.types.Context) -> str:
     """Choose the selected objects, with all objects parented to them, as the vehicle.
 
     They are moved into a new collection, unless a collection has them and no other mesh"""
-
-    bl_idname = "pe.use_selected"
-    bl_label = "Use Selected Objects"
-    bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if context.mode != "OBJECT":
-            cls.poll_message_set(shown("The vehicle is chosen in Object Mode"))
-            return False
-        return True
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        scene = context.scene
-        try:
-            parts = selected_parts(context.selected_objects)
-        except USER_ERRORS as error:
-            return report_error(self, error)
-        vehicle = common_collection(scene, parts) or new_vehicle(scene, parts)
-        scene.perception_entropy.vehicle = vehicle
-        report(self, "INFO", f"Vehicle: {vehicle.name}, objects: {len(parts)}")
-        return {"FINISHED"}
+    scene, parts = context.scene, selected_parts(context.selected_objects)
+    vehicle = common_collection(scene, parts) or new_vehicle(scene, parts)
+    scene.perception_entropy.vehicle = vehicle
+    return f"Vehicle: {vehicle.name}, objects: {len(parts)}"
 
 
 def selected_parts(selected: Sequence[bpy.types.Object]) -> list[bpy.types.Object]:
@@ -93,13 +77,28 @@ def new_vehicle(scene: bpy.types.Scene, parts: Sequence[bpy.types.Object]) -> bp
     return vehicle
 
 
-class PE_OT_open_example(bpy.types.Operator):
-    """Open the example: a sedan with a LiDAR on its roof, as a new file without a name"""
+def _ask_about_changes(self: Any, context: bpy.types.Context, _event: object) -> OperatorResult:
+    """Ask what to do with changes that are not saved, where there are any."""
+    if not bpy.data.is_dirty:
+        return self.execute(context)
+    self.changes = "SAVE"
+    title = shown("Save Changes Before Opening?")
+    return context.window_manager.invoke_props_dialog(
+        self, title=title, confirm_text=shown("Open"), translate=False
+    )
 
-    bl_idname = "pe.open_example"
-    bl_label = "Open an Example"
 
-    changes: EnumProperty(
+def _draw_changes(self: Any, _context: bpy.types.Context) -> None:
+    draw_label(self.layout, "The open file has changes that are not saved", "INFO")
+    self.layout.row().prop(self, "changes", expand=True)
+
+
+@operator(
+    "Open an Example",
+    options=frozenset(),
+    invoke=_ask_about_changes,
+    draw=_draw_changes,
+    changes=EnumProperty(
         name="Changes",
         description="What happens to changes of the open file that are not saved",
         items=(
@@ -108,38 +107,20 @@ class PE_OT_open_example(bpy.types.Operator):
         ),
         default="DISCARD",
         options={"SKIP_SAVE"},
-    )
-
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
-        if not bpy.data.is_dirty:
-            return self.execute(context)
-        self.changes = "SAVE"
-        title = shown("Save Changes Before Opening?")
-        return context.window_manager.invoke_props_dialog(
-            self, title=title, confirm_text=shown("Open"), translate=False
-        )
-
-    def draw(self, _context: bpy.types.Context) -> None:
-        draw_label(self.layout, "The open file has changes that are not saved", "INFO")
-        self.layout.row().prop(self, "changes", expand=True)
-
-    def execute(self, _context: bpy.types.Context) -> OperatorResult:
-        example = library.example_file()
-        if example is None:
-            report(self, "ERROR", "The example is not in this installation of the extension")
-            return {"CANCELLED"}
-        if self.changes == "SAVE" and bpy.data.is_dirty:
-            if not bpy.data.filepath:
-                report(self, "WARNING", "Save this file under a name, then open the example again")
-                bpy.ops.wm.save_as_mainfile("INVOKE_DEFAULT")
-                return {"CANCELLED"}
-            try:
-                bpy.ops.wm.save_mainfile()
-            except RuntimeError as error:  # a path that cannot be written: Blender's own line
-                report(self, "ERROR", str(error).strip().removeprefix("Error: "))
-                return {"CANCELLED"}
-        # As a start-up file it has no name: Save never writes into the extension's folder.
-        return bpy.ops.wm.read_homefile(filepath=str(example), load_ui=False)
-
-
-CLASSES = (PE_OT_use_selected, PE_OT_open_example)
+    ),
+)
+def open_example(_context: bpy.types.Context, changes: str) -> OperatorResult:
+    """Open the example: a sedan with a LiDAR on its roof, as a new file without a name"""
+    example = library.example_file()
+    if example is None:
+        raise Failed("The example is not in this installation of the extension")
+    if changes == "SAVE" and bpy.data.is_dirty:
+        if not bpy.data.filepath:
+            bpy.ops.wm.save_as_mainfile("INVOKE_DEFAULT")
+            raise Refused("Save this file under a name, then open the example again")
+        try:
+            bpy.ops.wm.save_mainfile()
+        except RuntimeError as error:  # a path that cannot be written: Blender's own line
+            raise Failed(str(error).strip().removeprefix("Error: ")) from None
+    # As a start-up file it has no name: Save never writes into the extension's folder.
+    return bpy.ops.wm.read_homefile(filepath=str(example), load_ui=False)

@@ -12,61 +12,13 @@ from mathutils import Euler, Matrix, Vector
 
 from .. import bridge, signals
 from ..engine import geometry, pe, text
-from ..language import shown
-from .reports import USER_ERRORS, OperatorResult, report, report_error
+from .declared import operator
 
 AdviceAmount = tuple[float, float, float]
 AMOUNT, FACTOR = text.Number(cap=1e6), text.Number(1e-6, 1e6)
 """Amounts of a correction, and of a scale. Beyond single precision Blender ends at an undo."""
 ON_VEHICLE_M = 0.5
 """A sensor this near to the vehicle's box goes with it when that is turned or moved."""
-
-FIX_LABELS = {
-    "turn_vehicle": "Turn the Vehicle",
-    "stand_vehicle": "Stand on Wheels",
-    "scale_vehicle": "Scale the Vehicle",
-    "move_vehicle": "Move the Vehicle",
-    "roll_sensor": "Turn It Upright",
-    "apply_scale": "Apply Its Scale",
-    "metric_units": "Set Units to Metres",
-    "show_vehicle": "Show the Vehicle",
-}
-"""What the button of a fix says."""
-
-
-class PE_OT_mend(bpy.types.Operator):
-    """Fix the cause of this warning. Sensors on the vehicle move with the vehicle"""
-
-    bl_idname = "pe.mend"
-    bl_label = "Fix"
-    bl_options = {"REGISTER", "UNDO"}
-
-    fix: EnumProperty(
-        items=[(key, label, label) for key, label in FIX_LABELS.items()],
-        name="Fix",
-        description="The correction",
-    )
-    subject: StringProperty(name="Subject", description="Name of the sensor; empty: the vehicle")
-    amount: FloatVectorProperty(name="Amount", description="Amount of the correction", size=3)
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if context.mode != "OBJECT":
-            cls.poll_message_set(shown("This is mended in Object Mode"))
-            return False
-        return True
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        try:
-            x, y, z = (AMOUNT.checked("mend", "amount", each) for each in self.amount)
-            FIXES[self.fix](context, self.subject, (x, y, z))
-        except USER_ERRORS as error:
-            return report_error(self, error)
-        context.view_layer.update()
-        context.scene.perception_entropy.result_warnings.clear()  # the checks run again
-        signals.study_changed.emit()
-        report(self, "INFO", f"{FIX_LABELS[self.fix]}: done")
-        return {"FINISHED"}
 
 
 def turn_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount) -> None:
@@ -124,16 +76,45 @@ def show_vehicle(context: bpy.types.Context, _subject: str, _amount: AdviceAmoun
         layer.collection.hide_viewport = layer.collection.hide_render = False
 
 
-FIXES: dict[str, Callable[[bpy.types.Context, str, AdviceAmount], None]] = {
-    "turn_vehicle": turn_vehicle,
-    "stand_vehicle": stand_vehicle,
-    "scale_vehicle": scale_vehicle,
-    "move_vehicle": move_vehicle,
-    "roll_sensor": roll_sensor,
-    "apply_scale": apply_scale,
-    "metric_units": metric_units,
-    "show_vehicle": show_vehicle,
+Fix = Callable[[bpy.types.Context, str, AdviceAmount], None]
+FIXES: dict[str, tuple[str, Fix]] = {
+    "turn_vehicle": ("Turn the Vehicle", turn_vehicle),
+    "stand_vehicle": ("Stand on Wheels", stand_vehicle),
+    "scale_vehicle": ("Scale the Vehicle", scale_vehicle),
+    "move_vehicle": ("Move the Vehicle", move_vehicle),
+    "roll_sensor": ("Turn It Upright", roll_sensor),
+    "apply_scale": ("Apply Its Scale", apply_scale),
+    "metric_units": ("Set Units to Metres", metric_units),
+    "show_vehicle": ("Show the Vehicle", show_vehicle),
 }
+"""By the name of a fix: what its button says, and what it does."""
+FIX_LABELS = {key: label for key, (label, _) in FIXES.items()}
+
+
+def _check_again(context: bpy.types.Context) -> None:
+    context.view_layer.update()
+    context.scene.perception_entropy.result_warnings.clear()
+
+
+@operator(
+    "Fix",
+    mode="This is mended in Object Mode",
+    signal=signals.study_changed,
+    fix=EnumProperty(
+        items=[(key, label, label) for key, label in FIX_LABELS.items()],
+        name="Fix",
+        description="The correction",
+    ),
+    subject=StringProperty(name="Subject", description="Name of the sensor; empty: the vehicle"),
+    amount=FloatVectorProperty(name="Amount", description="Amount of the correction", size=3),
+)
+def mend(context: bpy.types.Context, fix: str, subject: str, amount: Iterable[float]) -> str:
+    """Fix the cause of this warning. Sensors on the vehicle move with the vehicle"""
+    x, y, z = (AMOUNT.checked("mend", "amount", each) for each in amount)
+    label, act = FIXES[fix]
+    act(context, subject, (x, y, z))
+    _check_again(context)
+    return f"{label}: done"
 
 
 def _chosen_vehicle(context: bpy.types.Context) -> bpy.types.Collection:
@@ -166,8 +147,9 @@ def _sensors_on(
     low, high = _bounds(members)
 
     def near(point: Vector) -> bool:
-        return all(low[k] <= point[k] + ON_VEHICLE_M for k in range(3)) and all(
-            point[k] - ON_VEHICLE_M <= high[k] for k in range(3)
+        return all(
+            low[k] <= point[k] + ON_VEHICLE_M and point[k] - ON_VEHICLE_M <= high[k]
+            for k in range(3)
         )
 
     sensors = bridge.sensor_objects(context.scene)
@@ -200,44 +182,26 @@ def _bounds(members: Iterable[bpy.types.Object]) -> tuple[Vector, Vector]:
     return low, high
 
 
-def _turn_in_place(context: bpy.types.Context, turn: Euler) -> None:
-    """Turn the vehicle about the middle of its bounding box, and the sensors on it."""
-    low, high = _bounds(_chosen_vehicle(context).all_objects)
-    middle = (low + high) / 2.0 if low.x <= high.x else Vector()
-    around = turn.to_matrix().to_4x4()
-    _transform_vehicle(context, Matrix.Translation(middle) @ around @ Matrix.Translation(-middle))
+def _unless_vehicle(context: bpy.types.Context) -> str | None:
+    return "" if context.scene.perception_entropy.vehicle is None else None
 
 
-class PE_OT_turn_round(bpy.types.Operator):
-    """Turn the vehicle round where it is: front becomes rear. Sensors on it move with it"""
-
-    bl_idname = "pe.turn_round"
-    bl_label = "Turn Round"
-    bl_options = {"REGISTER", "UNDO"}
-
-    angle: FloatProperty(
+@operator(
+    "Turn Round",
+    mode="The vehicle is turned in Object Mode",
+    unless=_unless_vehicle,
+    signal=signals.study_changed,
+    angle=FloatProperty(
         name="Angle",
         description="Angle about the vertical, counter-clockwise",
         default=math.pi,
         subtype="ANGLE",
-    )
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if context.mode != "OBJECT":
-            cls.poll_message_set(shown("The vehicle is turned in Object Mode"))
-            return False
-        return context.scene.perception_entropy.vehicle is not None
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        try:
-            _turn_in_place(context, Euler((0.0, 0.0, self.angle)))
-        except USER_ERRORS as error:
-            return report_error(self, error)
-        context.view_layer.update()
-        context.scene.perception_entropy.result_warnings.clear()  # the checks run again
-        signals.study_changed.emit()
-        return {"FINISHED"}
-
-
-CLASSES = (PE_OT_mend, PE_OT_turn_round)
+    ),
+)
+def turn_round(context: bpy.types.Context, angle: float) -> None:
+    """Turn the vehicle round where it is: front becomes rear. Sensors on it move with it"""
+    low, high = _bounds(_chosen_vehicle(context).all_objects)
+    middle = (low + high) / 2.0 if low.x <= high.x else Vector()
+    around = Euler((0.0, 0.0, angle)).to_matrix().to_4x4()
+    _transform_vehicle(context, Matrix.Translation(middle) @ around @ Matrix.Translation(-middle))
+    _check_again(context)

@@ -8,18 +8,15 @@ them, and in this module, because undo takes the scene's away.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from typing import Any
 
 import bpy
-from bpy.props import StringProperty
 
 from .. import bridge
-from ..engine import pe
-from ..language import shown
 from ..sensor_kinds import kind_label, row_of
 from . import sensor_pictures
-from .reports import USER_ERRORS, OperatorResult, chosen_sensor, report, report_error
+from .declared import Refused, chosen_sensor, operator
+from .edit_sensors import NAME
 
 SPACE_FIELDS = ("lens", "clip_start", "clip_end", "lock_camera")
 VIEW_FIELDS = (
@@ -100,20 +97,15 @@ def apply_state(space: bpy.types.SpaceView3D, state: dict[str, object]) -> None:
 
 def find_view(state: dict[str, object]) -> bpy.types.SpaceView3D | None:
     """Return the view that a state is of; after opening a file, the one at its position."""
-    for area in _view_areas():
-        if area.spaces.active.as_pointer() == state["space"]:
-            return area.spaces.active
+    for screen in bpy.data.screens:
+        for area in screen.areas:
+            space = area.spaces.active
+            if area.type == "VIEW_3D" and space.as_pointer() == state["space"]:
+                return space
     screen = bpy.data.screens.get(str(state["screen"]))
     number = int(str(state["area"]))
-    if screen is None:
-        return None
-    areas = list(screen.areas)[number : number + 1]
+    areas = [] if screen is None else list(screen.areas)[number : number + 1]
     return next((a.spaces.active for a in areas if a.type == "VIEW_3D"), None)
-
-
-def _view_areas() -> Iterator[bpy.types.Area]:
-    for screen in bpy.data.screens:
-        yield from (area for area in screen.areas if area.type == "VIEW_3D")
 
 
 def _json_value(value: Any) -> Any:
@@ -121,70 +113,38 @@ def _json_value(value: Any) -> Any:
     return value if isinstance(value, str | float | bool) else list(value)
 
 
-class PE_OT_look_through(bpy.types.Operator):
+@operator("Look Through", mode="Look Through works in Object Mode", name=NAME)
+def look_through(context: bpy.types.Context, name: str) -> str | None:
     """Show what this sensor sees: through a camera (press again to come back), or as a picture"""
-
-    bl_idname = "pe.look_through"
-    bl_label = "Look Through"
-    bl_options = {"REGISTER", "UNDO"}
-
-    name: StringProperty(name="Name", description="Name of the sensor; the active one when empty")
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if context.mode != "OBJECT":
-            cls.poll_message_set(shown("Look Through works in Object Mode"))
-            return False
-        return True
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        scene = context.scene
-        try:
-            obj = chosen_sensor(context, self.name)
-            sensor = bridge.sensor_from_object(obj, context.evaluated_depsgraph_get())
-        except USER_ERRORS as error:
-            return report_error(self, error)
-        row = row_of(sensor.kind)
-        if row.pixels is not None:
-            return self._picture(context, sensor, row.legend)
-        if row.camera is None:
-            what = kind_label(sensor.kind)
-            report(self, "WARNING", f"{obj.name}: there is no picture of sensors of kind {what}")
-            return {"CANCELLED"}
-        if looking_through(scene) == obj:
-            come_back(scene)
-            return {"FINISHED"}
+    scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
+    obj = chosen_sensor(context, name)
+    sensor = bridge.sensor_from_object(obj, depsgraph)
+    row = row_of(sensor.kind)
+    if row.pixels is not None:
+        is_vehicle = scene.perception_entropy.vehicle is not None
+        vehicle = bridge.vehicle_of_scene(scene, depsgraph) if is_vehicle else None
+        sensor_pictures.request_image(sensor, vehicle)
+        return f"{sensor.name}: {row.legend}"
+    if row.camera is None:
+        what = kind_label(sensor.kind)
+        raise Refused(f"{obj.name}: there is no picture of sensors of kind {what}")
+    if looking_through(scene) == obj:
+        come_back(scene)
+    else:
         bridge.look_through(scene, obj, row.camera(sensor.model))
         look_along(scene, context.area)
-        return {"FINISHED"}
-
-    def _picture(
-        self, context: bpy.types.Context, sensor: pe.Sensor, legend: str
-    ) -> OperatorResult:
-        """Have a picture made by the background worker, and show it when it is there."""
-        try:
-            vehicle = _vehicle(context)
-        except USER_ERRORS as error:
-            return report_error(self, error)
-        sensor_pictures.request_image(sensor, vehicle)
-        report(self, "INFO", f"{sensor.name}: {legend}")
-        return {"FINISHED"}
+    return None
 
 
-class PE_OT_look_back(bpy.types.Operator):
+def _unless_looking(context: bpy.types.Context) -> str | None:
+    is_looking = context.mode == "OBJECT" and looking_through(context.scene) is not None
+    return None if is_looking else ""
+
+
+@operator("Stop Looking Through", unless=_unless_looking)
+def look_back(context: bpy.types.Context) -> None:
     """Stop looking through a sensor: restore the view and the scene's camera"""
-
-    bl_idname = "pe.look_back"
-    bl_label = "Stop Looking Through"
-    bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return context.mode == "OBJECT" and looking_through(context.scene) is not None
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        come_back(context.scene)
-        return {"FINISHED"}
+    come_back(context.scene)
 
 
 def looking_through(scene: bpy.types.Scene) -> bpy.types.Object | None:
@@ -199,15 +159,3 @@ def come_back(scene: bpy.types.Scene) -> None:
     """Restore the scene's camera, size of renders, and views."""
     bridge.look_back(scene)
     restore(scene)
-
-
-def _vehicle(context: bpy.types.Context) -> pe.Vehicle | None:
-    if context.scene.perception_entropy.vehicle is None:
-        return None
-    return bridge.vehicle_of_scene(context.scene, context.evaluated_depsgraph_get())
-
-
-CLASSES = (
-    PE_OT_look_through,
-    PE_OT_look_back,
-)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
-from bpy.props import EnumProperty, StringProperty
+from bpy.props import EnumProperty
 
 from .. import bridge, signals
-from ..choices import BY_GROUP, BY_PARTS, free_name
+from ..choices import BY_GROUP, BY_PARTS
 from ..engine import catalog, search
-from .list_rows import RemoveRow, SelectedRow
-from .reports import USER_ERRORS, OperatorResult, chosen_sensor, report, report_error
+from .add_sensor import select_only
+from .declared import Refused, RowList, chosen_sensor, operator
+from .edit_sensors import NAME
 
 IN_A_BOX = "BOX"
 """The entry for no mount in the menu of a sensor's mounts."""
@@ -22,64 +23,39 @@ _listed: list[tuple[str, str, str]] = []
 """What the menu lists: Blender reads the texts after the function that made them returned."""
 
 
-class PE_OT_add_mount(bpy.types.Operator):
+def _sensors_off(scene: bpy.types.Scene, name: str) -> None:
+    """Take sensors off a mount that was removed."""
+    for obj in bridge.sensor_objects(scene):
+        if obj.perception_entropy.mount == name:
+            obj.perception_entropy.mount = ""
+    signals.view_changed.emit()
+
+
+MOUNT_ROWS = RowList("mounts", "mount_index", "mount")
+MOUNT_ROWS.operators(
+    remove="Remove the selected mount; a search then moves its sensors in boxes again",
+    removed=_sensors_off,
+)
+
+
+@operator("Add Mount", signal=signals.view_changed)
+def add_mount(context: bpy.types.Context) -> None:
     """Add a surface for sensors: of the vehicle's selected objects, or the group being painted"""
-
-    bl_idname = "pe.add_mount"
-    bl_label = "Add Mount"
-    bl_options = {"REGISTER", "UNDO"}
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        settings = context.scene.perception_entropy
-        taken = {row.name for row in settings.mounts}
-        painted = painted_group(context)
-        parts = [] if painted else selected_parts(context)
-        name = painted or (parts[0].name if len(parts) == 1 else "Mount")
-        row = settings.mounts.add()
-        row.name = free_name(name, taken)
-        row.faces, row.group = (BY_GROUP, painted) if painted else (BY_PARTS, "")
-        _set_parts(row, parts)
-        settings.mount_index = len(settings.mounts) - 1
-        signals.view_changed.emit()
-        return {"FINISHED"}
+    painted = painted_group(context)
+    parts = [] if painted else selected_parts(context)
+    name = painted or (parts[0].name if len(parts) == 1 else "Mount")
+    row = MOUNT_ROWS.add(context.scene, name)
+    row.faces, row.group = (BY_GROUP, painted) if painted else (BY_PARTS, "")
+    _set_parts(row, parts)
 
 
-class MountRow(SelectedRow):
-    """What operators on the selected mount share."""
-
-    ROWS, INDEX, NOUN = "mounts", "mount_index", "mount"
-
-
-class PE_OT_remove_mount(MountRow, RemoveRow, bpy.types.Operator):
-    """Remove the selected mount; a search then moves its sensors in boxes again"""
-
-    bl_idname = "pe.remove_mount"
-    bl_label = "Remove Mount"
-    bl_options = {"REGISTER", "UNDO"}
-
-    def after(self, scene: bpy.types.Scene, name: str) -> None:
-        """Take sensors off the mount."""
-        for obj in bridge.sensor_objects(scene):
-            if obj.perception_entropy.mount == name:
-                obj.perception_entropy.mount = ""
-        signals.view_changed.emit()
-
-
-class PE_OT_mount_parts(MountRow, bpy.types.Operator):
+@operator("Take Selected", unless=MOUNT_ROWS.unless_selected, signal=signals.view_changed)
+def mount_parts(context: bpy.types.Context) -> None:
     """Use all faces of the vehicle's selected objects for this mount"""
-
-    bl_idname = "pe.mount_parts"
-    bl_label = "Take Selected"
-    bl_options = {"REGISTER", "UNDO"}
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        settings, parts = context.scene.perception_entropy, selected_parts(context)
-        if not parts:
-            report(self, "WARNING", "Select objects of the vehicle's collection first")
-            return {"CANCELLED"}
-        _set_parts(settings.mounts[settings.mount_index], parts)
-        signals.view_changed.emit()
-        return {"FINISHED"}
+    settings, parts = context.scene.perception_entropy, selected_parts(context)
+    if not parts:
+        raise Refused("Select objects of the vehicle's collection first")
+    _set_parts(settings.mounts[settings.mount_index], parts)
 
 
 def _menu_items(
@@ -92,50 +68,32 @@ def _menu_items(
     return _listed
 
 
-class PE_OT_mount_sensor(bpy.types.Operator):
+@operator(
+    "Mount Sensor",
+    signal=signals.study_changed,
+    mount=EnumProperty(name="Mount", description="Mount of the sensor", items=_menu_items),
+    name=NAME,
+)
+def mount_sensor(context: bpy.types.Context, mount: str, name: str) -> None:
     """Choose the mount of this sensor, and move it to the nearest point of that mount"""
-
-    bl_idname = "pe.mount_sensor"
-    bl_label = "Mount Sensor"
-    bl_options = {"REGISTER", "UNDO"}
-
-    mount: EnumProperty(name="Mount", description="Mount of the sensor", items=_menu_items)
-    name: StringProperty(name="Name", description="Name of the sensor; the active one when empty")
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        scene = context.scene
-        try:
-            obj = chosen_sensor(context, self.name)
-            if self.mount != IN_A_BOX:
-                put_on_mount(scene, context.evaluated_depsgraph_get(), obj, self.mount)
-        except USER_ERRORS as error:
-            return report_error(self, error)
-        obj.perception_entropy.mount = "" if self.mount == IN_A_BOX else self.mount
-        signals.study_changed.emit()
-        return {"FINISHED"}
+    obj = chosen_sensor(context, name)
+    if mount != IN_A_BOX:
+        put_on_mount(context.scene, context.evaluated_depsgraph_get(), obj, mount)
+    obj.perception_entropy.mount = "" if mount == IN_A_BOX else mount
 
 
-class PE_OT_add_no_go(bpy.types.Operator):
+@operator("Add No-Go Area")
+def add_no_go(context: bpy.types.Context) -> None:
     """Add a box that no part of a sensor may be in: round the vehicle's parts that are selected,
     else at the 3D cursor, or on the roof where the cursor is at the origin"""
-
-    bl_idname = "pe.add_no_go"
-    bl_label = "Add No-Go Area"
-    bl_options = {"REGISTER", "UNDO"}
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        obj = bpy.data.objects.new("no_go", None)
-        obj.empty_display_type, obj.empty_display_size = "CUBE", NO_GO_SIZE_M
-        low, high = no_go_extent(context)
-        obj.location = (low + high) / 2.0
-        obj.scale = np.maximum(high - low, MIN_SIDE_M) / (2.0 * NO_GO_SIZE_M)
-        bridge.shown_collection(context.scene).objects.link(obj)
-        obj.perception_entropy.is_no_go = True
-        for other in context.selected_objects:
-            other.select_set(False)
-        obj.select_set(True)
-        context.view_layer.objects.active = obj
-        return {"FINISHED"}
+    obj = bpy.data.objects.new("no_go", None)
+    obj.empty_display_type, obj.empty_display_size = "CUBE", NO_GO_SIZE_M
+    low, high = no_go_extent(context)
+    obj.location = (low + high) / 2.0
+    obj.scale = np.maximum(high - low, MIN_SIDE_M) / (2.0 * NO_GO_SIZE_M)
+    bridge.shown_collection(context.scene).objects.link(obj)
+    obj.perception_entropy.is_no_go = True
+    select_only(context, obj)
 
 
 def no_go_extent(context: bpy.types.Context) -> tuple[np.ndarray, np.ndarray]:
@@ -201,12 +159,3 @@ def _set_parts(row: bpy.types.PropertyGroup, parts: list[bpy.types.Object]) -> N
     row.parts.clear()
     for part in parts:
         row.parts.add().part = part
-
-
-CLASSES = (
-    PE_OT_add_mount,
-    PE_OT_remove_mount,
-    PE_OT_mount_parts,
-    PE_OT_mount_sensor,
-    PE_OT_add_no_go,
-)

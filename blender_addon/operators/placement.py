@@ -11,7 +11,7 @@ from typing import Any
 
 import bpy
 import numpy as np
-from mathutils import Matrix, Vector
+from mathutils import Matrix
 
 from .. import bridge
 from ..choices import free_name
@@ -19,7 +19,6 @@ from ..engine import graphics, kinds, pe
 from ..language import draw_label
 from ..sensor_kinds import mount_for
 from . import running_job
-from .add_sensor import is_part
 from .placement_preview import GainPreview, HeldPreview
 from .surface_pose import (
     MAX_STAND_OFF_M,
@@ -28,6 +27,7 @@ from .surface_pose import (
     parts_of,
     ray_of,
     spot_on_ray,
+    vehicle_center,
     view_under,
 )
 
@@ -89,10 +89,6 @@ class HeldSensor:
         """Change the stand-off by a distance [m]."""
         self._typed = ""
         self.stand(self.stance.changed(by_m))
-
-    def turn(self, yaw_deg: float, pitch_deg: float) -> None:
-        """Turn the sensor at its present spot [deg]."""
-        self.stand(self.stance.turned(yaw_deg, pitch_deg))
 
     @property
     def angles(self) -> tuple[float, float]:
@@ -218,16 +214,6 @@ def moved_to(shape: graphics.Primitives, pose: pe.Pose) -> graphics.Primitives:
     """Return a shape, given in the sensor's frame, at a pose of the sensor."""
     turned = shape.points @ pose.ground_from_sensor.T.astype(np.float32)
     return graphics.Primitives(turned + np.array(pose.position, np.float32), shape.colors)
-
-
-def vehicle_center(vehicle: bpy.types.Collection | None) -> Vector:
-    """Return the middle of the vehicle's bounding boxes on the ground; else the origin."""
-    solid = [] if vehicle is None else [each for each in vehicle.all_objects if is_part(each)]
-    corners = [obj.matrix_world @ Vector(corner) for obj in solid for corner in obj.bound_box]
-    if not corners:
-        return Vector((0.0, 0.0, 0.0))
-    low, high = np.min(corners, axis=0), np.max(corners, axis=0)
-    return Vector(((low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, 0.0))
 
 
 def draw_status(header: bpy.types.Header, _context: bpy.types.Context) -> None:

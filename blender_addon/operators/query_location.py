@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import Any
+
 import bpy
 from bpy.props import FloatVectorProperty
-from mathutils import Vector
 
 from .. import bridge, location_query
 from ..language import shown
-from .reports import OperatorResult, report
+from .declared import INTERNAL, OperatorResult, operator, report
 from .surface_pose import ViewUnderMouse, ray_of, view_under
 
 OFF_SURFACE_M = 0.05
@@ -16,74 +18,64 @@ OFF_SURFACE_M = 0.05
 HINT = "Click the ground or a surface to query it     Esc, right click: done"
 
 
-class PE_OT_ask_place(bpy.types.Operator):
-    """Click a location in the 3D view: which sensors see it, how well, and what occludes it"""
+def _begin(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
+    """Query at each click, until Esc."""
+    context.window_manager.modal_handler_add(self)
+    context.window.cursor_modal_set("EYEDROPPER")
+    context.workspace.status_text_set(shown(HINT))
+    return {"RUNNING_MODAL"}
 
-    bl_idname = "pe.ask_place"
-    bl_label = "Query Location"
 
-    point: FloatVectorProperty(
-        name="Location", description="x, y and z of the location", subtype="XYZ"
-    )
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if not bridge.sensor_objects(context.scene):
-            cls.poll_message_set(shown("There are no sensors yet"))
-            return False
-        return True
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        """Query `point`, as scripts do."""
-        location_query.query(context.scene, context.evaluated_depsgraph_get(), tuple(self.point))
+def _modal(self: Any, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
+    if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
+        _end(self, context)
         return {"FINISHED"}
-
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
-        """Query at each click, until Esc."""
-        context.window_manager.modal_handler_add(self)
-        context.window.cursor_modal_set("EYEDROPPER")
-        context.workspace.status_text_set(shown(HINT))
-        return {"RUNNING_MODAL"}
-
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
-        if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
-            end_query(context)
-            return {"FINISHED"}
-        if event.type != "LEFTMOUSE" or event.value != "PRESS":
-            return {"PASS_THROUGH"}
-        view = view_under(context, event)
-        if view is None:
-            return {"PASS_THROUGH"}  # another part of the screen: its buttons go on working
-        location = location_under(context, view)
-        if location is None:
-            report(self, "WARNING", "There is no ground or surface under the mouse")
-        else:
-            self.point = location
-            self.execute(context)
-        return {"RUNNING_MODAL"}
-
-    def cancel(self, context: bpy.types.Context) -> None:
-        """Called by Blender when the window or the file is closed."""
-        end_query(context)
+    if event.type != "LEFTMOUSE" or event.value != "PRESS":
+        return {"PASS_THROUGH"}
+    view = view_under(context, event)
+    if view is None:
+        return {"PASS_THROUGH"}  # another part of the screen: its buttons go on working
+    location = location_under(context, view)
+    if location is None:
+        report(self, "WARNING", "There is no ground or surface under the mouse")
+    else:
+        self.point = location
+        self.execute(context)
+    return {"RUNNING_MODAL"}
 
 
-class PE_OT_dismiss_place(bpy.types.Operator):
-    """Remove the answer and its mark"""
-
-    bl_idname = "pe.dismiss_place"
-    bl_label = "Dismiss"
-    bl_options = {"INTERNAL"}
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        location_query.discard(context.scene)
-        return {"FINISHED"}
-
-
-def end_query(context: bpy.types.Context) -> None:
-    """Restore the mouse cursor and the status bar."""
+def _end(_self: Any, context: bpy.types.Context) -> None:
+    """Restore the mouse cursor and the status bar; Blender calls this when the window closes."""
     context.window.cursor_modal_restore()
     for workspace in bpy.data.workspaces[:1]:
         workspace.status_text_set(None)
+
+
+def _unless_sensors(context: bpy.types.Context) -> str | None:
+    return None if bridge.sensor_objects(context.scene) else "There are no sensors yet"
+
+
+@operator(
+    "Query Location",
+    unless=_unless_sensors,
+    options=frozenset(),
+    invoke=_begin,
+    modal=_modal,
+    cancel=_end,
+    point=FloatVectorProperty(
+        name="Location", description="x, y and z of the location", subtype="XYZ"
+    ),
+)
+def ask_place(context: bpy.types.Context, point: Iterable[float]) -> None:
+    """Click a location in the 3D view: which sensors see it, how well, and what occludes it"""
+    x, y, z = point
+    location_query.query(context.scene, context.evaluated_depsgraph_get(), (x, y, z))
+
+
+@operator("Dismiss", options=INTERNAL)
+def dismiss_place(context: bpy.types.Context) -> None:
+    """Remove the answer and its mark"""
+    location_query.discard(context.scene)
 
 
 def answer(scene: bpy.types.Scene) -> tuple[str, ...] | None:
@@ -99,23 +91,12 @@ def location_under(
     origin, direction = ray_of(view)
     depsgraph = context.evaluated_depsgraph_get()
     hit, location, normal, *_ = context.scene.ray_cast(depsgraph, origin, direction)
-    ground = _on_ground(origin, direction)
+    ground = None
+    if abs(direction.z) >= 1e-6 and origin.z / direction.z <= 0.0:
+        ground = origin - direction * (origin.z / direction.z)
+        ground.z = 0.0
     if hit and (ground is None or (location - origin).length <= (ground - origin).length):
         outward = normal if normal.dot(direction) < 0.0 else -normal
         ground = location + outward * OFF_SURFACE_M
         ground.z = max(ground.z, 0.0)
     return None if ground is None else tuple(ground)
-
-
-def _on_ground(origin: Vector, direction: Vector) -> Vector | None:
-    if abs(direction.z) < 1e-6 or origin.z / direction.z > 0.0:
-        return None
-    location = origin - direction * (origin.z / direction.z)
-    location.z = 0.0
-    return location
-
-
-CLASSES = (
-    PE_OT_ask_place,
-    PE_OT_dismiss_place,
-)

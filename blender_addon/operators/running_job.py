@@ -14,14 +14,13 @@ import bpy
 from .. import search_curve, signals, viewport
 from ..engine import jobs, pe
 from ..language import draw_label, shown
+from ..worker import job_worker
 
+TOPIC = "job"
 TICK_S = 0.05
-"""How often the window gives the job a turn."""
+"""How often the window looks how far the job is."""
 STATUS_BAR_WIDTH = 14.0
 """Room for the text in the status bar, in Blender's units of a button's height."""
-TURN_S = 0.015
-"""How long a turn takes; the last wait for the working thread takes twice as long: together less
-than 50 ms."""
 SHOW_EVERY_S = 0.2
 """How often the progress is drawn: drawing takes time from the work."""
 CURVE_EVERY_S, BEST_EVERY_S = 2.0, 0.5
@@ -35,13 +34,14 @@ NOTICE_S = 6.0
 
 
 class RunningJob:
-    """A job that is stepped by a timer."""
+    """A job that the job worker runs, with the progress that it made."""
 
     def __init__(self, context: bpy.types.Context, job: pe.Job) -> None:
         self.job = job
         self.scene_name = context.scene.name
         self.progress = pe.Progress("starting", 0.0)
-        self._steps: Iterator[pe.Progress] = iter(job)
+        self.ended = False
+        self.error: Exception | None = None
         self._shown = self._seen = 0.0
         self._best: tuple[tuple[int, float], ...] = ()
         self._notice_until = 0.0
@@ -49,14 +49,17 @@ class RunningJob:
         self._timer = manager.event_timer_add(TICK_S, window=context.window)
         manager.progress_begin(0.0, 1.0)
 
-    def step(self) -> bool:
-        """Run the job for one turn; return whether there is more to do."""
-        deadline = time.monotonic() + TURN_S
-        for progress in self._steps:
+    def start(self) -> None:
+        """Have the worker run the job; `ended` says that it has, `error` what it failed with."""
+        job_worker.ask(TOPIC, self._run, self._note_end, self._note_end)
+
+    def _run(self) -> None:
+        """On the worker's thread: run the job to its end."""
+        for progress in self.job:
             self.progress = progress
-            if time.monotonic() >= deadline:
-                return True
-        return False
+
+    def _note_end(self, error: Exception | None) -> None:
+        self.ended, self.error = True, error
 
     def stop(self) -> None:
         """Stop the job and keep the best so far; called again, keep nothing."""
@@ -133,6 +136,7 @@ class RunningJob:
 
     def end(self, context: bpy.types.Context) -> None:
         """Remove everything that shows the job, however it ended."""
+        job_worker.drop(TOPIC)
         search_curve.drop(self.scene_name)
         signals.view_changed.emit()
         context.window_manager.event_timer_remove(self._timer)
@@ -148,9 +152,10 @@ current: RunningJob | None = None
 
 
 def begin(context: bpy.types.Context, job: pe.Job) -> RunningJob:
-    """Have a timer step the job from now on."""
+    """Run the job beside the window from now on."""
     global current
     current = RunningJob(context, job)
+    current.start()
     return current
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import bpy
+import numpy as np
 from bpy_extras import view3d_utils
 from mathutils import Matrix, Vector
 
@@ -181,6 +182,21 @@ def outward_yaw(point: Vector, middle: Vector) -> float:
         return 0.0
     degrees = math.degrees(math.atan2(away.y, away.x))
     return math.radians(round(degrees / YAW_STEP_DEG) * YAW_STEP_DEG)
+
+
+def vehicle_center(vehicle: bpy.types.Collection | None) -> Vector:
+    """Return the middle of the vehicle's bounding boxes on the ground; else the origin."""
+    solid = [] if vehicle is None else [each for each in vehicle.all_objects if is_part(each)]
+    corners = [obj.matrix_world @ Vector(corner) for obj in solid for corner in obj.bound_box]
+    if not corners:
+        return Vector((0.0, 0.0, 0.0))
+    low, high = np.min(corners, axis=0), np.max(corners, axis=0)
+    return Vector(((low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, 0.0))
+
+
+def is_part(obj: bpy.types.Object) -> bool:
+    """Whether an object may be a part of a vehicle."""
+    return obj.type == "MESH" and not bridge.mounted_on_sensor(obj)
 
 
 def _axes_looking_along(normal: Vector) -> Matrix:

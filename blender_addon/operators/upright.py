@@ -16,50 +16,30 @@ from mathutils import Matrix, Vector
 
 from .. import bridge, sensor_cache
 from ..engine import catalog, pe
-from ..language import shown
-from ..sensor_kinds import Mount, mount_for
-from .placement import vehicle_center
-from .reports import USER_ERRORS, OperatorResult, report, report_error
-from .surface_pose import NO_HEADING_M, Stance, SurfaceSpot, outward_yaw
+from ..sensor_kinds import mount_for
+from .declared import operator
+from .surface_pose import NO_HEADING_M, Stance, SurfaceSpot, outward_yaw, vehicle_center
 
 
-class PE_OT_stand_upright(bpy.types.Operator):
+@operator(
+    "Stand Upright, Look Outward",
+    mode="Sensors are turned in Object Mode",
+    name=StringProperty(name="Name", description="Name of the sensor; the selected ones if empty"),
+)
+def stand_upright(context: bpy.types.Context, name: str) -> str:
     """Turn the selected sensors upright; cameras look away from the vehicle.
 
     So do LiDARs with a limited horizontal field of view; others keep their yaw"""
-
-    bl_idname = "pe.stand_upright"
-    bl_label = "Stand Upright, Look Outward"
-    bl_options = {"REGISTER", "UNDO"}
-
-    name: StringProperty(name="Name", description="Name of the sensor; the selected ones if empty")
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if context.mode != "OBJECT":
-            cls.poll_message_set(shown("Sensors are turned in Object Mode"))
-            return False
-        return True
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
-        middle = vehicle_center(scene.perception_entropy.vehicle)
-        try:
-            sensors = self._chosen(context)
-            poses = {obj.name: upright_pose(obj, depsgraph, middle) for obj in sensors}
-            bridge.place_poses(scene, poses)
-        except USER_ERRORS as error:
-            return report_error(self, error)
-        report(self, "INFO", f"Upright: {', '.join(poses)}")
-        return {"FINISHED"}
-
-    def _chosen(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        named = context.scene.objects.get(self.name)
-        objects = [named] if self.name else [*context.selected_objects, context.active_object]
-        sensors = [obj for obj in objects if obj is not None and obj.perception_entropy.is_sensor]
-        if not sensors:
-            raise pe.InputError("scene", "selection", "at least one sensor", self.name or "none")
-        return list(dict.fromkeys(sensors))
+    scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
+    middle = vehicle_center(scene.perception_entropy.vehicle)
+    named = [*context.selected_objects, context.active_object]
+    objects = dict.fromkeys([scene.objects.get(name)] if name else named)
+    sensors = [obj for obj in objects if obj is not None and obj.perception_entropy.is_sensor]
+    if not sensors:
+        raise pe.InputError("scene", "selection", "at least one sensor", name or "none")
+    poses = {obj.name: upright_pose(obj, depsgraph, middle) for obj in sensors}
+    bridge.place_poses(scene, poses)
+    return f"Upright: {', '.join(poses)}"
 
 
 def upright_pose(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, middle: Vector) -> pe.Pose:
@@ -79,6 +59,12 @@ def upright_pose(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, middle: 
     else:
         yaw = 0.0  # it looks straight up or down: it has no yaw to keep
     return pe.Pose(position, (0.0, 0.0, yaw))
+
+
+def on_moving() -> None:
+    """Place dropped sensors, where there is a window: a script places what it appends itself."""
+    if not bpy.app.background:
+        place_dropped()
 
 
 def place_dropped() -> None:
@@ -103,43 +89,23 @@ def is_dropped(obj: bpy.types.Object) -> bool:
 
 
 def place_on_surface(obj: bpy.types.Object, middle: Vector) -> None:
-    """Put a sensor upright on the surface that the base of its body was dropped on."""
+    """Put a sensor upright on the surface that the base of its body was dropped on.
+
+    Blender puts the base of its bounding box there. Its body just touches the surface; a sensor
+    without a body has the stand-off of its kind.
+    """
     try:
         mount = mount_for(catalog.load(obj.perception_entropy.model))
     except pe.InputError:  # the model is not in this catalogue: its view is unknown
         return
-    spot = spot_below(obj)
-    upright = Stance(0.0).placed(spot, mount, middle)
-    stand_off = clearance(obj, upright, spot.normal, mount)
-    placed = Stance(stand_off).placed(spot, mount, middle)
-    obj.matrix_world = placed @ Matrix.Diagonal((*obj.scale, 1.0))
-
-
-def spot_below(obj: bpy.types.Object) -> SurfaceSpot:
-    """Return the spot of a dropped object: Blender puts the base of its bounding box there."""
     low, high = np.min(obj.bound_box, axis=0), np.max(obj.bound_box, axis=0)
     base = Vector(((low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, low[2]))
-    ground_from_local = obj.matrix_world
-    return SurfaceSpot(ground_from_local @ base, ground_from_local.col[2].to_3d().normalized(), "")
-
-
-def clearance(
-    obj: bpy.types.Object, ground_from_sensor: Matrix, normal: Vector, mount: Mount
-) -> float:
-    """Return how far a sensor's origin is from the surface so that its body just touches it [m].
-
-    A sensor without a body has the stand-off of its kind.
-    """
-    if obj.data is None:
-        return mount.stand_off_m
-    turned = ground_from_sensor.to_3x3()
-    return max(0.0, *(-normal.dot(turned @ Vector(corner)) for corner in obj.bound_box))
-
-
-def on_moving() -> None:
-    """Place dropped sensors, where there is a window: a script places what it appends itself."""
-    if not bpy.app.background:
-        place_dropped()
-
-
-CLASSES = (PE_OT_stand_upright,)
+    local = obj.matrix_world
+    spot = SurfaceSpot(local @ base, local.col[2].to_3d().normalized(), "")
+    stand_off = mount.stand_off_m
+    if obj.data is not None:
+        turned = Stance(0.0).placed(spot, mount, middle).to_3x3()
+        corners = map(Vector, obj.bound_box)
+        stand_off = max(0.0, *(-spot.normal.dot(turned @ corner) for corner in corners))
+    placed = Stance(stand_off).placed(spot, mount, middle)
+    obj.matrix_world = placed @ Matrix.Diagonal((*obj.scale, 1.0))

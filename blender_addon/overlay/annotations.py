@@ -87,7 +87,11 @@ def location_mark(place: advice.AskedPlace, sensors: Sequence[pe.Sensor]) -> gra
     """Return a mark at a location, and a line to each sensor that sees it or is occluded."""
     center = np.array(place.center)
     answers = {each.name: each for each in place.sensors}
-    lines = [_voxel_mark(center)]
+    corners = center + SIDE_M * (np.array([*np.ndindex(2, 2, 2)]) - 0.5)
+    edges = [(a, b) for a in range(8) for b in range(a + 1, 8) if (a ^ b) in (1, 2, 4)]
+    post = np.array([center, center + np.array([0.0, 0.0, POST_M])])
+    ends = [*(corners[list(edge)] for edge in edges), post]
+    lines = [graphics.Primitives.of(np.vstack(ends), MARK)]
     for sensor in sensors:
         answer = answers.get(sensor.name)
         if answer is not None and answer.reason in REASON_COLORS:
@@ -100,14 +104,6 @@ def location_mark(place: advice.AskedPlace, sensors: Sequence[pe.Sensor]) -> gra
         through=graphics.Primitives.joined(lines),
         labels=(graphics.Tag(text, top, MARK, strong=True),),
     )
-
-
-def _voxel_mark(center: np.ndarray) -> graphics.Primitives:
-    """Return the edges of the voxel, and a post on it."""
-    corners = center + SIDE_M * (np.array([*np.ndindex(2, 2, 2)]) - 0.5)
-    edges = [(a, b) for a in range(8) for b in range(a + 1, 8) if (a ^ b) in (1, 2, 4)]
-    post = np.array([center, center + np.array([0.0, 0.0, POST_M])])
-    return graphics.Primitives.of(np.vstack([*(corners[list(edge)] for edge in edges), post]), MARK)
 
 
 REASON_COLORS = {"sees": VISIBLE, "occluded": OCCLUDED}
@@ -146,40 +142,26 @@ def ghost_sensors(
     """
     here = {sensor.name: sensor for sensor in present}
     lines = [_ghost_outline(sensor) for sensor in others]
-    lines += [_link(sensor, here[sensor.name]) for sensor in others if sensor.name in here]
-    color = graphics.with_alpha(PALE, LINK_ALPHA)
-    labels = tuple(
-        graphics.Tag(s.name, s.pose.position, color) for s in others if _needs_label(s, here)
-    )
+    color, labels = graphics.with_alpha(PALE, LINK_ALPHA), []
+    for other in others:
+        place = other.pose.position
+        ends = np.array([place, here[other.name].pose.position if other.name in here else place])
+        is_moved = np.abs(ends[0] - ends[1]).max() >= SAME_M
+        if is_moved:
+            lines.append(graphics.Primitives.of(ends, color))
+        if is_moved or other.name not in here:
+            labels.append(graphics.Tag(other.name, place, color))
     legend = graphics.ColorKey(title, classes=((color, name or "another one"),)) if others else None
     return graphics.LayerShape(
-        through=graphics.Primitives.joined(lines), labels=labels, legend=legend
+        through=graphics.Primitives.joined(lines), labels=tuple(labels), legend=legend
     )
 
 
-def _ghost_outline(
-    sensor: pe.Sensor, palette: graphics.Palette = graphics.VIEWPORT
-) -> graphics.Primitives:
+def _ghost_outline(sensor: pe.Sensor) -> graphics.Primitives:
     """Return a camera's view, for others a ring, in one pale colour."""
-    drawing = graphics.drawing_of(sensor.kind)
+    drawing, palette = graphics.drawing_of(sensor.kind), graphics.VIEWPORT
     if drawing.beams:
         drawn = graphics.ring_lines(sensor, RING_M, palette)
     else:
         drawn = drawing.lines(sensor, VIEW_M, palette)
     return graphics.Primitives.of(drawn.points, graphics.with_alpha(PALE, GHOST_ALPHA))
-
-
-def _link(other: pe.Sensor, here: pe.Sensor) -> graphics.Primitives:
-    """Return a line from the variant's sensor to the scene's; none if the positions are equal."""
-    ends = np.array([other.pose.position, here.pose.position])
-    if np.abs(ends[0] - ends[1]).max() < SAME_M:
-        return graphics.Primitives.empty()
-    return graphics.Primitives.of(ends, graphics.with_alpha(PALE, LINK_ALPHA))
-
-
-def _needs_label(sensor: pe.Sensor, here: dict[str, pe.Sensor]) -> bool:
-    """Whether a sensor has another position in the scene, or is missing: it needs a label."""
-    if sensor.name not in here:
-        return True
-    own, present = np.array(sensor.pose.position), np.array(here[sensor.name].pose.position)
-    return bool(np.abs(own - present).max() >= SAME_M)

@@ -87,7 +87,8 @@ def draw() -> None:
     if eye is not None:
         surroundings.draw_around(context.scene, eye, context.region)
     wanted = [(layer, uploaded(scene, layer, names)) for layer, names in _visible(context)]
-    _drop_removed(scene)
+    for key in [k for k in _batches if k[0] == scene and k[2] not in shown.items(*k[:2])]:
+        del _batches[key]
     before = gpu.state.blend_get(), gpu.state.depth_test_get(), gpu.state.depth_mask_get()
     gpu.state.blend_set("ALPHA")
     gpu.state.depth_test_set("LESS_EQUAL")
@@ -95,7 +96,10 @@ def draw() -> None:
     try:
         for layer, several in wanted:
             with depth_offset(context.region_data, layer.on_ground):
-                _draw_layer(layer, several, context.region)
+                for each in several:
+                    each.draw_areas()
+                for each in several:
+                    each.draw_lines(context.region, layer.line_px, edged=layer.edged)
     finally:
         gpu.state.depth_mask_set(before[2])
         gpu.state.depth_test_set(before[1])
@@ -147,19 +151,6 @@ def uploaded(scene: str, layer: Layer, names: list[str]) -> list[Batches]:
     return found
 
 
-def _draw_layer(layer: Layer, several: list[Batches], region: bpy.types.Region) -> None:
-    for each in several:
-        each.draw_areas()
-    for each in several:
-        each.draw_lines(region, layer.line_px, edged=layer.edged)
-
-
-def _drop_removed(scene: str) -> None:
-    gone = [key for key in _batches if key[0] == scene and key[2] not in shown.items(*key[:2])]
-    for key in gone:
-        del _batches[key]
-
-
 def _overlays_shown(context: bpy.types.Context) -> bool:
     """Whether the view shows overlays at all."""
     if not context.scene.perception_entropy.show_overlay:
@@ -170,20 +161,15 @@ def _overlays_shown(context: bpy.types.Context) -> bool:
 
 def _visible(context: bpy.types.Context) -> Iterator[tuple[Layer, list[str]]]:
     """Yield the layers, each with the names of the sensors that the view shows."""
-    scene, through = context.scene.name, _sensor_looked_through(context)
-    known = {WHOLE_RIG: _rig_visible(context)}
+    scene, through, space = context.scene.name, _sensor_looked_through(context), context.space_data
+    # In a local view there is no layer of the whole rig.
+    known = {WHOLE_RIG: not (space and space.type == "VIEW_3D" and space.local_view)}
     for layer in LAYERS:
         names = list(shown.items(scene, layer.name))
         for name in names:
             if name not in known:
                 known[name] = name != through and _sensor_visible(context, name)
         yield layer, [name for name in names if known[name]]
-
-
-def _rig_visible(context: bpy.types.Context) -> bool:
-    """Whether the view shows layers of the whole rig: not in a local view."""
-    space = context.space_data
-    return not (space and space.type == "VIEW_3D" and space.local_view)
 
 
 def _sensor_visible(context: bpy.types.Context, name: str) -> bool:

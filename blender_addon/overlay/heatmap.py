@@ -33,8 +33,12 @@ def hit_density(casts: Sequence[graphics.Cast], triangles: Floats) -> graphics.L
     points = np.concatenate([each.points[stopped] for each, stopped in pairs])
     looks = np.concatenate([each.directions[stopped] for each, stopped in pairs])
     faces = np.concatenate([each.face[stopped] for each, stopped in pairs])
-    weight = np.concatenate([np.full(s.sum(), _beams_per_cast(each)) for each, s in pairs])
-    normals = _facing_sensor(_normals(triangles[faces]), looks)
+    # A cast represents several beams; all are of kinds that have beams.
+    beams = [cast(Any, c.sensor.model).beam_count / max(len(c.ends), 1) for c in casts]
+    weight = np.repeat(beams, [stopped.sum() for stopped in hits])
+    normals = _normals(triangles[faces])
+    away = (normals * looks).sum(axis=1, keepdims=True) > 0.0
+    normals = np.where(away, -normals, normals)
     tiles = _Tiles.of(points, normals, weight)
     # Bright is good, as on the ground map: tiles with many hits are dark.
     shares = 1.0 - np.log(np.maximum(tiles.density, MIN_DENSITY) / MIN_DENSITY) / np.log(
@@ -125,18 +129,6 @@ class _Cells:
         return total
 
 
-def _beams_per_cast(found: graphics.Cast) -> float:
-    """Return the number of beams of the sensor that each cast beam represents."""
-    model = cast(Any, found.sensor.model)  # of a kind that has beams
-    return float(model.beam_count / max(len(found.ends), 1))
-
-
 def _normals(triangles: Floats) -> Floats:
     normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     return normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
-
-
-def _facing_sensor(normals: Floats, looks: Floats) -> Floats:
-    """Return normals on the side from which the beams come."""
-    away = (normals * looks).sum(axis=1, keepdims=True) > 0.0
-    return np.where(away, -normals, normals)

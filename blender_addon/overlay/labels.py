@@ -65,11 +65,14 @@ def draw_legends(
 
     Return the boxes that are covered: those of the legends, and those of Blender's own.
     """
-    scale = viewport.ui_scale()
-    if _is_fixed_quad_view(context):
-        return []
-    region = context.region
-    right = region.width - _sidebar_width(context)
+    scale, region, space = viewport.ui_scale(), context.region, context.space_data
+    if len(space.region_quadviews) and context.region_data != space.region_3d:
+        return []  # one of four views, and not the one that can be turned
+    right = region.width
+    if context.preferences.system.use_region_overlap:  # the sidebar lies over its right part
+        right -= max(
+            (r.width for r in context.area.regions if r.type == "UI" and r.width > 1), default=0
+        )
     height = float(region.height)
     blenders = [
         (right - BESIDE_GIZMOS * scale, height - GIZMOS * scale, right, height),
@@ -203,16 +206,3 @@ def _draw_ticks(ticks: Sequence[str], sides: tuple[float, float], y: float, size
         share = number / max(len(ticks) - 1, 1)
         x = left + share * (right - left)
         viewport.draw_text(tick, x, y, size, FAINT_INK, left_of_x=share)
-
-
-def _is_fixed_quad_view(context: bpy.types.Context) -> bool:
-    """Whether a view is one of four, and not the one that can be turned."""
-    space = context.space_data
-    return bool(len(space.region_quadviews)) and context.region_data != space.region_3d
-
-
-def _sidebar_width(context: bpy.types.Context) -> float:
-    """Return the width of the region's right part below the sidebar [px]."""
-    if not context.preferences.system.use_region_overlap:
-        return 0.0
-    return max((r.width for r in context.area.regions if r.type == "UI" and r.width > 1), default=0)

@@ -9,7 +9,7 @@ from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from .. import requirement_checkers, simplified_vehicles
+from .. import caches
 from ..engine import graphics, pe, requirements, sight
 from .request import SceneSensor, ViewRequest
 
@@ -84,7 +84,7 @@ class LayerCache:
     def body(self, request: ViewRequest) -> pe.Vehicle | None:
         """Return the vehicle, simplified where it has very many triangles."""
         vehicle = request.vehicle
-        return None if vehicle is None else simplified_vehicles.shared.simplified(vehicle)
+        return None if vehicle is None else caches.simplified(vehicle)
 
     def sight(self, request: ViewRequest) -> Sight:
         """Return the `Sight` that computes the visibility of rigs."""
@@ -161,4 +161,4 @@ def _checker(request: ViewRequest) -> tuple[requirements.RequirementChecker, dic
     around = rig, request.vehicle, request.reference, request.space
     placed, unplaced = requirements.checkable(request.requirements, *around)
     given = request.vehicle, request.model, request.reference, request.space
-    return requirement_checkers.shared.checker(placed, *given), unplaced
+    return caches.checker(placed, *given), unplaced

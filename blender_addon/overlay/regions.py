@@ -118,17 +118,13 @@ def focus_regions(regions: Sequence[FocusRegion], space: pe.PerceptionSpace) -> 
             box = box_edges((x0, y0, 0.0), (x1, y1, min(FOCUS_HEIGHT_M, space.z[1])))
             lines.append(graphics.Primitives.of(box, color))
             place = ((x0 + x1) / 2.0, (y0 + y1) / 2.0, 0.0)
-            labels.append(graphics.Tag(region_text(region), place, color))
+            classes = "" if region.classes is None else f" ({', '.join(region.classes)})"
+            text = f"{region.name}: \u00d7 {region.factor:g}{classes}"
+            labels.append(graphics.Tag(text, place, color))
     legend = graphics.ColorKey("Focus", classes=_classes(regions)) if lines else None
     return graphics.LayerShape(
         lines=graphics.Primitives.joined(lines), labels=tuple(labels), legend=legend
     )
-
-
-def region_text(region: FocusRegion) -> str:
-    """Return the label of a region: name, factor, and classes unless it holds for all."""
-    classes = "" if region.classes is None else f" ({', '.join(region.classes)})"
-    return f"{region.name}: \u00d7 {region.factor:g}{classes}"
 
 
 def _classes(regions: Sequence[FocusRegion]) -> tuple[tuple[graphics.Rgba, str], ...]:

@@ -7,7 +7,7 @@ there is no timer, and `update` does everything at once.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import replace
 
 import bpy
@@ -126,44 +126,47 @@ def _request(scene: str, layer: Layer, request: ViewRequest) -> None:
         return
     rough = request.moving and layer.rough
     have = shown.items(scene, layer.name)
-    wanted = {name: _reusable(have.get(name), key, rough) for name, key in keys.items()}
+    wanted = {
+        name: item
+        for name, item in have.items()
+        if item.key == keys.get(name, item) and (rough or not item.rough)
+    }
     if _requested.get((scene, layer.name)) == (keys, rough):
         return
     _requested[scene, layer.name] = keys, rough
+    cache = _layer_cache
+
+    def deliver(items: dict[str, ShownLayer]) -> None:
+        shown.put(scene, layer.name, items)
+        _redraw_together()
+
+    def fail(problem: Exception) -> None:
+        shown.drop(scene, layer.name)
+        viewport.redraw_editors()
+        if not isinstance(problem, pe.InputError):  # a score reports what is wrong with the scene
+            raise problem
+
     worker.background_worker.ask(
         _topic(scene, layer.name),
-        lambda: _compute(layer, replace(request, moving=rough), keys, wanted, _layer_cache),
-        _delivery(scene, layer.name),
-        _failure(scene, layer.name),
+        lambda: _compute(layer, replace(request, moving=rough), keys, wanted, cache),
+        deliver,
+        fail,
     )
-
-
-def _reusable(item: ShownLayer | None, key: Hashable, rough: bool) -> ShownLayer | None:
-    """Return the shape that is shown already, if it is still valid."""
-    return item if item is not None and item.key == key and (rough or not item.rough) else None
 
 
 def _compute(
     layer: Layer,
     request: ViewRequest,
     keys: Mapping[str, Hashable],
-    have: Mapping[str, ShownLayer | None],
+    have: Mapping[str, ShownLayer],
     cache: LayerCache,
 ) -> dict[str, ShownLayer]:
     """On the worker's thread: return shapes by name; reusable ones stay the same objects."""
     rough = request.moving
     return {
-        name: have[name] or ShownLayer(key, layer.shape(request, cache, name), rough)
+        name: have.get(name) or ShownLayer(key, layer.shape(request, cache, name), rough)
         for name, key in keys.items()
     }
-
-
-def _delivery(scene: str, layer: str) -> Callable[[dict[str, ShownLayer]], None]:
-    def deliver(items: dict[str, ShownLayer]) -> None:
-        shown.put(scene, layer, items)
-        _redraw_together()
-
-    return deliver
 
 
 def _redraw_together() -> None:
@@ -179,16 +182,6 @@ def _redraw_now() -> None:
     if bpy.app.timers.is_registered(_redraw_now):
         bpy.app.timers.unregister(_redraw_now)
     viewport.redraw_editors()
-
-
-def _failure(scene: str, layer: str) -> Callable[[Exception], None]:
-    def fail(problem: Exception) -> None:
-        shown.drop(scene, layer)
-        viewport.redraw_editors()
-        if not isinstance(problem, pe.InputError):  # a score reports what is wrong with the scene
-            raise problem
-
-    return fail
 
 
 def _topic(scene: str, layer: str) -> str:

@@ -221,12 +221,7 @@ def _ghosts(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str]:
     running search so far, otherwise another variant."""
     if best := search_curve.best(scene.name):
         return best, BEST_SO_FAR
-    key = scene.perception_entropy.view.ghost_key
-    for row in scene.perception_entropy.variants if key else ():
-        if row.key == key:
-            with contextlib.suppress(pe.InputError):
-                return tuple(bridge.rig_of(bridge.records_of(row))), row.name
-    return (), ""
+    return _variant(scene, scene.perception_entropy.view.ghost_key)
 
 
 def _compared(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str]:
@@ -239,8 +234,13 @@ def _compared(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str]:
     baseline = None if score is None else score.baseline
     if baseline is not None and baseline.rig is not None:
         return tuple(baseline.rig), baseline.label
-    for row in settings.variants if settings.live.against else ():
-        if row.key == settings.live.against:
+    return _variant(scene, settings.live.against)
+
+
+def _variant(scene: bpy.types.Scene, key: int) -> tuple[tuple[pe.Sensor, ...], str]:
+    """Return the sensors of the variant with a key, and its name; nothing without such a one."""
+    for row in scene.perception_entropy.variants if key else ():
+        if row.key == key:
             with contextlib.suppress(pe.InputError):
                 return tuple(bridge.rig_of(bridge.records_of(row))), row.name
     return (), ""

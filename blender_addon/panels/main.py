@@ -12,7 +12,7 @@ from ..operators import (
     WORSE,
     ShownScore,
     costs_nothing,
-    export_job,
+    exports,
     listed_sensors,
     nats_text,
     offers,
@@ -35,7 +35,7 @@ from .sensor_menus import KIND, PE_MT_add_sensor
 
 def draw_written(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw which files the last export wrote, warnings, and a button for their folder."""
-    written = export_job.last
+    written = exports.last
     if written is None:
         return
     box = layout.box().column(align=True)

@@ -10,7 +10,7 @@ import pytest
 
 from blender_addon import bridge
 from blender_addon.engine import exchange, pe
-from blender_addon.operators.rig_files import PE_OT_export_rig
+from blender_addon.operators import exports
 from blender_addon.overlay import annotations
 from pe_tools.cli.verbs import main
 from tests.addon import scenes
@@ -74,7 +74,7 @@ def test_the_suffix_of_a_rig_s_file_chooses_the_format(axled, tmp_path):
 
 def test_in_the_dialog_name_and_format_follow_each_other():
     dialog = SimpleNamespace(format="csv", format_named="", filepath="")
-    check = partial(PE_OT_export_rig.check, dialog, None)
+    check = partial(exports.export_rig.check, dialog, None)
     assert check() and dialog.filepath == "rig.csv"
     assert not check()
     dialog.filepath = "cars/prius.urdf"

@@ -5,9 +5,7 @@ import itertools
 import bpy
 import pytest
 
-from blender_addon.operators import export_files, export_job, running_job
-from blender_addon.operators import export_files as exports
-from tests.addon import scenes
+from blender_addon.operators import exports, running_job
 
 
 @pytest.fixture
@@ -17,27 +15,25 @@ def small(car, small_pictures):
     return car
 
 
-def page_job(path):
-    """Return the job of a page, as the operator makes it."""
-    told = {"command": "", "versions": {}}
-    steps, about = exports.PE_OT_export_review.steps, exports.page.About()
-    return export_job.ExportJob(scenes.study(), lambda job: steps(job, path, told, about))
+@pytest.fixture
+def job_of(small, monkeypatch):
+    """Return what makes the job of an export to a file, as its operator does."""
+    made = []
+    monkeypatch.setattr(exports, "run", lambda job, _asked: made.append(job))
+
+    def make(path):
+        call, given = OPERATORS[path.name]
+        assert getattr(bpy.ops.pe, call)(filepath=str(path), **given) == {"FINISHED"}
+        return made.pop()
+
+    return make
 
 
-def picture_job(path):
-    """Return the job of a picture."""
-    steps = exports.PE_OT_render_review.steps
-    return export_job.ExportJob(scenes.study(), lambda job: steps(job, path))
-
-
-def scene_job(path):
-    """Return the job of an output of the scene."""
-    row = export_files.outputs.scene_output("gltf")
-    steps = export_files.PE_OT_export_scene.steps
-    return export_job.ExportJob(scenes.study(), lambda job: steps(job, row, path, 5.0, False))
-
-
-JOBS = {"page.html": page_job, "picture.png": picture_job, "scene.glb": scene_job}
+OPERATORS = {
+    "page.html": ("export_review", {}),
+    "picture.png": ("render_review", {}),
+    "scene.glb": ("export_scene", {"output": "gltf", "range_m": 5.0}),
+}
 STAGES = {
     "page.html": ["scoring", "page"],
     "picture.png": ["scoring", "picture"],
@@ -45,9 +41,9 @@ STAGES = {
 }
 
 
-@pytest.mark.parametrize("name", JOBS)
-def test_a_job_tells_how_far_it_is_and_writes_at_its_end(small, tmp_path, name):
-    job = JOBS[name](tmp_path / name)
+@pytest.mark.parametrize("name", OPERATORS)
+def test_a_job_tells_how_far_it_is_and_writes_at_its_end(job_of, tmp_path, name):
+    job = job_of(tmp_path / name)
     steps = []
     for step in job:
         assert not list(tmp_path.iterdir()), "written before its end"
@@ -64,8 +60,8 @@ def test_a_job_tells_how_far_it_is_and_writes_at_its_end(small, tmp_path, name):
     ("name", "stage"),
     [(name, stage) for name, stages in STAGES.items() for stage in stages],
 )
-def test_stopped_at_any_stage_it_leaves_nothing(small, tmp_path, name, stage):
-    job = JOBS[name](tmp_path / name)
+def test_stopped_at_any_stage_it_leaves_nothing(job_of, tmp_path, name, stage):
+    job = job_of(tmp_path / name)
     for step in job:
         if step.stage.startswith(stage):
             job.stop()
@@ -73,27 +69,26 @@ def test_stopped_at_any_stage_it_leaves_nothing(small, tmp_path, name, stage):
     assert job.written is None and not list(tmp_path.iterdir())
 
 
-def test_a_page_that_is_stopped_is_not_worked_on(small, tmp_path):
-    job = page_job(tmp_path / "page.html")
-    watch = job.watch(0.4)
-    watch(0.5)
+def test_a_page_that_is_stopped_is_not_worked_on(job_of, tmp_path):
+    job = job_of(tmp_path / "page.html")
+    job._note(0.5)
     job.stop()
-    with pytest.raises(export_job.ExportStopped):
-        watch(0.6)
+    with pytest.raises(exports.ExportStopped):
+        job._note(0.6)
 
 
 def test_what_was_written_is_kept_for_the_panel(small, tmp_path):
     path = tmp_path / "study.toml"
     assert bpy.ops.pe.export_study(filepath=str(path)) == {"FINISHED"}
-    assert (export_job.last.text, export_job.last.folder) == ("Wrote study.toml", tmp_path)
+    assert (exports.last.text, exports.last.folder) == ("Wrote study.toml", tmp_path)
     bpy.ops.pe.export_scene(filepath=str(tmp_path / "a.glb"), output="gltf")
-    assert export_job.last.paths == (tmp_path / "a.glb",)
+    assert exports.last.paths == (tmp_path / "a.glb",)
     with pytest.raises(RuntimeError):
         bpy.ops.pe.export_study(filepath=str(path / "below" / "x.toml"))
-    assert export_job.last.text == "Wrote a.glb", "what failed wrote nothing"
+    assert exports.last.text == "Wrote a.glb", "what failed wrote nothing"
     assert bpy.ops.pe.open_folder.poll()
     bpy.ops.pe.dismiss_written()
-    assert export_job.last is None and not bpy.ops.pe.open_folder.poll()
+    assert exports.last is None and not bpy.ops.pe.open_folder.poll()
 
 
 def test_no_export_begins_while_another_job_runs(small, monkeypatch):

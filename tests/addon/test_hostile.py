@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from blender_addon.engine import pe
-from blender_addon.operators import reports
+from blender_addon.operators import declared
 from blender_addon.overlay import layers
 from tests.addon import scenes
 from tests.thorough import pairs
@@ -192,7 +192,7 @@ class Reporter:
 
 def test_a_report_is_one_line_whatever_it_quotes():
     operator = Reporter()
-    reports.report(operator, "INFO", "Wrote a\nb\u202e\x1b.toml" + "x" * 1000)
+    declared.report(operator, "INFO", "Wrote a\nb\u202e\x1b.toml" + "x" * 1000)
     assert operator.level == {"INFO"}
     assert operator.text.startswith("Wrote a\\nb\\u202e\\x1b.toml")
     assert operator.text.isprintable() and len(operator.text) < 500

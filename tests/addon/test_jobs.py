@@ -9,7 +9,7 @@ import pytest
 from blender_addon import bridge, result_staleness
 from blender_addon.engine import pe, text
 from blender_addon.live import state
-from blender_addon.operators import running_job, score_jobs
+from blender_addon.operators import declared, jobs, running_job
 from blender_addon.panels import main
 from tests.addon import layouts, scenes
 
@@ -154,11 +154,8 @@ def test_stopped_search_keeps_the_best(car):
 
 
 def test_stopped_before_a_score_is_complete_changes_nothing(car):
-    told = []
-    operator = SimpleNamespace(report=lambda *words: told.append(words))
-    idle = score_jobs.SceneJob(pe.OptimizeJob(scenes.study()), None)
-    assert score_jobs.PE_OT_optimize._apply(operator, car, idle) == {"CANCELLED"}
-    assert told == [({"INFO"}, "Stopped before a score was complete: nothing was changed")]
+    with pytest.raises(declared.Stopped):
+        jobs.OPTIMIZE.finish(car, jobs.OPTIMIZE.read(Window(car)))
     assert not car.perception_entropy.has_result
 
 
@@ -180,7 +177,7 @@ def test_sensor_deleted_meanwhile(car):
 def test_one_job_at_a_time(car, monkeypatch):
     monkeypatch.setattr(running_job, "current", object())
     assert not bpy.ops.pe.score.poll()
-    with pytest.raises(RuntimeError, match="Another score or search is running"):
+    with pytest.raises(RuntimeError, match="Another score, search or export is running"):
         bpy.ops.pe.optimize()
     assert bpy.ops.pe.cancel.poll()
 
@@ -220,28 +217,16 @@ class Window:
         return bpy.context.evaluated_depsgraph_get()
 
 
-def finished_after(car, operator, change):
+def finished_after(car, row, change):
     """Read the scene and begin; change it meanwhile; end, and write what was found."""
-    act = operator(SimpleNamespace(report=lambda *_: None))
-    task = act._task(Window(car))
+    task = row.read(Window(car))
     steps = iter(task.job)
     next(steps)
     change()
     bpy.context.view_layer.update()
     for _ in steps:
         pass
-    return act._apply(car, task)
-
-
-def acting(operator):
-    """An operator's own functions without Blender's part of it."""
-    names = ("_task", "_read", "_apply", "job_of", "write", "message")
-    return lambda own: type("Act", (), {n: vars_of(operator, n) for n in names} | vars(own))()
-
-
-def vars_of(operator, name):
-    found = next(vars(each)[name] for each in operator.__mro__ if name in vars(each))
-    return found
+    row.finish(car, task)
 
 
 CHANGES = {
@@ -256,25 +241,27 @@ CHANGES = {
 }
 
 
-@pytest.mark.parametrize("operator", [score_jobs.PE_OT_score, score_jobs.PE_OT_optimize])
+ROWS = pytest.mark.parametrize("row", [jobs.SCORE, jobs.OPTIMIZE], ids=lambda row: row.name)
+
+
+@ROWS
 @pytest.mark.parametrize("change", CHANGES)
-def test_a_change_while_a_job_runs_leaves_its_result_stale(car, operator, change):
+def test_a_change_while_a_job_runs_leaves_its_result_stale(car, row, change):
     moving = scenes.add_sensor("other", model="Pandar40", location=(1.9, 0.0, 1.0))
     moving.perception_entropy.free = (False,) * 6
     moving.keyframe_insert("location", frame=1)
     moving.location.x += 0.5
     moving.keyframe_insert("location", frame=20)
     car.frame_set(1)
-    done = finished_after(car, acting(operator), lambda: CHANGES[change](car))
-    assert done == {"FINISHED"}
+    finished_after(car, row, lambda: CHANGES[change](car))
     # What the search has placed stands where it put it, wherever it was meanwhile.
-    placed_over = operator is score_jobs.PE_OT_optimize and change == "sensor moved"
+    placed_over = row is jobs.OPTIMIZE and change == "sensor moved"
     assert car.perception_entropy.result_stale != placed_over
 
 
-@pytest.mark.parametrize("operator", [score_jobs.PE_OT_score, score_jobs.PE_OT_optimize])
-def test_without_a_change_a_job_s_result_stands(car, operator):
-    assert finished_after(car, acting(operator), lambda: None) == {"FINISHED"}
+@ROWS
+def test_without_a_change_a_job_s_result_stands(car, row):
+    finished_after(car, row, lambda: None)
     assert not car.perception_entropy.result_stale
 
 
@@ -283,14 +270,13 @@ def test_the_start_of_a_search_is_not_scored_again_when_it_is_known(car, monkeyp
     known = state.live_state(car.name).finished.score
     made = []
     monkeypatch.setattr(
-        score_jobs.pe, "OptimizeJob", lambda study, before: made.append(before) or SimpleNamespace()
+        jobs.pe, "OptimizeJob", lambda study, before: made.append(before) or SimpleNamespace()
     )
-    act = acting(score_jobs.PE_OT_optimize)(SimpleNamespace())
-    act._task(Window(car))
+    jobs.OPTIMIZE.read(Window(car))
     assert made == [known]
     car.objects["roof"].location.z += 0.1
     bpy.context.view_layer.update()
-    act._task(Window(car))
+    jobs.OPTIMIZE.read(Window(car))
     assert made == [known, None]
 
 
@@ -333,7 +319,7 @@ def constrain(sensor):
 def test_a_sensor_that_something_holds_is_reported_before_the_work(car, hold, monkeypatch):
     sensor = car.objects["roof"]
     hold(sensor)
-    monkeypatch.setattr(score_jobs.pe, "OptimizeJob", lambda *_, **__: pytest.fail("begun"))
+    monkeypatch.setattr(jobs.pe, "OptimizeJob", lambda *_, **__: pytest.fail("begun"))
     with pytest.raises(RuntimeError, match="sensor 'roof': placement: expected an object that can"):
         bpy.ops.pe.optimize()
     sensor.perception_entropy.free = (False,) * 6
@@ -344,14 +330,14 @@ def test_a_sensor_that_something_holds_is_reported_before_the_work(car, hold, mo
 
 def test_a_second_stop_leaves_all_as_it_was(car):
     before = scenes.study().rig["roof"].pose
-    act = acting(score_jobs.PE_OT_optimize)(SimpleNamespace(report=lambda *_: None))
-    task = act._task(Window(car))
+    task = jobs.OPTIMIZE.read(Window(car))
     shown = SimpleNamespace(job=task.job)
     for progress in task.job:
         if progress.evaluations >= 8:
             running_job.RunningJob.stop(shown)
             running_job.RunningJob.stop(shown)
-    assert act._apply(car, task) == {"CANCELLED"}
+    with pytest.raises(declared.Stopped):
+        jobs.OPTIMIZE.finish(car, task)
     assert scenes.study().rig["roof"].pose == before and not car.perception_entropy.has_result
 
 

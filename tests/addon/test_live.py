@@ -11,17 +11,17 @@ import pytest
 import blender_addon
 from blender_addon import (
     bridge,
+    caches,
     change_events,
     preferences,
     result_staleness,
     signals,
-    simplified_vehicles,
     worker,
 )
 from blender_addon.choices import BEFORE_MOVE, PINNED
 from blender_addon.engine import advice, catalog, pe
 from blender_addon.live import background_figures, evaluation, readout, readout_text, session, state
-from blender_addon.live.background_figures import ShownFigures
+from blender_addon.live.state import ShownFigures
 from tests.addon import scenes
 
 SAMPLES = 4096
@@ -547,18 +547,18 @@ def test_the_score_s_ground_map_is_kept_in_memory_for_the_views(car):
 
 def test_a_simple_body_is_made_once(monkeypatch):
     whole = pe.Vehicle(np.random.default_rng(1).random((9000, 3, 3)))
-    made, simplified = [], simplified_vehicles.graphics.simplified
+    made, simplified = [], caches.graphics.simplified
 
     def watched(vehicle, most, *, quick):
         made.append(len(vehicle.triangles))
         return simplified(vehicle, most, quick=quick)
 
-    monkeypatch.setattr(simplified_vehicles.graphics, "simplified", watched)
-    bodies = simplified_vehicles.SimplifiedVehicles()
-    assert bodies.simplified(whole) is whole and not made
-    monkeypatch.setattr(simplified_vehicles, "MAX_TRIANGLES", 4000)
-    first = bodies.simplified(whole)
-    assert bodies.simplified(whole) is first and made == [9000]
+    monkeypatch.setattr(caches.graphics, "simplified", watched)
+    caches.clear()
+    assert caches.simplified(whole) is whole and not made
+    monkeypatch.setattr(caches, "MAX_TRIANGLES", 4000)
+    first = caches.simplified(whole)
+    assert caches.simplified(whole) is first and made == [9000]
     assert len(first.triangles) <= 4000
-    bodies.clear()
-    assert bodies.simplified(whole) is not first
+    caches.clear()
+    assert caches.simplified(whole) is not first

@@ -6,9 +6,8 @@ import pytest
 
 from blender_addon.engine import advice, pe
 from blender_addon.live import readout, readout_text, state
-from blender_addon.live.background_figures import ShownFigures
 from blender_addon.live.readout_text import BETTER, SAME, WORSE
-from blender_addon.live.state import Baseline, ShownScore
+from blender_addon.live.state import Baseline, ShownFigures, ShownScore
 
 
 def summary(entropy=3.0, coverage=0.85, zones=()):

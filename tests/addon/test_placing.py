@@ -95,8 +95,8 @@ def test_a_stand_off_is_typed_stepped_and_taken_back(held):
 def test_arrow_keys_turn_it_from_the_direction_of_its_place(held):
     held._stand(ROOF)
     assert held.angles == (180.0, 0.0), "behind the middle it looks back"
-    held.turn(*(5.0 * way for way in place_sensor.TURNS["LEFT_ARROW"]))
-    held.turn(*(5.0 * way for way in place_sensor.TURNS["DOWN_ARROW"]))
+    for key in ("LEFT_ARROW", "DOWN_ARROW"):
+        held.stand(held.stance.turned(*(5.0 * way for way in place_sensor.TURNS[key])))
     assert held.angles == (-175.0, 5.0)
     ahead = held.matrix.col[0].to_3d()
     assert ahead.z == pytest.approx(-math.sin(math.radians(5.0)), abs=1e-6), "down is nose down"
@@ -105,7 +105,7 @@ def test_arrow_keys_turn_it_from_the_direction_of_its_place(held):
     held._stand(ROOF)
     assert held.angles == (-175.0, 5.0), "it goes on as it was turned"
     for _ in range(40):
-        held.turn(10.0, 5.0)
+        held.stand(held.stance.turned(10.0, 5.0))
     assert held.stance.pitch_deg == 90.0 and -180.0 <= held.stance.yaw_deg < 180.0
 
 

@@ -212,8 +212,7 @@ def test_the_command_takes_objects_in_and_puts_them_out(rigged, tmp_path, capsys
 def test_dialogs_offer_models_of_the_kind():
     from types import SimpleNamespace
 
-    from blender_addon.operators.replace_sensors import empty_models
-    from blender_addon.operators.rig_files import models_for
+    from blender_addon.operators.imports import empty_models, models_for
 
     row = SimpleNamespace(kind="camera")
     assert models_for(row, None, "kitti") == ["KITTI cam2"]

@@ -1,16 +1,15 @@
 """Requirements in the scene: one record with the study file, verdicts of the engine to the bit."""
 
 import json
-from types import SimpleNamespace
 
 import bpy
 import numpy as np
 import pytest
 
 import pe_core as pe
-from blender_addon import bridge, requirement_checkers
+from blender_addon import bridge, caches
+from blender_addon.operators import jobs
 from blender_addon.operators import requirements as operators
-from blender_addon.operators import score_jobs
 from blender_addon.overlay.requirement_zones import FILL_ALPHA, MET, NOT_MET
 from pe_core.scoring.requirements import VerdictSummary
 from pe_core.sensors import ObjectMeasurementCache
@@ -326,17 +325,12 @@ def test_check_stores_the_verdicts_of_the_engine(held):
 
 
 def check_by_hand(scene, after_a_step):
-    """Step a check as a window does; return what the operator returned and reported."""
-    bases = (operators.PE_OT_check_requirements, score_jobs.JobOperator)
-    own = {name: each for base in reversed(bases) for name, each in vars(base).items()}
-    names = ("_task", "_read", "_apply", "_store", "job_of", "progressed")
-    act, told = type("Act", (), {name: own[name] for name in names})(), []
-    act.report = lambda _level, text: told.append(text)
-    task = act._task(bpy.context)
+    """Step a check as a window does; return what it reports."""
+    task = jobs.CHECK.read(bpy.context)
     for _ in task.job:
-        act.progressed(SimpleNamespace(scene_name=scene.name, job=task.job))
+        task.progressed(scene)
         after_a_step(task.job)
-    return act._apply(scene, task), told
+    return jobs.CHECK.finish(scene, task)
 
 
 def test_verdicts_come_row_by_row_and_esc_keeps_those_that_are_found(held):
@@ -346,12 +340,12 @@ def test_verdicts_come_row_by_row_and_esc_keeps_those_that_are_found(held):
     def note(job):
         counts.append(sum(row.met >= 0 for row in rows(held)))
 
-    assert check_by_hand(held, note)[0] == {"FINISHED"}
+    check_by_hand(held, note)
     assert counts == sorted(counts) and {*counts} == {0, 1, 2, 3}
     assert [row.verdict for row in rows(held)] == whole
 
-    (done, told) = check_by_hand(held, lambda job: job.stop() if job.verdicts else None)
-    assert done == {"FINISHED"} and "not checked: " in told[0]
+    told = check_by_hand(held, lambda job: job.stop() if job.verdicts else None)
+    assert told.level == "WARNING"
     assert [row.verdict for row in rows(held)] == [whole[0], "", ""]
 
 
@@ -369,7 +363,7 @@ def test_view_check_and_score_measure_nothing_twice(held, first, monkeypatch):
         return again(self, sensor)
 
     monkeypatch.setattr(ObjectMeasurementCache, "measure_again", noted)
-    requirement_checkers.shared.clear()
+    caches.clear()
     acts = {"view": lambda: scenes.drawn(held), "check": bpy.ops.pe.check_requirements}
     acts[first]()
     assert measured

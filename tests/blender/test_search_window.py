@@ -85,7 +85,7 @@ def ask_for(stage, page):
 
 VIEW = f"__import__('{ADDON}.search_curve', fromlist=['searches']).searches"
 RUNNING = f"__import__('{ADDON}.operators.running_job', fromlist=['current']).current"
-EXPORTING = f"__import__('{ADDON}.operators.export_job', fromlist=['last'])"
+EXPORTING = f"__import__('{ADDON}.operators.exports', fromlist=['last'])"
 PLACE = "bpy.data.objects['roof_lidar'].matrix_world.translation"
 
 

@@ -1,0 +1,317 @@
+"""How operators are made: of a function, or of a row of a list; and what they report.
+
+A report is one line in the status bar, whatever the input was.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
+
+import bpy
+from bpy.props import IntProperty
+
+from .. import language, preferences, signals
+from ..choices import free_name
+from ..engine import pe, text
+from ..translation_context import DEFERRED
+
+USER_ERRORS = (pe.InputError, MemoryError)
+"""Errors that end an operator with one line: wrong input, and too little memory."""
+MAX_LETTERS = 400
+OperatorResult = set[Literal["RUNNING_MODAL", "CANCELLED", "FINISHED", "PASS_THROUGH", "INTERFACE"]]
+"""What ``execute``, ``invoke`` and ``modal`` return."""
+UNDO = frozenset({"REGISTER", "UNDO"})
+INTERNAL = frozenset({"INTERNAL"})
+CLASSES: list[type] = []
+"""All operators, and what has to be registered before them."""
+
+# Blender registers the subclasses of Operator alone. What several operators have in common is a
+# plain class for Blender, and an Operator for the checker of types.
+if TYPE_CHECKING:
+    OperatorMixin: TypeAlias = bpy.types.Operator
+else:
+    OperatorMixin = object
+
+
+class Refused(Exception):
+    """An operator did nothing; the user is told why in one line."""
+
+    level: Literal["INFO", "WARNING", "ERROR"] = "WARNING"
+
+
+class Failed(Refused):
+    """As `Refused`, but an error: for scripts an exception."""
+
+    level = "ERROR"
+
+
+class Stopped(Refused):
+    """As `Refused`, because the user wanted it so."""
+
+    level = "INFO"
+
+
+class Told(NamedTuple):
+    """What an operator reports: warnings, then a line. Blender shows only the last report."""
+
+    text: str
+    warnings: tuple[str, ...] = ()
+    level: Literal["INFO", "WARNING"] = "INFO"
+
+
+Answer: TypeAlias = str | Told | OperatorResult | None
+"""What a function of an operator returns: a report, nothing to report, or Blender's own result."""
+Unless: TypeAlias = Callable[[bpy.types.Context], str | None]
+"""Why an operator is not possible now; an empty text gives no reason, None: it is possible."""
+
+
+def declared(cls: type) -> type:
+    """Decorate a class of Blender's so that it is registered."""
+    CLASSES.append(cls)
+    return cls
+
+
+def operator(
+    label: str,
+    *,
+    mode: str = "",
+    unless: Unless | None = None,
+    signal: signals.Signal | None = None,
+    options: frozenset[str] = UNDO,
+    tooltip: Callable[[str, Any], str] | None = None,
+    bases: tuple[type, ...] = (),
+    **members: Any,
+) -> Callable[[Callable[..., Answer]], type[bpy.types.Operator]]:
+    """Return what makes an operator of a function, whose name and docstring the operator takes.
+
+    The function takes the context, and properties of the operator by their names; as `operator`
+    it takes the operator itself.
+
+    Parameters
+    ----------
+    label : str
+        What its button says.
+    mode : str
+        Why it needs Object Mode; without a text it works in all modes.
+    unless : callable, optional
+        Says why it is not possible in a context.
+    signal : Signal, optional
+        Emitted after the function.
+    options : frozenset of str
+        `bl_options`.
+    tooltip : callable, optional
+        From the docstring and the operator's properties to its tooltip; the docstring by default.
+    bases : tuple of type
+        Further base classes.
+    **members
+        Properties, and other attributes of the class: `invoke`, `draw`, `bl_property`.
+    """
+
+    def make(function: Callable[..., Answer]) -> type[bpy.types.Operator]:
+        names = list(inspect.signature(function).parameters)[1:]
+
+        def execute(self: Any, context: bpy.types.Context) -> OperatorResult:
+            try:
+                given = {n: self if n == "operator" else getattr(self, n) for n in names}
+                answer = function(context, **given)
+            except (Refused, *USER_ERRORS) as error:
+                return report_error(self, error)
+            if signal is not None:
+                signal.emit()
+            return report_answer(self, answer)
+
+        def poll(cls: Any, context: bpy.types.Context) -> bool:
+            reason = mode if mode and context.mode != "OBJECT" else unless and unless(context)
+            if reason:
+                cls.poll_message_set(language.shown(reason))
+            return reason is None
+
+        members_of_class = {
+            "__doc__": function.__doc__,
+            "__module__": function.__module__,
+            "__annotations__": {n: m for n, m in members.items() if isinstance(m, DEFERRED)},
+            "bl_idname": f"pe.{function.__name__}",
+            "bl_label": label,
+            "bl_options": set(options),
+            "execute": execute,
+            "poll": classmethod(poll),
+        }
+        if tooltip is not None:
+            members_of_class["description"] = classmethod(
+                lambda cls, _context, chosen: tooltip(language.shown(cls.__doc__), chosen)
+            )
+        members_of_class |= {n: m for n, m in members.items() if not isinstance(m, DEFERRED)}
+        bl_bases = (*bases, bpy.types.Operator)
+        return declared(type(f"PE_OT_{function.__name__}", bl_bases, members_of_class))
+
+    return make
+
+
+@dataclass(frozen=True, slots=True)
+class RowList:
+    """A list of the scene's settings: properties of its rows and of the selected row's index.
+
+    `noun` is what a row is.
+    """
+
+    rows: str
+    index: str
+    noun: str
+    signal: signals.Signal = signals.study_changed
+
+    def operators(
+        self,
+        *,
+        remove: str,
+        copy: str = "",
+        copied: tuple[str, ...] = (),
+        move: str = "",
+        removed: Callable[[bpy.types.Scene, str], None] | None = None,
+    ) -> None:
+        """Declare operators on the selected row, by their tooltips.
+
+        `copied` are the properties that a copy takes over; `removed` mends what refers to a row of
+        that name.
+        """
+        noun = self.noun.replace(" ", "_")
+
+        def remove_selected(context: bpy.types.Context) -> str:
+            settings, number, _ = self._selected(context)
+            name = remove_row(settings, self.rows, self.index, number)
+            if removed is not None:
+                removed(context.scene, name)
+            return f"Removed {name}"
+
+        def copy_selected(context: bpy.types.Context) -> str:
+            settings, number, rows = self._selected(context)
+            values = {each: getattr(rows[number], each) for each in copied}
+            row = self.add(context.scene, rows[number].name)
+            for each, value in values.items():
+                setattr(row, each, value)
+            name = row.name
+            rows.move(len(rows) - 1, number + 1)
+            setattr(settings, self.index, number + 1)
+            return f"Added {name}"
+
+        def move_selected(context: bpy.types.Context, step: int) -> Answer:
+            settings, number, rows = self._selected(context)
+            if not 0 <= number + step < len(rows):
+                return {"CANCELLED"}
+            rows.move(number, number + step)
+            setattr(settings, self.index, number + step)
+            return None
+
+        step = IntProperty(name="Step", description="-1: up; 1: down", default=-1, min=-1, max=1)
+        for verb, function, about, members in (
+            ("remove", remove_selected, remove, {}),
+            ("copy", copy_selected, copy, {}),
+            ("move", move_selected, move, {"step": step}),
+        ):
+            if about:
+                function.__name__, function.__doc__ = f"{verb}_{noun}", about
+                label = f"{verb} {self.noun}".title()
+                operator(label, unless=self.unless_selected, signal=self.signal, **members)(
+                    function
+                )
+
+    def unless_selected(self, context: bpy.types.Context) -> str | None:
+        """Return why nothing can be done with the selected row: there is none."""
+        settings = context.scene.perception_entropy
+        is_there = getattr(settings, self.index) < len(getattr(settings, self.rows))
+        return None if is_there else f"No {self.noun} is selected"
+
+    def add(
+        self, scene: bpy.types.Scene, wanted: str, taken: set[str] | None = None
+    ) -> bpy.types.PropertyGroup:
+        """Add a row, select it, and return it; its name is the wanted one, numbered where taken."""
+        settings = scene.perception_entropy
+        rows = getattr(settings, self.rows)
+        name = free_name(wanted, {row.name for row in rows} if taken is None else taken)
+        row = rows.add()
+        row.name = name
+        setattr(settings, self.index, len(rows) - 1)
+        return row
+
+    def _selected(self, context: bpy.types.Context) -> tuple[bpy.types.PropertyGroup, int, Any]:
+        settings = context.scene.perception_entropy
+        return settings, getattr(settings, self.index), getattr(settings, self.rows)
+
+
+def remove_row(settings: bpy.types.PropertyGroup, rows: str, index: str, number: int) -> str:
+    """Remove a row, select one that is left, and return the name of the removed one."""
+    found = getattr(settings, rows)
+    name = str(found[number].name)
+    found.remove(number)
+    setattr(settings, index, max(0, min(number, len(found) - 1)))
+    return name
+
+
+def report_error(operator: bpy.types.Operator, error: Exception) -> OperatorResult:
+    """Report an error; the operator has changed nothing."""
+    line = str(error)
+    if isinstance(error, MemoryError):
+        line = f"Not enough memory for this many voxels or candidates: {line}".rstrip(": ")
+    report(operator, error.level if isinstance(error, Refused) else "ERROR", line)
+    return {"CANCELLED"}
+
+
+def report_answer(operator: bpy.types.Operator, answer: Answer) -> OperatorResult:
+    """Report what a function of an operator answered; return the operator's result."""
+    if isinstance(answer, set):
+        return answer
+    told = Told(answer) if isinstance(answer, str) else answer or Told("")
+    for line in told.warnings:
+        report(operator, "WARNING", line)
+    if told.text:
+        report(operator, told.level, told.text)
+    return {"FINISHED"}
+
+
+def report(
+    operator: bpy.types.Operator, level: Literal["INFO", "WARNING", "ERROR"], text: str
+) -> None:
+    """Report one line in the interface's language.
+
+    Characters that would break or reverse the line are escaped.
+    """
+    text = language.shown(text[:MAX_LETTERS])
+    printable = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
+    operator.report({level}, printable)
+
+
+def chosen_sensor(context: bpy.types.Context, name: str) -> bpy.types.Object:
+    """Return the sensor of that name; the active one when the name is empty.
+
+    Raises
+    ------
+    InputError
+        When there is no such sensor.
+    """
+    obj = context.scene.objects.get(name) if name else context.active_object
+    if obj is None or not obj.perception_entropy.is_sensor:
+        raise pe.InputError("scene", "active object", "a sensor", obj.name if obj else "none")
+    return obj
+
+
+def begin_in_results_folder(operator: Any) -> None:
+    """Have the file dialog of an export begin in the folder of results of the preferences."""
+    named = f"{Path(bpy.data.filepath).stem or 'untitled'}{operator.filename_ext}"
+    operator.filepath = preferences.in_results_folder(operator.filepath, named)
+
+
+def chosen_file(filepath: str) -> Path:
+    """Return the chosen file.
+
+    Raises
+    ------
+    InputError
+        When no file was chosen, or its name cannot be one.
+    """
+    path = text.named_path("export", "file", bpy.path.abspath(filepath))
+    if not path.name:
+        raise pe.InputError("export", "file", "the name of a file", repr(filepath))
+    return path

@@ -1,0 +1,403 @@
+"""Exports: the study, the scene and the rig for other programs, the review picture and page.
+
+What takes long is a job, prepared on a thread and written as one set of files at the end. A file
+dialog's operator ends with it: the job then runs in an operator of its own. The names of the files
+written last are kept here for the panel: they are not part of the .blend file.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import shlex
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
+from bpy_extras.io_utils import ExportHelper
+
+from .. import bridge, viewport
+from ..engine import app, exchange, jobs, outputs, page, pe
+from . import running_job
+from .declared import (
+    INTERNAL,
+    Answer,
+    OperatorResult,
+    Refused,
+    Stopped,
+    Told,
+    begin_in_results_folder,
+    chosen_file,
+    operator,
+)
+from .jobs import JobRow, Task
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenFiles:
+    """Files that an export wrote, and warnings about them."""
+
+    paths: tuple[Path, ...]
+    lines: tuple[str, ...] = ()
+
+    @property
+    def text(self) -> str:
+        """One line that names the written files."""
+        return f"Wrote {', '.join(path.name for path in self.paths)}"
+
+    @property
+    def folder(self) -> Path:
+        """The folder of the first file."""
+        return self.paths[0].parent
+
+
+class ExportStopped(Exception):
+    """The user stopped the export; raised on the thread to end its work."""
+
+
+Watch = Callable[[float], None]
+SCORED_SHARE = 0.25
+"""About which share of an export is done after the score."""
+
+
+class ExportJob(pe.Job):
+    """Makes files on a thread, then writes them; a stopped job writes nothing.
+
+    Parameters
+    ----------
+    study : Study
+        What is exported.
+    stage : str
+        What the job does.
+    make : callable
+        From an outcome and a callback for the progress, 0 to 1, to what is written.
+    write : callable
+        Writes that, on the main thread.
+    scored : bool
+        Whether to score the study first; `make` has no outcome without.
+    """
+
+    def __init__(
+        self,
+        study: pe.Study,
+        stage: str,
+        make: Callable[[pe.Outcome | None, Watch], Any],
+        write: Callable[[Any], WrittenFiles],
+        scored: bool = False,
+    ) -> None:
+        super().__init__(study)
+        self._stage, self._make, self._write, self._scored = stage, make, write, scored
+        self._begin = self._share = SCORED_SHARE if scored else 0.0
+        self.written: WrittenFiles | None = None
+
+    def __iter__(self) -> Iterator[pe.Progress]:
+        score = pe.ScoreJob(self.study)
+        for step in score if self._scored else ():
+            if self.stopped:
+                score.drop()
+            yield pe.Progress("scoring", SCORED_SHARE * step.fraction)
+        if self.stopped:
+            return
+        made = yield from self._beside(
+            lambda: self._make(score.outcome, self._note),
+            lambda: pe.Progress(self._stage, self._share),
+        )
+        if made is not None and not self.stopped:
+            self.written = self._write(made)
+
+    def stop(self) -> None:
+        """End at once, and write nothing."""
+        self.drop()
+
+    def _note(self, share: float) -> None:
+        """Note the progress of the work on the thread; end the work where the job was stopped."""
+        if self.stopped:
+            raise ExportStopped
+        self._share = self._begin + (1.0 - self._begin) * share
+
+
+last: WrittenFiles | None = None
+"""The files written last in this session."""
+_waiting: list[ExportJob] = []
+"""The job of a file dialog, until its own operator begins."""
+
+
+def _take_waiting(_context: bpy.types.Context) -> Task:
+    job = _waiting.pop()
+    return Task(job, lambda _scene: told_of(job.written), "written")
+
+
+STOPPED = "Stopped: nothing was written"
+RUN_EXPORT = JobRow(
+    "run_export",
+    "Export",
+    "Run the export of a file dialog",
+    _take_waiting,
+    unless=lambda _context: None if _waiting else "",
+    unfinished=STOPPED,
+    options=INTERNAL,
+    of_scene=False,
+).declare()
+
+
+def run(job: ExportJob, asked_in_window: bool) -> Answer:
+    """Run an export: at once, or after a file dialog in an operator of its own."""
+    if asked_in_window:
+        _waiting[:] = [job]
+        bpy.ops.pe.run_export("INVOKE_DEFAULT")
+        return None
+    for _ in job:
+        pass
+    if job.written is None:
+        raise Stopped(STOPPED)
+    return told_of(job.written)
+
+
+def told_of(written: WrittenFiles | None) -> Told:
+    """Store the names of written files for the panel; return the report of them."""
+    set_last(written)
+    assert written is not None  # a job without has ended before
+    paths = written.paths
+    return Told(f"Wrote {paths[0]}" if len(paths) == 1 else written.text, written.lines)
+
+
+def set_last(written: WrittenFiles | None) -> None:
+    """Store the names of the files written last, and redraw the panels."""
+    global last
+    last = written
+    viewport.redraw_editors()
+
+
+@operator("Open Folder", unless=lambda _context: None if last else "", options=INTERNAL)
+def open_folder(_context: bpy.types.Context) -> OperatorResult:
+    """Open the folder of the last export"""
+    if last is None or not last.folder.is_dir():
+        raise Refused(f"The folder {last.folder if last else ''} was removed")
+    return bpy.ops.wm.path_open(filepath=str(last.folder))
+
+
+@operator("Dismiss", options=INTERNAL)
+def dismiss_written(_context: bpy.types.Context) -> None:
+    """Hide the list of files written last"""
+    set_last(None)
+
+
+def _unless_running(_context: bpy.types.Context) -> str | None:
+    busy = running_job.current is not None
+    return "Another score, search or export is running; Esc stops it" if busy else None
+
+
+def dialog(suffix: str, name: Callable[[Any], str] | None = None) -> dict[str, Any]:
+    """Return what operators have that ask for a file to write.
+
+    Parameters
+    ----------
+    suffix : str
+        Of the file's name; empty: the name says which format.
+    name : callable, optional
+        From the operator to the file's first name.
+    """
+
+    def invoke(self: Any, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
+        self.asked_in_window = not bpy.app.background
+        if name is not None:
+            self.filepath = name(self)
+        begin_in_results_folder(self)
+        return ExportHelper.invoke(self, context, event)
+
+    found = {"bases": (ExportHelper,), "invoke": invoke, "filename_ext": suffix}
+    found |= {"options": frozenset(), "asked_in_window": False}
+    if not suffix:
+        return found | {"check_extension": None}
+    return found | {"filter_glob": StringProperty(default=f"*{suffix}", options={"HIDDEN"})}
+
+
+REPLACE = BoolProperty(
+    name="Replace", description="Replace existing files of a folder", default=False
+)
+
+
+@operator("Export Study", **dialog(".toml"))
+def export_study(context: bpy.types.Context, filepath: str) -> Told:
+    """Write a study (.toml) and the vehicle's mesh (.npz) beside it"""
+    path = chosen_file(filepath)
+    study = bridge.study_as_drawn(context.scene)
+    pe.export_study(study, path, replace_study=True)  # the file dialog has confirmed it
+    return told_of(WrittenFiles((path,)))
+
+
+@operator(
+    "Export Scene",
+    unless=_unless_running,
+    **dialog("", lambda self: outputs.scene_output(self.output).file),
+    output=EnumProperty(
+        items=tuple(
+            (row.name, row.title, "", k) for k, row in enumerate(outputs.scene_outputs().values())
+        ),
+        name="Output",
+        description="What to write",
+    ),
+    range_m=FloatProperty(
+        name="Range",
+        description="Length of the drawn fields of view; 0: the default of the output",
+        default=0.0,
+        min=0.0,
+        subtype="DISTANCE",
+    ),
+    replace=REPLACE,
+)
+def export_scene(
+    context: bpy.types.Context,
+    filepath: str,
+    output: str,
+    range_m: float,
+    replace: bool,
+    asked_in_window: bool,
+) -> Answer:
+    """Write vehicle, sensors and fields of view for CAD, viewers and other programs"""
+    row, path = outputs.scene_output(output), chosen_file(filepath)
+    if not (row.has_several or path.suffix):
+        path = path.with_suffix(Path(row.file).suffix)
+    exchange.format_of_file(path, outputs.output_files(), row.name)  # refuses another's suffix
+    study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
+    replace = replace or not row.has_several  # of one file the dialog has confirmed it
+
+    def write(made: tuple[dict[str, bytes], list[str]]) -> WrittenFiles:
+        files, lines = made
+        paths = exchange.write_files(files, path, inside=row.has_several, replace=replace)
+        return WrittenFiles(tuple(paths), tuple(lines))
+
+    stage, reach = f"exporting {row.title}", range_m or None
+    job = ExportJob(study, stage, lambda *_: outputs.scene_files(study, row.name, reach), write)
+    return run(job, asked_in_window)
+
+
+def _write_one(path: Path) -> Callable[[bytes], WrittenFiles]:
+    def write(made: bytes) -> WrittenFiles:
+        with jobs.FileSet(path.parent, (path.name,)) as files:  # the dialog has confirmed it
+            files.add(path.name, made)
+        return WrittenFiles((path,))
+
+    return write
+
+
+@operator("Render Review", unless=_unless_running, **dialog(".png"))
+def render_review(context: bpy.types.Context, filepath: str, asked_in_window: bool) -> Answer:
+    """Score the present sensors and write a picture of the rig (.png)"""
+    path = chosen_file(filepath)
+    study = bridge.study_as_drawn(context.scene)
+    pe.prepare_folder(path.parent)  # fail before the work, not after
+
+    def make(outcome: pe.Outcome, _watch: Watch) -> bytes:
+        return page.picture_file(outcome.study, outcome)
+
+    return run(ExportJob(study, "picture", make, _write_one(path), scored=True), asked_in_window)
+
+
+@operator(
+    "Export Review",
+    unless=_unless_running,
+    **dialog(".html"),
+    title=StringProperty(name="Title", description="Title of the page instead of the file's name"),
+    author=StringProperty(name="Author", description="Author of the page"),
+    date=StringProperty(
+        name="Date", description='Any text; "today" is the day of the export. Empty: none'
+    ),
+    revision=StringProperty(name="Revision", description="Revision of the page"),
+)
+def export_review(
+    context: bpy.types.Context,
+    filepath: str,
+    title: str,
+    author: str,
+    date: str,
+    revision: str,
+    asked_in_window: bool,
+) -> Answer:
+    """Score the present sensors and write a page of the results (.html)"""
+    path, about = chosen_file(filepath), page.About(title, author, date, revision)
+    study = bridge.study_as_drawn(context.scene)
+    facts = {"command": headless_command(path, about), "versions": bridge.blender_version()}
+    pe.prepare_folder(path.parent)  # fail before the work, not after
+
+    def make(outcome: pe.Outcome, watch: Watch) -> bytes:
+        return page.page_bytes([page.ReportContext(path.stem, outcome, **facts)], watch, about)
+
+    return run(ExportJob(study, "page", make, _write_one(path), scored=True), asked_in_window)
+
+
+def headless_command(path: Path, about: page.About) -> str:
+    """Return the command that makes the page from the saved file; empty if it is unsaved."""
+    if not bpy.data.filepath or bpy.data.is_dirty:
+        return ""
+    options = ["review", "-o", path.parent.name or "."]
+    texts = {field.name: getattr(about, field.name) for field in fields(about)}
+    options += [f"--{name}={text}" for name, text in texts.items() if text]
+    file = shlex.quote(Path(bpy.data.filepath).name)
+    return app.as_typed(f"blender -b {file} --command pe", options)
+
+
+FORMAT_ITEMS = tuple(
+    (row.name, row.title, "", k) for k, row in enumerate(exchange.RIG_FORMATS.values())
+)
+
+
+def _first_name(self: Any) -> str:
+    self.filepath = self.format_named = ""
+    self.check(None)
+    return str(self.filepath)
+
+
+def _follow_name(self: Any, _context: object) -> bool:
+    """While the dialog is open: a typed name chooses the format, a chosen format the suffix."""
+    before = self.format, self.filepath
+    if self.format != self.format_named:
+        files = exchange.rig_format(self.format).files
+        usual = files[0] if len(files) == 1 else f"{self.format}_rig"
+        path = Path(self.filepath)
+        known = len(files) == 1 and path.suffix and self.filepath
+        self.filepath = str(path.with_suffix(Path(usual).suffix) if known else usual)
+    else:
+        with contextlib.suppress(pe.InputError):
+            self.format = exchange.format_of_file(Path(self.filepath), exchange.FILES)
+    self.format_named = self.format
+    return (self.format, self.filepath) != before
+
+
+@operator(
+    "Export Rig",
+    **dialog("", _first_name),
+    check=_follow_name,
+    format=EnumProperty(
+        items=FORMAT_ITEMS,
+        name="Format",
+        description="The program and format to write for; the suffix of the file's name follows it",
+    ),
+    format_named=StringProperty(
+        description="The format that the file's name had last", options={"HIDDEN", "SKIP_SAVE"}
+    ),
+    replace=REPLACE,
+)
+def export_rig(
+    context: bpy.types.Context, filepath: str, format: str, properties: Any, replace: bool
+) -> Told:
+    """Write the sensors for another program: URDF, ROS 2, Autoware, nuScenes, CARLA and others"""
+    path = chosen_file(filepath)
+    told = format if properties.is_property_set("format") or not path.suffix else None
+    name = exchange.format_of_file(path, exchange.FILES, told)
+    row = exchange.rig_format(name)
+    study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
+    replace = replace or not (row.beside or len(row.files) > 1)  # of one file the dialog has asked
+    wanted = study.rig, name, path, study.reference
+    paths: Sequence[Path]
+    paths, lines = pe.export_rig(*wanted, passthrough=study.passthrough, replace=replace)
+    return told_of(WrittenFiles(tuple(paths), tuple(lines)))
+
+
+def unregister() -> None:
+    """Drop the list of written files, and the waiting job."""
+    global last
+    last = None
+    _waiting.clear()

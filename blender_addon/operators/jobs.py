@@ -1,0 +1,402 @@
+"""Jobs: one operator, a row a job. The worker runs it; without a window it runs at once.
+
+A row says what to make from the scene and what to do with the result. Esc stops a job, which keeps
+the best so far; Esc once more discards all changes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
+
+import bpy
+
+from .. import (
+    bridge,
+    caches,
+    diagnostics,
+    result_staleness,
+    sensor_cache,
+    signals,
+    vehicle_cache,
+)
+from ..engine import advice, app, jobs, pe
+from ..language import shown
+from ..live import FinishedScore, live_state
+from . import running_job
+from .declared import (
+    INTERNAL,
+    UNDO,
+    USER_ERRORS,
+    Answer,
+    OperatorMixin,
+    OperatorResult,
+    Refused,
+    Stopped,
+    Told,
+    Unless,
+    declared,
+    operator,
+    report,
+    report_answer,
+    report_error,
+)
+
+
+class Task(NamedTuple):
+    """A job that was read from a scene.
+
+    `finish` writes its result to the scene, `progressed` what it has found so far. `outcome` is the
+    job's attribute that is None while there is nothing to keep.
+    """
+
+    job: Any
+    finish: Callable[[bpy.types.Scene], Answer]
+    outcome: str = "outcome"
+    progressed: Callable[[bpy.types.Scene], None] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class JobRow:
+    """A job that a button starts.
+
+    Attributes
+    ----------
+    name, label, about : str
+        Of the operator: its name, what its button says, and its tooltip.
+    read : callable
+        Read the scene and make the task; None where there is nothing to do.
+    unless : callable, optional
+        Says why it is not possible in a context.
+    show : callable, optional
+        Called in a window once it has ended, and where there is nothing to do.
+    unfinished : str
+        What is reported of a job that was stopped with nothing to keep.
+    options : frozenset of str
+        `bl_options`.
+    of_scene : bool
+        Whether the result belongs to the scene; otherwise a removed scene has one, too.
+    """
+
+    name: str
+    label: str
+    about: str
+    read: Callable[[bpy.types.Context], Task | None]
+    unless: Unless | None = None
+    show: Callable[[], object] | None = None
+    unfinished: str = "Stopped before a score was complete: nothing was changed"
+    options: frozenset[str] = UNDO
+    of_scene: bool = True
+
+    def declare(self) -> JobRow:
+        """Make the operator of the row."""
+        given = {
+            "__doc__": self.about,
+            "bl_idname": f"pe.{self.name}",
+            "bl_label": self.label,
+            "bl_options": set(self.options),
+            "row": self,
+        }
+        declared(type(f"PE_OT_{self.name}", (JobOperator, bpy.types.Operator), given))
+        return self
+
+    def finish(self, scene: bpy.types.Scene | None, task: Task) -> Answer:
+        """Write the result to the scene; undo takes it back in one step."""
+        if getattr(task.job, task.outcome) is None:
+            dropped = "Discarded: nothing was changed"
+            raise Stopped(dropped if task.job.dropped else self.unfinished)
+        if not self.of_scene:
+            return task.finish(bpy.context.scene)
+        if scene is None:
+            raise Refused("The scene was removed; its result was discarded")
+        with bridge.as_drawn(scene):  # sensors are placed as drawn
+            answer = task.finish(scene)
+            result_staleness.update_result()  # the scene may have changed meanwhile
+        return answer
+
+
+class JobOperator(OperatorMixin):
+    """The operator of jobs."""
+
+    row: ClassVar[JobRow]
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        reason = cls.row.unless and cls.row.unless(context)
+        if running_job.current is not None:
+            reason = "Another score, search or export is running; Esc stops it"
+        elif cls.row.of_scene and context.mode != "OBJECT":
+            reason = "Vehicles are scored in Object Mode"
+        if reason:
+            cls.poll_message_set(shown(reason))
+        return reason is None
+
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        """Run the job to its end, as scripts and Blender without a window do."""
+        try:
+            task = self.row.read(context)
+            for _ in task.job if task else ():
+                pass
+            return report_answer(self, self.row.finish(context.scene, task) if task else None)
+        except (Refused, *USER_ERRORS) as error:
+            return report_error(self, error)
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
+        """Start the job, which the worker runs."""
+        if bpy.app.background:
+            return self.execute(context)
+        try:
+            self.task = self.row.read(context)
+        except USER_ERRORS as error:
+            return report_error(self, error)
+        if self.task is None:
+            return self._show()
+        running_job.begin(context, self.task.job).show(context)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
+        """Show how far the job is; Esc stops it, Esc once more discards all changes."""
+        running = running_job.current
+        if running is None:  # it was ended from outside
+            return {"CANCELLED"}
+        if event.type == "ESC" and event.value == "PRESS" and not event.is_repeat:
+            running.stop()
+            running.show(context)
+            return {"RUNNING_MODAL"}
+        if is_undo(event):
+            running.refuse_undo(context)
+            report(self, "INFO", running_job.NO_UNDO)
+            return {"RUNNING_MODAL"}
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        scene = bpy.data.scenes.get(running.scene_name)
+        if not running.ended:
+            if self.task.progressed is not None and scene is not None:
+                self.task.progressed(scene)
+            running.show_soon(context)
+            return {"PASS_THROUGH"}
+        try:
+            if running.error is not None:
+                raise running.error
+            report_answer(self, self.row.finish(scene, self.task))
+            return self._show()
+        except (Refused, *USER_ERRORS) as error:
+            return report_error(self, error)
+        finally:
+            running_job.end(context)
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Called by Blender when the window or the file is closed: nothing is kept."""
+        running_job.end(context)
+
+    def _show(self) -> OperatorResult:
+        if self.row.show is not None:
+            self.row.show()
+        return {"FINISHED"}
+
+
+def is_undo(event: bpy.types.Event) -> bool:
+    """Whether the keys of undo or redo were pressed, which Blender ignores while a job runs."""
+    return event.type == "Z" and event.value == "PRESS" and (event.ctrl or event.oskey)
+
+
+Make = Callable[[bpy.types.Scene, pe.Study, bridge.Fingerprint], Task]
+
+
+def of_study(make: Make) -> Callable[[bpy.types.Context], Task]:
+    """Return what reads the scene as drawn, its states, and its fingerprint at the same time.
+
+    `make` gets scene, study and fingerprint.
+    """
+
+    def read(context: bpy.types.Context) -> Task:
+        scene = context.scene
+        with bridge.as_drawn(scene):
+            bridge.read_states(scene)
+            depsgraph = context.evaluated_depsgraph_get()
+            vehicle = vehicle_cache.shared.read(scene, depsgraph).vehicle
+            sensors = bridge.sensor_objects(scene)
+            study = bridge.study_from_scene(scene, depsgraph, vehicle, sensors)
+            task = make(scene, study, result_staleness.fingerprint(scene, depsgraph, sensors))
+            task.job.as_drawn = caches.checker_of_study
+            task.job.notes = bridge.missing_data(scene, sensors)  # what the scene lacks
+            return task
+
+    return read
+
+
+def cached_score(
+    scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint
+) -> pe.Score | None:
+    """Return the score of a study as it was read from a scene, if it was made in this session.
+
+    None for a prior of labelled boxes: their file may have changed since.
+    """
+    finished = live_state(scene.name).finished
+    if finished is None or finished.signature != taken.text or study.prior.boxes is not None:
+        return None
+    return finished.score
+
+
+def store_result(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) -> None:
+    """Store a result in the scene; keep its score for the views and for the next search."""
+    bridge.store_outcome(scene, outcome, signature, sensor_cache.sensors(scene))
+    live_state(scene.name).finished = FinishedScore(signature, outcome.study, outcome.after)
+    diagnostics.explain_score(scene, outcome, signature)
+    signals.view_changed.emit()  # there is a ground map of all voxels now
+
+
+def score_task(_scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> Task:
+    """Score the sensors, also where a score is cached: the button was pressed."""
+    job = pe.ScoreJob(study)
+
+    def finish(scene: bpy.types.Scene) -> str:
+        outcome = job.outcome
+        store_result(scene, outcome, taken.text)
+        bridge.store_variant_scores(scene, outcome.study.rig, outcome.after, taken.surroundings)
+        score = outcome.after
+        return f"Perception entropy {score.entropy:.4f} nats, coverage {score.coverage:.1%}"
+
+    return Task(job, finish)
+
+
+def optimize_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> Task:
+    """Search, if that is possible; the score of the start is not made again if it is cached."""
+    bridge.check_placeable(scene, study)
+    job = pe.OptimizeJob(study, before=cached_score(scene, study, taken))
+
+    def finish(scene: bpy.types.Scene) -> Told:
+        gone = store_search(scene, job.outcome, taken)
+        if not gone:
+            return Told(search_line(job.outcome))
+        line = f"Sensors that were removed meanwhile are not placed: {', '.join(gone)}"
+        return Told(line, level="WARNING")
+
+    return Task(job, finish)
+
+
+def store_search(
+    scene: bpy.types.Scene, outcome: pe.Outcome, taken: bridge.Fingerprint
+) -> list[str]:
+    """Keep the best rig as a variant, then move the sensors; return names of removed ones.
+
+    Undo restores the poses only: the variant has an undo step of its own before it.
+    """
+    settings = scene.perception_entropy
+    result_key = bridge.store_search(scene, outcome, taken.surroundings)
+    if bpy.ops.ed.undo_push.poll():  # a script without a window has no undo
+        bpy.ops.ed.undo_push(message="Optimize: Keep Variant")
+    goes_on = settings.has_result and settings.result_signature == taken.text
+    before = settings.result_before, settings.result_coverage_before, settings.result_blind[0]
+    is_next = goes_on and settings.result_kind == "optimize"
+    gone = bridge.place_rig(scene, outcome.study.rig, outcome.start.rig)
+    store_result(scene, outcome, taken.with_rig(outcome.study.rig).text)
+    if is_next:  # of searches in a row: where the first began
+        settings.result_before, settings.result_coverage_before, settings.result_blind[0] = before
+    bridge.mark_active(scene, result_key)
+    return gone
+
+
+def costs_nothing(settings: bpy.types.PropertyGroup) -> bool:
+    """Whether the last search made nothing worse."""
+    return advice.costs_nothing(settings.result_cost)
+
+
+def search_line(outcome: pe.Outcome) -> str:
+    """Return the result of a search in a line."""
+    before, after = outcome.before.entropy, outcome.after.entropy
+    best = "best so far, stopped early" if outcome.stopped else f"{outcome.evaluations} tried"
+    if outcome.in_traffic is not None:
+        first, last = (each.ap for each in outcome.in_traffic)
+        nats = f"perception entropy {before:.4f} to {after:.4f} nats"
+        return f"Expected AP in traffic {first:.4f} to {last:.4f}, {nats} ({best})"
+    return f"Perception entropy {before:.4f} to {after:.4f} nats ({best})"
+
+
+def front_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> Task:
+    """Search for a front, if there is something to choose; keep it as variants."""
+    bridge.check_choosable(scene, study)
+    job = app.front_job(study)
+
+    def finish(scene: bpy.types.Scene) -> str:
+        found = job.trade_off
+        bridge.store_front(scene, found, taken.surroundings)
+        signals.view_changed.emit()
+        early = ", stopped early" if found.stopped else ""
+        return f"{len(found.front)} designs on the Pareto front, kept as variants{early}"
+
+    return Task(job, finish, "trade_off")
+
+
+def check_task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> Task:
+    """Check all requirements that the rig can be held to; verdicts are stored as they are found.
+
+    After Esc those that were found before it are kept; a requirement that was changed meanwhile
+    has no verdict.
+    """
+    if not study.requirements:
+        raise pe.InputError("scene", "requirements", "at least one", "none")
+    tables = {*bridge.requirements_key(scene.perception_entropy)}
+    bridge.store_verdicts(scene.perception_entropy, ())
+    job, stored = jobs.CheckJob(study, fitting=True), [0]
+
+    def progressed(scene: bpy.types.Scene) -> None:
+        if len(job.verdicts) > stored[0]:
+            settings, stored[0] = scene.perception_entropy, len(job.verdicts)
+            same = {name for name, _ in tables & {*bridge.requirements_key(settings)}}
+            found = [each for each in job.verdicts if each.name in same]
+            bridge.store_verdicts(settings, found, job.unchecked)
+
+    def finish(scene: bpy.types.Scene) -> Told:
+        if job.dropped:
+            raise Stopped("Discarded: nothing was changed")
+        stored[0] = -1
+        progressed(scene)
+        met = sum(verdict.met for verdict in job.verdicts)
+        missed = [verdict.name for verdict in job.verdicts if not verdict.met]
+        unchecked = [*job.unchecked, *job.missing]
+        more = f"; not met: {', '.join(missed)}" if missed else ""
+        more += f"; not checked: {', '.join(unchecked)}" if unchecked else ""
+        level = "WARNING" if missed or unchecked else "INFO"
+        return Told(f"{met} of {len(job.verdicts)} requirements are met{more}", level=level)
+
+    return Task(job, finish, "verdicts", progressed)
+
+
+SCORE = JobRow(
+    "score", "Score", "Score the sensors at their present poses", of_study(score_task)
+).declare()
+OPTIMIZE = JobRow(
+    "optimize",
+    "Optimize",
+    "Search for better poses of the sensors, and move them there",
+    of_study(optimize_task),
+).declare()
+FRONT = JobRow(
+    "choose_sensors",
+    "Choose Sensors",
+    "Find the Pareto front of price and entropy or of the chosen objectives; kept as variants",
+    of_study(front_task),
+    unfinished="Stopped before a design was complete: nothing was changed",
+).declare()
+CHECK = JobRow(
+    "check_requirements",
+    "Check Requirements",
+    "Hold the rig to all requirements that are switched on, with mounting errors and margins",
+    of_study(check_task),
+).declare()
+
+
+def _unless_job(_context: bpy.types.Context) -> str | None:
+    return "" if running_job.current is None else None
+
+
+@operator("Stop", unless=_unless_job, options=INTERNAL)
+def cancel(context: bpy.types.Context) -> None:
+    """Stop the search, keep the best placement so far. Pressed again: all changes are discarded"""
+    job = running_job.current
+    if job is not None:
+        job.stop()
+        job.show(context)

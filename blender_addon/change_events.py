@@ -30,8 +30,9 @@ def change_count() -> int:
 
 def note_if_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """After an update or a change of frame: note a change where a sensor or the vehicle differs."""
-    kinds = ("OBJECT", "COLLECTION", "SCENE")  # of data that may concern sensors or the vehicle
-    if bpy.app.background or not any(map(depsgraph.id_type_updated, kinds)):
+    # Data of other types concerns neither sensors nor the vehicle.
+    kinds = depsgraph.id_type_updated
+    if bpy.app.background or not (kinds("OBJECT") or kinds("COLLECTION") or kinds("SCENE")):
         return
     layer, vehicle = depsgraph.view_layer, scene.perception_entropy.vehicle
     sensors = tuple((s.name, s.visible_get(view_layer=layer)) for s in sensor_cache.sensors(scene))

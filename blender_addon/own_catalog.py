@@ -16,10 +16,7 @@ _names: list[str] = []
 def load(filepath: str) -> None:
     """Load a file's sensors into the catalogue, in place of those of the file before.
 
-    Parameters
-    ----------
-    filepath : str
-        TOML: a table for each sensor, by its name, as in the catalogue; "" for none.
+    TOML: a table for each sensor, by its name, as in the catalogue. Without a path: none.
     """
     global problem
     while _names:

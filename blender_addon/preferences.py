@@ -42,12 +42,7 @@ def preferred_model(kind: str) -> str:
 def in_results_folder(filepath: str, otherwise: str) -> str:
     """Return the path that a file dialog begins with: in the preferred folder, if there is one.
 
-    Parameters
-    ----------
-    filepath : str
-        The path so far: a name, an absolute path, which is returned as it is, or "".
-    otherwise : str
-        Name of the file where the path so far is "".
+    An absolute path is returned as it is; `otherwise` is the file's name where the path is "".
     """
     folder = getattr(stored(), "results_folder", "")
     if not folder or Path(filepath).is_absolute() or filepath.startswith("//"):

@@ -48,39 +48,24 @@ class Mount:
 
 @dataclass(frozen=True, slots=True)
 class KindRow:
-    """How the add-on treats sensors of one kind.
-
-    Attributes
-    ----------
-    mount : Mount
-        How a sensor is added.
-    typical_housing : callable
-        From a model to a housing for the asset library, where no size of the model is known.
-    mount_for : callable
-        Function of a model and `mount` that returns the `Mount` of the model's sensors.
-    own_about : str
-        Description of an own sensor of the kind, for a menu.
-    own_fields : tuple of str
-        Properties of an own sensor that the panel shows.
-    has_lens : bool
-        Whether a housing is drawn with a lens, not with a window.
-    camera : callable or None
-        Function of a model that returns the camera for Blender's view; None without a view.
-    pixels : callable or None
-        Function of a sensor and its vehicle that returns a picture, called on a thread; or None.
-    legend : str
-        Legend of the picture's colours.
-    """
+    """How the add-on treats sensors of one kind."""
 
     mount: Mount
+    """How a sensor is added."""
     typical_housing: Callable[[Any], pe.Housing]
+    """From a model to a housing for the asset library, where no size of the model is known."""
     mount_for: Callable[[Any, Mount], Mount] = field(default=lambda _model, mount: mount)
+    """From a model and `mount` to the `Mount` of the model's sensors."""
     own_about: str = "Its table's keys as a study has them"
     own_fields: tuple[str, ...] = ("keys",)
+    """Of an own sensor of the kind: its description for a menu, and what the panel shows."""
     has_lens: bool = False
+    """Whether a housing is drawn with a lens, not with a window."""
     camera: Callable[[Any], pe.Camera] | None = None
+    """From a model to the camera for Blender's view; None without a view."""
     pixels: Callable[[pe.Sensor, pe.Vehicle | None], Pixels] | None = None
     legend: str = ""
+    """From a sensor and its vehicle to a picture, made on a thread; what its colours are."""
 
 
 def sees_all_around(lidar: pe.Lidar) -> bool:

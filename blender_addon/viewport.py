@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator, Sequence
+from typing import Protocol
 
 import blf
 import bpy
@@ -53,6 +54,24 @@ def shader(name: str) -> gpu.types.GPUShader:
     if name not in _shaders:
         _shaders[name] = gpu.shader.from_builtin(name)
     return _shaders[name]
+
+
+class DrawRegion(Protocol):
+    """What is drawn into: its size [px]."""
+
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+
+
+def line_shader(name: str, region: DrawRegion, width_px: float) -> gpu.types.GPUShader:
+    """Return a shader of lines, bound, for a width in a region."""
+    wide = shader(name)
+    wide.bind()
+    wide.uniform_float("viewportSize", (region.width, region.height))
+    wide.uniform_float("lineWidth", width_px)
+    return wide
 
 
 def release_gpu() -> None:
@@ -107,12 +126,9 @@ def fill_gradient(box: PlateBox, colors: Sequence[Rgba]) -> None:
 
 def draw_line(points: Sequence[tuple[float, float]], color: Rgba, width_px: float) -> None:
     """Draw a line through points [px]."""
-    wide, region = shader("POLYLINE_UNIFORM_COLOR"), bpy.context.region
+    wide = line_shader("POLYLINE_UNIFORM_COLOR", bpy.context.region, width_px)
     batch = batch_for_shader(wide, "LINE_STRIP", {"pos": [(x, y, 0.0) for x, y in points]})
     with blended():
-        wide.bind()
-        wide.uniform_float("viewportSize", (region.width, region.height))
-        wide.uniform_float("lineWidth", width_px)
         wide.uniform_float("color", color)
         batch.draw(wide)
 
@@ -226,18 +242,9 @@ def plate_boxes(region: int) -> tuple[PlateBox, ...]:
 
 
 def free_bottom(region: int, sides: tuple[float, float], bottom: float, gap: float) -> float:
-    """Return where a plate between two sides may begin so that it covers no other one.
+    """Return where a plate between two sides may begin so that it covers no other one [px].
 
-    Parameters
-    ----------
-    region : int
-        The region's pointer.
-    sides : (left, right)
-        [px].
-    bottom : float
-        Where it would begin without other plates [px].
-    gap : float
-        Left free between plates [px].
+    Without other plates it would begin at `bottom`; `gap` is left free between plates.
     """
     left, right = sides
     boxes = plate_boxes(region)

@@ -194,14 +194,8 @@ MOVE_LABEL, PINNED_LABEL = "before this move", "pinned sensors"
 def note_move(state: LiveState, operator: int, now: pe.Rig | None) -> None:
     """Note an update in which something moves; keep what was there before where a move begins.
 
-    Parameters
-    ----------
-    state : LiveState
-        As it was before this update.
-    operator : int
-        Number of the operator that moves with the mouse; 0 when there is none.
-    now : Rig or None
-        The rig that was read in this update; None when it is the vehicle that moves.
+    `state` is as it was before this update. `operator` is the number of the one that moves with the
+    mouse; 0 when there is none. `now` is None when it is the vehicle that moves.
     """
     if state.operator and operator in (0, state.operator):
         state.operator = operator
@@ -210,18 +204,16 @@ def note_move(state: LiveState, operator: int, now: pe.Rig | None) -> None:
     if last is None or (now is not None and rig_key(now) == rig_key(last.rig)):
         return
     state.operator = operator
-    summary = _exact_summary(state)
+    exact, summary = state.exact, None
+    if (
+        exact is not None
+        and exact.problem == last.problem
+        and rig_key(exact.rig) == rig_key(last.rig)
+    ):
+        summary = exact.summary
     if operator or summary is not None:  # otherwise a field is dragged, or typed in several times
         rig = None if now is None else last.rig
         state.before_move = Baseline(MOVE_LABEL, rig, summary)
-
-
-def _exact_summary(state: LiveState) -> pe.SummaryScore | None:
-    """Return the exact score of the rig that was read last, where it is there already."""
-    exact, last = state.exact, state.last_read
-    if exact is None or last is None or exact.problem != last.problem:
-        return None
-    return exact.summary if rig_key(exact.rig) == rig_key(last.rig) else None
 
 
 def baseline_of(scene: bpy.types.Scene, request: ScoreRequest) -> Baseline | None:

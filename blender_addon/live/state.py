@@ -25,70 +25,6 @@ def rig_key(rig: pe.Rig) -> Hashable:
     return tuple((s.name, id(s.model), s.pose, s.group, s.curve) for s in rig)
 
 
-@dataclass(slots=True, eq=False)
-class Baseline:
-    """What a live score is compared with.
-
-    Attributes
-    ----------
-    label : str
-        What it is, in words: "before this move".
-    rig : Rig or None
-        Its sensors. None where only its score is known: the vehicle was another one.
-    summary : SummaryScore or None
-        Its score, on the sample of the live score; None until it has been computed.
-    """
-
-    label: str
-    rig: pe.Rig | None
-    summary: pe.SummaryScore | None = None
-
-
-@dataclass(frozen=True)
-class FinishedScore:
-    """A study, its score in full, and the signature of the scene that it was read from."""
-
-    signature: str
-    study: pe.Study
-    score: pe.Score
-
-
-@dataclass(frozen=True)
-class LiveScore:
-    """A live score.
-
-    Attributes
-    ----------
-    summary : SummaryScore
-        The whole rig's entropy and coverage, by class and by zone; approximate while it moves.
-    baseline : Baseline or None
-        What it is compared with; None where there is nothing to compare with yet.
-    exact : bool
-        Whether it is no preview: the score then is that of every front end, to the last bit.
-    rig : Rig
-        What was scored.
-    number : int
-        The number of the scene's request that it answers.
-    problem : Hashable
-        Identifies vehicle, prior, space and settings that it was scored with.
-    idle : bool
-        Whether the scene was idle when it was read.
-    """
-
-    summary: pe.SummaryScore
-    baseline: Baseline | None
-    exact: bool
-    rig: pe.Rig
-    number: int = 0
-    problem: Hashable = None
-    idle: bool = True
-
-    @property
-    def before(self) -> pe.SummaryScore | None:
-        """The score of the baseline, once it is known."""
-        return None if self.baseline is None else self.baseline.summary
-
-
 class Problem(NamedTuple):
     """What an evaluator is made for; `key` identifies it by plain values."""
 
@@ -109,6 +45,50 @@ class ScoreRequest:
     preview: bool
     prior_key: Hashable = None
     moving: bool = False
+
+
+@dataclass(slots=True, eq=False)
+class Baseline:
+    """What a live score is compared with, in words ("before this move"), its sensors and score.
+
+    `rig` is None where the vehicle was another one, `summary` until it has been computed on the
+    sample of the live score.
+    """
+
+    label: str
+    rig: pe.Rig | None
+    summary: pe.SummaryScore | None = None
+
+
+@dataclass(frozen=True)
+class FinishedScore:
+    """A study, its score in full, and the signature of the scene that it was read from."""
+
+    signature: str
+    study: pe.Study
+    score: pe.Score
+
+
+@dataclass(frozen=True)
+class LiveScore:
+    """The score of a rig by request `number` of its scene.
+
+    `exact`: it is no preview, but that of every front end, to the last bit. `problem` identifies
+    vehicle, prior, space and settings. `idle`: nothing moved when the scene was read.
+    """
+
+    summary: pe.SummaryScore
+    baseline: Baseline | None
+    exact: bool
+    rig: pe.Rig
+    number: int = 0
+    problem: Hashable = None
+    idle: bool = True
+
+    @property
+    def before(self) -> pe.SummaryScore | None:
+        """The score of the baseline, once it is known."""
+        return None if self.baseline is None else self.baseline.summary
 
 
 class FigureRequest(NamedTuple):
@@ -159,55 +139,33 @@ class KnownRigScore:
 
 @dataclass(slots=True)
 class LiveState:
-    """What is known of the live score of one scene.
-
-    Attributes
-    ----------
-    finished : FinishedScore or None
-        The last score that was finished in this session, its ground map included.
-    score, exact : LiveScore or None
-        The latest live score, and the latest exact one of the idle scene.
-    exact_cost : ExactCost or None
-        What decides whether moves are scored exactly.
-    note : str
-        Why there is no newer score, in one line; empty when there is one, or soon will be.
-    requests : int
-        How many scores were requested.
-    last_read : LastRead or None
-        None while *Live* is off.
-    operator : int
-        Number of the operator that moves sensors with the mouse; 0 when there is none.
-    before_move : Baseline or None
-        The sensors before the last move.
-    pinned : Rig or None
-        Sensors to compare with, kept for this session.
-    chosen : (tuple, Baseline) or None
-        The pinned sensors or the variant that the settings choose, and what it was made from.
-    figures : FigureRequest or None
-        The last request of key figures.
-    shown_figures : KeyFigures or None
-        The key figures that were shown last.
-    known_rig : KnownRigScore or None
-        The known rig beside the live score.
-    prior : (Hashable, Prior) or None
-        The prior that was read last, and what identifies it: a file of boxes takes long to read.
-    """
+    """What is known of the live score of one scene."""
 
     finished: FinishedScore | None = None
+    """The last score that was finished in this session, its ground map included."""
     score: LiveScore | None = None
     exact: LiveScore | None = None
+    """The latest score, and the latest exact one of the idle scene."""
     exact_cost: ExactCost | None = None
+    """What decides whether moves are scored exactly."""
     note: str = ""
+    """Why there is no newer score, in one line; empty when there is one, or soon will be."""
     requests: int = 0
     last_read: LastRead | None = None
+    """None while *Live* is off."""
     operator: int = 0
+    """Number of the operator that moves sensors with the mouse; 0 when there is none."""
     before_move: Baseline | None = None
     pinned: pe.Rig | None = None
+    """Sensors to compare with: those before the last move; those kept for this session."""
     chosen: tuple[tuple[Hashable, ...], Baseline] | None = None
+    """The pinned sensors or variant that the settings choose, and what it was made from."""
     figures: FigureRequest | None = None
     shown_figures: advice.KeyFigures | None = None
+    """The last request of key figures, and those that were shown last."""
     known_rig: KnownRigScore | None = None
     prior: tuple[Hashable, pe.Prior] | None = None
+    """The prior that was read last, and its key: a file of boxes takes long to read."""
 
     def next_request(self) -> int:
         """Return the number of a new request: the scene no longer is as it was read before."""
@@ -216,10 +174,9 @@ class LiveState:
 
     def put(self, score: LiveScore) -> None:
         """Store a new score; the note of why there was none goes."""
-        self.score = score
+        self.score, self.note = score, ""
         if score.exact and score.idle:
             self.exact = score
-        self.note = ""
 
     def note_cost(self, problem: Hashable, rig: pe.Rig, seconds: float) -> None:
         """Note how long an exact score took [s]; the first one includes what is made once."""
@@ -255,22 +212,11 @@ def live_state(scene_name: str) -> LiveState:
 
 
 class ShownScore(NamedTuple):
-    """The one score that panel and read-out show.
+    """The one score that panel and read-out show; entropy and standard error in nats.
 
-    Attributes
-    ----------
-    entropy, coverage, stderr : float
-        Entropy and its standard error [nats], visible share of the prior, 0 to 1.
-    exact : bool
-        Whether it is of the scene as it is now; otherwise it is a preview.
-    stored : bool
-        Whether it is the stored result.
-    view_outdated : bool
-        Whether beams and maps in the 3D view are still those of before the last move.
-    state : str
-        The state of the vehicle that the score is of; empty: as drawn.
-    before : float or None
-        Of the stored result of a search: the entropy before the search [nats].
+    `exact`: it is of the scene as it is now; otherwise it is a preview. `stored`: it is the stored
+    result. `view_outdated`: beams and maps are still those of before the last move. `state` is the
+    vehicle's; empty: as drawn. `before` is the entropy before the search whose result is stored.
     """
 
     entropy: float

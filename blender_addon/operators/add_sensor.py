@@ -194,9 +194,7 @@ _listed: list[tuple[str, str, str, int]] = []
 """What the popup lists: Blender reads the texts after the function that made them returned."""
 
 
-def _menu_items(
-    operator: bpy.types.OperatorProperties, _context: bpy.types.Context
-) -> list[tuple[str, str, str, int]]:
+def _menu_items(operator: Any, _context: object) -> list[tuple[str, str, str, int]]:
     """Return the catalogue's sensors of the operator's kind, as items of a Blender menu."""
     names = models(operator.kind or None)
     _listed[:] = [(n, n, tooltip_of(n), i) for i, n in enumerate(names)]

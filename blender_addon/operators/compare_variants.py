@@ -117,10 +117,8 @@ def compare_task(context: bpy.types.Context) -> Task | None:
         taken = result_staleness.fingerprint(scene, depsgraph)
         rule = bridge.figure_rule(scene, next(iter(pending.values())).study.prior)
         figures_of = bridge.figures_signature(scene, taken)
-    job = CompareJob(pending, rule)
 
-    def finish(scene: bpy.types.Scene) -> Told:
-        found = job.outcome or {}
+    def finish(scene: bpy.types.Scene, found: dict[int, ComparedVariant]) -> Told:
         for row in scene.perception_entropy.variants:  # those that still exist
             if row.key in found:
                 score, figures = found[row.key]
@@ -130,7 +128,7 @@ def compare_task(context: bpy.types.Context) -> Task | None:
         scored = sum(variant.score is not None for variant in found.values())
         return Told(f"{scored} scored, {len(found)} compared", tuple(map(str, refused)))
 
-    return Task(job, finish)
+    return Task(CompareJob(pending, rule), finish)
 
 
 def open_table() -> None:
@@ -269,7 +267,8 @@ def sentences(names: list[str], rows: tuple[advice.ComparedRow, ...], letters: i
 
 def columns_of(names: list[str], rows: Sequence[advice.ComparedRow]) -> list[list[TableCell]]:
     """Return the table by columns; the first column holds the names of the rows."""
-    empty, gap = TextCell(""), [None] * (len(names) + 1)
+    empty = TextCell("")
+    gap: list[TableCell] = [None] * (len(names) + 1)
     table: list[list[TableCell]] = [[empty, *map(TextCell, names)]]
     for measure, title in TITLES.items():
         found = [row for row in rows if row.measure == measure]

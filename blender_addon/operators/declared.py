@@ -91,24 +91,10 @@ def operator(
     The function takes the context, and properties of the operator by their names; as `operator`
     it takes the operator itself.
 
-    Parameters
-    ----------
-    label : str
-        What its button says.
-    mode : str
-        Why it needs Object Mode; without a text it works in all modes.
-    unless : callable, optional
-        Says why it is not possible in a context.
-    signal : Signal, optional
-        Emitted after the function.
-    options : frozenset of str
-        `bl_options`.
-    tooltip : callable, optional
-        From the docstring and the operator's properties to its tooltip; the docstring by default.
-    bases : tuple of type
-        Further base classes.
-    **members
-        Properties, and other attributes of the class: `invoke`, `draw`, `bl_property`.
+    `mode` says why the operator needs Object Mode; without a text it works in all modes. `unless`
+    says why it is not possible in a context. `signal` is emitted after the function, `options` are
+    `bl_options`. `tooltip` makes the tooltip of docstring and properties. `members` are properties,
+    and other attributes of the class, such as `invoke`, `draw` and `bl_property`.
     """
 
     def make(function: Callable[..., Answer]) -> type[bpy.types.Operator]:
@@ -120,7 +106,7 @@ def operator(
                 answer = function(context, **given)
             except (Refused, *USER_ERRORS) as error:
                 return report_error(self, error)
-            if signal is not None:
+            if signal is not None and answer != {"CANCELLED"}:
                 signal.emit()
             return report_answer(self, answer)
 
@@ -130,7 +116,11 @@ def operator(
                 cls.poll_message_set(language.shown(reason))
             return reason is None
 
-        members_of_class = {
+        def description(cls: Any, _context: bpy.types.Context, chosen: Any) -> str:
+            about = language.shown(str(cls.__doc__))
+            return about if tooltip is None else tooltip(about, chosen)
+
+        members_of_class: dict[str, Any] = {
             "__doc__": function.__doc__,
             "__module__": function.__module__,
             "__annotations__": {n: m for n, m in members.items() if isinstance(m, DEFERRED)},
@@ -141,9 +131,8 @@ def operator(
             "poll": classmethod(poll),
         }
         if tooltip is not None:
-            members_of_class["description"] = classmethod(
-                lambda cls, _context, chosen: tooltip(language.shown(cls.__doc__), chosen)
-            )
+            members_of_class["description"] = classmethod(description)
+
         members_of_class |= {n: m for n, m in members.items() if not isinstance(m, DEFERRED)}
         bl_bases = (*bases, bpy.types.Operator)
         return declared(type(f"PE_OT_{function.__name__}", bl_bases, members_of_class))
@@ -206,17 +195,16 @@ class RowList:
             return None
 
         step = IntProperty(name="Step", description="-1: up; 1: down", default=-1, min=-1, max=1)
-        for verb, function, about, members in (
+        given: dict[str, Any] = {"unless": self.unless_selected, "signal": self.signal}
+        rows: tuple[tuple[str, Callable[..., Answer], str, dict[str, Any]], ...] = (
             ("remove", remove_selected, remove, {}),
             ("copy", copy_selected, copy, {}),
             ("move", move_selected, move, {"step": step}),
-        ):
+        )
+        for verb, function, about, members in rows:
             if about:
                 function.__name__, function.__doc__ = f"{verb}_{noun}", about
-                label = f"{verb} {self.noun}".title()
-                operator(label, unless=self.unless_selected, signal=self.signal, **members)(
-                    function
-                )
+                operator(f"{verb} {self.noun}".title(), **given, **members)(function)
 
     def unless_selected(self, context: bpy.types.Context) -> str | None:
         """Return why nothing can be done with the selected row: there is none."""

@@ -65,25 +65,15 @@ SCORED_SHARE = 0.25
 class ExportJob(pe.Job):
     """Makes files on a thread, then writes them; a stopped job writes nothing.
 
-    Parameters
-    ----------
-    study : Study
-        What is exported.
-    stage : str
-        What the job does.
-    make : callable
-        From an outcome and a callback for the progress, 0 to 1, to what is written.
-    write : callable
-        Writes that, on the main thread.
-    scored : bool
-        Whether to score the study first; `make` has no outcome without.
+    `stage` is what it does. `make` gets an outcome, None if the study is not `scored` first, and a
+    callback for the progress, 0 to 1; `write` writes what it returns.
     """
 
     def __init__(
         self,
         study: pe.Study,
         stage: str,
-        make: Callable[[pe.Outcome | None, Watch], Any],
+        make: Callable[[Any, Watch], Any],
         write: Callable[[Any], WrittenFiles],
         scored: bool = False,
     ) -> None:
@@ -125,8 +115,7 @@ _waiting: list[ExportJob] = []
 
 
 def _take_waiting(_context: bpy.types.Context) -> Task:
-    job = _waiting.pop()
-    return Task(job, lambda _scene: told_of(job.written), "written")
+    return Task(_waiting.pop(), lambda _scene, written: told_of(written), "written")
 
 
 STOPPED = "Stopped: nothing was written"
@@ -155,10 +144,9 @@ def run(job: ExportJob, asked_in_window: bool) -> Answer:
     return told_of(job.written)
 
 
-def told_of(written: WrittenFiles | None) -> Told:
+def told_of(written: WrittenFiles) -> Told:
     """Store the names of written files for the panel; return the report of them."""
     set_last(written)
-    assert written is not None  # a job without has ended before
     paths = written.paths
     return Told(f"Wrote {paths[0]}" if len(paths) == 1 else written.text, written.lines)
 
@@ -192,12 +180,8 @@ def _unless_running(_context: bpy.types.Context) -> str | None:
 def dialog(suffix: str, name: Callable[[Any], str] | None = None) -> dict[str, Any]:
     """Return what operators have that ask for a file to write.
 
-    Parameters
-    ----------
-    suffix : str
-        Of the file's name; empty: the name says which format.
-    name : callable, optional
-        From the operator to the file's first name.
+    `suffix` is that of the file's name; without, the name says which format. `name` returns the
+    first name.
     """
 
     def invoke(self: Any, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
@@ -319,7 +303,10 @@ def export_review(
     """Score the present sensors and write a page of the results (.html)"""
     path, about = chosen_file(filepath), page.About(title, author, date, revision)
     study = bridge.study_as_drawn(context.scene)
-    facts = {"command": headless_command(path, about), "versions": bridge.blender_version()}
+    facts: dict[str, Any] = {
+        "command": headless_command(path, about),
+        "versions": bridge.blender_version(),
+    }
     pe.prepare_folder(path.parent)  # fail before the work, not after
 
     def make(outcome: pe.Outcome, watch: Watch) -> bytes:

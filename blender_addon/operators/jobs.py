@@ -6,7 +6,7 @@ the best so far; Esc once more discards all changes.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -21,7 +21,7 @@ from .. import (
     signals,
     vehicle_cache,
 )
-from ..engine import advice, app, jobs, pe
+from ..engine import advice, app, jobs, pe, requirements
 from ..language import shown
 from ..live import FinishedScore, live_state
 from . import running_job
@@ -48,46 +48,34 @@ class Task(NamedTuple):
     """A job that was read from a scene.
 
     `finish` writes its result to the scene, `progressed` what it has found so far. `outcome` is the
-    job's attribute that is None while there is nothing to keep.
+    job's attribute of the result; None while there is nothing to keep.
     """
 
     job: Any
-    finish: Callable[[bpy.types.Scene], Answer]
+    finish: Callable[[bpy.types.Scene, Any], Answer]
     outcome: str = "outcome"
     progressed: Callable[[bpy.types.Scene], None] | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class JobRow:
-    """A job that a button starts.
-
-    Attributes
-    ----------
-    name, label, about : str
-        Of the operator: its name, what its button says, and its tooltip.
-    read : callable
-        Read the scene and make the task; None where there is nothing to do.
-    unless : callable, optional
-        Says why it is not possible in a context.
-    show : callable, optional
-        Called in a window once it has ended, and where there is nothing to do.
-    unfinished : str
-        What is reported of a job that was stopped with nothing to keep.
-    options : frozenset of str
-        `bl_options`.
-    of_scene : bool
-        Whether the result belongs to the scene; otherwise a removed scene has one, too.
-    """
+    """A job that a button starts."""
 
     name: str
     label: str
     about: str
+    """Of the operator: its name, what its button says, and its tooltip."""
     read: Callable[[bpy.types.Context], Task | None]
+    """Reads the scene and makes the task; None where there is nothing to do."""
     unless: Unless | None = None
+    """Says why the job is not possible in a context."""
     show: Callable[[], object] | None = None
+    """Called in a window once the job has ended, and where there is nothing to do."""
     unfinished: str = "Stopped before a score was complete: nothing was changed"
+    """What is reported of a job that was stopped with nothing to keep."""
     options: frozenset[str] = UNDO
     of_scene: bool = True
+    """Whether the result belongs to the scene, and is discarded with it."""
 
     def declare(self) -> JobRow:
         """Make the operator of the row."""
@@ -103,15 +91,16 @@ class JobRow:
 
     def finish(self, scene: bpy.types.Scene | None, task: Task) -> Answer:
         """Write the result to the scene; undo takes it back in one step."""
-        if getattr(task.job, task.outcome) is None:
+        found = getattr(task.job, task.outcome)
+        if found is None:
             dropped = "Discarded: nothing was changed"
             raise Stopped(dropped if task.job.dropped else self.unfinished)
         if not self.of_scene:
-            return task.finish(bpy.context.scene)
+            return task.finish(bpy.context.scene, found)
         if scene is None:
             raise Refused("The scene was removed; its result was discarded")
         with bridge.as_drawn(scene):  # sensors are placed as drawn
-            answer = task.finish(scene)
+            answer = task.finish(scene, found)
             result_staleness.update_result()  # the scene may have changed meanwhile
         return answer
 
@@ -147,12 +136,13 @@ class JobOperator(OperatorMixin):
         if bpy.app.background:
             return self.execute(context)
         try:
-            self.task = self.row.read(context)
+            task = self.row.read(context)
         except USER_ERRORS as error:
             return report_error(self, error)
-        if self.task is None:
+        if task is None:
             return self._show()
-        running_job.begin(context, self.task.job).show(context)
+        self.task = task
+        running_job.begin(context, task.job).show(context)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -250,16 +240,14 @@ def store_result(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) ->
 
 def score_task(_scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> Task:
     """Score the sensors, also where a score is cached: the button was pressed."""
-    job = pe.ScoreJob(study)
 
-    def finish(scene: bpy.types.Scene) -> str:
-        outcome = job.outcome
+    def finish(scene: bpy.types.Scene, outcome: pe.Outcome) -> str:
         store_result(scene, outcome, taken.text)
         bridge.store_variant_scores(scene, outcome.study.rig, outcome.after, taken.surroundings)
         score = outcome.after
         return f"Perception entropy {score.entropy:.4f} nats, coverage {score.coverage:.1%}"
 
-    return Task(job, finish)
+    return Task(pe.ScoreJob(study), finish)
 
 
 def optimize_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> Task:
@@ -267,10 +255,10 @@ def optimize_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerp
     bridge.check_placeable(scene, study)
     job = pe.OptimizeJob(study, before=cached_score(scene, study, taken))
 
-    def finish(scene: bpy.types.Scene) -> Told:
-        gone = store_search(scene, job.outcome, taken)
+    def finish(scene: bpy.types.Scene, outcome: pe.Outcome) -> Told:
+        gone = store_search(scene, outcome, taken)
         if not gone:
-            return Told(search_line(job.outcome))
+            return Told(search_line(outcome))
         line = f"Sensors that were removed meanwhile are not placed: {', '.join(gone)}"
         return Told(line, level="WARNING")
 
@@ -318,16 +306,14 @@ def search_line(outcome: pe.Outcome) -> str:
 def front_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> Task:
     """Search for a front, if there is something to choose; keep it as variants."""
     bridge.check_choosable(scene, study)
-    job = app.front_job(study)
 
-    def finish(scene: bpy.types.Scene) -> str:
-        found = job.trade_off
+    def finish(scene: bpy.types.Scene, found: pe.TradeOff) -> str:
         bridge.store_front(scene, found, taken.surroundings)
         signals.view_changed.emit()
         early = ", stopped early" if found.stopped else ""
         return f"{len(found.front)} designs on the Pareto front, kept as variants{early}"
 
-    return Task(job, finish, "trade_off")
+    return Task(app.front_job(study), finish, "trade_off")
 
 
 def check_task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> Task:
@@ -349,18 +335,18 @@ def check_task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerpri
             found = [each for each in job.verdicts if each.name in same]
             bridge.store_verdicts(settings, found, job.unchecked)
 
-    def finish(scene: bpy.types.Scene) -> Told:
+    def finish(scene: bpy.types.Scene, verdicts: Sequence[requirements.Verdict]) -> Told:
         if job.dropped:
             raise Stopped("Discarded: nothing was changed")
         stored[0] = -1
         progressed(scene)
-        met = sum(verdict.met for verdict in job.verdicts)
-        missed = [verdict.name for verdict in job.verdicts if not verdict.met]
+        met = sum(verdict.met for verdict in verdicts)
+        missed = [verdict.name for verdict in verdicts if not verdict.met]
         unchecked = [*job.unchecked, *job.missing]
         more = f"; not met: {', '.join(missed)}" if missed else ""
         more += f"; not checked: {', '.join(unchecked)}" if unchecked else ""
-        level = "WARNING" if missed or unchecked else "INFO"
-        return Told(f"{met} of {len(job.verdicts)} requirements are met{more}", level=level)
+        text = f"{met} of {len(verdicts)} requirements are met{more}"
+        return Told(text, level="WARNING" if missed or unchecked else "INFO")
 
     return Task(job, finish, "verdicts", progressed)
 

@@ -102,9 +102,11 @@ def find_view(state: dict[str, object]) -> bpy.types.SpaceView3D | None:
             space = area.spaces.active
             if area.type == "VIEW_3D" and space.as_pointer() == state["space"]:
                 return space
-    screen = bpy.data.screens.get(str(state["screen"]))
+    before = bpy.data.screens.get(str(state["screen"]))
+    if before is None:
+        return None
     number = int(str(state["area"]))
-    areas = [] if screen is None else list(screen.areas)[number : number + 1]
+    areas = list(before.areas)[number : number + 1]
     return next((a.spaces.active for a in areas if a.type == "VIEW_3D"), None)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
 import numpy as np
 from bpy.props import EnumProperty
@@ -58,9 +60,7 @@ def mount_parts(context: bpy.types.Context) -> None:
     _set_parts(settings.mounts[settings.mount_index], parts)
 
 
-def _menu_items(
-    _operator: bpy.types.OperatorProperties, context: bpy.types.Context
-) -> list[tuple[str, str, str]]:
+def _menu_items(_operator: object, context: Any) -> list[tuple[str, str, str]]:
     """Return the scene's mounts as Blender wants a menu."""
     rows = context.scene.perception_entropy.mounts
     free = (IN_A_BOX, "Box of Coordinates", "The search moves it within its bounds")

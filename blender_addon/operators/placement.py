@@ -1,25 +1,30 @@
-"""The sensor that is being placed by pointing: its pose under the mouse, and its preview.
+"""The sensor that is being placed by pointing: its pose under the mouse, its picture, its score.
 
-Its state is in this module, not in the scene: the file does not change before it is placed.
+Its state is in this module, not in the scene: the file does not change before it is placed. The
+picture is drawn from arrays and lines of text. The interactive worker computes the score on a small
+sample.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import bpy
+import gpu
 import numpy as np
+from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 
-from .. import bridge
+from .. import bridge, viewport
 from ..choices import free_name
 from ..engine import graphics, kinds, pe
 from ..language import draw_label
 from ..sensor_kinds import mount_for
+from ..worker import interactive_worker
 from . import running_job
-from .placement_preview import GainPreview, HeldPreview
 from .surface_pose import (
     MAX_STAND_OFF_M,
     Stance,
@@ -36,43 +41,54 @@ STEM_COLOR = (1.0, 1.0, 1.0, 0.8)
 HELD_PALETTE = replace(graphics.VIEWPORT, free=(1.0, 0.93, 0.55, 0.5), other=(1.0, 0.93, 0.55, 0.9))
 """Lighter than sensors that are there."""
 POINT_AT = "Point at the vehicle"
+LINE_PX = 1.5
+TEXT_PX, TEXT_GAP, PAD_PX = 12, 1.5, 6
+TEXT_AT = (26, -12)
+"""Where text begins beside the mouse [px]."""
+PLATE = (0.08, 0.08, 0.08, 0.78)
+TOPIC = "place"
+SAMPLES = 16_384
 
 
 class HeldSensor:
-    """One sensor that is held under the mouse, until it is placed or cancelled."""
+    """One sensor that is held under the mouse, until it is placed or cancelled.
+
+    Its lines and faces are drawn in all 3D views, its text in the view under the mouse.
+    """
 
     def __init__(self, context: bpy.types.Context, model: Any, stance: Stance) -> None:
         self.model, self.kind = model, kinds.kind_of(model)
         self.mount, self.stance = mount_for(model), stance
         self.matrix: Matrix | None = None
-        self._spot: SurfaceSpot | None = None
+        self.text: tuple[str, ...] = ()
+        self.lines = self._faces = graphics.Primitives.empty()
         self.score = self._typed = ""
-        self._preview = HeldPreview()
+        self._spot: SurfaceSpot | None = None
+        self._region, self._mouse = 0, (0, 0)
+        self._handlers = viewport.DrawHandlers()
         self._shape = sensor_shape(self.kind.label, model)
         depsgraph = context.evaluated_depsgraph_get()
         vehicle = context.scene.perception_entropy.vehicle
         self._parts = parts_of(vehicle, depsgraph)
         self._middle = vehicle_center(vehicle)
-        self._gain_preview = self._study(context.scene, depsgraph)
+        self._gain = self._gain_in(context.scene, depsgraph)
         self._workspace = context.workspace.name
-        self._preview.begin()
+        self._handlers.show((self._draw, "POST_VIEW"), (self._draw_text, "POST_PIXEL"))
         self.show_keys()
 
-    def point(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
-        """Follow the mouse; return whether it is over a 3D view."""
-        view = view_under(context, event)
-        spot = None
+    def point(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
+        """Follow the mouse; over anything but a 3D view there is no spot."""
+        view, spot = view_under(context, event), None
         if view is not None:
             depsgraph = context.evaluated_depsgraph_get()
             spot = spot_on_ray(context.scene, depsgraph, self._parts, *ray_of(view))
-            self._preview.at(view.region, view.mouse)
-        self._stand(spot)
-        return view is not None
+            self._region, self._mouse = view.region.as_pointer(), view.mouse
+        self.put(spot)
 
     def stand(self, stance: Stance) -> None:
         """Change the stance of the sensor at its present spot."""
         self.stance = stance
-        self._stand(self._spot)
+        self.put(self._spot)
         self.show_keys()
 
     def typed(self, letter: str) -> None:
@@ -106,8 +122,8 @@ class HeldSensor:
     def more(self, context: bpy.types.Context) -> None:
         """Hold another sensor of the same model; its score includes the sensor just placed."""
         scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
-        self._gain_preview, self.score = self._study(scene, depsgraph), ""
-        self._stand(None)
+        self._gain, self.score = self._gain_in(scene, depsgraph), ""
+        self.put(None)
 
     def show_keys(self) -> None:
         """Show the keys in the status bar."""
@@ -116,59 +132,127 @@ class HeldSensor:
             workspace.status_text_set(draw_status)
 
     def end(self) -> None:
-        """Remove the preview, the status text and the score."""
-        self._preview.end()
-        if self._gain_preview is not None:
-            self._gain_preview.end()
+        """Remove the picture, the status text and the score."""
+        self._handlers.hide()
+        interactive_worker.drop(TOPIC)
         for workspace in bpy.data.workspaces:
             workspace.status_text_set(None)
-        self._preview.redraw()
+        viewport.redraw_editors()
 
-    def _stand(self, spot: SurfaceSpot | None) -> None:
+    def put(self, spot: SurfaceSpot | None) -> None:
+        """Put the sensor on a spot, or nowhere; request its approximate score there."""
         self._spot, self.matrix = spot, None
-        if spot is None:
-            self._preview.show(graphics.Primitives.empty(), graphics.Primitives.empty())
-        else:
+        self.lines = self._faces = graphics.Primitives.empty()
+        if spot is not None:
             self.matrix = self.stance.placed(spot, self.mount, self._middle)
-            self._show(spot)
+            pose = bridge.pose_of_matrix(np.array(self.matrix, dtype=float))
+            stem = graphics.Primitives.of([spot.point, pose.position], STEM_COLOR)
+            self.lines = graphics.Primitives.joined([moved_to(self._shape[0], pose), stem])
+            self._faces = moved_to(self._shape[1], pose)
+            if (gain := self._gain) is not None:
+                interactive_worker.ask(TOPIC, lambda: gain(pose), self._tell, self._tell)
         self._write()
-        self._preview.redraw()
 
-    def _show(self, spot: SurfaceSpot) -> None:
-        """Draw the sensor on a spot, and request its approximate score."""
-        pose = bridge.pose_of_matrix(np.array(self.matrix, dtype=float))
-        stem = graphics.Primitives.of([spot.point, pose.position], STEM_COLOR)
-        lines = [moved_to(self._shape[0], pose), stem]
-        self._preview.show(graphics.Primitives.joined(lines), moved_to(self._shape[1], pose))
-        if self._gain_preview is not None:
-            self._gain_preview.ask(pose)
+    def _tell(self, gain: Gain | Exception) -> None:
+        """Show the score that the worker found, or why there is none."""
+        if isinstance(gain, Exception) and not isinstance(gain, pe.InputError | MemoryError):
+            raise gain
+        self.score = str(gain) if isinstance(gain, Gain) else f"no score: {gain}"
+        self._write()
 
     def _write(self) -> None:
-        if self._spot is None:
-            self._preview.write(self.model.name, POINT_AT)
-            return
-        stands = "along the normal" if self.stance.along_normal else "upright"
-        where = f"{self.stance.stand_off_m:g} m from {self._spot.part}, {stands}"
-        if self.stance.is_turned:
-            where += ", yaw {:g}°, pitch {:g}°".format(*self.angles)
-        self._preview.write(self.model.name, where, self.score)
+        """Set the lines of text to draw."""
+        self.text = self.model.name, POINT_AT
+        if self._spot is not None:
+            stands = "along the normal" if self.stance.along_normal else "upright"
+            where = f"{self.stance.stand_off_m:g} m from {self._spot.part}, {stands}"
+            if self.stance.is_turned:
+                where += ", yaw {:g}°, pitch {:g}°".format(*self.angles)
+            self.text = self.model.name, where, self.score
+        viewport.redraw_editors()
 
-    def _show_gain(self, score: str) -> None:
-        self.score = score
-        self._write()
-        self._preview.redraw()
-
-    def _study(self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> GainPreview | None:
-        """Return the preview of its score; None, with the error as text, if there is no study."""
+    def _gain_in(
+        self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
+    ) -> Callable[[pe.Pose], Gain] | None:
+        """Return what scores it in a scene; None, with the error as text, if that has no study."""
         sensors = bridge.possible_sensors(bridge.sensor_objects(scene), depsgraph)
         name = free_name(self.kind.label, {sensor.name for sensor in sensors})
         try:
             rig = pe.Rig([*sensors, pe.Sensor(name, self.model)])
-            study = bridge.study_of_rig(scene, depsgraph, rig)
-            return GainPreview(study, name, self._show_gain)
+            return gain_of(bridge.study_of_rig(scene, depsgraph, rig), name)
         except (pe.InputError, MemoryError) as error:
             self.score = f"no score: {error}"
             return None
+
+    def _draw(self) -> None:
+        gpu.state.blend_set("ALPHA")
+        gpu.state.depth_test_set("LESS_EQUAL")
+        gpu.state.depth_mask_set(False)
+        try:
+            for name, kind, primitives in (
+                ("SMOOTH_COLOR", "TRIS", self._faces),
+                ("POLYLINE_SMOOTH_COLOR", "LINES", self.lines),
+            ):
+                if len(primitives.points):
+                    shader = viewport.shader(name)
+                    if kind == "LINES":
+                        width = LINE_PX * bpy.context.preferences.system.pixel_size
+                        shader = viewport.line_shader(name, bpy.context.region, width)
+                    arrays = {"pos": primitives.points, "color": primitives.colors}
+                    batch_for_shader(shader, kind, arrays).draw(shader)
+        finally:
+            gpu.state.depth_mask_set(True)
+            gpu.state.depth_test_set("NONE")
+            gpu.state.blend_set("NONE")
+
+    def _draw_text(self) -> None:
+        region = bpy.context.region
+        if region is None or region.as_pointer() != self._region:
+            return
+        scale = viewport.ui_scale()
+        size, pad = TEXT_PX * scale, PAD_PX * scale
+        row = size * TEXT_GAP
+        left, top = (at + off * scale for at, off in zip(self._mouse, TEXT_AT, strict=True))
+        width = max((viewport.text_size(line, size)[0] for line in self.text), default=0.0)
+        low = top - row * (len(self.text) - 1) - pad
+        viewport.fill_box((left - pad, low, left + width + pad, top + row), PLATE)
+        for number, line in enumerate(self.text):
+            viewport.draw_text(line, left, top - number * row, size, viewport.INK)
+
+
+class Gain(NamedTuple):
+    """Entropy [nats] and coverage without (None if it is the only one) and with a sensor."""
+
+    before: float | None
+    after: float
+    coverage: float
+
+    def __str__(self) -> str:
+        """Return the gain as one line of text."""
+        seen = f"coverage {self.coverage:.1%}"
+        if self.before is None:
+            return f"{self.after:.3f} nats, {seen}"
+        change = self.after - self.before
+        return f"{self.before:.3f} to {self.after:.3f} nats ({change:+.3f}), {seen}"
+
+
+def gain_of(study: pe.Study, name: str) -> Callable[[pe.Pose], Gain]:
+    """Return what scores one sensor of a study at a pose, together with the others.
+
+    These are measured only the first time.
+    """
+    others = [each for each in study.rig if each.name != name]
+    made: list[tuple[pe.RigEvaluator, float | None]] = []
+
+    def gain(pose: pe.Pose) -> Gain:
+        if not made:
+            evaluator = study.evaluator(samples=SAMPLES)
+            made.append((evaluator, evaluator.entropy(pe.Rig(others)) if others else None))
+        evaluator, before = made[0]
+        score = evaluator.score(pe.Rig([*others, study.rig[name].moved(pose)]), preview=True)
+        return Gain(before, score.entropy, score.coverage)
+
+    return gain
 
 
 current: HeldSensor | None = None

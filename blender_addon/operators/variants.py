@@ -52,9 +52,14 @@ def of_variant(
                 return function(scene, wanted[0] if wanted else None)
 
         act.__name__, act.__doc__ = function.__name__, function.__doc__
-        mode = "Variants are for Object Mode"
-        given = {"mode": mode, "unless": unless, "options": options, "key": KEY}
-        return operator(label, signal=signals.study_changed, **given)(act)
+        return operator(
+            label,
+            mode="Variants are for Object Mode",
+            unless=unless,
+            signal=signals.study_changed,
+            options=options,
+            key=KEY,
+        )(act)
 
     return make
 
@@ -68,7 +73,8 @@ def save_variant(scene: bpy.types.Scene, _variant: object) -> str:
 @of_variant("Update Variant", unless=_unless_active, of_sensors=True)
 def update_variant(scene: bpy.types.Scene, _variant: object) -> str:
     """Overwrite the active variant with the present sensors"""
-    row, records = bridge.active_variant(scene), bridge.records_of_scene(scene)
+    row: Any = bridge.active_variant(scene)  # there is one, or the operator is not possible
+    records = bridge.records_of_scene(scene)
     if not bridge.same_score(bridge.records_of(row), records):
         row.has_result, row.figures_json = False, ""
     bridge.write_records(row, records)

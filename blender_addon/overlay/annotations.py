@@ -90,8 +90,8 @@ def location_mark(place: advice.AskedPlace, sensors: Sequence[pe.Sensor]) -> gra
     corners = center + SIDE_M * (np.array([*np.ndindex(2, 2, 2)]) - 0.5)
     edges = [(a, b) for a in range(8) for b in range(a + 1, 8) if (a ^ b) in (1, 2, 4)]
     post = np.array([center, center + np.array([0.0, 0.0, POST_M])])
-    ends = [*(corners[list(edge)] for edge in edges), post]
-    lines = [graphics.Primitives.of(np.vstack(ends), MARK)]
+    mark = np.vstack([*(corners[list(edge)] for edge in edges), post])
+    lines = [graphics.Primitives.of(mark, MARK)]
     for sensor in sensors:
         answer = answers.get(sensor.name)
         if answer is not None and answer.reason in REASON_COLORS:
@@ -129,16 +129,9 @@ def ghost_sensors(
     name: str = "",
     title: str = GHOST_TITLE,
 ) -> graphics.LayerShape:
-    """Return another variant's sensors, and lines to the scene's sensors of the same names.
+    """Return another variant's sensors, and lines to the present sensors of the same names.
 
-    Parameters
-    ----------
-    others, present : sequence of Sensor
-        Sensors of the other variant, and of the scene.
-    name : str
-        Name of the other variant, for the legend.
-    title : str
-        Title of the legend.
+    `name` is the other variant's, for the legend.
     """
     here = {sensor.name: sensor for sensor in present}
     lines = [_ghost_outline(sensor) for sensor in others]

@@ -3,24 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
 from ..engine import graphics
-from ..viewport import shader
-
-
-class DrawRegion(Protocol):
-    """What is drawn into: its size [px]."""
-
-    @property
-    def width(self) -> int: ...
-    @property
-    def height(self) -> int: ...
-
+from ..viewport import DrawRegion, line_shader, shader
 
 THIN_PX = 1.0
 EDGE_PX, EDGE = 2.0, (0.05, 0.05, 0.05, 0.35)
@@ -71,12 +60,7 @@ class Batches:
 
 
 def _line_shader(name: str, region: DrawRegion, width_px: float) -> gpu.types.GPUShader:
-    """Return a shader of lines, bound, for a width in a region."""
-    wide = shader(name)
-    wide.bind()
-    wide.uniform_float("viewportSize", (region.width, region.height))
-    wide.uniform_float("lineWidth", width_px * bpy.context.preferences.system.pixel_size)
-    return wide
+    return line_shader(name, region, width_px * bpy.context.preferences.system.pixel_size)
 
 
 def _batch(

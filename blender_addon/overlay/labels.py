@@ -101,21 +101,9 @@ def arranged(
 ) -> list[PlateBox | None]:
     """Return where plates of some sizes go; None for one that fits nowhere.
 
-    Each covers none of the plates and the least of the vehicle; of such places it takes one at the
-    right edge, the lowest, then the one farthest left.
-
-    Parameters
-    ----------
-    sizes : sequence of (width, height)
-        [px], the first plate is the most important one.
-    room : PlateBox
-        Where plates may be.
-    taken : sequence of PlateBox
-        Plates that are there.
-    vehicle : PlateBox or None
-        The vehicle in the picture.
-    gap : float
-        Left free between plates [px].
+    Each covers none of the plates that are there and the least of the vehicle in the picture; of
+    such places it takes one at the right edge, the lowest, then the one farthest left. Sizes are
+    (width, height) [px], the most important plate first; `gap` is left free between plates.
     """
     left, bottom, right, top = room
     covered, placed = list(taken), []

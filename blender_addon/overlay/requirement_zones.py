@@ -44,16 +44,9 @@ def requirement_zones(
 ) -> VerdictShape:
     """Return the zones of all requirements.
 
-    Parameters
-    ----------
-    verdicts : sequence of Verdict
-    chosen : str
-        Name of the requirement that is selected in the list: its worst place, body, height and
-        margin are drawn.
-    before : mapping of str to bool, optional
-        Whether each was met before the last move: the legend names what was lost or won since.
-    unplaced : mapping of str to str, optional
-        Why a requirement cannot be checked, by name.
+    Of the `chosen` one, by its name, worst place, body, height and margin are drawn. `before` says
+    whether each was met before the last move: the legend names what was lost or won since.
+    `unplaced` says why a requirement cannot be checked.
     """
     lines, faces, thin, labels = [], [], [], []
     for verdict in verdicts:

@@ -13,7 +13,8 @@ import gpu
 
 from .. import vehicle_cache
 from ..engine import graphics, pe
-from .batches import Batches, DrawRegion
+from ..viewport import DrawRegion
+from .batches import Batches
 
 if TYPE_CHECKING:
     import bpy

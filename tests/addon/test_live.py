@@ -347,15 +347,21 @@ def test_only_what_moved_is_measured_and_the_vehicle_is_not_read(live, monkeypat
     kernel = next(type(k) for key, k in kernels(live).items() if key[0] == "camera")
     monkeypatch.setattr(kernel, "measure", lambda *_: measured.append("camera"))
     monkeypatch.setattr(bridge, "vehicle_from_collection", lambda *_: pytest.fail("read again"))
-    before = session._evaluators._kept[live.name][1]
+    before = evaluator_of(live)
     drag(live.objects["roof"])
     rest()
-    assert not measured and session._evaluators._kept[live.name][1] is before
+    assert not measured and evaluator_of(live) is before
+
+
+def evaluator_of(scene):
+    """The evaluator that is kept for a scene."""
+    ((_, evaluator),) = session._evaluators._kept[scene.name]._kept
+    return evaluator
 
 
 def kernels(scene):
     """What measures each kind, inside the evaluator that is kept."""
-    return session._evaluators._kept[scene.name][1]._scorer._sensors._kernels
+    return evaluator_of(scene)._scorer._sensors._kernels
 
 
 def test_what_is_no_sensor_asks_for_nothing(live, monkeypatch):

@@ -52,28 +52,28 @@ def held(car, monkeypatch):
 
 def test_what_is_held_changes_nothing_in_the_scene(held, car):
     before = [obj.name for obj in car.objects]
-    held._stand(ROOF)
+    held.put(ROOF)
     assert held.matrix.translation.z == pytest.approx(1.55)
     assert [obj.name for obj in car.objects] == before
 
 
 def test_its_score_is_reported_beside_where_it_stands(held):
-    held._stand(ROOF)
-    model, where, score = held._preview._text
+    held.put(ROOF)
+    model, where, score = held.text
     assert (model, where) == ("Camera 60 deg", "0.05 m from cabin, upright")
     assert "nats" in score and "coverage" in score
 
 
 def test_beside_the_vehicle_it_is_nowhere(held):
-    held._stand(ROOF)
-    held._stand(None)
+    held.put(ROOF)
+    held.put(None)
     assert held.matrix is None
-    assert held._preview._text == ("Camera 60 deg", placement.POINT_AT)
-    assert not len(held._preview._lines.points)
+    assert held.text == ("Camera 60 deg", placement.POINT_AT)
+    assert not len(held.lines.points)
 
 
 def test_a_stand_off_is_typed_stepped_and_taken_back(held):
-    held._stand(ROOF)
+    held.put(ROOF)
     for letter in "0.25":
         held.typed(letter)
     assert held.standoff_text == "0.25 m" and held.matrix.translation.z == pytest.approx(1.75)
@@ -93,16 +93,16 @@ def test_a_stand_off_is_typed_stepped_and_taken_back(held):
 
 
 def test_arrow_keys_turn_it_from_the_direction_of_its_place(held):
-    held._stand(ROOF)
+    held.put(ROOF)
     assert held.angles == (180.0, 0.0), "behind the middle it looks back"
     for key in ("LEFT_ARROW", "DOWN_ARROW"):
         held.stand(held.stance.turned(*(5.0 * way for way in place_sensor.TURNS[key])))
     assert held.angles == (-175.0, 5.0)
     ahead = held.matrix.col[0].to_3d()
     assert ahead.z == pytest.approx(-math.sin(math.radians(5.0)), abs=1e-6), "down is nose down"
-    assert held._preview._text[1].endswith("upright, yaw -175°, pitch 5°")
-    held._stand(None)
-    held._stand(ROOF)
+    assert held.text[1].endswith("upright, yaw -175°, pitch 5°")
+    held.put(None)
+    held.put(ROOF)
     assert held.angles == (-175.0, 5.0), "it goes on as it was turned"
     for _ in range(40):
         held.stand(held.stance.turned(10.0, 5.0))
@@ -110,14 +110,14 @@ def test_arrow_keys_turn_it_from_the_direction_of_its_place(held):
 
 
 def test_it_is_drawn_where_it_stands_and_as_it_is_turned(held):
-    held._stand(ROOF)
-    points = held._preview._lines.points
+    held.put(ROOF)
+    points = held.lines.points
     place = np.array(held.matrix.translation)
     assert np.abs(points - place).max() < placement.LENGTH_M + 0.2
     pinhole = np.abs(points - place).sum(axis=1) < 1e-5
     assert pinhole.sum() >= 4  # the frustum's edges begin there
     held.stand(surface_pose.Stance(0.05, along_normal=True))
-    assert held._preview._lines.points[:, 2].max() > place[2] + 1.5  # it looks up now
+    assert held.lines.points[:, 2].max() > place[2] + 1.5  # it looks up now
 
 
 def test_a_scene_without_a_score_says_why(car, monkeypatch):
@@ -129,14 +129,14 @@ def test_a_scene_without_a_score_says_why(car, monkeypatch):
     )
     try:
         placement.begin(context, catalog.load("Pandar64"), surface_pose.Stance(0.15))
-        placement.current._stand(ROOF)
-        assert "vehicle collection" in placement.current._preview._text[2]
+        placement.current.put(ROOF)
+        assert "vehicle collection" in placement.current.text[2]
     finally:
         placement.end()
 
 
 def test_it_lets_go_when_the_extension_is_disabled(held):
-    held._stand(ROOF)
+    held.put(ROOF)
     assert len(View3D.handles) == 2 and placement.busy()
     operators.unregister()
     try:

@@ -96,7 +96,7 @@ ALLOWED = {
         "viewport",
         "worker",
     },
-    "overlay.surroundings": {"engine", "overlay", "vehicle_cache"},
+    "overlay.surroundings": {"engine", "overlay", "vehicle_cache", "viewport"},
     "overlay.draw_handler": {
         "bridge",
         "engine",

@@ -60,8 +60,10 @@ from .primitives import polyline as polyline
 from .sensor_images import BODY_NEAR as BODY_NEAR
 from .sensor_images import NO_ECHO as NO_ECHO
 from .sensor_images import RANGES as RANGES
+from .sensor_images import camera_of as camera_of
 from .sensor_images import even_angles as even_angles
 from .sensor_images import hidden_lines as hidden_lines
+from .sensor_images import lidar_of as lidar_of
 from .sensor_images import range_colors as range_colors
 from .simplify import simplified as simplified
 from .surroundings import Surroundings as Surroundings

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -31,28 +31,32 @@ MAX_RESULT_BYTES = 1 << 28
 """Size limit of a result.json that is read."""
 
 
+@app.noted_when_interrupted(INTERRUPTED)
 def review(args: argparse.Namespace) -> app.Answer:
     """Score studies and write their page; after Ctrl-C nothing is written."""
-    with app.noted_when_interrupted(INTERRUPTED):
-        return _review(args)
-
-
-def _review(args: argparse.Namespace) -> app.Answer:
     paths = [str(Path(path).resolve()) if Path(path).is_dir() else path for path in args.studies]
     files = app.named_by_file(paths)
+    folders = {name: Path(path) for name, path in files.items() if Path(path).is_dir()}
+
+    def score(study: pe.Study) -> pe.Outcome:
+        return app.scored(app.with_options(study, args), args.workers)
+
+    def context_of(name: str, study: pe.Study) -> ReportContext:
+        outcome = outcome_of_folder(folders[name], score) if name in folders else None
+        if outcome is None:
+            scored = app.scored(study, args.workers)
+            return ReportContext(name, scored, command=args.command_line)
+        return ReportContext(name, outcome, command=command_of_folder(folders[name]))
+
     _check_count(len(files))
-    requested = {name: app.with_options(_read_study(path), args) for name, path in files.items()}
-    app.refuse_different(requested)
-    _check_output(args)
-    contexts = []
-    for name, study in requested.items():
-        outcome = _search_outcome(files[name], args) or app.scored(study, args.workers)
-        was_searched = outcome.kind == "optimize"
-        command = command_of_folder(Path(files[name])) if was_searched else args.command_line
-        contexts.append(ReportContext(name, outcome, command=command))
-    return _write(contexts, args)
+    studies_of = {
+        name: pe.load_study(Path(path) / studies.STUDY if name in folders else path)
+        for name, path in files.items()
+    }
+    return _write(studies_of, context_of, args)
 
 
+@app.noted_when_interrupted(INTERRUPTED)
 def review_studies(
     by_name: Mapping[str, pe.Study],
     args: argparse.Namespace,
@@ -68,25 +72,33 @@ def review_studies(
     versions : mapping of str, optional
         Versions of programs besides the engine's, by name.
     """
-    with app.noted_when_interrupted(INTERRUPTED):
-        return _review_studies(by_name, args, versions)
 
+    def context_of(name: str, study: pe.Study) -> ReportContext:
+        outcome = app.scored(study, args.workers)
+        return ReportContext(name, outcome, command=args.command_line, versions=versions or {})
 
-def _review_studies(
-    by_name: Mapping[str, pe.Study],
-    args: argparse.Namespace,
-    versions: Mapping[str, str] | None,
-) -> app.Answer:
     _check_count(len(by_name))
+    return _write(by_name, context_of, args)
+
+
+def _check_count(study_count: int) -> None:
+    if study_count > MAX_STUDIES:
+        raise pe.InputError("command line", "STUDY", f"{MAX_STUDIES} at most", study_count)
+
+
+def _write(
+    by_name: Mapping[str, pe.Study],
+    context_of: Callable[[str, pe.Study], ReportContext],
+    args: argparse.Namespace,
+) -> app.Answer:
+    """Score the studies and write their page; what is refused is refused before the work."""
     requested = {name: app.with_options(study, args) for name, study in by_name.items()}
     app.refuse_different(requested)
-    _check_output(args)
-    contexts = []
-    for name, study in requested.items():
-        outcome = app.scored(study, args.workers)
-        origin = {"command": args.command_line, "versions": versions or {}}
-        contexts.append(ReportContext(name, outcome, **origin))
-    return _write(contexts, args)
+    about = About(args.title, args.author, args.date, args.revision)
+    pe.prepare_folder(args.output, () if args.replace else (PAGE,))
+    contexts = [context_of(name, study) for name, study in requested.items()]
+    path = write_page(contexts, args.output, replace=args.replace, about=about)
+    return str(path), app.DONE
 
 
 def write_search_page(outcome: pe.Outcome, data: dict[str, Any], folder: Path) -> None:
@@ -96,40 +108,6 @@ def write_search_page(outcome: pe.Outcome, data: dict[str, Any], folder: Path) -
     name = folder.resolve().name
     context = ReportContext(name, outcome, command=command, versions=host)
     jobs.add_to_result(data, folder, {PAGE: page_bytes([context])})
-
-
-def _check_count(study_count: int) -> None:
-    if study_count > MAX_STUDIES:
-        raise pe.InputError("command line", "STUDY", f"{MAX_STUDIES} at most", study_count)
-
-
-def _check_output(args: argparse.Namespace) -> None:
-    """Refuse a folder that cannot be written before the work; make it after the input is read."""
-    _about(args)
-    pe.prepare_folder(args.output, () if args.replace else (PAGE,))
-
-
-def _write(contexts: Sequence[ReportContext], args: argparse.Namespace) -> app.Answer:
-    path = write_page(contexts, args.output, replace=args.replace, about=_about(args))
-    return str(path), app.DONE
-
-
-def _about(args: argparse.Namespace) -> About:
-    return About(args.title, args.author, args.date, args.revision)
-
-
-def _read_study(path: str) -> pe.Study:
-    """Read a study file, or the study of a folder of results."""
-    return pe.load_study(Path(path) / studies.STUDY if Path(path).is_dir() else path)
-
-
-def _search_outcome(path: str, args: argparse.Namespace) -> pe.Outcome | None:
-    """Return the outcome of the search in a folder; None if the path is not such a folder."""
-
-    def score(study: pe.Study) -> pe.Outcome:
-        return app.scored(app.with_options(study, args), args.workers)
-
-    return outcome_of_folder(Path(path), score) if Path(path).is_dir() else None
 
 
 def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> pe.Outcome | None:
@@ -154,10 +132,23 @@ def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> 
         history = tuple(_history_row(start.rig, row, figure) for row in result["history"])
         robustness = _robustness(result.get("robustness"))
         sure = sensitivity_from_dict(result.get("sensitivity"), start.rig)
-        starts = tuple(_start_end(table, figure) for table in result.get("starts", ()))
-        in_traffic = _in_traffic(result.get(figure.key) if figure.higher_is_better else None)
+        starts = tuple(
+            jobs.StartEnd(
+                str(table["name"]),
+                figure.to_figure(float(table[figure.key])),
+                int(table["evaluations"]),
+            )
+            for table in result.get("starts", ())
+        )
+        in_traffic = None
+        if figure.higher_is_better and (table := result.get(figure.key)) is not None:
+            from_dict = pe.ObjectScore.from_dict
+            in_traffic = from_dict(table["before"]), from_dict(table["after"])
         reason = str(result.get("stop_reason") or "")
-        warnings = tuple(_advice(table) for table in result["warnings"])
+        warnings = tuple(
+            replace(pe.Advice(**table), amount=tuple(table["amount"]))
+            for table in result["warnings"]
+        )
         blind = result["blind_ground_m2"]
         blind_m2 = float(blind["before"]), float(blind["after"])
         evaluations, stopped = int(result["evaluations"]), bool(result["stopped"])
@@ -198,18 +189,6 @@ def _result_of(folder: Path) -> dict[str, Any]:
     return result
 
 
-def _in_traffic(table: Any) -> tuple[pe.ObjectScore, pe.ObjectScore] | None:
-    if table is None:
-        return None
-    before, after = (pe.ObjectScore.from_dict(table[which]) for which in ("before", "after"))
-    return before, after
-
-
-def _start_end(table: Mapping[str, Any], figure: jobs.SearchedFigure) -> jobs.StartEnd:
-    value = figure.to_figure(float(table[figure.key]))
-    return jobs.StartEnd(str(table["name"]), value, int(table["evaluations"]))
-
-
 def _history_row(
     rig: pe.Rig, row: Mapping[str, Any], figure: jobs.SearchedFigure
 ) -> jobs.HistoryRow:
@@ -226,7 +205,3 @@ def _robustness(table: Mapping[str, Any] | None) -> search.Robustness | None:
     errors = search.Tolerance(table["position"], math.radians(table["angle"]), draws=table["draws"])
     stands = (search.RigRobustness(**table[which]) for which in ("before", "after"))
     return search.Robustness(errors, int(table["samples"]), *stands)
-
-
-def _advice(table: Mapping[str, Any]) -> pe.Advice:
-    return replace(pe.Advice(**table), amount=tuple(table["amount"]))

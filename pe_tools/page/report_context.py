@@ -9,10 +9,9 @@ from string import ascii_lowercase
 from typing import Any, TypeVar
 
 import pe_core as pe
-from pe_core import search
 from pe_core.scoring.sight import GroundSight
 
-from .. import advice, graphics, jobs
+from .. import advice, graphics
 
 T = TypeVar("T")
 MAX_TRIANGLES = 200_000
@@ -86,16 +85,6 @@ class ReportContext:
     def warnings(self) -> tuple[pe.Advice, ...]:
         """Warnings about `study`."""
         return self.outcome.warnings
-
-    @property
-    def robustness(self) -> search.Robustness | None:
-        """Entropies under mounting errors and sensor failures; None without a search."""
-        return self.outcome.robustness
-
-    @property
-    def history(self) -> tuple[jobs.HistoryRow, ...]:
-        """Every placement that became the incumbent, the start first; empty without a search."""
-        return self.outcome.history
 
     @property
     def vehicle(self) -> pe.Vehicle | None:

@@ -7,8 +7,8 @@ import pe_core as pe
 from pe_core.catalog import load
 from pe_tools.page import ReportContext, picture_file
 from pe_tools.page.pictures import vehicle_picture as picture_module
-from pe_tools.page.pictures.drawn_pixels import DrawnPixels, text_width, tile_of
 from pe_tools.page.pictures.painted_mesh import Paint, PaintedMesh, corner_normals, painted_vehicle
+from pe_tools.page.pictures.picture_file import DrawnPixels, text_width, tile_of
 from pe_tools.page.pictures.ray_scene import GROUND, SKY, RayScene, Viewpoint
 from pe_tools.page.pictures.rendering import render
 from pe_tools.page.pictures.vehicle_picture import (

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from markupsafe import Markup
@@ -13,15 +12,11 @@ from pe_core.base.arrays import Floats
 
 from ... import graphics
 from ..markup import number
-from .ground_plan import outline_of
-from .svg import Canvas
+from .ground_plan import Margins, PlanBounds, PlanDrawing, outline_of
 
-Extent1d = tuple[float, float]
-
-WIDTH = 460.0
-LEFT, RIGHT, TOP, BOTTOM = 62.0, 58.0, 34.0, 76.0
-"""Margins for dimensions, and for the coordinates of sensors."""
-MAX_HEIGHT = 300.0
+WIDTH, MAX_HEIGHT = 460.0, 300.0
+MARGINS = Margins(left=62.0, right=58.0, top=34.0, bottom=76.0)
+"""For dimensions, and for the coordinates of sensors."""
 LABEL_GAP = 13.0
 """Smallest distance of two labels along an edge."""
 EQUAL_M = 0.005
@@ -35,77 +30,32 @@ LabelBox = tuple[float, float, float, float]
 INK, SOFT = "#1b1f24", "#8c959f"
 
 
-@dataclass(frozen=True, slots=True)
-class ViewPlane:
-    """The content of one drawing: outlines and sensors in its plane.
-
-    Attributes
-    ----------
-    outlines : sequence of (N, 2) float
-        The vehicle, in the plane of the drawing [m].
-    across, up : (float, float)
-        Extent of the vehicle along the drawing's axes [m].
-    sensors : (S, 2) float
-        Positions of the sensors in that plane [m].
-    coordinates : (S, 2) float
-        Coordinates that are written along the lower and the left edge [m].
-    colors : sequence of str
-        Colours of the sensors.
-    below, left : str
-        Names of these coordinates.
-    ground : bool
-        Whether a line is drawn at 0 of the second axis.
-    """
-
-    outlines: Sequence[Floats]
-    across: Extent1d
-    up: Extent1d
-    sensors: Floats
-    coordinates: Floats
-    colors: Sequence[str]
-    below: str
-    left: str
-    ground: bool = False
-
-
 def side_view(rig: pe.Rig, vehicle: pe.Vehicle, alt: str) -> Markup:
     """Return the vehicle seen from its right: heights above ground, distances from the front."""
-    low, high = vehicle.bounds
-    positions = _positions(rig)
-    turned = vehicle.triangles[:, :, [0, 2, 1]] * [1.0, 1.0, -1.0]
-    plane = ViewPlane(
-        outline_of(pe.Vehicle(turned)),
-        (float(low[0]), float(high[0])),
-        (min(float(low[2]), 0.0), float(high[2])),
-        positions[:, [0, 2]],
-        np.stack([float(high[0]) - positions[:, 0], positions[:, 2]], axis=1),
-        _colors(rig),
-        "from the foremost point [m]",
-        "height [m]",
-        ground=True,
-    )
-    return _drawing(plane, alt)
+    low, high = (corner.tolist() for corner in vehicle.bounds)
+    turned = pe.Vehicle(vehicle.triangles[:, :, [0, 2, 1]] * [1.0, 1.0, -1.0])
+    positions = _positions(rig)[:, [0, 2]]
+    extent = (low[0], high[0]), (min(low[2], 0.0), high[2])
+    drawing = _DimensionDrawing(extent, positions, alt)
+    drawing.outlines(turned)
+    ground = drawing.point(0.0, 0.0)[1]
+    drawing.line(f"M{drawing.left - 10:.1f} {ground:.1f}H{drawing.right + 10:.1f}", INK)
+    coordinates = np.stack([high[0] - positions[:, 0], positions[:, 1]], axis=1)
+    return drawing.finished(rig, coordinates, "from the foremost point [m]", "height [m]")
 
 
 def top_view(rig: pe.Rig, vehicle: pe.Vehicle, axle_x: float | None, alt: str) -> Markup:
     """Return the vehicle seen from above: distances from the rear axle, or else the centre."""
-    low, high = vehicle.bounds
-    positions = _positions(rig)
-    plane = ViewPlane(
-        outline_of(vehicle),
-        (float(low[0]), float(high[0])),
-        (float(low[1]), float(high[1])),
-        positions[:, :2],
-        positions[:, :2] - [axle_x or 0.0, 0.0],
-        _colors(rig),
-        "forward of the centre [m]" if axle_x is None else "forward of the rear axle [m]",
-        "to the left [m]",
-    )
-    return _drawing(plane, alt)
+    low, high = (corner.tolist() for corner in vehicle.bounds)
+    positions = _positions(rig)[:, :2]
+    drawing = _DimensionDrawing(((low[0], high[0]), (low[1], high[1])), positions, alt)
+    drawing.outlines(vehicle)
+    origin = "forward of the centre [m]" if axle_x is None else "forward of the rear axle [m]"
+    return drawing.finished(rig, positions - [axle_x or 0.0, 0.0], origin, "to the left [m]")
 
 
-def _colors(rig: pe.Rig) -> list[str]:
-    return [graphics.color_text(color) for color in graphics.sensor_colors_on_paper(rig).values()]
+def _positions(rig: pe.Rig) -> Floats:
+    return np.array([sensor.pose.position for sensor in rig], float).reshape(-1, 3)
 
 
 def spread_labels(positions: Sequence[float], gap: float, low: float, high: float) -> list[float]:
@@ -132,100 +82,65 @@ def spread_labels(positions: Sequence[float], gap: float, low: float, high: floa
     return [by_index[k] for k in range(len(positions))]
 
 
-def _positions(rig: pe.Rig) -> Floats:
-    return np.array([sensor.pose.position for sensor in rig], float).reshape(-1, 3)
+class _DimensionDrawing(PlanDrawing):
+    """A vehicle's extent [m] in a plane, and sensors at positions (S, 2) in it [m]."""
 
-
-def _drawing(plane: ViewPlane, alt: str) -> Markup:
-    drawing = _DimensionDrawing(plane, alt)
-    drawing.vehicle()
-    drawing.dimensions()
-    drawing.coordinates()
-    drawing.sensors()
-    return drawing.canvas.svg()
-
-
-class _DimensionDrawing:
-    """Draws a `ViewPlane` on a canvas, step by step."""
-
-    def __init__(self, plane: ViewPlane, alt: str) -> None:
-        self.plane = plane
-        (x0, x1), (y0, y1) = (
+    def __init__(self, extent: PlanBounds, sensors: Floats, alt: str) -> None:
+        self.extent, self.sensors = extent, sensors
+        x, y = (
             (min(low, *values), max(high, *values))
-            for (low, high), values in zip(
-                (plane.across, plane.up), plane.sensors.T.tolist(), strict=True
-            )
+            for (low, high), values in zip(extent, sensors.T.tolist(), strict=True)
         )
-        self.x0, self.y1 = x0, y1
-        self.scale = min((WIDTH - LEFT - RIGHT) / (x1 - x0), MAX_HEIGHT / (y1 - y0))
-        self.left = LEFT + (WIDTH - LEFT - RIGHT - (x1 - x0) * self.scale) / 2.0
-        self.right = self.left + (x1 - x0) * self.scale
-        self.bottom = TOP + (y1 - y0) * self.scale
-        self.canvas = Canvas(WIDTH, self.bottom + BOTTOM, alt)
+        super().__init__((x, y), alt, width=WIDTH, margins=MARGINS, max_height=MAX_HEIGHT)
+        self.right = self.left + self.width
 
-    def points(self, points: Floats) -> Floats:
-        """(N, 2) positions in the drawing of points (N, 2) in the plane [m]."""
-        x = self.left + (points[:, 0] - self.x0) * self.scale
-        return np.stack([x, TOP + (self.y1 - points[:, 1]) * self.scale], axis=1)
-
-    def vehicle(self) -> None:
-        """Draw the outline, and the ground below it."""
-        for line in self.plane.outlines:
+    def outlines(self, vehicle: pe.Vehicle) -> None:
+        """Draw the outline of the vehicle, from above."""
+        for line in outline_of(vehicle):
             self.canvas.path([self.points(line)], css="body")
-        if self.plane.ground:
-            down = self.points(np.zeros((1, 2)))[0, 1]
-            self._line(f"M{self.left - 10:.1f} {down:.1f}H{self.right + 10:.1f}", INK)
 
-    def dimensions(self) -> None:
+    def finished(self, rig: pe.Rig, coordinates: Floats, below: str, left: str) -> Markup:
+        """Write dimensions, coordinates (S, 2) along two edges, and sensors; return the drawing."""
+        self._write_dimensions()
+        self._write_coordinates(coordinates)
+        self._text((self.left + self.right) / 2.0, self.bottom + 70.0, below, "middle")
+        self._text(4.0, 12.0, left, "start")
+        self._draw_sensors([*graphics.sensor_colors_on_paper(rig).values()])
+        return self.canvas.svg()
+
+    def _write_dimensions(self) -> None:
         """Write the length above, and width or height to the right, with extension lines."""
-        (x0, x1), (y0, y1) = self.plane.across, self.plane.up
-        (a, top), (b, bottom) = self.points(np.array([[x0, y1], [x1, y0]])).tolist()
-        over, beside = TOP - 14.0, self.right + 20.0
-        self._line(f"M{a:.1f} {top:.1f}V{over - 5:.1f}M{b:.1f} {top:.1f}V{over - 5:.1f}", SOFT)
-        self._line(f"M{a:.1f} {over:.1f}H{b:.1f}{_ticks((a, over), (b, over))}", INK)
+        (x0, x1), (y0, y1) = self.extent
+        (a, top), (b, bottom) = self.point(x0, y1), self.point(x1, y0)
+        over, beside = MARGINS.top - 14.0, self.right + 20.0
+        self.line(f"M{a:.1f} {top:.1f}V{over - 5:.1f}M{b:.1f} {top:.1f}V{over - 5:.1f}", SOFT)
+        self.line(f"M{a:.1f} {over:.1f}H{b:.1f}{_ticks((a, over), (b, over))}", INK)
         self._text((a + b) / 2.0, over - 4.0, f"{number(x1 - x0)} m", "middle", "strong halo")
         ends = f"M{b:.1f} {top:.1f}H{beside + 5:.1f}M{b:.1f} {bottom:.1f}H{beside + 5:.1f}"
-        self._line(ends, SOFT)
-        self._line(
-            f"M{beside:.1f} {top:.1f}V{bottom:.1f}{_ticks((beside, top), (beside, bottom))}", INK
-        )
+        self.line(ends, SOFT)
+        ticks = _ticks((beside, top), (beside, bottom))
+        self.line(f"M{beside:.1f} {top:.1f}V{bottom:.1f}{ticks}", INK)
         middle = (top + bottom) / 2.0 + 4.0
         self._text(beside + 5.0, middle, number(y1 - y0), "start", "strong halo")
 
-    def coordinates(self) -> None:
+    def _write_coordinates(self, values: Floats) -> None:
         """Write the sensors' coordinates along the edges, with lines to their positions."""
-        positions, values = self.points(self.plane.sensors), self.plane.coordinates
+        positions = self.points(self.sensors)
         edge, end = self.bottom + 8.0, self.bottom + 22.0
-        for label, x, moved in self._labels(positions[:, 0], values[:, 0], self.left, self.right):
-            self._line(f"M{x:.1f} {edge:.1f}V{edge + 4:.1f}L{moved:.1f} {end:.1f}", SOFT)
+        for label, x, moved in _labels(positions[:, 0], values[:, 0], self.left, self.right):
+            self.line(f"M{x:.1f} {edge:.1f}V{edge + 4:.1f}L{moved:.1f} {end:.1f}", SOFT)
             turn = f"rotate(-90 {moved:.1f} {end + 4:.1f})"
             self.canvas.text(
                 moved + 4.0, end + 4.0, label, text_anchor="end", transform=turn, css="ink"
             )
         edge, end = self.left - 8.0, self.left - 22.0
-        for label, y, moved in self._labels(positions[:, 1], values[:, 1], TOP, self.bottom):
-            self._line(f"M{edge:.1f} {y:.1f}H{edge - 4:.1f}L{end:.1f} {moved:.1f}", SOFT)
+        for label, y, moved in _labels(positions[:, 1], values[:, 1], MARGINS.top, self.bottom):
+            self.line(f"M{edge:.1f} {y:.1f}H{edge - 4:.1f}L{end:.1f} {moved:.1f}", SOFT)
             self._text(end - 3.0, moved + 4.0, label, "end", "ink")
-        self._text((self.left + self.right) / 2.0, self.bottom + 70.0, self.plane.below, "middle")
-        self._text(4.0, 12.0, self.plane.left, "start")
 
-    def _labels(
-        self, positions: Floats, values: Floats, low: float, high: float
-    ) -> Iterable[tuple[str, float, float]]:
-        """Return the labels of different coordinates, with exact and shifted position."""
-        different: list[tuple[float, float]] = []
-        for value, exact in sorted(zip(values.tolist(), positions.tolist(), strict=True)):
-            if not different or value - different[-1][0] > EQUAL_M:
-                different.append((value, exact))
-        moved = spread_labels([exact for _, exact in different], LABEL_GAP, low, high)
-        return [
-            (number(value), exact, shifted)
-            for (value, exact), shifted in zip(different, moved, strict=True)
-        ]
-
-    def sensors(self) -> None:
+    def _draw_sensors(self, colors: Sequence[graphics.Rgb]) -> None:
         """Draw a numbered dot for each sensor; dots at one position share a label."""
-        positions = self.points(self.plane.sensors)
+        positions = self.points(self.sensors)
         groups: list[list[int]] = []
         for k, position in enumerate(positions):
             near = (g for g in groups if np.hypot(*(positions[g[0]] - position)) < SHARED_LABEL)
@@ -234,8 +149,9 @@ class _DimensionDrawing:
                 groups.append([k])
             else:
                 group.append(k)
-        for (x, y), color in zip(positions.tolist(), self.plane.colors, strict=True):
-            self.canvas.add("circle", cx=x, cy=y, r=3.6, fill=color, stroke="#fff")
+        for (x, y), color in zip(positions.tolist(), colors, strict=True):
+            fill = graphics.color_text(color)
+            self.canvas.add("circle", cx=x, cy=y, r=3.6, fill=fill, stroke="#fff")
         taken = [(x - 5.0, y - 5.0, x + 5.0, y + 5.0) for x, y in positions.tolist()]
         for group in groups:
             x, y = positions[group[0]].tolist()
@@ -255,12 +171,28 @@ class _DimensionDrawing:
         self._text(box[0], box[3], text, "start", "strong halo")
         return box
 
-    def _line(self, d: str, color: str) -> None:
+    def line(self, d: str, color: str) -> None:
+        """Draw a thin line."""
         self.canvas.add("path", d=d, fill="none", stroke=color, stroke_width=1.0)
 
     def _text(self, x: float, y: float, text: str, anchor: str, css: str = "") -> None:
         more = {"css": css} if css else {}
         self.canvas.text(x, y, text, text_anchor=anchor, **more)
+
+
+def _labels(
+    positions: Floats, values: Floats, low: float, high: float
+) -> Iterable[tuple[str, float, float]]:
+    """Return the labels of different coordinates, with exact and shifted position."""
+    different: list[tuple[float, float]] = []
+    for value, exact in sorted(zip(values.tolist(), positions.tolist(), strict=True)):
+        if not different or value - different[-1][0] > EQUAL_M:
+            different.append((value, exact))
+    moved = spread_labels([exact for _, exact in different], LABEL_GAP, low, high)
+    return [
+        (number(value), exact, shifted)
+        for (value, exact), shifted in zip(different, moved, strict=True)
+    ]
 
 
 def _ticks(*positions: tuple[float, float]) -> str:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from markupsafe import Markup
 from numpy.typing import NDArray
 
 import pe_core as pe
-from pe_core.base.arrays import Floats
+from pe_core.base.arrays import Flags, Floats
 from pe_core.scoring import sight
 
 from ... import graphics
@@ -22,8 +22,6 @@ from .svg import Canvas
 PlanBounds = tuple[tuple[float, float], tuple[float, float]]
 
 WIDTH, MAX_HEIGHT = 440.0, 330.0
-LEFT, RIGHT, TOP, BOTTOM = 36.0, 20.0, 8.0, 24.0
-"""Margins of the plan for its numbers."""
 OUTLINE_M, MAX_SQUARES = 0.04, 600
 """Cell size of the grid an outline is computed on, and the limit of cells along a side."""
 TICKS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)
@@ -37,25 +35,44 @@ MAX_CHANGE = 8.0
 """Difference at the ends of the colour scale [nats]."""
 
 
+class Margins(NamedTuple):
+    """Space around a plan for its numbers."""
+
+    left: float = 36.0
+    right: float = 20.0
+    top: float = 8.0
+    bottom: float = 24.0
+
+
+MARGINS = Margins()
+
+
 class PlanDrawing:
-    """A drawing of a part of the ground [m], with `below` units of space under it for a key."""
+    """A drawing of a part of a plane [m], with `below` units of space under it for a key."""
 
     def __init__(
-        self, bounds: PlanBounds, alt: str, below: float = 0.0, width: float = WIDTH
+        self,
+        bounds: PlanBounds,
+        alt: str,
+        below: float = 0.0,
+        width: float = WIDTH,
+        *,
+        margins: Margins = MARGINS,
+        max_height: float = MAX_HEIGHT,
     ) -> None:
         (self.x0, self.x1), (self.y0, self.y1) = bounds
         length, breadth = self.x1 - self.x0, self.y1 - self.y0
-        self.scale = min((width - LEFT - RIGHT) / length, MAX_HEIGHT / breadth)
+        room = width - margins.left - margins.right
+        self.scale = min(room / length, max_height / breadth)
         self.width, self.height = length * self.scale, breadth * self.scale
-        self.left = LEFT + (width - LEFT - RIGHT - self.width) / 2.0
-        self.bottom = TOP + self.height
-        self.canvas = Canvas(width, self.bottom + BOTTOM + below, alt)
+        self.left, self.top = margins.left + (room - self.width) / 2.0, margins.top
+        self.bottom = self.top + self.height
+        self.canvas = Canvas(width, self.bottom + margins.bottom + below, alt)
 
     def points(self, points: Floats) -> Floats:
-        """(N, 2) positions in the drawing of points (N, 2) on the ground [m]."""
+        """(N, 2) positions in the drawing of points (N, 2) in the plane [m]."""
         x = self.left + (points[:, 0] - self.x0) * self.scale
-        y = TOP + (self.y1 - points[:, 1]) * self.scale
-        return np.stack([x, y], axis=1)
+        return np.stack([x, self.top + (self.y1 - points[:, 1]) * self.scale], axis=1)
 
     def point(self, x: float, y: float) -> tuple[float, float]:
         """Return the position of one point in the drawing."""
@@ -64,12 +81,12 @@ class PlanDrawing:
 
     def cells(self, png: bytes) -> None:
         """Draw a PNG over the whole plan, one pixel for each cell of the ground."""
-        self.canvas.picture(png, (self.left, TOP, self.width, self.height), "cells")
+        self.canvas.picture(png, (self.left, self.top, self.width, self.height), "cells")
 
     def frame(self) -> None:
         """Draw the border, with metres along it."""
         size = {"width": self.width, "height": self.height}
-        self.canvas.add("rect", x=self.left, y=TOP, css="axis", **size)
+        self.canvas.add("rect", x=self.left, y=self.top, css="axis", **size)
         apart = max((self.x1 - self.x0) / MAX_NUMBERS, NUMBER_HEIGHT / self.scale)
         step = next((t for t in TICKS if t >= apart), TICKS[-1])
         for x in _ticks(self.x0, self.x1, step):
@@ -89,13 +106,8 @@ class PlanDrawing:
         inside = (circle >= [self.x0, self.y0]) & (circle <= [self.x1, self.y1])
         runs = np.split(np.arange(181), np.flatnonzero(np.diff(inside.all(axis=1))) + 1)
         lines = [self.points(circle[run]) for run in runs if inside[run[0]].all() and len(run) > 1]
-        style: dict[str, Any] = {
-            "fill": "none",
-            "stroke": color,
-            "stroke_opacity": "0.75",
-            "stroke_width": 1.0,
-        }
-        self.canvas.path(lines, closed=False, stroke_dasharray="3 3", **style)
+        style = {"stroke": color, "stroke_opacity": "0.75", "stroke_dasharray": "3 3"}
+        self.canvas.path(lines, closed=False, fill="none", stroke_width=1.0, **style)
         if label and radius * math.sqrt(0.5) < self.y1:
             right, down = self.point(radius * math.sqrt(0.5), radius * math.sqrt(0.5))
             self.canvas.text(right + 4.0, down - 2.0, label, css="dark")
@@ -139,60 +151,48 @@ def _ticks(low: float, high: float, step: float) -> list[float]:
 
 @dataclass(frozen=True)
 class MapLayer:
-    """One map of a `GroundSight`: title, values (NX, NY), colours and key.
-
-    The key is either a `scale` of colours, from left to right, with `ticks` below it, or a swatch
-    with a name for each of the `classes`.
-    """
+    """One map of a `GroundSight`: title, the attribute that is shown, its colours and their key."""
 
     title: str
     about: str
-    values: Callable[[sight.GroundSight], NDArray]
-    colors: Callable[[NDArray], NDArray]
-    ticks: tuple[str, ...] = ()
-    scale: tuple[tuple[float, ...], ...] = ()
-    classes: tuple[str, ...] = ()
+    attribute: str
+    colors: Callable[[NDArray[Any]], NDArray[Any]]
+    key: graphics.ColorKey
 
 
-def _quantity_colors(name: str) -> Callable[[NDArray], NDArray]:
-    return graphics.QUANTITIES[name].colors
-
-
-def _count_colors(values: NDArray) -> NDArray:
+def _count_colors(values: NDArray[Any]) -> NDArray[Any]:
     return np.array(graphics.COUNTS)[np.clip(values, 0, 3).astype(np.int64)]
 
 
-ENTROPY = MapLayer(
+def _quantity(title: str, about: str, name: str, ticks: tuple[str, ...] = ()) -> MapLayer:
+    """Return the layer of a quantity, in the colours of the 3D view."""
+    quantity = graphics.QUANTITIES[name]
+    key = graphics.ColorKey(title, quantity.swatches, ticks or quantity.values)
+    return MapLayer(title, about, name.lower(), quantity.colors, key)
+
+
+ENTROPY = _quantity(
     "Entropy",
     "in nats, averaged over height as in the score; lower is better",
-    lambda ground: ground.entropy,
-    _quantity_colors(graphics.ENTROPY),
+    graphics.ENTROPY,
     ("16.7 unseen", "\N{MINUS SIGN}11.0 best"),
-    tuple(graphics.QUANTITIES[graphics.ENTROPY].swatches),
 )
-COVERAGE = MapLayer(
-    "Coverage",
-    "share of the height that at least one sensor sees",
-    lambda ground: ground.coverage,
-    _quantity_colors(graphics.COVERAGE),
-    graphics.QUANTITIES[graphics.COVERAGE].values,
-    tuple(graphics.QUANTITIES[graphics.COVERAGE].swatches),
+COVERAGE = _quantity(
+    "Coverage", "share of the height that at least one sensor sees", graphics.COVERAGE
+)
+COUNT_NAMES = ("none", "1", "2", "3 or more")
+COUNT_KEY = graphics.ColorKey(
+    "",
+    classes=tuple(((*c, 1.0), name) for c, name in zip(graphics.COUNTS, COUNT_NAMES, strict=True)),
 )
 SENSORS = MapLayer(
-    "Number of sensors",
-    "that see a location at any height",
-    lambda ground: ground.sensors,
-    _count_colors,
-    classes=("none", "1", "2", "3 or more"),
-    scale=graphics.COUNTS,
+    *("Number of sensors", "that see a location at any height", "sensors"),
+    *(_count_colors, COUNT_KEY),
 )
 KINDS = MapLayer(
     "Number of sensor kinds",
     "that see a location; two kinds fail in different ways",
-    lambda ground: ground.kinds,
-    _count_colors,
-    classes=("none", "1", "2", "3 or more"),
-    scale=graphics.COUNTS,
+    *("kinds", _count_colors, COUNT_KEY),
 )
 LAYERS = (ENTROPY, COVERAGE, SENSORS, KINDS)
 
@@ -201,10 +201,10 @@ def ground_map(
     ground: sight.GroundSight, layer: MapLayer, vehicle: pe.Vehicle | None, alt: str
 ) -> Markup:
     """Return a map as SVG; the same colour means the same value on all maps of a layer."""
-    values = np.asarray(layer.values(ground), float)
+    values = np.asarray(getattr(ground, layer.attribute), float)
     known = np.isfinite(values) & (ground.sensors >= 0)
-    colors = np.asarray(layer.colors(np.where(known, values, 0.0)), float)
-    return _map_drawing(ground, colors, known, layer, vehicle, alt)
+    colors = layer.colors(np.where(known, values, 0.0))
+    return _map(_bounds(ground), colors, known, layer.key, vehicle, alt, RINGS)
 
 
 def difference_map(
@@ -220,74 +220,63 @@ def difference_map(
     """
     change = np.clip((second.entropy - first.entropy) / MAX_CHANGE, -1.0, 1.0)
     known = np.isfinite(change)
-    share = 0.5 + 0.5 * np.where(known, change, 0.0)
     scale = (BETTER, SAME, WORSE)
-    colors = np.asarray(graphics.on_scale(share, scale), float)
-    row = tuple(tuple(c) for c in graphics.on_scale(np.linspace(0.0, 1.0, 13), scale).tolist())
-    layer = MapLayer("", "", lambda s: s.entropy, lambda v: v, ends, row)
-    return _map_drawing(second, colors, known, layer, vehicle, alt)
+    colors = graphics.on_scale(0.5 + 0.5 * np.where(known, change, 0.0), scale)
+    swatches = graphics.on_scale(np.linspace(0.0, 1.0, 13), scale).tolist()
+    key = graphics.ColorKey("", tuple(graphics.with_alpha(c, 1.0) for c in swatches), ends)
+    return _map(_bounds(second), colors, known, key, vehicle, alt, RINGS)
 
 
-def count_map(values: NDArray, bounds: PlanBounds, vehicle: pe.Vehicle | None, alt: str) -> Markup:
+def count_map(
+    values: NDArray[Any], bounds: PlanBounds, vehicle: pe.Vehicle | None, alt: str
+) -> Markup:
     """Return a map of numbers (NX, NY) of sensors or kinds as SVG; below 0 is no ground.
 
     `bounds` are the ends of the map along x and y [m].
     """
-    known = values >= 0
-    return _drawing(bounds, _count_colors(values), known, SENSORS, vehicle, alt, rings=False)
+    return _map(bounds, _count_colors(values), values >= 0, COUNT_KEY, vehicle, alt)
 
 
-def _map_drawing(
-    ground: sight.GroundSight,
-    colors: Floats,
-    known: NDArray[np.bool_],
-    layer: MapLayer,
-    vehicle: pe.Vehicle | None,
-    alt: str,
-) -> Markup:
+def _bounds(ground: sight.GroundSight) -> PlanBounds:
     half = ground.step / 2.0
-    bounds = tuple((float(w[0]) - half, float(w[-1]) + half) for w in (ground.x, ground.y))
-    return _drawing((bounds[0], bounds[1]), colors, known, layer, vehicle, alt, rings=True)
+    x, y = ((float(w[0]) - half, float(w[-1]) + half) for w in (ground.x, ground.y))
+    return x, y
 
 
-def _drawing(
+def _map(
     bounds: PlanBounds,
-    colors: Floats,
-    known: NDArray[np.bool_],
-    layer: MapLayer,
+    colors: NDArray[Any],
+    known: Flags,
+    key: graphics.ColorKey,
     vehicle: pe.Vehicle | None,
     alt: str,
-    *,
-    rings: bool,
+    rings: tuple[float, ...] = (),
 ) -> Markup:
-    """Return a map of colours (NX, NY, 3); rings separate the zones near, middle and far."""
+    """Return a map of colours (NX, NY, 3) with rings of these radii [m] and a key."""
     plan = PlanDrawing(bounds, alt, KEY_HEIGHT)
     rgba = np.concatenate([colors[..., :3], known[..., None]], axis=-1)
     plan.cells(graphics.png_bytes(graphics.as_bytes(rgba.transpose(1, 0, 2)[::-1])))
-    for radius in RINGS if rings else ():
+    for radius in rings:
         plan.ring(radius, f"{radius:g} m")
     plan.vehicle(vehicle)
     plan.frame()
-    _draw_key(plan.canvas, layer, plan.left, plan.bottom + 30.0)
+    _draw_key(plan.canvas, key, plan.left, plan.bottom + 30.0)
     return plan.canvas.svg()
 
 
-def _draw_key(canvas: Canvas, layer: MapLayer, left: float, top: float) -> None:
-    """Draw the key of a map's colours."""
-    width = KEY_WIDTH / len(layer.scale)
-    if layer.classes:
-        at = left
-        for color, name in zip(layer.scale, layer.classes, strict=True):
-            canvas.add(
-                "rect", x=at, y=top, width=11.0, height=11.0, fill=graphics.color_text(color)
-            )
-            canvas.text(at + 16.0, top + 10.0, name)
-            at += 34.0 + 7.5 * len(name)
-        return
-    for k, color in enumerate(layer.scale):
+def _draw_key(canvas: Canvas, key: graphics.ColorKey, left: float, top: float) -> None:
+    """Draw classes as swatches with their names, or a scale with its ticks below."""
+    at = left
+    for color, name in key.classes:
+        swatch = {"width": 11.0, "height": 11.0, "fill": graphics.color_text(color)}
+        canvas.add("rect", x=at, y=top, **swatch)
+        canvas.text(at + 16.0, top + 10.0, name)
+        at += 34.0 + 7.5 * len(name)
+    width = KEY_WIDTH / max(len(key.scale), 1)
+    for k, color in enumerate(key.scale):
         size = {"width": width + 0.4, "height": 9.0}
         canvas.add("rect", x=left + k * width, y=top, fill=graphics.color_text(color), **size)
-    anchors = ("start", "middle", "end") if len(layer.ticks) == 3 else ("start", "end")
-    for k, (tick, anchor) in enumerate(zip(layer.ticks, anchors, strict=True)):
-        position = left + KEY_WIDTH * k / (len(layer.ticks) - 1)
+    anchors = ("start", "middle", "end") if len(key.ticks) == 3 else ("start", "end")
+    for k, (tick, anchor) in enumerate(zip(key.ticks, anchors, strict=False)):
+        position = left + KEY_WIDTH * k / (len(key.ticks) - 1)
         canvas.text(position, top + 23.0, tick, text_anchor=anchor)

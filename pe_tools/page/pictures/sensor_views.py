@@ -97,7 +97,7 @@ def _parameter_figure(sensor: pe.Sensor, _vehicle: pe.Vehicle | None) -> ViewFig
 
 def camera_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> ViewFigure:
     """Return a camera's image with a caption."""
-    camera = _camera_of(sensor)
+    camera = graphics.camera_of(sensor)
     lens = camera.projection.model.replace("_", " ")
     alt = f"Image of {sensor.name}: persons on the left and cars on the right"
     caption = f"{camera.width} × {camera.height} px, {lens} lens, rendered through this lens."
@@ -106,7 +106,7 @@ def camera_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> ViewFigure:
 
 def lidar_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> ViewFigure:
     """Return a LiDAR's range image with its key and a caption."""
-    lidar = _lidar_of(sensor)
+    lidar = graphics.lidar_of(sensor)
     alt = f"Ranges of {sensor.name} by azimuth: persons left of ahead and cars right of it"
     drawing = lidar_picture(sensor, vehicle).svg(alt) + range_key(lidar.max_range)
     min_range = f"{number(lidar.min_range, 1)} to " if lidar.min_range >= 0.1 else ""
@@ -122,19 +122,10 @@ def camera_picture(
     vehicle: pe.Vehicle | None,
     figures: list[ReferenceFigure] | None = None,
 ) -> LabelledPicture:
-    """Return the image of a camera on a vehicle, with figures in front of it.
-
-    Parameters
-    ----------
-    sensor : Sensor
-        A camera.
-    vehicle : Vehicle or None
-    figures : list of ReferenceFigure, optional
-        Without them: persons and cars of known size.
-    """
+    """Return the image of a camera with figures in front of it, by default persons and cars."""
     rays, scale = ray_camera(sensor)
     if figures is None:
-        figures = reference_figures(sensor, _camera_of(sensor).hfov / 2.0, vehicle)
+        figures = reference_figures(sensor, graphics.camera_of(sensor).hfov / 2.0, vehicle)
     solids = [] if vehicle is None else [painted_vehicle(vehicle)]
     road = RayScene([*solids, *(target.painted for target in figures)], vehicle is not None)
     image = render(rays, road, _road_environment(sensor))
@@ -145,7 +136,7 @@ def camera_picture(
 
 def ray_camera(sensor: pe.Sensor) -> tuple[RayCamera, float]:
     """Return the rays of a camera's image, reduced to the page's size, and the scale of it."""
-    camera = _camera_of(sensor)
+    camera = graphics.camera_of(sensor)
     scale = min(1.0, MAX_WIDTH / camera.width, MAX_HEIGHT / camera.height)
     width, height = (max(1, round(n * scale)) for n in (camera.width, camera.height))
     across, down = camera.width / width, camera.height / height
@@ -161,16 +152,11 @@ def ray_camera(sensor: pe.Sensor) -> tuple[RayCamera, float]:
     return RayCamera(eye, width, height, rays_through, pixel_rad, True), 1.0 / across
 
 
-def camera_field(camera: kinds.Camera) -> tuple[float, float]:
-    """Return width and height of a camera's image [deg]."""
-    return math.degrees(camera.hfov), math.degrees(camera.vfov)
-
-
 def _camera_labels(
     sensor: pe.Sensor, figures: list[ReferenceFigure], rays: RayCamera, scale: float
 ) -> tuple[TextLabel, ...]:
     """Return the distances above heads and roofs, where these are in the image."""
-    camera, labels = _camera_of(sensor), []
+    camera, labels = graphics.camera_of(sensor), []
     for target in figures:
         offset = scene.rotate(
             sensor.pose.ground_from_sensor.T, np.subtract(target.top, sensor.pose.position)[None]
@@ -181,11 +167,6 @@ def _camera_labels(
             if 0.0 <= x <= rays.width and 0.0 <= y <= rays.height:
                 labels.append((round(x, 1), round(y, 1), target.label))
     return tuple(labels)
-
-
-def _camera_of(sensor: pe.Sensor) -> kinds.Camera:
-    assert isinstance(sensor.model, kinds.Camera)
-    return sensor.model
 
 
 def _road_environment(sensor: pe.Sensor) -> Environment:
@@ -221,17 +202,8 @@ def lidar_picture(
     vehicle: pe.Vehicle | None,
     figures: list[ReferenceFigure] | None = None,
 ) -> LabelledPicture:
-    """Return the range image of a LiDAR on a vehicle, with figures in front of it.
-
-    Parameters
-    ----------
-    sensor : Sensor
-        A LiDAR.
-    vehicle : Vehicle or None
-    figures : list of ReferenceFigure, optional
-        Without them: persons and cars of known size.
-    """
-    lidar = _lidar_of(sensor)
+    """Return the ranges of a LiDAR with figures in front of it, by default persons and cars."""
+    lidar = graphics.lidar_of(sensor)
     if figures is None:
         half = min(FIGURES_RAD, (lidar.horizontal_fov[1] - lidar.horizontal_fov[0]) / 2.0)
         figures = reference_figures(sensor, half, vehicle)
@@ -245,11 +217,6 @@ def lidar_picture(
     labels = _lidar_labels(ranges, figures, columns, row_px)
     edges = _side_labels(ranges, len(columns)), _elevation_labels(ranges, len(rows))
     return LabelledPicture(png, len(columns), len(rows), labels, *edges)
-
-
-def _lidar_of(sensor: pe.Sensor) -> kinds.Lidar:
-    assert isinstance(sensor.model, kinds.Lidar)
-    return sensor.model
 
 
 def _joint_mesh(figures: list[ReferenceFigure]) -> pe.Vehicle | None:
@@ -322,15 +289,11 @@ def field_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> ViewFigure:
     height, width = colors.shape[:2]
     png = graphics.png_bytes(graphics.as_bytes(colors))
     degrees = np.degrees(picture.azimuths[[0, len(picture.azimuths) // 2, -1]]).tolist()
-    bottom = zip((0.0, width / 2.0, float(width)), degrees, strict=True)
+    places = (0.0, width / 2.0, float(width))
+    bottom = tuple((x, f"{signed(a, 0)}°") for x, a in zip(places, degrees, strict=True))
     far = float(picture.ranges[0] + picture.ranges[-1])  # they are middles of equal steps
-    ends = far, far / 2.0
-    left = zip((0.0, height / 2.0), ends, strict=True)
-    shown = LabelledPicture(
-        *(png, width, height, ()),
-        tuple((x, f"{signed(a, 0)}°") for x, a in bottom),
-        tuple((y, f"{r:.3g} m") for y, r in left),
-    )
+    left = (0.0, f"{far:.3g} m"), (height / 2.0, f"{far / 2.0:.3g} m")
+    shown = LabelledPicture(png, width, height, (), bottom, left)
     alt = f"What {sensor.name} detects by range and azimuth"
     caption = (
         f"Range upwards, azimuth across, left is left: {kind.unit} of a {picture.target} whose "
@@ -365,14 +328,16 @@ SENSOR_VIEWS = {
         lidar_picture,
         housing=scene.Housing("cylinder", (0.11, 0.11, 0.08), (0.0, 0.0, 0.04)),
     ),
-    "camera": SensorView(camera_figure, camera_picture, image_field=camera_field),
+    "camera": SensorView(
+        camera_figure,
+        camera_picture,
+        image_field=lambda camera: (math.degrees(camera.hfov), math.degrees(camera.vfov)),
+    ),
     "radar": SensorView(
-        field_figure,
-        housing=scene.Housing("box", (0.03, 0.13, 0.09), (0.015, 0.0, 0.0)),
+        field_figure, housing=scene.Housing("box", (0.03, 0.13, 0.09), (0.015, 0.0, 0.0))
     ),
     "ultrasonic": SensorView(
-        field_figure,
-        housing=scene.Housing("box", (0.02, 0.03, 0.03), (0.01, 0.0, 0.0)),
+        field_figure, housing=scene.Housing("box", (0.02, 0.03, 0.03), (0.01, 0.0, 0.0))
     ),
 }
 """A row for each kind of sensor, by its name."""

@@ -40,15 +40,9 @@ def blind_plan(blind: sight.BlindGround, vehicle: pe.Vehicle | None, alt: str) -
     begins there, a ring marks the nearest blind ground.
     """
     plan = PlanDrawing(_bounds(blind, vehicle), alt, width=BLIND_WIDTH)
-    lines = [plan.points(line) for line in blind.outlines]
-    style: dict[str, Any] = {
-        "fill": BLIND,
-        "fill_opacity": "0.32",
-        "stroke": BLIND,
-        "stroke_width": 1.0,
-    }
-    if lines:
-        plan.canvas.path(lines, fill_rule="evenodd", **style)
+    if lines := [plan.points(line) for line in blind.outlines]:
+        style = {"fill": BLIND, "fill_opacity": "0.32", "stroke": BLIND}
+        plan.canvas.path(lines, fill_rule="evenodd", stroke_width=1.0, **style)
     plan.vehicle(vehicle)
     if vehicle is not None:
         for side in SIDES:
@@ -87,38 +81,23 @@ def _draw_extent(
         plan.canvas.add("circle", cx=x, cy=y, r=3.5, fill="#fff", stroke=INK, stroke_width=1.2)
     else:
         words = f"> {away:g} m" if zone is None else f"{sight.shown_end(away):.1f} m"
-        _draw_line_and_cap(plan, plan.point(*start), (x, y), axis)
-    position = _text_inside if away > blind.within - MARGIN_M else _text_outside
-    right, down, anchor = position(axis, sign, x, y)
-    plan.canvas.text(right, down, words, text_anchor=anchor, css="strong halo")
+        x0, y0 = plan.point(*start)
+        cap = "v6m0 -12v12" if axis == 0 else "h6m-12 0h12"
+        line = f"M{x0:.1f} {y0:.1f}L{x:.1f} {y:.1f}m0 0{cap}"
+        plan.canvas.add("path", d=line, fill="none", stroke=INK, stroke_width=1.0)
+    right, down, anchor = _text_place(axis, sign, away > blind.within - MARGIN_M)
+    plan.canvas.text(x + right, y + down, words, text_anchor=anchor, css="strong halo")
 
 
-def _draw_line_and_cap(
-    plan: PlanDrawing, start: tuple[float, float], end: tuple[float, float], axis: int
-) -> None:
-    (x0, y0), (x1, y1) = start, end
-    cap = "v6m0 -12v12" if axis == 0 else "h6m-12 0h12"
-    line = f"M{x0:.1f} {y0:.1f}L{x1:.1f} {y1:.1f}m0 0{cap}"
-    plan.canvas.add("path", d=line, fill="none", stroke=INK, stroke_width=1.0)
-
-
-def _text_outside(axis: int, sign: int, x: float, y: float) -> tuple[float, float, str]:
-    """Return position and anchor of a text beyond the end of a measure."""
+def _text_place(axis: int, sign: int, on_vehicle_side: bool) -> tuple[float, float, str]:
+    """Return offset and anchor of a text beside the end of a measure."""
     if axis == 1:
-        return x + 8.0, y + 4.0, "start"
-    return x + sign * 8.0, y + 4.0, "start" if sign > 0 else "end"
+        return 8.0, (14.0 if sign > 0 else -6.0) if on_vehicle_side else 4.0, "start"
+    ends = ("start", "end") if sign > 0 else ("end", "start")
+    return (-sign * 6.0, -6.0, ends[1]) if on_vehicle_side else (sign * 8.0, 4.0, ends[0])
 
 
-def _text_inside(axis: int, sign: int, x: float, y: float) -> tuple[float, float, str]:
-    """Return position and anchor of a text on the vehicle's side of the end of a measure."""
-    if axis == 1:
-        return x + 8.0, y + (14.0 if sign > 0 else -6.0), "start"
-    return x - sign * 6.0, y - 6.0, "end" if sign > 0 else "start"
-
-
-def _bounds(
-    blind: sight.BlindGround, vehicle: pe.Vehicle | None
-) -> tuple[tuple[float, float], tuple[float, float]]:
+def _bounds(blind: sight.BlindGround, vehicle: pe.Vehicle | None) -> PlanBounds:
     low, high = ((-1.0, -1.0), (1.0, 1.0)) if vehicle is None else vehicle.bounds
     x, y = ((float(low[k]) - blind.within, float(high[k]) + blind.within) for k in (0, 1))
     return x, y
@@ -157,11 +136,15 @@ def reach_plan(
 def reach_text(reach: sight.Reach, bearing_deg: float) -> str:
     """Return the reach in a direction as text; the bearing is counter-clockwise from ahead."""
     away = np.abs(np.angle(np.exp(1j * (reach.bearings - np.radians(bearing_deg)))))
-    k = int(np.argmin(away))
+    return _distance_text(reach, int(np.argmin(away)))
+
+
+def _distance_text(reach: sight.Reach, k: int) -> str:
     distance = float(reach.distance[k])
     if distance <= 0.0:
         return "none"
-    return f"{'≥ ' if _ends_at_space(reach, k) else ''}{distance:.0f} m"
+    at_end = sight.ends_with_space(reach, reach.distance)[k]
+    return f"{'≥ ' if at_end else ''}{distance:.0f} m"
 
 
 def _reach_outline(reach: sight.Reach, distance: Floats, bounds: PlanBounds) -> Floats:
@@ -177,25 +160,18 @@ def _write_distances(plan: PlanDrawing, reach: sight.Reach) -> None:
         if distance < MIN_WRITTEN_M:
             continue
         x, y = plan.point(distance * math.cos(bearings[k]), distance * math.sin(bearings[k]))
-        text = f"{'≥ ' if _ends_at_space(reach, k) else ''}{distance:.0f} m"
         away, down = math.cos(bearings[k]), -math.sin(bearings[k])
         x = min(max(x + 24.0 * away, plan.left + 20.0), plan.left + plan.width - 22.0)
         y = min(max(y + 13.0 * down + 4.0, 22.0), plan.bottom - 6.0)
+        text = _distance_text(reach, k)
         plan.canvas.text(x, y, text, text_anchor="middle", css="strong halo")
-
-
-def _ends_at_space(reach: sight.Reach, k: int) -> bool:
-    return bool(sight.ends_with_space(reach, reach.distance)[k])
 
 
 def _draw_key(plan: PlanDrawing, has_before: bool, color: str) -> None:
     lines: Mapping[str, dict[str, object]] = {
         "whole rig": {"stroke": RIG, "stroke_width": 2.2},
         **({"before": {"stroke": BEFORE, "stroke_dasharray": "5 4"}} if has_before else {}),
-        "sensor alone": {
-            "stroke": color,
-            "stroke_width": 1.2,
-        },
+        "sensor alone": {"stroke": color, "stroke_width": 1.2},
     }
     at, down = plan.left, plan.bottom + 38.0
     for text, style in lines.items():

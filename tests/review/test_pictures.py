@@ -9,7 +9,7 @@ from pe_tools.page import ReportContext, picture_file
 from pe_tools.page.pictures import vehicle_picture as picture_module
 from pe_tools.page.pictures.painted_mesh import Paint, PaintedMesh, corner_normals, painted_vehicle
 from pe_tools.page.pictures.picture_file import DrawnPixels, text_width, tile_of
-from pe_tools.page.pictures.ray_scene import GROUND, SKY, RayScene, Viewpoint
+from pe_tools.page.pictures.ray_scene import GROUND, SKY, RayCamera, RayScene, Viewpoint
 from pe_tools.page.pictures.rendering import render
 from pe_tools.page.pictures.vehicle_picture import (
     RADIUS,
@@ -54,7 +54,7 @@ def test_what_stands_left_is_drawn_left():
     pair = [PaintedMesh(pe.Vehicle(b), (p,)) for b, p in zip(boxes, (RED, BLUE), strict=True)]
     solids = RayScene(pair, has_vehicle=False)
     camera = Viewpoint((-8.0, 0.0, 2.0), (4.0, 0.0, 0.8), 40.0).camera(*SIZE)
-    hits = solids.first_hits(camera.eye, camera.directions())
+    hits = solids.first_hits(camera, camera.directions())
     surface = hits.surface.reshape(SIZE[1], SIZE[0])
     columns = [np.nonzero(surface == number)[1] for number in (1, 2)]
     assert columns[0].max() < SIZE[0] / 2 < columns[1].min()
@@ -107,8 +107,9 @@ def test_glass_is_looked_through_by_a_camera_alone():
     vehicle = pe.Vehicle(np.concatenate([pane, wall]), parts, ["window", "wall"], ["window"])
     solids = RayScene([painted_vehicle(vehicle)])
     ahead, eye = np.array([[1.0, 0.0, 0.0]]), np.array([0.0, 0.0, 1.0])
-    assert solids.first_hits(eye, ahead).part.tolist() == [0]
-    assert solids.first_hits(eye, ahead, from_sensor=True).part.tolist() == [1]
+    for from_sensor, part in ((False, 0), (True, 1)):
+        camera = RayCamera(eye, 1, 1, lambda *_: ahead, 0.1, from_sensor)
+        assert solids.first_hits(camera, ahead).part.tolist() == [part]
 
 
 def test_every_pixel_has_a_colour(car):

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -63,7 +64,11 @@ def skylight(scene: RayScene, hits: RayHits, size: Size) -> Floats:
     rows, columns = np.arange(0, height, 2), np.arange(0, width, 2)
     coarse = np.add.outer(rows * width, columns)
     light = _smoothed(_dome_light(scene, hits, coarse), _PixelSurfaces.of(hits, coarse))
-    return _upsampled(light, hits, coarse, size)
+    full = np.empty((height, width))
+    for y, x in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        pixels = np.add.outer(np.arange(y, height, 2) * width, np.arange(x, width, 2))
+        full[y::2, x::2] = _interpolated(light, hits, pixels, coarse, (y, x))
+    return full.ravel()
 
 
 def dome(count: int) -> Floats:
@@ -79,9 +84,8 @@ def _dome_light(scene: RayScene, hits: RayHits, coarse: Ints) -> Floats:
     center, half = _extent(scene)
     directions = dome(LAMPS_PER_PIXEL * LAMP_SETS)
     flat = coarse.ravel()
-    lamp_set = (
-        np.arange(coarse.shape[0])[:, None] % 2 * 2 + np.arange(coarse.shape[1]) % 2
-    ).ravel()
+    rows, columns = (np.arange(n) % 2 for n in coarse.shape)
+    lamp_set = np.add.outer(2 * rows, columns).ravel()
     near = _may_be_shaded(scene, hits, flat, reach=OPEN_GROUND) & hits.is_surface[flat]
     received, total = np.zeros(len(flat)), np.zeros(len(flat))
     for number, direction in enumerate(directions):
@@ -130,10 +134,9 @@ class _PixelSurfaces:
 def _smoothed(light: Floats, surfaces: _PixelSurfaces) -> Floats:
     """(h, w) mean over each pixel and its neighbours on the same surface."""
     total, weight = np.zeros_like(light), np.zeros_like(light)
-    steps = [(dy, dx) for dy in NEIGHBOURS for dx in NEIGHBOURS]
-    for dy, dx in steps:
-        here, there = _shifted(light.shape[0], dy), _shifted(light.shape[1], dx)
-        to, of = (here[0], there[0]), (here[1], there[1])
+    for dy, dx in product(NEIGHBOURS, NEIGHBOURS):
+        rows, columns = _shifted(light.shape[0], dy), _shifted(light.shape[1], dx)
+        to, of = zip(rows, columns, strict=True)
         same = surfaces[to].same_surface(surfaces[of])
         total[to] += same * light[of]
         weight[to] += same
@@ -147,22 +150,12 @@ def _shifted(count: int, step: int) -> tuple[slice, slice]:
     return slice(0, count - step), slice(step, None)
 
 
-def _upsampled(light: Floats, hits: RayHits, coarse: Ints, size: Size) -> Floats:
-    """(H * W,) light of all pixels: the mean of coarse pixels on the same surface."""
-    width, height = size
-    full = np.empty((height, width))
-    for y, x in ((0, 0), (0, 1), (1, 0), (1, 1)):
-        pixels = np.add.outer(np.arange(y, height, 2) * width, np.arange(x, width, 2))
-        full[y::2, x::2] = _interpolated(
-            light, _PixelSurfaces.of(hits, pixels), hits, coarse, (y, x)
-        )
-    return full.ravel()
+def _interpolated(light: Floats, hits: RayHits, pixels: Ints, coarse: Ints, step: Size) -> Floats:
+    """Return the light of pixels `step` = (0 or 1, 0 or 1) away from those of the coarse grid.
 
-
-def _interpolated(
-    light: Floats, there: _PixelSurfaces, hits: RayHits, coarse: Ints, step: Size
-) -> Floats:
-    """Return the light of pixels `step` = (0 or 1, 0 or 1) away from those of the coarse grid."""
+    It is the mean of the coarse pixels around that are on the same surface.
+    """
+    there = _PixelSurfaces.of(hits, pixels)
     rows, columns = (np.arange(n) for n in there.surface.shape)
     total, weight = np.zeros(there.surface.shape), np.zeros(there.surface.shape)
     for dy in range(step[0] + 1):

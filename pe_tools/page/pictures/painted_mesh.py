@@ -77,10 +77,6 @@ class PaintedMesh:
         share = _barycentric(corners, points)
         return np.einsum("nk,nkd->nd", share, normals)
 
-    def parts_of(self, face: NDArray[np.int64]) -> NDArray[np.int64]:
-        """(N,) parts of faces."""
-        return np.asarray(self.mesh.parts)[face].astype(np.int64)
-
 
 def painted_vehicle(vehicle: pe.Vehicle) -> PaintedMesh:
     """Return a vehicle with paint by the names of its parts; glass is dark."""
@@ -89,16 +85,8 @@ def painted_vehicle(vehicle: pe.Vehicle) -> PaintedMesh:
 
 
 def _paint_of(name: str) -> Paint:
-    lowered = name.lower()
-    for words, paint in PAINTS:
-        if any(word in lowered for word in words):
-            return paint
-    return BODY
-
-
-def face_normals(triangles: Floats) -> Floats:
-    """(F, 3) normals of triangles (F, 3, 3); their length is twice the area."""
-    return np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    paints = (paint for words, paint in PAINTS if any(word in name.lower() for word in words))
+    return next(paints, BODY)
 
 
 def unit(vectors: Floats) -> Floats:
@@ -112,8 +100,8 @@ def corner_normals(triangles: Floats) -> Floats:
 
     Neighbours may have the opposite winding order: a face keeps its own side.
     """
-    normals = face_normals(triangles)
-    by_corner = np.repeat(normals, 3, axis=0)
+    sides = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    by_corner = np.repeat(np.cross(*sides), 3, axis=0)  # their length is twice the area
     if len(triangles) > MAX_SMOOTH_TRIANGLES:
         return unit(by_corner).reshape(-1, 3, 3)
     order, start, count = _equal_corners(triangles.reshape(-1, 3))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
@@ -23,19 +24,11 @@ outside the image circle of a lens."""
 
 @dataclass(frozen=True, eq=False)
 class RayCamera:
-    """The eye of a picture and the ray through each of its pixels.
+    """The eye (3,) of a picture [m], and the ray through each of its pixels.
 
-    Attributes
-    ----------
-    eye : (3,) float
-        Ground frame [m].
-    width, height : int
-        Size of the picture [px].
-    rays_through : callable
-    pixel_rad : float
-        Angle between two neighbouring pixels in the centre [rad].
-    from_sensor : bool
-        Whether the eye is a camera on the vehicle, whose rays pass through the vehicle's glass.
+    `width` and `height` are in pixels, `pixel_rad` is the angle between two neighbouring pixels in
+    the centre [rad]. `from_sensor`: the eye is a camera on the vehicle. As in a measurement, its
+    rays begin outside the vehicle's surface and pass through the vehicle's glass.
     """
 
     eye: Floats
@@ -93,30 +86,24 @@ class Viewpoint:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RayHits:
-    """The first hits of rays (N,).
+    """The first hits of rays (N,) in unit `directions` (N, 3).
 
-    Attributes
-    ----------
-    surface : (N,) int
-        NOTHING, SKY, GROUND, or the number of a solid.
-    part : (N,) int
-        Part of the solid; -1 without a solid.
-    points : (N, 3) float
-        Where the rays hit [m].
-    normals : (N, 3) float
-        Unit normals there, on the side of the eye.
-    color : (N, 4) float
-        Linear red, green, blue, and shine.
-    distance : (N,) float
-        Distance from the eye [m]; inf in the sky.
+    `surface` is NOTHING, SKY, GROUND, or the number of a solid; `part` that of the solid, else -1;
+    `points` (N, 3) where the rays hit [m]; `normals` (N, 3) unit normals there, on the side of the
+    eye; `color` (N, 4) linear red, green, blue, and shine; `distance` from the eye [m], inf in the
+    sky.
     """
 
+    directions: Floats
     surface: Ints
     part: Ints
     points: Floats
     normals: Floats
     color: Floats
     distance: Floats
+
+    def __getitem__(self, at: Any) -> RayHits:
+        return RayHits(*(getattr(self, each.name)[at] for each in fields(self)))
 
     @property
     def is_solid(self) -> Flags:
@@ -136,13 +123,9 @@ class RayScene:
     solids: Sequence[PaintedMesh]
     has_vehicle: bool = True
 
-    def first_hits(self, eye: Floats, directions: Floats, *, from_sensor: bool = False) -> RayHits:
-        """Return the first hits of rays from an eye (3,) [m] in unit directions (N, 3) or NaN.
-
-        With `from_sensor` the eye is a camera on the vehicle: as in a measurement, its rays begin
-        outside the vehicle's surface and pass through the vehicle's glass.
-        """
-        count = len(directions)
+    def first_hits(self, camera: RayCamera, directions: Floats) -> RayHits:
+        """Return the first hits of rays from a camera in unit directions (N, 3) or NaN."""
+        eye, count = camera.eye, len(directions)
         valid = np.isfinite(directions[:, 0])
         surface = np.where(valid, SKY, NOTHING)
         distance, face = np.full(count, np.inf), np.full(count, -1)
@@ -150,18 +133,26 @@ class RayScene:
         if eye[2] > 0.0:
             distance[down], surface[down] = -eye[2] / directions[down, 2], GROUND
         valid_rays = np.flatnonzero(valid)
+        rays = directions[valid_rays]
         for number, solid in enumerate(self.solids, 1):
-            as_sensor = from_sensor and number == 1 and self.has_vehicle
-            mesh, rays = solid.mesh, directions[valid_rays]
-            hits = (
-                mesh.first_hit(eye.tolist(), rays, True)
-                if as_sensor
-                else mesh.first_hit_from(eye, rays)
-            )
+            if camera.from_sensor and number == 1 and self.has_vehicle:
+                hits = solid.mesh.first_hit(eye.tolist(), rays, True)
+            else:
+                hits = solid.mesh.first_hit_from(eye, rays)
             nearer = hits.distance < distance[valid_rays]
             at = valid_rays[nearer]
             surface[at], distance[at], face[at] = number, hits.distance[nearer], hits.face[nearer]
-        return self._hits_of(eye, directions, surface, distance, face)
+        points = eye + directions * np.where(np.isfinite(distance), distance, 0.0)[:, None]
+        normals = np.tile([0.0, 0.0, 1.0], (count, 1))
+        part, color = np.full(count, -1), np.zeros((count, 4))
+        for number, solid in enumerate(self.solids, 1):
+            at = np.flatnonzero(surface == number)
+            part[at] = solid.mesh.parts[face[at]]
+            normals[at] = solid.normals_at(face[at], points[at])
+            color[at] = solid.colors[part[at]]
+        away = (normals * directions).sum(axis=1) > 0.0
+        normals = unit(np.where(away[:, None], -normals, normals))
+        return RayHits(directions, surface, part, points, normals, color, distance)
 
     def lit(self, light: Floats, points: Floats) -> Flags:
         """(N,) whether no solid shades points (N, 3) from a light at a position (3,) [m]."""
@@ -172,18 +163,3 @@ class RayScene:
             hits = solid.mesh.first_hit_from(light, ray / length[:, None])
             free &= ~(hits.distance < length - SLACK_M)
         return free
-
-    def _hits_of(
-        self, eye: Floats, directions: Floats, surface: Ints, distance: Floats, face: Ints
-    ) -> RayHits:
-        points = eye + directions * np.where(np.isfinite(distance), distance, 0.0)[:, None]
-        normals = np.tile([0.0, 0.0, 1.0], (len(surface), 1))
-        part, color = np.full(len(surface), -1), np.zeros((len(surface), 4))
-        for number, solid in enumerate(self.solids, 1):
-            at = np.flatnonzero(surface == number)
-            part[at] = solid.parts_of(face[at])
-            normals[at] = solid.normals_at(face[at], points[at])
-            color[at] = solid.colors[part[at]]
-        away = (normals * directions).sum(axis=1) > 0.0
-        normals = unit(np.where(away[:, None], -normals, normals))
-        return RayHits(surface, part, points, normals, color, distance)

@@ -58,22 +58,25 @@ def reference_figures(
 ) -> list[ReferenceFigure]:
     """Return persons on the left and cars on the right of a sensor's heading.
 
-    Parameters
-    ----------
-    sensor : Sensor
-    half_view : float
-        Half the horizontal field of view [rad]. Figures that do not fit into it are left out.
-    vehicle : Vehicle or None
-        Figures that would overlap it are left out.
+    Figures that do not fit into the horizontal field of view, twice `half_view` [rad], or that
+    would overlap the vehicle are left out.
     """
     figures = []
     for name, size, side in (("person", PERSON_M, 1.0), ("car", CAR_M, -1.0)):
-        angles = _angle_by_distance(size[1], half_view)
-        for distance, angle in angles.items():
-            figure = _figure_at(sensor, name, size, distance, side * angle)
-            if vehicle is None or not _overlaps(figure.painted.mesh, vehicle):
-                figures.append(figure)
+        for distance, angle in _angle_by_distance(size[1], half_view).items():
+            heading = heading_of(sensor) + side * angle
+            away = distance + (size[0] / 2.0 if name == "car" else 0.0)
+            x = sensor.pose.position[0] + away * math.cos(heading)
+            y = sensor.pose.position[1] + away * math.sin(heading)
+            painted = car(x, y, heading) if name == "car" else person(x, y, heading + math.pi)
+            if vehicle is None or _are_apart(painted.mesh, vehicle):
+                figures.append(ReferenceFigure(name, distance, (x, y, size[2]), painted))
     return figures
+
+
+def _are_apart(one: pe.Vehicle, other: pe.Vehicle) -> bool:
+    (low, high), (low_2, high_2) = one.bounds, other.bounds
+    return bool(((low > high_2 + CLEAR_M) | (high < low_2 - CLEAR_M))[:2].any())
 
 
 def _angle_by_distance(width: float, half_view: float) -> dict[float, float]:
@@ -87,28 +90,11 @@ def _angle_by_distance(width: float, half_view: float) -> dict[float, float]:
     return {d: spread * angle for d, angle in angles.items() if angle < half_view}
 
 
-def _figure_at(
-    sensor: pe.Sensor, name: str, size: tuple[float, float, float], distance: float, angle: float
-) -> ReferenceFigure:
-    heading = heading_of(sensor) + angle
-    away = distance + (size[0] / 2.0 if name == "car" else 0.0)
-    x = sensor.pose.position[0] + away * math.cos(heading)
-    y = sensor.pose.position[1] + away * math.sin(heading)
-    painted = car(x, y, heading) if name == "car" else person(x, y, heading + math.pi)
-    return ReferenceFigure(name, distance, (x, y, size[2]), painted)
-
-
 def heading_of(sensor: pe.Sensor) -> float:
     """Return the heading of a sensor [rad]; if it looks up or down, that of its upper side."""
     ahead, up = (sensor.pose.ground_from_sensor[:2, k] for k in (0, 2))
     flat = ahead if math.hypot(*ahead.tolist()) > 0.2 else up
     return math.atan2(float(flat[1]), float(flat[0]))
-
-
-def _overlaps(one: pe.Vehicle, other: pe.Vehicle) -> bool:
-    (low, high), (low_2, high_2) = one.bounds, other.bounds
-    apart = (low[:2] > high_2[:2] + CLEAR_M) | (high[:2] < low_2[:2] - CLEAR_M)
-    return not bool(apart.any())
 
 
 def person(x: float, y: float, heading: float) -> PaintedMesh:
@@ -118,7 +104,8 @@ def person(x: float, y: float, heading: float) -> PaintedMesh:
     arms = [_limb(side * 0.225, arm) for side in (1, -1)]
     shape = ((0.82, 0.12, 0.17), (1.05, 0.11, 0.16), (1.35, 0.13, 0.21), (1.46, 0.09, 0.17))
     torso = capped([_oval(*ring) for ring in (*shape, (1.52, 0.06, 0.06))])
-    head = _ball(1.625, 0.10, 0.125)
+    turn = np.linspace(-np.pi / 2.0, np.pi / 2.0, 9).tolist()
+    head = lathe([(0.10 * math.cos(t), 1.625 + 0.125 * math.sin(t)) for t in turn], ROUND)
     groups = (
         (head, SKIN),
         (np.concatenate([torso, *arms]), COAT),
@@ -135,8 +122,13 @@ def car(x: float, y: float, heading: float) -> PaintedMesh:
     cabin, roof = (
         capped([_rounded(*ring, -0.25) for ring in pair]) for pair in (upper[:2], upper[2:])
     )
-    wheels = np.concatenate([_wheel(x0, y0) for x0 in (1.35, -1.35) for y0 in (0.80, -0.80)])
-    lamps = np.concatenate([_lamp(y0) for y0 in (0.62, -0.62)])
+    disc = lathe([(0.0, -0.1), (0.33, -0.1), (0.33, 0.1), (0.0, 0.1)], ROUND)[..., [0, 2, 1]]
+    axles = [(x0, y0, 0.33) for x0 in (1.35, -1.35) for y0 in (0.80, -0.80)]
+    wheels = np.concatenate([disc + np.array(axle) for axle in axles])
+    ring = np.array([[0.0, 0.14, 0.0], [0.0, -0.14, 0.0], [-0.03, -0.14, 0.0], [-0.03, 0.14, 0.0]])
+    lamps = np.concatenate(
+        [capped([ring + np.array([-2.2, side, z]) for z in (0.68, 0.82)]) for side in (0.62, -0.62)]
+    )
     painted = np.concatenate([body, roof])
     groups = ((painted, CAR_PAINT), (cabin, GLASS), (wheels, TYRE), (lamps, TAIL))
     return _placed(groups, x, y, heading)
@@ -161,25 +153,9 @@ def _limb(y: float, rings: tuple[tuple[float, float], ...]) -> Floats:
     return capped([_oval(z, r, r) for z, r in rings]) + np.array([0.0, y, 0.0])
 
 
-def _ball(z: float, radius: float, high: float) -> Floats:
-    turn = np.linspace(-np.pi / 2.0, np.pi / 2.0, 9)
-    return lathe([(radius * math.cos(t), z + high * math.sin(t)) for t in turn.tolist()], ROUND)
-
-
 def _rounded(z: float, long: float, wide: float, x: float) -> Floats:
     """Return a ring around a car at a height: a shape between an oval and a rectangle."""
     turn = (np.arange(2 * ROUND) + 0.5) * np.pi / ROUND
     c, s = np.cos(turn), np.sin(turn)
     right, left = (np.sign(w) * np.abs(w) ** 0.4 for w in (c, s))
     return np.column_stack([right * long + x, left * wide, np.full(len(turn), z)])
-
-
-def _wheel(x: float, y: float) -> Floats:
-    disc = lathe([(0.0, -0.1), (0.33, -0.1), (0.33, 0.1), (0.0, 0.1)], ROUND)
-    return np.stack([disc[..., 0] + x, disc[..., 2] + y, disc[..., 1] + 0.33], axis=-1)
-
-
-def _lamp(y: float) -> Floats:
-    ring = np.array([[0.0, 0.14, 0.0], [0.0, -0.14, 0.0], [-0.03, -0.14, 0.0], [-0.03, 0.14, 0.0]])
-    rings = [ring + np.array([-2.2, y, z]) for z in (0.68, 0.82)]
-    return capped(rings)

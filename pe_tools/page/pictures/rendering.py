@@ -15,8 +15,6 @@ from .illumination import skylight, sun_position, sunlight
 from .painted_mesh import unit
 from .ray_scene import GROUND, NOTHING, SKY, RayCamera, RayHits, RayScene
 
-Rgb = tuple[float, float, float]
-
 SUN, UPPER, LOWER = np.array([1.16, 1.11, 1.04]), np.array([0.50, 0.54, 0.60]), np.array([0.30] * 3)
 """Linear light of the sun, of the sky above and of the ground below."""
 MIRRORED = 0.07
@@ -38,19 +36,11 @@ EDGE_STEP = 0.06
 
 @dataclass(frozen=True, eq=False)
 class Environment:
-    """Ground, sky, sun and haze around the solids.
+    """Ground, sky, sun and haze around the solids; colours (N, 3) are linear.
 
-    Attributes
-    ----------
-    ground : callable
-        Takes points (N, 3) of the ground and the width (N,) of a pixel there [m]; returns linear
-        colours (N, 3).
-    sky : callable
-        Takes directions (N, 3); returns linear colours (N, 3).
-    sun : (3,) float
-        Direction to the sun.
-    haze : callable
-        Takes points (N, 3) of the ground; returns how far (N,) they fade into the sky, 0 to 1.
+    `ground` takes points (N, 3) of the ground and the width (N,) of a pixel there [m], and returns
+    colours; `sky` takes directions (N, 3), and returns colours; `sun` (3,) is the direction to the
+    sun; `haze` takes points of the ground, and returns how far (N,) they fade into the sky, 0 to 1.
     """
 
     ground: Callable[[Floats, Floats], Floats]
@@ -60,37 +50,24 @@ class Environment:
 
 
 def render(camera: RayCamera, scene: RayScene, environment: Environment) -> Floats:
-    """(H, W, 3) sRGB, 0 to 1: the picture of a scene."""
-    directions = camera.directions()
-    hits = scene.first_hits(camera.eye, directions, from_sensor=camera.from_sensor)
+    """(H, W, 3) sRGB, 0 to 1: the picture of a scene; pixels at edges are means of several rays."""
+    shape = camera.height, camera.width
     light = sun_position(scene, environment.sun)
+    hits = scene.first_hits(camera, camera.directions())
     sun = sunlight(scene, hits, light)
     sky = skylight(scene, hits, (camera.width, camera.height))
-    colors = shade(hits, directions, environment, sun, sky, camera.pixel_rad)
-    edges = np.flatnonzero(_edges(hits, sun, (camera.height, camera.width)))
-    colors[edges] = _edge_colors(camera, scene, environment, edges, light, (sky, hits))
-    return colors.reshape(camera.height, camera.width, 3)
-
-
-def _edge_colors(
-    camera: RayCamera,
-    scene: RayScene,
-    environment: Environment,
-    edges: NDArray[np.int64],
-    light: Floats,
-    first: tuple[Floats, RayHits],
-) -> Floats:
-    """(E, 3) colours of pixels at edges: means over several rays in each."""
-    sky, hits = first
+    colors = shade(hits, environment, sun, sky, camera.pixel_rad)
+    edges = np.flatnonzero(_edges(hits, sun, shape))
     row, column = np.divmod(edges, camera.width)
     total = np.zeros((len(edges), 3))
     for right, down in SUBPIXELS:
-        directions = camera.rays_through(column + 0.5 + right, row + 0.5 + down)
-        subpixel = scene.first_hits(camera.eye, directions, from_sensor=camera.from_sensor)
-        sun = sunlight(scene, subpixel, light)
-        open_ = _skylight_at(subpixel, sky, hits, edges, (camera.height, camera.width))
-        total += shade(subpixel, directions, environment, sun, open_, camera.pixel_rad)
-    return total / len(SUBPIXELS)
+        rays = camera.rays_through(column + 0.5 + right, row + 0.5 + down)
+        subpixel = scene.first_hits(camera, rays)
+        sun_there = sunlight(scene, subpixel, light)
+        sky_there = _skylight_at(subpixel, sky, hits, edges, shape)
+        total += shade(subpixel, environment, sun_there, sky_there, camera.pixel_rad)
+    colors[edges] = total / len(SUBPIXELS)
+    return colors.reshape(*shape, 3)
 
 
 def _skylight_at(
@@ -119,7 +96,7 @@ def _edges(hits: RayHits, sun: Floats, shape: tuple[int, int]) -> Flags:
     normals = hits.normals.reshape(*shape, 3)
     solid = (hits.surface > 0).reshape(shape)
     for axis in (0, 1):
-        one, two = _neighbours(axis)
+        one, two = ((slice(None),) * axis + (side,) for side in (slice(None, -1), slice(1, None)))
         differs = np.zeros(grids[0][one].shape, bool)
         for grid in grids:
             differs |= grid[one] != grid[two]
@@ -131,77 +108,49 @@ def _edges(hits: RayHits, sun: Floats, shape: tuple[int, int]) -> Flags:
     return edges.ravel()
 
 
-def _neighbours(axis: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
-    all_, first, last = slice(None), slice(None, -1), slice(1, None)
-    return ((first, all_), (last, all_)) if axis == 0 else ((all_, first), (all_, last))
-
-
 def shade(
-    hits: RayHits,
-    directions: Floats,
-    environment: Environment,
-    sun: Floats,
-    sky: Floats,
-    pixel_rad: float,
+    hits: RayHits, environment: Environment, sun: Floats, sky: Floats, pixel_rad: float
 ) -> Floats:
     """(N, 3) sRGB colours of first hits; `sun` and `sky` (N,) are the light on them."""
     color = np.zeros((len(hits.surface), 3))
-    color[hits.surface == SKY] = environment.sky(directions[hits.surface == SKY])
-    at = np.flatnonzero(hits.surface == GROUND)
-    color[at] = _ground(hits, at, directions, environment, sun, sky, pixel_rad)
-    at = np.flatnonzero(hits.is_solid)
-    color[at] = _paint(hits, at, directions, environment, sun, sky)
-    srgb = to_srgb(color)
+    at = hits.surface == SKY
+    color[at] = environment.sky(hits.directions[at])
+    at = hits.surface == GROUND
+    color[at] = _ground(hits[at], environment, sun[at], sky[at], pixel_rad)
+    at = hits.is_solid
+    color[at] = _paint(hits[at], environment, sun[at], sky[at])
+    # Values above `KNEE` approach white smoothly.
+    room, over = 1.0 - KNEE, np.maximum(color - KNEE, 0.0)
+    soft = np.where(over > 0.0, KNEE + room * (1.0 - np.exp(-over / room)), color)
+    srgb = graphics.srgb_of_linear(np.clip(soft, 0.0, 1.0))
     srgb[hits.surface == NOTHING] = OUTSIDE_LENS
     return srgb
 
 
-def to_srgb(linear: Floats) -> Floats:
-    """Return sRGB of linear light; values above `KNEE` approach white smoothly."""
-    room, over = 1.0 - KNEE, np.maximum(linear - KNEE, 0.0)
-    soft = np.where(over > 0.0, KNEE + room * (1.0 - np.exp(-over / room)), linear)
-    return graphics.srgb_of_linear(np.clip(soft, 0.0, 1.0))
-
-
 def _ground(
-    hits: RayHits,
-    at: NDArray,
-    directions: Floats,
-    environment: Environment,
-    sun: Floats,
-    sky: Floats,
-    pixel_rad: float,
+    hits: RayHits, environment: Environment, sun: Floats, sky: Floats, pixel_rad: float
 ) -> Floats:
     """Return colours of the ground: its own colour in full light, darker in the shade."""
-    points = hits.points[at]
-    slope = np.maximum(-directions[at, 2], 1e-3)
-    ground = environment.ground(points, hits.distance[at] * pixel_rad / slope)
+    slope = np.maximum(-hits.directions[:, 2], 1e-3)
+    ground = environment.ground(hits.points, hits.distance * pixel_rad / slope)
     full = float(unit(environment.sun)[2])
-    light = 0.52 * np.clip(sun[at] / full, 0.0, 1.0) + 0.48 * sky[at]
-    faded = environment.haze(points)[:, None]
-    return ground * light[:, None] * (1.0 - faded) + environment.sky(directions[at]) * faded
+    light = 0.52 * np.clip(sun / full, 0.0, 1.0) + 0.48 * sky
+    faded = environment.haze(hits.points)[:, None]
+    return ground * light[:, None] * (1.0 - faded) + environment.sky(hits.directions) * faded
 
 
-def _paint(
-    hits: RayHits,
-    at: NDArray,
-    directions: Floats,
-    environment: Environment,
-    sun: Floats,
-    sky: Floats,
-) -> Floats:
+def _paint(hits: RayHits, environment: Environment, sun: Floats, sky: Floats) -> Floats:
     """Return colours of paint: diffuse light, and reflections of sky and sun."""
-    normals, rays = hits.normals[at], directions[at]
-    paint, shine = hits.color[at, :3], hits.color[at, 3]
+    normals, rays, shine = hits.normals, hits.directions, hits.color[:, 3]
     up = (0.5 + 0.5 * normals[:, 2])[:, None]
-    around = (LOWER * (1.0 - up) + UPPER * up) * sky[at][:, None]
-    scattered = paint * (around + SUN * sun[at][:, None])
+    around = (LOWER * (1.0 - up) + UPPER * up) * sky[:, None]
+    scattered = hits.color[:, :3] * (around + SUN * sun[:, None])
     along = np.clip(-(rays * normals).sum(axis=1), 0.0, 1.0)
     mirrored = MIRRORED + (1.0 - MIRRORED) * (1.0 - along) ** 5
     back = rays + 2.0 * along[:, None] * normals
-    bright = _mirrored_light(back[:, 2]) * (0.35 + 0.65 * sky[at])
+    bright = _mirrored_light(back[:, 2]) * (0.35 + 0.65 * sky)
     glint = np.maximum((back * unit(environment.sun)).sum(axis=1), 0.0) ** GLOSS
-    glint = np.where(sun[at] > 0.0, 1.6 * glint, 0.0)
+    glint = np.where(sun > 0.0, 1.6 * glint, 0.0)
     return scattered + ((mirrored * bright + glint * 0.5) * shine)[:, None] * UPPER / UPPER[1]
 
 

@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 import numpy as np
 from markupsafe import Markup
-from numpy.typing import NDArray
 
 import pe_core as pe
 from pe_core import catalog, scene
@@ -53,17 +52,10 @@ def vehicle_picture(
     size: tuple[int, int] = SIZE,
     view: Viewpoint | None = None,
 ) -> bytes:
-    """Return a picture of a rig on its vehicle as a PNG file.
+    """Return a picture of a rig on its vehicle as a PNG file of a size (width, height) [px].
 
-    Parameters
-    ----------
-    vehicle : Vehicle or None
-    rig : Rig
-        Sensors are drawn in their housings; in default ones if their size is not known.
-    size : (width, height) int
-        [px]
-    view : Viewpoint, optional
-        By default from ahead on the right, with the whole vehicle in the picture.
+    Sensors are drawn in their housings, in default ones if their size is not known. By default the
+    view is from ahead on the right, with the whole vehicle in the picture.
     """
     view = view or default_view(vehicle, rig, size)
     return graphics.png_bytes(graphics.as_bytes(rendered(vehicle, rig, size, view)))
@@ -73,8 +65,10 @@ def rendered(
     vehicle: pe.Vehicle | None, rig: pe.Rig, size: tuple[int, int], view: Viewpoint
 ) -> Floats:
     """Return a picture of a rig on its vehicle as sRGB (H, W, 3), 0 to 1."""
+    colors = graphics.sensor_colors_on_paper(rig)
     solids = [] if vehicle is None else [painted_vehicle(vehicle)]
-    bodies = RayScene([*solids, *sensor_solids(rig)], vehicle is not None)
+    solids += [_solid(sensor, colors[sensor.name]) for sensor in rig]
+    bodies = RayScene(solids, vehicle is not None)
     return render(view.camera(*size), bodies, _studio(_bounds(vehicle, rig)))
 
 
@@ -156,10 +150,15 @@ def labels(vehicle: pe.Vehicle | None, rig: pe.Rig, view: Viewpoint) -> list[Num
     """Return the label of each sensor, in a picture of `SIZE`."""
     positions = np.array([sensor.pose.position for sensor in rig])
     ends = np.stack(view.project(positions, *SIZE), axis=1)
-    hidden = _behind_vehicle(vehicle, view, positions).tolist()
+    rays = positions - np.array(view.eye)
+    distance = np.sqrt((rays * rays).sum(axis=1))
+    hidden = np.zeros(len(rays), bool)
+    if vehicle is not None:
+        hits = vehicle.first_hit_from(np.array(view.eye), rays / distance[:, None])
+        hidden = np.asarray(hits.distance < distance - BEHIND_M)
     discs = spread_apart(ends - [0.0, LABEL_RISE])
     colors = graphics.sensor_colors_on_paper(rig).values()
-    rows = zip(ends, discs, colors, hidden, strict=True)
+    rows = zip(ends, discs, colors, hidden.tolist(), strict=True)
     return [NumberLabel(number, *row) for number, row in enumerate(rows, 1)]
 
 
@@ -198,24 +197,6 @@ def _draw_number(canvas: Canvas, label: NumberLabel) -> None:
         canvas.add("circle", cx=end[0], cy=end[1], r=4.0, fill=color, stroke="#1b1f24")
     canvas.add("circle", cx=disc[0], cy=disc[1], r=RADIUS, fill=color, stroke="#1b1f24")
     canvas.text(disc[0], disc[1] + 6.0, str(label.number), text_anchor="middle", css="number")
-
-
-def _behind_vehicle(
-    vehicle: pe.Vehicle | None, view: Viewpoint, positions: Floats
-) -> NDArray[np.bool_]:
-    """(N,) whether the vehicle hides positions (N, 3) [m] from the viewpoint."""
-    if vehicle is None:
-        return np.zeros(len(positions), bool)
-    ray = positions - np.array(view.eye)
-    distance = np.sqrt((ray * ray).sum(axis=1))
-    hits = vehicle.first_hit_from(np.array(view.eye), ray / distance[:, None])
-    return np.asarray(hits.distance < distance - BEHIND_M)
-
-
-def sensor_solids(rig: pe.Rig) -> list[PaintedMesh]:
-    """Return a solid for each sensor, in its colour."""
-    colors = graphics.sensor_colors_on_paper(rig)
-    return [_solid(sensor, colors[sensor.name]) for sensor in rig]
 
 
 def housing_of(sensor: pe.Sensor) -> scene.Housing:

@@ -15,58 +15,6 @@ PLACES = 16
 """Along each side of the picture."""
 MARK_SIDE = 0.06
 """Half the width of the mark that says up, in lengths of the view."""
-
-
-def outline(sensor: Sensor, length_m: float) -> Floats:
-    """(N, 3) points on the border of a camera's view at a distance, ground frame [m]."""
-    rays = camera_of(sensor).outline(PLACES) @ sensor.pose.ground_from_sensor.T
-    return rays * length_m + np.asarray(sensor.pose.position)
-
-
-def view_lines(sensor: Sensor, length_m: float, palette: Palette) -> Primitives:
-    """Edges of a view: from the camera to the corners, the curved outline, and the mark for up."""
-    points, place = outline(sensor, length_m), np.asarray(sensor.pose.position)
-    spokes = np.stack([np.broadcast_to(place, (4, 3)), points[::PLACES]], axis=1).reshape(-1, 3)
-    closed = polyline(np.vstack([points, points[:1]]))
-    lines = np.vstack([spokes, closed, _mark(sensor, points[PLACES // 2], length_m)])
-    return Primitives.of(lines, palette.camera)
-
-
-def view_faces(sensor: Sensor, length_m: float, palette: Palette) -> Primitives:
-    """Sides of a view: triangles from the camera to its outline."""
-    points = outline(sensor, length_m)
-    place = np.broadcast_to(np.asarray(sensor.pose.position), points.shape)
-    sides = np.stack([place, points, np.roll(points, -1, axis=0)], axis=1)
-    return Primitives.of(sides.reshape(-1, 3), palette.camera_face)
-
-
-def ground_outline(sensor: Sensor, far_m: float) -> Floats:
-    """(N, 3) outline of the ground (z = 0) in a camera's field of view, up to `far_m` [m].
-
-    What the vehicle hides is not taken away. Without points when it looks at no ground.
-    """
-    place = np.asarray(sensor.pose.position)
-    rays = camera_of(sensor).outline(PLACES) @ sensor.pose.ground_from_sensor.T
-    flat = np.maximum(np.hypot(rays[:, 0], rays[:, 1]), 1e-9)
-    steep = place[2] / far_m
-    down = np.maximum(-rays[:, 2] / flat, steep)
-    if not (-rays[:, 2] / flat > steep).any():
-        return np.empty((0, 3))
-    points = np.zeros_like(rays)
-    points[:, :2] = place[:2] + rays[:, :2] / flat[:, None] * (place[2] / down)[:, None]
-    return points
-
-
-def _mark(sensor: Sensor, top: Floats, length_m: float) -> Floats:
-    """(6, 3) ends of the lines of a small triangle over the middle of the upper edge."""
-    axes = sensor.pose.ground_from_sensor
-    up, left = axes[:, 2], axes[:, 1] * length_m * MARK_SIDE
-    tip = top + up * length_m * MARK_SIDE * 2.0
-    base = top + up * length_m * MARK_SIDE * 0.5
-    corners = np.array([base + left, base - left, tip])
-    return corners[[0, 1, 1, 2, 2, 0]]
-
-
 FACE_CORNERS = ((0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 1))
 EDGES = ((0, 1), (0, 2), (0, 3), (0, 4), (1, 2), (2, 3), (3, 4), (4, 1), (5, 6), (6, 7), (7, 5))
 RING_POINTS, TICK_SHARE = 48, 0.35
@@ -77,6 +25,12 @@ ROUND_POINTS = 180
 """Corners of the circle that is as far as a footprint is drawn."""
 FOOT_LINE, FOOT_FACE = 0.55, 0.9
 """How strong a footprint's edge and area are, beside the pyramid's edges and sides."""
+
+
+def outline(sensor: Sensor, length_m: float) -> Floats:
+    """(N, 3) points on the border of a camera's view at a distance, ground frame [m]."""
+    rays = camera_of(sensor).outline(PLACES) @ sensor.pose.ground_from_sensor.T
+    return rays * length_m + np.asarray(sensor.pose.position)
 
 
 def frustum_points(sensor: Sensor, length_m: float) -> Floats:
@@ -97,19 +51,36 @@ def frustum_points(sensor: Sensor, length_m: float) -> Floats:
 
 
 def frustum_lines(sensor: Sensor, length_m: float, palette: Palette = VIEWPORT) -> Primitives:
-    """Edges of a camera's view: pyramid, picture, and a small triangle above that marks up."""
-    if camera_of(sensor).lens is not None:
-        return view_lines(sensor, length_m, palette)
-    points = frustum_points(sensor, length_m)[np.array(EDGES).ravel()]
-    return Primitives.of(points, palette.camera)
+    """Edges of a camera's view: spokes, picture, and a small triangle above that marks up."""
+    if camera_of(sensor).lens is None:
+        points = frustum_points(sensor, length_m)[np.array(EDGES).ravel()]
+        return Primitives.of(points, palette.camera)
+    points, place = outline(sensor, length_m), np.asarray(sensor.pose.position)
+    spokes = np.stack([np.broadcast_to(place, (4, 3)), points[::PLACES]], axis=1).reshape(-1, 3)
+    closed = polyline(np.vstack([points, points[:1]]))
+    lines = np.vstack([spokes, closed, _mark(sensor, points[PLACES // 2], length_m)])
+    return Primitives.of(lines, palette.camera)
+
+
+def _mark(sensor: Sensor, top: Floats, length_m: float) -> Floats:
+    """(6, 3) ends of the lines of a small triangle over the middle of the upper edge."""
+    axes = sensor.pose.ground_from_sensor
+    up, left = axes[:, 2], axes[:, 1] * length_m * MARK_SIDE
+    tip = top + up * length_m * MARK_SIDE * 2.0
+    base = top + up * length_m * MARK_SIDE * 0.5
+    corners = np.array([base + left, base - left, tip])
+    return corners[[0, 1, 1, 2, 2, 0]]
 
 
 def frustum_faces(sensor: Sensor, length_m: float, palette: Palette = VIEWPORT) -> Primitives:
-    """Sides of a camera's view: four triangles from the pinhole."""
-    if camera_of(sensor).lens is not None:
-        return view_faces(sensor, length_m, palette)
-    points = frustum_points(sensor, length_m)[np.array(FACE_CORNERS).ravel()]
-    return Primitives.of(points, palette.camera_face)
+    """Sides of a camera's view: triangles from the camera to its outline."""
+    if camera_of(sensor).lens is None:
+        points = frustum_points(sensor, length_m)[np.array(FACE_CORNERS).ravel()]
+        return Primitives.of(points, palette.camera_face)
+    points = outline(sensor, length_m)
+    place = np.broadcast_to(np.asarray(sensor.pose.position), points.shape)
+    sides = np.stack([place, points, np.roll(points, -1, axis=0)], axis=1)
+    return Primitives.of(sides.reshape(-1, 3), palette.camera_face)
 
 
 def footprint(sensor: Sensor, far_m: float) -> Floats:
@@ -121,13 +92,29 @@ def footprint(sensor: Sensor, far_m: float) -> Floats:
     if place[2] <= 0.0:
         return np.empty((0, 3))
     if camera_of(sensor).lens is not None:
-        return ground_outline(sensor, far_m)
+        return _bent_footprint(sensor, far_m)
     angles = np.linspace(0.0, 2.0 * np.pi, ROUND_POINTS, endpoint=False)
     outline = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(ROUND_POINTS)]) * far_m
     outline[:, :2] += place[:2]
-    for normal in _inward(sensor):
+    side, up = _half_picture(sensor)
+    inward = np.array([[side, -1.0, 0.0], [side, 1.0, 0.0], [up, 0.0, -1.0], [up, 0.0, 1.0]])
+    for normal in inward @ sensor.pose.ground_from_sensor.T:
         outline = _cut(outline, (outline - place) @ normal)
     return outline
+
+
+def _bent_footprint(sensor: Sensor, far_m: float) -> Floats:
+    """The footprint of a camera with a lens: where the rays of its outline meet the ground."""
+    place = np.asarray(sensor.pose.position)
+    rays = camera_of(sensor).outline(PLACES) @ sensor.pose.ground_from_sensor.T
+    flat = np.maximum(np.hypot(rays[:, 0], rays[:, 1]), 1e-9)
+    steep = place[2] / far_m
+    down = np.maximum(-rays[:, 2] / flat, steep)
+    if not (-rays[:, 2] / flat > steep).any():
+        return np.empty((0, 3))
+    points = np.zeros_like(rays)
+    points[:, :2] = place[:2] + rays[:, :2] / flat[:, None] * (place[2] / down)[:, None]
+    return points
 
 
 def footprint_lines(outline: Floats, color: Rgba) -> Primitives:
@@ -158,13 +145,6 @@ def _half_picture(sensor: Sensor) -> tuple[float, float]:
     camera = camera_of(sensor)
     side = float(np.tan(camera.hfov / 2.0))
     return side, side * camera.height / camera.width
-
-
-def _inward(sensor: Sensor) -> Floats:
-    """(4, 3) normals of the pyramid's sides, ground frame, which point inwards."""
-    side, up = _half_picture(sensor)
-    normals = np.array([[side, -1.0, 0.0], [side, 1.0, 0.0], [up, 0.0, -1.0], [up, 0.0, 1.0]])
-    return normals @ sensor.pose.ground_from_sensor.T
 
 
 def _cut(outline: Floats, inside: Floats) -> Floats:

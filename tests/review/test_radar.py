@@ -8,6 +8,7 @@ import pe_core as pe
 from pe_core import catalog
 from pe_tools import graphics
 from pe_tools.page import ReportContext, page_bytes
+from pe_tools.page.pictures.sensor_views import field_figure
 from pe_tools.page.scene3d import scene_data
 from tests.review.conftest import outcome_of, small_study
 from tests.review.test_page import Elements
@@ -27,8 +28,9 @@ def test_a_page_shows_them(parking):
     text = page_bytes([parking]).decode()
     elements = Elements(text)
     assert not elements.open and len(elements.ids) == len(set(elements.ids))
-    assert "What front detects by range and azimuth" in text
-    assert "detections of a car whose" in text and "echoes of a post whose" in text
+    for sensor in list(parking.rig)[-2:]:
+        drawing, _ = field_figure(sensor, parking.vehicle)
+        assert drawing in text
 
 
 def test_the_3d_view_has_their_fields_and_the_ground_below(parking):

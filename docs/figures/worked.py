@@ -15,7 +15,7 @@ import pe_core as pe
 from pe_core.sensors.lidar.bracket import Bracket, Silhouettes, bracket, slice_through
 from pe_core.sensors.lidar.lattice import lattice_of
 from pe_core.sensors.lidar.tie_rules import position_in_voxels
-from pe_core.sensors.lidar.upright import Cubes, Upright, circle
+from pe_core.sensors.lidar.upright import Upright, circle, faces_of
 
 SPACE = pe.PerceptionSpace()
 SIDE = SPACE.interval
@@ -230,8 +230,8 @@ class Crossing:
 
 def faces() -> list[float]:
     """x0, x1, y0, y1, z0, z1 of the level voxel, seen from the sensor, in sides."""
-    cubes = Cubes.of([c.astype(np.float32) for c in index_of(LEVEL_CENTER).T], position_of(LEVEL))
-    return [float(f[0]) for f in (cubes.x0, cubes.x1, cubes.y0, cubes.y1, cubes.z0, cubes.z1)]
+    corners = [c.astype(np.float32) for c in index_of(LEVEL_CENTER).T]
+    return [float(f[0]) for f in faces_of(corners, position_of(LEVEL))]
 
 
 def corner_azimuths() -> tuple[float, float]:
@@ -255,11 +255,13 @@ def crossings() -> list[Crossing]:
 
 def kernel_azimuths() -> list[int]:
     """Azimuths that the kernel says meet the level voxel."""
-    cubes = Cubes.of([c.astype(np.float32) for c in index_of(LEVEL_CENTER).T], position_of(LEVEL))
-    azimuths, unsure = circle(MODEL.azimuth_count, 0.0).meeting(cubes)
+    corners = [c.astype(np.float32) for c in index_of(LEVEL_CENTER).T]
+    azimuths, unsure = circle(MODEL.azimuth_count, 0.0).meeting(
+        faces_of(corners, position_of(LEVEL))
+    )
     assert not unsure[0]
-    first = int(azimuths.entry[0]) - 2 * MODEL.azimuth_count
-    return [first + int(azimuths.turn[0]) * n for n in range(int(azimuths.count[0]))]
+    entry, turn, count = azimuths[:, 0].astype(int).tolist()
+    return [entry - 2 * MODEL.azimuth_count + turn * n for n in range(count)]
 
 
 def kernel_upright() -> tuple[int, bool]:

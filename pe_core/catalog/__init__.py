@@ -16,9 +16,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from ..base.arrays import read_only_data
 from ..base.errors import InputError, shown
 from ..base.files import decode_text, read_bytes
-from ..base.read_only import read_only_data
 from ..base.serialization import load_toml
 from ..base.values import A_NAME, A_TEXT
 from ..scene.housing import Housing

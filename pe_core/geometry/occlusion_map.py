@@ -22,10 +22,9 @@ from numpy.typing import NDArray
 
 from ..base.arrays import Floats, Ints, Singles
 from .bins import MARGIN, SIDE_MARGIN, Raster, corner_max, corner_min, row_spans, spans_of_triangles
-from .culling import FaceLook
+from .culling import FaceLook, Targets
 from .indexing import count_up
 from .poses import cross, dot
-from .ray_triangle import Targets
 
 ROUNDING = 1e-6
 """Depths are taken this much (relative) nearer and farther: single precision, and below."""

@@ -5,7 +5,7 @@ hit by no ray. Therefore this module follows pairs of a ray and a box: only that
 against the content of the box, level by level, down to the triangles.
 
 Boxes are slightly enlarged and tested in single precision: none is missed. Triangles are tested in
-double precision by the planes of their edges, with the same bits as in `ray_triangle`.
+double precision by the planes of their edges, with the same bits as in `culling`.
 """
 
 from __future__ import annotations

@@ -22,10 +22,9 @@ from numpy.typing import NDArray
 
 from ..base.arrays import Floats, Ints
 from .bins import FACES, Raster, RowSpans, Spans, row_spans
-from .culling import Ends, FaceLook, VisibleBoxes
+from .culling import Ends, FaceLook, Facing, Targets, VisibleBoxes, min_distance
 from .indexing import blocks, count_up, stable_order
 from .ray_traversal import RayBoxes, RayWalk
-from .ray_triangle import Facing, Targets, min_distance
 from .triangle_tree import TriangleTree
 
 MAX_BINS = 1024

@@ -12,9 +12,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..base.arrays import Floats, Ints
+from ..base.arrays import Floats, Ints, read_only
 from ..base.errors import InputError
-from ..base.read_only import read_only
 from ..geometry.grids import PerceptionSpace
 from .boxes import OUTSIDE, Boxes, BoxReport
 from .classes import Shape, normed

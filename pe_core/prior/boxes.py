@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..base.arrays import Floats
+from ..base.arrays import Floats, read_only
 from ..base.errors import InputError, shown
-from ..base.read_only import read_only
 from ..base.values import A_PATH, Number, numbers, vector
 
 KNOWN_CLASSES = ("car", "pedestrian", "cyclist", "truck", "cone")

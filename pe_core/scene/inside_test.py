@@ -10,8 +10,7 @@ from functools import cache
 
 import numpy as np
 
-from ..base.arrays import Floats
-from ..base.read_only import read_only
+from ..base.arrays import Floats, read_only
 from ..geometry.poses import dot
 from .vehicle import Vehicle
 

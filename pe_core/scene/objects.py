@@ -10,9 +10,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..base.arrays import Floats, Ints
+from ..base.arrays import Floats, Ints, read_only
 from ..base.errors import InputError, shown
-from ..base.read_only import read_only
 from ..base.values import A_NAME, numbers
 from ..geometry.poses import FARTHEST_M
 

@@ -91,6 +91,10 @@ class Sensor:
         alone = f"{self.kind} {self.name}"
         return self.fusion or (self.kind if self.model.fuses_early else alone)
 
+    def measures_as(self, other: Sensor) -> bool:
+        """Whether two sensors measure the same: the same model at the same pose."""
+        return self.model is other.model and self.pose == other.pose
+
     def moved(self, pose: Pose) -> Sensor:
         """Return the same sensor at another pose."""
         return replace(self, pose=pose)

@@ -1,28 +1,47 @@
-"""The vehicle's body: first hits of rays, clearance of flush-mounted sensors, height map."""
+"""The vehicle's body: first hits of rays, clearance of flush-mounted sensors, covers of radars."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..base.arrays import Floats
+from ..base.arrays import Floats, ReadOnlyDict, read_only, read_only_copy
 from ..base.errors import InputError, shown
-from ..base.read_only import read_only, read_only_copy
 from ..base.setting import Panel, check_settings, setting
 from ..base.values import A_NAME, Number, numbers
 from ..geometry.grids import PerceptionSpace, top_heights
 from ..geometry.poses import FARTHEST_M, cross, dot
 from ..geometry.raycast import Hits, VisibleTriangles
 from ..geometry.triangle_tree import TriangleTree
-from .radar_covers import checked_covers
 
+LOSS_DB = Number(0.0, 100.0, unit="dB", noun="loss")
 DEFAULT_CLEARANCE_M = 0.02
 """Distance from the vehicle's surface at which a flush-mounted sensor is evaluated."""
 CLEARANCE = Number(0.0, 1.0, below=True, unit="m")
+
+
+def checked_covers(covers: Any, names: Sequence[str]) -> Mapping[str, float]:
+    """Return the loss of covers, one way, by part [dB].
+
+    Raises
+    ------
+    InputError
+        When it is no table, a part is unknown (near names are offered), or a loss is impossible.
+    """
+    if not isinstance(covers, Mapping):
+        raise InputError("vehicle", "covers", "a table of parts and losses", shown(covers))
+    for name in covers:
+        if name not in names:
+            near = get_close_matches(str(name), names, n=3, cutoff=0.4) or list(names)[:5]
+            raise InputError("vehicle", "covers", f"a part such as {', '.join(near)}", shown(name))
+    items = covers.items()
+    return ReadOnlyDict({k: LOSS_DB.checked("vehicle", f"covers.{k}", v) for k, v in items})
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,9 +9,8 @@ from weakref import WeakValueDictionary
 
 import numpy as np
 
-from ..base.arrays import Floats
+from ..base.arrays import Floats, read_only
 from ..base.errors import InputError
-from ..base.read_only import read_only
 from ..geometry.grids import PerceptionSpace
 from ..prior.prior import ClassDensity, Prior
 

@@ -16,9 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.arrays import Floats, Ints
+from ..base.arrays import Floats, Ints, read_only
 from ..base.errors import InputError
-from ..base.read_only import read_only
 from ..base.values import Whole
 from ..geometry.grids import PerceptionSpace
 from ..prior.prior import ClassDensity

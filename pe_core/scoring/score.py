@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.read_only import read_only
+from ..base.arrays import read_only
 from ..geometry.grids import PerceptionSpace
 
 if TYPE_CHECKING:

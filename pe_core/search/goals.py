@@ -11,8 +11,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
+from ..base.arrays import ReadOnlyDict
 from ..base.errors import InputError, shown
-from ..base.read_only import ReadOnlyDict
 from ..base.setting import NAMES, OneOf, Panel, Several, check_settings, setting
 from ..base.values import A_NAME, Number, Whole, listed
 from ..geometry.poses import Pose

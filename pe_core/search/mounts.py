@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..base.arrays import Floats
+from ..base.arrays import Floats, ReadOnlyDict
 from ..base.errors import InputError, shown
-from ..base.read_only import ReadOnlyDict
 from ..base.setting import FLAG, OneOf, Pair, Panel, check_settings, setting
 from ..base.values import A_NAME, A_PATH, ANY, LENGTH, Number, listed
 from ..geometry.poses import Pose

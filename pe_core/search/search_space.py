@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from ..base.arrays import ReadOnlyDict
 from ..base.errors import InputError, shown
-from ..base.read_only import ReadOnlyDict
 from ..base.setting import Panel, check_settings, setting
 from ..base.values import Angle, Number, Whole, listed, pair
 from ..geometry.poses import FARTHEST_M, METRES, ROTATION

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from ..base.arrays import ReadOnlyDict
 from ..base.errors import InputError, shown
-from ..base.read_only import ReadOnlyDict
 from ..base.setting import Panel, check_settings, required_setting, setting
 from ..base.values import A_NAME, Name, Number, Whole, listed
 from ..scene.rig import Rig, SensorModel

@@ -32,9 +32,8 @@ from .measurement_cache import (
     PartMeasurementCache,
     VisibleGroundCache,
 )
-from .perception import BLIND_RULES, PerceptionModel
+from .perception import BLIND_RULES, CURVE_MODELS, SCANS, PerceptionModel, scan_curves
 from .radar import RADAR, Radar, RadarMode
-from .scan_curves import CURVE_MODELS, SCANS, scan_curves
 from .ultrasonic import ULTRASONIC, Ultrasonic
 from .weather import Weather, rig_in_weather
 

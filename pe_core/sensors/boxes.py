@@ -11,10 +11,9 @@ from functools import cached_property
 
 import numpy as np
 
-from ..base.arrays import Flags, Floats, Ints
-from ..base.read_only import read_only
+from ..base.arrays import Flags, Floats, Ints, read_only
 from ..geometry.indexing import count_up, stable_order
-from ..geometry.poses import dot
+from ..geometry.poses import dot, rotate
 from ..scene.objects import Objects
 
 NUDGE_M = np.array([1.97, 3.02, 4.98]) * 1e-8
@@ -70,6 +69,13 @@ class PlacedBoxes:
         c, s = self.headings[which].T
         x, y, z = points.T
         return np.stack([c * x - s * y, s * x + c * y, z], axis=1)
+
+    def axes_in(self, ground_from_frame: Floats) -> list[Floats]:
+        """Return the boxes' three axes in a frame, (3, N) each."""
+        c, s = self.headings.T
+        zero = np.zeros(len(c))
+        axes = ((c, s, zero), (-s, c, zero), (zero, zero, zero + 1.0))
+        return [rotate(ground_from_frame.T, np.stack(w, axis=1)).T for w in axes]
 
     def crossing(self, which: Ints, directions: Floats) -> tuple[Floats, Floats]:
         """Return distances (P,) at which rays from the sensor enter and leave one box each.

@@ -296,7 +296,7 @@ def measure(
     Camera: the area of the cube's image in pixels, clipped to the picture. It is 0 if a corner is
     behind the camera or in its plane, if the centre is out of range, or if the vehicle occludes
     the centre (`camera.tie_rules`). Through a lens with distortion, the part inside the lens's
-    field counts, also if a corner is behind the camera (`camera.bent_area`).
+    field counts, also if a corner is behind the camera (`camera.pixel_area`).
 
     Parameters
     ----------

@@ -71,11 +71,6 @@ class _Kernels(Generic[K]):
             kernel.keep_only(kept)
 
 
-def _is_same(one: Sensor, other: Sensor) -> bool:
-    """Whether two sensors of one AP curve measure the same."""
-    return one.model is other.model and one.pose == other.pose
-
-
 class MeasurementCache:
     """Measures rigs on a fixed set of voxels.
 
@@ -172,7 +167,7 @@ class MeasurementCache:
         for cached in (self._measured.get(sensor.name), self._whole.get(_key(sensor))):
             if cached is None or (cached.approximate and not approximate):
                 continue
-            if _is_same(cached.sensor, sensor) and cached.sensor.curve == sensor.curve:
+            if cached.sensor.measures_as(sensor) and cached.sensor.curve == sensor.curve:
                 return cached
         return None
 
@@ -243,7 +238,7 @@ class ObjectMeasurementCache:
     def cached(self, sensor: Sensor) -> Floats | None:
         """Return the valid cached m (N,) of a sensor."""
         cached = self._measured.get(sensor.name)
-        return cached[1] if cached and _is_same(cached[0], sensor) else None
+        return cached[1] if cached and sensor.measures_as(cached[0]) else None
 
     def measure_again(self, sensor: Sensor) -> Floats:
         """Measure one sensor, cache the result, and return m (N,)."""
@@ -339,7 +334,7 @@ class VisibleGroundCache:
 
     def _one(self, sensor: Sensor, approximate: bool) -> VisibleGround:
         cached = self._visible.get(sensor.name)
-        if cached is None or (cached.approximate and not approximate):
-            return self._kernels.of(sensor).mark(sensor, approximate)
-        same = _is_same(cached.sensor, sensor)
-        return cached if same else self._kernels.of(sensor).mark(sensor, approximate)
+        is_good = cached is not None and (approximate or not cached.approximate)
+        if cached is not None and is_good and sensor.measures_as(cached.sensor):
+            return cached
+        return self._kernels.of(sensor).mark(sensor, approximate)

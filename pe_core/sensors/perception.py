@@ -1,19 +1,75 @@
-"""The perception model: AP curves by kind of sensor, and the rule for blind sensors."""
+"""The perception model: AP curves by kind of sensor, and the rule for blind sensors.
+
+Whole objects have the curves of their kind (`[ap] model = "paper"`), or those from scans
+(`"scans"`): fitted to the detectors of our own study, docs/validity/own; `python -m
+studies.detectors --curves` writes them. They are of LiDARs alone: other kinds keep the paper's.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 
+from ..base.arrays import ReadOnlyDict
 from ..base.errors import InputError, shown
-from ..base.read_only import ReadOnlyDict
+from ..base.files import decode_text, read_bytes
+from ..base.serialization import load_toml
+from ..base.setting import OneOf, Panel, setting
+from ..base.table_reader import Table
 from ..base.values import A_NAME, choice
 from ..metric.entropy import ApCurve
 from .kind import KINDS, ClassCurves, kind_named
-from .scan_curves import CURVE_MODELS, MODEL, PAPER, SCANS, scan_curves
 
+PAPER, SCANS = "paper", "scans"
+CURVE_MODELS = (PAPER, SCANS)
+MODEL: str = setting(
+    PAPER,
+    OneOf(CURVE_MODELS),
+    "AP curves of whole objects: from publications, or of LiDARs fitted to detectors on scans",
+    Panel(
+        "ap_model",
+        "Object AP",
+        menu=(
+            ("Publications", "Fitted to published detectors, or converted from the paper's curves"),
+            ("Scans", "LiDARs: fitted to detectors that this project trained on simulated scans"),
+        ),
+    ),
+    scored=True,
+)
+"""The field of `PerceptionModel`."""
+FILE = Path(__file__).with_name("scans.toml")
 BLIND_RULES = ("floor", "literal")
 SOURCE = "perception model"
+
+
+@dataclass(frozen=True, slots=True)
+class ScanCurves:
+    """The curves from scans, by kind and class, and the runs that they are fitted to."""
+
+    curves: ClassCurves
+    runs: int
+    planned: int
+
+    @property
+    def complete(self) -> bool:
+        """Whether all planned runs are done; until then the curves are provisional."""
+        return self.runs == self.planned
+
+
+@cache
+def scan_curves() -> ScanCurves:
+    """Return the curves of the file that is part of the engine."""
+    table = Table(load_toml(FILE, "curves", decode_text(read_bytes(FILE))), FILE.name)
+    kinds = table.table("curves")
+    curves = {kind: _of_kind(kinds.table(kind)) for kind in kinds.names}
+    return ScanCurves(curves, table.whole("runs"), table.whole("planned"))
+
+
+def _of_kind(table: Table) -> dict[str, ApCurve]:
+    own = {name: table.table(name) for name in table.names}
+    return {name: ApCurve(row.number("a"), row.number("b")) for name, row in own.items()}
 
 
 @dataclass(frozen=True, init=False, repr=False)

@@ -7,8 +7,8 @@ import pytest
 
 import pe_core as pe
 from pe_core.sensors import Voxels, kind_of
-from pe_core.sensors.camera.bent_area import bent_pixel_area
 from pe_core.sensors.camera.lens_models import BrownConrady, FTheta, KannalaBrandt, Pinhole
+from pe_core.sensors.camera.pixel_area import bent_pixel_area
 from pe_core.sensors.camera.sample_areas import bent_pixel_areas
 from pe_core.sensors.camera.tie_rules import axes_of
 from tests.engine import shapes

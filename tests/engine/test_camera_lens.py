@@ -7,9 +7,9 @@ import pytest
 
 import pe_core as pe
 from pe_core.sensors.camera.lens import RINGS, field_outline, fold_angle
-from pe_core.sensors.camera.lens_lookup import BEYOND, NEAREST_RAD, QuickLens, _unevenness
 from pe_core.sensors.camera.lens_models import BrownConrady, FTheta, KannalaBrandt, Pinhole
 from pe_core.sensors.camera.pixel_area import frustum_distance
+from pe_core.sensors.camera.sample_areas import BEYOND, NEAREST_RAD, QuickLens, _unevenness
 
 WIDE = BrownConrady(930.5, 932.25, 965.0, 530.0, k1=-0.25, k2=0.12, p1=1e-3, p2=-2e-3, k3=-0.02)
 RATIONAL = BrownConrady(

@@ -2,11 +2,9 @@
 
 from itertools import product
 
-import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.sensors.lidar.kernel_voxels import MAX_NIBBLE, NibbleCounts, compact
 from tests.engine import shapes
 from tests.thorough import pairs
 
@@ -53,17 +51,6 @@ def test_alone_and_failing_are_scores_of_other_rigs(name, how):
         assert own.entropy == pytest.approx(alone.entropy, abs=1.01e-9)
         assert own.lost == pytest.approx(others - score.entropy, abs=1.01e-9)
         assert own.lost > 0.0 or blind == "literal"
-
-
-@pytest.mark.parametrize("rows", [1, 2, 7, 8])
-def test_counts_in_half_bytes_are_those_in_bytes(rows):
-    rng = np.random.default_rng(rows)
-    counts = rng.integers(0, 40, (70, rows, 5)).astype(np.uint16)
-    packed = NibbleCounts.of(counts, 11)
-    assert packed.packed.nbytes == 70 * ((rows + 1) // 2) * 5
-    assert MAX_NIBBLE == 15
-    for planes in (slice(0, 32), slice(32, 64), slice(64, 70)):
-        np.testing.assert_array_equal(packed[planes], compact(counts, 11)[planes])
 
 
 def test_many_lidars_score_as_few_do():

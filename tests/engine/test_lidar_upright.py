@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.sensors.lidar.slopes import SlopeCounts
 from pe_core.sensors.lidar.tie_rules import position_in_voxels
-from pe_core.sensors.lidar.upright import MAX_AZIMUTHS, Upright
+from pe_core.sensors.lidar.upright import MAX_AZIMUTHS, SlopeCounts, Upright
 from tests.engine import shapes
 from tests.thorough import pairs, tries
 

@@ -9,7 +9,7 @@ import pytest
 import pe_core as engine
 from pe_core.scoring.targets import ObjectEvaluator, TargetRule
 from pe_core.sensors import scan_curves as scan_file
-from pe_core.sensors.scan_curves import FILE
+from pe_core.sensors.perception import FILE
 from studies.detectors.curve_section import curve_section, curves_text, date_of, write_curves
 from studies.detectors.placements import placements, vehicle
 from studies.detectors.plan import FIXED, PLAIN, full_plan, quick_plan

@@ -10,8 +10,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...base.arrays import Flags, Floats, Ints
-from ...base.read_only import read_only
+from ...base.arrays import Flags, Floats, Ints, read_only
 from ...scene.vehicle import Vehicle
 
 CONTACT_M = 0.03

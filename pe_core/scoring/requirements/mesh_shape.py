@@ -14,9 +14,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...base.arrays import Flags, Floats
+from ...base.arrays import Flags, Floats, read_only
 from ...base.errors import InputError
-from ...base.read_only import read_only
 from ...geometry.poses import cross, dot
 
 GridRectangle = tuple[int, int, int, int]

@@ -15,9 +15,8 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ...base.arrays import Floats
+from ...base.arrays import Floats, read_only
 from ...base.errors import InputError, shown
-from ...base.read_only import read_only
 from ...base.values import FINITE, LENGTH, real
 from ...scene.orientation import is_called
 from ...scene.vehicle import Vehicle

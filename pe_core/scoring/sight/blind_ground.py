@@ -13,8 +13,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ...base.arrays import Flags, Floats
-from ...base.read_only import read_only
+from ...base.arrays import Flags, Floats, read_only
 from ...scene.vehicle import Vehicle
 from .grid_regions import outlines
 from .ground_cells import ROUNDING, GroundCells, Rectangle

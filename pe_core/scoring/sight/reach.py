@@ -18,9 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...base.arrays import Flags, Floats, Ints
+from ...base.arrays import Flags, Floats, Ints, read_only
 from ...base.errors import InputError, shown
-from ...base.read_only import read_only
 from ...base.values import Number, Whole
 from ...geometry.grids import PerceptionSpace
 from ...prior.prior import ClassDensity

@@ -9,8 +9,7 @@ from threading import RLock
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.arrays import Floats
-from ...base.read_only import read_only
+from ...base.arrays import Floats, read_only
 from ...base.values import rounded
 from ...geometry.grids import PerceptionSpace
 from ...metric.entropy import H_BLIND, ap_of_entropy

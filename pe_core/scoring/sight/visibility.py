@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.arrays import Floats, Ints
-from ...base.read_only import read_only
+from ...base.arrays import Floats, Ints, read_only
 from ...metric.fusion import Fusion
 from ...scene.rig import Rig
 from ..sampling import VoxelSample

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...base.arrays import Floats, Ints
+from ...base.arrays import Floats, Ints, read_only
 from ...base.errors import InputError
 from ...base.memory import require_memory
-from ...base.read_only import read_only
 from ...geometry.grids import PerceptionSpace
 from ...prior.prior import Prior
 from ...scene.objects import Objects

@@ -16,9 +16,8 @@ from ...base.arrays import Floats, Singles
 from ...geometry.poses import dot
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle, VisibleMesh
-from .bent_area import bent_pixel_area
 from .model import Camera
-from .pixel_area import clipped_pixel_area
+from .pixel_area import bent_pixel_area, clipped_pixel_area
 from .tie_rules import aims_at, axes_of, offsets_of
 
 Mask = NDArray[np.bool_]

@@ -1,4 +1,11 @@
-"""The camera's kernels for voxels: all voxels of a space, and a sample of them."""
+"""The camera's kernels: all voxels of a space, a sample of them, the ground, and objects.
+
+**Ground.** Posts stand in the middles of squares, and are seen if a point of theirs is in the
+picture and not occluded. The visible ground is a region with an edge, so first one square of each
+block is tested, then all squares of the blocks along the edge.
+
+**Objects.** Rays are cast only for boxes that may be partly occluded.
+"""
 
 from __future__ import annotations
 
@@ -11,19 +18,45 @@ from typing import NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.arrays import Flags, Floats, Ints
 from ...geometry.grids import PerceptionSpace
+from ...geometry.poses import dot
 from ...metric.fusion import VisibleRows
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle, VisibleMesh
-from ..kernels import GridKernel, Measured, Occlusion, Planes, SampleKernel, Voxels, block_voxels
-from .bent_grid_areas import BentPlanes
-from .grid_areas import CameraPlanes
+from ..boxes import BoxRays, PlacedBoxes, Rivals, behind_others
+from ..kernels import (
+    GridKernel,
+    GroundKernel,
+    GroundView,
+    Measured,
+    ObjectKernel,
+    ObjectView,
+    Occlusion,
+    Planes,
+    SampleKernel,
+    VisibleGround,
+    Voxels,
+    block_voxels,
+    heights_of_post,
+)
+from .definition import hidden, is_ranged, out_of_range
+from .grid_areas import BentPlanes, CameraPlanes
 from .model import Camera
-from .picture import picture_occlusion
+from .object_definition import BoxImages, along_camera, box_images, visible_share
+from .picture import PictureBins, picture_occlusion
+from .pixel_area import frustum_distance, in_sensor_frame
 from .sample_areas import bent_pixel_areas, pixel_areas
+from .tie_rules import IN_FRONT, aims_at, axes_of
 
 SEEN_BYTES = 2
 """Memory of a voxel, averaged over visible and invisible ones (measured)."""
+BLOCK_M = 0.125
+"""Side of a block of squares: gaps between the middles of blocks are too narrow to count."""
+ROOM_M = 1e-3
+"""Balls round posts are enlarged by this."""
+MARGIN_M = 1e-3
+"""Balls round boxes are enlarged by this."""
 
 
 class ReadyCamera(NamedTuple):
@@ -94,3 +127,187 @@ def _seen(vehicle: Vehicle | None, sensor: Sensor) -> VisibleMesh | None:
     if vehicle is None:
         return None
     return vehicle.seen_from(sensor.pose.position, sensor.model.sees_through_glass)
+
+
+class CameraGround(GroundKernel):
+    """Marks squares with a visible post in their middle."""
+
+    def __init__(self, view: GroundView) -> None:
+        self._view = view
+
+    def mark(self, sensor: Sensor, approximate: bool) -> VisibleGround:
+        """Test one post of each block, then the posts along the edges of the visible area."""
+        grid = self._view.grid
+        look = PostVisibility(sensor, self._view)
+        side = max(1, int(BLOCK_M / grid.step + 1e-9))
+        marked = np.zeros(grid.shape, bool)
+        flat = marked.reshape(-1)
+        i, j = (np.arange(side // 2, n + side // 2, side).clip(max=n - 1) for n in grid.shape)
+        first = np.add.outer(i * grid.shape[1], j)
+        seen = look.sees(first.reshape(-1)).reshape(first.shape)
+        flat[first[seen]] = True
+        along = np.repeat(np.repeat(_edges(seen), side, axis=0), side, axis=1)
+        rest = np.flatnonzero(along[: grid.shape[0], : grid.shape[1]])
+        flat[rest] = look.sees(rest)
+        return VisibleGround(sensor, marked)
+
+
+class PostVisibility:
+    """Tests which posts a camera sees."""
+
+    def __init__(self, sensor: Sensor, view: GroundView) -> None:
+        self._camera, self._view = cast(Camera, sensor.model), view
+        self._position, self._axes = np.asarray(sensor.pose.position), axes_of(sensor.pose)
+        self._seen: VisibleMesh | None = None
+        self._shadow: PictureBins | None = None
+        if view.vehicle is not None:
+            glass = self._camera.sees_through_glass
+            self._seen = view.vehicle.seen_from(sensor.pose.position, glass)
+            if self._camera.projection.is_straight:
+                self._shadow = PictureBins(self._camera, self._axes, self._seen.seen.triangles)
+
+    def sees(self, squares: Ints) -> Flags:
+        """Whether a point of each post (N,) in the middle of its square is visible."""
+        middles = self._view.grid.middles(squares) - self._position[:2]
+        possible = self._may_see(middles)
+        found = np.zeros(len(squares), bool)
+        for z in heights_of_post(self._view.height).tolist():
+            left = np.flatnonzero(possible & ~found)
+            height = np.full(len(left), z - self._position[2])
+            found[left] = self._sees_points(np.column_stack([middles[left], height]))
+        return found
+
+    def _may_see(self, middles: Floats) -> Flags:
+        """Whether balls round posts (N, 2) reach into the view; true for every visible post."""
+        radius = self._view.height / 2.0 + ROOM_M
+        up = np.full(len(middles), self._view.height / 2.0 - self._position[2])
+        depth, aside, high = in_sensor_frame(self._axes, np.column_stack([middles, up]))
+        if self._camera.projection.is_straight:
+            away = frustum_distance(self._camera, depth, aside, high)
+            return np.asarray((away > -radius) & (depth > -radius))
+        flat = np.hypot(aside, high)
+        distance = np.hypot(flat, depth)
+        wide = np.arcsin(np.minimum(radius / np.maximum(distance, radius), 1.0))
+        outside = np.arctan2(flat, depth) - wide > self._camera.projection.edge
+        return np.asarray(~outside | (distance <= radius))
+
+    def _sees_points(self, offsets: Floats) -> Flags:
+        """Whether points (N, 3) from the camera are in the picture, in range, and not hidden."""
+        depth, left, up = in_sensor_frame(self._axes, offsets)
+        shown = self._shows(depth, left, up)
+        if is_ranged(self._camera):
+            shown &= ~out_of_range(self._camera, offsets)
+        if self._seen is None:
+            return shown
+        asked = np.flatnonzero(shown)
+        if self._shadow is not None:
+            asked = asked[self._shadow.may_hide(depth[asked], left[asked], up[asked])]
+        shown[asked] = ~hidden(self._seen, aims_at(offsets[asked], self._view.grid.step))
+        return shown
+
+    def _shows(self, depth: Floats, left: Floats, up: Floats) -> Flags:
+        """Whether points are within the lens's field and in the picture."""
+        camera, lens = self._camera, self._camera.projection
+        if lens.is_straight:
+            inside = frustum_distance(camera, depth, left, up) >= 0.0
+            return np.asarray(inside & (depth > IN_FRONT))
+        flat = np.hypot(left, up)
+        right, down = lens.project(depth, left, up)
+        inside = (right >= 0.0) & (right <= camera.width)
+        inside &= (down >= 0.0) & (down <= camera.height)
+        return np.asarray(inside & (np.arctan2(flat, depth) <= lens.edge))
+
+
+def _edges(seen: Flags) -> Flags:
+    """Blocks with a neighbour of the other state, visible or not; corners count as neighbours."""
+    return _beside(seen) & _beside(~seen)
+
+
+def _beside(flags: Flags) -> Flags:
+    """Set the flagged cells and all their neighbours."""
+    found = flags.copy()
+    for axis in (0, 1):
+        moved = np.moveaxis(found, axis, 0)
+        both = moved.copy()
+        both[1:] |= moved[:-1]
+        both[:-1] |= moved[1:]
+        found = np.moveaxis(both, 0, axis)
+    return found
+
+
+class CameraObjects(ObjectKernel):
+    """Measures the visible area of objects' images."""
+
+    def __init__(self, view: ObjectView) -> None:
+        self._view = view
+        self._balls = np.sqrt(dot(view.objects.sizes, view.objects.sizes)) / 2.0 + MARGIN_M
+
+    def measure(self, sensor: Sensor) -> Floats:
+        """Measure the objects with a camera; equal to the definition."""
+        objects, camera, axes = self._view.objects, cast(Camera, sensor.model), axes_of(sensor.pose)
+        boxes = PlacedBoxes.of(objects, sensor.pose.position)
+        which = np.flatnonzero(_may_be_visible(camera, axes, boxes, self._balls))
+        images = box_images(camera, axes, boxes.take(which))
+        if is_ranged(camera):
+            offsets = objects.centers[which] - np.asarray(sensor.pose.position)
+            images.area[out_of_range(camera, offsets)] = 0.0
+        area = np.zeros(len(objects))
+        area[which] = images.area * self._share(sensor, axes, boxes, which, images)
+        return area
+
+    def unoccluded(self, sensor: Sensor) -> Floats:
+        """Measure the whole images (N,) of the objects."""
+        return CameraObjects(ObjectView(self._view.objects)).measure(sensor)
+
+    def _share(
+        self, sensor: Sensor, axes: Floats, boxes: PlacedBoxes, which: Ints, images: BoxImages
+    ) -> Floats:
+        """Visible share of the images of boxes `which`."""
+        view, camera, seen = self._view, cast(Camera, sensor.model), None
+        if view.vehicle is not None:
+            seen = view.vehicle.seen_from(sensor.pose.position, camera.sees_through_glass)
+        image = images.some(shown := np.flatnonzero(images.area > 0.0))
+        by_vehicle = _may_be_hidden(camera, axes, image, seen)
+        rivals, asked = None, by_vehicle
+        if view.traffic:
+            rivals = Rivals.near(boxes, view.objects.scenes, self._balls, which[shown])
+            asked = by_vehicle | (rivals.count > 0)
+
+        def is_hidden(rays: BoxRays) -> NDArray[np.bool_]:
+            hidden = np.zeros(len(rays.item), bool)
+            if seen is not None:
+                near = np.flatnonzero(by_vehicle[rays.item])  # rays that the vehicle may occlude
+                hidden[near] = seen.first_hit(rays.directions[near]).distance < rays.distance[near]
+            if rivals is not None:
+                hidden |= behind_others(boxes, rivals, rays)
+            return hidden
+
+        share, own = np.ones(len(which)), np.flatnonzero(asked)
+        placed = boxes.take(which[shown])
+        share[shown[own]] = visible_share(camera, axes, placed, image, own, is_hidden)
+        return share
+
+
+def _may_be_visible(
+    camera: Camera, axes: Floats, boxes: PlacedBoxes, balls: Floats
+) -> NDArray[np.bool_]:
+    """Whether balls round boxes reach into the view; true for every visible box."""
+    everything = np.arange(len(balls))
+    depth, left, up = along_camera(axes, boxes, everything, boxes.offsets).T
+    if camera.projection.is_straight:
+        inside = frustum_distance(camera, depth, left, up) > -balls
+        return np.asarray(inside & (depth > -balls))
+    distance = np.sqrt(dot(boxes.offsets, boxes.offsets))
+    safe = np.maximum(distance, balls)
+    theta = np.arctan2(np.hypot(left, up), depth)
+    within = theta - np.arcsin(balls / safe) < camera.projection.edge
+    return np.asarray(within | (distance <= balls))
+
+
+def _may_be_hidden(
+    camera: Camera, axes: Floats, images: BoxImages, seen: VisibleMesh | None
+) -> NDArray[np.bool_]:
+    """Whether the vehicle may hide images; always true for a lens with distortion."""
+    if seen is None or not camera.projection.is_straight:
+        return np.full(len(images.area), seen is not None)
+    return PictureBins(camera, axes, seen.seen.triangles).may_hide_in(images.low, images.high)

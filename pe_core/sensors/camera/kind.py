@@ -21,16 +21,13 @@ from ..boxes import BodyParts, PlacedBoxes
 from ..field_of_view import NEAREST, limited
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, Kind, derived_object_curves
 from ..weather import camera_range
-from .box_area import box_images
 from .definition import count_pixels, out_of_range
-from .kernel_ground import CameraGround
-from .kernel_objects import CameraObjects
-from .kernels import CameraGrid, CameraSample
+from .kernels import CameraGrid, CameraGround, CameraObjects, CameraSample
 from .lens import COEFFICIENT, FOCAL, PLACE, Lens
 from .lens import FOV as LENS_FOV
 from .lens_models import LENSES, FTheta, Pinhole
 from .model import FOV, PIXELS, Camera
-from .object_definition import count_object_pixels
+from .object_definition import box_images, count_object_pixels
 from .picture import picture_mask, picture_patch, picture_rays
 from .tie_rules import axes_of
 

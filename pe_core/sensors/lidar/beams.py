@@ -7,7 +7,7 @@ sensor's name until the sensor turns or moves.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -50,9 +50,14 @@ class BeamField:
         parts = np.asarray(self._vehicle.parts)[self._hits.face]
         return np.where(self._hits.distance < self._max_range, parts, -1)
 
-    def stopped_count(self, part_names: tuple[str, ...]) -> dict[str, int]:
+    def stopped_count(self, part_names: Sequence[str]) -> dict[str, int]:
         """Return the number of beams that end on each part, the largest number first."""
         return count_by_part(self.occluded_by, part_names)
+
+    def occlusion(self) -> Occlusion:
+        """Count the beams, those that the vehicle occludes, and the latter by part."""
+        by_part = {} if self._vehicle is None else self.stopped_count(self._vehicle.part_names)
+        return Occlusion(len(self.ends), sum(by_part.values()), by_part)
 
 
 def beam_field(
@@ -70,12 +75,6 @@ def beam_field(
     hits = vehicle.first_hit(sensor.pose.position, directions, sensor.model.sees_through_glass)
     ends = np.minimum(hits.distance, max_range)
     return BeamField(directions, ends, max_range, hits, vehicle)
-
-
-def occlusion_of(field: BeamField, vehicle: Vehicle | None) -> Occlusion:
-    """Count a LiDAR's beams, those that the vehicle occludes, and the latter by part."""
-    by_part = {} if vehicle is None else field.stopped_count(tuple(vehicle.part_names))
-    return Occlusion(len(field.ends), sum(by_part.values()), by_part)
 
 
 @dataclass(frozen=True)
@@ -224,9 +223,10 @@ class BeamCache:
     def rotated(self, sensor: Sensor) -> RotatedBeams:
         """Return a LiDAR's beams; the cached ones until the sensor turns."""
         beams = self._rotated.get(sensor.name)
-        last = beams and beams.sensor
-        if beams and last and last.model is sensor.model and last.pose.rpy == sensor.pose.rpy:
-            return beams
+        if beams is not None:
+            last = beams.sensor
+            if last.model is sensor.model and last.pose.rpy == sensor.pose.rpy:
+                return beams
         beams = self._rotated[sensor.name] = RotatedBeams(sensor)
         return beams
 
@@ -236,37 +236,25 @@ class BeamCache:
         With `approximate` an approximation may be returned, where that is quicker.
         """
         cached = self._cast.get(sensor.name)
-        if (
-            cached
-            and (approximate or not cached.approximate)
-            and same_measurement(cached.sensor, sensor)
-        ):
+        if cached and (approximate or not cached.approximate) and sensor.measures_as(cached.sensor):
             return cached
-        beams = self._cast[sensor.name] = self._newly_cast(sensor, approximate)
-        return beams
+        beams = self.rotated(sensor)
+        ends: BeamEnds = self.unoccluded(sensor)
+        is_approximate = approximate and self._approximation.applies_to(sensor)
+        if is_approximate:
+            ends = FixedEnds(self._approximation.ends(sensor, beams.slopes))
+        elif self._vehicle is not None:
+            ends = LazyEnds(sensor, beams, self._vehicle)
+        cast = self._cast[sensor.name] = CastBeams(sensor, ends, is_approximate)
+        return cast
 
     def unoccluded(self, sensor: Sensor) -> FixedEnds:
         """Return where a LiDAR's beams end without a vehicle: at the maximum range."""
         model = lidar_of(sensor)
         return FixedEnds(np.full(model.beam_count, model.max_range))
 
-    def _newly_cast(self, sensor: Sensor, approximate: bool) -> CastBeams:
-        beams = self.rotated(sensor)
-        if approximate and self._approximation.applies_to(sensor):
-            return CastBeams(
-                sensor, FixedEnds(self._approximation.ends(sensor, beams.slopes)), True
-            )
-        if self._vehicle is None:
-            return CastBeams(sensor, self.unoccluded(sensor), False)
-        return CastBeams(sensor, LazyEnds(sensor, beams, self._vehicle), False)
-
     def keep_only(self, sensors: Collection[Sensor]) -> None:
         """Drop the entries of all other sensors."""
         names = {sensor.name for sensor in sensors}
         self._rotated = {name: beams for name, beams in self._rotated.items() if name in names}
         self._cast = {name: beams for name, beams in self._cast.items() if name in names}
-
-
-def same_measurement(one: Sensor, other: Sensor) -> bool:
-    """Whether two sensors measure the same: the same model at the same pose."""
-    return one.model is other.model and one.pose == other.pose

@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from ...base.arrays import Flags, Floats, Ints
 from ...geometry.indexing import blocks, count_up, stable_order
-from ...geometry.poses import dot, rotate
+from ...geometry.poses import rotate
 from ...scene.rig import Sensor
 from ..boxes import PlacedBoxes
 from .definition import BoxHits
-from .lattice import WINDOW_MARGIN, Windows, lattice_of
+from .lattice import Windows, lattice_of, windows_of
 from .model import Lidar, lidar_of
 
 if TYPE_CHECKING:
@@ -35,8 +35,6 @@ PAIR_BLOCK = 1 << 15
 NO_BOX = np.iinfo(np.int64).max
 BOX_BLOCK = 256
 """Boxes whose candidates are tested together: they fit the memory, however near the boxes are."""
-MIN_AXIS_DISTANCE_M = 1e-3
-"""A box nearer than this to the LiDAR's axis has all beams tested."""
 BEHIND_MARGIN_M = 1e-6
 """A box is surely behind the vehicle if it begins this much beyond the farthest end of an occluded
 beam at its azimuth."""
@@ -61,12 +59,18 @@ class BoxTester:
 
         Returns the indices (H,) of the hits, and the distances (H,) at which they enter [m].
         """
-        parts = []
+        parts = [(np.zeros(0, np.int64), np.zeros(0))]
         for block in blocks(len(box), PAIR_BLOCK):
-            index, enter = self._hit_block(box[block], beam[block])
+            some = beam[block]
+            enter, leave = self.boxes.crossing(box[block], self.beams.take(some))
+            index = np.flatnonzero((enter < leave) & (enter <= self.lidar.max_range))
+            some, enter = some[index], enter[index]
+            occludable = np.flatnonzero(self.ends.occludable[some])
+            if len(occludable):
+                kept = np.ones(len(index), bool)
+                kept[occludable] = enter[occludable] <= self.ends.take(some[occludable])
+                index, enter = index[kept], enter[kept]
             parts.append((index + block.start, enter))
-        if not parts:
-            return np.zeros(0, np.int64), np.zeros(0)
         index, enter = (np.concatenate(w) for w in zip(*parts, strict=True))
         return index, enter
 
@@ -87,29 +91,12 @@ class BoxTester:
         in_range = hits.enter >= self.lidar.min_range
         return np.bincount(hits.box[in_range], minlength=len(self.boxes.offsets))
 
-    def max_distances(self) -> Floats:
-        """Return upper bounds (N,) of the distance of any point of each box [m]."""
-        corner = np.abs(self.boxes.offsets) + self.boxes.halves
-        return np.asarray(np.sqrt(dot(corner, corner)))
-
-    def _hit_block(self, box: Ints, beam: Ints) -> tuple[Ints, Floats]:
-        enter, leave = self.boxes.crossing(box, self.beams.take(beam))
-        index = np.flatnonzero((enter < leave) & (enter <= self.lidar.max_range))
-        beam, enter = beam[index], enter[index]
-        occludable = np.flatnonzero(self.ends.occludable[beam])
-        if len(occludable):
-            kept = np.ones(len(index), bool)
-            kept[occludable] = enter[occludable] <= self.ends.take(beam[occludable])
-            index, enter = index[kept], enter[kept]
-        return index, enter
-
 
 def concatenated(parts: list[BoxHits]) -> BoxHits:
     """Join hits."""
-    if not parts:
-        return BoxHits(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
+    none = BoxHits(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
     keys = ("box", "beam", "enter")
-    return BoxHits(*(np.concatenate([getattr(p, key) for p in parts]) for key in keys))
+    return BoxHits(*(np.concatenate([getattr(p, key) for p in [none, *parts]]) for key in keys))
 
 
 def nearest_hits(hits: BoxHits, scenes: Ints, beam_count: int) -> BoxHits:
@@ -133,49 +120,23 @@ def nearest_hits(hits: BoxHits, scenes: Ints, beam_count: int) -> BoxHits:
     return BoxHits(hits.box[index], hits.beam[index], hits.enter[index])
 
 
+def box_windows(tester: BoxTester) -> Windows:
+    """Return the windows (N,) of all boxes."""
+    boxes, axes = tester.boxes, tester.sensor.pose.ground_from_sensor
+    center = rotate(axes.T, boxes.in_ground(boxes.offsets)).T
+    half_axes = zip(boxes.halves.T, boxes.axes_in(axes), strict=True)
+    return windows_of(center, [half * axis for half, axis in half_axes])
+
+
 def candidate_hits(tester: BoxTester) -> Iterator[BoxHits]:
     """Yield all hits of all boxes, by testing the beams in each box's window."""
-    windows, off_axis = _windows(tester)
-    lattice = lattice_of(tester.lidar)
-    yield tester.hits_of_all_beams(np.flatnonzero(~off_axis))
-    boxes = np.flatnonzero(off_axis)
+    windows, lattice = box_windows(tester), lattice_of(tester.lidar)
+    all_round = windows.half_azimuth > np.pi
+    yield tester.hits_of_all_beams(np.flatnonzero(all_round))
+    boxes = np.flatnonzero(~all_round)
     for block in blocks(len(boxes), BOX_BLOCK):
-        box = boxes[block]
-        item, beam = lattice.candidates(Windows(*(w[box] for w in windows)))
-        yield tester.hits(box[item], beam)
-
-
-def azimuth_spans(tester: BoxTester) -> tuple[tuple[Floats, Floats], Flags]:
-    """Return the first and last azimuth (N,) of boxes [rad], and which may be hit, by elevation."""
-    (middle, half, low, high), off_axis = _windows(tester)
-    half, channels = np.where(off_axis, half, np.pi), tester.lidar.elevations
-    among = (low <= channels.max()) & (high >= channels.min())
-    return (middle - half, middle + half), among | ~off_axis
-
-
-def _windows(tester: BoxTester) -> tuple[tuple[Floats, Floats, Floats, Floats], Flags]:
-    """Fields of `Windows` (N,) of all boxes, and whether each is off the sensor's axis."""
-    boxes, ground_axes = tester.boxes, tester.sensor.pose.ground_from_sensor
-    c, s = boxes.headings.T
-    x, y, z = boxes.offsets.T
-    x, y, z = rotate(ground_axes.T, np.stack([c * x - s * y, s * x + c * y, z], axis=1)).T
-    flat = np.sqrt(x * x + y * y)
-    safe = np.maximum(flat, MIN_AXIS_DISTANCE_M)
-    cos, sin = x / safe, y / safe
-    zero = np.zeros(len(c))
-    in_ground = ((c, s, zero), (-s, c, zero), (zero, zero, zero + 1.0))
-    box_axes = [rotate(ground_axes.T, np.stack(w, axis=1)).T for w in in_ground]  # in the sensor's
-    halves = boxes.halves.T
-    depth = sum(h * np.abs(w[0] * cos + w[1] * sin) for h, w in zip(halves, box_axes, strict=True))
-    width = sum(h * np.abs(w[1] * cos - w[0] * sin) for h, w in zip(halves, box_axes, strict=True))
-    height = sum(h * np.abs(w[2]) for h, w in zip(halves, box_axes, strict=True))
-    near, far = flat - depth, np.sqrt((flat + depth) ** 2 + width**2)
-    off_axis = near > MIN_AXIS_DISTANCE_M
-    safe_near = np.where(off_axis, near, 1.0)
-    high = np.arctan2(z + height, np.where(z + height > 0.0, safe_near, far)) + WINDOW_MARGIN
-    low = np.arctan2(z - height, np.where(z - height > 0.0, far, safe_near)) - WINDOW_MARGIN
-    half = np.arctan2(width, safe_near) + WINDOW_MARGIN
-    return (np.arctan2(y, x), half, low, high), off_axis
+        item, beam = lattice.candidates(windows.take(boxes[block]))
+        yield tester.hits(boxes[block][item], beam)
 
 
 @dataclass(frozen=True, slots=True)
@@ -260,10 +221,6 @@ class RunHits:
     channel: Ints
     beam: Ints
     enter: Floats
-
-    def take(self, index: Flags) -> RunHits:
-        """Return the hits with these flags."""
-        return RunHits(self.run[index], self.channel[index], self.beam[index], self.enter[index])
 
 
 def _occlusion(first: Ints, position: Ints, ends: BeamEnds) -> FanOcclusion | None:

@@ -20,10 +20,12 @@ from numpy.typing import NDArray
 
 from ...base.arrays import Floats, Singles
 from ...geometry.indexing import blocks
-from .slopes import SlopeBounds
 
 Counts = NDArray[np.int32]
 
+BOUND_BINS = 1 << 16
+BOUND_MARGIN = np.float32(4e-6)
+"""Relative rounding of a slope that is bounded, with room to spare."""
 MARGIN = np.float32(4e-6)
 """Outer windows are widened and inner ones narrowed by this, relative: more than the rounding of
 single precision."""
@@ -44,6 +46,38 @@ share of them; else for all, which saves the selection."""
 
 
 @dataclass(frozen=True, slots=True)
+class SlopeBounds:
+    """Bounds of the number of channels below a slope.
+
+    Bin k begins at ``low + k / scale``. `below` counts the channels surely below the bin's lower
+    edge, `upto` those that may be below its upper edge.
+    """
+
+    low: float
+    scale: float
+    below: Counts
+    upto: Counts
+
+    @classmethod
+    def of(cls, elevations: Floats) -> SlopeBounds:
+        """Build the table of channels at elevations (C,) [rad]."""
+        slopes = np.tan(np.sort(elevations))
+        room = 1e-3 * (1.0 + np.abs(slopes).max())
+        edges = np.linspace(slopes[0] - room, slopes[-1] + room, BOUND_BINS + 1)
+        slack = float(BOUND_MARGIN) * (1.0 + np.abs(edges))
+        below = np.searchsorted(slopes, edges[:-1] - slack[:-1], side="left")
+        upto = np.searchsorted(slopes, edges[1:] + slack[1:], side="right")
+        below[0], upto[-1] = 0, len(slopes)
+        scale = BOUND_BINS / (edges[-1] - edges[0])
+        return cls(float(edges[0]), float(scale), below.astype(np.int32), upto.astype(np.int32))
+
+    def bins(self, slopes: Singles) -> Counts:
+        """Return the bin of each slope."""
+        scaled = (slopes - np.float32(self.low)) * np.float32(self.scale)
+        return np.clip(scaled, 0, BOUND_BINS - 1).astype(np.int32)
+
+
+@dataclass(frozen=True, slots=True)
 class Bracket:
     """Bounds of the number of beams through voxels, and their outer windows; (V,) each.
 
@@ -58,6 +92,9 @@ class Bracket:
     rows: Counts
     column: Counts
     columns: Counts
+
+
+FIELDS = ("lower", "upper", "row", "rows", "column", "columns")
 
 
 def bracket(
@@ -77,10 +114,8 @@ def bracket(
     for block in blocks(len(points[0]), BLOCK):
         seen = Silhouettes.of([p[block] for p in points], rotation, step)
         bounds = _bounds(seen, slopes, azimuth_count)
-        for whole, part in zip(
-            (out.lower, out.upper, out.row, out.rows, out.column, out.columns), bounds, strict=True
-        ):
-            whole[block] = part
+        for key, part in zip(FIELDS, bounds, strict=True):
+            getattr(out, key)[block] = part
     return out
 
 
@@ -149,23 +184,15 @@ def _bounds(seen: Silhouettes, slopes: SlopeBounds, count: int) -> tuple[Counts,
     row = slopes.below[low]
     rows = np.maximum(slopes.upto[high] - row, 0)
     upper = rows * columns
-    lower = _lower(seen, slopes, upper, off_axis)
-    columns = np.where(off_axis, columns, np.int32(count))  # the cube may surround the axis
-    return lower, rows * columns, row, rows, first.astype(np.int32), columns
-
-
-def _lower(
-    seen: Silhouettes, slopes: SlopeBounds, upper: Counts, off_axis: NDArray[np.bool_]
-) -> Counts:
-    """Lower bounds (V,): the beams of the inner windows, where the outer windows hold any."""
+    lower = np.zeros_like(upper)  # the beams of the inner windows, where the outer ones hold any
     picked = np.flatnonzero(off_axis & (upper > 0))
     if len(picked) > MAX_PICKED_SHARE * len(upper):
-        rows, columns = _inner_window(seen, slopes)
-        return np.where(off_axis, np.minimum(rows * columns, upper), 0)
-    lower = np.zeros_like(upper)
-    rows, columns = _inner_window(seen.take(picked), slopes)
-    lower[picked] = np.minimum(rows * columns, upper[picked])
-    return lower
+        inner = _inner_window(seen, slopes)
+        lower = np.where(off_axis, np.minimum(inner, upper), 0)
+    else:
+        lower[picked] = np.minimum(_inner_window(seen.take(picked), slopes), upper[picked])
+    columns = np.where(off_axis, columns, np.int32(count))  # the cube may surround the axis
+    return lower, rows * columns, row, rows, first.astype(np.int32), columns
 
 
 def _slope(z: Singles, flat_if_above: Singles, flat_if_below: Singles) -> Singles:
@@ -173,8 +200,8 @@ def _slope(z: Singles, flat_if_above: Singles, flat_if_below: Singles) -> Single
     return z / np.where(z > 0, flat_if_above, flat_if_below)
 
 
-def _inner_window(seen: Silhouettes, slopes: SlopeBounds) -> tuple[Counts, Counts]:
-    """Numbers of rows and columns of the inner windows."""
+def _inner_window(seen: Silhouettes, slopes: SlopeBounds) -> Counts:
+    """Numbers (V,) of beams of the inner windows."""
     width, height, skew = slice_through(seen)
     drift = np.abs(skew) * width
     near, far = seen.flat - drift, np.sqrt((seen.flat + drift) ** 2 + width * width)
@@ -190,7 +217,7 @@ def _inner_window(seen: Silhouettes, slopes: SlopeBounds) -> tuple[Counts, Count
     left, right = (t * (1 - (t * seen.step) ** 2 / 3) * (1 - MARGIN) for t in (left, right))
     slack = np.abs(seen.middle) * MARGIN + MARGIN
     columns = np.floor(seen.middle + left - slack) - np.ceil(seen.middle - right + slack) + 1
-    return rows, np.maximum(columns, 0).astype(np.int32)
+    return rows * np.maximum(columns, 0).astype(np.int32)
 
 
 def slice_through(seen: Silhouettes) -> tuple[Singles, Singles, Singles]:

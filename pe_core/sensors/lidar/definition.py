@@ -5,13 +5,12 @@ Fast kernels are held to these functions by tests.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base.arrays import Floats, Ints
+from ...geometry.indexing import blocks
 from ...geometry.poses import dot, rotate
 from ...scene.objects import Objects
 from ...scene.rig import Sensor
@@ -56,25 +55,29 @@ def count_beams(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle |
     min_range = lidar_of(sensor).min_range / side
     offsets = offsets_in_voxels(centers, sensor.pose.position, side)
     counts = np.zeros(len(centers))
-    portion = max(1, MAX_BEAM_TESTS // len(directions))
-    for start in range(0, len(centers), portion):
-        block = offsets[start : start + portion]
-        voxel, beam = _voxel_beam_pairs(block, directions)
+    for some in blocks(len(centers), max(1, MAX_BEAM_TESTS // len(directions))):
+        block = offsets[some]
+        distance = np.sqrt(dot(block, block))
+        voxel, beam = _near_pairs(block, distance, np.full(len(block), BALL), directions)
         enter, leave = cube_crossing(block[voxel], directions[beam])
         through = (enter < leave) & (enter <= ends[beam])
         through &= np.minimum(leave, ends[beam]) >= min_range
-        counts[start : start + portion] = np.bincount(voxel[through], minlength=len(block))
+        counts[some] = np.bincount(voxel[through], minlength=len(block))
     return counts
 
 
-def _voxel_beam_pairs(offsets: Floats, directions: Floats) -> tuple[NDArray, NDArray]:
-    """Return (voxel, beam) pairs (P,): beams that meet the ball around the cube; others miss it."""
-    distance = np.sqrt(dot(offsets, offsets))
-    safe = np.maximum(distance, BALL)
-    min_cosine = np.where(distance > BALL, np.cos(np.arcsin(BALL / safe) + CULL_MARGIN_RAD), -2.0)
+def _near_pairs(
+    offsets: Floats, distance: Floats, balls: Floats, directions: Floats
+) -> tuple[Ints, Ints]:
+    """Return (thing, beam) pairs (P,) whose beam meets the ball round the thing; no other hits it.
+
+    `offsets` (V, 3) and `distance` (V,) are those of the things' centres from the sensor.
+    """
+    safe = np.maximum(distance, balls)
+    min_cosine = np.where(distance > balls, np.cos(np.arcsin(balls / safe) + CULL_MARGIN_RAD), -2.0)
     cosine = offsets @ directions.T / safe[:, None]
-    voxel, beam = np.nonzero(cosine >= min_cosine[:, None])
-    return voxel, beam
+    thing, beam = np.nonzero(cosine >= min_cosine[:, None])
+    return thing, beam
 
 
 def cube_crossing(offsets: Floats, directions: Floats) -> tuple[Floats, Floats]:
@@ -164,26 +167,12 @@ def first_of_scene(hits: BoxHits, scenes: Ints) -> BoxHits:
 
 def _box_hits(boxes: PlacedBoxes, directions: Floats, ends: Floats) -> BoxHits:
     """Return all hits of boxes: beams that enter a box before they end at `ends` (B,) [m]."""
-    parts = []
-    for box, beam in _box_beam_pairs(boxes, directions):
+    offsets, parts = boxes.in_ground(boxes.offsets), []
+    distance, balls = np.sqrt(dot(offsets, offsets)), np.sqrt(dot(boxes.halves, boxes.halves))
+    for block in blocks(len(offsets), max(1, MAX_BEAM_TESTS // len(directions))):
+        box, beam = _near_pairs(offsets[block], distance[block], balls[block], directions)
+        box += block.start
         enter, leave = boxes.crossing(box, directions[beam])
         hit = np.flatnonzero((enter < leave) & (enter <= ends[beam]))
         parts.append((box[hit], beam[hit], enter[hit]))
-    box, beam, enter = (np.concatenate(w) for w in zip(*parts, strict=True))
-    return BoxHits(box, beam, enter)
-
-
-def _box_beam_pairs(boxes: PlacedBoxes, directions: Floats) -> Iterator[tuple[Ints, Ints]]:
-    """Yield (box, beam) pairs (P,) whose beam meets the ball around the box; no other can hit."""
-    c, s = boxes.headings.T
-    x, y, z = boxes.offsets.T
-    offsets = np.stack([c * x - s * y, s * x + c * y, z], axis=1)
-    distance, ball = np.sqrt(dot(offsets, offsets)), np.sqrt(dot(boxes.halves, boxes.halves))
-    safe = np.maximum(distance, ball)
-    min_cosine = np.where(distance > ball, np.cos(np.arcsin(ball / safe) + CULL_MARGIN_RAD), -2.0)
-    portion = max(1, MAX_BEAM_TESTS // len(directions))
-    for start in range(0, len(offsets), portion):
-        block = slice(start, start + portion)
-        cosine = offsets[block] @ directions.T / safe[block, None]
-        box, beam = np.nonzero(cosine >= min_cosine[block, None])
-        yield box + start, beam
+    return BoxHits(*(np.concatenate(w) for w in zip(*parts, strict=True)))

@@ -16,16 +16,69 @@ from numpy.typing import NDArray
 
 from ...base.arrays import Flags, Floats, Ints
 from .model import Lidar
-from .slopes import ChannelSlopes
 
 Small = NDArray[np.int16]
 
+CHANNEL_BINS = 1 << 14
+MAX_SLOPE = 5.0
+"""Steeper slopes are compared one by one, without bins."""
+ROUNDING = 1e-9
+"""A slope this near to a channel's is unsure, relative: far more than rounding needs."""
 CACHED_MODELS = 16
 """Models whose fans are in the cache."""
 RUN_BLOCK = 16_000
 """Runs computed together: their arrays fit the processor's cache."""
 AZIMUTH_MARGIN = 1e-9
 """Spans of azimuths are widened by this against rounding, in steps."""
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelSlopes:
+    """Slopes (C,) of channels, ascending, and bins that count those below a slope.
+
+    `codes` holds for each bin twice the number of channels below it, plus 1 where a channel may
+    lie in it. The first bin holds all slopes below the others, the last one all above.
+    """
+
+    slopes: Floats
+    low: float
+    scale: float
+    codes: Small
+
+    @classmethod
+    def of(cls, slopes: Floats) -> ChannelSlopes:
+        """Build the bins."""
+        low, high = np.clip(slopes[[0, -1]], -MAX_SLOPE, MAX_SLOPE) + np.array([-0.01, 0.01])
+        inner = np.linspace(low, high, CHANNEL_BINS - 1)
+        edges = np.concatenate([[-np.inf], inner, [np.inf]])
+        margin = ROUNDING * 10.0
+        below = np.searchsorted(slopes, edges[:-1] - margin, side="left")
+        upto = np.searchsorted(slopes, edges[1:] + margin, side="right")
+        codes = (2 * below + (upto > below)).astype(np.int16)
+        return cls(slopes, float(low), (CHANNEL_BINS - 2) / float(high - low), codes)
+
+    @property
+    def steepest(self) -> float:
+        """The largest absolute slope."""
+        return float(np.abs(self.slopes).max())
+
+    def below(self, scaled: Floats) -> tuple[Small, Flags]:
+        """Count the channels below slopes of any shape, and flag unsure counts.
+
+        `scaled` are the slopes times `scale`; they are overwritten.
+        """
+        scaled -= self.low * self.scale - 1.0
+        inside = np.minimum(scaled, CHANNEL_BINS - 1.0)
+        np.maximum(inside, 0.0, out=inside)
+        codes = np.take(self.codes, inside.astype(np.int32))
+        unsure = (codes & 1).astype(bool)
+        codes >>= 1
+        if unsure.any():
+            slope = (scaled[unsure] - 1.0) / self.scale + self.low
+            margin = ROUNDING * (1.0 + np.abs(slope))
+            codes[unsure] = below = np.searchsorted(self.slopes, slope - margin, side="left")
+            unsure[unsure] = below != np.searchsorted(self.slopes, slope + margin, side="right")
+        return codes, unsure
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""A LiDAR's field of view: as a mesh, as a range image, and as a mask of its own vehicle."""
+"""What a LiDAR sees: its field as a mesh, a range image, its mask, the beams to one location."""
 
 from __future__ import annotations
 
@@ -13,8 +13,11 @@ from ...geometry.poses import rotate
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
 from ..field_of_view import EgoMask, ViewPatch, grid_faces
+from ..kind import BETWEEN_BEAMS, OUT_OF_RANGE, OUT_OF_VIEW
 from .beams import beam_field
+from .definition import BALL, beam_directions, cube_crossing
 from .model import Lidar, lidar_of
+from .tie_rules import offsets_in_voxels
 
 MIN_EXTENT = math.radians(0.2)
 """A field of view without height or width, as of a single channel, is drawn with this one [rad]."""
@@ -22,6 +25,8 @@ POLE = math.radians(89.0)
 """A field of view beyond this elevation is drawn up to the pole [rad]."""
 MIN_AZIMUTHS = 8
 """A model of fewer azimuths than this is a pattern: its beams may have any azimuth."""
+WIDE_GAP_RAD = math.radians(5.0)
+"""A gap between azimuths wider than this, and than 1.5 steps, bounds a field of view [rad]."""
 
 
 def beam_patch(lidar: Lidar, step: float) -> ViewPatch:
@@ -129,11 +134,17 @@ def range_picture(
     """
     lidar, position = lidar_of(sensor), sensor.pose.position
     directions = rotate(sensor.pose.ground_from_sensor, lidar.directions)
-    ground = _to_ground(position[2], directions[:, 2])
+    ground = np.full(len(directions), np.inf)
+    if position[2] > 0.0:
+        np.divide(position[2], -directions[:, 2], out=ground, where=directions[:, 2] < 0.0)
     body = np.full(len(directions), np.inf)
     if vehicle is not None:
         body = vehicle.first_hit(position, directions).distance
-    thing, part = _to_things(things, np.asarray(position), directions)
+    thing, part = np.full(len(directions), np.inf), np.full(len(directions), -1)
+    if things is not None:
+        hits = things.first_hit_from(np.asarray(position), directions)
+        thing = hits.distance
+        part = np.where(hits.face >= 0, np.asarray(things.parts)[hits.face], -1).astype(np.int64)
     surroundings = np.minimum(ground, thing)
     distance = np.minimum(body, surroundings)
     no_echo = (distance > lidar.max_range) | (distance < lidar.min_range)
@@ -154,25 +165,6 @@ def range_picture(
     )
 
 
-def _to_things(
-    things: Vehicle | None, origin: Floats, directions: Floats
-) -> tuple[Floats, NDArray[np.int64]]:
-    """Distance (B,) to things [m], and the part (B,) that is hit, -1 for none."""
-    if things is None:
-        return np.full(len(directions), np.inf), np.full(len(directions), -1)
-    hits = things.first_hit_from(origin, directions)
-    parts = np.asarray(things.parts)[hits.face]
-    return hits.distance, np.where(hits.face >= 0, parts, -1).astype(np.int64)
-
-
-def _to_ground(height: float, up: Floats) -> Floats:
-    """Distance (B,) to z = 0 of rays from a height that rise by `up` (B,) per metre [m]."""
-    distance = np.full(len(up), np.inf)
-    if height > 0.0:
-        np.divide(height, -up, out=distance, where=up < 0.0)
-    return distance
-
-
 def columns_around(lidar: Lidar) -> Floats:
     """Return the azimuths (A,) of the columns, above -180 to 180 degrees [rad]."""
     azimuths = lidar.azimuth_steps * lidar.azimuth_step
@@ -187,3 +179,66 @@ def revolution_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
     rows, columns = (np.argsort(-angles, kind="stable") for angles in (lidar.elevations, azimuths))
     parts = stopped.reshape(len(rows), len(columns))[np.ix_(rows, columns)]
     return EgoMask(parts.astype(np.int32), lidar.elevations[rows], azimuths[columns])
+
+
+def sample_beams(sensor: Sensor, max_count: int) -> Floats:
+    """Return the directions (R, 3) of at most `max_count` beams, ground frame, evenly picked."""
+    directions = lidar_of(sensor).directions
+    if len(directions) > max_count:
+        directions = directions[np.linspace(0, len(directions) - 1, max_count).astype(np.int64)]
+    return rotate(sensor.pose.ground_from_sensor, directions)
+
+
+def beams_to(sensor: Sensor, center: Floats, side: float) -> tuple[Floats, Floats]:
+    """Return the directions (R, 3) of beams through a cube in range, and where they enter [m]."""
+    directions, enter, leave = _through(sensor, center, side)
+    lidar = lidar_of(sensor)
+    in_range = (enter <= lidar.max_range / side) & (leave >= lidar.min_range / side)
+    return directions[in_range], enter[in_range] * side
+
+
+def reason_missed(sensor: Sensor, center: Floats, side: float) -> str:
+    """Return why no beam passes through a cube: out of range, out of view or between beams."""
+    lidar = lidar_of(sensor)
+    offset = center - np.asarray(sensor.pose.position)
+    gap = np.maximum(np.abs(offset) - side / 2.0, 0.0)
+    if float(np.sqrt((gap * gap).sum())) > lidar.max_range:
+        return OUT_OF_RANGE
+    if len(_through(sensor, center, side)[0]):
+        return OUT_OF_RANGE
+    return BETWEEN_BEAMS if _in_view(lidar, sensor, offset, side) else OUT_OF_VIEW
+
+
+def _through(sensor: Sensor, center: Floats, side: float) -> tuple[Floats, Floats, Floats]:
+    """Directions of beams through a cube, and where they enter and leave it, in sides."""
+    directions = beam_directions(sensor)
+    offset = offsets_in_voxels(center[None], sensor.pose.position, side)
+    enter, leave = cube_crossing(np.broadcast_to(offset, directions.shape), directions)
+    through = enter < leave
+    return directions[through], enter[through], leave[through]
+
+
+def _in_view(lidar: Lidar, sensor: Sensor, offset: Floats, side: float) -> bool:
+    """Whether a cube lies between the lowest and highest channel, and among the azimuths."""
+    x, y, z = rotate(sensor.pose.ground_from_sensor.T, offset).tolist()
+    distance, flat = math.hypot(x, y, z), math.hypot(x, y)
+    if distance <= BALL * side:
+        return True
+    margin = math.asin(BALL * side / distance)
+    low, high = float(lidar.elevations.min()), float(lidar.elevations.max())
+    if not low - margin <= math.atan2(z, flat) <= high + margin:
+        return False
+    half_width = math.asin(min(1.0, BALL * side / flat)) if flat else math.pi
+    return _distance_to_azimuths(lidar, math.atan2(y, x)) <= half_width
+
+
+def _distance_to_azimuths(lidar: Lidar, azimuth: float) -> float:
+    """Angle from an azimuth to the field of view, sensor frame [rad]; 0 inside."""
+    beams = lidar.directions
+    azimuths = np.unique(np.arctan2(beams[:, 1], beams[:, 0]))
+    distances = np.abs((azimuths - azimuth + math.pi) % (2.0 * math.pi) - math.pi)
+    before = float(np.min((azimuth - azimuths) % (2.0 * math.pi)))
+    after = float(np.min((azimuths - azimuth) % (2.0 * math.pi)))
+    step = lidar.azimuth_step if lidar.azimuth_count > 1 else 0.0
+    inside = before + after <= max(WIDE_GAP_RAD, 1.5 * step)
+    return 0.0 if inside else float(distances.min())

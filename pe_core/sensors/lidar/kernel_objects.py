@@ -7,24 +7,32 @@ tested.
 
 In traffic the boxes of a scene occlude each other. At one azimuth they stand one behind the other:
 the beams of each box are bits, and each box takes the bits that no nearer box has taken
-(`FanTraffic`). Where two boxes overlap along the ray, or their order is unsure, the hits are
+(`_count_sorted`). Where two boxes overlap along the ray, or their order is unsure, the hits are
 compared beam by beam. Of a tilted LiDAR the order is that of whole boxes: of those that are as far
 away as each other, the hits are compared, too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Flags, Floats, Ints
+from ...geometry.poses import dot
 from ...scene.rig import Sensor
 from ..boxes import BodyParts, PlacedBoxes
 from ..kernels import ObjectKernel, ObjectView
 from .beams import BeamCache
-from .box_hits import BoxTester, FanBeams, azimuth_spans, candidate_hits, concatenated, nearest_hits
+from .box_hits import (
+    BoxTester,
+    FanBeams,
+    box_windows,
+    candidate_hits,
+    concatenated,
+    nearest_hits,
+)
 from .definition import BoxHits, counts_in_bands
 from .fan_runs import ChannelRuns, Fan, RotatedFan, RunBlock, fans_of
 from .lattice import lattice_of
@@ -32,6 +40,7 @@ from .model import lidar_of
 from .planar_clip import PlanarBoxes, TiltedBoxes, tilted_runs, upright_runs
 
 Bits = NDArray[np.uint64]
+FanBlock = tuple[FanBeams, RunBlock]
 
 MAX_FANS = 16
 """With more fans, testing beams one by one is as fast."""
@@ -77,31 +86,55 @@ class LidarObjects(ObjectKernel):
 def _count(tester: BoxTester, scenes: Ints | None) -> Ints:
     """Count the beams (N,) on all boxes in the fastest way; None for `scenes`: no traffic."""
     fans = fans_of(tester.lidar)
-    few = len(fans) <= MAX_FANS and all(fan.slopes.steepest < MAX_SLOPE for fan in fans)
-    roll, pitch, _ = tester.sensor.pose.rpy
-    if not few:
-        return _count_candidates(tester, scenes)
-    if roll == 0.0 and pitch == 0.0:
-        planar = PlanarBoxes.of(tester.boxes)
-        outside, blocks = planar.beside, _upright(tester, planar)
-    else:
-        tilted = TiltedBoxes.of(tester.boxes, tester.sensor.pose.ground_from_sensor)
-        outside, blocks = tilted.outside, _tilted(tester, tilted)
+    if len(fans) > MAX_FANS or any(fan.slopes.steepest >= MAX_SLOPE for fan in fans):
+        hits = candidate_hits(tester)
+        if scenes is None:
+            return np.add.reduce([tester.count(part) for part in hits])
+        return tester.count(nearest_hits(concatenated(list(hits)), scenes, tester.lidar.beam_count))
+    outside, runs = _runs(tester, fans)
     others = tester.hits_of_all_beams(np.flatnonzero(~outside))
     if scenes is None:
-        return tester.count(others) + _count_alone(tester, blocks)
-    return _count_traffic(tester, blocks, others, scenes, np.unique(scenes[~outside]))
+        return tester.count(others) + _count_alone(tester, runs)
+    return _count_traffic(tester, runs, others, scenes, np.unique(scenes[~outside]))
 
 
-def _count_candidates(tester: BoxTester, scenes: Ints | None) -> Ints:
-    """Count by testing every beam that may hit a box."""
-    hits = candidate_hits(tester)
-    if scenes is None:
-        return np.add.reduce([tester.count(part) for part in hits])
-    return tester.count(nearest_hits(concatenated(list(hits)), scenes, tester.lidar.beam_count))
+def _runs(tester: BoxTester, fans: Sequence[Fan]) -> tuple[Flags, Iterator[FanBlock]]:
+    """Return which boxes (N,) the LiDAR is clearly outside of, and all runs through them by fan."""
+    lidar, boxes = tester.lidar, tester.boxes
+    step, count = lidar.azimuth_step, lidar.azimuth_count
+    roll, pitch, yaw = tester.sensor.pose.rpy
+    if roll == 0.0 and pitch == 0.0:
+        planar = PlanarBoxes.of(boxes)
+        outside, distance = planar.beside, planar.distance
+        among = outside
+
+        def blocks_of(fan: Fan) -> Iterator[RunBlock]:
+            return upright_runs(RotatedFan.of(fan, yaw, step, count), boxes, planar, which)
+    else:
+        tilted = TiltedBoxes.of(boxes, tester.sensor.pose.ground_from_sensor)
+        outside, distance, windows = tilted.outside, 1.0 / tilted.near, box_windows(tester)
+        spans = windows.azimuth - windows.half_azimuth, windows.azimuth + windows.half_azimuth
+        lowest, highest = lidar.elevations.min(), lidar.elevations.max()
+        among = outside & (windows.low <= highest) & (windows.high >= lowest)
+
+        def blocks_of(fan: Fan) -> Iterator[RunBlock]:
+            return tilted_runs(RotatedFan.of(fan, 0.0, step, count), tilted, spans, which)
+
+    which = np.flatnonzero(among & (distance <= lidar.max_range))
+    corner = np.abs(boxes.offsets) + boxes.halves
+    beyond = np.sqrt(dot(corner, corner)) >= lidar.max_range
+    unsure = (distance <= lidar.min_range) | beyond  # out of range in part
+
+    def by_fan() -> Iterator[FanBlock]:
+        for fan in fans:
+            beams = FanBeams.of(fan, lattice_of(lidar), tester.ends, unsure)
+            for block in blocks_of(fan):
+                yield beams, block
+
+    return outside, by_fan()
 
 
-def _count_alone(tester: BoxTester, blocks: Iterator[tuple[FanBeams, RunBlock]]) -> Ints:
+def _count_alone(tester: BoxTester, blocks: Iterator[FanBlock]) -> Ints:
     """Count from blocks of runs, where no box occludes another."""
     counts = np.zeros(len(tester.boxes.offsets), np.int64)
     unchecked: dict[int, tuple[FanBeams, list[ChannelRuns]]] = {}
@@ -114,127 +147,89 @@ def _count_alone(tester: BoxTester, blocks: Iterator[tuple[FanBeams, RunBlock]])
         runs = fan.existing(ChannelRuns.concatenated(parts))
         decided, occluded = fan.decided(runs)
         np.add.at(counts, runs.box[decided], (runs.high - runs.low - occluded)[decided])
-        runs = runs.take(~decided)
-        hits = fan.hits_of_runs(tester, runs)
-        counts += tester.count(BoxHits(runs.box[hits.run], hits.beam, hits.enter))
+        counts += tester.count(_tested(tester, fan, runs.take(~decided)))
     return counts
+
+
+def _tested(tester: BoxTester, fan: FanBeams, runs: ChannelRuns) -> BoxHits:
+    """Return the hits of runs, beam by beam."""
+    hits = fan.hits_of_runs(tester, runs)
+    return BoxHits(runs.box[hits.run], hits.beam, hits.enter)
 
 
 def _count_traffic(
     tester: BoxTester,
-    blocks: Iterator[tuple[FanBeams, RunBlock]],
+    blocks: Iterator[FanBlock],
     others: BoxHits,
     scenes: Ints,
     unsorted_scenes: Ints,
 ) -> Ints:
     """Count from blocks of runs, where the boxes of a scene occlude each other.
 
-    `others` are hits of boxes that have no runs: those above, below or round the sensor. Their
-    scenes, `unsorted_scenes`, are compared beam by beam.
+    `scenes` (N,) holds the scene of each box. `others` are hits of boxes that have no runs: those
+    above, below or round the sensor. Their scenes, `unsorted_scenes`, are compared beam by beam.
     """
     counts = np.zeros(len(scenes), np.int64)
-    hits = [others]
-    traffic: dict[int, FanTraffic] = {}
+    hits, traffic = [others], dict[int, tuple[FanBeams, list[ChannelRuns]]]()
     for fan, block in blocks:
-        of_fan = traffic.setdefault(id(fan), FanTraffic(tester, fan, scenes, unsorted_scenes))
-        of_fan.add(fan.existing(block.take(block.unsure | (block.low < block.high))))
-    for of_fan in traffic.values():
-        fan_counts, undecided = of_fan.count()
-        counts += fan_counts
-        hits.append(undecided)
+        runs = fan.existing(block.take(block.unsure | (block.low < block.high)))
+        traffic.setdefault(id(fan), (fan, []))[1].append(runs)
+    for fan, parts in traffic.values():
+        runs = ChannelRuns.concatenated(parts)
+        in_unsorted = np.isin(scenes[runs.box], unsorted_scenes)
+        undecided = _count_sorted(tester, fan, runs, scenes, in_unsorted, counts)
+        hits.append(_tested(tester, fan, runs.take(undecided)))
     nearest = nearest_hits(concatenated(hits), scenes, tester.lidar.beam_count)
     return counts + tester.count(nearest)
 
 
-def _upright(tester: BoxTester, planar: PlanarBoxes) -> Iterator[tuple[FanBeams, RunBlock]]:
-    """Yield the runs of an upright LiDAR through all boxes it is beside, fan by fan."""
-    lidar, yaw = tester.lidar, tester.sensor.pose.rpy[2]
-    boxes = np.flatnonzero(planar.beside & (planar.distance <= lidar.max_range))
-    for fan, beams in _fans(tester, planar.distance):
-        rotated = RotatedFan.of(fan, yaw, lidar.azimuth_step, lidar.azimuth_count)
-        for block in upright_runs(rotated, tester.boxes, planar, boxes):
-            yield beams, block
+def _count_sorted(
+    tester: BoxTester,
+    fan: FanBeams,
+    runs: ChannelRuns,
+    scenes: Ints,
+    in_unsorted: Flags,
+    counts: Ints,
+) -> Flags:
+    """Add the beams of one fan on the boxes of all scenes to counts (N,), nearest box first.
 
-
-def _tilted(tester: BoxTester, tilted: TiltedBoxes) -> Iterator[tuple[FanBeams, RunBlock]]:
-    """Yield the runs of a tilted LiDAR through all boxes it is outside of, fan by fan."""
-    lidar, distance = tester.lidar, 1.0 / tilted.near
-    spans, among = azimuth_spans(tester)
-    boxes = np.flatnonzero(tilted.outside & (distance <= lidar.max_range) & among)
-    for fan, beams in _fans(tester, distance):
-        in_sensor = RotatedFan.of(fan, 0.0, lidar.azimuth_step, lidar.azimuth_count)
-        for block in tilted_runs(in_sensor, tilted, spans, boxes):
-            yield beams, block
-
-
-def _fans(tester: BoxTester, distance: Floats) -> Iterator[tuple[Fan, FanBeams]]:
-    """Yield the fans and their beams; boxes (N,) at a `distance` may be out of range in part."""
-    lidar = tester.lidar
-    unsure = (distance <= lidar.min_range) | (tester.max_distances() >= lidar.max_range)
-    for fan in fans_of(lidar):
-        yield fan, FanBeams.of(fan, lattice_of(lidar), tester.ends, unsure)
-
-
-class FanTraffic:
-    """Counts the beams of one fan on the boxes of all scenes, nearest box first.
-
-    Fast because the beams of a box at one azimuth are the bits of a few words. `scenes` (N,) holds
-    the scene of each box; in `unsorted_scenes` all hits are to be compared beam by beam.
+    Returns the runs (R,) whose hits are still to be compared: those `in_unsorted` scenes, and those
+    on rays along which the order of boxes is unsure. Fast because the beams of a box at one azimuth
+    are the bits of a few words.
     """
+    bits, countable = _bits(tester, fan, runs)
+    ray = scenes[runs.box] * len(fan.position) + runs.column
+    max_range = tester.lidar.max_range  # no beam ends beyond
+    distance = np.minimum(1.0 / np.maximum(runs.near, MIN_INVERSE), max_range)
+    order = np.argsort(ray + distance / (max_range + 1.0))
+    nearer, farther = order[:-1], order[1:]
+    with np.errstate(divide="ignore"):  # of unsure runs
+        separate = 1.0 / runs.far[nearer] + MIN_GAP_M < 1.0 / runs.near[farther]
+    separate &= ~(runs.unsure[nearer] | runs.unsure[farther])
+    unsure_rays = ray[nearer[(ray[nearer] == ray[farther]) & ~separate]]
+    undecided: Flags = np.isin(ray, unsure_rays) | in_unsorted
+    sorted_runs = order[~undecided[order]]
+    visible = _not_taken_before(ray[sorted_runs], bits[sorted_runs]) & countable[sorted_runs]
+    parts = np.ascontiguousarray(visible).view(np.uint16)
+    np.add.at(counts, runs.box[sorted_runs], BIT_COUNTS[parts].sum(axis=1, dtype=np.int64))
+    return undecided
 
-    def __init__(
-        self, tester: BoxTester, fan: FanBeams, scenes: Ints, unsorted_scenes: Ints
-    ) -> None:
-        self._tester, self._fan = tester, fan
-        self._scenes, self._unsorted_scenes = scenes, unsorted_scenes
-        self._runs: list[ChannelRuns] = []
 
-    def add(self, runs: ChannelRuns) -> None:
-        """Add runs at existing azimuth steps."""
-        self._runs.append(runs)
-
-    def count(self) -> tuple[Ints, BoxHits]:
-        """Return the beams (N,) on each box, and the hits that are still to be compared."""
-        runs = ChannelRuns.concatenated(self._runs)
-        bits, countable = self._bits(runs)
-        ray = self._scenes[runs.box] * len(self._fan.position) + runs.column
-        max_range = self._tester.lidar.max_range  # no beam ends beyond
-        distance = np.minimum(1.0 / np.maximum(runs.near, MIN_INVERSE), max_range)
-        order = np.argsort(ray + distance / (max_range + 1.0))
-        undecided = self._undecided(runs, ray, order)
-        counts = np.zeros(len(self._scenes), np.int64)
-        sorted_runs = order[~undecided[order]]
-        visible = _not_taken_before(ray[sorted_runs], bits[sorted_runs]) & countable[sorted_runs]
-        np.add.at(counts, runs.box[sorted_runs], _bit_count(visible))
-        runs = runs.take(undecided)
-        hits = self._fan.hits_of_runs(self._tester, runs)
-        return counts, BoxHits(runs.box[hits.run], hits.beam, hits.enter)
-
-    def _bits(self, runs: ChannelRuns) -> tuple[Bits, Bits]:
-        """Bits (R, W) of the beams that hit a run's box, and of those beyond the minimum range."""
-        words = -(-len(self._fan.first) // WORD)
-        bits = _bits_between(runs.low, runs.high, words)
-        if self._fan.occlusion is not None:
-            bits &= ~_packed(self._fan.occlusion.flags, words)[runs.column]
-        tested = np.flatnonzero(~self._fan.decided(runs)[0])
-        countable = bits.copy()
-        hits = self._fan.hits_of_runs(self._tester, runs.take(tested))
-        in_range = hits.enter >= self._tester.lidar.min_range
-        for target, target_hits in ((bits, hits), (countable, hits.take(in_range))):
-            flags = np.zeros((len(tested), len(self._fan.first)), bool)
-            flags[target_hits.run, target_hits.channel] = True
-            target[tested] = _packed(flags, words)
-        return bits, countable
-
-    def _undecided(self, runs: ChannelRuns, ray: Ints, order: Ints) -> Flags:
-        """Flag the runs (R,) on rays along which the order of boxes is unsure."""
-        nearer, farther = order[:-1], order[1:]
-        with np.errstate(divide="ignore"):  # of unsure runs
-            separate = 1.0 / runs.far[nearer] + MIN_GAP_M < 1.0 / runs.near[farther]
-        separate &= ~(runs.unsure[nearer] | runs.unsure[farther])
-        unsure_rays = ray[nearer[(ray[nearer] == ray[farther]) & ~separate]]
-        in_unsorted = np.isin(self._scenes[runs.box], self._unsorted_scenes)
-        return np.isin(ray, unsure_rays) | in_unsorted
+def _bits(tester: BoxTester, fan: FanBeams, runs: ChannelRuns) -> tuple[Bits, Bits]:
+    """Bits (R, W) of the beams that hit a run's box, and of those beyond the minimum range."""
+    words = -(-len(fan.first) // WORD)
+    bits = _bits_between(runs.low, runs.high, words)
+    if fan.occlusion is not None:
+        bits &= ~_packed(fan.occlusion.flags, words)[runs.column]
+    tested = np.flatnonzero(~fan.decided(runs)[0])
+    countable = bits.copy()
+    hits = fan.hits_of_runs(tester, runs.take(tested))
+    in_range = hits.enter >= tester.lidar.min_range
+    for target, some in ((bits, slice(None)), (countable, in_range)):
+        flags = np.zeros((len(tested), len(fan.first)), bool)
+        flags[hits.run[some], hits.channel[some]] = True
+        target[tested] = _packed(flags, words)
+    return bits, countable
 
 
 def _bits_between(low: NDArray, high: NDArray, words: int) -> Bits:
@@ -250,12 +245,6 @@ def _packed(flags: Flags, words: int) -> Bits:
     padded = np.zeros((len(flags), words * WORD), bool)
     padded[:, : flags.shape[1]] = flags
     return np.packbits(padded, axis=1, bitorder="little").view("<u8").astype(np.uint64)
-
-
-def _bit_count(bits: Bits) -> Ints:
-    """Count the set bits (R,) of words (R, W)."""
-    parts = np.ascontiguousarray(bits).view(np.uint16).reshape(len(bits), 4 * bits.shape[1])
-    return BIT_COUNTS[parts].sum(axis=1, dtype=np.int64)
 
 
 def _not_taken_before(ray: Ints, bits: Bits) -> Bits:

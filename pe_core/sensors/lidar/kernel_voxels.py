@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -28,18 +27,10 @@ from ..kernels import (
     Voxels,
     block_voxels,
 )
-from .beams import (
-    BeamCache,
-    BeamEnds,
-    BeamField,
-    LazyEnds,
-    beam_field,
-    occlusion_of,
-    same_measurement,
-)
+from .beams import BeamCache, BeamEnds, BeamField, LazyEnds, beam_field
 from .definition import cube_crossing
 from .grid_sweep import BeamGrid
-from .lattice import lattice_of, windows_of
+from .lattice import lattice_of
 from .model import lidar_of
 from .tie_rules import position_in_voxels
 from .voxel_beams import (
@@ -52,60 +43,10 @@ from .voxel_beams import (
     count_voxel_beams,
 )
 
-MAX_BYTE_GROUPS = 2
-"""With more groups of LiDARs than this, counts are packed as nibbles if AP saturates that early."""
-MAX_NIBBLE = 15
 BEAM_BYTES = 100
 """Memory of a cast beam, measured: its direction, its end and its hit."""
 MIN_RANGE_BLOCK = 64
 """Voxels tested together; all beams may pass a voxel next to the sensor."""
-
-
-@dataclass(frozen=True, slots=True)
-class CastLidar:
-    """A LiDAR with its beams cast."""
-
-    sensor: Sensor
-    field: BeamField
-
-
-@dataclass(frozen=True, slots=True)
-class NibbleCounts:
-    """Counts (nx, ny, nz) of at most `MAX_NIBBLE`, two in a byte.
-
-    A byte holds row j in its low and row ``j + ny / 2`` in its high nibble. This takes half the
-    memory of `compact`; counts are unpacked at every access.
-    """
-
-    packed: NDArray[np.uint8]
-    rows: int
-
-    @classmethod
-    def of(
-        cls, counts: NDArray[np.uint16], saturation_count: int, pool: Executor | None = None
-    ) -> NibbleCounts:
-        """Pack counts, clipped at `saturation_count`."""
-        nx, rows, nz = counts.shape
-        half = (rows + 1) // 2
-        packed = np.empty((nx, half, nz), np.uint8)
-
-        def pack(planes: slice) -> None:
-            for i in range(planes.start, planes.stop):
-                small = np.minimum(counts[i], saturation_count).astype(np.uint8)
-                packed[i] = small[:half]
-                packed[i, : rows - half] |= small[half:] << 4
-
-        list((pool.map if pool else map)(pack, blocks(nx, BLOCK_PLANES)))
-        return cls(packed, rows)
-
-    def __getitem__(self, planes: slice) -> NDArray[np.uint8]:
-        """Return the counts of some x-planes, one in a byte."""
-        packed = self.packed[planes]
-        n, half, nz = packed.shape
-        counts = np.empty((n, self.rows, nz), np.uint8)
-        np.bitwise_and(packed, MAX_NIBBLE, out=counts[:, :half])
-        np.right_shift(packed[:, : self.rows - half], 4, out=counts[:, half:])
-        return counts
 
 
 def compact(
@@ -135,42 +76,37 @@ class LidarGrid(GridKernel):
     def _grid(self) -> BeamGrid:
         return BeamGrid(self._space)  # reused: the first writes to new memory are slow
 
-    def prepare(self, sensor: Sensor) -> CastLidar:
+    def prepare(self, sensor: Sensor) -> tuple[Sensor, BeamField]:
         """Cast the beams."""
-        return CastLidar(sensor, beam_field(sensor, self._vehicle))
+        return sensor, beam_field(sensor, self._vehicle)
 
-    def occlusion(self, prepared: CastLidar) -> Occlusion:
+    def occlusion(self, prepared: tuple[Sensor, BeamField]) -> Occlusion:
         """Count the beams that the vehicle occludes."""
-        return occlusion_of(prepared.field, self._vehicle)
-
-    def _uses_nibbles(self, groups: int) -> bool:
-        return groups > MAX_BYTE_GROUPS and self._saturation_count <= MAX_NIBBLE
+        return prepared[1].occlusion()
 
     def memory_bytes(
         self, groups: Sequence[Sequence[Sensor]], space: PerceptionSpace, workers: int
     ) -> int:
         """Return the memory needed, about: grid, kept counts, beams and threads [bytes]."""
         beams = sum(len(lidar_of(s).directions) for group in groups for s in group)
-        nibbles = 0 if len(groups) == 1 else 1 if self._uses_nibbles(len(groups)) else 2
-        kept = space.size * nibbles * len(groups) // 2
+        kept = space.size * len(groups) if len(groups) > 1 else 0
         threads = workers * block_voxels(space) * len(groups)
         return 2 * space.size + kept + beams * BEAM_BYTES + threads
 
-    def planes(self, groups: Sequence[Sequence[CastLidar]], pool: Executor) -> list[Planes]:
+    def planes(
+        self, groups: Sequence[Sequence[tuple[Sensor, BeamField]]], pool: Executor
+    ) -> list[Planes]:
         """Count each group's beams on the whole grid at once; keep several groups compact."""
         planes: list[Planes] = []
         for group in groups:
             self._grid.clear()
-            for lidar in group:
-                position, min_range = lidar.sensor.pose.position, lidar_of(lidar.sensor).min_range
-                self._grid.add(position, lidar.field.directions, lidar.field.ends, min_range)
-            counts = self._grid.counts
-            if self._uses_nibbles(len(groups)):
-                planes.append(NibbleCounts.of(counts, self._saturation_count, pool).__getitem__)
-            else:
-                one_group = len(groups) == 1
-                kept = counts if one_group else compact(counts, self._saturation_count, pool)
-                planes.append(kept.__getitem__)
+            for sensor, field in group:
+                min_range = lidar_of(sensor).min_range
+                self._grid.add(sensor.pose.position, field.directions, field.ends, min_range)
+            counts: NDArray = self._grid.counts
+            if len(groups) > 1:
+                counts = compact(counts, self._saturation_count, pool)
+            planes.append(counts.__getitem__)
         return planes
 
 
@@ -189,7 +125,7 @@ class LidarSample(SampleKernel):
         beams = self.cache.cast(sensor, approximate)
         lidar = self._placed(sensor, beams.ends)
         cached = self._unoccluded.get(sensor.name)
-        unoccluded = cached[1] if cached and same_measurement(cached[0], sensor) else None
+        unoccluded = cached[1] if cached and sensor.measures_as(cached[0]) else None
         counts = count_voxel_beams(self._points, lidar, self._saturation_count, unoccluded)
         counts = recount_min_range(self._points, lidar, counts, lidar_of(sensor).min_range)
         return Measured(sensor, counts, beams.approximate, beams.ends)
@@ -209,7 +145,7 @@ class LidarSample(SampleKernel):
         ends = measured.kernel_data
         is_lazy = isinstance(ends, LazyEnds)
         field = ends.beam_field() if is_lazy else beam_field(measured.sensor, self._vehicle)
-        return occlusion_of(field, self._vehicle)
+        return field.occlusion()
 
     def keep_only(self, sensors: Collection[Sensor]) -> None:
         """Drop the cached beams and counts of all other sensors."""
@@ -250,20 +186,14 @@ def recount_min_range(
     for start in range(0, len(near), MIN_RANGE_BLOCK):
         block = near[start : start + MIN_RANGE_BLOCK]
         centers = offsets[block]
-        windows = windows_of(centers, 0.5, lidar.ground_from_sensor)
-        voxel, beam = lidar.lattice.candidates(windows)
+        voxel, beam = lidar.candidates(centers)
         directions = np.stack(list(lidar.beams.components(beam)), axis=1)
         _, leave = cube_crossing(centers[voxel], directions)
         kept = np.flatnonzero(leave >= min_distance)
-        if not without_vehicle:
-            kept = kept[_end_beyond(lidar, beam[kept], min_distance)]
+        if not without_vehicle:  # nor end nearer
+            at = np.flatnonzero(lidar.ends.occludable[beam[kept]])
+            beyond = np.ones(len(kept), bool)
+            beyond[at] = lidar.ends.take(beam[kept[at]]) / lidar.side >= min_distance
+            kept = kept[beyond]
         counts[block] = count_pairs(centers, lidar, voxel[kept], beam[kept], without_vehicle)
     return counts
-
-
-def _end_beyond(lidar: PlacedLidar, beams: NDArray[np.int64], distance: float) -> NDArray[np.bool_]:
-    """Whether beams (N,) end no nearer than a distance, in sides."""
-    beyond = np.ones(len(beams), bool)
-    at = np.flatnonzero(lidar.ends.occludable[beams])
-    beyond[at] = lidar.ends.take(beams[at]) / lidar.side >= distance
-    return beyond

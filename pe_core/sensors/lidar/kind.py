@@ -18,12 +18,11 @@ from ..field_of_view import NEAREST, limited
 from ..kind import Kind, derived_object_curves
 from ..weather import lidar_range
 from .definition import count_beams, count_on_objects, count_on_parts
-from .field_of_view import beam_patch, revolution_mask
+from .field_of_view import beam_patch, beams_to, reason_missed, revolution_mask, sample_beams
 from .kernel_ground import LidarGround
 from .kernel_objects import LidarObjects
 from .kernel_voxels import LidarGrid, LidarSample
 from .model import RANGE, STEPS, Lidar
-from .query import beams_to, reason_missed, sample_beams
 
 FITTED = {
     "car": ApCurve(0.237, -0.516),

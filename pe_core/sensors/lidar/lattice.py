@@ -9,6 +9,7 @@ by azimuth, and looked up by bisection (`BeamBands`).
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -16,10 +17,9 @@ import numpy as np
 
 from ...base.arrays import Floats, Ints
 from ...geometry.indexing import count_up
-from ...geometry.poses import rotate
-from .bracket import Bracket
+from .bracket import Bracket, SlopeBounds
 from .model import Lidar
-from .slopes import SlopeBounds, SlopeCounts
+from .upright import SlopeCounts
 
 WINDOW_MARGIN = 1e-7
 """Windows are widened by this against rounding [rad]."""
@@ -43,6 +43,11 @@ class Windows:
     half_azimuth: Floats
     low: Floats
     high: Floats
+
+    def take(self, index: Ints) -> Windows:
+        """Return the windows with these indices."""
+        fields = self.azimuth, self.half_azimuth, self.low, self.high
+        return Windows(*(w[index] for w in fields))
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,8 +109,7 @@ class Lattice:
     def candidates(self, windows: Windows) -> tuple[Ints, Ints]:
         """Return (voxel, beam) pairs (P,) of the beams inside each voxel's window."""
         if self.bands is not None:
-            half = windows.half_azimuth
-            return self.bands.candidates(windows.azimuth, half, windows.low, windows.high)
+            return self.bands.candidates(windows)
         first = np.searchsorted(self.elevations, windows.low, side="left")
         n = np.searchsorted(self.elevations, windows.high, side="right") - first
         voxel = np.repeat(np.arange(len(n)), n)
@@ -122,18 +126,19 @@ class Lattice:
         return np.repeat(voxel, n)[exists], beam[exists]
 
 
-def windows_of(offsets: Floats, half: float, ground_from_sensor: Floats) -> Windows:
-    """Return windows that hold cubes of half side `half`.
+def windows_of(center: Floats, half_axes: Sequence[Floats]) -> Windows:
+    """Return windows that hold cubes or boxes, in the sensor frame.
 
-    `offsets` (V, 3) are their centres seen from the sensor along the ground axes, in the same unit.
+    `center` (3, V) are their centres, `half_axes` their three half edges, (3,) or (3, V) each. A
+    window is all round where the sensor's axis may touch a box.
     """
-    x, y, z = np.moveaxis(rotate(ground_from_sensor.T, offsets), -1, 0)
+    x, y, z = center
     flat = np.sqrt(x * x + y * y)
-    c, s = x / np.maximum(flat, half), y / np.maximum(flat, half)
-    axes = ground_from_sensor  # row k: ground axis k in the sensor frame
-    radial = half * sum(np.abs(a[0] * c + a[1] * s) for a in axes)
-    lateral = half * sum(np.abs(a[1] * c - a[0] * s) for a in axes)
-    up = half * np.abs(axes[:, 2]).sum()
+    safe = np.maximum(flat, WINDOW_MARGIN)
+    c, s = x / safe, y / safe
+    radial = sum(np.abs(a[0] * c + a[1] * s) for a in half_axes)
+    lateral = sum(np.abs(a[1] * c - a[0] * s) for a in half_axes)
+    up = sum(np.abs(a[2]) for a in half_axes)
     near, far = flat - radial, np.sqrt((flat + radial) ** 2 + lateral**2)
     off_axis = near > WINDOW_MARGIN  # not above, below or round the sensor
     safe_near = np.where(off_axis, near, 1.0)
@@ -175,18 +180,12 @@ class BeamBands:
         order = np.argsort(keys, kind="stable")
         return cls(keys[order], beams[order])
 
-    def candidates(
-        self, azimuth: Floats, half: Floats, low: Floats, high: Floats
-    ) -> tuple[Ints, Ints]:
+    def candidates(self, windows: Windows) -> tuple[Ints, Ints]:
         """Return (voxel, beam) pairs (P,) of the beams that may lie in each voxel's window.
 
-        Parameters
-        ----------
-        azimuth, half : (V,) float
-            Middle and half width of the windows [rad]; a half width of pi or more is all round.
-        low, high : (V,) float
-            Elevations [rad]; beyond +-90 degrees is allowed.
+        A half width of pi or more is all round; elevations beyond +-90 degrees are allowed.
         """
+        azimuth, half, low, high = windows.azimuth, windows.half_azimuth, windows.low, windows.high
         first = _band(np.maximum(low, -math.pi / 2))
         n = _band(np.minimum(high, math.pi / 2)) - first + 1
         voxel = np.repeat(np.arange(len(n)), n)
@@ -196,11 +195,11 @@ class BeamBands:
         reach = np.where(full_circle, math.pi, half[voxel])
         # The full circle is [-pi, pi): the copies a turn away begin just outside.
         i0 = np.searchsorted(self.keys, start + middle - reach, side="left")
-        i1 = np.searchsorted(self.keys, start + middle + reach, side="left")
-        i1 = np.where(
-            full_circle, i1, np.searchsorted(self.keys, start + middle + reach, side="right")
+        left, right = (
+            np.searchsorted(self.keys, start + middle + reach, side=side)
+            for side in ("left", "right")
         )
-        n = i1 - i0
+        n = np.where(full_circle, left, right) - i0
         return np.repeat(voxel, n), self.beams[np.repeat(i0, n) + count_up(n)]
 
 

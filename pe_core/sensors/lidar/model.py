@@ -10,10 +10,9 @@ from typing import ClassVar, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...base.arrays import Floats
+from ...base.arrays import Floats, read_only
 from ...base.degrees import all_as_in_file
 from ...base.errors import InputError, shown
-from ...base.read_only import read_only
 from ...base.values import A_NAME, Angle, Number, Whole, numbers, pair
 from ...scene.rig import Sensor, SensorModel
 from ..field_of_view import NEAREST, SHORTEST_RANGE_M, checked_ranges

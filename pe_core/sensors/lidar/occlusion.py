@@ -36,6 +36,9 @@ if TYPE_CHECKING:
     from .lattice import Lattice
 
 Indices = NDArray[np.intp]
+BeamWindows = Ints
+"""Windows of beams (4, N), ends included: from channel to channel, numbered by elevation, and from
+azimuth step to azimuth step, which may go on into a second turn."""
 
 MARGIN = 1e-6
 """Windows are widened by this, relative: far more than rounding, far less than an azimuth step."""
@@ -58,24 +61,6 @@ LARGEST_MAP_M2 = 200.0
 """No map is made of a larger vehicle (a lorry has 50 m2): it takes seconds, as casting does."""
 
 
-@dataclass(frozen=True, slots=True)
-class BeamWindows:
-    """Windows of beams, (N,) each, ends included.
-
-    `low` to `high` are channels, numbered by elevation; `first` to `last` are azimuth steps, which
-    may go on into a second turn.
-    """
-
-    low: Ints
-    high: Ints
-    first: Ints
-    last: Ints
-
-    def take(self, index: Ints) -> BeamWindows:
-        """Return the windows with these indices."""
-        return BeamWindows(self.low[index], self.high[index], self.first[index], self.last[index])
-
-
 def occlusion_candidates(
     mesh: VisibleTriangles, ground_from_sensor: Floats, lattice: Lattice
 ) -> Flags:
@@ -86,7 +71,7 @@ def occlusion_candidates(
     """
     marks = np.zeros((len(lattice.channels) + 1, 2 * lattice.count + 1), np.int32)
     for windows in _windows(mesh, ground_from_sensor, lattice):
-        _mark(marks, windows, lattice.count)
+        _mark(marks, windows)
     once, again = marks[:, : lattice.count], marks[:, lattice.count : -1]
     again[:, 0] += once.sum(axis=1)  # windows that go on into a second turn
     once += again
@@ -105,15 +90,15 @@ def _windows(
     while level >= 0 and len(nodes):
         low, high = tree.boxes[level][nodes].transpose(1, 0, 2) - mesh.origin
         windows = _box_windows(low, high, ground_from_sensor, lattice)
-        has_beams = windows.low <= windows.high
-        large = windows.last - windows.first >= LARGE_WINDOW
-        yield windows.take(np.flatnonzero(has_beams & ~large))
+        has_beams = windows[0] <= windows[1]
+        large = windows[3] - windows[2] >= LARGE_WINDOW
+        yield windows[:, has_beams & ~large]
         nodes = tree.below(nodes[has_beams & large], level)
         level -= 1
     if len(nodes):
         corners = rotate(ground_from_sensor.T, tree.triangles[nodes] - mesh.origin)
         windows = _triangle_windows(corners.transpose(2, 1, 0), lattice)
-        yield windows.take(np.flatnonzero(windows.low <= windows.high))
+        yield windows[:, windows[0] <= windows[1]]
 
 
 def _box_windows(low: Floats, high: Floats, axes: Floats, lattice: Lattice) -> BeamWindows:
@@ -132,7 +117,7 @@ def _box_windows(low: Floats, high: Floats, axes: Floats, lattice: Lattice) -> B
     far = np.where(off_axis, np.sqrt((flat + depth) ** 2 + width * width), ball)
     low_row, high_row = _rows(z - height, z + height, np.where(off_axis, near, 0.0), far, lattice)
     middle, reach = np.arctan2(y, x), np.where(off_axis, np.arctan2(width, near), np.pi)
-    return BeamWindows(low_row, high_row, *_columns(middle - reach, middle + reach, lattice))
+    return np.stack([low_row, high_row, *_columns(middle - reach, middle + reach, lattice)])
 
 
 def _triangle_windows(corners: Floats, lattice: Lattice) -> BeamWindows:
@@ -148,7 +133,7 @@ def _triangle_windows(corners: Floats, lattice: Lattice) -> BeamWindows:
     low, high = _rows(corner_min(z), corner_max(z), np.where(off_axis, near, 0.0), far, lattice)
     first = np.where(off_axis, azimuth[0] + first, -np.pi)
     last = np.where(off_axis, azimuth[0] + last, np.pi)
-    return BeamWindows(low, high, *_columns(first, last, lattice))
+    return np.stack([low, high, *_columns(first, last, lattice)])
 
 
 def _edge_distance(x: Floats, y: Floats, i: int, j: int) -> Floats:
@@ -185,17 +170,16 @@ def _columns(first: Floats, last: Floats, lattice: Lattice) -> tuple[Ints, Ints]
     return begin, begin + count
 
 
-def _mark(marks: NDArray[np.int32], windows: BeamWindows, count: int) -> None:
+def _mark(marks: NDArray[np.int32], windows: BeamWindows) -> None:
     """Add windows to a table whose cumulative sums are the number of windows that hold a beam."""
-    width = marks.shape[1]
-    windows, flat = windows.take(np.flatnonzero(windows.first <= windows.last)), marks.reshape(-1)
-    corners = (
-        (windows.low, windows.first, 1),
-        (windows.low, windows.last + 1, -1),
-        (windows.high + 1, windows.first, -1),
-        (windows.high + 1, windows.last + 1, 1),
-    )
-    for row, column, sign in corners:
+    width, flat = marks.shape[1], marks.reshape(-1)
+    low, high, first, last = windows[:, windows[2] <= windows[3]]
+    for row, column, sign in (
+        (low, first, 1),
+        (low, last + 1, -1),
+        (high + 1, first, -1),
+        (high + 1, last + 1, 1),
+    ):
         np.add.at(flat, row * width + column, sign)
 
 
@@ -222,13 +206,7 @@ class BeamSlopes:
 
 
 class TopMap:
-    """A height map of a vehicle's top surface in cells of CELL_M; -inf beside the vehicle.
-
-    Parameters
-    ----------
-    triangles : (F, 3, 3) float
-        Ground frame [m].
-    """
+    """A height map of triangles' (F, 3, 3) top surface in cells of CELL_M; -inf beside them."""
 
     def __init__(self, triangles: Floats) -> None:
         corners = triangles.reshape(-1, 3)
@@ -247,23 +225,19 @@ class TopMap:
 
     def ends(self, position: Floats, beams: BeamSlopes, max_range: float) -> Floats:
         """Return the distance (B,) at which beams from a position above the surface end [m]."""
-        length = self._farthest_corner(position)
-        steps = (np.arange(math.ceil(length / CELL_M)) + 0.5) * CELL_M
-        horizon = self._horizon(position, steps.astype(np.float32))
-        ends = np.full(len(beams.slope), max_range)
-        low = np.flatnonzero(horizon[beams.sector, -1] >= beams.slope)
-        slope = beams.slope[low]
-        first = _first_above(horizon, beams.sector[low], slope)
-        slope = slope.astype(np.float64)
-        ends[low] = np.minimum(steps[first] * np.sqrt(1.0 + slope * slope), max_range)
-        return ends
-
-    def _farthest_corner(self, position: Floats) -> float:
-        """Horizontal distance to the map's farthest corner [m]."""
         low = self._low * CELL_M
         high = low + np.array(self._heights.shape) * CELL_M
         gap = np.maximum(np.abs(low - position[:2]), np.abs(high - position[:2]))
-        return math.hypot(*gap.tolist())
+        length = math.hypot(*gap.tolist())  # to the map's farthest corner
+        steps = (np.arange(math.ceil(length / CELL_M)) + 0.5) * CELL_M
+        horizon = self._horizon(position, steps.astype(np.float32))
+        ends = np.full(len(beams.slope), max_range)
+        below = np.flatnonzero(horizon[beams.sector, -1] >= beams.slope)
+        slope = beams.slope[below]
+        first = _first_above(horizon, beams.sector[below], slope)
+        slope = slope.astype(np.float64)
+        ends[below] = np.minimum(steps[first] * np.sqrt(1.0 + slope * slope), max_range)
+        return ends
 
     def _horizon(self, position: Floats, steps: Singles) -> Singles:
         """Maximum slope (SECTORS, S) of the surface up to each step of each sector."""
@@ -297,28 +271,19 @@ def _first_above(horizon: Singles, sector: Indices, slope: Singles) -> Indices:
     return high
 
 
-def _footprint(vehicle: Vehicle) -> float:
-    """Area of the vehicle's bounding rectangle seen from above [m2]."""
-    (x0, y0, _), (x1, y1, _) = (corner.tolist() for corner in vehicle.bounds)
-    return float((x1 - x0) * (y1 - y0))
-
-
 class ApproximateOcclusion:
-    """Approximate ends of the beams of LiDARs on a vehicle, from a height map of its top.
-
-    Parameters
-    ----------
-    vehicle : Vehicle or None
-    """
+    """Approximate ends of the beams of LiDARs on a vehicle, from a height map of its top."""
 
     def __init__(self, vehicle: Vehicle | None) -> None:
         self._vehicle = vehicle
 
     @cached_property
     def _map(self) -> TopMap | None:
-        if self._vehicle is None or _footprint(self._vehicle) > LARGEST_MAP_M2:
+        if self._vehicle is None:
             return None
-        return TopMap(self._vehicle.triangles)
+        (x0, y0, _), (x1, y1, _) = (corner.tolist() for corner in self._vehicle.bounds)
+        is_large = (x1 - x0) * (y1 - y0) > LARGEST_MAP_M2
+        return None if is_large else TopMap(self._vehicle.triangles)
 
     def applies_to(self, sensor: Sensor) -> bool:
         """Whether there is a vehicle, not too large for a map, and the sensor is above it."""

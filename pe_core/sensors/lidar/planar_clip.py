@@ -21,10 +21,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base.arrays import Flags, Floats, Ints
-from ...geometry.poses import dot, rotate
+from ...geometry.poses import dot
 from ..boxes import PlacedBoxes
 from .fan_runs import RotatedFan, RunBlock
 
@@ -122,35 +121,27 @@ def upright_runs(
     and a sum for a run, and a run two table look-ups.
     """
     for block, column in fan.columns(planar.first[index], planar.last[index]):
-        yield _upright_block(fan, boxes, planar, index[block], column)
-
-
-def _upright_block(
-    fan: RotatedFan, boxes: PlacedBoxes, planar: PlanarBoxes, box: Ints, column: NDArray[np.int32]
-) -> RunBlock:
-    x, y = (np.take(w, column) for w in fan.rays)
-    buffer = np.empty(column.shape)
-    near, flank = (_inverse(side, box, x, y, buffer) for side in planar.near)
-    np.minimum(near, flank, out=near)
-    far, *others = (_inverse(side, box, x, y, buffer) for side in planar.far)
-    for other in others:
-        np.maximum(far, other, out=far)
-    gap = near - far
-    unsure = np.abs(gap) < GRAZING
-    unsure |= planar.in_line[box]
-    middle, half = boxes.offsets[box, 2], boxes.halves[box, 2]
-    bottom, top = (z * fan.slopes.scale for z in (middle - half, middle + half))
-    one, other = bottom * near, bottom * far
-    low, low_unsure = fan.slopes.below(np.minimum(one, other, out=one))
-    np.multiply(top, near, out=one)
-    np.multiply(top, far, out=other)
-    high, high_unsure = fan.slopes.below(np.maximum(one, other, out=one))
-    unsure |= low_unsure
-    unsure |= high_unsure
-    high[gap <= 0.0] = 0
-    np.maximum(high, low, out=high)
-    column[column >= fan.count] -= fan.count
-    return RunBlock(box, column, low, high, near, far, unsure)
+        box = index[block]
+        x, y = (np.take(w, column) for w in fan.rays)
+        buffer = np.empty(column.shape)
+        near, flank = (_inverse(side, box, x, y, buffer) for side in planar.near)
+        np.minimum(near, flank, out=near)
+        far, *others = (_inverse(side, box, x, y, buffer) for side in planar.far)
+        for other in others:
+            np.maximum(far, other, out=far)
+        gap = near - far
+        middle, half = boxes.offsets[box, 2], boxes.halves[box, 2]
+        bottom, top = (z * fan.slopes.scale for z in (middle - half, middle + half))
+        one, other = bottom * near, bottom * far
+        low, low_unsure = fan.slopes.below(np.minimum(one, other, out=one))
+        np.multiply(top, near, out=one)
+        np.multiply(top, far, out=other)
+        high, high_unsure = fan.slopes.below(np.maximum(one, other, out=one))
+        unsure = (np.abs(gap) < GRAZING) | planar.in_line[box] | low_unsure | high_unsure
+        high[gap <= 0.0] = 0
+        np.maximum(high, low, out=high)
+        column[column >= fan.count] -= fan.count
+        yield RunBlock(box, column, low, high, near, far, unsure)
 
 
 def _inverse(side: SideLines, box: Ints, x: Floats, y: Floats, buffer: Floats) -> Floats:
@@ -193,9 +184,8 @@ class TiltedBoxes:
     @classmethod
     def of(cls, boxes: PlacedBoxes, ground_from_sensor: Floats) -> TiltedBoxes:
         """Pair the near and far sides of boxes."""
-        axes = _axes_in_sensor(boxes, ground_from_sensor)
         out = np.abs(boxes.offsets) - boxes.halves
-        near, far = _near_sides(boxes, axes, out), _far_sides(boxes, axes, out)
+        near, far = _inverse_distances(boxes, boxes.axes_in(ground_from_sensor), out)
         bounds, unsure = [], np.abs(out).min(axis=1) < IN_LINE_M
         for first, second in _different_pairs(out):
             rows = np.arange(len(out))
@@ -213,14 +203,6 @@ class TiltedBoxes:
         return cls(tuple(bounds), unsure, outside, 1.0 / distance, 1.0 / farthest)
 
 
-def _axes_in_sensor(boxes: PlacedBoxes, ground_from_sensor: Floats) -> list[Floats]:
-    """The boxes' three axes in the sensor frame, (3, N) each."""
-    c, s = boxes.headings.T
-    zero = np.zeros(len(c))
-    axes = ((c, s, zero), (-s, c, zero), (zero, zero, zero + 1.0))
-    return [rotate(ground_from_sensor.T, np.stack(w, axis=1)).T for w in axes]
-
-
 def _different_pairs(out: Floats) -> Iterator[Ints]:
     """Yield near and far sides (2, N) of each box, pair by pair; the last one again and again."""
     facing = out > 0.0
@@ -232,31 +214,25 @@ def _different_pairs(out: Floats) -> Iterator[Ints]:
         yield np.stack(np.divmod(column, FAR))
 
 
-def _near_sides(boxes: PlacedBoxes, axes: list[Floats], out: Floats) -> Floats:
-    """Inverse distances (3, 3, N) of the three sides that may face the sensor.
+def _inverse_distances(
+    boxes: PlacedBoxes, axes: list[Floats], out: Floats
+) -> tuple[Floats, Floats]:
+    """Inverse distances (3, 3, N) of sides that may face the sensor, and (6, 3, N) of far sides.
 
-    One that does not face it is replaced by one that does.
+    A near side that does not face it is replaced by one that does.
     """
-    sides = []
-    with np.errstate(divide="ignore", invalid="ignore"):  # of sides that do not face the sensor
-        for k, axis in enumerate(axes):
-            at = boxes.offsets[:, k]
-            sides.append(axis / (at - np.copysign(boxes.halves[:, k], at)))
-    best = np.argmax(out, axis=1)  # a side that faces the sensor
-    facing = np.stack(sides)[best, :, np.arange(len(best))].T
-    return np.stack([np.where(out[:, k] > 0.0, side, facing) for k, side in enumerate(sides)])
-
-
-def _far_sides(boxes: PlacedBoxes, axes: list[Floats], out: Floats) -> Floats:
-    """Inverse distances (6, 3, N) of the six sides that may face away from the sensor."""
-    sides = []
-    with np.errstate(divide="ignore", invalid="ignore"):  # of sides that face the sensor
+    near, far = [], []
+    with np.errstate(divide="ignore", invalid="ignore"):  # of sides that face the other way
         for k, axis in enumerate(axes):
             at = boxes.offsets[:, k]
             half = np.copysign(boxes.halves[:, k], at)
             back, front = axis / (at + half), axis / (at - half)
-            sides += [back, np.where(out[:, k] > 0.0, back, front)]
-    return np.stack(sides)
+            near.append(front)
+            far += [back, np.where(out[:, k] > 0.0, back, front)]
+    best = np.argmax(out, axis=1)  # a side that faces the sensor
+    facing = np.stack(near)[best, :, np.arange(len(best))].T
+    near = [np.where(out[:, k] > 0.0, side, facing) for k, side in enumerate(near)]
+    return np.stack(near), np.stack(far)
 
 
 def tilted_runs(
@@ -268,27 +244,19 @@ def tilted_runs(
     of all boxes [rad]. Fast because each pair of sides costs two products and a sum for a run.
     """
     for block, column in fan.columns(spans[0][index], spans[1][index]):
-        yield _tilted_block(fan, boxes, index[block], column)
-
-
-def _tilted_block(
-    fan: RotatedFan, boxes: TiltedBoxes, box: Ints, column: NDArray[np.int32]
-) -> RunBlock:
-    x, y = (np.take(w, column) for w in fan.rays)
-    low, high = np.full(column.shape, -np.inf), np.full(column.shape, np.inf)
-    for bound in boxes.bounds:
-        value = bound.a[box] * x
-        value += bound.b[box] * y
-        np.maximum(low, value + bound.lower[box], out=low)
-        np.minimum(high, value + bound.upper[box], out=high)
-    missed = low >= high
-    scale = fan.slopes.scale
-    first, first_unsure = fan.slopes.below(low * scale)
-    last, last_unsure = fan.slopes.below(high * scale)
-    unsure = first_unsure | last_unsure
-    unsure |= boxes.unsure[box]
-    last[missed] = 0
-    np.maximum(last, first, out=last)
-    column[column >= fan.count] -= fan.count
-    near, far = (np.broadcast_to(w[box], column.shape) for w in (boxes.near, boxes.far))
-    return RunBlock(box, column, first, last, near, far, unsure)
+        box, scale = index[block], fan.slopes.scale
+        x, y = (np.take(w, column) for w in fan.rays)
+        low, high = np.full(column.shape, -np.inf), np.full(column.shape, np.inf)
+        for bound in boxes.bounds:
+            value = bound.a[box] * x
+            value += bound.b[box] * y
+            np.maximum(low, value + bound.lower[box], out=low)
+            np.minimum(high, value + bound.upper[box], out=high)
+        first, first_unsure = fan.slopes.below(low * scale)
+        last, last_unsure = fan.slopes.below(high * scale)
+        last[low >= high] = 0
+        np.maximum(last, first, out=last)
+        column[column >= fan.count] -= fan.count
+        near, far = (np.broadcast_to(w[box], column.shape) for w in (boxes.near, boxes.far))
+        unsure = first_unsure | last_unsure | boxes.unsure[box]
+        yield RunBlock(box, column, first, last, near, far, unsure)

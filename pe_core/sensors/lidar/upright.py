@@ -5,7 +5,7 @@ Seen from above a voxel is a square, and two of its corners bound the azimuths t
 frame folded into the first quadrant azimuths are counted from the nearest axis, so that small
 angles keep all their digits. Each azimuth's ray cuts the square between two distances; the
 channels that pass the voxel are those with a slope between two quotients of height and distance:
-two look-ups in a table (`slopes`).
+two look-ups in a table (`SlopeCounts`).
 
 All arithmetic is in single precision. Where rounding could decide, or the count is large, the voxel
 is unsure and left to the exact test in `voxel_beams`: a few in a hundred. docs/engine.md has a
@@ -24,12 +24,16 @@ from numpy.typing import NDArray
 
 from ...base.arrays import Flags, Floats, Singles
 from ...geometry.indexing import blocks
-from .slopes import SlopeCounts
 
 Indices = NDArray[np.intp]
 Small = NDArray[np.int16]
 Counts = NDArray[np.int32]
 
+COUNT_BINS = 1 << 17
+COUNT_MARGIN = np.float32(2e-6)
+"""Relative rounding of a slope whose channels are counted, with room to spare."""
+MAX_ELEVATION_RAD = math.radians(80.0)
+"""Steeper channels are not counted by slope: their tangents would leave too few bins to others."""
 MARGIN = np.float32(2e-6)
 """Relative rounding of an angle in single precision, with room to spare."""
 MAX_AZIMUTHS = 10
@@ -48,62 +52,70 @@ YAW_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class Cubes:
-    """Lower and upper faces of cubes along each ground axis, seen from the sensor, in sides.
+class SlopeCounts:
+    """The number of channels of a regular LiDAR below a slope, or that it is unsure.
 
-    Offsets are exact to the last digit, because the offset of a face decides ties.
+    `below` holds a code for each bin of slopes: twice the number of channels below the bin, plus 1
+    where a channel may lie in the bin. A bin begins at slope 0, and a slope's sign is always right,
+    so the horizontal channel lies in no bin.
     """
 
-    x0: Singles
-    x1: Singles
-    y0: Singles
-    y1: Singles
-    z0: Singles
-    z1: Singles
+    azimuth_count: int
+    scale: np.float32
+    first: int
+    below: Small
 
     @classmethod
-    def of(cls, corners: Sequence[Singles], position: Floats) -> Cubes:
-        """Subtract a position from lower corners, which are whole numbers in the same frame."""
-        faces = []
-        for corner, coordinate in zip(corners, position.tolist(), strict=True):
-            whole = round(coordinate)
-            lower = corner - np.float32(whole)  # exact
-            upper = lower + np.float32(1.0)
-            lower -= np.float32(coordinate - whole)
-            upper -= np.float32(coordinate - whole)
-            faces += [lower, upper]
-        return cls(*faces)
+    def of(cls, elevations: Floats, azimuth_count: int) -> SlopeCounts | None:
+        """Build the table of channels at elevations (C,) [rad].
 
-    def take(self, index: slice) -> Cubes:
-        """Return the cubes with these indices."""
-        x0, x1, y0, y1, z0, z1 = self.x0, self.x1, self.y0, self.y1, self.z0, self.z1
-        return Cubes(x0[index], x1[index], y0[index], y1[index], z0[index], z1[index])
+        None for an odd number of azimuths or steep channels: the table does not serve them.
+        """
+        if azimuth_count % 2 or np.abs(elevations).max() > MAX_ELEVATION_RAD:
+            return None
+        slopes = np.array([math.tan(e) for e in np.sort(elevations).tolist()])
+        scale = float(np.float32(COUNT_BINS / (slopes[-1] - slopes[0] + 0.01)))
+        first = math.floor(slopes[0] * scale) - 2
+        edges = np.arange(first, math.floor(slopes[-1] * scale) + 4) / scale
+        slack = float(COUNT_MARGIN) * np.abs(edges)
+        below = np.searchsorted(slopes, edges[:-1] - slack[:-1], side="left")
+        upto = np.searchsorted(slopes, edges[1:] + slack[1:], side="right")
+        upto[edges[1:] == 0.0] = np.searchsorted(slopes, 0.0, side="left")
+        below[edges[:-1] == 0.0] = np.searchsorted(slopes, 0.0, side="right")
+        table = (2 * below + (upto > below)).astype(np.int16)
+        return cls(azimuth_count, np.float32(scale), first, table)
+
+    def look_up(self, slopes: Singles) -> Small:
+        """Return the codes `below` of slopes; overwrites the slopes."""
+        slopes *= self.scale
+        bins = np.floor(slopes, out=slopes).astype(np.intp)
+        bins -= self.first
+        return np.take(self.below, bins, mode="clip")
 
 
-@dataclass(frozen=True, slots=True)
-class Azimuths:
-    """Azimuths that meet voxels, (V,): entries ``entry + turn * n`` of `Circle` for n < `count`."""
+def faces_of(corners: Sequence[Singles], position: Floats) -> Singles:
+    """Return the faces (6, V) of cubes seen from the sensor, in sides: x0, x1, y0, y1, z0, z1.
 
-    entry: Singles
-    turn: Singles
-    count: Singles
-
-    @classmethod
-    def concatenated(cls, parts: Sequence[Azimuths]) -> Azimuths:
-        """Join parts."""
-        columns = zip(*((p.entry, p.turn, p.count) for p in parts), strict=True)
-        return cls(*(np.concatenate(column) for column in columns))
-
-    def take(self, index: slice | Indices) -> Azimuths:
-        """Return the azimuths of the voxels with these indices."""
-        return Azimuths(self.entry[index], self.turn[index], self.count[index])
+    `corners` are lower corners, whole numbers in the frame of the position. Offsets are exact to
+    the last digit, because the offset of a face decides ties.
+    """
+    faces = np.empty((6, len(corners[0])), np.float32)
+    for axis, (corner, coordinate) in enumerate(zip(corners, position.tolist(), strict=True)):
+        whole = round(coordinate)
+        lower, upper = faces[2 * axis : 2 * axis + 2]
+        np.subtract(corner, np.float32(whole), out=lower)  # exact
+        np.add(lower, np.float32(1.0), out=upper)
+        faces[2 * axis : 2 * axis + 2] -= np.float32(coordinate - whole)
+    return faces
 
 
 @dataclass(frozen=True, slots=True)
 class Circle:
     """Reciprocals of cosine and sine at the azimuths of a LiDAR turned by a `fraction` of a step.
 
-    Entry j is azimuth step ``j - 2 * count``. The table spans four turns, so no index wraps.
+    Entry j is azimuth step ``j - 2 * count``. The table spans four turns, so no index wraps. The
+    azimuths that meet voxels (V,) are rows (3, V): `entry`, `turn` and `count`, which stand for the
+    entries ``entry + turn * n`` of n < `count`.
     """
 
     count: int
@@ -119,20 +131,33 @@ class Circle:
         per_y = np.array([1.0 / (math.sin(a) or 1e-30) for a in angles], np.float32)
         return cls(count, fraction, np.tile(per_x, 4), np.tile(per_y, 4))
 
-    def meeting(self, cubes: Cubes) -> tuple[Azimuths, Flags]:
-        """Return the azimuths that meet each cube, and where (V,) they are unsure."""
-        behind = cubes.x1 < -cubes.x0
-        turn = np.multiply(behind ^ (cubes.y1 < -cubes.y0), np.float32(-2.0))
+    def meeting(self, faces: Singles) -> tuple[Singles, Flags]:
+        """Return the azimuths (3, V) that meet each cube, and where (V,) they are unsure."""
+        x0, x1, y0, y1 = faces[:4]
+        behind = x1 < -x0
+        turn = np.multiply(behind ^ (y1 < -y0), np.float32(-2.0))
         turn += np.float32(1.0)
-        low, high, unsure = _corner_angles(cubes)
+        # The squares are mirrored into the first quadrant; they may extend beyond it.
+        x0, x1 = np.maximum(x0, -x1), np.maximum(x1, -x0)
+        y0, y1 = np.maximum(y0, -y1), np.maximum(y1, -y0)
+        unsure: Flags = np.maximum(x0, y0) <= MIN_DISTANCE
+        np.copyto(x1, x0, where=y0 <= 0)
+        np.copyto(y1, y0, where=x0 <= 0)
+        low, high = np.arctan2(y0, x1, out=x1), np.arctan2(y1, x0, out=x0)  # outermost corners
         per_radian = np.float32(self.count / (2.0 * math.pi))
         low *= per_radian
         high *= per_radian
         if self.fraction:
             low -= turn * np.float32(self.fraction)
             high -= turn * np.float32(self.fraction)
-        for angle in (low, high):
-            unsure |= self._is_close_to_whole(angle)
+        for angle in (low, high):  # so near to a whole number that rounding could decide
+            margin = np.abs(angle)
+            if self.fraction:
+                margin += np.float32(2.0)
+            margin *= MARGIN
+            distance = np.rint(angle)
+            distance -= angle
+            unsure |= np.abs(distance, out=distance) <= margin
         np.ceil(low, out=low)
         count = np.floor(high, out=high)
         count -= low
@@ -142,53 +167,13 @@ class Circle:
         entry = np.multiply(behind, np.float32(self.count // 2))
         entry += np.float32(2 * self.count)
         entry += low
-        return Azimuths(entry, turn, count), unsure
-
-    def _is_close_to_whole(self, angle: Singles) -> Flags:
-        """Whether angles, in steps, are so near to a whole number that rounding could decide."""
-        margin = np.abs(angle)
-        if self.fraction:
-            margin += np.float32(2.0)
-        margin *= MARGIN
-        distance = np.rint(angle)
-        distance -= angle
-        np.abs(distance, out=distance)
-        close: Flags = distance <= margin
-        return close
+        return np.stack([entry, turn, count]), unsure
 
 
 @lru_cache(maxsize=CACHED_CIRCLES)
 def circle(count: int, fraction: float) -> Circle:
     """Return the circle of `count` azimuths turned by a fraction of a step, from a cache."""
     return Circle.of(count, fraction)
-
-
-def _corner_angles(cubes: Cubes) -> tuple[Singles, Singles, Flags]:
-    """Angles (V,) of the squares' two outermost corners [rad], and which squares are too near.
-
-    The squares are mirrored into the first quadrant; they may extend beyond it.
-    """
-    x0, x1 = np.maximum(cubes.x0, -cubes.x1), np.maximum(cubes.x1, -cubes.x0)
-    y0, y1 = np.maximum(cubes.y0, -cubes.y1), np.maximum(cubes.y1, -cubes.y0)
-    near: Flags = np.maximum(x0, y0) <= MIN_DISTANCE
-    np.copyto(x1, x0, where=y0 <= 0)
-    np.copyto(y1, y0, where=x0 <= 0)
-    return np.arctan2(y0, x1, out=x1), np.arctan2(y1, x0, out=x0), near
-
-
-@dataclass(frozen=True, slots=True)
-class Cut:
-    """How one azimuth each cuts voxels, (V,) each.
-
-    `entry` is the azimuth's entry of `Circle`; `enter` the horizontal distance at which its ray
-    enters the square, in sides; `below_low` and `below_high` the numbers of channels below the
-    lowest and the highest slope inside the voxel.
-    """
-
-    entry: Indices
-    enter: Singles
-    below_low: Small
-    below_high: Small
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,18 +199,26 @@ class OccludedBeams:
         np.cumsum(~np.roll(occludable, yaw_steps, axis=1).T, axis=1, out=free[:, 1:])
         return cls(free, int(rows[-1]) + 1, max_occlusion + CUBE_SPAN)
 
-    def subtract(self, cut: Cut, counts: Small, unsure: Flags) -> None:
-        """Subtract occluded beams from counts (V,), in place.
+    def subtract(
+        self, entry: Indices, enter: Singles, channels: tuple[Small, Small], unsure: Flags
+    ) -> Small:
+        """Return the number (V,) of free beams of one azimuth that pass each voxel.
 
-        A voxel within `reach` that loses beams becomes unsure: they may end behind it.
+        `entry` (V,) is the azimuth in `Circle`, `enter` the horizontal distance at which its ray
+        enters the square, in sides; `channels` are the numbers of channels below the lowest and
+        the highest slope inside the voxel. A voxel within `reach` that loses beams becomes unsure:
+        they may end behind it.
         """
+        below_low, below_high = channels
+        counts = below_high - below_low
         azimuths, width = self.free.shape
-        low = np.flatnonzero((cut.below_low < self.above) & (counts > 0))
-        row = (cut.entry[low] % azimuths) * width
-        free = np.take(self.free, row + cut.below_high[low])
-        free -= np.take(self.free, row + cut.below_low[low])
-        unsure[low] |= (free != counts[low]) & (cut.enter[low] < self.reach)
+        low = np.flatnonzero((below_low < self.above) & (counts > 0))
+        row = (entry[low] % azimuths) * width
+        free = np.take(self.free, row + below_high[low])
+        free -= np.take(self.free, row + below_low[low])
+        unsure[low] |= (free != counts[low]) & (enter[low] < self.reach)
         counts[low] = free
+        return counts
 
 
 @dataclass(frozen=True, slots=True)
@@ -270,56 +263,56 @@ class Upright:
         total = len(corners[0])
         counts, unsure = np.empty(total, np.int32), np.empty(total, bool)
         with np.errstate(all="ignore"):  # divisions of voxels that become unsure
-            further: list[tuple[Indices, Azimuths]] = []
+            further: list[tuple[Indices, Singles]] = []
             for block in blocks(total, BLOCK):
-                cubes = Cubes.of([c[block] for c in corners], position)
-                azimuths, unsure_azimuths = self.circle.meeting(cubes)
-                passing, unsure_channels = self._passing(cubes, azimuths.entry)
-                np.multiply(passing, azimuths.count > 0, out=counts[block])
+                faces = faces_of([c[block] for c in corners], position)
+                azimuths, unsure_azimuths = self.circle.meeting(faces)
+                passing, unsure_channels = self._passing(faces, azimuths[0])
+                np.multiply(passing, azimuths[2] > 0, out=counts[block])
                 np.logical_or(unsure_azimuths, unsure_channels, out=unsure[block])
-                more = np.flatnonzero((azimuths.count > 1) & ~unsure[block])
-                further.append((more + block.start, azimuths.take(more)))
-            azimuths = Azimuths.concatenated([a for _, a in further])
-            order = np.argsort((MAX_AZIMUTHS - azimuths.count).astype(np.int8), kind="stable")
+                more = np.flatnonzero((azimuths[2] > 1) & ~unsure[block])
+                further.append((more + block.start, azimuths[:, more]))
+            azimuths = np.concatenate([a for _, a in further], axis=1)
+            order = np.argsort((MAX_AZIMUTHS - azimuths[2]).astype(np.int8), kind="stable")
             voxel = np.concatenate([v for v, _ in further])[order]
-            cubes = Cubes.of([c[voxel] for c in corners], position)
-            further_counts, further_unsure = self._further(cubes, azimuths.take(order))
+            faces = faces_of([c[voxel] for c in corners], position)
+            further_counts, further_unsure = self._further(faces, azimuths[:, order])
         counts[voxel] += further_counts
         unsure[voxel] = further_unsure
         return counts, unsure
 
-    def _further(self, cubes: Cubes, azimuths: Azimuths) -> tuple[Counts, Flags]:
+    def _further(self, faces: Singles, azimuths: Singles) -> tuple[Counts, Flags]:
         """Count at the second and further azimuths; cubes with the most azimuths come first."""
-        counts, unsure = np.zeros(len(cubes.x0), np.int32), np.zeros(len(cubes.x0), bool)
-        cubes_by_count = np.bincount(azimuths.count.astype(np.intp), minlength=MAX_AZIMUTHS + 1)
+        counts, unsure = np.zeros(faces.shape[1], np.int32), np.zeros(faces.shape[1], bool)
+        entry, turn, count = azimuths
+        cubes_by_count = np.bincount(count.astype(np.intp), minlength=MAX_AZIMUTHS + 1)
         for n in range(2, MAX_AZIMUTHS + 1):
             for block in blocks(int(cubes_by_count[n:].sum()), BLOCK):
-                nth = azimuths.take(block)
-                np.add(nth.entry, nth.turn, out=nth.entry)
-                passing, unsure_channels = self._passing(cubes.take(block), nth.entry)
+                entry[block] += turn[block]
+                passing, unsure_channels = self._passing(faces[:, block], entry[block])
                 counts[block] += passing
                 unsure[block] |= unsure_channels
         return counts, unsure
 
-    def _passing(self, cubes: Cubes, entry: Singles) -> tuple[Small, Flags]:
+    def _passing(self, faces: Singles, entry: Singles) -> tuple[Small, Flags]:
         """Count the channels of one azimuth per cube that pass it, and flag unsure counts."""
+        x0, x1, y0, y1, z0, z1 = faces
         index = entry.astype(np.intp)
         per = np.take(self.circle.per_x, index, mode="clip")
-        a, b = cubes.x0 * per, cubes.x1 * per
+        a, b = x0 * per, x1 * per
         np.take(self.circle.per_y, index, mode="clip", out=per)
-        c, d = cubes.y0 * per, cubes.y1 * per
+        c, d = y0 * per, y1 * per
         enter = np.minimum(c, d, out=per)
         np.maximum(enter, np.minimum(a, b), out=enter)
         leave = np.maximum(c, d, out=c)
         np.minimum(leave, np.maximum(a, b), out=leave)
         near = np.divide(np.float32(1.0), enter, out=a)
         far = np.divide(np.float32(1.0), leave, out=leave)
-        low = self.slopes.look_up(np.minimum(cubes.z0 * near, cubes.z0 * far, out=b))
-        high = self.slopes.look_up(np.maximum(cubes.z1 * near, cubes.z1 * far, out=b))
+        low = self.slopes.look_up(np.minimum(z0 * near, z0 * far, out=b))
+        high = self.slopes.look_up(np.maximum(z1 * near, z1 * far, out=b))
         unsure: Flags = ((low | high) & 1).astype(bool)
         low >>= 1
         high >>= 1
-        counts = high - low
-        if self.occlusion is not None:
-            self.occlusion.subtract(Cut(index, enter, low, high), counts, unsure)
-        return counts, unsure
+        if self.occlusion is None:
+            return high - low, unsure
+        return self.occlusion.subtract(index, enter, (low, high), unsure), unsure

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from ...base.arrays import Floats, Ints, Singles
 from ...geometry.indexing import blocks
+from ...geometry.poses import rotate
 from .bracket import Bracket, bracket
 from .lattice import windows_of
 from .upright import Upright
@@ -84,6 +85,11 @@ class PlacedLidar:
     ends: BeamEnds
     side: float
 
+    def candidates(self, offsets: Floats) -> tuple[Ints, Ints]:
+        """Return (voxel, beam) pairs of beams that may pass cubes at offsets (V, 3), in sides."""
+        center = rotate(self.ground_from_sensor.T, offsets).T
+        return self.lattice.candidates(windows_of(center, list(0.5 * self.ground_from_sensor)))
+
     @property
     def max_range(self) -> float:
         """Maximum range, in sides."""
@@ -113,27 +119,15 @@ def count_voxel_beams(
     saturation_count: int | None = None,
     unoccluded: Unoccluded | None = None,
 ) -> NDArray[np.signedinteger]:
-    """Count the beams through voxels that the vehicle does not occlude before.
+    """Count the beams (V,) through voxels that the vehicle does not occlude before.
 
-    Parameters
-    ----------
-    voxels : VoxelPoints
-    lidar : PlacedLidar
-    saturation_count : int, optional
-        A count of this or more need not be exact: any number from this up to the count may be
-        returned.
-    unoccluded : Unoccluded, optional
-        The result of `count_unoccluded` with the same arguments, where the caller has it.
-
-    Returns
-    -------
-    (V,) int
+    A count of `saturation_count` or more need not be exact: any number from this up to the count
+    may be returned. `unoccluded` is the result of `count_unoccluded` with the same arguments, where
+    the caller has it.
     """
-    lattice = lidar.lattice
-    if lattice.slope_bounds is None:
+    if lidar.lattice.slope_bounds is None:
         offsets = voxels.offsets(lidar.position)
-        windows = windows_of(offsets, 0.5, lidar.ground_from_sensor)
-        return count_pairs(offsets, lidar, *lattice.candidates(windows))
+        return count_pairs(offsets, lidar, *lidar.candidates(offsets))
     if _is_upright(lidar) and len(voxels):
         max_occlusion = lidar.ends.max_occlusion / lidar.side
         counts, unsure = _count_upright(voxels, lidar, lidar.occludable, max_occlusion)
@@ -149,11 +143,9 @@ def count_unoccluded(
     voxels: VoxelPoints, lidar: PlacedLidar, saturation_count: int | None = None
 ) -> Unoccluded:
     """Count the beams through voxels without a vehicle; parameters as of `count_voxel_beams`."""
-    lattice = lidar.lattice
-    if lattice.slope_bounds is None:
+    if lidar.lattice.slope_bounds is None:
         offsets = voxels.offsets(lidar.position)
-        windows = windows_of(offsets, 0.5, lidar.ground_from_sensor)
-        pairs = lattice.candidates(windows)
+        pairs = lidar.candidates(offsets)
         return Unoccluded(count_pairs(offsets, lidar, *pairs, without_vehicle=True))
     if not (_is_upright(lidar) and len(voxels)):
         return _count_bracketed(voxels, lidar, saturation_count, slice(None))
@@ -242,22 +234,16 @@ def _count_windows(
 
 def _any_in_window(flags: NDArray[np.bool_], bounds: Bracket, voxels: Ints) -> NDArray[np.bool_]:
     """Whether the windows of voxels hold a flagged beam: four look-ups in a summed-area table."""
-    width, sums = flags.shape[1], _summed_area(flags)
-    r0, c0 = bounds.row[voxels], bounds.column[voxels] % width
-    r1, c1 = r0 + bounds.rows[voxels], c0 + bounds.columns[voxels]
-    any_flag: NDArray[np.bool_] = sums[r1, c1] - sums[r0, c1] > sums[r1, c0] - sums[r0, c0]
-    return any_flag
-
-
-def _summed_area(flags: NDArray[np.bool_]) -> Counts:
-    """Numbers (C + 1, 2 A + 1) of flags in lower rows and columns, over two turns."""
     channels, width = flags.shape
-    sums = np.zeros((channels + 1, 2 * width + 1), np.int32)
+    sums = np.zeros((channels + 1, 2 * width + 1), np.int32)  # of flags before, over two turns
     np.cumsum(flags, axis=1, dtype=np.int32, out=sums[1:, 1 : width + 1])
     for row, before in zip(sums[1:], sums, strict=False):
         row += before  # five times as fast as np.cumsum along the first axis
     np.add(sums[:, 1 : width + 1], sums[:, width : width + 1], out=sums[:, width + 1 :])
-    return sums
+    r0, c0 = bounds.row[voxels], bounds.column[voxels] % width
+    r1, c1 = r0 + bounds.rows[voxels], c0 + bounds.columns[voxels]
+    any_flag: NDArray[np.bool_] = sums[r1, c1] - sums[r0, c1] > sums[r1, c0] - sums[r0, c0]
+    return any_flag
 
 
 def count_pairs(

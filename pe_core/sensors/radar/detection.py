@@ -1,19 +1,44 @@
-"""Detection by a radar: SNR of a target, and the probability that it is detected.
+"""Detection by a radar: RCS of classes at 77 to 79 GHz, SNR of a target, and its probability.
 
-All functions are element-wise. Powers are ratios, not dB, unless a name ends in `_db`.
+Powers are ratios, not dB, unless a name ends in `_db`.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...base.arrays import Floats
+from ...base.errors import InputError, shown
+from ...base.values import A_NAME, Number, listed
 
 MIN_PD = 0.1
 """A resolution cell that is detected more rarely than this does not count."""
+DBSM = Number(-60.0, 80.0, unit="dBsm")
+ASPECT_DEG = Number(0.0, 180.0, unit="degrees", noun="angle")
+MEDIAN_DBSM = {
+    "pedestrian": -11.1,
+    "bicycle": -5.0,
+    "cyclist": -5.0,
+    "motorcycle": 0.0,
+    "car": 7.0,
+    "bus": 12.0,
+    "truck": 15.0,
+}
+"""Medians of measurements at 77 to 79 GHz [dBsm], as surveys quote them. A cyclist is taken as the
+bicycle."""
+LOW_DBSM = {"pedestrian": -20.7}
+"""What 95 % of the measurements exceed [dBsm]: a pedestrian's RCS is within -20.7 to -4.8 dBsm in
+90 % of them. Of other classes no spread was found."""
+UNKNOWN_DBSM = MEDIAN_DBSM["pedestrian"]
+"""Of a class without a figure: the weakest of the table, on the safe side."""
+NO_ECHO = -math.inf
+"""Of a class without a figure to a requirement [dBsm]."""
 
 
 def ratio_of_db(db: float) -> float:
@@ -76,3 +101,91 @@ def signal_to_noise(
     if attenuation_db_km:
         snr = snr * np.exp(-math.log(10.0) * 2.0 * attenuation_db_km / 10_000.0 * far)
     return np.asarray(snr)
+
+
+@dataclass(frozen=True)
+class Reflectivity:
+    """RCS of one class by aspect.
+
+    Parameters
+    ----------
+    dbsm : tuple of float
+        RCS [dBsm].
+    aspects : tuple of float
+        Angle between the object's heading and the direction from the object to the radar,
+        ascending, 0 to 180 degrees: 0 is its front [rad]. One angle for all aspects.
+    """
+
+    dbsm: tuple[float, ...]
+    aspects: tuple[float, ...] = (0.0,)
+
+    def square_metres(self, aspect: Floats) -> Floats:
+        """Return the RCS [m2] at aspects (N,) [rad]; dB are interpolated."""
+        if len(self.dbsm) == 1:
+            return np.full(len(aspect), 10.0 ** (self.dbsm[0] / 10.0))
+        return np.asarray(10.0 ** (np.interp(aspect, self.aspects, self.dbsm) / 10.0))
+
+
+def reflectivity_of(name: str, own: Mapping[str, Reflectivity]) -> Reflectivity:
+    """Return the RCS of a class: the sensor's own figure, that of the table, or the weakest."""
+    return own.get(name) or Reflectivity((MEDIAN_DBSM.get(name, UNKNOWN_DBSM),))
+
+
+def cautious_reflectivity(name: str, own: Mapping[str, Reflectivity]) -> Reflectivity:
+    """Return the RCS of a class to a requirement.
+
+    The sensor's own figure or the median, or what 95 % of the measurements exceed where that is
+    less. A class without a figure sends no echo: nobody knows its RCS.
+    """
+    found = own.get(name) or Reflectivity((MEDIAN_DBSM.get(name, NO_ECHO),))
+    most = LOW_DBSM.get(name, math.inf)
+    return Reflectivity(tuple(min(level, most) for level in found.dbsm), found.aspects)
+
+
+def read_reflectivity(source: str, tables: Any) -> dict[str, Reflectivity]:
+    """Return RCS by class from ``rcs_dbsm = { car = 7, van = { aspect_deg = [], dbsm = [] } }``.
+
+    Raises
+    ------
+    InputError
+        When it is no table, or angles do not ascend.
+    """
+    if not isinstance(tables, Mapping):
+        raise InputError(source, "rcs_dbsm", "a table of classes", shown(tables))
+    return {
+        A_NAME.checked(source, "rcs_dbsm", name): _read_one(source, f"rcs_dbsm.{name}", value)
+        for name, value in tables.items()
+    }
+
+
+def _read_one(source: str, field: str, value: Any) -> Reflectivity:
+    if not isinstance(value, Mapping):
+        return Reflectivity((DBSM.checked(source, field, value),))
+    if set(value) != {"aspect_deg", "dbsm"}:
+        raise InputError(source, field, "a number, or aspect_deg and dbsm", shown(dict(value)))
+    angles, levels = (_listed(source, f"{field}.{k}", value[k]) for k in ("aspect_deg", "dbsm"))
+    degrees = [ASPECT_DEG.checked(source, f"{field}.aspect_deg", a) for a in angles]
+    if sorted(set(degrees)) != degrees or len(degrees) != len(levels):
+        expected = f"{len(levels)} ascending angles, one for each of dbsm"
+        raise InputError(source, f"{field}.aspect_deg", expected, shown(angles))
+    dbsm = tuple(DBSM.checked(source, f"{field}.dbsm", v) for v in levels)
+    return Reflectivity(dbsm, tuple(math.radians(d) for d in degrees))
+
+
+def _listed(source: str, field: str, value: Any) -> list[Any]:
+    if not (values := listed(value)):
+        raise InputError(source, field, "a list of numbers", shown(value))
+    return values
+
+
+def write_reflectivity(own: Mapping[str, Reflectivity]) -> dict[str, Any]:
+    """Return the table that `read_reflectivity` reads."""
+    return {
+        name: each.dbsm[0]
+        if len(each.dbsm) == 1
+        else {
+            "aspect_deg": [round(math.degrees(a), 9) for a in each.aspects],
+            "dbsm": list(each.dbsm),
+        }
+        for name, each in own.items()
+    }

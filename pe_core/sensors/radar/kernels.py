@@ -20,8 +20,8 @@ from .definition import (
     reached_by_balls,
     seen_through,
 )
+from .detection import LOW_DBSM
 from .model import radar_of
-from .reflectivity import LOW_DBSM
 
 
 def measure_view(sensor: Sensor, view: ObjectView, fan: RayFan) -> Floats:

@@ -11,16 +11,21 @@ from typing import ClassVar, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...base.arrays import Floats
+from ...base.arrays import Floats, read_only
 from ...base.degrees import all_as_in_file
 from ...base.errors import InputError, shown
-from ...base.read_only import read_only
 from ...base.values import A_NAME, Angle, Number, Whole, numbers
 from ...scene.rig import Sensor, SensorModel
 from ..field_of_view import LIGHT_M_S, MIN_RANGE, SHORTEST_RANGE_M
 from ..ray_fan import AngleWindow
-from .detection import ratio_of_db, snr_for
-from .reflectivity import DBSM, Reflectivity, cautious_reflectivity, reflectivity_of
+from .detection import (
+    DBSM,
+    Reflectivity,
+    cautious_reflectivity,
+    ratio_of_db,
+    reflectivity_of,
+    snr_for,
+)
 
 RANGE = Number(SHORTEST_RANGE_M, cap=1e5, unit="m", noun="length")
 SCALE = Number(0.0, 1.0)

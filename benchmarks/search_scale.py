@@ -222,11 +222,9 @@ def _processes(count: int) -> Iterator[Executor]:
 
 
 @contextmanager
-def _cluster(count: int, kept: bool = True) -> Iterator[Executor]:
-    """Yield a cluster's executor: as `pe --scheduler` has it, or as a program has it of Dask."""
+def _cluster(count: int) -> Iterator[Executor]:
+    """Yield a cluster's executor."""
     from distributed import Client, LocalCluster
-
-    from pe_tools.cli.cluster_executor import ClusterExecutor
 
     options: dict[str, Any] = {"host": "127.0.0.1", "dashboard_address": None}
     with (
@@ -234,8 +232,7 @@ def _cluster(count: int, kept: bool = True) -> Iterator[Executor]:
         Client(cluster) as client,
     ):
         client.wait_for_workers(count)
-        executor = client.get_executor(pure=False)
-        yield ClusterExecutor(executor) if kept else executor
+        yield client.get_executor(pure=False)
 
 
 WORKERS: dict[str, Callable[[], Any]] = {
@@ -246,9 +243,6 @@ WORKERS: dict[str, Callable[[], Any]] = {
     "Dask, 1 worker": lambda: _cluster(1),
     "Dask, 2 workers": lambda: _cluster(2),
     "Dask, 4 workers": lambda: _cluster(4),
-    "Dask, 1 worker, memory as Dask sets it": lambda: _cluster(1, kept=False),
-    "Dask, 2 workers, memory as Dask sets it": lambda: _cluster(2, kept=False),
-    "Dask, 4 workers, memory as Dask sets it": lambda: _cluster(4, kept=False),
 }
 
 
@@ -276,7 +270,7 @@ def table(found: Json) -> list[str]:
         f"models), {found['bytes_each']:,} bytes with each candidate, {found['bytes_answer']} with",
         "its answer. On the loopback Dask's own messages come on top, those of an idle cluster",
         "are taken off. In a batch all sixteen sensors of each candidate have moved.",
-        "Dask has its workers give freed memory back at once (last rows); `pe` has them keep it.",
+        "Dask has its workers give freed memory back at once by default; `pe` has them keep it.",
         "Each worker unpickles the mesh once. `pe` sends it once, too; in the last rows Dask's",
         "memory manager drops all copies of the payload but one every two seconds, and sends them",
         "again.",

@@ -103,20 +103,13 @@ def _evaluate_by_workers(
     with closing(run_tasks(executor, deque(range(len(rigs))), call_of)) as batches:
         for number, result in chain.from_iterable(batches):
             if isinstance(result, WorkerDied):
-                expected = "a worker that survives its task"
-                found = f"two that died with {_rig_text(rigs[number])}"
-                raise InputError("workers", "process", expected, found)
+                places = [(s.name, [round(w, 3) for w in s.pose.position]) for s in rigs[number]]
+                found = f"two that died with {', '.join(f'{n} at {at}' for n, at in places)}"
+                raise InputError("workers", "process", "a worker that survives its task", found)
             evaluations[number] = result
     return [evaluations[number] for number in range(len(rigs))]
 
 
 def _evaluate_in_worker(payload: PackedPayload, candidate: bytes, cutoff: float) -> Evaluation:
-    """Evaluate a candidate in a worker."""
     objective, rig = unpickled(payload, candidate)
     return _reproducible(objective.evaluate(rig, cutoff), cutoff)
-
-
-def _rig_text(rig: Rig) -> str:
-    """Return the sensors of a rig and their positions, for messages."""
-    positions = (f"{s.name} at {[round(w, 3) for w in s.pose.position]}" for s in rig)
-    return ", ".join(positions)

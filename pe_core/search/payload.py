@@ -1,25 +1,28 @@
 """The payload of a search: what its tasks have in common, sent to every worker once.
 
-Executors with a method `start_with` bring it to their workers: our own processes by their
-initializer, the cluster of ``pe --scheduler`` by a plugin. An executor of Dask without it has the
-client scatter it. To workers of others it comes with every task. Each worker unpickles it once.
+Our own processes get it by their initializer, the workers of a Dask client by a plugin; to others
+it comes with every task. Each worker unpickles it once.
 """
 
 from __future__ import annotations
 
+import ctypes
 import hashlib
 import io
 import pickle
 import threading
 from collections.abc import Iterable
 from concurrent.futures import Executor
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 from weakref import WeakKeyDictionary
 
+from ..base.plugins import optional_package
+
 MAX_OBJECTS = 12
 """How many objects an executor's payload grows to, as further objectives are evaluated."""
-
 _SENT: WeakKeyDictionary[Executor, SentPayload] = WeakKeyDictionary()
 """The payload that the workers of each executor have."""
 _INITIAL: dict[str, bytes] = {}
@@ -29,6 +32,9 @@ MAX_PAYLOADS = 4
 _WORKER = threading.local()
 """The payload that this worker has unpickled, and its key. Threads share none of it, so that no
 thread waits for another."""
+KEPT_BYTES = {-1: 1 << 28, -3: 1 << 25}
+"""glibc's M_TRIM_THRESHOLD and M_MMAP_THRESHOLD of a worker: the pages of each array are not made
+anew, which takes a tenth of a search's time; with the thresholds that Dask sets, half [bytes]."""
 
 
 class Unreadable(TypeError):
@@ -48,21 +54,13 @@ class SentPayload:
     """A payload, and the argument by which tasks refer to it on one executor."""
 
     payload: Payload
-    argument: Any
+    argument: PackedPayload
 
 
 class Payload:
     """Objects that tasks have in common, pickled together: what they share is sent once.
 
-    Parameters
-    ----------
-    objects : iterable
-        They must not change.
-
-    Raises
-    ------
-    Unreadable
-        When an object cannot be pickled.
+    The objects must not change; `Unreadable` is raised for one that cannot be pickled.
     """
 
     def __init__(self, objects: Iterable[object]) -> None:
@@ -83,10 +81,7 @@ class Payload:
 def send_payload(executor: Executor, objects: Iterable[object]) -> SentPayload:
     """Send objects to all workers of an executor, unless they have them.
 
-    Raises
-    ------
-    Unreadable
-        When an object cannot be pickled.
+    Raises `Unreadable` when an object cannot be pickled.
     """
     sent, needed = _SENT.get(executor), {id(part): part for part in objects}
     if sent is None or not sent.payload.covers(needed.values()):
@@ -97,18 +92,40 @@ def send_payload(executor: Executor, objects: Iterable[object]) -> SentPayload:
     return sent
 
 
-def _argument(executor: Any, packed: PackedPayload) -> Any:
+def _argument(executor: Any, packed: PackedPayload) -> PackedPayload:
     """Send a payload in the way of the executor; return the argument that refers to it."""
-    if hasattr(executor, "start_with"):  # `Processes`, for example
+    if hasattr(executor, "start_with"):  # `Processes`
         executor.start_with(packed.key, packed.data)
-        return PackedPayload(packed.key)
-    scatter = getattr(getattr(executor, "_client", None), "scatter", None)
-    if scatter is None:
+    elif hasattr(client := getattr(executor, "_client", None), "register_plugin"):
+        client.register_plugin(_plugin(packed), plugin_name(client))
+    else:
         return packed
-    try:
-        return scatter([packed], broadcast=True, hash=False)[0]
-    except Exception:  # a cluster without workers, for example: whoever joins gets it with its task
-        return packed
+    return PackedPayload(packed.key)
+
+
+def plugin_name(client: Any) -> str:
+    """Return the name of the plugin of a Dask client: of this name the newest alone stays."""
+    return f"payload of {client.id}"
+
+
+def _plugin(packed: PackedPayload) -> Any:
+    """Return a plugin that brings a payload to each worker of a cluster, to later ones, too.
+
+    As an argument that tasks depend on it would be sent many times: every two seconds Dask's memory
+    manager drops all copies but one.
+    """
+    distributed = optional_package("distributed")
+    assert distributed is not None, "a client of Dask asks for it"
+
+    class PayloadPlugin(distributed.WorkerPlugin):  # type: ignore[name-defined,misc]
+        """Has a worker keep a payload, and freed memory."""
+
+        def setup(self, worker: Any) -> None:
+            """Called in each worker, before its first task if it joins later."""
+            keep_freed_memory()
+            receive(packed.key, packed.data)
+
+    return PayloadPlugin()
 
 
 def receive(key: str, data: bytes) -> None:
@@ -118,13 +135,19 @@ def receive(key: str, data: bytes) -> None:
         del _INITIAL[next(iter(_INITIAL))]
 
 
+@cache
+def keep_freed_memory() -> bool:
+    """Have this process keep freed memory; False where its C library is not glibc."""
+    with suppress(AttributeError, OSError, TypeError):
+        mallopt = ctypes.CDLL(None).mallopt
+        return all([mallopt(parameter, size) == 1 for parameter, size in KEPT_BYTES.items()])
+    return False
+
+
 def unpickled(packed: PackedPayload, content: bytes) -> Any:
     """Return content that refers to a payload, in a worker.
 
-    Raises
-    ------
-    Unreadable
-        When the worker lacks the payload, or knows a class of it not.
+    Raises `Unreadable` when the worker lacks the payload, or does not know a class of it.
     """
     try:
         if getattr(_WORKER, "key", None) != packed.key:
@@ -137,8 +160,10 @@ def unpickled(packed: PackedPayload, content: bytes) -> Any:
 
 def _pickled(content: object, numbers: dict[int, int]) -> bytes:
     file = io.BytesIO()
+    pickler = _Pickler(file, protocol=pickle.HIGHEST_PROTOCOL)
+    pickler.numbers = numbers
     try:
-        _Pickler(file, numbers).dump(content)
+        pickler.dump(content)
     except Exception as error:  # whatever a foreign class raises where it cannot be pickled
         raise Unreadable(str(error)) from None
     return file.getvalue()
@@ -147,12 +172,10 @@ def _pickled(content: object, numbers: dict[int, int]) -> bytes:
 class _Pickler(pickle.Pickler):
     """Pickles content; objects with a number are referred to by it."""
 
-    def __init__(self, file: io.BytesIO, numbers: dict[int, int]) -> None:
-        super().__init__(file, protocol=pickle.HIGHEST_PROTOCOL)
-        self._numbers = numbers
+    numbers: dict[int, int]
 
     def persistent_id(self, part: object) -> int | None:
-        return self._numbers.get(id(part))
+        return self.numbers.get(id(part))
 
 
 class _Unpickler(pickle.Unpickler):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import multiprocessing
 import multiprocessing.connection
 import os
@@ -13,7 +12,6 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager, suppress
-from functools import cache
 from importlib import import_module
 from multiprocessing import resource_tracker
 from types import ModuleType
@@ -21,7 +19,7 @@ from typing import Any, TypeVar
 
 from ..base.errors import InputError
 from ..base.files import finish_writing
-from .payload import Unreadable, receive, send_payload
+from .payload import Unreadable, keep_freed_memory, receive, send_payload
 
 T = TypeVar("T")
 
@@ -29,9 +27,6 @@ START_S = 60.0
 """Processes that are not up after this time never will be."""
 SHORT_S = 2.0
 """A search that ends within this time needs no processes: starting them takes as long."""
-KEPT_BYTES = {-1: 1 << 28, -3: 1 << 25}
-"""glibc's M_TRIM_THRESHOLD and M_MMAP_THRESHOLD of a worker: the pages of each array are not made
-anew, which takes a tenth of a search's time [bytes]."""
 TERMINAL_SIGNALS = ("SIGINT", "SIGHUP")
 """Signals that a terminal sends to all processes at once; Windows has no SIGHUP.
 
@@ -56,17 +51,8 @@ class Processes(Executor):
     """Worker processes as an executor; processes that died are replaced.
 
     Functions and arguments must not come from the main script, which workers do not run.
-    `payload.send_payload` gives them what tasks have in common.
-
-    Parameters
-    ----------
-    count : int
-        How many processes.
-
-    Raises
-    ------
-    InputError
-        When this system has nothing that processes wait for each other with (`no_processes`).
+    `payload.send_payload` gives them what tasks have in common. `InputError` is raised where this
+    system has nothing that processes wait for each other with (`no_processes`).
     """
 
     def __init__(self, count: int) -> None:
@@ -134,18 +120,12 @@ def _why(error: Exception) -> str:
 def start_processes(count: int | None = None, common: Iterable[object] = ()) -> Processes | None:
     """Start processes and wait until they are up; None for a count of 1, or if none can be started.
 
-    Parameters
-    ----------
-    count : int, optional
-        How many; by default as many as there are processors.
-    common : iterable, optional
-        What their tasks have in common, such as objectives and models of sensors. Objects that are
-        not among it are sent when they are first needed, to processes that are started anew.
+    `count` is by default that of the processors. `common` is what tasks have in common, such as
+    objectives and models of sensors; other objects are sent when they are first needed, to
+    processes that are started anew.
     """
     count = count or os.cpu_count() or 1
-    if count < 2:
-        return None
-    if no_processes():
+    if count < 2 or no_processes():
         return None
     processes = Processes(count)
     try:
@@ -162,12 +142,7 @@ def start_processes(count: int | None = None, common: Iterable[object] = ()) -> 
 class LazyProcesses:
     """Processes for a search that takes longer than `SHORT_S`; None until they are up.
 
-    Parameters
-    ----------
-    count : int, optional
-        How many processes; by default as many as there are processors, 1: none.
-    common : iterable, optional
-        What their tasks have in common; it is read when they start.
+    Parameters as those of `start_processes`; `common` is read when they start.
     """
 
     def __init__(self, count: int | None = None, common: Iterable[object] = ()) -> None:
@@ -205,24 +180,15 @@ def begin_worker(key: str = "", data: bytes = b"") -> None:
     for name in TERMINAL_SIGNALS:
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
-    parent = multiprocessing.parent_process()
-    assert parent is not None
-    threading.Thread(target=_end_after, args=(parent.sentinel,), daemon=True).start()
 
+    def end_with_parent() -> None:
+        parent = multiprocessing.parent_process()
+        assert parent is not None
+        multiprocessing.connection.wait([parent.sentinel])
+        finish_writing()
+        os._exit(1)
 
-@cache
-def keep_freed_memory() -> bool:
-    """Have this process keep freed memory; False where its C library is not glibc."""
-    with suppress(AttributeError, OSError, TypeError):
-        mallopt = ctypes.CDLL(None).mallopt
-        return all([mallopt(parameter, size) == 1 for parameter, size in KEPT_BYTES.items()])
-    return False
-
-
-def _end_after(sentinel: int) -> None:
-    multiprocessing.connection.wait([sentinel])
-    finish_writing()
-    os._exit(1)
+    threading.Thread(target=end_with_parent, daemon=True).start()
 
 
 def _packages_around() -> list[tuple[str, str]]:

@@ -12,17 +12,13 @@ from collections import deque
 from collections.abc import Callable, Generator, Hashable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from dataclasses import dataclass
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 TaskKey = TypeVar("TaskKey", bound=Hashable)
 
 
-@dataclass(frozen=True, slots=True)
-class _Reply:
-    """The reply of a worker: a result or an error.
-
-    An error is returned, not raised: an exception of a future means that its worker died.
-    """
+class _Reply(NamedTuple):
+    """What a worker answers: an error is returned, as an exception means that its worker died."""
 
     result: Any = None
     error: Exception | None = None
@@ -52,7 +48,7 @@ def run_tasks(
     """Run tasks on the workers of an executor; yield lists of items with their results.
 
     A task whose worker died is run once more, alone, after all others: which of several tasks
-    killed a worker cannot be known before.
+    killed a worker cannot be known before. What a call raises in its worker is raised here.
 
     Parameters
     ----------
@@ -68,69 +64,51 @@ def run_tasks(
     wait_s : float, optional
         When no task completes for so long, an empty list is yielded, so that the caller can check
         whether to continue [s].
-
-    Raises
-    ------
-    Exception
-        What a call raises in its worker.
     """
-    run = _TaskRun(executor, call_of)
-    try:
-        while waiting:
-            yield from run.completed(waiting, width, wait_s)
-            for item in run.take_died():
-                yield from run.completed(deque([item]), lambda: 1, wait_s)
-                if run.died:
-                    yield [(item, WorkerDied(run.died.pop(item)))]
-    finally:
-        for future in run.running:
-            future.cancel()
+    order: dict[TaskKey, int] = {}
+    running: dict[Future[_Reply], TaskKey] = {}
+    died: dict[TaskKey, str] = {}
 
-
-class _TaskRun(Generic[TaskKey]):
-    """Tasks under way."""
-
-    def __init__(self, executor: Executor, call_of: Callable[[TaskKey], Call]) -> None:
-        self._executor, self._call_of = executor, call_of
-        self._order: dict[TaskKey, int] = {}
-        self.running: dict[Future[_Reply], TaskKey] = {}
-        self.died: dict[TaskKey, str] = {}
-
-    def take_died(self) -> list[TaskKey]:
-        """Return the items whose worker died, in the order of submission, and forget them."""
-        items, self.died = sorted(self.died, key=self._order.__getitem__), {}
-        return items
-
-    def completed(
-        self, waiting: deque[TaskKey], width: Callable[[], int], wait_s: float | None
-    ) -> Iterator[list[tuple[TaskKey, Any]]]:
-        """Submit the waiting tasks; yield lists of results as they arrive, which may be empty."""
-        while waiting or self.running:
-            while waiting and len(self.running) < width():
-                self._submit(waiting.popleft())
-            done = wait(self.running, wait_s, FIRST_COMPLETED).done
-            yield [completed for future in done for completed in self._take(future)]
-
-    def _submit(self, item: TaskKey) -> None:
-        self._order.setdefault(item, len(self._order))
-        function, arguments = self._call_of(item)
+    def submit(item: TaskKey) -> None:
+        order.setdefault(item, len(order))
+        function, arguments = call_of(item)
         try:
-            future = self._executor.submit(_replied, function, *arguments)
+            running[executor.submit(_replied, function, *arguments)] = item
         except (RuntimeError, OSError) as error:  # the executor is broken, or was shut down
-            self.died[item] = type(error).__name__
-            return
-        self.running[future] = item
+            died[item] = type(error).__name__
 
-    def _take(self, future: Future[_Reply]) -> Iterator[tuple[TaskKey, Any]]:
-        item = self.running.pop(future)
+    def taken(future: Future[_Reply]) -> Iterator[tuple[TaskKey, Any]]:
+        item = running.pop(future)
         try:
             reply = future.result()
         except Exception as error:  # each executor reports a dead worker in its own way
-            self.died[item] = type(error).__name__
+            died[item] = type(error).__name__
             return
         if reply.error is not None:
             raise reply.error
         yield item, reply.result
+
+    def completed(
+        items: deque[TaskKey], width: Callable[[], int]
+    ) -> Iterator[list[tuple[TaskKey, Any]]]:
+        while items or running:
+            while items and len(running) < width():
+                submit(items.popleft())
+            done = wait(running, wait_s, FIRST_COMPLETED).done
+            yield [each for future in done for each in taken(future)]
+
+    try:
+        while waiting:
+            yield from completed(waiting, width)
+            again = sorted(died, key=order.__getitem__)
+            died.clear()
+            for item in again:
+                yield from completed(deque([item]), lambda: 1)
+                if died:
+                    yield [(item, WorkerDied(died.pop(item)))]
+    finally:
+        for future in running:
+            future.cancel()
 
 
 def _replied(function: Callable[..., Any], *arguments: Any) -> _Reply:

@@ -11,7 +11,7 @@ import secrets
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import closing, contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -19,11 +19,11 @@ from pe_core.base.errors import InputError, shown
 from pe_core.base.plugins import EXTRAS, optional_package
 from pe_core.scene import Pose
 from pe_core.search import EvaluatedRig, Journal, no_processes, start_processes
+from pe_core.search.payload import plugin_name
 from pe_core.study import Study
 
 from ..jobs import Checkpoint, Job, OptimizeJob, ScoreJob, SearchState, read_search
 from ..sweep import FolderCheckpoints, RunCheckpoints, SweepRun, WorkerPool
-from .cluster_executor import ClusterExecutor
 from .terminal import tell
 
 
@@ -53,30 +53,27 @@ class PostedCheckpoints:
             nonlocal posted
             if checkpoint.due():
                 entries = job.journal.entries
-                worker.log_event(self.topic, self._event(posted, entries, job.best))
+                evaluated = [list(entry) for entry in entries[posted:]]
+                poses = [[list(s.pose.position), list(s.pose.rpy)] for s in job.best.rig]
+                event = {"run": self.run, "start": posted, "evaluated": evaluated, "best": poses}
+                worker.log_event(self.topic, event)
                 posted = len(entries)
 
         return post
 
-    def _event(self, start: int, entries: tuple[EvaluatedRig, ...], best: Study) -> dict[str, Any]:
-        poses = [[list(s.pose.position), list(s.pose.rpy)] for s in best.rig]
-        evaluated = [list(entry) for entry in entries[start:]]
-        return {"run": self.run, "start": start, "evaluated": evaluated, "best": poses}
 
-
-@dataclass
 class _RunSearch:
-    """The search of a run, with the journal entries received so far."""
+    """The search of a run, with the journal entries received so far; at first those in its folder.
 
-    study: Study
-    folder: Path
-    entries: list[EvaluatedRig]
-    best: Study
-    meshes_saved: bool = False
-    state: SearchState = field(init=False)
+    A folder may have none, or those of another study.
+    """
 
-    def __post_init__(self) -> None:
-        self.state = SearchState(self.study)
+    def __init__(self, study: Study, folder: Path) -> None:
+        self.study, self.folder, self.best = study, folder, study
+        self.state, self.meshes_saved = SearchState(study), False
+        self.entries: list[EvaluatedRig] = []
+        with suppress(InputError):
+            self.entries += read_search(folder).journal_of(study).entries
 
     def add(self, event: Mapping[str, Any]) -> None:
         """Add journal entries of an event; a restarted search sends the same entries again."""
@@ -94,26 +91,20 @@ class _RunSearch:
 
 
 class ClusterCheckpoints:
-    """Receives and saves the checkpoints of all runs of a sweep.
-
-    Parameters
-    ----------
-    client : distributed.Client
-    """
+    """Receives and saves the checkpoints of all runs of a sweep, by the client of a cluster."""
 
     def __init__(self, client: Any) -> None:
         self._topic = f"perception-entropy-{secrets.token_hex(8)}"
         self._events: queue.SimpleQueue[Mapping[str, Any]] = queue.SimpleQueue()
         self._searches: dict[str, _RunSearch] = {}
-        client.subscribe_topic(self._topic, self._receive)
+        # The client calls this in its own thread.
+        client.subscribe_topic(self._topic, lambda event: self._events.put(event[1]))
 
     def for_run(self, run: SweepRun, folder: Path) -> PostedCheckpoints:
         """Return the checkpoints of a run; they begin with those in its folder."""
-        search = self._searches.get(run.name)
-        if search is None:
-            search = _RunSearch(run.study, folder, _entries_in(folder, run.study), run.study)
-            self._searches[run.name] = search
-        return PostedCheckpoints(self._topic, run.name, tuple(search.entries))
+        if run.name not in self._searches:
+            self._searches[run.name] = _RunSearch(run.study, folder)
+        return PostedCheckpoints(self._topic, run.name, tuple(self._searches[run.name].entries))
 
     def save(self) -> None:
         """Save the entries received since the last call."""
@@ -131,18 +122,6 @@ class ClusterCheckpoints:
         """Forget a run whose result is here: events that come later do not replace its state."""
         self._searches.pop(name, None)
 
-    def _receive(self, event: tuple[float, Mapping[str, Any]]) -> None:
-        """Queue an event; called in the client's own thread."""
-        self._events.put(event[1])
-
-
-def _entries_in(folder: Path, study: Study) -> list[EvaluatedRig]:
-    """Return the journal in a run's folder; empty if there is none for this study."""
-    try:
-        return list(read_search(folder).journal_of(study).entries)
-    except InputError:
-        return []
-
 
 ADDRESS = re.compile(r"((tcp|tls)://)?[^/@\s]+:[0-9]{1,5}")
 """Address with a protocol that Dask supports without further libraries."""
@@ -154,10 +133,7 @@ CONNECT_S = 5.0
 def workplace(workers: int | None, scheduler: str | None) -> Iterator[WorkerPool]:
     """Open the worker pool that the command line asks for; close it at the end.
 
-    Raises
-    ------
-    InputError
-        When no scheduler answers, or the package for it is not installed.
+    `InputError` where no scheduler answers, or the package for it is not installed.
     """
     place = Here(workers or os.cpu_count() or 1) if scheduler is None else DaskWorkers(scheduler)
     try:
@@ -170,10 +146,7 @@ def workplace(workers: int | None, scheduler: str | None) -> Iterator[WorkerPool
 def evaluated_by(job: Job, scheduler: str | None) -> Iterator[None]:
     """Have the workers of a Dask scheduler evaluate a job's candidates meanwhile; None: processes.
 
-    Raises
-    ------
-    InputError
-        As `workplace`.
+    `InputError` as in `workplace`.
     """
     if scheduler is None:
         if not isinstance(job, ScoreJob):
@@ -231,7 +204,7 @@ class DaskWorkers:
     def __init__(self, address: str) -> None:
         self._address = address
         self._client = _client_of(address)
-        self.executor = ClusterExecutor(self._client.get_executor(pure=False))
+        self.executor = self._client.get_executor(pure=False)
         self._alone = False
         self._saved = ClusterCheckpoints(self._client)
         self.finish = self._saved.finish
@@ -243,10 +216,7 @@ class DaskWorkers:
     def check(self) -> None:
         """Save received checkpoints; print a message, once, if there are no workers.
 
-        Raises
-        ------
-        InputError
-            The scheduler is gone.
+        `InputError` where the scheduler is gone.
         """
         self._saved.save()
         if self._client.status == "closed":
@@ -272,8 +242,10 @@ class DaskWorkers:
             return 1
 
     def close(self) -> None:
-        """Disconnect from the cluster, which continues to run."""
-        self.executor.withdraw()
+        """Disconnect from the cluster, which continues to run and keeps no payload."""
+        if self._client.status == "running":
+            with suppress(Exception):  # none was sent, or the scheduler ends meanwhile
+                self._client.unregister_worker_plugin(plugin_name(self._client))
         self._client.close(timeout=CONNECT_S)
 
 
@@ -289,7 +261,9 @@ def _client_of(address: str) -> Any:
             "HOST:PORT, tcp://HOST:PORT or tls://HOST:PORT",
             shown(address),
         )
-    _hush()
+    for name in list(logging.root.manager.loggerDict):  # lost connections are reported here
+        if name.partition(".")[0] == "distributed":
+            logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         _require_scheduler(distributed, address)
         return distributed.Client(address, timeout=CONNECT_S, set_as_default=False)
@@ -325,10 +299,3 @@ def _require_scheduler(distributed: Any, address: str) -> None:
         loop.close()
     if kind != "Scheduler":
         raise ValueError(f"a {kind}" if kind.isidentifier() else "another program")
-
-
-def _hush() -> None:
-    """Silence the log of `distributed`: this module reports lost connections itself."""
-    for name in list(logging.root.manager.loggerDict):
-        if name.partition(".")[0] == "distributed":
-            logging.getLogger(name).setLevel(logging.CRITICAL)

@@ -11,7 +11,7 @@ from typing import Any
 
 from pe_core.base.errors import InputError
 from pe_core.base.plugins import call_plugin, find_plugins, load_plugin, plugin_name
-from pe_core.search.processes import keep_freed_memory
+from pe_core.search.payload import keep_freed_memory
 from pe_core.study import STUDY, Study, load_study
 from pe_core.version import __version__
 

@@ -12,6 +12,7 @@ from typing import Any, Protocol
 
 from pe_core.base.errors import InputError
 from pe_core.search import Call, WorkerDied, run_tasks
+from pe_core.search.payload import keep_freed_memory
 from pe_core.study import Study
 from pe_core.version import __version__
 
@@ -106,6 +107,7 @@ def run_task(task: RunTask) -> RunResult:
     if task.version != __version__:
         expected = f"{task.version}, the version of the program that sent the study"
         return InputError("worker", "version", expected, __version__)
+    keep_freed_memory()
     try:
         outcome = _run_job(task)
     except InputError as error:

@@ -132,8 +132,8 @@ def test_threads_unpack_an_objective_once_each(tmp_path, rigs):
     assert 1 <= len(objective.unpacked) <= 2
 
 
-def test_a_cluster_scatters_an_objective(tmp_path, evaluator, rigs):
-    """Dask: each call refers to the payload by a future of the cluster's own."""
+def test_workers_of_a_cluster_have_an_objective_by_a_plugin(tmp_path, evaluator, rigs):
+    """Dask: no call brings the payload."""
     distributed = pytest.importorskip("distributed")
     local = {"processes": False, "dashboard_address": None, "threads_per_worker": 1}
     with distributed.Client(n_workers=2, **local) as client:
@@ -145,9 +145,9 @@ def test_a_cluster_scatters_an_objective(tmp_path, evaluator, rigs):
             assert evaluate_all(objective, rigs, math.inf, executor) == expected
         assert 1 <= len(objective.unpacked) <= 2
         assert len(calls) == 2 * CANDIDATES
-        assert all(isinstance(call[2], distributed.Future) for call in calls)
-        evaluated = evaluate_all(evaluator, rigs, math.inf, executor)
-    assert [j.entropy for j in evaluated] == [evaluator.entropy(rig) for rig in rigs]
+        assert not any(call[2].data for call in calls)
+        found = evaluate_all(evaluator, rigs, math.inf, executor)
+    assert [each.entropy for each in found] == [evaluator.entropy(rig) for rig in rigs]
 
 
 def test_what_objectives_and_rigs_share_is_sent_once(evaluator, rigs):

@@ -11,7 +11,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.search import Goals, Payload, Processes, evaluate_all
-from pe_tools.cli.cluster_executor import ClusterExecutor
+from pe_core.search.payload import plugin_name
 from tests.engine import shapes
 from tests.thorough import THOROUGH
 
@@ -101,7 +101,7 @@ def test_a_search_of_sixteen_sensors_by_workers_of_a_cluster_takes_the_steps_of_
     for count in (1, 2, WORKERS):
         noted = Noted(str(tmp_path), study.evaluator(1024))
         executor = client.get_executor(workers=addresses[:count], pure=False)
-        assert steps(noted, study, ClusterExecutor(executor)) == by_one_process
+        assert steps(noted, study, executor) == by_one_process
         files = list(tmp_path.glob("unpickled *"))
         unpickled = [path.name.split()[1] for path in files]
         assert 0 < len(unpickled) == len(set(unpickled)) <= count, "the mesh comes once to each"
@@ -115,24 +115,24 @@ def test_a_job_sends_the_mesh_once_for_both_levels_of_its_search(study, client):
     search = replace(study.search, evaluations=40, samples=1024, goals=Goals(sensitivity="off"))
     given = replace(study, search=search, samples=1024)
     job, alone = pe.OptimizeJob(given), pe.OptimizeJob(given, 1)
-    job.executor = ClusterExecutor(client.get_executor(pure=False))
-    sent, send = [], job.executor.start_with
+    job.executor = client.get_executor(pure=False)
+    sent, send = [], client.register_plugin
 
-    def counted(key, data):
-        sent.append(len(data))
-        send(key, data)
+    def counted(plugin, name):
+        sent.append(name)
+        send(plugin, name)
 
-    job.executor.start_with = counted
+    client.register_plugin = counted
     for each in (job, alone):
         for _ in each:
             pass
     assert job.outcome.evaluated == alone.outcome.evaluated
-    assert len(sent) == 1 and sent[0] > study.vehicle.triangles.nbytes // 2
+    assert sent == [plugin_name(client)]
 
 
 @pytest.mark.skipif(not THOROUGH, reason="starts two processes of a cluster")
 @pytest.mark.skipif(sys.platform == "win32", reason="as the other test of a cluster")
-def test_a_worker_that_joins_later_has_the_payload_and_none_is_left_on_the_scheduler(study):
+def test_a_worker_that_joins_later_has_the_payload(study):
     distributed = pytest.importorskip("distributed")
     options = {"host": "127.0.0.1", "dashboard_address": None, "threads_per_worker": 1}
     evaluator, rigs = study.evaluator(1024), [study.rig] * 2
@@ -140,7 +140,7 @@ def test_a_worker_that_joins_later_has_the_payload_and_none_is_left_on_the_sched
         distributed.LocalCluster(n_workers=1, processes=True, **options) as cluster,
         distributed.Client(cluster) as client,
     ):
-        executor = ClusterExecutor(client.get_executor(pure=False))
+        executor = client.get_executor(pure=False)
         here = [evaluator.evaluate(rig) for rig in rigs]
         assert evaluate_all(evaluator, rigs, executor=executor) == here
         (first,) = client.scheduler_info()["workers"]
@@ -150,9 +150,7 @@ def test_a_worker_that_joins_later_has_the_payload_and_none_is_left_on_the_sched
         untried = Evaluated(evaluator)
         assert evaluate_all(untried, rigs, executor=executor) == here
         assert not untried.here, "the workers evaluate"
-        plugins = len(cluster.scheduler.worker_plugins)
-        executor.withdraw()
-        assert len(cluster.scheduler.worker_plugins) == plugins - 1
+        client.unregister_worker_plugin(plugin_name(client))
 
 
 @pytest.mark.skipif(not THOROUGH, reason="starts six processes")

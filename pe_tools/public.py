@@ -5,8 +5,8 @@ from .advice import Advice
 from .exchange import export_rig, import_rig
 from .formats import read_boxes, read_mesh, write_boxes, write_mesh
 from .jobs import (
-    ChoiceJob,
     Design,
+    FrontJob,
     Job,
     OptimizeJob,
     Outcome,
@@ -22,8 +22,8 @@ from .jobs import (
 
 __all__ = [
     "Advice",
-    "ChoiceJob",
     "Design",
+    "FrontJob",
     "Job",
     "OptimizeJob",
     "Outcome",

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import bpy
 
-from ..engine import advice, app, jobs, pe
+from ..engine import advice, jobs, pe
 from .fingerprint import Fingerprint
 from .outcome import store_outcome
 from .scene_diagnostics import check_placeable, scene_advice
@@ -132,11 +132,11 @@ def check_choosable(scene: bpy.types.Scene, study: pe.Study) -> None:
         When no sensor has models to choose from, no design keeps to the limits, or something
         else holds a sensor that is to be moved.
     """
-    if not app.has_front(study):
+    if not jobs.has_front(study):
         expected = "a sensor with models to choose from (panel Sensor Choices)"
         raise pe.InputError("scene", "choices", expected, "none")
     try:
-        app.front_job(study)
+        pe.FrontJob(study)
     except pe.InputError as error:
         field = f"{error.source}: {error.field}"
         raise pe.InputError("scene", field, error.expected, error.found) from None

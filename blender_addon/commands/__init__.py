@@ -78,10 +78,10 @@ def parser(prog: str) -> argparse.ArgumentParser:
     verbs = top.add_subparsers(required=True, metavar="VERB")
     score = verbs.add_parser("score", help="score the sensors of the scene")
     optimize = verbs.add_parser("optimize", help="search for better places for the sensors")
-    for verb, job in ((score, pe.ScoreJob), (optimize, pe.OptimizeJob)):
-        app.add_run_options(verb, search=job is pe.OptimizeJob)
+    for verb, kind in ((score, "score"), (optimize, "optimize")):
+        app.add_run_options(verb, search=verb is optimize)
         add_variant_option(verb)
-        verb.set_defaults(function=run_job, job=job, kind=verb.prog.split()[-1])
+        verb.set_defaults(function=run_job, kind=kind)
     page.add_page()
     app.add_page_option(optimize)
     about = "write the scene as a study with its mesh, or its rig for another program"

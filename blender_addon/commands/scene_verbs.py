@@ -69,7 +69,7 @@ def export_objects(study: pe.Study, args: argparse.Namespace) -> app.Answer:
 def run_job(args: argparse.Namespace) -> app.Answer:
     """Score or optimize, and write the results to the output folder."""
     study, kind = app.with_options(opened_study(args.variant), args), args.kind
-    if kind == "optimize" and app.has_front(study):
+    if kind == "optimize" and jobs.has_front(study):
         return choose_sensors(study, args)
     if kind == "optimize":
         with from_file():
@@ -101,7 +101,7 @@ def choose_sensors(study: pe.Study, args: argparse.Namespace) -> app.Answer:
     scene, output = bpy.context.scene, None
     with from_file():
         bridge.check_choosable(scene, study)
-    job, host = app.front_job(study, args.workers), bridge.blender_version()
+    job, host = pe.FrontJob(study, args.workers), bridge.blender_version()
     if (folder := app.resumed(job, args)) is not None:
         output = pe.prepare_folder(folder, [OPTIMIZED])
 

@@ -21,7 +21,7 @@ from .. import (
     signals,
     vehicle_cache,
 )
-from ..engine import advice, app, jobs, pe, requirements
+from ..engine import advice, jobs, pe, requirements
 from ..language import shown
 from ..live import FinishedScore, live_state
 from . import running_job
@@ -313,7 +313,7 @@ def front_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprin
         early = ", stopped early" if found.stopped else ""
         return f"{len(found.front)} designs on the Pareto front, kept as variants{early}"
 
-    return Task(app.front_job(study), finish, "trade_off")
+    return Task(pe.FrontJob(study), finish, "trade_off")
 
 
 def check_task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> Task:

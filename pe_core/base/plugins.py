@@ -39,7 +39,6 @@ EXTRAS = {
     "mesh": "meshes",
     "library.rerun": "rerun",
     "library.feather": "argoverse",
-    "tqdm": "progress",
     "distributed": "cluster",
     "shtab": "completion",
 }

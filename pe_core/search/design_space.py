@@ -9,6 +9,7 @@ import itertools
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from operator import le
 
 from ..base.errors import InputError
 from ..scene.rig import Rig, SensorModel
@@ -180,15 +181,15 @@ MAX_EVALUATED = 400
 """How many designs the local search evaluates at most."""
 
 
-def pareto_front(worths: Sequence[Worth]) -> list[int]:
-    """Return the indices of the non-dominated worths, cheapest first; of equal ones the first.
+def pareto_front(costs: Sequence[Sequence[float]]) -> list[int]:
+    """Return the indices of the non-dominated costs, lowest first; of equal ones the first.
 
-    A worth dominates another one if neither value is higher and they are not equal.
+    Costs dominate others if none of their values is higher and they are not equal.
     """
-    best, front = float("inf"), []
-    for number in sorted(range(len(worths)), key=lambda k: (*worths[k], k)):
-        if worths[number][1] < best:
-            best = worths[number][1]
+    front: list[int] = []
+    for number in sorted(range(len(costs)), key=lambda k: (*costs[k], k)):
+        own = costs[number]  # what dominates it comes before it
+        if not any(all(map(le, costs[k], own)) for k in front):
             front.append(number)
     return front
 

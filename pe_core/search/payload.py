@@ -96,7 +96,7 @@ def _argument(executor: Any, packed: PackedPayload) -> PackedPayload:
     """Send a payload in the way of the executor; return the argument that refers to it."""
     if hasattr(executor, "start_with"):  # `Processes`
         executor.start_with(packed.key, packed.data)
-    elif hasattr(client := getattr(executor, "_client", None), "register_plugin"):
+    elif (client := getattr(executor, "_client", None)) is not None:  # of Dask
         client.register_plugin(_plugin(packed), plugin_name(client))
     else:
         return packed

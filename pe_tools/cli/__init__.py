@@ -1,14 +1,7 @@
 """The command ``pe``, and the parts that all command lines of the project share."""
 
-from .check_verb import (
-    NOT_MET,
-    add_check_options,
-    add_requirements_verb,
-    check_study,
-    verdict_lines,
-    verdicts_csv,
-)
-from .choose_verb import choose, front_job, has_front, plots, resumed
+from .check_verb import add_check_options, check_study
+from .choose_verb import choose, plots, resumed
 from .command import (
     Parser,
     add_run_options,
@@ -48,24 +41,11 @@ from .run_job import (
     with_pages,
 )
 from .sweep_verb import add_sweep_options, sweep
-from .terminal import (
-    BAD_INPUT,
-    DONE,
-    INTERRUPTED,
-    USAGE,
-    Answer,
-    open_missing_streams,
-    printable,
-    show,
-    summary,
-    tell,
-)
+from .terminal import BAD_INPUT, DONE, USAGE, Answer, open_missing_streams, show, tell
 
 __all__ = [
     "BAD_INPUT",
     "DONE",
-    "INTERRUPTED",
-    "NOT_MET",
     "SUFFIXES",
     "USAGE",
     "Answer",
@@ -76,7 +56,6 @@ __all__ = [
     "add_explain_options",
     "add_export_options",
     "add_page_option",
-    "add_requirements_verb",
     "add_rigs_verb",
     "add_run_options",
     "add_score_options",
@@ -93,8 +72,6 @@ __all__ = [
     "drive",
     "explain",
     "export",
-    "front_job",
-    "has_front",
     "job_and_folder",
     "leave",
     "named_by_file",
@@ -102,18 +79,14 @@ __all__ = [
     "open_missing_streams",
     "pages",
     "plots",
-    "printable",
     "refuse_different",
     "resumed",
     "run",
     "scored",
     "show",
     "study_of_rig",
-    "summary",
     "sweep",
     "tell",
-    "verdict_lines",
-    "verdicts_csv",
     "with_options",
     "with_pages",
 ]

@@ -16,7 +16,7 @@ from pe_core.base.serialization import finite
 from pe_core.scoring.requirements import Redundancy, RedundancyMap, Verdict, checkable
 from pe_core.study import Study, load_study
 from pe_core.study.requirement_file import CONFIDENCE, Preset, preset, presets
-from pe_core.study.requirement_help import Suggestion, suggestions
+from pe_core.study.requirement_help import suggestions
 
 from ..advice import curve_note
 from ..jobs import CheckJob
@@ -65,7 +65,8 @@ def show_requirements(args: argparse.Namespace) -> Answer:
     """List the presets, or show one with its table and source."""
     chosen = [preset(args.id, "presets", "id")] if args.id else list(presets().values())
     if args.json:
-        return dump_json([_preset_dict(each) for each in chosen]), DONE
+        rows = [{"id": p.id, "confidence": p.confidence, **p.table} for p in chosen]
+        return dump_json(rows), DONE
     if args.id:
         return "\n".join(_preset_lines(chosen[0])), DONE
     width = max(len(each.id) for each in chosen)
@@ -74,16 +75,16 @@ def show_requirements(args: argparse.Namespace) -> Answer:
     return "\n".join([*lines, *notes]), DONE
 
 
-def check(path: str, args: argparse.Namespace) -> Answer:
+def check(args: argparse.Namespace) -> Answer:
     """Hold a study file to its requirements; the exit status says whether all are met."""
-    study = load_study(path)
+    study = load_study(args.study)
     try:
-        return check_study(study, args, [Path(path)])
+        return check_study(study, args, [Path(args.study)])
     except InputError as error:
         if not error.source.startswith("requirement "):
             raise
         field = f"{error.source}: {error.field}"
-        raise InputError(path, field, error.expected, error.found) from None
+        raise InputError(args.study, field, error.expected, error.found) from None
 
 
 def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] = ()) -> Answer:
@@ -124,18 +125,12 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
             "redundancy": None if seen is None else seen.to_dict(),
         }
         return dump_json(finite(data)), status
-    found = verdicts or unchecked
-    lines = [*verdict_lines(verdicts, unchecked), *_suggested(suggested)] if found else []
+    lines = verdict_lines(verdicts, unchecked) if verdicts or unchecked else []
+    none = "no placement of one sensor, or linked pair, that was tried is enough"
+    for name, own in suggested.items():
+        lines.append(f"{name}: met with {own.text}" if own else f"{name}: {none}")
     lines += [] if seen is None else redundancy_lines(seen)
     return "\n".join(lines), status
-
-
-def _suggested(found: dict[str, Suggestion | None]) -> list[str]:
-    """Return a line for each requirement: what would meet it."""
-    none = "no placement of one sensor, or linked pair, that was tried is enough"
-    return [
-        f"{name}: met with {own.text}" if own else f"{name}: {none}" for name, own in found.items()
-    ]
 
 
 def redundancy_lines(seen: RedundancyMap) -> list[str]:
@@ -227,19 +222,11 @@ def verdicts_csv(verdicts: Sequence[Verdict]) -> str:
     return csv_text(rows)
 
 
-def _preset_dict(each: Preset) -> dict[str, Any]:
-    return {"id": each.id, "confidence": each.confidence, **each.table}
-
-
 def _preset_lines(each: Preset) -> list[str]:
-    meaning = CONFIDENCE[each.confidence]
     lines = [f"{each.id}: {each.check}, {each.name}"]
-    lines.append(f"confidence      {each.confidence}: {meaning}")
-    skipped = ("name", "check", "source")
-    rows = {k: v for k, v in each.table.items() if k not in skipped}
-    for key, value in rows.items():
-        lines.append(f"{key:15} {_shown(value)}")
-    return [*lines, f"source          {each.source}"]
+    rows = {"confidence": f"{each.confidence}: {CONFIDENCE[each.confidence]}"}
+    rows |= {k: _shown(v) for k, v in each.table.items() if k not in ("name", "check", "source")}
+    return lines + [f"{key:15} {text}" for key, text in {**rows, "source": each.source}.items()]
 
 
 def _shown(value: Any) -> str:

@@ -7,18 +7,18 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
 from pe_core.search.goals import OBJECTIVES
-from pe_core.study import Study, mounts_table
+from pe_core.study import mounts_table
 
 from ..jobs import (
     FRONT_NAMES,
     SAVE_EVERY_S,
-    ChoiceJob,
     Design,
     FrontCheckpoint,
     FrontJob,
@@ -31,46 +31,45 @@ from ..jobs import (
 from .executors import evaluated_by
 from .interrupts import Interrupted, stop_at_first
 from .progress_line import Reporter
-from .run_job import folder_or_fallback
+from .run_job import write_somewhere
 from .terminal import BAD_INPUT, DONE, Answer, tell
 
 
 def front_summary(chosen: TradeOff) -> str:
-    """Return the front as a table: price, entropy, coverage, and the pose of each sensor."""
-    if chosen.objectives:
-        return _objectives_summary(chosen)
-    unit = chosen.study.selection.currency
-    head = (f"price [{unit}]" if unit else "price", "entropy", "coverage", "design")
-    rows = [_figures(design) for design in chosen.front]
-    widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
-    lines = [_line(head, widths)]
-    for row, design in zip(rows, chosen.front, strict=True):
-        lines += [_line(row, widths), *_placed(design, " " * (sum(widths[:3]) + 6))]
-    return "\n".join([*lines, "", *search_notes(chosen)])
-
-
-def _objectives_summary(chosen: TradeOff) -> str:
-    """Return a front of several objectives as a table, with the pose of each sensor."""
+    """Return the front as a table, with the pose of each sensor: price, entropy, coverage; or the
+    figures of several objectives."""
+    if not chosen.objectives:
+        unit = chosen.study.selection.currency
+        heads = [f"price [{unit}]" if unit else "price", "entropy", "coverage"]
+        rows = [_figures(design) for design in chosen.front]
+        return "\n".join([*_table(chosen, heads, rows, 6), "", *search_notes(chosen)])
     named = [name for name in chosen.objectives if all(name in d.figures for d in chosen.front)]
-    beside = [name for d in chosen.front[:1] for name in d.figures if name not in named]
-    labels = [OBJECTIVES[name] for name in (*named, *beside)]
-    head = [f"{label} [{unit}]" if unit else label for label, unit in labels]
-    rows = [[f"{d.figures[name]:,.4g}" for name in (*named, *beside)] for d in chosen.front]
-    widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
+    named += [name for d in chosen.front[:1] for name in d.figures if name not in named]
+    labels = [OBJECTIVES[name] for name in named]
+    heads = [f"{label} [{unit}]" if unit else label for label, unit in labels]
+    rows = [[f"{d.figures[name]:,.4g}" for name in named] for d in chosen.front]
+    lines = _table(chosen, heads, rows, 2)
+    if not chosen.study.search.goals.front.objectives:  # of choices, by expected AP
+        return "\n".join([*lines, "", *search_notes(chosen)])
+    count = f"{len(chosen.front)} on the front of {', '.join(label for label, _ in labels)}"
+    return "\n".join([*lines, "", count, *_more_notes(chosen)])
+
+
+def _table(
+    chosen: TradeOff, heads: Sequence[str], rows: Sequence[Sequence[str]], margin: int
+) -> list[str]:
+    """Return figures of the front right-aligned, each before its design and its sensors' poses."""
+    widths = [max(map(len, column)) for column in zip(heads, *rows, strict=True)]
 
     def line(cells: Sequence[str], name: str) -> str:
         figures = (cell.rjust(width) for cell, width in zip(cells, widths, strict=True))
         return "  ".join([*figures, name])
 
-    lines = [line(head, "design")]
+    lines = [line(heads, "design")]
     for row, design in zip(rows, chosen.front, strict=True):
         met = f" ({design.met_text})" if design.met_text else ""
-        lines += [line(row, f"{design.name}{met}"), *_placed(design, " " * (sum(widths) + 2))]
-    if not chosen.study.search.goals.front.objectives:  # of choices, by expected AP
-        return "\n".join([*lines, "", *search_notes(chosen)])
-    count = len(chosen.front)
-    lines += ["", f"{count} on the front of {', '.join(label for label, _ in labels)}"]
-    return "\n".join([*lines, *_more_notes(chosen)])
+        lines += [line(row, f"{design.name}{met}"), *_placed(design, " " * (sum(widths) + margin))]
+    return lines
 
 
 def search_notes(chosen: TradeOff) -> Iterator[str]:
@@ -96,16 +95,10 @@ def _more_notes(chosen: TradeOff) -> Iterator[str]:
         yield f"no place for {name}: {why}"
 
 
-def _figures(design: Design) -> tuple[str, ...]:
+def _figures(design: Design) -> list[str]:
     coverage = "-" if design.score is None else f"{design.score.coverage:.1%}"
     entropy = "infeasible" if design.is_led_in else f"{design.entropy:.4f}"
-    name = f"{design.name} ({design.met_text})" if design.met_text else design.name
-    return (f"{design.price:,.10g}", entropy, coverage, name)
-
-
-def _line(cells: tuple[str, ...], widths: list[int]) -> str:
-    figures = (cell.rjust(width) for cell, width in zip(cells[:3], widths, strict=False))
-    return "  ".join([*figures, cells[3]])
+    return [f"{design.price:,.10g}", entropy, coverage]
 
 
 def _placed(design: Design, margin: str) -> Iterator[str]:
@@ -113,12 +106,8 @@ def _placed(design: Design, margin: str) -> Iterator[str]:
     mounts = mounts_table(design.study.rig, design.study.search.mounting)
     for sensor in design.study.rig:
         mount = mounts.get(sensor.name, {})
-        slot = mount.get("slot")
-        where = (
-            f"{mount['mount']}, {slot}"
-            if slot
-            else _where(sensor.pose.position, sensor.pose.rotation_deg)
-        )
+        slot, pose = mount.get("slot"), sensor.pose
+        where = f"{mount['mount']}, {slot}" if slot else _where(pose.position, pose.rotation_deg)
         yield f"{margin}{sensor.name}: {sensor.model.name}; {where}"
 
 
@@ -136,36 +125,21 @@ plots: list[Draw] = []
 """
 
 
-def resumed(job: ChoiceJob | FrontJob, args: argparse.Namespace) -> str | None:
+def resumed(job: FrontJob, args: argparse.Namespace) -> str | None:
     """Let a job go on where that of ``--resume`` ended; return the folder of its results.
 
-    Raises
-    ------
-    InputError
-        The folder has no checkpoint of this study's front.
+    Raises `InputError` where the folder has no checkpoint of this study's front.
     """
-    folder = getattr(args, "resume", None)
+    folder: str | None = getattr(args, "resume", None)
     if folder is None:
-        output: str | None = args.output
-        return output
+        return args.output  # type: ignore[no-any-return]
     job.journals = read_front_search(job.study, Path(folder))
     tell(f"going on after {job.journals.count:,} placements")
-    return str(folder)
-
-
-def front_job(study: Study, workers: int | None = None) -> ChoiceJob | FrontJob:
-    """Return the job that computes a study's front: of its objectives, or of price and entropy."""
-    kind = FrontJob if study.search.goals.front.objectives else ChoiceJob
-    return kind(study, workers)
-
-
-def has_front(study: Study) -> bool:
-    """Whether `pe optimize` computes a front of a study."""
-    return bool(study.selection.choices or study.search.goals.front.objectives)
+    return folder
 
 
 def choose(
-    job: ChoiceJob | FrontJob,
+    job: FrontJob,
     output: Path | None,
     *,
     as_json: bool,
@@ -173,7 +147,7 @@ def choose(
     more: Callable[[TradeOff, Path], None] | None = None,
     scheduler: str | None = None,
 ) -> Answer:
-    """Compute the front of a study's designs, write it, and return the text to print.
+    """Compute the front of a study, write it, and return the text to print.
 
     The first Ctrl-C, SIGTERM or SIGHUP stops the job: the front so far is written. The second one
     ends at once; the front that was last saved stays. It is saved every few seconds.
@@ -187,73 +161,53 @@ def choose(
     """
     if output is not None:
         prepare_folder(output, FRONT_NAMES)
+
+    def write(folder: Path) -> None:
+        data = write_front(chosen, folder, host)
+        if more is not None:
+            more(chosen, folder)
+        for draw in plots:
+            draw(data, folder)
+
     with evaluated_by(job, scheduler), stop_at_first(job.stop) as received:
         _drive(job, output, host)
-        chosen = job.trade_off
-        if chosen is None:
+        found = job.trade_off
+        if found is None:
             note = "no design was complete, so nothing was written"
             raise Interrupted(received.signum or signal.SIGINT, note)
-        status, data = DONE, front_dict(chosen, host)
+        chosen, status, data = found, DONE, front_dict(found, host)
         if output is not None:
-            status = _keep(chosen, output, host, more)
+            folder = write_somewhere(output, write)
+            told = "not in any file" if folder is None else f"in {folder}"
+            if folder != output:
+                status = BAD_INPUT
+                tell(f"the results are {told}")
         text = dump_json(data) if as_json else front_summary(chosen)
         return text, status or received.status(DONE)
 
 
-def _drive(job: ChoiceJob | FrontJob, output: Path | None, host: Mapping[str, str] | None) -> None:
+def _drive(job: FrontJob, output: Path | None, host: Mapping[str, str] | None) -> None:
     """Run a job to its end with progress; save the front so far every few seconds."""
     reporter, saved, kept = Reporter(sys.stderr), time.monotonic(), 0
     checkpoint = FrontCheckpoint(job.study)
+
+    def attempt(save: Callable[[], object]) -> None:
+        try:
+            save()
+        except InputError as error:
+            tell(f"{error}; the search goes on")
+
     try:
         for progress in job:
             reporter.report(progress)
             if output is None or time.monotonic() - saved < SAVE_EVERY_S:
                 continue
-            _try_to_save(checkpoint, job, output)
+            attempt(partial(checkpoint.save, job.journals, output))
             saved, chosen = time.monotonic(), job.trade_off
             if chosen is not None and chosen.searched > kept:
                 kept = chosen.searched
-                _try_to_write(chosen, output, host)
+                attempt(partial(write_front, chosen, output, host))
     finally:
         reporter.clear()
         if output is not None and job.journals.count:
-            _try_to_save(checkpoint, job, output)
-
-
-def _try_to_save(checkpoint: FrontCheckpoint, job: ChoiceJob | FrontJob, output: Path) -> None:
-    try:
-        checkpoint.save(job.journals, output)
-    except InputError as error:
-        tell(f"{error}; the search goes on")
-
-
-def _try_to_write(chosen: TradeOff, output: Path, host: Mapping[str, str] | None) -> None:
-    try:
-        write_front(chosen, output, host)
-    except InputError as error:
-        tell(f"{error}; the search goes on")
-
-
-def _keep(
-    chosen: TradeOff,
-    output: Path,
-    host: Mapping[str, str] | None,
-    more: Callable[[TradeOff, Path], None] | None,
-) -> int:
-    """Write the front to a folder; if that fails, to a fallback folder whose path is printed."""
-    for place in (output, None):
-        try:
-            with folder_or_fallback(place) as folder:
-                data = write_front(chosen, folder, host)
-                if more is not None:
-                    more(chosen, folder)
-                for draw in plots:
-                    draw(data, folder)
-        except InputError as error:
-            tell(str(error))
-            continue
-        if folder != output:
-            tell(f"the results are in {folder}")
-        return DONE if folder == output else BAD_INPUT
-    tell("the results are not in any file")
-    return BAD_INPUT
+            attempt(partial(checkpoint.save, job.journals, output))

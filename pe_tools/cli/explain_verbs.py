@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import signal
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,21 +23,14 @@ from .run_job import drive, print_vehicle
 from .terminal import DONE, Answer, warned, with_error
 
 BEST = "*"
-TITLES = {
-    "entropy": "entropy [nats], lower is better",
-    "coverage": "seen, of where objects are",
-    "ap": "expected AP",
-    "reach": "reach ahead (AP 0.5) [m]",
-    "blind": "blind ground [m2], lower is better",
+MEASURES = {
+    "entropy": ("entropy [nats], lower is better", ".4f", 1.0),
+    "coverage": ("seen, of where objects are", ".1%", 100.0),
+    "ap": ("expected AP", ".3f", 1.0),
+    "reach": ("reach ahead (AP 0.5) [m]", ".1f", 1),
+    "blind": ("blind ground [m2], lower is better", ".1f", 1),
 }
-WAYS = {
-    "entropy": (".4f", 1.0),
-    "coverage": (".1%", 100.0),
-    "ap": (".3f", 1.0),
-    "reach": (".1f", 1),
-    "blind": (".1f", 1),
-}
-"""Format of the figures of each measure, and the factor of their differences."""
+"""Title of each measure, format of its figures, and the factor of their differences."""
 WIDEST = 24
 """Longer names of studies are cut at the front: their ends tell them apart."""
 
@@ -49,35 +42,26 @@ def comparison(names: Sequence[str], rows: Sequence[ComparedRow]) -> list[str]:
     """
     heads = [name if len(name) <= WIDEST else f"...{name[3 - WIDEST :]}" for name in names]
     table = [["", *heads]]
-    for measure, title in TITLES.items():
+    for measure, (title, *_) in MEASURES.items():
         own = [row for row in rows if row.measure == measure]
         if own:
             table.append([title, *[""] * len(heads)])
-        table += [[f"  {row.name or 'all'}", *_cells(row)] for row in own]
+        table += [[f"  {r.name or 'all'}", *(_cell(r, k) for k in range(len(heads)))] for r in own]
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-    lines = [_line(cells, widths) for cells in table]
+    lines = []
+    for first, *cells in table:
+        figures = (cell.rjust(width) for cell, width in zip(cells, widths[1:], strict=True))
+        lines.append("  ".join([first.ljust(widths[0]), *figures]).rstrip())
     return [*lines, f"{BEST} best; in brackets the difference to {heads[0]}"]
-
-
-def _line(cells: Sequence[str], widths: Sequence[int]) -> str:
-    figures = (cell.rjust(width) for cell, width in zip(cells[1:], widths[1:], strict=True))
-    return "  ".join([cells[0].ljust(widths[0]), *figures]).rstrip()
-
-
-def _cells(row: ComparedRow) -> list[str]:
-    return [_cell(row, k) for k in range(len(row.values))]
 
 
 def _cell(row: ComparedRow, k: int) -> str:
     value, less = row.values[k], row.differences[k]
     if value is None:
         return "- "
-    (way, times), mark = WAYS[row.measure], BEST if row.best[k] else " "
-    figure = f"{value:{way}}"
-    if k == 0 or less is None:
-        return f"{figure}{mark}"
-    change = f"{times * less:+{way.replace('%', 'f')}}"
-    return f"{figure} ({change}){mark}"
+    (_, way, times), mark = MEASURES[row.measure], BEST if row.best[k] else " "
+    change = f"{times * less:+{way.replace('%', 'f')}}" if k and less is not None else ""
+    return f"{value:{way}}{f' ({change})' if change else ''}{mark}"
 
 
 COMPARED = ("space", "prior", "model", "targets")
@@ -127,15 +111,26 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
     }
     of_rig = advice.rig_words(outcome.after, seen, study.rig, outcome.warnings)
     lines = *of_rig, *advice.sensor_table(rows)
-    return _answer(data, [_entropy(outcome), *lines, *warned(outcome)], args.json)
+    score = outcome.after
+    what = "perception" if score.objects is None else "object"
+    first = f"{what} entropy {with_error(score.entropy, score.stderr)}; lower is better"
+    return _answer(data, [first, *lines, *warned(outcome)], args.json)
 
 
 def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     """Score studies by name, and print a table that compares them."""
     refuse_different(studies)
     studies = {**studies, **_beside(studies, args.beside)}
-    of = args.height, args.class_name
-    figures = {name: _figures(study, *of) for name, study in studies.items()}
+    figures = {
+        name: advice.key_figures(
+            study.sight(),
+            study.rig,
+            args.height,
+            args.class_name,
+            of_voxels=not study.targets.are_objects,
+        )
+        for name, study in studies.items()
+    }
     scores = {name: scored(study, args.workers).after for name, study in studies.items()}
     rows, figure_rows = advice.compare(scores), advice.compare_figures(figures)
     alike = len({vehicle_digest(study.vehicle) for study in studies.values()}) == 1
@@ -146,32 +141,18 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
         "same_vehicle": alike,
     }
     names = list(scores)
-    said = [*advice.ranking(names, rows), *advice.win_words(names, rows)]
-    data["words"] = said
-    error = max(score.stderr for score in scores.values())
+    data["words"] = said = [*advice.ranking(names, rows), *advice.win_words(names, rows)]
     models = ([sensor.model for sensor in study.rig] for study in studies.values())
     curves = advice.curve_note(study.model for study in studies.values())
-    notes = [note for note in (advice.hardware_note(models), curves) if note]
-    data["notes"] = notes
-    lines = [*comparison(names, [*rows, *figure_rows]), *said, *_notes(error, alike), *notes]
-    return _answer(data, lines, args.json)
-
-
-def _notes(error: float, alike: bool) -> Iterator[str]:
-    """Yield notes to a comparison: different vehicles, and the standard error of samples."""
-    if not alike:
-        yield "their vehicles differ"
-    if error:
-        yield (
+    data["notes"] = notes = [note for note in (advice.hardware_note(models), curves) if note]
+    lines = [*comparison(names, [*rows, *figure_rows]), *said]
+    lines += [] if alike else ["their vehicles differ"]
+    if error := max(score.stderr for score in scores.values()):
+        lines.append(
             f"on samples: entropies have a standard error of up to {error:.4f} nats; +- is that of "
             "a difference, smaller on a shared sample"
         )
-
-
-def _figures(study: Study, height: float, class_name: str | None) -> advice.KeyFigures:
-    """Return the key figures of a study for a comparison."""
-    voxels = not study.targets.are_objects
-    return advice.key_figures(study.sight(), study.rig, height, class_name, of_voxels=voxels)
+    return _answer(data, [*lines, *notes], args.json)
 
 
 def _beside(studies: Mapping[str, Study], key: str | None) -> dict[str, Study]:
@@ -215,13 +196,6 @@ def refuse_different(studies: Mapping[str, Study]) -> None:
                 field = "AP curves and fusion" if field == "model" else field
                 expected = f"the same as in {first[0]}, to be compared with it"
                 raise InputError(name, field, expected, "another")
-
-
-def _entropy(outcome: Outcome) -> str:
-    score = outcome.after
-    if score.objects is not None:
-        return f"object entropy {with_error(score.entropy, score.stderr)}; lower is better"
-    return f"perception entropy {with_error(score.entropy, score.stderr)}; lower is better"
 
 
 def _answer(data: dict[str, Any], lines: list[str] | tuple[str, ...], as_json: bool) -> Answer:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple, TextIO
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
-from pe_core.study import Study
+from pe_core.study import STUDY, Study
 
 from ..jobs import (
     BegunSearch,
@@ -70,6 +70,26 @@ def folder_or_fallback(folder: Path | None) -> Iterator[Path]:
         yield other
 
 
+def write_somewhere(
+    output: Path,
+    write: Callable[[Path], object],
+    failed: Callable[[Path], None] = lambda _folder: None,
+) -> Path | None:
+    """Write to a folder; if that fails, to a fallback folder. Return which one it was.
+
+    What goes wrong is printed; `failed` is then called with that folder.
+    """
+    for place in (output, None):
+        try:
+            with folder_or_fallback(place) as folder:
+                write(folder)
+            return folder
+        except InputError as error:
+            tell(str(error))
+            failed(folder)
+    return None
+
+
 def save_to_fallback(text: str) -> str:
     """Save a text that could not be printed; return a message with its path."""
     try:
@@ -114,14 +134,8 @@ class Saver:
         if self._output is None or self._job is None or len(self._job.history) < 2:
             return
         assert self._checkpoint is not None
-        for place in (self._output, None):
-            try:
-                with folder_or_fallback(place) as folder:
-                    saved = self._checkpoint.save(folder)
-                tell(f"the best placement so far is in {saved}")
-                return
-            except InputError as error:
-                tell(str(error))
+        if (folder := write_somewhere(self._output, self._checkpoint.save)) is not None:
+            tell(f"the best placement so far is in {folder / STUDY}")
 
 
 Data = dict[str, Any]
@@ -196,40 +210,32 @@ def keep(
 ) -> tuple[int, Data]:
     """Write the results to a folder; if that fails, to a fallback folder whose path is printed.
 
-    Returns
-    -------
-    status : int
-    data : dict
-        Content of result.json.
+    Returns the exit status and the content of result.json.
     """
     data, kept = result_dict(outcome, host), list[Path]()
     names = more.names if more else ()
-    for place in (output, None):
-        try:
-            with folder_or_fallback(place) as folder:
-                prepare_folder(folder, names)  # the user may have added a file meanwhile
-                data = write_outcome(outcome, folder, host, names)
-                kept.append(folder)
-                if more is not None:
-                    more.write(outcome, data, folder)
-        except InputError as error:
-            tell(str(error))
-            if folder in kept:
-                for name, aside in set_aside_files_of_other_runs(folder).items():
-                    tell(f"{folder / name}: of an earlier run; it is {aside} now")
-            continue
-        _print_other_runs(output)  # checkpoints of this run may lie beside an older result
-        if folder != output:
-            tell(f"the results are in {folder}")
-        return (DONE if folder == output else BAD_INPUT), data
-    tell(f"all else is in {kept[0]}" if kept else "the results are not in any file")
-    _print_other_runs(output)
-    return BAD_INPUT, data
 
+    def write(folder: Path) -> None:
+        nonlocal data
+        prepare_folder(folder, names)  # the user may have added a file meanwhile
+        data = write_outcome(outcome, folder, host, names)
+        kept.append(folder)
+        if more is not None:
+            more.write(outcome, data, folder)
 
-def _print_other_runs(folder: Path) -> None:
-    for name in files_of_other_runs(folder):
-        tell(f"{folder / name}: not of this run")
+    def failed(folder: Path) -> None:
+        if folder in kept:
+            for name, aside in set_aside_files_of_other_runs(folder).items():
+                tell(f"{folder / name}: of an earlier run; it is {aside} now")
+
+    folder = write_somewhere(output, write, failed)
+    if folder is None:
+        tell(f"all else is in {kept[0]}" if kept else "the results are not in any file")
+    for name in files_of_other_runs(output):  # checkpoints may lie beside an older result
+        tell(f"{output / name}: not of this run")
+    if folder not in (None, output):
+        tell(f"the results are in {folder}")
+    return (DONE if folder == output else BAD_INPUT), data
 
 
 def print_answer(text: str, status: int, out: TextIO | None) -> int:
@@ -243,9 +249,6 @@ def print_answer(text: str, status: int, out: TextIO | None) -> int:
     return status or BAD_INPUT
 
 
-AnyJob = ScoreJob | OptimizeJob
-
-
 def begun_search(args: argparse.Namespace) -> BegunSearch | None:
     """Return the search to resume; None without the option ``--resume``."""
     folder = getattr(args, "resume", None)
@@ -254,16 +257,15 @@ def begun_search(args: argparse.Namespace) -> BegunSearch | None:
 
 def job_and_folder(
     study: Study, args: argparse.Namespace, begun: BegunSearch | None
-) -> tuple[AnyJob, str | None]:
-    """Return the job that `args.job` makes of a study, and the folder for its results.
+) -> tuple[ScoreJob | OptimizeJob, str | None]:
+    """Return the job of a study that `args.kind` names, and the folder for its results.
 
-    Raises
-    ------
-    InputError
-        The search to resume belongs to another study.
+    Raises `InputError` where the search to resume belongs to another study.
     """
-    job: AnyJob = args.job(study, args.workers)
-    if begun is None or not isinstance(job, OptimizeJob):
+    if args.kind == "score":
+        return ScoreJob(study, args.workers), args.output
+    job = OptimizeJob(study, args.workers)
+    if begun is None:
         return job, args.output
     job.journal, job.inputs = begun.journal_of(study), begun.inputs
     tell(f"going on after {len(begun.evaluated):,} placements")

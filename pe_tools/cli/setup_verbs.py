@@ -29,7 +29,6 @@ from .terminal import DONE, Answer
 
 PACKAGES: Mapping[str, tuple[str, ...]] = {
     "meshes": ("pycollada", "usd-core"),
-    "progress": ("tqdm",),
     "cluster": ("distributed",),
     "report": ("matplotlib",),
     "rerun": ("rerun-sdk", "pyarrow"),

@@ -1,18 +1,21 @@
 """Jobs that score and optimize studies, their checkpoints, and the files of their results."""
 
 from .check_job import CheckJob
-from .checkpoint import SAVE_EVERY_S, BegunSearch, Checkpoint, SearchState, read_search
-from .choice_job import ChoiceJob, Design, TradeOff
+from .checkpoint import (
+    FRONT_SEARCH,
+    SAVE_EVERY_S,
+    BegunSearch,
+    Checkpoint,
+    FrontCheckpoint,
+    FrontJournals,
+    SearchState,
+    front_study,
+    read_front_search,
+    read_search,
+)
 from .condition_files import condition_lines, conditions_csv
 from .designed import design_study
 from .folder import FileSet, check_files, prepare_folder
-from .front_checkpoint import (
-    FRONT_SEARCH,
-    FrontCheckpoint,
-    FrontJournals,
-    front_study,
-    read_front_search,
-)
 from .front_files import (
     DESIGNS,
     FRONT_CSV,
@@ -23,7 +26,7 @@ from .front_files import (
     front_dict,
     write_front,
 )
-from .front_job import FrontJob
+from .front_job import FrontJob, has_front
 from .job import HistoryRow, Job, Outcome, Progress, StartEnd, best_so_far
 from .results import (
     add_to_result,
@@ -40,6 +43,7 @@ from .searched_figure import IN_NATS, SearchedFigure, searched_figure, searched_
 from .stopping import stop_text
 from .study_export import export_study, fingerprint, study_writers
 from .sureness import sureness_lines
+from .trade_off import Design, TradeOff
 
 __all__ = [
     "DESIGNS",
@@ -54,7 +58,6 @@ __all__ = [
     "BegunSearch",
     "CheckJob",
     "Checkpoint",
-    "ChoiceJob",
     "Design",
     "FileSet",
     "FrontCheckpoint",
@@ -81,6 +84,7 @@ __all__ = [
     "fingerprint",
     "front_dict",
     "front_study",
+    "has_front",
     "placements",
     "prepare_folder",
     "read_front_search",

@@ -1,10 +1,14 @@
-"""Checkpoints of a search: a file with its state, from which the search resumes."""
+"""Checkpoints of searches: a file with the state of one, or of all of a front, to resume from.
+
+A search that resumes from its journal asks for the same placements and takes their values from it.
+So a search or a front that was interrupted ends at the same bits as one that was not.
+"""
 
 from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -23,14 +27,20 @@ from .folder import FileSet, prepare_folder
 from .score_and_optimize import OptimizeJob
 from .study_export import fingerprint, inputs_of, study_writers
 
-PROGRAM, KIND = "perception-entropy", "search"
+PROGRAM = "perception-entropy"
+FRONT_SEARCH = "front_search.json"
+SEARCH_KIND, FRONT_KIND = "search", "front search"
+WHAT = {
+    SEARCH_KIND: "the state of a search, as this program writes it",
+    FRONT_KIND: "the checkpoint of a front, as this program writes it",
+}
 STATE_BYTES = 1 << 30
 """Maximum size of a state file: about thirty million evaluated placements."""
-KEYS = ("version", "inputs", "study", "study_sha256", "evaluated")
-A_STATE = "the state of a search, as this program writes it"
+SAVE_EVERY_S = 10.0
+"""Interval of saving [s]: a round may take hours, so its intermediate results are saved, too."""
 
 
-def state_head(kind: str, study: Study) -> dict[str, Any]:
+def _head(kind: str, study: Study) -> dict[str, Any]:
     """Return what the state files of all kinds begin with: program, version, and the study."""
     written = study_writers(study, STUDY)[STUDY]
     assert isinstance(written, bytes)
@@ -40,6 +50,46 @@ def state_head(kind: str, study: Study) -> dict[str, Any]:
         "study_sha256": fingerprint(study),
         "study": written.decode(),
     }
+
+
+def _state_of(path: Path, kind: str, more: Mapping[str, type]) -> dict[str, Any]:
+    """Return the data of a state file of this version; `more` has further keys and their types."""
+    keys = {"version": str, "study_sha256": str, "study": str, **more}
+    try:
+        data: Any = parse_json(path, read_bytes(path, STATE_BYTES), infinite=True)
+        is_one = data[PROGRAM] == kind and all(isinstance(data[k], t) for k, t in keys.items())
+    except (KeyError, TypeError):
+        is_one = False
+    if not is_one:
+        raise InputError(path, "file", WHAT[kind], "another file")
+    if data["version"] != __version__:
+        expected = f"{__version__}, the version of this program"
+        raise InputError(path, "version", expected, shown(data["version"]))
+    return data  # type: ignore[no-any-return]
+
+
+def _study_of(path: Path, data: Mapping[str, Any]) -> Study:
+    """Return the study of a state file; its files are those beside it."""
+    study = study_from_dict(load_toml(path, "study", data["study"]), str(path), path.parent)
+    if fingerprint(study) != data["study_sha256"]:
+        raise InputError(path, "study", "unchanged files beside the study", "changed files")
+    return study
+
+
+def _entries_of(path: Path, field: str, rows: Any) -> tuple[EvaluatedRig, ...]:
+    rows = rows if isinstance(rows, list) else [rows]
+    for number, row in enumerate(rows):
+        kinds = [type(value) for value in row] if isinstance(row, list) else []
+        if kinds != [float, bool, str]:
+            expected = "an entropy, a truth value, a digest"
+            raise InputError(path, f"{field}[{number}]", expected, shown(row))
+    return tuple(EvaluatedRig(*row) for row in rows)
+
+
+def _check_same(path: Path, study: Study, digest: str) -> None:
+    if fingerprint(study) != digest:
+        expected = "the study and the options that it was begun with"
+        raise InputError(path, "study", expected, "others")
 
 
 class SearchState:
@@ -60,7 +110,7 @@ class SearchState:
     def _head(self) -> dict[str, Any]:
         """The constant part of the state: cached, because it is expensive for a large mesh."""
         inputs = self._inputs or inputs_of(self._study)
-        return {**state_head(KIND, self._study), "inputs": inputs}
+        return {**_head(SEARCH_KIND, self._study), "inputs": inputs}
 
     def to_bytes(self, entries: Iterable[EvaluatedRig]) -> bytes:
         """Return the content of the state file."""
@@ -118,14 +168,9 @@ class BegunSearch:
     def journal_of(self, study: Study) -> Journal:
         """Return the journal with which a search of the study resumes.
 
-        Raises
-        ------
-        InputError
-            The state belongs to the search of another study.
+        Raises `InputError` if the state belongs to the search of another study.
         """
-        if fingerprint(study) != fingerprint(self.study):
-            expected = "the study and the options that it was begun with"
-            raise InputError(self.path, "study", expected, "others")
+        _check_same(self.path, study, fingerprint(self.study))
         return Journal(self.evaluated, str(self.path))
 
 
@@ -139,53 +184,16 @@ def read_search(folder: str | Path) -> BegunSearch:
         changed since the search began.
     """
     path = Path(folder) / SEARCH
-    data = _data_of(path)
-    if data["version"] != __version__:
-        expected = f"{__version__}, the version of this program"
-        raise InputError(path, "version", expected, shown(data["version"]))
-    entries = _entries_of(path, data["evaluated"])
-    study = study_from_dict(load_toml(path, "study", data["study"]), str(path), path.parent)
-    if fingerprint(study) != data["study_sha256"]:
-        raise InputError(path, "study", "unchanged files beside the study", "changed files")
-    return BegunSearch(path, study, data["inputs"], entries)
-
-
-def _data_of(path: Path) -> dict[str, Any]:
-    try:
-        data: Any = parse_json(path, read_bytes(path, STATE_BYTES), infinite=True)
-        typed = isinstance(data["study"], str) and isinstance(data["inputs"], dict)
-        if data[PROGRAM] == KIND and typed:
-            return {key: data[key] for key in KEYS}
-    except (KeyError, TypeError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-    raise InputError(path, "file", A_STATE, "another file")
-
-
-def _entries_of(path: Path, rows: Any) -> tuple[EvaluatedRig, ...]:
-    rows = rows if isinstance(rows, list) else [rows]
-    for number, row in enumerate(rows):
-        kinds = [type(value) for value in row] if isinstance(row, list) else []
-        if kinds != [float, bool, str]:
-            raise InputError(
-                path, f"evaluated[{number}]", "an entropy, a truth value, a digest", shown(row)
-            )
-    return tuple(EvaluatedRig(*row) for row in rows)
-
-
-SAVE_EVERY_S = 10.0
-"""Interval of saving [s]: a round may take hours, so its intermediate results are saved, too."""
+    data = _state_of(path, SEARCH_KIND, {"inputs": dict, "evaluated": object})
+    entries = _entries_of(path, "evaluated", data["evaluated"])
+    return BegunSearch(path, _study_of(path, data), data["inputs"], entries)
 
 
 class Checkpoint:
     """Saves the state of a search in a folder while the search runs.
 
-    However the search ends, it can resume from the last checkpoint (`SearchState`).
-
-    Parameters
-    ----------
-    job : OptimizeJob
-        Its journal may hold the entries of an earlier part of the same search.
+    However the search ends, it can resume from the last checkpoint (`SearchState`). The journal of
+    the job may hold the entries of an earlier part of the same search.
     """
 
     def __init__(self, job: OptimizeJob) -> None:
@@ -208,17 +216,88 @@ class Checkpoint:
         self._seen, self._saved_s = job_state, time.monotonic()
         return True
 
-    def save(self, folder: Path) -> Path:
-        """Write state and best placement into a folder; return the path of the best study.
-
-        Raises
-        ------
-        InputError
-            The folder cannot be written, or this program did not write one of the files in it.
-            The folder then stays unchanged.
-        """
+    def save(self, folder: Path) -> None:
+        """Write state and best placement into a folder; raises as `SearchState.save`."""
         entries, best = self._job.journal.entries, self._job.best
         meshes = folder != self._folder or not (folder / SEARCH).exists()
         self._state.save(folder, best, entries, meshes=meshes)
         self._folder, self._saved_entries = folder, len(entries)
-        return folder / STUDY
+
+
+class FrontJournals:
+    """The journals of several searches, by the name of each.
+
+    Parameters
+    ----------
+    known : mapping of str to iterable of EvaluatedRig
+        Of an interrupted run.
+    """
+
+    def __init__(self, known: Mapping[str, Iterable[EvaluatedRig]] | None = None) -> None:
+        self._known = {name: tuple(entries) for name, entries in (known or {}).items()}
+        self._journals: dict[str, Journal] = {}
+
+    def begin(self, name: str) -> Journal:
+        """Return the journal of a search that begins; it continues a known one."""
+        self._journals[name] = Journal(self._known.get(name, ()), FRONT_SEARCH)
+        return self._journals[name]
+
+    @property
+    def count(self) -> int:
+        """Number of entries so far, those of searches that have not begun again included."""
+        return sum(map(len, self.entries().values()))
+
+    def entries(self) -> dict[str, tuple[EvaluatedRig, ...]]:
+        """Return all entries by search; may be read while another thread searches."""
+        return self._known | {name: each.entries for name, each in self._journals.items()}
+
+
+class FrontCheckpoint:
+    """The checkpoint of the front of a study, which is saved in its folder while the job runs."""
+
+    def __init__(self, study: Study) -> None:
+        self._study = study
+        self._folder: Path | None = None
+
+    @cached_property
+    def _head(self) -> dict[str, Any]:
+        """The constant part: cached, because it is expensive for a large mesh."""
+        return _head(FRONT_KIND, self._study)
+
+    def save(self, journals: FrontJournals, folder: Path) -> None:
+        """Write the checkpoint into the front's folder; once also the files that the study names.
+
+        Raises `InputError` if the folder cannot be written, or another program wrote such a file.
+        """
+        state = {**self._head, "journals": journals.entries()}
+        with FileSet(prepare_folder(folder, (FRONT_SEARCH,))) as files:
+            if folder != self._folder:
+                for name, write in study_writers(self._study, STUDY).items():
+                    if name != STUDY:
+                        files.add(name, write)
+            files.add(FRONT_SEARCH, json.dumps(state, ensure_ascii=False).encode())
+        self._folder = folder
+
+
+def front_study(folder: str | Path) -> Study | None:
+    """Return the study of a front's checkpoint; None for a folder with the state of one search.
+
+    Raises `InputError` if it is damaged, or files that the study names have changed.
+    """
+    path = Path(folder) / FRONT_SEARCH
+    if (Path(folder) / SEARCH).exists() or not path.exists():
+        return None
+    return _study_of(path, _state_of(path, FRONT_KIND, {"journals": dict}))
+
+
+def read_front_search(study: Study, folder: Path) -> FrontJournals:
+    """Read the checkpoint of the front of a study.
+
+    Raises `InputError` if there is none, it is damaged or of another version, or it belongs to
+    another study.
+    """
+    path = folder / FRONT_SEARCH
+    data = _state_of(path, FRONT_KIND, {"journals": dict})
+    _check_same(path, study, data["study_sha256"])
+    journals = data["journals"].items()
+    return FrontJournals({name: _entries_of(path, name, rows) for name, rows in journals})

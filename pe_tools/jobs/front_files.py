@@ -15,10 +15,10 @@ from pe_core.study.file_names import STUDY
 from pe_core.study.study import vehicle_digest
 from pe_core.study.study_file import study_to_dict
 
-from .choice_job import Design, TradeOff
 from .folder import FileSet, Write, our_files, prepare_folder
 from .results import placements, run_dict
 from .study_export import study_writers
+from .trade_off import Design, TradeOff
 
 FRONT_JSON, FRONT_CSV, FRONT_PLOT, DESIGNS = "front.json", "front.csv", "front.png", "designs"
 FRONT_PAGE = "front.html"

@@ -236,21 +236,6 @@ def weights_of(count: int, objectives: int) -> list[tuple[float, ...]]:
     return [*alone, *mixed]
 
 
-def non_dominated(costs: Sequence[Sequence[float]]) -> list[int]:
-    """Return the indices of costs that no other one beats in all; of equal ones the first."""
-    kept = []
-    for k, own in enumerate(costs):
-        beaten = any(
-            all(a <= b for a, b in zip(other, own, strict=True))
-            and (list(other) != list(own) or j < k)
-            for j, other in enumerate(costs)
-            if j != k
-        )
-        if not beaten:
-            kept.append(k)
-    return kept
-
-
 def spread(costs: Sequence[Sequence[float]], count: int) -> list[int]:
     """Return the indices of at most `count` costs, far from each other, the extremes first."""
     if len(costs) <= count:

@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Executor, Future, wait
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any, TypeVar
 
 from pe_core.geometry.poses import Pose
@@ -17,6 +16,7 @@ from pe_core.scoring.requirements import CheckStep, RequirementChecker, Verdict
 from pe_core.scoring.score import ObjectScore, Score, ScoreStopped
 from pe_core.search import EvaluatedRig, Robustness
 from pe_core.study.condition_table import ConditionTable, condition_table
+from pe_core.study.objective_search import is_by_ap, search_evaluator
 from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Study
 
@@ -188,6 +188,30 @@ class Progress:
         return "" if self.entropy is None else self.figure.text(self.entropy)
 
 
+class Evaluators:
+    """The evaluators of a study's rigs, each made once; jobs of other rigs may share them."""
+
+    def __init__(self, study: Study, workers: int | None) -> None:
+        self._study, self._workers = study, workers
+        self._own: dict[int, RigEvaluator] = {}
+        self._in_traffic: dict[int, RigEvaluator] = {}
+
+    def on(self, samples: int) -> RigEvaluator:
+        """Return the evaluator of the study's own targets with so many samples."""
+        count = self._study.looks_at(samples)
+        if count not in self._own:
+            self._own[count] = self._study.evaluator(samples, self._workers)
+        return self._own[count]
+
+    def searching(self, samples: int) -> RigEvaluator:
+        """Return what evaluates candidates with so many samples: by expected AP, in traffic."""
+        if not is_by_ap(self._study):
+            return self.on(samples)
+        if samples not in self._in_traffic:
+            self._in_traffic[samples] = search_evaluator(self._study, samples, self._workers)
+        return self._in_traffic[samples]
+
+
 class Job:
     """Base class of the jobs: the outcome, a stopwatch, and requests to stop or cancel.
 
@@ -210,6 +234,7 @@ class Job:
         """Warnings of the program that created the study; they precede those of the checks."""
         self.as_drawn: AsDrawn | None = None
         """Returns what holds rigs to a study's requirements as drawn, if others use it as well."""
+        self.evaluators = Evaluators(study, workers)
         self._started = time.monotonic()
 
     def __iter__(self) -> Iterator[Progress]:
@@ -232,11 +257,6 @@ class Job:
         """Time since the job was made [s]."""
         return time.monotonic() - self._started
 
-    @cached_property
-    def _evaluator(self) -> RigEvaluator:
-        """Evaluator of rigs on the study's vehicle, space and prior."""
-        return self.study.evaluator(workers=self.workers)
-
     def _score(
         self, rig: Rig, waiting: Progress, *, to_the_end: bool = False
     ) -> Generator[Progress, None, Score | None]:
@@ -254,7 +274,7 @@ class Job:
 
         def work() -> Score | None:
             try:
-                return self._evaluator.score(rig, watch=watch)
+                return self.evaluators.on(self.study.samples).score(rig, watch=watch)
             except ScoreStopped:
                 return None
 

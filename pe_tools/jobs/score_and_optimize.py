@@ -24,7 +24,7 @@ from pe_core.search import (
 )
 from pe_core.study.blind_ground_search import blind_area
 from pe_core.study.condition_search import study_objective
-from pe_core.study.objective_search import is_by_ap, search_evaluator, searched_study
+from pe_core.study.objective_search import is_by_ap, searched_study
 from pe_core.study.requirement_search import (
     conflicts,
     constraints_of,
@@ -53,12 +53,6 @@ class _Scored(NamedTuple):
         return (
             self.score.entropy if self.in_traffic is None else IN_AP.to_figure(self.in_traffic.ap)
         )
-
-
-def _both(
-    first: ObjectScore | None, last: ObjectScore | None
-) -> tuple[ObjectScore, ObjectScore] | None:
-    return None if first is None or last is None else (first, last)
 
 
 class ScoreJob(Job):
@@ -150,17 +144,12 @@ class OptimizeJob(Job):
     @cached_property
     def _objectives(self) -> list[Objective]:
         """Objectives that evaluate candidates, one for each level of the search method."""
-        levels = zip(self._evaluators, self.study.search.level_samples, strict=True)
+        objectives = (
+            study_objective(self.study, self._evaluator_of(samples), samples, self.workers)
+            for samples in self.study.search.level_samples
+        )
         constraints = constraints_of(self.study)
-        return [
-            feasible_first(study_objective(self.study, each, samples, self.workers), constraints)
-            for each, samples in levels
-        ]
-
-    @cached_property
-    def _evaluators(self) -> list[RigEvaluator]:
-        """Evaluators of the rig, one for each level of the search method."""
-        return [self._evaluator_of(samples) for samples in self.study.search.level_samples]
+        return [feasible_first(each, constraints) for each in objectives]
 
     @cached_property
     def _fresh_objectives(self) -> list[Objective]:
@@ -170,21 +159,7 @@ class OptimizeJob(Job):
 
     def _evaluator_of(self, samples: int) -> RigEvaluator:
         """Return what evaluates candidates on a number of voxels, or in its share of scenes."""
-        if is_by_ap(self.study):
-            few = searched_samples(self.study, samples)
-            return search_evaluator(self.study, few, self.workers)
-        return self._own_evaluator_of(samples)
-
-    @cached_property
-    def _in_traffic(self) -> RigEvaluator:
-        """The evaluator of expected AP in all scenes of the study."""
-        return search_evaluator(self.study, self.study.search.samples, self.workers)
-
-    def _own_evaluator_of(self, samples: int) -> RigEvaluator:
-        """Return the evaluator of the study's own targets."""
-        if self.study.looks_at(samples) == self.study.looks_at(self.study.samples):
-            return self._evaluator
-        return self.study.evaluator(samples, self.workers)
+        return self.evaluators.searching(searched_samples(self.study, samples))
 
     def __iter__(self) -> Iterator[Progress]:
         preparing = Progress("preparing", 0.0)
@@ -215,7 +190,11 @@ class OptimizeJob(Job):
         table = yield from self._conditions(best, analysing, to_the_end=False)
         if self.dropped or warnings is None or blind is None:
             return
-        sure = () if robustness_result is None else _fragile(best, robustness_result)
+        sure: tuple[Advice, ...] = ()
+        if robustness_result is not None:
+            off, errors = robustness_result.after, robustness_result.errors
+            tolerant = best.search.tolerance.mounts_off
+            sure = fragile(off.rise, off.stderr, errors.position, errors.angle, tolerant)
         self.outcome = Outcome(
             "optimize",
             self.study,
@@ -238,7 +217,7 @@ class OptimizeJob(Job):
             sensitivity,
             tuple(self.ends),
             self.stop_reason,
-            _both(first.in_traffic, last.in_traffic),
+            (first.in_traffic, last.in_traffic) if first.in_traffic and last.in_traffic else None,
             blind,
         )
         yield self._about("done", last.value)
@@ -257,7 +236,10 @@ class OptimizeJob(Job):
         """Score a placement; of a search by expected AP, on objects in traffic, too."""
         by_ap = is_by_ap(self.study)
         apart = by_ap and searched_study(self.study).targets != self.study.targets
-        scoring = begun(partial(self._in_traffic.score, rig)) if apart else None
+        all_scenes = self.study.search.samples
+        scoring = None
+        if apart:
+            scoring = begun(lambda: self.evaluators.searching(all_scenes).score(rig))
         score = known or (yield from self._score(rig, waiting, to_the_end=to_the_end))
         if score is None or scoring is None:
             return None if score is None else _Scored(score, score.objects if by_ap else None)
@@ -284,9 +266,8 @@ class OptimizeJob(Job):
         search = self.study.search
 
         def work() -> Robustness:
-            by_ap = is_by_ap(self.study)
-            last = self._own_evaluator_of(search.samples) if by_ap else self._evaluators[-1]
-            sampled = last if last.samples else self._own_evaluator_of(DEFAULT_SEARCH_SAMPLES)
+            last = self.evaluators.on(search.samples)
+            sampled = last if last.samples else self.evaluators.on(DEFAULT_SEARCH_SAMPLES)
             return robustness(sampled, self.study.rig, best.rig, search.tolerance, search.seed)
 
         return (yield from self._beside(work, lambda: waiting))
@@ -409,9 +390,3 @@ class OptimizeJob(Job):
             row = HistoryRow(step.evaluations, step.round, step.entropy, step.best)
             self.history.append(row)
             self._first = self._first or row
-
-
-def _fragile(study: Study, robustness_result: Robustness) -> tuple[Advice, ...]:
-    after, errors = robustness_result.after, robustness_result.errors
-    tolerant = study.search.tolerance.mounts_off
-    return fragile(after.rise, after.stderr, errors.position, errors.angle, tolerant)

@@ -57,7 +57,7 @@ def test_a_scene_without_models_to_choose_from_has_no_selection(car):
 
 def test_each_design_of_the_front_is_a_variant_and_nothing_moves(offered):
     """Scores of the variants are the engine's, and switching puts the model there."""
-    job = pe.ChoiceJob(scenes.study())
+    job = pe.FrontJob(scenes.study())
     list(job)
     assert bpy.ops.pe.choose_sensors() == {"FINISHED"}
     settings = offered.perception_entropy
@@ -153,6 +153,6 @@ def test_a_study_s_choices_come_back_from_its_file(offered, tmp_path):
 
 
 def front_of(study):
-    job = pe.ChoiceJob(study)
+    job = pe.FrontJob(study)
     list(job)
     return job.trade_off

@@ -170,7 +170,7 @@ def test_nothing_compared_is_an_empty_table_of_the_right_shape():
 
 
 def test_warnings_are_in_the_result_and_below_the_summary():
-    from pe_tools.cli import summary
+    from pe_tools.cli.terminal import summary
 
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(), (1.5, 0.0, 0.5))])
     study = pe.Study(rig, shapes.box_car(), shapes.small_space(), samples=1024)

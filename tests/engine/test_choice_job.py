@@ -10,7 +10,7 @@ import pytest
 import pe_core as pe
 from pe_core.search import design_space
 from pe_tools.cli.choose_verb import front_summary
-from pe_tools.jobs import choice_job, design_study, front_dict, write_front
+from pe_tools.jobs import design_study, front_dict, front_job, write_front
 from tests.engine import mounting
 
 pytestmark = pytest.mark.usefixtures("few_errors")
@@ -40,7 +40,7 @@ def study(choices, *sensors, free=("x", "pitch"), candidates=3, **limits):
 
 
 def front_of(study, workers=None):
-    job = pe.ChoiceJob(study, workers)
+    job = pe.FrontJob(study, workers)
     for _ in job:
         pass
     return job.trade_off
@@ -79,7 +79,7 @@ def test_more_designs_are_looked_at_first_and_the_front_is_the_same(monkeypatch)
     ]
     given = study(choices, mounting.can(), eye, free=())
     every = front_of(given)
-    monkeypatch.setattr(choice_job, "ALL_SEARCHED_UP_TO", 5)
+    monkeypatch.setattr(front_job, "ALL_SEARCHED_UP_TO", 5)
     found = front_of(given)
     assert len(every.designs) == len(found.designs) == 7
     assert found.searched < every.searched == 7
@@ -88,7 +88,7 @@ def test_more_designs_are_looked_at_first_and_the_front_is_the_same(monkeypatch)
 
 
 def test_of_many_designs_a_local_search_looks_at_some(monkeypatch):
-    monkeypatch.setattr(choice_job, "ALL_SEARCHED_UP_TO", 3)
+    monkeypatch.setattr(front_job, "ALL_SEARCHED_UP_TO", 3)
     monkeypatch.setattr(design_space, "ALL_UP_TO", 5)
     eye = mounting.can((0.5, 0.0, 1.6), "eye", model="Camera 60 deg")
     eyes = options(["Camera 30 deg", "Camera 60 deg"])
@@ -130,7 +130,7 @@ def test_all_designs_share_the_workers_of_an_executor():
             return super().submit(replied, function, payload, *rest)
 
     with Workers(2) as workers:
-        job = pe.ChoiceJob(given, 1)
+        job = pe.FrontJob(given, 1)
         job.executor = workers
         list(job)
     alone = front_of(given, 1)
@@ -143,7 +143,7 @@ def test_all_designs_share_the_workers_of_an_executor():
 
 @pytest.mark.parametrize("after", [1, 2])
 def test_a_stop_keeps_the_front_so_far(after):
-    job = pe.ChoiceJob(study([pe.Choice(options(), ["roof"])]))
+    job = pe.FrontJob(study([pe.Choice(options(), ["roof"])]))
     for _ in job:
         if job.trade_off is not None and len(job.trade_off.designs) == after:
             job.stop()

@@ -20,7 +20,7 @@ from pe_tools.advice import OTHER_HARDWARE
 from pe_tools.cli.choose_verb import front_summary
 from pe_tools.cli.terminal import summary
 from pe_tools.cli.verbs import main
-from pe_tools.jobs import choice_job, front_dict, result_dict
+from pe_tools.jobs import front_dict, front_job, result_dict
 from pe_tools.jobs.results import history_csv
 from pe_tools.page import ReportContext
 from pe_tools.page.build import outcome_of_folder
@@ -327,8 +327,8 @@ def chosen(**more):
 @pytest.mark.parametrize("screened", [False, True])
 def test_choices_are_a_front_of_price_and_ap(screened, monkeypatch):
     if screened:
-        monkeypatch.setattr(choice_job, "ALL_SEARCHED_UP_TO", 1)
-    job = pe.ChoiceJob(chosen(), 1)
+        monkeypatch.setattr(front_job, "ALL_SEARCHED_UP_TO", 1)
+    job = pe.FrontJob(chosen(), 1)
     list(job)
     found = job.trade_off
     assert found.objectives == ("price", "ap") and found.searched == 2
@@ -346,7 +346,7 @@ def test_choices_are_a_front_of_price_and_ap(screened, monkeypatch):
 
 
 def test_a_front_by_entropy_of_other_hardware_has_a_note():
-    job = pe.ChoiceJob(chosen(objective="entropy"), 1)
+    job = pe.FrontJob(chosen(objective="entropy"), 1)
     list(job)
     note = job.trade_off.hardware_note
     assert note == OTHER_HARDWARE and note in front_summary(job.trade_off)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.search import Front, Goals, Payload
+from pe_core.search import Front, Goals, Payload, pareto_front
 from pe_tools.cli.choose_verb import front_summary
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import FrontJob, FrontJournals, front_dict, write_front
@@ -17,7 +17,6 @@ from pe_tools.jobs.front_objectives import (
     FrontFigures,
     ScalarValue,
     height_of,
-    non_dominated,
     spread,
     weights_of,
 )
@@ -132,7 +131,7 @@ def test_weights_are_on_the_simplex_and_each_objective_comes_first_alone():
 def test_the_front_of_points_is_what_no_other_beats():
     rng = np.random.default_rng(3)
     points = rng.integers(0, 6, (60, 3)).tolist()
-    kept = non_dominated(points)
+    kept = pareto_front(points)
     for k, own in enumerate(points):
         better = [o for o in points if all(a <= b for a, b in zip(o, own, strict=True))]
         worse_than_some = any(o != own for o in better)

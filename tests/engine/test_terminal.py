@@ -7,8 +7,8 @@ import pytest
 
 import pe_core as pe
 from pe_core.base import dump_json
-from pe_tools.cli import command, printable, show
-from pe_tools.cli.terminal import MAX_LINE_LENGTH, one_line
+from pe_tools.cli import command, show
+from pe_tools.cli.terminal import MAX_LINE_LENGTH, one_line, printable
 from pe_tools.cli.verbs import main
 
 STEERING = {

@@ -1,0 +1,136 @@
+"""The result of a job that computes a Pareto front: its designs, and those that none beats."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from pe_core.scoring.requirements import Verdict
+from pe_core.scoring.score import Score
+from pe_core.search.goals import AP, ENTROPY
+from pe_core.study.requirement_search import is_infeasible
+from pe_core.study.study import Study
+
+from ..advice import Advice, curve_note, hardware_note
+from .designed import Models
+
+
+@dataclass(frozen=True, slots=True)
+class Design:
+    """A design that was evaluated.
+
+    Attributes
+    ----------
+    name : str
+    price : float
+    models : mapping of sensor name to SensorModel or None
+        Models of the sensors that the study lets choose; None for a sensor that is left out.
+    study : Study
+        The design as a study, with the best placement found and without choices.
+    entropy : float
+        Entropy of that placement [nats]: that of the score, or, for a design that was only
+        screened, that of the search; NaN after a screening by expected AP.
+    score : Score, optional
+        Score without a ground map; None for a design that was only screened.
+    warnings : tuple of Advice
+    verdicts : tuple of Verdict
+        On the study's requirements; none for a design that was only screened.
+    figures : mapping of str to float
+        Its objectives by name, on a front of several. By expected AP: price, AP, and the entropy.
+    """
+
+    name: str
+    price: float
+    models: Models
+    study: Study
+    entropy: float
+    score: Score | None = None
+    warnings: tuple[Advice, ...] = ()
+    verdicts: tuple[Verdict, ...] = ()
+    figures: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def broken(self) -> tuple[str, ...]:
+        """Names of the requirements that are not met."""
+        return tuple(verdict.requirement.name for verdict in self.verdicts if not verdict.met)
+
+    @property
+    def met_text(self) -> str:
+        """How many requirements are met: "2 of 3 met"; empty where none was asked for."""
+        count = len(self.verdicts)
+        return f"{count - len(self.broken)} of {count} met" if count else ""
+
+    @property
+    def value(self) -> float:
+        """What its search minimised, as scored: entropy [nats], or minus the expected AP."""
+        return -self.figures[AP] if AP in self.figures else self.entropy
+
+    @property
+    def is_led_in(self) -> bool:
+        """Whether `entropy` is no entropy: the screening found no placement to keep."""
+        return self.score is None and is_infeasible(self.entropy)
+
+
+@dataclass(frozen=True, slots=True)
+class TradeOff:
+    """The result of a choice of sensors.
+
+    Attributes
+    ----------
+    study : Study
+        The study with its choices.
+    designs : tuple of Design
+        All evaluated designs with a feasible placement, cheapest first.
+    front : tuple of Design
+        Designs that no other design beats in both price and entropy (or AP), cheapest first. Only
+        designs that were searched are compared, if there are any; if the search keeps
+        requirements, only those of them that break the fewest.
+    refused : mapping of name to str
+        Names of designs without a feasible placement, and the reason.
+    is_complete : bool
+        Whether all designs within the limits were evaluated.
+    stopped : bool
+        Whether the job was stopped early.
+    seconds : float
+    objectives : tuple of str
+        Of a front of several objectives; none: it is that of price and entropy.
+    """
+
+    study: Study
+    designs: tuple[Design, ...]
+    front: tuple[Design, ...]
+    refused: dict[str, str] = field(default_factory=dict)
+    is_complete: bool = True
+    stopped: bool = False
+    seconds: float = 0.0
+    objectives: tuple[str, ...] = ()
+
+    @property
+    def searched(self) -> int:
+        """How many designs were searched in full."""
+        return sum(design.score is not None for design in self.designs)
+
+    @property
+    def requirements_note(self) -> str:
+        """What the designs of the front make of the study's requirements; empty without any."""
+        count = len(self.study.requirements)
+        if not count or not self.front or not self.searched:
+            return ""
+        fewest = min(len(design.broken) for design in self.front)
+        if self.study.search.requirements and fewest:
+            some = f"the fewest broken are {fewest}, by the designs of the front"
+            return f"no design meets all {count} requirements: {some}"
+        good = sum(not design.broken for design in self.front)
+        return f"{good} of {len(self.front)} on the front meet all {count} requirements"
+
+    @property
+    def notes(self) -> list[str]:
+        """What limits a front: entropies of designs with other sensors, provisional AP curves."""
+        return [note for note in (self.hardware_note, curve_note([self.study.model])) if note]
+
+    @property
+    def hardware_note(self) -> str:
+        """What limits a front by entropy of designs with other sensors; empty for others."""
+        if self.objectives and ENTROPY not in self.objectives:
+            return ""
+        return hardware_note([s.model for s in design.study.rig] for design in self.front)

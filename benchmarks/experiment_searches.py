@@ -22,18 +22,12 @@ from typing import Any
 
 import pe_core as pe
 
+from .experiment_searches_told import EXPERIMENTS, METHODS, SUMMARY, write_summary
 from .run_files import restore, run_once
 
 ROOT = Path(__file__).resolve().parent.parent
 STUDIES = ROOT / "blend_assets" / "experiments"
 RUNS = ROOT / "build" / "searches"
-SUMMARY = Path(__file__).with_name("experiment_searches.json")
-EXPERIMENTS = {
-    "1_pandar64": "1, Pandar64 on a car",
-    "3_default": "3, two LiDARs on a bus",
-    "3_front": "3, both in front",
-    "4_cameras": "4, two LiDARs, two cameras",
-}
 COMPARED = ("portfolio", "block-descent", "random")
 SAMPLES, EVALUATED, SHIFT = 65_536, 262_144, (0.31, 0.62, 0.13)
 """Voxels a candidate is evaluated on; voxels, others, that tell what the best so far is worth."""
@@ -49,9 +43,9 @@ def main(arguments: list[str]) -> int:
     )
     parser.add_argument("--seeds", type=int, default=10, help="runs of each (10)")
     parser.add_argument("--seconds", type=float, default=20.0, help="longest search by random (20)")
-    parser.add_argument("--methods", nargs="+", choices=pe.METHODS, default=COMPARED)
+    parser.add_argument("--methods", nargs="+", choices=METHODS, default=COMPARED)
     parser.add_argument("--experiments", nargs="+", choices=EXPERIMENTS, default=EXPERIMENTS)
-    parser.add_argument("--again", nargs="+", choices=pe.METHODS, default=[])
+    parser.add_argument("--again", nargs="+", choices=METHODS, default=[])
     parser.add_argument("--runs", type=Path, default=RUNS, help="folder of the runs' files")
     args = parser.parse_args(arguments)
     restore(args.runs, SUMMARY, partial(_path, args.runs), args.again)
@@ -61,8 +55,6 @@ def main(arguments: list[str]) -> int:
                 most = args.seconds if method == "random" else float("inf")
                 path = _path(args.runs, {"experiment": experiment, "method": method, "seed": seed})
                 run_once(path, partial(run, experiment, method, seed, most), "")
-    from .experiment_searches_told import write_summary
-
     write_summary(args.runs, SUMMARY)
     return 0
 

@@ -7,12 +7,17 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-import pe_core as pe
-
-from .experiment_searches import EXPERIMENTS, SUMMARY
 from .run_files import summarise
 from .search_curves import draw_curve, save_with_legend
 
+METHODS = ("portfolio", "block-descent", "cma-es", "random")
+SUMMARY = Path(__file__).with_name("experiment_searches.json")
+EXPERIMENTS = {
+    "1_pandar64": "1, Pandar64 on a car",
+    "3_default": "3, two LiDARs on a bus",
+    "3_front": "3, both in front",
+    "4_cameras": "4, two LiDARs, two cameras",
+}
 PLOT = Path(__file__).resolve().parent.parent / "docs" / "images" / "searches.png"
 BUSY = 3.0
 """A machine with a higher load before a run begins is busy with other work: the two processes of
@@ -72,7 +77,7 @@ def _load(some: list[Json]) -> float:
 
 def groups(runs: list[Json]) -> dict[tuple[str, str], list[Json]]:
     """Return the runs by experiment and method, in the order of both."""
-    keys = [(e, m) for e in EXPERIMENTS for m in pe.METHODS]
+    keys = [(e, m) for e in EXPERIMENTS for m in METHODS]
     found = {key: [r for r in runs if (r["experiment"], r["method"]) == key] for key in keys}
     return {key: some for key, some in found.items() if some}
 
@@ -81,7 +86,7 @@ def plot(runs: list[Json], path: Path) -> None:
     """Draw the best so far against time: the median of the seeds, and from lowest to highest."""
     from pe_tools.plots import plotting
 
-    looks = dict(zip(pe.METHODS, plotting.PALETTE, strict=False))
+    looks = dict(zip(METHODS, plotting.PALETTE, strict=False))
 
     @plotting.styled
     def draw() -> None:

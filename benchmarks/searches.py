@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import pe_core as pe
+from pe_core.search import PARTS
 
 from .run_files import restore, run_once
 from .search_problems import PROBLEMS
@@ -26,7 +27,8 @@ from .yardstick_searches import YARDSTICKS, Landscape
 
 RUNS = Path(__file__).resolve().parent.parent / "build" / "search_problems"
 SUMMARY = Path(__file__).with_name("searches.json")
-METHODS = (*pe.METHODS, *YARDSTICKS)
+OURS = pe.METHODS | PARTS
+METHODS = (*OURS, *YARDSTICKS)
 MARKS = 16
 """Points of a curve, at most."""
 Json = dict[str, Any]
@@ -64,7 +66,7 @@ def run(name: str, method: str, seed: int) -> Json:
     problem = PROBLEMS[name]
     study = problem.make()
     evaluator = study.evaluator(study.search.samples)
-    search = _ours if method in pe.METHODS else _theirs
+    search = _ours if method in OURS else _theirs
     begun = time.process_time()
     rows, count, how = search(study, evaluator, method, seed, problem.evaluations)
     seconds = time.process_time() - begun
@@ -86,7 +88,7 @@ def _ours(
     study: pe.Study, last: pe.RigEvaluator, method: str, seed: int, evaluations: int
 ) -> tuple[list[EvaluatedRow], int, str]:
     """Search by a method of the engine, on its own levels."""
-    levels = pe.METHODS[method].samples(study.search.samples)
+    levels = OURS[method].samples(study.search.samples)
     objectives = [last if n == study.search.samples else study.evaluator(n) for n in levels]
     schedule = None
     if method == "random":

@@ -4,13 +4,22 @@ from __future__ import annotations
 
 import bpy
 
-from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, EXPECTED_AP, OBJECTS, ON_SLOTS, RANDOM
+from ..choices import (
+    BY_GROUP,
+    BY_MATERIAL,
+    BY_PARTS,
+    EXPECTED_AP,
+    OBJECTS,
+    ON_SLOTS,
+    PARTS,
+    RANDOM,
+)
 from ..language import shown
 from .layout import Tab, columns, draw_declared, draw_list, draw_properties
 from .variant_panels import draw_front
 
 ICONS = {BY_PARTS: "OBJECT_DATA", BY_MATERIAL: "MATERIAL", BY_GROUP: "WPAINT_HLT"}
-FIRST = ("objective", "keep_blind_ground", "method")
+FIRST = ("objective", "keep_blind_ground")
 ELSEWHERE = (
     *("objective", "evaluations", "seed", "search_samples"),
     *("keep_requirements", "search_conditions"),
@@ -28,8 +37,13 @@ class PE_PT_search(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings, layout = context.scene.perception_entropy, self.layout
+        draw_properties(layout, settings, FIRST)
+        methods = layout.row(align=True)
+        for item in settings.bl_rna.properties["method"].enum_items:
+            if item.identifier not in PARTS:
+                methods.prop_enum(settings, "method", item.identifier)
         own = ("candidates",) if settings.method == RANDOM else ()
-        draw_properties(layout, settings, (*FIRST, *own, "evaluations", "seed"))
+        draw_properties(layout, settings, (*own, "evaluations", "seed"))
         if settings.targets != OBJECTS:
             by_ap = settings.objective == EXPECTED_AP
             names = ("scenes", "ap_model") if by_ap else ("search_samples",)

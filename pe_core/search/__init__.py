@@ -8,7 +8,15 @@ from .domains import snap_to_mount, standoff_point
 from .goals import Front, Goals, Start, Stop
 from .journal import EvaluatedRig, Journal
 from .linkage import mirrored
-from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method
+from .methods import (
+    DEFAULT_METHOD,
+    METHODS,
+    PARTS,
+    SCHEDULED_METHOD,
+    Method,
+    checked_method,
+    method_named,
+)
 from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .optimize import Step, optimize
 from .parametrization import Candidate, Parametrization, feasible_start
@@ -23,7 +31,7 @@ from .search_space import (
     checked_bounds,
     default_bounds,
 )
-from .selection import Choice, Option, Selection, Site
+from .selection import Choice, Option, Selection
 from .tolerance import Tolerance, mounted_off
 from .worker_pool import Call, WorkerDied, run_tasks
 
@@ -32,6 +40,7 @@ __all__ = [
     "DEFAULT_METHOD",
     "METHODS",
     "PAPER_FREE",
+    "PARTS",
     "POSITION_AXES",
     "SCHEDULED_METHOD",
     "AnyMount",
@@ -63,7 +72,6 @@ __all__ = [
     "Schedule",
     "SearchSpace",
     "Selection",
-    "Site",
     "Slot",
     "SlotMount",
     "Start",
@@ -80,6 +88,7 @@ __all__ = [
     "default_bounds",
     "evaluate_all",
     "feasible_start",
+    "method_named",
     "mirrored",
     "mounted_off",
     "no_processes",

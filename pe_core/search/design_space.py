@@ -30,12 +30,7 @@ SLACK = 1e-9
 class DesignSpace:
     """All designs that a selection allows for a rig.
 
-    Attributes
-    ----------
-    sites : tuple of Site
-    selection : Selection
-    others : Counter of str
-        Number of sensors that are not chosen, by kind.
+    `others` is the number of sensors that are not chosen, by kind.
     """
 
     sites: tuple[Site, ...]
@@ -44,13 +39,7 @@ class DesignSpace:
 
     @classmethod
     def of(cls, selection: Selection, rig: Rig, mounting: Mounting) -> DesignSpace:
-        """Return the designs of a rig.
-
-        Raises
-        ------
-        InputError
-            When a choice is impossible, or no design is within the limits.
-        """
+        """Return the designs of a rig; `InputError` for an impossible choice, or none left."""
         sites = sites_of(selection, rig, mounting)
         chosen = {name for site in sites for name in site.sensors}
         others = Counter(sensor.kind for sensor in rig if sensor.name not in chosen)
@@ -62,10 +51,7 @@ class DesignSpace:
     def __iter__(self) -> Iterator[Picks]:
         """Yield designs; sites of one choice take their options in ascending order.
 
-        Raises
-        ------
-        InputError
-            After `MAX_STEPS` partial designs: the limits may allow one design in 1e40.
+        `InputError` after `MAX_STEPS` partial designs: the limits may allow one design in 1e40.
         """
         yield from self._completed((), itertools.count())
 
@@ -206,18 +192,7 @@ class DesignSearch:
 
     The local search begins with the first design, and evaluates all neighbours of every design on
     the current front, until none is new (Paquete, Chiarandini and Stuetzle, 2004). It is
-    deterministic.
-
-    Parameters
-    ----------
-    designs : DesignSpace
-
-    Attributes
-    ----------
-    is_complete : bool
-        Whether all designs are evaluated.
-    max_designs : int
-        How many designs are evaluated at most.
+    deterministic. `is_complete` says whether all designs are evaluated, at most `max_designs`.
     """
 
     def __init__(self, designs: DesignSpace) -> None:

@@ -64,13 +64,8 @@ def evaluate_all(
     Returns
     -------
     list of Evaluation
-        One for each rig: its entropy where that is below `cutoff`; otherwise `cutoff` as a lower
-        bound, even where the entropy is known.
-
-    Raises
-    ------
-    InputError
-        When two workers died with the same rig, and whatever the objective raises.
+        For each rig its entropy where that is below `cutoff`; otherwise `cutoff` as a lower bound,
+        even where the entropy is known. `InputError` when two workers died with the same rig.
     """
     if isinstance(objective, BatchObjective):
         return objective.evaluate_all(rigs, cutoff, executor)

@@ -251,21 +251,8 @@ def snap_to_mount(
 
     On a surface with orientation "upright" the sensor keeps its angles; with "normal" it is level
     with the surface and keeps its heading; with "facing" it looks along the normal. Of slots, the
-    nearest is taken.
-
-    Parameters
-    ----------
-    sensor : Sensor
-    mount : SurfaceMount or SlotMount
-    vehicle : Vehicle, optional
-        The body that the mount is a part of.
-    housing : Housing, optional
-        The sensor's housing, if it is known.
-
-    Raises
-    ------
-    InputError
-        When the mount has no faces, or there is no vehicle.
+    nearest is taken. `vehicle` is the body that the mount is a part of. `InputError` when the mount
+    has no faces, or there is no vehicle.
     """
     if isinstance(mount, SlotMount):
         return rounded(mount.nearest(sensor.pose.position).pose)

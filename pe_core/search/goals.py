@@ -192,10 +192,7 @@ class Start:
     def placed(self, rig: Rig) -> Rig:
         """Return a rig at the poses of this start; sensors without a pose stay.
 
-        Raises
-        ------
-        InputError
-            When the rig lacks one of the sensors.
+        `InputError` when the rig lacks one of the sensors.
         """
         names = [sensor.name for sensor in rig]
         for name in self.poses:

@@ -33,12 +33,8 @@ class EvaluatedRig(NamedTuple):
 class Journal:
     """Values that a search was told, in the order of its questions.
 
-    Parameters
-    ----------
-    entries : iterable of EvaluatedRig
-        Of an interrupted search: these are replayed, their placements are not evaluated again.
-    source : str
-        Name of the journal in messages.
+    The given entries, of an interrupted search, are replayed: their placements are not evaluated
+    again. `source` names the journal in messages.
     """
 
     def __init__(self, entries: Iterable[EvaluatedRig] = (), source: str = "journal") -> None:
@@ -59,10 +55,7 @@ class Journal:
     def replay(self, rig: Rig, level: int) -> Evaluation | None:
         """Return the journaled value of the next placement; None behind the end of the journal.
 
-        Raises
-        ------
-        InputError
-            When the journal has another placement here.
+        `InputError` when the journal has another placement here.
         """
         if self._position == len(self._entries):
             return None

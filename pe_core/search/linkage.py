@@ -24,11 +24,8 @@ of its width."""
 class Follower:
     """A sensor whose pose is determined by that of another sensor, its leader.
 
-    Attributes
-    ----------
-    name, leader : str
-    relative : (3, 3) float and (3,) float, optional
-        Rotation and position [m] in the leader's frame; None: its mirror image across y = 0.
+    `relative` is its rotation (3, 3) and position (3,) [m] in the leader's frame; None: it is the
+    leader's mirror image across y = 0.
     """
 
     name: str
@@ -56,11 +53,8 @@ def mirrored(pose: Pose) -> Pose:
 def followers(rig: Rig, mounting: Mounting, vehicle: Vehicle | None) -> tuple[Follower, ...]:
     """Return the sensors that follow others, each after its leader.
 
-    Raises
-    ------
-    InputError
-        When a sensor does not exist, follows two others or follows itself through others, a pair
-        does not start as mirror images, or the vehicle is not symmetric.
+    `InputError` when a sensor does not exist, follows two others or follows itself through others,
+    a pair does not start as mirror images, or the vehicle is not symmetric.
     """
     _check_names(rig, mounting)
     waiting = {link.name: link for link in _links(rig, mounting)}

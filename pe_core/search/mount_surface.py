@@ -21,10 +21,7 @@ PROBED_FACES = 8
 class MountSurface:
     """The faces of a mount, which are parts of the vehicle's body or an area of their own.
 
-    Raises
-    ------
-    InputError
-        When there is no vehicle or no such part, or the parts or the area have no faces.
+    `InputError` when there is no vehicle or no such part, or the parts or the area have no faces.
     """
 
     def __init__(self, who: str, mount: SurfaceMount, vehicle: Vehicle | None) -> None:

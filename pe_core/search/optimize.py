@@ -12,7 +12,7 @@ from itertools import accumulate
 from ..scene.rig import Rig
 from ..scoring.protocol import Evaluation, Objective
 from .dispatch import evaluate_all
-from .methods import METHODS, Given, Question, checked_method
+from .methods import Given, Question, checked_method, method_named
 from .methods.method import Evaluations, QuestionStream
 from .parametrization import Candidate, Parametrization, feasible_start
 from .search_space import Schedule, SearchSpace
@@ -84,7 +84,7 @@ def optimize(
     schedule : Schedule, optional
         Of the method "random"; the paper's by default: seven rounds of 1000 candidates.
     method : str, optional
-        A name of `METHODS`; needed where a schedule is given.
+        A name of `METHODS` (or `PARTS`); needed where a schedule is given.
     evaluations : int
         How many placements are evaluated at most; 0: as many as the method takes.
     executor : concurrent.futures.Executor, or callable, optional
@@ -97,7 +97,7 @@ def optimize(
         When there is no such method, the search space does not fit the rig, or no placement keeps
         to all of its rules.
     """
-    method_class = METHODS[checked_method("optimize", method, schedule is not None)]
+    chosen = method_named(checked_method("optimize", method, schedule is not None))
     levels = list(objective) if isinstance(objective, Sequence) else [objective]
     parametrization, schedule = Parametrization(rig, search_space), schedule or Schedule()
     start = feasible_start(parametrization, seed)
@@ -109,7 +109,7 @@ def optimize(
         options = (seed, schedule, len(levels), batch, evaluations)
         given = Given(parametrization, start, first.entropy, *options)
         budget = evaluations or sys.maxsize
-        yield from _steps(first, method_class.ask(given), levels, budget, executor_source)
+        yield from _steps(first, chosen.ask(given), levels, budget, executor_source)
 
 
 def _steps(
@@ -122,13 +122,16 @@ def _steps(
     """Answer a method's questions, one step for each candidate, until it or the budget ends."""
     question, done = next(questions, None), 0
     while question is not None and step.evaluations < budget:
-        if question.level != step.level:
-            yield (step := _reevaluated(step, levels[question.level], question))
+        objective = levels[question.level]
+        if question.level != step.level:  # the incumbent is evaluated on the new level
+            entropy, count = objective.entropy(step.best), step.evaluations + 1
+            place = step.fraction, question.round, True, question.level
+            yield (step := Step(step.best, entropy, count, *place))
             if step.evaluations == budget:
                 return
         question = _within(question, budget - step.evaluations)
         answers: Evaluations = []
-        evaluated = _evaluated(question, levels[question.level], executor_source())
+        evaluated = _evaluated(question, objective, executor_source())
         for candidate, answer in zip(question.candidates, evaluated, strict=True):
             answers.append(answer)
             done += 1
@@ -136,7 +139,10 @@ def _steps(
             yield (step := _next_step(step, candidate, answer, question.round, fraction))
             if step.evaluations == budget:
                 return
-        question = _next_question(questions, answers)
+        try:
+            question = questions.send(answers)
+        except StopIteration:
+            return
 
 
 def _within(question: Question, left: int) -> Question:
@@ -157,13 +163,6 @@ def _evaluated(
         yield None if candidate is None else next(answers)
 
 
-def _reevaluated(step: Step, objective: Objective, question: Question) -> Step:
-    """Return the step in which the incumbent is evaluated on another level."""
-    entropy, count = objective.entropy(step.best), step.evaluations + 1
-    number, level = question.round, question.level
-    return Step(step.best, entropy, count, step.fraction, number, True, level)
-
-
 def _next_step(
     step: Step, candidate: Candidate | None, answer: Evaluation | None, number: int, fraction: float
 ) -> Step:
@@ -175,10 +174,3 @@ def _next_step(
         if improved:
             best, entropy = candidate.rig, answer.entropy
     return Step(best, entropy, count, min(fraction, 1.0), number, improved, step.level)
-
-
-def _next_question(questions: QuestionStream, answers: Evaluations) -> Question | None:
-    try:
-        return questions.send(answers)
-    except StopIteration:
-        return None

@@ -37,22 +37,9 @@ class Candidate:
 class Parametrization:
     """The design variables of a search, and the rigs that vectors of them stand for.
 
-    Parameters
-    ----------
-    rig : Rig
-        Where the search starts.
-    space : SearchSpace
-
-    Attributes
-    ----------
-    variables : tuple of DesignVariable
-        In the rig's order of sensors; a sensor that follows another has none.
-    blocks : tuple of range
-        The positions in the vector of each sensor's variables, without sensors that have none.
-    start : Candidate
-        The rig as it is.
-    rules : tuple of Rule
-        What no placement may break.
+    `variables` are in the rig's order of sensors; one that follows another has none. `blocks` has
+    the positions in the vector of each sensor's variables. `start` is the rig as it is, `rules`
+    what no placement may break.
 
     Raises
     ------

@@ -24,12 +24,7 @@ from .tolerance import FRESH, Tolerance, mounted_off, without_each
 class RobustObjective:
     """The entropy of a rig with all mounting errors and failures of a tolerance: mean or worst.
 
-    Parameters
-    ----------
-    evaluator : RigEvaluator
-    tolerance : Tolerance
-    seed : int
-        Seed of the mounting errors, which are the same for every rig.
+    The mounting errors, drawn from `seed`, are the same for every rig.
     """
 
     def __init__(self, evaluator: RigEvaluator, tolerance: Tolerance, seed: int = 0) -> None:

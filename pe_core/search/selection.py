@@ -149,13 +149,8 @@ class Selection:
 class Site:
     """Sensors that take one model, or are left out together.
 
-    Attributes
-    ----------
-    sensors : tuple of str
-    options : tuple of Option or None
-        Sorted by price; None, the last, leaves the sensors out.
-    choice : int
-        Number of the choice. Sites of one choice may exchange their options: it is the same design.
+    Options are sorted by price; None, the last, leaves the sensors out. Sites of one choice may
+    exchange their options: it is the same design.
     """
 
     sensors: tuple[str, ...]
@@ -171,11 +166,8 @@ class Site:
 def sites_of(selection: Selection, rig: Rig, mounting: Mounting) -> tuple[Site, ...]:
     """Return the sites of a study, in the order of its choices.
 
-    Raises
-    ------
-    InputError
-        When a choice has a sensor or a mount that does not exist, two choices have one sensor, a
-        model's kind is not allowed, or a sensor that others follow could be left out.
+    `InputError` when a choice has a sensor or a mount that does not exist, two choices have one
+    sensor, a model's kind is not allowed, or a sensor that others follow could be left out.
     """
     sites: list[Site] = []
     for number, choice in enumerate(selection.choices):

@@ -121,17 +121,10 @@ class Tolerance:
 
 
 def mounted_off(rig: Rig, tolerance: Tolerance, seed: int = 0, stream: int = SEARCHED) -> list[Rig]:
-    """Return a rig with mounting errors: one rig for each draw and combination.
+    """Return a rig with mounting errors: one rig for each draw and combination, poses rounded.
 
-    Poses are rounded as placements are.
-
-    Parameters
-    ----------
-    rig : Rig
-    tolerance : Tolerance
-    seed, stream : int
-        Other numbers give other errors. The errors of a sensor depend on its position in the rig,
-        and on no other sensor: linked sensors have errors of their own.
+    Other numbers of `seed` and `stream` give other errors. The errors of a sensor depend on its
+    position in the rig, and on no other sensor: linked sensors have errors of their own.
     """
     poses = [
         [with_error(sensor.pose, error) for error in _errors(tolerance, (seed, stream, number))]

@@ -17,6 +17,7 @@ from ..search import (
     AXES,
     DEFAULT_METHOD,
     METHODS,
+    PARTS,
     POSITION_AXES,
     SCHEDULED_METHOD,
     Choice,
@@ -70,7 +71,8 @@ def read_search(
     `free`, `limits` and `on` are free axes, bounds and mounts by sensor, from `[[sensor]]`;
     `is_choice`: the study has a choice of sensors, which is screened by a schedule.
     """
-    method = table.text("method", DEFAULT_METHOD, tuple(METHODS))
+    known = () if table.data.get("method") in tuple(PARTS) else tuple(METHODS)
+    method = table.text("method", DEFAULT_METHOD, known)
     search = Search(
         free,
         limits,

@@ -38,7 +38,6 @@ from ..scoring.sight import Sight
 from ..scoring.targets import ObjectEvaluator, TargetRule
 from ..search import (
     AXES,
-    METHODS,
     PAPER_FREE,
     DesignSpace,
     Goals,
@@ -51,6 +50,7 @@ from ..search import (
     checked_axes,
     checked_bounds,
     checked_method,
+    method_named,
 )
 from ..sensors import PerceptionModel
 from .catalog_lookup import check_pairs, housings_of
@@ -164,7 +164,7 @@ class Search:
     @property
     def level_samples(self) -> tuple[int, ...]:
         """Number of voxels of each level of the method, the coarsest first."""
-        return METHODS[self.method].samples(self.samples)
+        return method_named(self.method).samples(self.samples)
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,7 +19,6 @@ from pe_core.study import Study, save_study
 from ..exchange import (
     FILES,
     RIG_FORMATS,
-    ImportedRig,
     export_rig,
     format_of_file,
     import_rig,
@@ -48,19 +47,24 @@ def show_rigs(args: argparse.Namespace) -> Answer:
     if args.name is None:
         if args.output is not None:
             args.usage_error("expected NAME, a rig to write")
-        return "\n".join(_list()), DONE
+        rows = [["NAME", "SENSORS", "RIG", "VEHICLE"]]
+        for each in catalog.known_rigs().values():
+            rows.append([each.key, str(len(each.sensors)), each.title, each.vehicle])
+        return "\n".join(_columns(rows)), DONE
     rig = catalog.known_rig(args.name)
     if args.output is None:
         return "\n".join(_described(rig)), DONE
-    return write_rig(rig, args), DONE
-
-
-def write_rig(rig: KnownRig, args: argparse.Namespace) -> str:
-    """Write a rig as a study, on a mesh or without a vehicle."""
     output, vehicle = new_study(args)
     study = study_of_rig(rig, vehicle, args.mesh, stretched=not args.as_published)
     save_study(study, output)
-    tell(f"{rig.title}: {_standing(rig, vehicle, args.as_published)}. {rig.note}")
+    is_stretched = vehicle is not None and not args.as_published and rig.size is not None
+    as_published = "as published, about the vehicle's centre"
+    standing = "stretched onto this vehicle's box" if is_stretched else as_published
+    tell(f"{rig.title}: {standing}. {rig.note}")
+    return _wrote(output, study), DONE
+
+
+def _wrote(output: Path, study: Study) -> str:
     return f"wrote {output}: {len(study.rig)} sensor{'s' if len(study.rig) > 1 else ''}"
 
 
@@ -70,20 +74,6 @@ def study_of_rig(
     """Return a study of a known rig: scaled to a vehicle, or as it was published."""
     placed = catalog.rig_on(rig, vehicle if stretched else None)
     return Study(placed, vehicle, samples=FIRST_SAMPLES, mesh=mesh)
-
-
-def _standing(rig: KnownRig, vehicle: Vehicle | None, as_published: bool) -> str:
-    if vehicle is None or as_published or rig.size is None:
-        return "as published, about the vehicle's centre"
-    return "stretched onto this vehicle's box"
-
-
-def _list() -> list[str]:
-    rows = [
-        [rig.key, str(len(rig.sensors)), rig.title, rig.vehicle]
-        for rig in catalog.known_rigs().values()
-    ]
-    return _columns([["NAME", "SENSORS", "RIG", "VEHICLE"], *rows])
 
 
 def _described(rig: KnownRig) -> list[str]:
@@ -167,7 +157,8 @@ def export(study: Study, args: argparse.Namespace) -> Answer:
     if args.to in OF_EXAMPLE:
         scene_output(args.to)  # refuses it without its plugin
     args.to = format_of_file(Path(args.output), FILE_NAMES, args.to)
-    _refuse_range(args)
+    if args.range is not None and args.to not in RANGED:  # a format without fields of view
+        raise InputError("--range", "option", f"one of {', '.join(RANGED)}", args.to)
     given = [Path(args.study)] if hasattr(args, "study") else []
     require_new(Path(args.output), replace=True, inputs=given)
     reference = _reference(args, study.reference, study.vehicle, args.to)
@@ -181,12 +172,6 @@ def export(study: Study, args: argparse.Namespace) -> Answer:
     for line in lines:
         tell(line)
     return "\n".join(f"wrote {path}" for path in paths), DONE
-
-
-def _refuse_range(args: argparse.Namespace) -> None:
-    """Raise `InputError` for a range with a format that has no fields of view."""
-    if args.range is not None and args.to not in RANGED:
-        raise InputError("--range", "option", f"one of {', '.join(RANGED)}", args.to)
 
 
 def new_study(args: argparse.Namespace) -> tuple[Path, Vehicle | None]:
@@ -217,14 +202,9 @@ def import_study(args: argparse.Namespace) -> Answer:
         passthrough=found.passthrough,
     )
     save_study(study, output)
-    return "\n".join(_report_lines(found, output)), DONE
-
-
-def _report_lines(found: ImportedRig, output: Path) -> list[str]:
     for line in found.lines:
         tell(line)
-    count = len(found.rig)
-    return [f"wrote {output}: {count} sensor{'s' if count > 1 else ''}"]
+    return _wrote(output, study), DONE
 
 
 def _reference(
@@ -246,11 +226,9 @@ def _reference(
 
 def chosen_models(texts: Sequence[str]) -> dict[str, str]:
     """Return models by the names of sensors, from texts NAME=MODEL."""
-    return dict(_model(text) for text in texts)
-
-
-def _model(text: str) -> tuple[str, str]:
-    name, equals, model = text.partition("=")
-    if not (name and equals and model):
-        raise InputError("--model", "choice", "NAME=MODEL", quoted(text))
-    return name, model
+    models = {}
+    for text in texts:
+        name, _, models[name] = text.partition("=")
+        if not (name and models[name]):
+            raise InputError("--model", "choice", "NAME=MODEL", quoted(text))
+    return models

@@ -32,20 +32,9 @@ LONG = 50
 class FirstStudy:
     """What a first study is written from.
 
-    Attributes
-    ----------
-    mesh : str
-        The mesh file, relative to the study's folder.
-    file : str
-        Name of the study's file.
-    vehicle : Vehicle
-    faces : str
-        How the axes of the mesh file were determined, as `Mesh.axes` has it.
-    scale : float
-        Metres in a unit of the mesh file.
-    unit : str
-        Name of a unit that was found; empty for metres.
-    roof : RoofSensor
+    The mesh file, relative to the study's folder, and the study's own; how the axes of the mesh
+    were determined, as `Mesh.axes` has it; metres in a unit of it, and the name of a unit that was
+    found (empty for metres).
     """
 
     mesh: str

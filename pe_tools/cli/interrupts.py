@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from typing import Any, NoReturn
+from typing import NoReturn
 
 from pe_core.base.files import finish_writing
 
@@ -26,6 +26,28 @@ class Interrupted(KeyboardInterrupt):
 
 
 @contextmanager
+def _handled(numbers: Iterable[int], handler: Callable[[int, object], None]) -> Iterator[None]:
+    """Have a function handle signals meanwhile; where that is not this thread's, the host does."""
+    before = {}
+    with suppress(ValueError):  # not the main thread
+        for number in numbers:
+            before[number] = signal.signal(number, handler)
+    try:
+        yield
+    finally:
+        for number, old in before.items():
+            # One that is not Python's own (inside Blender) cannot be restored.
+            default = signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL
+            signal.signal(number, default if old is None else old)
+
+
+def _numbers() -> list[signal.Signals]:
+    numbers = [getattr(signal, name) for name in NAMES if hasattr(signal, name)]
+    ignored = {n for n in numbers if signal.getsignal(n) is signal.SIG_IGN}
+    return [n for n in numbers if n == signal.SIGINT or n not in ignored]  # as under nohup
+
+
+@contextmanager
 def signals_interrupt() -> Iterator[None]:
     """Have SIGTERM and SIGHUP raise `Interrupted`, as Ctrl-C raises KeyboardInterrupt.
 
@@ -35,18 +57,8 @@ def signals_interrupt() -> Iterator[None]:
     def handler(signum: int, _frame: object) -> None:
         raise Interrupted(signum)
 
-    before = {}
-    try:
-        for number in _handled():
-            if number != signal.SIGINT:
-                before[number] = signal.signal(number, handler)
-    except ValueError:  # not the main thread: the host program handles signals
-        pass
-    try:
+    with _handled([number for number in _numbers() if number != signal.SIGINT], handler):
         yield
-    finally:
-        for number, old in before.items():
-            signal.signal(number, _default(number) if old is None else old)
 
 
 @contextmanager
@@ -81,29 +93,8 @@ def stop_at_first(stop: Callable[[], None]) -> Iterator[Received]:
         received.signum = signum
         stop()
 
-    before = {}
-    try:
-        for number in _handled():
-            before[number] = signal.signal(number, handler)
-    except ValueError:  # not the main thread: the host program handles signals
+    with _handled(_numbers(), handler):
         yield received
-        return
-    try:
-        yield received
-    finally:
-        for number, old in before.items():
-            signal.signal(number, _default(number) if old is None else old)
-
-
-def _handled() -> list[signal.Signals]:
-    numbers = [getattr(signal, name) for name in NAMES if hasattr(signal, name)]
-    ignored = {n for n in numbers if signal.getsignal(n) is signal.SIG_IGN}
-    return [n for n in numbers if n == signal.SIGINT or n not in ignored]  # as under nohup
-
-
-def _default(number: signal.Signals) -> Any:
-    """The default handler: one that is not Python's own (inside Blender) cannot be restored."""
-    return signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL
 
 
 def leave(status: int, *, at_once: bool = False) -> NoReturn:

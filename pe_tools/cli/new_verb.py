@@ -23,7 +23,7 @@ from pe_core.scene.orientation import is_called
 from ..advice import warnings
 from ..formats import Mesh, MeshAxes, read_mesh, write_mesh
 from .first_study import FirstStudy, study_text
-from .roof import MOUNT, RoofSensor, roof_sensor
+from .roof import MOUNT, roof_sensor
 from .terminal import DONE, Answer, one_line, show, tell
 
 MODEL = "Pandar64"
@@ -55,20 +55,26 @@ def new_study(args: argparse.Namespace) -> Answer:
     area_path = output.parent / f"{output.stem}_roof.npz"
     model = catalog.load(args.sensor)
     mesh, scale, unit = read_in_metres(mesh_path, args.up, args.forward, args.scale)
-    vehicle = Vehicle(mesh.triangles, mesh.parts, mesh.part_names, glass_parts(mesh.part_names))
+    glass = tuple(name for name in mesh.part_names if is_called(name, GLASS, NO_GLASS))
+    vehicle = Vehicle(mesh.triangles, mesh.parts, mesh.part_names, glass)
     show(f"{one_line(f'{mesh_path}: {vehicle_line(vehicle, mesh.axes)}')}\n", sys.stderr)
     start = Sensor(MOUNT, model, Pose.from_degrees((0, 0, 0), (0, 0, 0)))
     roof = roof_sensor(vehicle, start, catalog.housing(args.sensor), area_path.name)
     found = (output.name, vehicle, mesh.axes, scale, unit, roof)
     first = FirstStudy(_relative(mesh_path, output.parent), *found)
     written = [output]
-    if (area := _area_mesh(roof)) is not None:
+    if roof.mount is not None and roof.mount.area is not None:  # no part of the vehicle
         require_new(area_path, replace=args.replace, inputs=[mesh_path])
-        write_mesh(area_path, area)
+        faces = roof.mount.area.triangles
+        write_mesh(area_path, Mesh(faces, np.zeros(len(faces), np.int32), (MOUNT,)))
         written.append(area_path)
     write_bytes(output, study_text(first).encode())
-    _warn(first)
-    return "\n".join([*(f"wrote {path}" for path in written), *_next(output)]), DONE
+    study, file = first.study(), shlex.quote(str(output))
+    for each in warnings((), study.vehicle, study.space, study.prior):
+        tell(f"warning: {each.line}")  # sunk into the ground, far from the origin, odd sizes
+    lines = [f"wrote {path}" for path in written]
+    lines += [f"next: pe score {file}", f"      pe optimize {file} -o results"]
+    return "\n".join(lines), DONE
 
 
 def _relative(mesh: Path, folder: Path) -> str:
@@ -88,18 +94,9 @@ def read_in_metres(
 ) -> tuple[Mesh, float, str]:
     """Read a mesh; without a scale find the unit in which it has the size of a vehicle.
 
-    Returns
-    -------
-    mesh : Mesh
-    scale : float
-        Metres in a unit of the file.
-    unit : str
-        Name of the unit; empty for metres and for a scale that was asked for.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be read, or has a vehicle's size in no unit.
+    Return the mesh, metres in a unit of the file, and the name of the unit: empty for metres and
+    for a scale that was asked for. `InputError` when the file cannot be read, or has a vehicle's
+    size in no unit.
     """
     mesh = read_mesh(path, MeshAxes(up, forward, 1.0 if scale is None else scale))
     try:
@@ -110,35 +107,7 @@ def read_in_metres(
         if not units:
             raise
         (unit, factor), *others = units
-        tell(f"{path}: no vehicle in metres; taken as {unit}, scale {factor:g}{_or_else(others)}")
+        more = "".join(f"; --scale {each:g} if these are {name}" for name, each in others)
+        tell(f"{path}: no vehicle in metres; taken as {unit}, scale {factor:g}{more}")
         return replace(mesh, triangles=mesh.triangles * factor), factor, unit
     return mesh, 1.0 if scale is None else scale, ""
-
-
-def _or_else(units: list[tuple[str, float]]) -> str:
-    return "".join(f"; --scale {factor:g} if these are {unit}" for unit, factor in units)
-
-
-def glass_parts(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the parts that are glass by name."""
-    return tuple(name for name in names if is_called(name, GLASS, NO_GLASS))
-
-
-def _area_mesh(roof: RoofSensor) -> Mesh | None:
-    """Return the faces of a mount that is no part of the vehicle, as a mesh of its own."""
-    if roof.mount is None or roof.mount.area is None:
-        return None
-    triangles = roof.mount.area.triangles
-    return Mesh(triangles, np.zeros(len(triangles), np.int32), (MOUNT,))
-
-
-def _warn(first: FirstStudy) -> None:
-    """Print warnings about the mesh: sunk into the ground, far from the origin, odd sizes."""
-    study = first.study()
-    for each in warnings((), study.vehicle, study.space, study.prior):
-        tell(f"warning: {each.line}")
-
-
-def _next(output: Path) -> list[str]:
-    file = shlex.quote(str(output))
-    return [f"next: pe score {file}", f"      pe optimize {file} -o results"]

@@ -40,18 +40,10 @@ STEEP = 0.5
 
 @dataclass(frozen=True)
 class Roof:
-    """Where the roof of a vehicle is.
+    """Where the roof of a vehicle is: points (N, 3) of it [m], the best place for a sensor first.
 
-    Attributes
-    ----------
-    places : (N, 3) float
-        Points of the roof [m], the best place for a sensor first.
-    level : float
-        Height of the roof above the ground [m].
-    tolerance : float
-        Greatest distance of the roof from its level [m].
-    front : float
-        x of the foremost point [m].
+    `level` is its height above the ground, `tolerance` its greatest distance from that, `front` the
+    x of the foremost point [m].
     """
 
     places: Floats
@@ -126,17 +118,8 @@ def roof_sensor(vehicle: Vehicle, sensor: Sensor, housing: Housing | None, file:
     """Return a sensor on the roof of a vehicle: on a named part, else on an area of the mesh.
 
     Its housing intersects no part of the vehicle. Without such a place it is above the highest
-    point of the vehicle, without a mount.
-
-    Parameters
-    ----------
-    vehicle : Vehicle
-    sensor : Sensor
-        The angles of its pose are kept.
-    housing : Housing, optional
-        The housing of its model, if that is known.
-    file : str
-        Name of the area's file in the study.
+    point of the vehicle, without a mount. The angles of its pose are kept. `file` names the area's
+    file in the study.
     """
     roof = find_roof(vehicle)
     for mount in _mounts(vehicle, roof, file):

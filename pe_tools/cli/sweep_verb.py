@@ -35,7 +35,6 @@ from ..sweep import (
     RunTask,
     SweepRow,
     SweepRun,
-    WorkerPool,
     read_settings,
     row_of,
     row_of_result,
@@ -52,9 +51,6 @@ from .interrupts import Interrupted, Received, stop_at_first
 from .progress_line import Reporter
 from .run_job import folder_or_fallback
 from .terminal import is_terminal, one_line, show, tell
-
-OPEN = (WAITING, BEGUN)
-"""The status of a run that has no result yet."""
 
 
 def add_sweep_options(parser: argparse.ArgumentParser) -> None:
@@ -84,14 +80,19 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
         work = _SweepVerb(runs, kind, folder, places)
         received = work.run(args)
         if received.signum is not None:
-            raise Interrupted(received.signum, f"{work.state}; the same command goes on")
-    note = hardware_note([s.model for s in run.study.rig] for run in runs)
-    curves = curve_note(run.study.model for run in runs)
-    missing = [row for row in work.rows if row.status in (ELSEWHERE, UNWRITTEN)]
+            kept = f", {work.count(BEGUN)} begun and kept" if work.count(BEGUN) else ""
+            note = f"{work.done} runs are done{kept}; the same command goes on"
+            raise Interrupted(received.signum, note)
+    notes = [
+        hardware_note([s.model for s in run.study.rig] for run in runs),
+        curve_note(run.study.model for run in runs),
+    ]
+    rows = list(work.rows.values())
+    missing = [row for row in rows if row.status in (ELSEWHERE, UNWRITTEN)]
     where = (f"{row.run.name}: {row.status}: {row.message}" for row in missing)
-    lines = [*table_lines(work.rows, kind), *where, *filter(None, (note, curves))]
+    lines = [*table_lines(rows, kind), *where, *filter(None, notes)]
     text = dump_json(work.data) if args.json else "\n".join(lines)
-    whole = all(row.status == DONE for row in work.rows) and not work.failed_to_write
+    whole = work.count(DONE) == len(rows) and not work.failed_to_write
     return text, terminal.DONE if whole else terminal.BAD_INPUT
 
 
@@ -100,25 +101,18 @@ def _refuse_folders(
 ) -> None:
     """Raise `InputError`, before the work, if results would replace files of the user."""
     for run in runs:
-        at = folder / run.name
-        study = Path(files[run.study_name])
+        at, study = folder / run.name, Path(files[run.study_name])
         if (at / STUDY).exists() and (at / STUDY).samefile(study):
-            raise InputError(
-                study, "output", "another folder than the study's folder", "the study's folder"
-            )
+            expected, found = "another folder than the study's folder", "the study's folder"
+            raise InputError(study, "output", expected, found)
         check_files(at, result_names(run.study, kind))
 
 
 class _SweepVerb:
-    """A running sweep: its rows and its folder.
+    """A running sweep: its rows by name, and its folder.
 
-    Attributes
-    ----------
-    rows : list of SweepRow
-    data : dict
-        Content of sweep.json.
-    failed_to_write : bool
-        Whether something could not be written to the folder of the sweep.
+    `data` is the content of sweep.json; `failed_to_write` says whether something could not be
+    written to the folder of the sweep.
     """
 
     def __init__(
@@ -127,29 +121,22 @@ class _SweepVerb:
         self._kind, self._folder, self._places = kind, folder, places
         self._fallback: Path | None = None
         self.failed_to_write = False
-        found = [row_of_result(run, folder / run.name, kind) for run in runs]
-        self.rows = [
-            row or SweepRow(run, self._unfinished(run))
-            for row, run in zip(found, runs, strict=True)
-        ]
-        self._numbers = {run.name: number for number, run in enumerate(runs)}
+        self.rows: dict[str, SweepRow] = {}
+        for run in runs:
+            known = row_of_result(run, folder / run.name, kind)
+            self.rows[run.name] = known or SweepRow(run, self._unfinished(run))
         self._reporter, self._on_terminal = Reporter(sys.stderr), is_terminal(sys.stderr)
         self.data: dict[str, Any] = {}
         self._write_table()
 
-    @property
-    def state(self) -> str:
-        """Number of runs that are done, and of searches with a checkpoint, as text."""
-        kept = f", {self._begun} begun and kept" if self._begun else ""
-        return f"{self._done} of {len(self.rows)} runs are done{kept}"
+    def count(self, status: str) -> int:
+        """Return how many runs have a status."""
+        return sum(row.status == status for row in self.rows.values())
 
     @property
-    def _done(self) -> int:
-        return sum(row.status == DONE for row in self.rows)
-
-    @property
-    def _begun(self) -> int:
-        return sum(row.status == BEGUN for row in self.rows)
+    def done(self) -> str:
+        """How many runs are done: "2 of 5"."""
+        return f"{self.count(DONE)} of {len(self.rows)}"
 
     def _unfinished(self, run: SweepRun) -> str:
         """Status of a run that is not done: "begun" if its search has a checkpoint."""
@@ -161,12 +148,13 @@ class _SweepVerb:
 
         Until the workers are there, the first signal ends the sweep.
         """
-        left = [row.run.name for row in self.rows if row.status != DONE]
-        if self._done or self._begun:
-            going_on = f"; searches that go on: {self._begun}" if self._begun else ""
-            tell(f"{self._done} of {len(self.rows)} runs are done already{going_on}")
+        left, begun = [n for n, row in self.rows.items() if row.status != DONE], self.count(BEGUN)
+        if self.count(DONE) or begun:
+            going_on = f"; searches that go on: {begun}" if begun else ""
+            tell(f"{self.done} runs are done already{going_on}")
         if not left:
             return Received()
+        searches = self._kind == "optimize"
         try:
             with (
                 workplace(args.workers, args.scheduler) as place,
@@ -174,53 +162,47 @@ class _SweepVerb:
             ):
 
                 def make_task(name: str) -> RunTask:
-                    return self._begin(self.rows[self._numbers[name]].run, place)
+                    run = self.rows[name].run
+                    self.rows[name] = replace(self.rows[name], status=BEGUN)
+                    checkpoints = place.checkpoints(run, self._folder / name) if searches else None
+                    return RunTask(run.study, searches, place.threads, checkpoints)
 
                 def take(name: str, found: Outcome | InputError) -> None:
                     if isinstance(found, Outcome):
                         place.finish(name)
                     self._take(name, found)
 
-                run_all(left, make_task, place, take, lambda: self._goes_on(received))
+                def goes_on() -> bool:
+                    if self._on_terminal:
+                        left = self.count(WAITING) + self.count(BEGUN)
+                        self._reporter.report(Progress("sweeping", 1.0 - left / len(self.rows)))
+                    return received.signum is None
+
+                run_all(left, make_task, place, take, goes_on)
             return received
         finally:
             self._reporter.clear()
-            self.rows = [
-                replace(row, status=self._unfinished(row.run)) if row.status in OPEN else row
-                for row in self.rows
-            ]
+            for name, row in self.rows.items():
+                if row.status in (WAITING, BEGUN):
+                    self.rows[name] = replace(row, status=self._unfinished(row.run))
             self._write_table()
-
-    def _begin(self, run: SweepRun, place: WorkerPool) -> RunTask:
-        """Return the task of a run, when a worker is free."""
-        number = self._numbers[run.name]
-        searches = self._kind == "optimize"
-        self.rows[number] = replace(self.rows[number], status=BEGUN)
-        checkpoints = place.checkpoints(run, self._folder / run.name) if searches else None
-        return RunTask(run.study, searches, place.threads, checkpoints)
-
-    def _goes_on(self, received: Received) -> bool:
-        if self._on_terminal:
-            share = sum(row.status not in OPEN for row in self.rows) / len(self.rows)
-            self._reporter.report(Progress("sweeping", share))
-        return received.signum is None
 
     def _take(self, name: str, found: Outcome | InputError) -> None:
         """Store the result of a run, update the table, and report the run."""
-        number = self._numbers[name]
-        run = self.rows[number].run
         kept = self._keep(name, found) if isinstance(found, Outcome) else ()
-        row = self.rows[number] = row_of(run, found, *kept)
+        row = self.rows[name] = row_of(self.rows[name].run, found, *kept)
         self._write_table()
-        self._print_row(row, found)
+        if isinstance(found, InputError):
+            self._print_failure("" if found.source == name else name, found)
+        elif not self._on_terminal:
+            figures = f"entropy {row.entropy:.4f}  coverage {row.coverage:.1%}"
+            line = f"[{self.count(DONE)}/{len(self.rows)}] {name}  {figures}"
+            show(f"{one_line(line)}\n", sys.stderr)
 
     def _keep(self, name: str, found: Outcome) -> tuple[str, str]:
         """Write a run's results; if that fails, to the fallback folder.
 
-        Returns
-        -------
-        status, message : str
-            Of the row of the run.
+        Return status and message of the row of the run.
         """
         try:
             write_outcome(found, self._folder / name)
@@ -239,18 +221,19 @@ class _SweepVerb:
 
     def _write_table(self) -> None:
         """Write the table; if that fails, to the fallback folder."""
+        rows = list(self.rows.values())
         try:
-            self.data = write_table(self.rows, self._kind, self._folder)
+            self.data = write_table(rows, self._kind, self._folder)
         except InputError as error:
             first, self.failed_to_write = not self.failed_to_write, True
             if first:
                 self._print_failure("", error)
             try:
-                self.data = write_table(self.rows, self._kind, self._fall_back())
+                self.data = write_table(rows, self._kind, self._fall_back())
             except InputError as second:
                 if first:
                     self._print_failure("", second)
-                self.data = table_data(self.rows, self._kind)
+                self.data = table_data(rows, self._kind)
 
     def _fall_back(self) -> Path:
         """Return the fallback folder of the sweep; report it at its creation."""
@@ -262,11 +245,3 @@ class _SweepVerb:
     def _print_failure(self, name: str, what: InputError | str) -> None:
         self._reporter.clear()
         tell(str(what) if not name else f"{name}: {what}")
-
-    def _print_row(self, row: SweepRow, found: Outcome | InputError) -> None:
-        name = row.run.name
-        if isinstance(found, InputError):
-            self._print_failure("" if found.source == name else name, found)
-        elif not self._on_terminal:
-            figures = f"entropy {row.entropy:.4f}  coverage {row.coverage:.1%}"
-            show(one_line(f"[{self._done}/{len(self.rows)}] {name}  {figures}") + "\n", sys.stderr)

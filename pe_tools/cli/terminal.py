@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import sys
 import unicodedata
+from collections.abc import Iterator
 from contextlib import suppress
 from typing import TextIO
 
 from pe_core.sensors import kind_of
-from pe_core.study import Robustness
 
 from ..advice import hidden_sensors, hidden_words, object_words, objects_looked_at, off_by
 from ..jobs import Outcome, condition_lines, searched_on, sureness_lines
@@ -113,32 +113,27 @@ MIN_SHOWN_ERROR = 1e-4
 
 def summary(outcome: Outcome) -> str:
     """Return an outcome in a few lines for readers."""
+    score = outcome.after
     if outcome.kind == "score":
-        lines = [f"entropy   {with_error(outcome.after.entropy, outcome.after.stderr)}"]
-        lines.append(f"coverage  {outcome.after.coverage:.1%}")
+        lines = [f"entropy   {with_error(score.entropy, score.stderr)}"]
+        lines.append(f"coverage  {score.coverage:.1%}")
     else:
-        before, after = outcome.before, outcome.after
-        lines = [
-            *_in_traffic(outcome),
-            f"entropy   {before.entropy:.4f} -> {after.entropy:.4f} nats",
-            f"coverage  {before.coverage:.1%} -> {after.coverage:.1%}",
-            f"{outcome.cost}",
-            *_moves(outcome.robustness),
-        ]
-    if outcome.after.objects is not None:
-        found = outcome.after.objects
-        lines += [*object_words(found), f"on {objects_looked_at(found)}"]
-    lines += _requirements(outcome)
+        lines = list(_before_and_after(outcome))
+    if score.objects is not None:
+        lines += [*object_words(score.objects), f"on {objects_looked_at(score.objects)}"]
+    broken = [each for each in outcome.verdicts if not each.met]
+    if count := len(outcome.verdicts):
+        lines.append(f"requirements  {count - len(broken)} of {count} met")
+    lines += [f"not met: {each.name}, {margin_text(each.summary)}" for each in broken]
     if outcome.conditions is not None:
         lines += condition_lines(outcome.conditions)
-    scores = outcome.after.per_sensor
     rig = outcome.study.rig
-    hidden = hidden_sensors(rig, outcome.after, outcome.warnings)
+    hidden = hidden_sensors(rig, score, outcome.warnings)
     lines += [f"ATTENTION: {line}" for line in hidden_words(hidden)]
     for sensor in rig:
         x, y, z = sensor.pose.position
         roll, pitch, yaw = sensor.pose.rotation_deg
-        own = scores[sensor.name]
+        own = score.per_sensor[sensor.name]
         what = kind_of(sensor).occlusion_text
         stopped = f", {own.occluded / own.beams:.1%} of its {what}" if own.occluded else ""
         lines.append(
@@ -146,51 +141,32 @@ def summary(outcome: Outcome) -> str:
             f"pitch {pitch:g}, yaw {yaw:g} deg; alone {own.entropy:.4f}{stopped}"
         )
     if outcome.kind == "optimize":
+        search, (levels, what) = outcome.start.search, searched_on(outcome.start)
+        how = f"{outcome.evaluations:,} placements evaluated on {levels} {what}"
         lines += sureness_lines(outcome)
-        lines.append(searched(outcome))
+        lines.append(f"searched by {search.method}, seed {search.seed}: {how}")
     if outcome.stopped:
         lines.append("stopped early: this is the best placement found so far")
     return "\n".join([*lines, *warned(outcome)])
 
 
-def _in_traffic(outcome: Outcome) -> list[str]:
-    """Return the expected AP that a search by it began and ended with; empty for other searches."""
-    if outcome.in_traffic is None:
-        return []
-    before, after = outcome.in_traffic
-    error = f"standard error {max(after.ap_stderr, MIN_SHOWN_ERROR):.4f}"
-    scenes = f"on {after.scenes:,} scenes"
-    return [f"expected AP in traffic  {before.ap:.4f} -> {after.ap:.4f} ({error}, {scenes})"]
-
-
-def _requirements(outcome: Outcome) -> list[str]:
-    """Return how many requirements are met, and which are not."""
-    broken = [each for each in outcome.verdicts if not each.met]
-    if not outcome.verdicts:
-        return []
-    count = len(outcome.verdicts)
-    lines = [f"requirements  {count - len(broken)} of {count} met"]
-    return lines + [f"not met: {each.name}, {margin_text(each.summary)}" for each in broken]
-
-
-def _moves(found: Robustness | None) -> list[str]:
-    """Describe the entropy of start and result under mounting errors and sensor failures."""
-    if found is None:
-        return []
-    before, after = found.before, found.after
-    off = off_by(found.errors.position, found.errors.angle)
-    lines = [f"{off} (1 sigma)  {before.rise:+.4f} -> {after.rise:+.4f} nats on average"]
-    if before.loss is not None and after.loss is not None:
-        lines.append(f"one sensor lost  {before.loss:+.4f} -> {after.loss:+.4f} nats on average")
-    return lines
-
-
-def searched(outcome: Outcome) -> str:
-    """Describe a search: method, seed, and the number of voxels that evaluate a candidate."""
-    study, search = outcome.start, outcome.start.search
-    levels, what = searched_on(study)
-    count = f"{outcome.evaluations:,} placements"
-    return f"searched by {search.method}, seed {search.seed}: {count} evaluated on {levels} {what}"
+def _before_and_after(outcome: Outcome) -> Iterator[str]:
+    """Yield what a search began and ended with, also under mounting errors and failures."""
+    before, after = outcome.before, outcome.after
+    if outcome.in_traffic is not None:
+        first, last = outcome.in_traffic
+        error = f"standard error {max(last.ap_stderr, MIN_SHOWN_ERROR):.4f}"
+        on = f"({error}, on {last.scenes:,} scenes)"
+        yield f"expected AP in traffic  {first.ap:.4f} -> {last.ap:.4f} {on}"
+    yield f"entropy   {before.entropy:.4f} -> {after.entropy:.4f} nats"
+    yield f"coverage  {before.coverage:.1%} -> {after.coverage:.1%}"
+    yield outcome.cost
+    if (found := outcome.robustness) is not None:
+        one, other = found.before, found.after
+        off = off_by(found.errors.position, found.errors.angle)
+        yield f"{off} (1 sigma)  {one.rise:+.4f} -> {other.rise:+.4f} nats on average"
+        if one.loss is not None and other.loss is not None:
+            yield f"one sensor lost  {one.loss:+.4f} -> {other.loss:+.4f} nats on average"
 
 
 def warned(outcome: Outcome) -> list[str]:

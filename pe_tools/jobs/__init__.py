@@ -40,9 +40,8 @@ from .results import (
 )
 from .score_and_optimize import OptimizeJob, ScoreJob
 from .searched_figure import IN_NATS, SearchedFigure, searched_figure, searched_on
-from .stopping import stop_text
+from .stopping import stop_text, sureness_lines
 from .study_export import export_study, fingerprint, study_writers
-from .sureness import sureness_lines
 from .trade_off import Design, TradeOff
 
 __all__ = [

@@ -20,14 +20,8 @@ def candidate_workers(
 ) -> Iterator[ExecutorSource]:
     """Yield the source of the executor that evaluates candidates of a job.
 
-    Parameters
-    ----------
-    job : Job
-        Its executor evaluates, if it has one. Otherwise processes are started, which end here.
-    objectives : iterable of Objective
-        What the searches minimise.
-    others : iterable
-        What else the searches have in common, such as models of sensors.
+    The job's executor does, if it has one. Otherwise processes are started, which end here. They
+    are sent what the objectives share, and `others` that searches have in common, such as models.
     """
     parts = (part for objective in objectives for part in shared_parts(objective))
     common = chain(parts, others)  # read when the processes start, if they do

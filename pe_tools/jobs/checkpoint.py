@@ -95,12 +95,7 @@ def _check_same(path: Path, study: Study, digest: str) -> None:
 class SearchState:
     """The state of a search, which is saved in its folder while the search runs.
 
-    Parameters
-    ----------
-    study : Study
-        The study that is searched.
-    inputs : dict, optional
-        Provenance (`inputs_of`) at the beginning of the search, if file names have changed since.
+    `inputs` is the provenance at the beginning of the search, if file names have changed since.
     """
 
     def __init__(self, study: Study, inputs: dict[str, Any] | None = None) -> None:
@@ -121,21 +116,9 @@ class SearchState:
     ) -> None:
         """Write state and best placement into a folder.
 
-        Parameters
-        ----------
-        folder : path
-        best : Study
-            The study with the best placement so far.
-        entries : iterable of EvaluatedRig
-            Journal of the search.
-        meshes : bool
-            False if meshes and other files of the study are in the folder already.
-
-        Raises
-        ------
-        InputError
-            The folder cannot be written, or this program did not write one of the files in it.
-            The folder then stays unchanged.
+        Without `meshes`, mesh and other files of the study are in the folder already. The folder
+        stays unchanged after an `InputError`: it cannot be written, or this program did not write
+        one of the files in it.
         """
         with FileSet(prepare_folder(folder)) as files:
             for name, write in study_writers(best, STUDY).items():
@@ -148,16 +131,8 @@ class SearchState:
 class BegunSearch:
     """An unfinished search, read from its state file.
 
-    Attributes
-    ----------
-    path : path
-        The state file.
-    study : Study
-        The study that is searched; its files have their names in the folder.
-    inputs : dict
-        Provenance at the beginning of the search, with the original file names.
-    evaluated : tuple of EvaluatedRig
-        Journal of the evaluated rigs.
+    The study's files have their names in the folder; `inputs` is the provenance at the beginning of
+    the search, with the original file names.
     """
 
     path: Path
@@ -177,11 +152,8 @@ class BegunSearch:
 def read_search(folder: str | Path) -> BegunSearch:
     """Read the state of a search from the folder of its results.
 
-    Raises
-    ------
-    InputError
-        There is no state, it is damaged or of another version, or a mesh or boxes beside it have
-        changed since the search began.
+    `InputError` if there is no state, it is damaged or of another version, or a mesh or boxes
+    beside it have changed since the search began.
     """
     path = Path(folder) / SEARCH
     data = _state_of(path, SEARCH_KIND, {"inputs": dict, "evaluated": object})
@@ -225,13 +197,7 @@ class Checkpoint:
 
 
 class FrontJournals:
-    """The journals of several searches, by the name of each.
-
-    Parameters
-    ----------
-    known : mapping of str to iterable of EvaluatedRig
-        Of an interrupted run.
-    """
+    """The journals of several searches, by the name of each; `known` are of an interrupted run."""
 
     def __init__(self, known: Mapping[str, Iterable[EvaluatedRig]] | None = None) -> None:
         self._known = {name: tuple(entries) for name, entries in (known or {}).items()}

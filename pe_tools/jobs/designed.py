@@ -12,7 +12,6 @@ from pe_core import catalog
 from pe_core.geometry.poses import Pose, rotate
 from pe_core.scene.rig import Rig, Sensor, SensorModel
 from pe_core.search import (
-    Goals,
     Mounting,
     Selection,
     Start,
@@ -30,79 +29,52 @@ Models = Mapping[str, SensorModel | None]
 def design_study(study: Study, models: Models) -> Study:
     """Return the study of a design, without choices.
 
-    A sensor on a surface keeps the position of its base: with a housing of another height, its
-    origin is higher or lower.
-
-    Parameters
-    ----------
-    study : Study
-    models : mapping of sensor name to SensorModel or None
-        Model of each sensor that the study lets choose; None leaves the sensor out.
-
-    Returns
-    -------
-    Study
+    `models` has the model of each sensor that the study lets choose; None leaves the sensor out. A
+    sensor on a surface keeps the position of its base: with a housing of another height, its origin
+    is higher or lower.
     """
-    mounting = _mounting_of(study.search.mounting, models)
-    sensors = [_taken(sensor, models[sensor.name]) for sensor in _kept(study.rig, models)]
-    sensors += [sensor for sensor in study.rig if sensor.name not in models]
-    rig = Rig(sorted(sensors, key=lambda s: [o.name for o in study.rig].index(s.name)))
+    gone = {name for name, model in models.items() if model is None}
+    rig = Rig([_taken(sensor, models) for sensor in study.rig if sensor.name not in gone])
     order = [sensor.name for sensor in rig]
-    poses = _seated(study.rig, rig, mounting)
-    search = replace(study.search, mounting=mounting, goals=_goals_of(study.search.goals, order))
-    return replace(study, rig=rig.with_poses(poses), search=search, selection=Selection())
-
-
-def _goals_of(goals: Goals, names: Sequence[str]) -> Goals:
-    """Return the goals of a search without the sensors that are left out."""
-    fixed = [name for name in goals.fixed if name in names]
+    mounting, goals = study.search.mounting, study.search.goals
+    groups = [[name for name in group if name not in gone] for group in mounting.groups]
+    mounting = replace(
+        mounting,
+        on={name: mount for name, mount in mounting.on.items() if name not in gone},
+        pairs=[pair for pair in mounting.pairs if not gone & set(pair)],
+        groups=[group for group in groups if len(group) > 1],
+    )
     starts = [
-        Start(start.name, {n: pose for n, pose in start.poses.items() if n in names})
+        Start(start.name, {n: pose for n, pose in start.poses.items() if n in order})
         for start in goals.starts
     ]
-    return replace(goals, fixed=fixed, starts=starts)
+    goals = replace(goals, fixed=[name for name in goals.fixed if name in order], starts=starts)
+    rig = rig.with_poses(_seated(study.rig, rig, mounting))
+    search = replace(study.search, mounting=mounting, goals=goals)
+    return replace(study, rig=rig, search=search, selection=Selection())
 
 
 def design_names(designs: Sequence[Models]) -> list[str]:
     """Return a name for each design: its models, with their sensors if two designs need it."""
-    short = [_models_named(models) for models in designs]
-    twice = {name for name, count in Counter(short).items() if count > 1}
-    return [
-        _sensors_named(models) if name in twice else name
-        for name, models in zip(short, designs, strict=True)
-    ]
+    names = []
+    for models in designs:
+        counts = Counter(model.name for model in models.values() if model is not None)
+        words = (f"{count} x {name}" if count > 1 else name for name, count in counts.items())
+        names.append(" + ".join(words) or "none of them")
+    twice = {name for name, count in Counter(names).items() if count > 1}
+    for k, models in enumerate(designs):
+        if names[k] in twice:
+            named = (f"{m.name} ({name})" for name, m in models.items() if m is not None)
+            names[k] = " + ".join(named)
+    return names
 
 
-def _models_named(models: Models) -> str:
-    counts = Counter(model.name for model in models.values() if model is not None)
-    named = (f"{count} x {name}" if count > 1 else name for name, count in counts.items())
-    return " + ".join(named) or "none of them"
-
-
-def _sensors_named(models: Models) -> str:
-    return " + ".join(f"{m.name} ({name})" for name, m in models.items() if m is not None)
-
-
-def _kept(rig: Rig, models: Models) -> list[Sensor]:
-    return [sensor for sensor in rig if models.get(sensor.name) is not None]
-
-
-def _taken(sensor: Sensor, model: SensorModel | None) -> Sensor:
-    """Return a sensor with another model; a new kind discards its fusion group and AP curve."""
-    assert model is not None
-    if model.kind != sensor.kind:
-        return replace(sensor, model=model, fusion=None, curve=None)
-    return replace(sensor, model=model)
-
-
-def _mounting_of(mounting: Mounting, models: Models) -> Mounting:
-    """Return the mounting without the sensors that are left out."""
-    gone = {name for name, model in models.items() if model is None}
-    on = {name: mount for name, mount in mounting.on.items() if name not in gone}
-    pairs = [pair for pair in mounting.pairs if not gone & set(pair)]
-    groups = [[name for name in group if name not in gone] for group in mounting.groups]
-    remaining = [group for group in groups if len(group) > 1]
-    return replace(mounting, on=on, pairs=pairs, groups=remaining)
+def _taken(sensor: Sensor, models: Models) -> Sensor:
+    """Return a sensor with its model; a new kind discards its fusion group and AP curve."""
+    model = models.get(sensor.name)
+    if model is None or model.kind == sensor.kind:
+        return sensor if model is None else replace(sensor, model=model)
+    return replace(sensor, model=model, fusion=None, curve=None)
 
 
 def _seated(before: Rig, rig: Rig, mounting: Mounting) -> list[Pose]:

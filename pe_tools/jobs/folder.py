@@ -47,20 +47,7 @@ Listed = dict[str, list[str]]
 def prepare_folder(folder: str | Path, names: Iterable[str] = ()) -> Path:
     """Create the output folder; raise `InputError` early if the results could not be written.
 
-    Parameters
-    ----------
-    folder : path
-    names : iterable of str
-        Names of files that will be written. Each must be absent or written by this program.
-
-    Returns
-    -------
-    path
-
-    Raises
-    ------
-    InputError
-        The folder cannot be created or written, or this program did not write one of the files.
+    Each of the named files that will be written must be absent or written by this program.
     """
     if not str(folder):
         raise InputError("command line", "output", "the name of a folder", "an empty text")
@@ -82,17 +69,8 @@ def prepare_folder(folder: str | Path, names: Iterable[str] = ()) -> Path:
 def check_files(folder: Path, names: Iterable[str], replaceable: Collection[str] = ()) -> None:
     """Check that files may be written: each is absent, or unchanged since this program wrote it.
 
-    Parameters
-    ----------
-    folder : path
-    names : iterable of str
-    replaceable : collection of str
-        Names of files that may be replaced in any case.
-
-    Raises
-    ------
-    InputError
-        A file with one of the names belongs to the user.
+    Those that are `replaceable` may be replaced in any case. `InputError` where a file with one of
+    the names belongs to the user.
     """
     listed = _listed(folder)
     for name in names:
@@ -109,13 +87,8 @@ class FileSet:
     """Context manager that writes several files of one folder together, or none of them.
 
     `add` writes each file under a temporary name. Leaving the context renames the files in the
-    order in which they were added. After an exception the folder stays unchanged.
-
-    Parameters
-    ----------
-    folder : path
-    replaceable : collection of str
-        Names of files that the user has chosen to replace, whoever wrote them.
+    order in which they were added. After an exception the folder stays unchanged. Files with a
+    `replaceable` name the user has chosen to replace, whoever wrote them.
     """
 
     def __init__(self, folder: Path, replaceable: Collection[str] = ()) -> None:
@@ -128,13 +101,7 @@ class FileSet:
         self._unwanted = tuple(names)
 
     def add(self, name: str, write: Write | bytes) -> str:
-        """Write a file under a temporary name; return its SHA-256.
-
-        Raises
-        ------
-        InputError
-            The file cannot be written.
-        """
+        """Write a file under a temporary name; return its SHA-256. `InputError` if that fails."""
         path = self._folder / name
         temporary = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
         self._made[name] = (temporary, "")

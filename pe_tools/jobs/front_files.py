@@ -10,7 +10,6 @@ from typing import Any
 from pe_core.base.csv_text import csv_text
 from pe_core.base.file_stem import file_stem
 from pe_core.base.serialization import dump_json, finite
-from pe_core.scene.rig import SensorModel
 from pe_core.study.file_names import STUDY
 from pe_core.study.study import vehicle_digest
 from pe_core.study.study_file import study_to_dict
@@ -34,7 +33,7 @@ def front_dict(chosen: TradeOff, host: Mapping[str, str] | None = None) -> dict[
 
     All of it but `run` depends on the study alone. `host` has versions of the host program by name.
     """
-    files = design_files(chosen)
+    files = {name: f"{DESIGNS}/{file}" for name, file in design_files(chosen).items()}
     selection = chosen.study.selection
     data = {
         "schema": FRONT_SCHEMA,
@@ -47,7 +46,7 @@ def front_dict(chosen: TradeOff, host: Mapping[str, str] | None = None) -> dict[
         "all_designs_looked_at": chosen.is_complete,
         "stopped": chosen.stopped,
         "front": [design.name for design in chosen.front],
-        "designs": [_design_dict(d, d in chosen.front, files) for d in chosen.designs],
+        "designs": [_design_dict(d, d in chosen.front, files.get(d.name)) for d in chosen.designs],
         "refused": chosen.refused,
         "notes": chosen.notes,
         "inputs": {
@@ -80,11 +79,16 @@ def write_front(
         The folder cannot be written, or one of these files in it was not written by this program.
     """
     folder, data = prepare_folder(folder, FRONT_NAMES), front_dict(chosen, host)
+    writers = dict[str, Write | bytes]()
+    names = design_files(chosen)
+    for design in chosen.front:  # mesh and boxes are shared
+        own = study_writers(design.study, STUDY)
+        writers |= {names[design.name] if name == STUDY else name: own[name] for name in own}
     designs_folder = prepare_folder(folder / DESIGNS)
     # All is written before the first file gets its name: on a full disk the old set stays whole.
     with FileSet(folder) as files, FileSet(designs_folder) as designs:
         designs.take_away(list(our_files(designs_folder)))
-        for name, write in _writers(chosen).items():
+        for name, write in writers.items():
             designs.add(name, write)
         files.take_away([FRONT_PLOT, FRONT_PAGE])  # they show the front of an earlier run
         files.add(FRONT_CSV, front_csv(chosen).encode(errors="backslashreplace"))
@@ -96,18 +100,17 @@ def front_csv(chosen: TradeOff) -> str:
     """Return all designs as CSV, cheapest first: price, entropy, and the model of each sensor."""
     sensors = [sensor.name for sensor in chosen.study.rig]
     head = ["design", "on_front", "price", "entropy", "coverage", "searched"]
-    asked = bool(chosen.study.requirements)
-    more = ["requirements_met"] if asked else []
-    more += [f"objective.{name}" for name in chosen.objectives]
-    rows: list[list[object]] = [[*head, *more, *(f"{name}.model" for name in sensors)]]
+    asked = ["requirements_met"] if chosen.study.requirements else []
+    more = [f"objective.{name}" for name in chosen.objectives]
+    rows: list[list[object]] = [[*head, *asked, *more, *(f"{name}.model" for name in sensors)]]
     for design in chosen.designs:
-        models_by_sensor = {sensor.name: sensor.model.name for sensor in design.study.rig}
-        figures = (design.price, _entropy(design), _coverage(design), int(design.score is not None))
-        met: list[object] = [_met(design)] if asked else []
-        met += [design.figures.get(name) for name in chosen.objectives]
-        on_front = int(design in chosen.front)
-        models = (models_by_sensor.get(name, "") for name in sensors)
-        rows.append([design.name, on_front, *figures, *met, *models])
+        models = {sensor.name: sensor.model.name for sensor in design.study.rig}
+        data = _design_dict(design, design in chosen.front, None)
+        figures = (data[key] for key in head[2:5])
+        met = (data.get(key) for key in asked)
+        found = (design.figures.get(name) for name in chosen.objectives)
+        flags = int(data["on_front"]), *figures, int(data["searched"])
+        rows.append([design.name, *flags, *met, *found, *(models.get(n, "") for n in sensors)])
     return csv_text(rows)
 
 
@@ -123,56 +126,27 @@ def design_files(chosen: TradeOff) -> dict[str, str]:
     return files
 
 
-def _writers(chosen: TradeOff) -> dict[str, Write | bytes]:
-    """Return the writers of the studies of the front by file name; mesh and boxes are shared."""
-    files, writers = design_files(chosen), dict[str, Write | bytes]()
-    for design in chosen.front:
-        design_writers = study_writers(design.study, STUDY)
-        design_writers[files[design.name]] = design_writers.pop(STUDY)
-        writers |= design_writers
-    return writers
+def _design_dict(design: Design, on_front: bool, file: str | None) -> dict[str, Any]:
+    """Return a design as plain data; `file` has its study.
 
-
-def _design_dict(design: Design, on_front: bool, files: Mapping[str, str]) -> dict[str, Any]:
-    file = f"{DESIGNS}/{files[design.name]}" if on_front else None
+    A screening that found no placement that keeps requirements, or went by expected AP, has no
+    entropy. A design that was only screened was not held to requirements.
+    """
+    score, no_entropy = design.score, design.is_led_in or math.isnan(design.entropy)
+    met = len(design.verdicts) - len(design.broken)
+    asked = {"requirements_met": met, "requirements_not_met": list(design.broken)}
     return {
         "name": design.name,
         "on_front": on_front,
         "price": design.price,
-        "entropy": _entropy(design),
-        "coverage": _coverage(design),
-        "stderr": None if design.score is None else design.score.stderr,
-        "searched": design.score is not None,
-        "models": {name: _model_name(model) for name, model in design.models.items()},
+        "entropy": None if no_entropy else design.entropy,
+        "coverage": None if score is None else score.coverage,
+        "stderr": None if score is None else score.stderr,
+        "searched": score is not None,
+        "models": {n: None if model is None else model.name for n, model in design.models.items()},
         "placements": placements(design.study.rig),
         "warnings": [warning.to_dict() for warning in design.warnings],
         "study": file,
         **({"figures": dict(design.figures)} if design.figures else {}),
-        **_requirements(design),
+        **(asked if design.verdicts else {}),
     }
-
-
-def _requirements(design: Design) -> dict[str, Any]:
-    """Return how many requirements a design meets, and which not; empty without any."""
-    if not design.verdicts:
-        return {}
-    return {"requirements_met": _met(design), "requirements_not_met": list(design.broken)}
-
-
-def _met(design: Design) -> int | None:
-    """Return how many requirements are met; None for a design that was only screened."""
-    return len(design.verdicts) - len(design.broken) if design.verdicts else None
-
-
-def _entropy(design: Design) -> float | None:
-    """Return the entropy; None where a screening found no placement that keeps requirements, or
-    went by expected AP."""
-    return None if design.is_led_in or math.isnan(design.entropy) else design.entropy
-
-
-def _model_name(model: SensorModel | None) -> str | None:
-    return None if model is None else model.name
-
-
-def _coverage(design: Design) -> float | None:
-    return None if design.score is None else design.score.coverage

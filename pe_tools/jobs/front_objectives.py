@@ -67,15 +67,8 @@ def check_objectives(study: Study, names: Sequence[str]) -> None:
 class FrontFigures:
     """Computes the objectives of rigs of one study; a rig is evaluated once.
 
-    Parameters
-    ----------
-    study : Study
-    names : sequence of str
-    evaluator : RigEvaluator
-        Of the search.
-    price : float
-    in_traffic : RigEvaluator, optional
-        Evaluates the expected AP of a study whose objective it is.
+    `evaluator` is that of the search; `in_traffic` evaluates the expected AP of a study whose
+    objective it is.
     """
 
     def __init__(
@@ -178,14 +171,8 @@ class ScalarValue:
 
     The augmented weighted Chebyshev norm of the distance from the ideal point (Steuer and Choo,
     "An interactive weighted Tchebycheff procedure", 1983): each placement of the Pareto front is
-    the best one for some weights, also where the front is not convex.
-
-    Parameters
-    ----------
-    figures : FrontFigures
-    weights : sequence of float
-    ideal, span : sequence of float
-        Best value of each objective, and how far its values are apart on the front so far.
+    the best one for some weights, also where the front is not convex. `ideal` and `span` are the
+    best value of each objective, and how far its values are apart on the front so far.
     """
 
     def __init__(

@@ -363,12 +363,12 @@ class Job:
 def begun(work: Callable[[], T]) -> Future[T]:
     """Start `work` in a new thread; return the future of its result."""
     future = Future[T]()
-    threading.Thread(target=_fill, args=(future, work), daemon=True).start()
+
+    def fill() -> None:
+        try:
+            future.set_result(work())
+        except BaseException as error:  # the waiting thread raises it
+            future.set_exception(error)
+
+    threading.Thread(target=fill, daemon=True).start()
     return future
-
-
-def _fill(future: Future[T], work: Callable[[], T]) -> None:
-    try:
-        future.set_result(work())
-    except BaseException as error:  # the waiting thread raises it
-        future.set_exception(error)

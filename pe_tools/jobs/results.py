@@ -41,7 +41,7 @@ from pe_core.version import __version__
 from .checkpoint import SearchState
 from .condition_files import conditions_csv
 from .folder import FileSet, Write, our_files, prepare_folder, sha256_of
-from .job import HistoryRow, Outcome, StartEnd
+from .job import HistoryRow, Outcome
 from .searched_figure import IN_NATS, SearchedFigure, searched_figure
 from .study_export import inputs_of, study_writers
 
@@ -63,65 +63,63 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
     Everything outside `run` depends on the study alone: two runs of the same study agree in it to
     the last bit. Infinity and NaN, which JSON does not have, become null.
     """
-    return finite(_result(outcome, host or {}))
-
-
-def _result(outcome: Outcome, host: dict[str, str]) -> dict[str, Any]:
-    figure = searched_figure(outcome.start)
-    return {
+    start, study, before, after = outcome.start, outcome.study, outcome.before, outcome.after
+    is_search, figure = outcome.kind == "optimize", searched_figure(start)
+    data: dict[str, Any] = {
         "schema": SCHEMA,
         "kind": outcome.kind,
-        "seed": outcome.study.search.seed,
-        "entropy": outcome.after.entropy,
-        "coverage": outcome.after.coverage,
-        "before": outcome.before.to_dict(),
-        "after": outcome.after.to_dict(),
-        "placements": {
-            "before": placements(outcome.start.rig),
-            "after": placements(outcome.study.rig),
-        },
-        "mounts": mounts_table(outcome.study.rig, outcome.study.search.mounting),
-        **_robustness(outcome),
-        **_requirements(outcome),
-        **({} if outcome.conditions is None else {"conditions": outcome.conditions.to_dict()}),
-        **_search_dict(outcome),
-        **_in_traffic(outcome),
-        **_cost(outcome),
-        "ap_model": outcome.study.model.model,
-        **_sensitivity(outcome),
+        "seed": study.search.seed,
+        "entropy": after.entropy,
+        "coverage": after.coverage,
+        "before": before.to_dict(),
+        "after": after.to_dict(),
+        "placements": {"before": placements(start.rig), "after": placements(study.rig)},
+        "mounts": mounts_table(study.rig, study.search.mounting),
+    }
+    if outcome.robustness is not None:
+        data["robustness"] = outcome.robustness.to_dict()
+    if outcome.verdicts:
+        data["requirements"] = [each.to_dict() for each in outcome.verdicts]
+    if outcome.conditions is not None:
+        data["conditions"] = outcome.conditions.to_dict()
+    data["method"] = start.search.method if is_search else None
+    data["level_samples"] = list(start.search.level_samples) if is_search else []
+    if outcome.in_traffic is not None:
+        first, last = (each.to_dict() for each in outcome.in_traffic)
+        data |= {"objective": EXPECTED_AP, EXPECTED_AP: {"before": first, "after": last}}
+    if outcome.blind_m2 is not None:
+        blind = dict(zip(("before", "after"), outcome.blind_m2, strict=True))
+        data |= {"blind_ground_m2": blind, "cost": outcome.cost}
+    data["ap_model"] = study.model.model
+    if is_search:
+        found = outcome.sensitivity
+        data["sensitivity"] = None if found is None else found.to_dict()
+        data["starts"] = [
+            {
+                "name": end.name,
+                figure.key: figure.to_figure(end.entropy),
+                "evaluations": end.evaluations,
+            }
+            for end in outcome.starts
+        ]
+        data["stop_reason"] = outcome.stop_reason or None
+    data |= {
         "evaluations": outcome.evaluations,
         "stopped": outcome.stopped,
         "warnings": [each.to_dict() for each in outcome.warnings],
-        "history": [_history_dict(row, figure) for row in outcome.history],
-        "inputs": outcome.inputs or inputs_of(outcome.start),
-        "run": run_dict(outcome.seconds, host),
+        "history": [
+            {
+                "evaluation": row.evaluation,
+                "round": row.round,
+                figure.key: figure.to_figure(row.entropy),
+                "placements": placements(row.rig),
+            }
+            for row in outcome.history
+        ],
+        "inputs": outcome.inputs or inputs_of(start),
+        "run": run_dict(outcome.seconds, host or {}),
     }
-
-
-def _search_dict(outcome: Outcome) -> dict[str, Any]:
-    """Return the method and levels of a search; null and empty for a score."""
-    search = outcome.start.search
-    is_search = outcome.kind == "optimize"
-    return {
-        "method": search.method if is_search else None,
-        "level_samples": list(search.level_samples) if is_search else [],
-    }
-
-
-def _in_traffic(outcome: Outcome) -> dict[str, Any]:
-    """Return the objective of a search by expected AP, and the AP it began and ended with."""
-    if outcome.in_traffic is None:
-        return {}
-    before, after = (each.to_dict() for each in outcome.in_traffic)
-    return {"objective": EXPECTED_AP, EXPECTED_AP: {"before": before, "after": after}}
-
-
-def _cost(outcome: Outcome) -> dict[str, Any]:
-    """Return the blind ground of a search's start and result, and what it cost in a sentence."""
-    if outcome.blind_m2 is None:
-        return {}
-    before, after = outcome.blind_m2
-    return {"blind_ground_m2": {"before": before, "after": after}, "cost": outcome.cost}
+    return finite(data)  # type: ignore[no-any-return]
 
 
 def run_dict(seconds: float, host: Mapping[str, str]) -> dict[str, Any]:
@@ -195,20 +193,9 @@ def add_to_result(
 ) -> None:
     """Write files of a run together with its result.json, which lists their SHA-256.
 
-    Parameters
-    ----------
-    data : dict
-        Data of result.json; its part "run" is updated.
-    folder : path
-    writers : mapping of str to callable or bytes
-        Content of each file by name.
-    unwanted : collection of str
-        Files to remove, unless they are in `writers` or were not written by this program.
-
-    Raises
-    ------
-    InputError
-        The folder cannot be written, or one of the files in it was not written by this program.
+    The part "run" of `data` is updated. `unwanted` files are removed, unless they are in `writers`
+    or were not written by this program. `InputError` if the folder cannot be written, or one of the
+    files in it was not written by this program.
     """
     with FileSet(folder) as files:
         files.take_away(unwanted)
@@ -238,12 +225,8 @@ def set_aside_files_of_other_runs(folder: Path) -> dict[str, str]:
     """Rename files of an earlier run beside a new result: ``optimized.earlier.blend``.
 
     If a later file of a run cannot be written, for instance on a full disk, the user would mistake
-    the file of an earlier run for a part of the new result. No file is removed.
-
-    Returns
-    -------
-    dict of str
-        New names by old name. A file stays if it cannot be renamed or the new name is taken.
+    the file of an earlier run for a part of the new result. No file is removed; one stays if it
+    cannot be renamed or the new name is taken. Return new names by old name.
     """
     renamed = {}
     for name in files_of_other_runs(folder):
@@ -269,50 +252,9 @@ def history_csv(history: tuple[HistoryRow, ...], figure: SearchedFigure = IN_NAT
     return csv_text(rows)
 
 
-def _robustness(outcome: Outcome) -> dict[str, Any]:
-    """Return the robustness of a search; empty for a score."""
-    robustness = outcome.robustness
-    return {} if robustness is None else {"robustness": robustness.to_dict()}
-
-
 def runners_up(outcome: Outcome) -> dict[str, Study]:
     """Return the studies of other optima that a search found, by the name of their file."""
     found = outcome.sensitivity
     ends = None if found is None else found.endings
     rigs = [] if ends is None else [each.rig for each in ends.runners_up]
     return {n: outcome.start.with_rig(rig) for n, rig in zip(RUNNERS_UP, rigs, strict=False)}
-
-
-def _sensitivity(outcome: Outcome) -> dict[str, Any]:
-    """Return how sure a search is, where its starts ended and why it ended; empty for a score."""
-    if outcome.kind != "optimize":
-        return {}
-    found = outcome.sensitivity
-    return {
-        "sensitivity": None if found is None else found.to_dict(),
-        "starts": [_start_dict(each, searched_figure(outcome.start)) for each in outcome.starts],
-        "stop_reason": outcome.stop_reason or None,
-    }
-
-
-def _requirements(outcome: Outcome) -> dict[str, Any]:
-    """Return the verdicts on the study's requirements; empty for a study without."""
-    verdicts = [each.to_dict() for each in outcome.verdicts]
-    return {"requirements": verdicts} if verdicts else {}
-
-
-def _start_dict(end: StartEnd, figure: SearchedFigure) -> dict[str, Any]:
-    return {
-        "name": end.name,
-        figure.key: figure.to_figure(end.entropy),
-        "evaluations": end.evaluations,
-    }
-
-
-def _history_dict(row: HistoryRow, figure: SearchedFigure) -> dict[str, Any]:
-    return {
-        "evaluation": row.evaluation,
-        "round": row.round,
-        figure.key: figure.to_figure(row.entropy),
-        "placements": placements(row.rig),
-    }

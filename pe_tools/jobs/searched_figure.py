@@ -15,16 +15,9 @@ from pe_core.study.study import Study
 
 @dataclass(frozen=True, slots=True)
 class SearchedFigure:
-    """The figure that a search improves.
+    """The figure that a search improves: its name in files and in sentences.
 
-    Attributes
-    ----------
-    key : str
-        Its name in a study and in files of results.
-    label : str
-        Its name in sentences.
-    sign : float
-        The figure is this times the value that the search minimises.
+    The figure is `sign` times the value that the search minimises.
     """
 
     key: str

@@ -1,4 +1,4 @@
-"""When a search ends before its budget does: at a target, after seconds, for want of gain."""
+"""When a search ends before its budget does, and how sure it is of its result then."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from pe_core.search import Objective, Step, Stop
 from pe_core.study.study import Study
 
+from ..sensitivity import sensitivity_lines
+from .job import Outcome
 from .searched_figure import IN_NATS, SearchedFigure, searched_figure
 
 TARGET, SECONDS, GAIN = "target", "seconds", "gain"
@@ -18,15 +20,8 @@ TARGET, SECONDS, GAIN = "target", "seconds", "gain"
 class StopWatch:
     """Watches the steps of one search.
 
-    Parameters
-    ----------
-    stop : Stop
-    objectives : sequence of Objective
-        One for each level. A target that is reached on few voxels is checked on the last level.
-    started : float
-        `time.monotonic()` when the first search of a job began.
-    figure : SearchedFigure
-        What the target is of.
+    There is an objective for each level: a target that is reached on few voxels is checked on the
+    last one. `started` is `time.monotonic()` when the first search of a job began.
     """
 
     def __init__(
@@ -84,3 +79,15 @@ def stop_text(reason: str, study: Study) -> str:
         SECONDS: f"ended after {stop.seconds or 0.0:g} s",
         GAIN: f"ended: {stop.over:,} placements gained less than {gain}",
     }.get(reason, "")
+
+
+def sureness_lines(outcome: Outcome) -> list[str]:
+    """Describe how sure a search is of its result; empty for a score."""
+    figure = searched_figure(outcome.start)
+    lines = [] if outcome.sensitivity is None else list(sensitivity_lines(outcome.sensitivity))
+    for end in outcome.starts:
+        name = f"the start {end.name}" if end.name else "the given start"
+        at = figure.amount(f"{figure.to_figure(end.entropy):.4f}")
+        lines.append(f"{name} ended at {at}, on the sample of the search")
+    text = stop_text(outcome.stop_reason, outcome.start)
+    return [*lines, text] if text else lines

@@ -86,11 +86,7 @@ def is_analysed(study: Study) -> bool:
 def budget_of(study: Study, evaluations: int) -> tuple[tuple[float, ...], bool] | None:
     """Return the steps of the table and whether the endings are examined; None for no analysis.
 
-    Parameters
-    ----------
-    study : Study
-    evaluations : int
-        Of the search. Short searches have less, so that the analysis does not outlast them.
+    Short searches have less, so that the analysis does not outlast them.
     """
     wanted, sensors = study.search.goals.sensitivity, len(study.rig)
     if not is_analysed(study):
@@ -115,20 +111,9 @@ def analyse(
 ) -> Sensitivity | None:
     """Return the sensitivity analysis of a search's result; None where its budget is too small.
 
-    The result depends on the study alone, not on workers or time.
-
-    Parameters
-    ----------
-    start, best : Study
-        The study as it was given, and with the result of the search.
-    archive : Archive
-        What the search evaluated.
-    evaluations : int
-        How many.
-    samples : FreshSamples
-        Of the study with the result, which is their reference.
-    goes_on : callable
-        False: the user has stopped the job; the analysis is given up.
+    The result depends on the study alone, not on workers or time. `start` is the study as it was
+    given, `best` with the result, `archive` what the search evaluated in so many `evaluations`.
+    `samples` are of `best`. Where `goes_on` returns False, the analysis is given up.
     """
     parts = budget_of(best, evaluations)
     if parts is None or not goes_on():

@@ -33,14 +33,8 @@ Unmet = Callable[[Rig], Sequence[str]]
 class ActiveConstraint:
     """A constraint (or several) that keeps a sensor from a better place.
 
-    Attributes
-    ----------
-    constraints : tuple of str
-        What forbids the step; none: nothing does, so a longer search would gain this.
-    step : PoseStep
-        The step that gains most.
-    gain : Difference
-        How much the entropy changes: negative [nats].
+    Without a name nothing forbids the step: a longer search would gain this. The step is the one
+    that gains most; the gain is negative [nats].
     """
 
     constraints: tuple[str, ...]
@@ -68,12 +62,7 @@ class ActiveConstraint:
 class Neighbourhood:
     """A placement in the space of a search: what each axis does, and what forbids a step.
 
-    Parameters
-    ----------
-    rig : Rig
-        The placement; it breaks no rule.
-    space : SearchSpace
-        That of the search, with the bounds that it had at its start.
+    The placement breaks no rule; the space has the bounds that it had at the start of the search.
     """
 
     def __init__(self, rig: Rig, space: SearchSpace) -> None:
@@ -163,13 +152,7 @@ def active_constraints(
 ) -> tuple[ActiveConstraint, ...]:
     """Return the active constraints, that of the largest gain first; one without names last.
 
-    Parameters
-    ----------
-    table : iterable of AxisCost
-        What each step costs.
-    space : Neighbourhood
-    unmet : callable, optional
-        Requirements that are to be kept.
+    `table` has what each step costs; `unmet` tells requirements that are to be kept.
     """
     found: dict[tuple[str, ...], ActiveConstraint] = {}
     for row in table:

@@ -59,16 +59,9 @@ def _moved(pose: Pose, step: PoseStep) -> Pose:
 class AxisCost:
     """What moving one sensor alone along one axis costs.
 
-    Attributes
-    ----------
-    sensor, axis : str
-    status : str
-        What the search does with the axis: "free", "surface", "slot", "fixed" or "linked".
-    cost : mapping of float to Difference
-        By step [cm or deg]: how much the entropy rises [nats] (or the expected AP falls); negative:
-        it falls (or rises).
-    steep : float
-        From this cost of one step on the axis is steep.
+    `status` is what the search does with the axis: "free", "surface", "slot", "fixed" or "linked".
+    `cost` is by step [cm or deg] how much the entropy rises [nats] (or the expected AP falls). From
+    a cost of `steep` on the axis is steep.
     """
 
     sensor: str
@@ -100,15 +93,9 @@ def flatness(
     status: Callable[[str, str], str],
     steps: tuple[float, ...] = (NEAR, FAR),
 ) -> Iterator[AxisCost]:
-    """Yield the costs of each axis of each sensor, in the rig's order.
+    """Yield the costs of each axis of each sensor, in the rig's order, for steps to both sides.
 
-    Parameters
-    ----------
-    samples : FreshSamples
-    status : callable
-        Returns what the search does with an axis of a sensor.
-    steps : tuple of float
-        Units to both sides.
+    `status` returns what the search does with an axis of a sensor.
     """
     both = (*(-each for each in steps), *steps)
     for sensor in samples.reference:

@@ -65,17 +65,8 @@ class FreshSamples:
     """Evaluates rigs on several samples of their own; each rig is evaluated once.
 
     What is evaluated is what the search minimises: with a tolerance, the mean (or the worst) over
-    its mounting errors and failures. Requirements are left out.
-
-    Parameters
-    ----------
-    study : Study
-    reference : Rig
-        Differences are taken from this rig: the result of the search.
-    objectives : sequence of Objective, optional
-        The `fresh_objectives` of the study; by default they are made here.
-    helpers : callable, optional
-        Returns the executor that evaluates rigs; by default this thread does.
+    its mounting errors and failures. Requirements are left out. Differences are taken from the
+    reference, the result of the search. `helpers` returns the executor that evaluates rigs.
     """
 
     def __init__(

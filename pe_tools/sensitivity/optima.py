@@ -35,15 +35,9 @@ DESCENT = 40
 
 @dataclass(frozen=True, slots=True)
 class RunnerUp:
-    """An optimum that the search did not choose.
+    """An optimum that the search did not choose, behind its result by so much [nats].
 
-    Attributes
-    ----------
-    rig : Rig
-    behind : Difference
-        How much higher its entropy is than that of the result [nats].
-    moved : tuple of str
-        Sensors that are elsewhere than in the result.
+    Sensors that `moved` are elsewhere than in the result.
     """
 
     rig: Rig
@@ -71,14 +65,8 @@ class RunnerUp:
 class Endings:
     """Where the starts of a search ended.
 
-    Attributes
-    ----------
-    examined : int
-        How many placements apart from the result were examined.
-    same_basin : int
-        How many of them lead to the result without a hill between.
-    runners_up : tuple of RunnerUp
-        Other optima, the best first; at most `MAX_RUNNERS_UP`.
+    So many placements apart from the result were `examined`; `same_basin` of them lead to the
+    result without a hill between. Runners-up are other optima, the best first.
     """
 
     examined: int
@@ -95,13 +83,7 @@ class Endings:
 
 
 class Basins:
-    """Sorts placements into basins of attraction.
-
-    Parameters
-    ----------
-    samples : FreshSamples
-    space : SearchSpace
-    """
+    """Sorts placements into basins of attraction."""
 
     def __init__(self, samples: FreshSamples, space: SearchSpace) -> None:
         self._samples, self._space = samples, space

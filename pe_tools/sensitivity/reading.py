@@ -19,16 +19,8 @@ from .optima import Endings, RunnerUp
 def sensitivity_from_dict(table: Mapping[str, Any] | None, rig: Rig) -> Sensitivity | None:
     """Return the analysis that `Sensitivity.to_dict` wrote; None for None.
 
-    Parameters
-    ----------
-    table : mapping, optional
-    rig : Rig
-        Sensors of the study; runners-up have other poses.
-
-    Raises
-    ------
-    KeyError, TypeError, ValueError
-        When the table is no such analysis.
+    Runners-up are of the rig's sensors, at other poses. `KeyError`, `TypeError` or `ValueError`
+    when the table is no such analysis.
     """
     if table is None:
         return None

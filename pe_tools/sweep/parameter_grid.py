@@ -65,18 +65,10 @@ OPENING, CLOSING, QUOTES = "[{", "]}", "\"'"
 
 @dataclass(frozen=True, slots=True)
 class TriedKey:
-    """A key of a study, and the values that are tried.
+    """A key of a study as the user wrote it, and the values that are tried.
 
-    Attributes
-    ----------
-    key : str
-        The key as the user wrote it.
-    path : tuple of str
-        Parts of the key; an element of an array of tables has its name, or its index from 0.
-    values : tuple
-        TOML values; a text that is not TOML is a string.
-    texts : tuple of str
-        The values as the user wrote them.
+    In its path, an element of an array of tables has its name, or its index from 0. Values are
+    those of TOML, a text that is none is a string; texts are as the user wrote them.
     """
 
     key: str
@@ -88,10 +80,8 @@ class TriedKey:
 def read_settings(texts: Sequence[str]) -> tuple[TriedKey, ...]:
     """Read settings from the command line.
 
-    Raises
-    ------
-    InputError
-        A setting is not ``KEY=VALUE,VALUE``, has no value or a value twice, or repeats a key.
+    `InputError` for one that is not ``KEY=VALUE,VALUE``, has no value or a value twice, or repeats
+    a key.
     """
     settings = tuple(map(_setting, texts))
     keys = [setting.path for setting in settings]
@@ -158,18 +148,8 @@ def sweep_runs(
 ) -> list[SweepRun]:
     """Return the runs of study files by name, each with each combination of the settings' values.
 
-    Parameters
-    ----------
-    files : mapping of str to path
-    settings : sequence of TriedKey
-    options : callable, optional
-        Applied to every study after the changes.
-
-    Raises
-    ------
-    InputError
-        A file is not a study, a key or a value does not fit it, or there are more than `MAX_RUNS`
-        runs.
+    `options` are applied to every study after the changes. `InputError` for a file that is no
+    study, a key or a value that does not fit it, or more than `MAX_RUNS` runs.
     """
     count = len(files) * math.prod(len(setting.values) for setting in settings)
     if count > MAX_RUNS:

@@ -27,18 +27,7 @@ Batch = list[tuple[str, Any]]
 
 @dataclass(frozen=True, slots=True)
 class SweepRun:
-    """A study to be scored or optimized.
-
-    Attributes
-    ----------
-    name : str
-        Name of the folder for its results.
-    study_name : str
-    changes : mapping of str to str
-        Values by key, as they were written.
-    study : Study
-        The study with the changes made.
-    """
+    """A study with changes, by key as they were written; `name` is that of its results' folder."""
 
     name: str
     study_name: str
@@ -55,12 +44,7 @@ class RunCheckpoints(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class FolderCheckpoints:
-    """Checkpoints that the worker itself saves in the folder of the run's results.
-
-    Attributes
-    ----------
-    folder : path
-    """
+    """Checkpoints that the worker itself saves in the folder of the run's results."""
 
     folder: Path
 
@@ -82,17 +66,8 @@ class FolderCheckpoints:
 class RunTask:
     """The task of a run, as it is sent to a worker: all of it can be pickled.
 
-    Attributes
-    ----------
-    study : Study
-    optimize : bool
-        Whether to search; otherwise the study is scored.
-    threads : int
-        Threads of a grid score; the result does not depend on them.
-    checkpoints : RunCheckpoints, optional
-        Of the search; without them, an interrupted run leaves no checkpoint.
-    version : str
-        Version of the engine that sends the task.
+    Without `optimize` the study is scored, by so many threads. Without `checkpoints`, an
+    interrupted search leaves none. `version` is that of the engine that sends the task.
     """
 
     study: Study
@@ -165,23 +140,9 @@ def run_all(
 ) -> None:
     """Run tasks by name; `on_result` is called with each result as it arrives, in this thread.
 
-    A task whose worker died is run once more, alone, after all others.
-
-    Parameters
-    ----------
-    names : sequence of str
-    make_task : callable
-        From a name to the task; called when a worker is free, and again for a second attempt.
-    pool : WorkerPool
-    on_result : callable
-        Takes a name, and an outcome or an error.
-    should_continue : callable, optional
-        Called several times a second; when it returns False, the remaining tasks are cancelled.
-
-    Raises
-    ------
-    InputError
-        When the workers are gone.
+    `make_task` is called when a worker is free. A task whose worker died is made and run once more,
+    alone, after all others. `should_continue` is called several times a second; when it returns
+    False, the remaining tasks are cancelled. `InputError` when the workers are gone.
     """
 
     def call_of(name: str) -> Call:

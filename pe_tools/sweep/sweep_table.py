@@ -29,19 +29,10 @@ BEST, GAP = "*", "  "
 class SweepRow:
     """The state of a run.
 
-    Attributes
-    ----------
-    run : SweepRun
-    status : {"waiting", "begun", "done", "failed", "elsewhere", "not written"}
-        A run with the status "begun" may have a checkpoint of its search in its folder. One that is
-        "done" has its results there.
-    before, entropy : float or None
-        Entropy of the given study, and of the result [nats]; equal if there was no search.
-    coverage : float or None
-    message : str
-        Why the run failed or was not written, or where its results are.
-    ap_before, ap : float or None
-        Expected AP in traffic of the given study and of the result, of a search by it.
+    One that is "begun" may have a checkpoint of its search in its folder, one that is "done" has
+    its results there. Entropies are those of the given study and of the result [nats]; `message` is
+    why the run failed or was not written, or where its results are. APs are expected ones in
+    traffic, of a search by them.
     """
 
     run: SweepRun
@@ -92,10 +83,7 @@ def table_data(rows: Sequence[SweepRow], kind: str) -> dict[str, Any]:
 def write_table(rows: Sequence[SweepRow], kind: str, folder: Path) -> dict[str, Any]:
     """Write sweep.csv and sweep.json, together; return what sweep.json holds.
 
-    Raises
-    ------
-    InputError
-        The folder cannot be written, or one of the files belongs to another program.
+    `InputError` if the folder cannot be written, or one of the files is of another program.
     """
     data = table_data(rows, kind)
     with FileSet(prepare_folder(folder)) as files:

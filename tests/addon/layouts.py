@@ -34,6 +34,9 @@ class Layout:
     def template_list(self, name, *_lists, **_):
         self.notes.append(("list", name))
 
+    def prop_enum(self, _owner, name, value, **_):
+        self.notes.append(("prop_enum", (name, value)))
+
     def popover(self, panel, **_):
         self.notes.append(("popover", panel))
 

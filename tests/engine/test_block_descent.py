@@ -10,14 +10,14 @@ import pytest
 import pe_core as pe
 from pe_core.scoring import Evaluation
 from pe_core.search import Parametrization, pose_values
-from pe_core.search.methods import METHODS, block_descent
+from pe_core.search.methods import PARTS, block_descent
 from pe_core.search.methods.method import Given, Phase
 from pe_core.search.parametrization import feasible_start
 from tests.engine import mounting
 from tests.engine.mounting import can
 from tests.engine.recording import Recorder, distance_to
 
-METHOD = METHODS["block-descent"]
+METHOD = PARTS["block-descent"]
 POSES = [(-1.0, 0.0, 1.6), (-0.5, 0.3, 1.6), (0.0, -0.3, 1.6), (0.5, 0.0, 1.6), (0.7, 0.5, 1.6)]
 
 

@@ -80,10 +80,10 @@ def test_a_schedule_of_another_method_is_refused_and_one_that_is_left_out_is_tol
     told = "command line: --candidates: expected --method random, the only method with candidates, "
     assert told + "found portfolio" in capsys.readouterr().err
     out = tmp_path / "out"
-    assert main(["optimize", str(study), "--method", "cma-es", "-o", str(out), *few]) == 0
+    assert main(["optimize", str(study), "--method", "portfolio", "-o", str(out), *few]) == 0
     assert "the study's schedule, of random, is not used" in capsys.readouterr().err
     written = (out / "study.toml").read_text()
-    assert 'method = "cma-es"' in written and "candidates" not in written
+    assert "candidates" not in written and "random" not in written
 
 
 def test_options_change_the_study(study, capsys):

@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 import pe_core as pe
-from pe_core.search import METHODS, Parametrization
+from pe_core.search import METHODS, PARTS, Parametrization
 from pe_core.search.methods import Given, Question
 from tests.engine import mounting, shapes
 from tests.engine.mounting import can, roof
@@ -52,7 +52,7 @@ def test_algorithm_1_on_a_roof_with_a_no_go_area_takes_the_steps_it_always_took(
 
 def test_a_budget_ends_any_search():
     rig, space = mounting.space(can())
-    for method in METHODS:
+    for method in (*METHODS, *PARTS):
         recorder = Recorder(distance_to({"x": 1.0}))
         steps = list(pe.optimize(recorder, rig, space, method=method, evaluations=25))
         assert len(recorder.rigs) == steps[-1].evaluations == 25
@@ -96,7 +96,7 @@ def test_what_a_method_asks_follows_from_its_answers_alone():
     """Sent the same answers, it asks the same again: what a journal of answers rests on."""
     rig, space = mounting.space(can())
     coding = Parametrization(rig, space)
-    for method in METHODS.values():
+    for method in (METHODS | PARTS).values():
         asked = []
         for _ in range(2):
             given = Given(coding, coding.start, 1.0, seed=4, evaluations=60)

@@ -14,6 +14,14 @@ METHODS: dict[str, Method] = {
         portfolio.ask,
         portfolio.samples,
     ),
+    "random": Method(
+        "Random",
+        "Algorithm 1 of the paper: random search in a shrinking neighbourhood",
+        random_search.ask,
+    ),
+}
+"""What menus list."""
+PARTS: dict[str, Method] = {
     "block-descent": Method(
         "Block Descent",
         "One sensor at a time by CMA-ES, from several starts, on ever more voxels",
@@ -21,14 +29,15 @@ METHODS: dict[str, Method] = {
         block_descent.samples,
     ),
     "cma-es": Method("CMA-ES", "Covariance matrix adaptation of all sensors at once", cma_es.ask),
-    "random": Method(
-        "Random",
-        "Algorithm 1 of the paper: random search in a shrinking neighbourhood",
-        random_search.ask,
-    ),
 }
+"""Parts of the portfolio. A study may name one, too: research compares them with the whole."""
 DEFAULT_METHOD, SCHEDULED_METHOD = "portfolio", "random"
 """The method of a search that names none, and the only one with a schedule."""
+
+
+def method_named(name: str) -> Method:
+    """Return a method, or a part of the portfolio."""
+    return PARTS[name] if name in PARTS else METHODS[name]
 
 
 def checked_method(source: str, name: object, scheduled: bool = False) -> str:
@@ -41,15 +50,17 @@ def checked_method(source: str, name: object, scheduled: bool = False) -> str:
         raise InputError(source, "method", expected, "none named")
     if name is None:
         return DEFAULT_METHOD
-    return choice(source, "method", name, tuple(METHODS))
+    return str(name) if name in PARTS else choice(source, "method", name, tuple(METHODS))
 
 
 __all__ = [
     "DEFAULT_METHOD",
     "METHODS",
+    "PARTS",
     "SCHEDULED_METHOD",
     "Given",
     "Method",
     "Question",
     "checked_method",
+    "method_named",
 ]

@@ -16,7 +16,15 @@ import numpy as np
 from ..design_variable import METRE, RADIAN, SHARE
 from ..parametrization import Candidate
 from .cma_es import STEP, Evolution
-from .method import Evaluated, Given, MethodPart, Phase, QuestionStream, sampled_candidate
+from .method import (
+    Evaluated,
+    Given,
+    Incumbent,
+    MethodPart,
+    Phase,
+    QuestionStream,
+    sampled_candidate,
+)
 
 MAX_SLOTS = 16
 """Slots evaluated in one turn; of a longer list, so many are sampled."""
@@ -115,17 +123,10 @@ GENERATIONS = 3
 """Generations of one sensor, before it is the next one's turn."""
 
 
-class Descent:
-    """A block coordinate descent from one start.
+class Descent(Incumbent):
+    """A block coordinate descent from one start, with its best placement and that one's entropy.
 
-    Attributes
-    ----------
-    best : Candidate
-        The incumbent.
-    entropy : float
-        Of the incumbent, on the level that was used last [nats].
-    count : int
-        Placements that were evaluated.
+    The entropy is that on the level that was used last [nats]; `count` placements were evaluated.
     """
 
     def __init__(
@@ -136,7 +137,7 @@ class Descent:
         seed: Sequence[int],
         step: float = STEP,
     ) -> None:
-        self.best, self.entropy, self.count = start, entropy, 0
+        super().__init__(start, entropy)
         self._turns = [
             _turn(given, block, start, [*seed, k], step)
             for k, block in enumerate(given.parametrization.blocks)
@@ -162,10 +163,7 @@ class Descent:
         for turn in self._turns:
             base = self.best
             for _ in range(GENERATIONS if isinstance(turn, Evolution) else 1):
-                for candidate, value in (yield from turn.evaluate(base, phase)):
-                    self.count += 1
-                    if value < self.entropy:
-                        self.best, self.entropy = candidate, value
+                self.told((yield from turn.evaluate(base, phase)))
 
     def reevaluate(self, phase: Phase) -> MethodPart[None]:
         """Evaluate the incumbent on another level."""

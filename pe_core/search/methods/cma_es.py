@@ -40,15 +40,8 @@ class SymmetricCma(CMA):
 class Evolution:
     """CMA-ES over some design variables, from generation to generation.
 
-    Parameters
-    ----------
-    given : Given
-    free : sequence of int
-        Which variables; those with a range of one point stay fixed.
-    start : Candidate
-    seed : sequence of int
-    step : float
-        First standard deviation: 1 is 1 m and 30 deg.
+    `free` has the numbers of the variables; those with a range of one point stay fixed. `step` is
+    the first standard deviation: 1 is 1 m and 30 deg.
     """
 
     def __init__(
@@ -97,21 +90,14 @@ class Evolution:
         def sample() -> list[float]:
             nonlocal point
             vector = list(base.vector)
-            sampled = cma.ask() * self._scale
-            point = np.array(
-                [self._clipped(k, v) for k, v in zip(self._free, sampled, strict=True)]
-            )
-            for k, value in zip(self._free, point.tolist(), strict=True):
-                vector[k] = value
+            for k, value in zip(self._free, (cma.ask() * self._scale).tolist(), strict=True):
+                variable = self._parametrization.variables[k]  # a share is cyclic: it stays
+                vector[k] = value if variable.unit == SHARE else variable.clipped(value)
+            point = np.array([vector[k] for k in self._free])
             return vector
 
         candidate = sampled_candidate(self._parametrization, sample)
         return candidate, point / self._scale
-
-    def _clipped(self, number: int, value: float) -> float:
-        """Return a value clipped to its range; a share is cyclic and stays as it is."""
-        variable = self._parametrization.variables[number]
-        return float(value if variable.unit == SHARE else variable.clipped(float(value)))
 
 
 FINEST = 0.003

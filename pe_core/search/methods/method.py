@@ -20,7 +20,7 @@ one breaks no rule.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
@@ -165,3 +165,28 @@ def sampled_candidate(
         if parametrization.allowed(candidate.rig):
             return candidate
     return None
+
+
+class Incumbent:
+    """The best placement so far, its entropy on the level in use [nats], and what was evaluated.
+
+    Descents are incumbents of their own.
+    """
+
+    def __init__(self, best: Candidate, entropy: float) -> None:
+        self.best, self.entropy, self.count = best, entropy, 0
+
+    def told(self, candidates: Iterable[tuple[Candidate, float]]) -> None:
+        """Take placements and their values."""
+        for candidate, value in candidates:
+            self.count += 1
+            self._take(candidate, value)
+
+    def descended(self, descent: Incumbent) -> None:
+        """Take the result of a descent."""
+        self.count += descent.count
+        self._take(descent.best, descent.entropy)
+
+    def _take(self, candidate: Candidate, value: float) -> None:
+        if value < self.entropy:
+            self.best, self.entropy = candidate, value

@@ -10,7 +10,7 @@ does not show. Sensors on lists of slots try all slots, exchange them, and move 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import combinations
 
@@ -33,7 +33,7 @@ from .block_descent import (
     race,
 )
 from .block_descent import samples as samples
-from .method import Given, MethodPart, Phase, QuestionStream, sampled_candidate
+from .method import Given, Incumbent, MethodPart, Phase, QuestionStream, sampled_candidate
 from .portfolio_linear import LinearDescent
 from .portfolio_steps import MultiscaleDescent
 from .portfolio_surrogate import History, SurrogateDescent
@@ -65,40 +65,13 @@ STALLED = 8
 """A search of slots alone ends after so many such batches that found nothing better."""
 
 
-class Incumbent:
-    """The best placement so far, its entropy on the level in use, and the count of evaluations."""
-
-    def __init__(self, best: Candidate, entropy: float) -> None:
-        self.best, self.entropy, self.count = best, entropy, 0
-
-    def told(self, candidates: Iterable[tuple[Candidate, float]]) -> None:
-        """Take placements and their values."""
-        for candidate, value in candidates:
-            self.count += 1
-            self._take(candidate, value)
-
-    def descended(self, descent: Descent | LinearDescent | SurrogateDescent) -> None:
-        """Take the result of a descent."""
-        self.count += descent.count
-        self._take(descent.best, descent.entropy)
-
-    def _take(self, candidate: Candidate, value: float) -> None:
-        if value < self.entropy:
-            self.best, self.entropy = candidate, value
-
-
 class Survey:
     """Tries places all over the range of each sensor, the others kept.
 
     Places are those of an additive recurrence, which fills a range more evenly than random numbers
     (M. Roberts, The unreasonable effectiveness of quasirandom sequences, 2018). The first survey is
-    the same for every seed, so that the seed seldom decides which region is found.
-
-    Parameters
-    ----------
-    given : Given
-    exact : bool
-        Whether placements of sensors in ranges are all evaluated to the end, for a model of them.
+    the same for every seed, so that the seed seldom decides which region is found. With `exact`,
+    placements of sensors in ranges are all evaluated to the end, for a model of them.
     """
 
     def __init__(self, given: Given, exact: bool = False) -> None:

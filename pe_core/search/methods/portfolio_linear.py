@@ -17,9 +17,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...base.arrays import Floats
-from ..parametrization import Candidate
-from .method import Given, MethodPart, Phase
-from .portfolio_ranges import UnitRanges
+from ..design_variable import SHARE
+from ..parametrization import Candidate, Vector
+from .method import Given, Incumbent, MethodPart, Phase
 
 LEAST_HEIGHT, LONGEST, NEW_HEIGHT = 0.25, 2.1, 0.5
 """Powell's alpha, beta, gamma: least height and longest edge of a simplex, and the height of a new
@@ -39,34 +39,39 @@ NO_EDGE = 0.01
 """Length of an edge along a variable that cannot be changed, in radii."""
 
 
-class LinearDescent:
-    """A linear descent from one start.
+class UnitRanges:
+    """The variables that have a range, scaled by it: `free`. Slots and fixed variables stay."""
 
-    Parameters
-    ----------
-    given : Given
-    start : Candidate
-    entropy : float
-        Of the start [nats].
-    radius : float
-        First radius of the trust region, as a share of the variables' ranges.
+    def __init__(self, given: Given) -> None:
+        variables = given.parametrization.variables
+        each = list(enumerate(variables))
+        self.free = [k for k, v in each if v.low < v.high and v.unit != SHARE]
+        self._low = np.array([variables[k].low for k in self.free])
+        self._range = np.array([variables[k].high for k in self.free]) - self._low
 
-    Attributes
-    ----------
-    best : Candidate
-    entropy : float
-        Of the best [nats].
-    count : int
-        Placements that were evaluated.
-    radius : float
-        Of the trust region.
-    """
+    def point(self, vector: Vector) -> Floats:
+        """Return the point (N,) of a vector."""
+        return np.asarray((np.array([vector[k] for k in self.free]) - self._low) / self._range)
+
+    def vector(self, base: Vector, point: Floats) -> list[float]:
+        """Return the vector at a point (N,), the other variables as in the base."""
+        vector = list(base)
+        for k, value in zip(self.free, self._low + point * self._range, strict=True):
+            vector[k] = float(value)
+        return vector
+
+
+class LinearDescent(Incumbent):
+    """A linear descent from a placement; `radius` of the trust region is a share of the ranges."""
 
     def __init__(self, given: Given, start: Candidate, entropy: float, radius: float) -> None:
+        super().__init__(start, entropy)
+        self.radius = radius
         self._parametrization, self._ranges = given.parametrization, UnitRanges(given)
         self._free = self._ranges.free
-        self._blocks = _blocks(given.parametrization.blocks, self._free)
-        self.best, self.entropy, self.count, self.radius = start, entropy, 0, radius
+        at = {k: number for number, k in enumerate(self._free)}
+        blocks = ([at[k] for k in block if k in at] for block in given.parametrization.blocks)
+        self._blocks = [block for block in blocks if block]
         self._pole, self._value = self._ranges.point(start.vector), entropy
         self._edges = np.eye(len(self._free))
         self._rises = np.zeros(len(self._free))
@@ -96,14 +101,16 @@ class LinearDescent:
     def _iterate(self, phase: Phase) -> MethodPart[None]:
         """Evaluate a step down the model and a better corner; update the simplex."""
         heights, lengths, inverse = self._geometry()
-        good = self._is_good(heights, lengths)
+        high = float(heights.min()) >= (LEAST_HEIGHT - SLACK) * self.radius
+        farthest = int(np.argmax(lengths))
+        too_far = lengths[farthest] > (LONGEST + SLACK) * self.radius
         gradient = _times(self._rises, inverse.T)
         slope = math.sqrt(math.fsum(gradient * gradient))
         step = corner = None
         if slope > 0.0:
             step = self._feasible(-self.radius / slope * gradient, STEP_SHARES)
-        number = self._worst_corner(heights, lengths)
-        if not good or step is None:
+        number = farthest if too_far else int(np.argmin(heights))
+        if not high or too_far or step is None:
             normal = heights[number] * inverse[:, number]
             downhill = math.fsum(gradient * normal) <= 0.0
             edge = (NEW_HEIGHT if downhill else -NEW_HEIGHT) * self.radius * normal
@@ -132,15 +139,6 @@ class LinearDescent:
         turned = np.ascontiguousarray(self._edges.T)
         lengths = np.sqrt((turned * turned).sum(axis=0))
         return heights.round(digits), lengths.round(digits), inverse
-
-    def _is_good(self, heights: Floats, lengths: Floats) -> bool:
-        high = float(heights.min()) >= (LEAST_HEIGHT - SLACK) * self.radius
-        return high and float(lengths.max()) <= (LONGEST + SLACK) * self.radius
-
-    def _worst_corner(self, heights: Floats, lengths: Floats) -> int:
-        farthest = int(np.argmax(lengths))
-        too_far = lengths[farthest] > (LONGEST + SLACK) * self.radius
-        return farthest if too_far else int(np.argmin(heights))
 
     def _insert(self, point: Floats, value: float) -> None:
         """Put a point in place of a corner, where the simplex stays good or the value is lower."""
@@ -193,10 +191,7 @@ class LinearDescent:
         """Return the values of moves."""
         candidates = [candidate for _, candidate in moves]
         values = (yield from phase.evaluate(candidates)) if candidates else []
-        for candidate, value in zip(candidates, values, strict=True):
-            self.count += 1
-            if value < self.entropy:
-                self.best, self.entropy = candidate, value
+        self.told(zip(candidates, values, strict=True))
         return values
 
 
@@ -218,10 +213,3 @@ def _inverse(matrix: Floats) -> Floats:
         factors[k] = 0.0
         work -= factors[:, None] * work[k]
     return np.ascontiguousarray(work[:, count:])
-
-
-def _blocks(blocks: Sequence[range], free: Sequence[int]) -> list[list[int]]:
-    """Return the positions in `free` of each sensor's variables."""
-    at = {k: number for number, k in enumerate(free)}
-    each = [[at[k] for k in block if k in at] for block in blocks]
-    return [block for block in each if block]

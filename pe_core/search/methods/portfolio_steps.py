@@ -10,13 +10,12 @@ neighbourhood distribution, 2004). Variables whose steps gained lately are moved
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
 
 import numpy as np
 
 from ..design_variable import SHARE
 from ..parametrization import Candidate
-from .method import Given, MethodPart, Phase, sampled_candidate
+from .method import Given, Incumbent, MethodPart, Phase, sampled_candidate
 
 BATCH = 8
 """Placements that are tried at once."""
@@ -30,25 +29,8 @@ FULL_GAIN, MEMORY = 0.02, 0.1
 """The gain of a step counts up to this [nats], with this weight beside those of earlier steps."""
 
 
-class Searched(Protocol):
-    """The best placement so far, its entropy, and the count of evaluations."""
-
-    best: Candidate
-    entropy: float
-    count: int
-
-    def told(self, candidates: Sequence[tuple[Candidate, float]]) -> None:
-        """Take placements and their values."""
-
-
 class MultiscaleDescent:
-    """Steps of all lengths, the more of a variable the more its steps gained.
-
-    Parameters
-    ----------
-    given : Given
-    seed : sequence of int
-    """
+    """Steps of all lengths, the more of a variable the more its steps gained."""
 
     def __init__(self, given: Given, seed: Sequence[int]) -> None:
         self._parametrization, variables = given.parametrization, given.parametrization.variables
@@ -58,7 +40,7 @@ class MultiscaleDescent:
         self._free = [(sensor, k) for sensor in sensors for k in sensor]
         self._gains = np.ones(len(self._free))
 
-    def descend(self, incumbent: Searched, phase: Phase, count: float) -> MethodPart[None]:
+    def descend(self, incumbent: Incumbent, phase: Phase, count: float) -> MethodPart[None]:
         """Try about `count` placements; each batch starts from the best of those before."""
         end = incumbent.count + count
         while self._free and incumbent.count < end:
@@ -70,7 +52,7 @@ class MultiscaleDescent:
             for (number, _), value in zip(tried, values, strict=True):
                 gain = min(max(before - value, 0.0) / FULL_GAIN, 1.0)
                 self._gains[number] += MEMORY * (gain - self._gains[number])
-            incumbent.told(list(zip(candidates, values, strict=True)))
+            incumbent.told(zip(candidates, values, strict=True))
 
     def _batch(self, base: Candidate) -> list[tuple[int, Candidate]]:
         """Return placements a step away that break no rule, each with its variable's number."""

@@ -20,8 +20,8 @@ import numpy as np
 from ...base.arrays import Floats
 from ..design_variable import SHARE
 from ..parametrization import Candidate
-from .method import MAX_SAMPLED, Given, MethodPart, Phase, QuestionStream
-from .portfolio_ranges import UnitRanges
+from .method import MAX_SAMPLED, Given, Incumbent, MethodPart, Phase, QuestionStream
+from .portfolio_linear import UnitRanges
 
 SAMPLED = 500
 """Placements sampled for each question."""
@@ -67,14 +67,10 @@ class History:
 
 
 class CubicModel:
-    """A cubic radial basis function with a linear tail, to which points are added one by one.
+    """A cubic radial basis function with a linear tail, to which points (D,) are added.
 
     The inverse of its equations is kept, and bordered with each point, by operations that have the
     same bits on every system.
-
-    Parameters
-    ----------
-    dimensions : int
     """
 
     def __init__(self, dimensions: int) -> None:
@@ -121,28 +117,11 @@ class CubicModel:
         return np.asarray((weights[:, None] * np.concatenate(rows)).sum(axis=0))
 
 
-class SurrogateDescent:
+class SurrogateDescent(Incumbent):
     """A surrogate descent from the best placement so far.
 
-    Parameters
-    ----------
-    given : Given
-    history : History
-        Placements that are known; it may grow while the descent goes on.
-    start : Candidate
-    entropy : float
-        Of the start [nats].
-    seed : sequence of int
-    step : float
-        First standard deviation of steps, as a share of the variables' ranges.
-
-    Attributes
-    ----------
-    best : Candidate
-    entropy : float
-        Of the best [nats].
-    count : int
-        Placements that were evaluated.
+    `history` has known placements, and may grow meanwhile; `step` is the first standard deviation
+    of steps, as a share of the variables' ranges.
     """
 
     def __init__(
@@ -157,7 +136,7 @@ class SurrogateDescent:
         self._parametrization, self._history = given.parametrization, history
         self._ranges = UnitRanges(given)
         self._free = self._ranges.free
-        self.best, self.entropy, self.count = start, entropy, 0
+        super().__init__(start, entropy)
         self._rng = np.random.default_rng(seed)
         self._step, self._longest = step, step
         self._gains = self._failures = 0
@@ -236,10 +215,8 @@ class SurrogateDescent:
         """Take values of placements; make the steps longer or shorter."""
         before = self.entropy
         for candidate, value in zip(candidates, values, strict=True):
-            self.count += 1
             self._model.add(self._ranges.point(candidate.vector), value)
-            if value < self.entropy:
-                self.best, self.entropy = candidate, value
+        self.told(zip(candidates, values, strict=True))
         if self.entropy < before - GAIN:
             self._gains, self._failures = self._gains + 1, 0
         else:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from ..design_variable import METRE, RADIAN, SHARE
 from ..parametrization import Candidate
-from .method import Evaluations, Given, Question, QuestionStream, sampled_candidate
+from .method import Given, Question, QuestionStream, sampled_candidate
 
 SHARE_REACH = 0.5
 """Half width of the first neighbourhood in a list: all of it, because a list is cyclic."""
@@ -25,10 +23,13 @@ def ask(given: Given) -> QuestionStream:
     total = len(schedule.scales) * schedule.candidates
     for number, scale in enumerate(schedule.scales):
         center = best
-        for count in _batches(schedule.candidates, given.batch):
+        for asked in range(0, schedule.candidates, given.batch):
+            count = min(given.batch, schedule.candidates - asked)
             candidates = [_neighbour(center, given, scale, rng) for _ in range(count)]
             answers = yield Question(candidates, entropy, number, total)
-            best, entropy = _incumbent(best, entropy, candidates, answers)
+            for candidate, answer in zip(candidates, answers, strict=True):
+                if candidate is not None and answer is not None and answer.entropy < entropy:
+                    best, entropy = candidate, answer.entropy
 
 
 def _neighbour(
@@ -43,19 +44,3 @@ def _neighbour(
         return [v + scale * reach[u.unit] * rng.uniform(-1.0, 1.0) for u, v in values]
 
     return sampled_candidate(given.parametrization, sample)
-
-
-def _incumbent(
-    best: Candidate, entropy: float, candidates: list[Candidate | None], answers: Evaluations
-) -> tuple[Candidate, float]:
-    """Return the candidate of lowest entropy, the first of equal ones, and its entropy."""
-    for candidate, answer in zip(candidates, answers, strict=True):
-        if candidate is not None and answer is not None and answer.entropy < entropy:
-            best, entropy = candidate, answer.entropy
-    return best, entropy
-
-
-def _batches(count: int, largest: int) -> Iterator[int]:
-    """Yield the sizes of batches of `largest` at most that add up to a count."""
-    for done in range(0, count, largest):
-        yield min(largest, count - done)

@@ -76,12 +76,9 @@ class DesignSpace:
         """Yield the neighbours of a design: one site takes another option."""
         for k, site in enumerate(self.sites):
             for pick in range(len(site.options)):
-                yield from self._if_allowed((*picks[:k], pick, *picks[k + 1 :]), picks)
-
-    def _if_allowed(self, picks: Picks, other_than: Picks) -> Iterator[Picks]:
-        ordered = self._ordered(picks)
-        if ordered != other_than and self._has_sensor(ordered) and self._within_limits(ordered):
-            yield ordered
+                other = self._ordered((*picks[:k], pick, *picks[k + 1 :]))
+                if other != picks and self._has_sensor(other) and self._within_limits(other):
+                    yield other
 
     def _ordered(self, picks: Picks) -> Picks:
         """Return a design with the options of the sites of one choice in order."""

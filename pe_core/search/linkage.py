@@ -58,8 +58,12 @@ def followers(rig: Rig, mounting: Mounting, vehicle: Vehicle | None) -> tuple[Fo
     """
     _check_names(rig, mounting)
     waiting = {link.name: link for link in _links(rig, mounting)}
-    if mounting.pairs:
-        _check_symmetry(vehicle)
+    if mounting.pairs and vehicle is not None:
+        low, high = (float(corner[1]) for corner in vehicle.bounds)
+        if abs(low + high) > MAX_ASYMMETRY * (high - low):
+            expected = "a vehicle that is its own mirror image across y = 0"
+            found = f"one from y = {low:.2f} to {high:.2f} m"
+            raise InputError("optimize", "pair", expected, found)
     ordered: list[Follower] = []
     while waiting:
         ready = [link for link in waiting.values() if link.leader not in waiting]
@@ -72,7 +76,10 @@ def followers(rig: Rig, mounting: Mounting, vehicle: Vehicle | None) -> tuple[Fo
 
 def _links(rig: Rig, mounting: Mounting) -> Iterator[Follower]:
     for first, second in mounting.pairs:
-        _check_pair(rig, first, second)
+        image, pose = mirrored(rig[first].pose), rig[second].pose
+        if not is_same_pose(image, pose):
+            expected = f"the mirror image of {first!r} across y = 0, {pose_text(image)}"
+            raise InputError(f"sensor {second!r}", "position", expected, pose_text(pose))
         yield Follower(second, first)
     for leader, *follower_names in mounting.groups:
         leader_pose = rig[leader].pose
@@ -98,20 +105,3 @@ def _check_names(rig: Rig, mounting: Mounting) -> None:
         if name in mounting.on:
             expected = "no mount for a sensor that follows another"
             raise InputError(f"sensor {name!r}", "mount", expected, shown(mounting.on[name]))
-
-
-def _check_pair(rig: Rig, first: str, second: str) -> None:
-    one, other = rig[first], rig[second]
-    image = mirrored(one.pose)
-    if not is_same_pose(image, other.pose):
-        expected = f"the mirror image of {first!r} across y = 0, {pose_text(image)}"
-        raise InputError(f"sensor {second!r}", "position", expected, pose_text(other.pose))
-
-
-def _check_symmetry(vehicle: Vehicle | None) -> None:
-    if vehicle is None:
-        return
-    low, high = (float(corner[1]) for corner in vehicle.bounds)
-    if abs(low + high) > MAX_ASYMMETRY * (high - low):
-        expected = "a vehicle that is its own mirror image across y = 0"
-        raise InputError("optimize", "pair", expected, f"one from y = {low:.2f} to {high:.2f} m")

@@ -29,7 +29,10 @@ class MountSurface:
         self._tree = TriangleTree(self.triangles)
         self._corners = np.unique(self.triangles.reshape(-1, 3), axis=0)
         self._outward: dict[int, Floats] = {}
-        self._side = self._side_of_all()
+        # The side of the probed faces if all agree, as in most meshes; else 0.0.
+        probed = np.linspace(0, len(self.triangles) - 1, PROBED_FACES).astype(int)
+        sides = {self._side_of(face) for face in np.unique(probed).tolist()}
+        self._side = sides.pop() if len(sides) == 1 else 0.0
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
@@ -67,14 +70,6 @@ class MountSurface:
         """Return 1.0 where a face's open side is that of its normal, else -1.0."""
         middle = self.triangles[face].sum(axis=0) / 3.0
         return open_side(self.vehicle, middle, self._normal(face))
-
-    def _side_of_all(self) -> float:
-        """Return the side of the probed faces if all agree, as in most meshes; else 0.0."""
-        probed = np.unique(
-            np.linspace(0, len(self.triangles) - 1, PROBED_FACES).astype(int)
-        ).tolist()
-        sides = {self._side_of(face) for face in probed}
-        return sides.pop() if len(sides) == 1 else 0.0
 
 
 def _faces(who: str, mount: SurfaceMount, vehicle: Vehicle | None) -> tuple[Vehicle, Floats]:

@@ -57,7 +57,9 @@ class Parametrization:
         self.space = space.checked(rig)
         self._followers = followers(rig, space.mounting, space.vehicle)
         following = {follower.name for follower in self._followers}
-        self._domains = _domains(rig, space, following)
+        surfaces: dict[str, MountSurface] = {}
+        free = (sensor for sensor in rig if sensor.name not in following)
+        self._domains = {each.name: _domain(each, space, surfaces) for each in free}
         self.variables = tuple(v for domain in self._domains.values() for v in domain.variables)
         self.blocks = tuple(_blocks(self._domains.values()))
         vector = tuple(value for domain in self._domains.values() for value in domain.start)
@@ -110,12 +112,6 @@ class Parametrization:
         for follower in self._followers:
             names |= {follower.name} if follower.leader in names else set()
         return names
-
-
-def _domains(rig: Rig, space: SearchSpace, following: set[str]) -> dict[str, Domain]:
-    """Return the domain of each sensor that follows no other."""
-    surfaces: dict[str, MountSurface] = {}
-    return {s.name: _domain(s, space, surfaces) for s in rig if s.name not in following}
 
 
 def _blocks(domains: Iterable[Domain]) -> Iterator[range]:

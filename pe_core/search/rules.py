@@ -61,7 +61,9 @@ def rules_of(
     """
     names = [sensor.name for sensor in rig if sensor.name in moving]
     rules = [rule for name in names for rule in _of_one(name, space)]
-    if _pairs_have_rules(space, clear):
+    limits, mounts = space.mounting.constraints, space.mounting.mounts.values()
+    has_slots = any(isinstance(mount, SlotMount) for mount in mounts)
+    if limits.min_distance or has_slots or (space.housings and clear):  # else millions for nothing
         pairs = combinations([sensor.name for sensor in rig], 2)
         moved = ((a, b) for a, b in pairs if a in moving or b in moving)
         rules += [rule for a, b in moved for rule in _of_two(a, b, space, clear)]
@@ -106,13 +108,6 @@ def _no_go(name: str, area: NoGo) -> Rule:
     sides = np.clip([getattr(area, axis) or SPAN for axis in "xyz"], *SPAN)
     box = hull_box(*sides.T)
     return Rule(f"no_go {area.name!r} for {name!r}", lambda trial: overlaps(trial.hull(name), box))
-
-
-def _pairs_have_rules(space: SearchSpace, clear: Collection[str]) -> bool:
-    """Whether `_of_two` may have a rule for any pair: thousands of sensors have millions."""
-    mounting = space.mounting
-    has_slots = any(isinstance(mount, SlotMount) for mount in mounting.mounts.values())
-    return bool(mounting.constraints.min_distance or has_slots or (space.housings and clear))
 
 
 def _of_two(a: str, b: str, space: SearchSpace, clear: Collection[str]) -> Iterator[Rule]:

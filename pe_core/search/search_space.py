@@ -96,8 +96,12 @@ class SearchSpace:
                 raise InputError(
                     f"sensor {sensor.name!r}", "bounds", f"no bounds for {reason}", "bounds"
                 )
-            bounded = _bounded_axes(sensor.name, axes, given, mounting)
-            bounds[sensor.name] = {a: given.get(a, default[a]) for a in bounded}
+            if mounting.unbounded(sensor.name):
+                axes = ()
+            elif mounting.mount_of(sensor.name) is not None:  # positions only with given bounds
+                turns = (axis for axis in axes if axis not in POSITION_AXES)
+                axes = (*(axis for axis in POSITION_AXES if axis in given), *turns)
+            bounds[sensor.name] = {a: given.get(a, default[a]) for a in axes}
         return cls(bounds, mounting, vehicle, housings or {}, fixed).checked(rig)
 
     def checked(self, rig: Rig) -> SearchSpace:
@@ -151,18 +155,6 @@ def default_bounds(sensor: Sensor, vehicle: Vehicle | None) -> dict[str, Bounds]
     bounds |= {"roll": (-math.pi, math.pi), "yaw": (-math.pi, math.pi)}
     bounds["pitch"] = (-math.pi / 2, math.pi / 2)
     return {a: (min(lo, start[a]), max(hi, start[a])) for a, (lo, hi) in bounds.items()}
-
-
-def _bounded_axes(
-    sensor: str, free: tuple[str, ...], given: Mapping[str, Bounds], mounting: Mounting
-) -> tuple[str, ...]:
-    """Return the axes that have bounds; on a surface, x, y and z only with given bounds."""
-    if mounting.unbounded(sensor):
-        return ()
-    if mounting.mount_of(sensor) is None:
-        return free
-    given_axes = (axis for axis in POSITION_AXES if axis in given)
-    return (*given_axes, *(axis for axis in free if axis not in POSITION_AXES))
 
 
 def _shown(axis: str, value: float) -> str:
@@ -220,8 +212,9 @@ class Schedule:
 
     def __post_init__(self) -> None:
         check_settings(self, "optimize")
-        if self._rounds_m > MAX_ROUNDS or self._rounds_rad > MAX_ROUNDS:
-            rounds = max(self._rounds_m, self._rounds_rad)
+        reaches = (self.reach_m, self.floor_m), (self.reach_rad, self.floor_rad)
+        rounds = max(_rounds(*each, self.decay) for each in reaches)
+        if rounds > MAX_ROUNDS:
             expected = f"at most {MAX_ROUNDS} rounds from reach to floor"
             raise InputError("optimize", "decay", expected, f"{rounds:.4g}")
 
@@ -233,14 +226,6 @@ class Schedule:
             scales.append(scale)
             scale *= self.decay
         return scales
-
-    @property
-    def _rounds_m(self) -> float:
-        return _rounds(self.reach_m, self.floor_m, self.decay)
-
-    @property
-    def _rounds_rad(self) -> float:
-        return _rounds(self.reach_rad, self.floor_rad, self.decay)
 
 
 def _rounds(reach: float, floor: float, decay: float) -> float:

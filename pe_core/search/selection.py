@@ -171,11 +171,14 @@ def sites_of(selection: Selection, rig: Rig, mounting: Mounting) -> tuple[Site, 
     """
     sites: list[Site] = []
     for number, choice in enumerate(selection.choices):
-        _check_kinds(f"choice[{number}]", choice, selection)
-        options = sorted(choice.options, key=lambda option: option.price)
-        for sensors in _sites_of_choice(f"choice[{number}]", choice, rig, mounting):
+        who, options = f"choice[{number}]", sorted(choice.options, key=lambda o: o.price)
+        for option in choice.options:
+            if selection.max_of_kind.get(kind := option.model.kind) == 0:
+                expected = f"models of kinds that are allowed (max_of_kind of {kind!r} is 0)"
+                raise InputError(who, "option", expected, f"{option.model.name}, a {kind}")
+        for sensors in _sites_of_choice(who, choice, rig, mounting):
             for name in sensors:
-                _check_sensor(f"choice[{number}]", name, sites, choice.optional, mounting)
+                _check_sensor(who, name, sites, choice.optional, mounting)
             left_out = (None,) if choice.optional else ()
             sites.append(Site(sensors, (*options, *left_out), number))
     return tuple(sites)
@@ -222,11 +225,3 @@ def _check_sensor(
     if optional and any(name == group[0] for group in mounting.groups):
         expected = "false for the leading sensor of a group"
         raise InputError(who, "optional", expected, f"true for {name!r}")
-
-
-def _check_kinds(who: str, choice: Choice, selection: Selection) -> None:
-    for option in choice.options:
-        kind = option.model.kind
-        if selection.max_of_kind.get(kind) == 0:
-            expected = f"models of kinds that are allowed (max_of_kind of {kind!r} is 0)"
-            raise InputError(who, "option", expected, f"{option.model.name}, a {kind}")

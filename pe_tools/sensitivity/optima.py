@@ -137,7 +137,7 @@ class Basins:
 
     def _between(self, one: Rig, other: Rig) -> list[Rig] | None:
         """Return placements on the way; None if one of them breaks a rule."""
-        first, last = (self._vector(rig) for rig in (one, other))
+        first, last = (Parametrization(r, self._space).start.vector for r in (one, other))
         way = []
         for share in BETWEEN:
             vector = [a + share * (b - a) for a, b in zip(first, last, strict=True)]
@@ -146,9 +146,6 @@ class Basins:
                 return None
             way.append(rig)
         return way
-
-    def _vector(self, rig: Rig) -> tuple[float, ...]:
-        return Parametrization(rig, self._space).start.vector
 
     def _descended(self, rig: Rig) -> Rig:
         """Return the placement after a short compass search, which only takes what is better."""

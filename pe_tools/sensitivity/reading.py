@@ -25,30 +25,23 @@ def sensitivity_from_dict(table: Mapping[str, Any] | None, rig: Rig) -> Sensitiv
     if table is None:
         return None
     by_ap = table.get("objective") == EXPECTED_AP
-    return Sensitivity(
-        int(table["voxels"]),
-        int(table["evaluations"]),
-        tuple(_axis(row, STEEP_AP if by_ap else STEEP_NATS) for row in table["axes"]),
-        tuple(_constraint(row) for row in table["constraints"]),
-        None if table["endings"] is None else _endings(table["endings"], rig),
-        by_ap,
-    )
-
-
-def _axis(row: Mapping[str, Any], steep: float) -> AxisCost:
-    cost = {float(step): _difference(values) for step, values in row["cost"].items()}
-    return AxisCost(str(row["sensor"]), str(row["axis"]), str(row["status"]), cost, steep)
-
-
-def _constraint(row: Mapping[str, Any]) -> ActiveConstraint:
-    step = PoseStep(str(row["sensor"]), str(row["axis"]), float(row["step"]))
-    gain = Difference(-float(row["gain"]), float(row["stderr"]))
-    return ActiveConstraint(tuple(map(str, row["constraints"])), step, gain)
-
-
-def _endings(table: Mapping[str, Any], rig: Rig) -> Endings:
-    runners_up = tuple(_runner_up(row, rig) for row in table["runners_up"])
-    return Endings(int(table["examined"]), int(table["same_basin"]), runners_up)
+    steep = STEEP_AP if by_ap else STEEP_NATS
+    axes, constraints = list[AxisCost](), list[ActiveConstraint]()
+    for row in table["axes"]:
+        cost = {float(step): Difference(*map(float, pair)) for step, pair in row["cost"].items()}
+        names = str(row["sensor"]), str(row["axis"]), str(row["status"])
+        axes.append(AxisCost(*names, cost, steep))
+    for row in table["constraints"]:
+        step = PoseStep(str(row["sensor"]), str(row["axis"]), float(row["step"]))
+        gain = Difference(-float(row["gain"]), float(row["stderr"]))
+        constraints.append(ActiveConstraint(tuple(map(str, row["constraints"])), step, gain))
+    found = table["endings"]
+    endings = None
+    if found is not None:
+        runners_up = tuple(_runner_up(row, rig) for row in found["runners_up"])
+        endings = Endings(int(found["examined"]), int(found["same_basin"]), runners_up)
+    counts = int(table["voxels"]), int(table["evaluations"])
+    return Sensitivity(*counts, tuple(axes), tuple(constraints), endings, by_ap)
 
 
 def _runner_up(row: Mapping[str, Any], rig: Rig) -> RunnerUp:
@@ -56,8 +49,3 @@ def _runner_up(row: Mapping[str, Any], rig: Rig) -> RunnerUp:
     poses = [Pose.from_degrees(each["position"], each["rotation"]) for each in tables]
     behind = Difference(float(row["behind"]), float(row["stderr"]))
     return RunnerUp(rig.with_poses(poses), behind, tuple(map(str, row["moved"])))
-
-
-def _difference(values: list[Any]) -> Difference:
-    mean, stderr = map(float, values)
-    return Difference(mean, stderr)

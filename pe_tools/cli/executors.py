@@ -9,7 +9,6 @@ import queue
 import re
 import secrets
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,12 +17,12 @@ from typing import Any
 from pe_core.base.errors import InputError, shown
 from pe_core.base.plugins import EXTRAS, optional_package
 from pe_core.scene import Pose
-from pe_core.search import EvaluatedRig, Journal, no_processes, start_processes
+from pe_core.search import EvaluatedRig, Journal, no_processes
 from pe_core.search.payload import plugin_name
 from pe_core.study import Study
 
 from ..jobs import Checkpoint, Job, OptimizeJob, ScoreJob, SearchState, read_search
-from ..sweep import FolderCheckpoints, RunCheckpoints, SweepRun, WorkerPool
+from ..sweep import LocalWorkers, SweepRun
 from .terminal import tell
 
 
@@ -130,16 +129,16 @@ CONNECT_S = 5.0
 
 
 @contextmanager
-def workplace(workers: int | None, scheduler: str | None) -> Iterator[WorkerPool]:
+def workplace(workers: int | None, scheduler: str | None) -> Iterator[LocalWorkers]:
     """Open the worker pool that the command line asks for; close it at the end.
 
     `InputError` where no scheduler answers, or the package for it is not installed.
     """
-    place = Here(workers or os.cpu_count() or 1) if scheduler is None else DaskWorkers(scheduler)
-    try:
+    count = workers or os.cpu_count() or 1
+    if scheduler is None:
+        _tell_without_processes(count)
+    with closing(LocalWorkers(count) if scheduler is None else DaskWorkers(scheduler)) as place:
         yield place
-    finally:
-        place.close()
 
 
 @contextmanager
@@ -165,37 +164,7 @@ def _tell_without_processes(count: int | None) -> None:
         tell(f"one processor does the work of all: no worker processes here ({reason})")
 
 
-class Here:
-    """A pool of processes on this machine; a single thread if no process can be started."""
-
-    def __init__(self, count: int) -> None:
-        _tell_without_processes(count)
-        processes = start_processes(count)
-        self._count = 1 if processes is None else count
-        self.executor: Executor = processes or ThreadPoolExecutor(1)
-        self.threads = max(1, (os.cpu_count() or 1) // self._count)
-
-    def width(self) -> int:
-        """One task for each process: so a dead process identifies the task that killed it."""
-        return self._count
-
-    def check(self) -> None:
-        """Do nothing: local workers are always available."""
-
-    def checkpoints(self, run: SweepRun, folder: Path) -> RunCheckpoints:
-        """Return checkpoints that the worker process itself saves in the folder."""
-        return FolderCheckpoints(folder)
-
-    def finish(self, name: str) -> None:
-        """Do nothing: a worker that returns its result saves no more."""
-
-    def close(self) -> None:
-        """Kill the processes in the middle of their tasks."""
-        processes = self._count > 1  # processes are killed; a thread finishes its task
-        self.executor.shutdown(wait=processes, cancel_futures=True)
-
-
-class DaskWorkers:
+class DaskWorkers(LocalWorkers):
     """The worker pool of a Dask scheduler."""
 
     threads = 1
@@ -207,11 +176,10 @@ class DaskWorkers:
         self.executor = self._client.get_executor(pure=False)
         self._alone = False
         self._saved = ClusterCheckpoints(self._client)
-        self.finish = self._saved.finish
 
     def width(self) -> int:
         """Two tasks for each thread, so that no thread waits for its next task."""
-        return 2 * max(1, self._count())
+        return 2 * max(1, self._thread_count())
 
     def check(self) -> None:
         """Save received checkpoints; print a message, once, if there are no workers.
@@ -224,17 +192,21 @@ class DaskWorkers:
             raise InputError(
                 self._address, "scheduler", "a scheduler that runs until the end", found
             )
-        alone = self._client.status == "running" and not self._count()
+        alone = self._client.status == "running" and not self._thread_count()
         if alone and not self._alone:
             need = "they need this version of perception-entropy"
             tell(f"{self._address}: no workers; waiting for some ({need})")
         self._alone = alone
 
-    def checkpoints(self, run: SweepRun, folder: Path) -> RunCheckpoints:
+    def checkpoints(self, run: SweepRun, folder: Path) -> PostedCheckpoints:
         """Return checkpoints that the worker, maybe remote, sends here to be saved."""
         return self._saved.for_run(run, folder)
 
-    def _count(self) -> int:
+    def finish(self, name: str) -> None:
+        """Forget the checkpoints of a run: its outcome is here, with the whole search."""
+        self._saved.finish(name)
+
+    def _thread_count(self) -> int:
         """Return the number of threads of all workers."""
         try:
             return sum(self._client.nthreads().values())

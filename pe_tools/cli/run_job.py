@@ -106,38 +106,6 @@ def save_to_fallback(text: str) -> str:
     return f"what it would have said is in {path}"
 
 
-class Saver:
-    """Saves the checkpoints of a search in the output folder, and reports errors once."""
-
-    def __init__(self, job: Job, output: Path | None) -> None:
-        self._job = job if isinstance(job, OptimizeJob) else None
-        self._checkpoint = Checkpoint(self._job) if self._job else None
-        self._output = output
-        self._warned = False
-
-    def save_when_due(self) -> None:
-        """Save after every round, every few seconds, and when the search is stopped.
-
-        After a stop there may be no later opportunity.
-        """
-        if self._output is None or self._checkpoint is None or not self._checkpoint.due():
-            return
-        try:
-            self._checkpoint.save(self._output)
-        except InputError as error:
-            if not self._warned:
-                tell(f"{error}; the search goes on")
-            self._warned = True
-
-    def save_at_last(self) -> None:
-        """Save now, to the output folder or a fallback folder, and print the path."""
-        if self._output is None or self._job is None or len(self._job.history) < 2:
-            return
-        assert self._checkpoint is not None
-        if (folder := write_somewhere(self._output, self._checkpoint.save)) is not None:
-            tell(f"the best placement so far is in {folder / STUDY}")
-
-
 Data = dict[str, Any]
 
 
@@ -192,13 +160,26 @@ def drive(job: Job, output: Path | None = None, stream: TextIO | None = None) ->
     The outcome is None if the job was stopped before its first score. During a search, checkpoints
     are saved in `output`: after every round, and when an exception ends the search.
     """
-    reporter, saver = Reporter(stream or sys.stderr), Saver(job, output)
+    reporter, failed = Reporter(stream or sys.stderr), False
+    saved = None
+    if isinstance(job, OptimizeJob) and output is not None:
+        saved = job, Checkpoint(job), output
     try:
         for progress in job:
             reporter.report(progress)
-            saver.save_when_due()
+            if saved is None or not saved[1].due():
+                continue
+            try:
+                saved[1].save(saved[2])
+            except InputError as error:
+                if not failed:
+                    tell(f"{error}; the search goes on")
+                failed = True
     except BaseException:
-        saver.save_at_last()
+        if saved is not None and len(saved[0].history) > 1:
+            folder = write_somewhere(saved[2], saved[1].save)
+            if folder is not None:
+                tell(f"the best placement so far is in {folder / STUDY}")
         raise
     finally:
         reporter.clear()

@@ -153,6 +153,8 @@ class Outcome:
 
 T = TypeVar("T")
 AsDrawn = Callable[[Study], RequirementChecker]
+Watch = Callable[[float], bool]
+"""Takes the progress of a work, 0 to 1; returns whether it goes on."""
 
 WAIT_S = 0.03
 """How long a job waits for its thread before it yields: a frame of a responsive window."""
@@ -265,20 +267,40 @@ class Job:
         Returns None if the job is dropped meanwhile, or stopped without `to_the_end`. The thread
         then ends soon by itself; nothing waits for it.
         """
-        done = waiting.fraction
+
+        def work(watch: Watch) -> Score:
+            return self.evaluators.on(self.study.samples).score(rig, watch=watch)
+
+        return (yield from self._watched(work, waiting, to_the_end, waiting.fraction))
+
+    def _watched(
+        self,
+        work: Callable[[Watch], T],
+        waiting: Progress,
+        to_the_end: bool = False,
+        least: float = 0.0,
+    ) -> Generator[Progress, None, T | None]:
+        """Run `work` in a thread as `_beside`; it tells its progress, and hears whether to go on.
+
+        The fraction that `waiting` is yielded with is never below `least`.
+        """
+        done = least
 
         def watch(share: float) -> bool:
             nonlocal done
-            done = max(waiting.fraction, share)
+            done = max(least, share)
             return self._goes_on(to_the_end)
 
-        def work() -> Score | None:
+        def guarded() -> T | None:
             try:
-                return self.evaluators.on(self.study.samples).score(rig, watch=watch)
+                return work(watch)
             except ScoreStopped:
                 return None
 
-        return (yield from self._beside(work, lambda: replace(waiting, fraction=done), to_the_end))
+        def now() -> Progress:
+            return replace(waiting, fraction=done)
+
+        return (yield from self._beside(guarded, now, to_the_end))
 
     def _beside(
         self, work: Callable[[], T], waiting: Callable[[], Progress], to_the_end: bool = False
@@ -321,18 +343,15 @@ class Job:
         if not study.requirements:
             return ()
 
-        done, found = 0.0, list[Verdict]()
-
-        def work() -> tuple[Verdict, ...]:
-            nonlocal done
+        def work(watch: Watch) -> tuple[Verdict, ...]:
+            found = []
             for step in self._check_steps(study):
-                if not self._goes_on(to_the_end):  # nobody waits for this thread
+                if not watch(step.fraction):  # nobody waits for this thread
                     break
-                done = step.fraction
-                found.extend([] if step.verdict is None else [step.verdict])
+                found += [] if step.verdict is None else [step.verdict]
             return tuple(found)
 
-        return (yield from self._beside(work, lambda: replace(waiting, fraction=done), to_the_end))
+        return (yield from self._watched(work, waiting, to_the_end))
 
     def _check_steps(self, study: Study) -> Iterator[CheckStep]:
         """Yield the verdicts on a study one by one, with steps in between."""
@@ -344,20 +363,11 @@ class Job:
         """Score a study under its conditions in a thread; None without, or where it is dropped."""
         if not study.conditions:
             return None
-        done = 0.0
 
-        def watch(share: float) -> bool:
-            nonlocal done
-            done = share
-            return self._goes_on(to_the_end)
+        def work(watch: Watch) -> ConditionTable | None:
+            return condition_table(study, self.workers, watch)
 
-        def work() -> ConditionTable | None:
-            try:
-                return condition_table(study, self.workers, watch)
-            except ScoreStopped:
-                return None
-
-        return (yield from self._beside(work, lambda: replace(waiting, fraction=done), to_the_end))
+        return (yield from self._watched(work, waiting, to_the_end))
 
 
 def begun(work: Callable[[], T]) -> Future[T]:

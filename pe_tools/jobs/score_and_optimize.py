@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import cached_property, partial
-from typing import Any, NamedTuple
+from functools import cached_property
+from typing import Any, NamedTuple, TypeVar
 
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigEvaluator
-from pe_core.scoring.requirements import Verdict
 from pe_core.scoring.score import ObjectScore, Score
 from pe_core.search import (
     Journal,
@@ -39,6 +38,8 @@ from .candidate_workers import ExecutorSource, candidate_workers
 from .job import HistoryRow, Job, Outcome, Progress, StartEnd, begun, best_so_far
 from .searched_figure import IN_AP, searched_figure, searched_samples
 from .stopping import TARGET, StopWatch
+
+T = TypeVar("T")
 
 
 class _Scored(NamedTuple):
@@ -177,42 +178,45 @@ class OptimizeJob(Job):
         yield from self._search()
         stopped = self.stopped
         last, best = yield from self._better_of(first)
-        before, after = first.score, last.score
         looking = self._about("scoring the result", last.value)
-        warnings = yield from self._warnings(best, after, looking)
+        warnings = yield from self._warnings(best, last.score, looking)
         blind = yield from self._beside(lambda: self._blind(best), lambda: looking, to_the_end=True)
         # A stop, before it or while it runs, ends what follows: the result does not wait for it.
         analysing = replace(looking, stage="analysing")
-        robustness_result = yield from self._robustness(best, analysing)
-        verdicts = yield from self._verdicts(best, analysing, to_the_end=False)
-        unmet_warnings = yield from self._unmet(best, verdicts or (), analysing)
-        sensitivity = yield from self._sensitivity(best, analysing)
+
+        def analysed(work: Callable[[], T]) -> Generator[Progress, None, T | None]:
+            return self._beside(work, lambda: analysing)
+
+        found = yield from analysed(lambda: self._robustness(best))
+        verdicts = (yield from self._verdicts(best, analysing, to_the_end=False)) or ()
+        against: tuple[Advice, ...] | None = ()
+        if best.search.requirements and not all(verdict.met for verdict in verdicts):
+            against = yield from analysed(lambda: unmet(conflicts(best, best.rig)))
+        sensitivity = None
+        if self.analyses and not self.stopped:
+            sensitivity = yield from analysed(lambda: self._sensitivity(best))
         table = yield from self._conditions(best, analysing, to_the_end=False)
         if self.dropped or warnings is None or blind is None:
             return
         sure: tuple[Advice, ...] = ()
-        if robustness_result is not None:
-            off, errors = robustness_result.after, robustness_result.errors
-            tolerant = best.search.tolerance.mounts_off
+        if found is not None:
+            off, errors, tolerant = found.after, found.errors, best.search.tolerance.mounts_off
             sure = fragile(off.rise, off.stderr, errors.position, errors.angle, tolerant)
         self.outcome = Outcome(
             "optimize",
             self.study,
             best,
-            before,
-            after,
+            first.score,
+            last.score,
             tuple(self.history),
             self.evaluations,
             stopped,
             self.seconds,
-            (
-                *(*warnings, *sure, *(unmet_warnings or ())),
-                *condition_warnings(table),
-            ),
+            (*warnings, *sure, *(against or ()), *condition_warnings(table)),
             self.inputs,
             self.journal.entries,
-            robustness_result,
-            verdicts or (),
+            found,
+            verdicts,
             table,
             sensitivity,
             tuple(self.ends),
@@ -259,48 +263,24 @@ class OptimizeJob(Job):
     def _about(self, stage: str, value: float) -> Progress:
         return Progress(stage, 1.0, value, self.evaluations, searched_figure(self.study))
 
-    def _robustness(
-        self, best: Study, waiting: Progress
-    ) -> Generator[Progress, None, Robustness | None]:
-        """Compute in a thread how entropies change under mounting errors and sensor failures."""
+    def _robustness(self, best: Study) -> Robustness:
+        """Return how entropies change under mounting errors and sensor failures."""
         search = self.study.search
+        last = self.evaluators.on(search.samples)
+        sampled = last if last.samples else self.evaluators.on(DEFAULT_SEARCH_SAMPLES)
+        return robustness(sampled, self.study.rig, best.rig, search.tolerance, search.seed)
 
-        def work() -> Robustness:
-            last = self.evaluators.on(search.samples)
-            sampled = last if last.samples else self.evaluators.on(DEFAULT_SEARCH_SAMPLES)
-            return robustness(sampled, self.study.rig, best.rig, search.tolerance, search.seed)
-
-        return (yield from self._beside(work, lambda: waiting))
-
-    def _sensitivity(
-        self, best: Study, waiting: Progress
-    ) -> Generator[Progress, None, Sensitivity | None]:
-        """Analyse the result in a thread; None if the job is stopped, or the search too short."""
-        if not self.analyses or self.stopped:
-            return None
-
-        def work() -> Sensitivity | None:
-            samples = FreshSamples(best, best.rig, self._fresh_objectives, self._helpers)
-            given = (self.study, best, self._archive, self.evaluations)
-            return analyse(*given, samples, lambda: not self.stopped)
-
-        return (yield from self._beside(work, lambda: waiting))
+    def _sensitivity(self, best: Study) -> Sensitivity | None:
+        """Analyse the result; None if the job is stopped, or the search too short."""
+        samples = FreshSamples(best, best.rig, self._fresh_objectives, self._helpers)
+        given = (self.study, best, self._archive, self.evaluations)
+        return analyse(*given, samples, lambda: not self.stopped)
 
     def _blind(self, best: Study) -> tuple[float, float]:
         """Return the blind ground of start and result [m2]."""
         sight = self.study.sight()
         before = blind_area(sight, self.study.rig)
         return before, before if best is self.study else blind_area(sight, best.rig)
-
-    def _unmet(
-        self, best: Study, verdicts: tuple[Verdict, ...], waiting: Progress
-    ) -> Generator[Progress, None, tuple[Advice, ...] | None]:
-        """Find in a thread what stands against requirements that were to be kept and are not."""
-        if not best.search.requirements or all(verdict.met for verdict in verdicts):
-            return ()
-        work = partial(conflicts, best, best.rig)
-        found = yield from self._beside(work, lambda: waiting)
-        return None if found is None else unmet(found)
 
     @property
     def _start_may_stay(self) -> bool:
@@ -342,13 +322,13 @@ class OptimizeJob(Job):
     def _candidate_workers(self) -> Iterator[ExecutorSource]:
         """Yield what evaluates candidates of the search and of its analysis."""
         models = (sensor.model for sensor in self.study.rig)
-        with candidate_workers(self, self._all_objectives(), models) as helpers:
-            yield helpers
 
-    def _all_objectives(self) -> Iterator[Objective]:
-        """Yield the objectives of search and analysis; the latter's are made when asked for."""
-        yield from self._objectives
-        yield from self._fresh_objectives
+        def objectives() -> Iterator[Objective]:
+            yield from self._objectives
+            yield from self._fresh_objectives  # made when the workers start
+
+        with candidate_workers(self, objectives(), models) as helpers:
+            yield helpers
 
     def _search_from(
         self,

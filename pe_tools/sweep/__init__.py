@@ -1,20 +1,11 @@
 """Sweeps: many studies, or one with many changes, run by the workers of any executor."""
 
-from .parameter_grid import TriedKey, read_settings, sweep_runs
-from .sweep_runner import (
-    FolderCheckpoints,
-    RunCheckpoints,
-    RunTask,
-    SweepRun,
-    WorkerPool,
-    run_all,
-    run_task,
-)
+from .parameter_grid import read_settings, sweep_runs
+from .sweep_runner import LocalWorkers, RunTask, SweepRun, run_all, run_task
 from .sweep_table import (
     BEGUN,
     DONE,
     ELSEWHERE,
-    FAILED,
     SWEEP_CSV,
     SWEEP_JSON,
     UNWRITTEN,
@@ -31,18 +22,14 @@ __all__ = [
     "BEGUN",
     "DONE",
     "ELSEWHERE",
-    "FAILED",
     "SWEEP_CSV",
     "SWEEP_JSON",
     "UNWRITTEN",
     "WAITING",
-    "FolderCheckpoints",
-    "RunCheckpoints",
+    "LocalWorkers",
     "RunTask",
     "SweepRow",
     "SweepRun",
-    "TriedKey",
-    "WorkerPool",
     "read_settings",
     "row_of",
     "row_of_result",

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import os
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from pe_core.base.errors import InputError
-from pe_core.search import Call, WorkerDied, run_tasks
+from pe_core.search import Call, WorkerDied, run_tasks, start_processes
 from pe_core.search.payload import keep_freed_memory
 from pe_core.study import Study
 from pe_core.version import __version__
@@ -21,8 +22,6 @@ from ..jobs import Checkpoint, OptimizeJob, Outcome, ScoreJob, read_search
 WAIT_S = 0.2
 """How often it is checked whether the sweep continues, while no result arrives."""
 RunResult = Outcome | InputError
-Batch = list[tuple[str, Any]]
-"""Names of runs with their results, which arrive together."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,13 +32,6 @@ class SweepRun:
     study_name: str
     changes: Mapping[str, str]
     study: Study
-
-
-class RunCheckpoints(Protocol):
-    """Checkpoints of the search of one run; pickled, as they are sent to the worker."""
-
-    def begin(self, job: OptimizeJob) -> Callable[[], None]:
-        """Give the job the journal of an earlier part; return a function to call at every step."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +65,7 @@ class RunTask:
     study: Study
     optimize: bool
     threads: int
-    checkpoints: RunCheckpoints | None = None
+    checkpoints: Any = None
     version: str = __version__
 
 
@@ -83,58 +75,60 @@ def run_task(task: RunTask) -> RunResult:
         expected = f"{task.version}, the version of the program that sent the study"
         return InputError("worker", "version", expected, __version__)
     keep_freed_memory()
+    save: Callable[[], object] | None = None
     try:
-        outcome = _run_job(task)
+        kind = OptimizeJob if task.optimize else ScoreJob
+        job: ScoreJob | OptimizeJob = kind(task.study, task.threads)
+        if task.optimize and task.checkpoints is not None:
+            save = task.checkpoints.begin(job)
+        for _ in job:
+            if save is not None:
+                save()
     except InputError as error:
         return error
     except Exception as error:  # some executors lose a worker's exception, and wait forever
         message = " ".join(f"{type(error).__name__}: {error}".split())
         return InputError("worker", "run", "to complete", message)
-    assert outcome is not None
-    return outcome
+    assert job.outcome is not None
+    return job.outcome
 
 
-def _run_job(task: RunTask) -> Outcome | None:
-    if not task.optimize:
-        job = ScoreJob(task.study, task.threads)
-        for _ in job:
-            pass
-        return job.outcome
-    search = OptimizeJob(task.study, task.threads)
-    save = task.checkpoints.begin(search) if task.checkpoints else lambda: None
-    for _ in search:
-        save()
-    return search.outcome
+class LocalWorkers:
+    """Processes on this machine that run the tasks of a sweep; a thread where there are none.
 
+    Other workers have the same methods. The executor accepts tasks even after a worker's death.
+    """
 
-class WorkerPool(Protocol):
-    """The workers that run the tasks of a sweep."""
-
-    @property
-    def executor(self) -> Executor:
-        """The executor of the workers; it accepts tasks even after a worker's death."""
-
-    @property
-    def threads(self) -> int:
+    def __init__(self, count: int) -> None:
+        processes = start_processes(count)
+        self._count = 1 if processes is None else count
+        self.executor: Executor = processes or ThreadPoolExecutor(1)
+        self.threads = max(1, (os.cpu_count() or 1) // self._count)
         """How many threads a task may use."""
 
     def width(self) -> int:
-        """How many tasks are submitted at a time."""
+        """How many tasks are submitted at a time: a dead process tells which one killed it."""
+        return self._count
 
     def check(self) -> None:
         """Raise `InputError` when the workers are gone; called several times a second."""
 
-    def checkpoints(self, run: SweepRun, folder: Path) -> RunCheckpoints:
+    def checkpoints(self, run: SweepRun, folder: Path) -> Any:
         """Return the checkpoints of a run's search; `folder` is that of the run's results."""
+        return FolderCheckpoints(folder)
 
     def finish(self, name: str) -> None:
         """Save no more checkpoints of a run: its outcome is here, with the whole search."""
+
+    def close(self) -> None:
+        """Kill processes in the middle of their tasks; a thread finishes its task."""
+        self.executor.shutdown(wait=self._count > 1, cancel_futures=True)
 
 
 def run_all(
     names: Sequence[str],
     make_task: Callable[[str], RunTask],
-    pool: WorkerPool,
+    pool: LocalWorkers,
     on_result: Callable[[str, RunResult], None],
     should_continue: Callable[[], bool] = lambda: True,
 ) -> None:
@@ -150,22 +144,17 @@ def run_all(
 
     with closing(run_tasks(pool.executor, deque(names), call_of, pool.width, WAIT_S)) as batches:
         pool.check()
-        while should_continue() and (batch := _next_batch(batches, pool)) is not None:
+        while should_continue():
+            try:
+                batch = next(batches, None)
+            except Exception:  # an executor that is gone refuses tasks with an error of its own
+                pool.check()
+                raise
+            if batch is None:
+                return
             for name, result in batch:
                 if isinstance(result, WorkerDied):
                     expected, found = "a worker that survives its task", "two that died"
                     result = InputError(name, "worker", expected, f"{found} ({result.reason})")
                 on_result(name, result)
             pool.check()
-
-
-def _next_batch(batches: Iterator[Batch], pool: WorkerPool) -> Batch | None:
-    """Return the next results; None at the end.
-
-    An executor that is gone refuses tasks with an error of its own: `check` says it in one line.
-    """
-    try:
-        return next(batches, None)
-    except Exception:
-        pool.check()
-        raise

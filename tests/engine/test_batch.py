@@ -12,7 +12,6 @@ from concurrent.futures import (
     ProcessPoolExecutor,
     ThreadPoolExecutor,
 )
-from contextlib import closing
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -22,7 +21,7 @@ import pe_core as pe
 from pe_core.scoring import Evaluation
 from pe_core.search import Processes, evaluate_all, processes, start_processes
 from pe_core.search.payload import Payload
-from pe_tools.cli.executors import Here
+from pe_tools.cli.executors import workplace
 from tests.engine import shapes
 
 CANDIDATES = 7
@@ -220,7 +219,7 @@ def test_without_semaphores_there_are_no_processes_and_one_line_says_so(monkeypa
     assert start_processes(2) is None
     with pytest.raises(pe.InputError, match=r"semaphores .* /dev/shm, found permission denied"):
         Processes(2)
-    with closing(Here(2)) as here:
+    with workplace(2, None) as here:
         assert here.width() == 1
     assert capsys.readouterr().err.count("\n") == 1
 

@@ -25,7 +25,6 @@ from pe_tools.cli.executors import workplace
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import Checkpoint, Outcome, read_search
 from pe_tools.sweep import (
-    FolderCheckpoints,
     RunTask,
     read_settings,
     run_all,
@@ -33,6 +32,7 @@ from pe_tools.sweep import (
     sweep_runs,
 )
 from pe_tools.sweep.parameter_grid import MAX_NAME_LENGTH, folder_names
+from pe_tools.sweep.sweep_runner import FolderCheckpoints
 from tests.engine import shapes
 from tests.engine.processes import GUARD_S, Command
 from tests.thorough import THOROUGH

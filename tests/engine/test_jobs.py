@@ -79,7 +79,7 @@ def test_start_and_result_are_evaluated_by_one_evaluator(monkeypatch):
     monkeypatch.setattr(pe.Study, "evaluator", counted)
     _, outcome = finished(pe.OptimizeJob(study()))
     assert outcome.after is not outcome.before
-    assert made == [2048, None]  # the search's sample once, the whole grid once
+    assert made == [2048, 0]  # the search's sample once, the whole grid once
 
 
 @pytest.mark.parametrize(("samples", "also"), [(0, [65_536]), (4096, [])])
@@ -95,7 +95,7 @@ def test_one_evaluator_is_made_where_search_and_score_look_at_the_same(monkeypat
     expected = [given.evaluator().score(given.rig).to_dict()]
     monkeypatch.setattr(pe.Study, "evaluator", counted)
     _, outcome = finished(pe.OptimizeJob(given))
-    assert made == [None, *also]  # mounting errors are not looked at on the grid
+    assert made == [samples, *also]  # mounting errors are not looked at on the grid
     assert outcome.before.to_dict() == expected[0]
     assert outcome.history[0].entropy == outcome.before.entropy
 

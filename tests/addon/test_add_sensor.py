@@ -34,11 +34,6 @@ def test_cursor_is_taken_when_it_was_moved(scene):
     assert tuple(bpy.context.object.location) == (1.0, 2.0, 3.0)
 
 
-def test_works_in_an_empty_scene(scene):
-    assert bpy.ops.pe.add_sensor() == {"FINISHED"}
-    assert bpy.context.object.location.z == pytest.approx(1.8)
-
-
 def test_only_collection_with_meshes_becomes_the_vehicle(scene):
     scenes.add_car(scene)
     scene.perception_entropy.vehicle = None
@@ -113,10 +108,3 @@ def test_a_cursor_in_the_surface_is_where_it_stands(scene, normal):
     bpy.ops.pe.add_sensor(model="Pandar64")
     assert (bpy.context.object.location - surface).length == pytest.approx(0.15, abs=1e-5)
     assert (bpy.context.object.location - surface).normalized().dot(Vector(normal)) > 0.9999
-
-
-def test_undo_removes_it(scene):
-    bpy.ops.ed.undo_push(message="before")
-    bpy.ops.pe.add_sensor("EXEC_DEFAULT", True)
-    bpy.ops.ed.undo()
-    assert not bpy.context.scene.objects

@@ -40,28 +40,6 @@ def test_a_scene_s_axles_are_its_study_s_and_the_same_bits(axled):
     assert scenes.study().reference is None
 
 
-@pytest.mark.parametrize("name", [n for n in exchange.RIG_FORMATS if n != "kitti"])
-def test_a_rig_leaves_and_comes_back_as_a_variant(axled, tmp_path, name):
-    if name == "argoverse2":
-        pytest.importorskip("pyarrow", reason="of the extra argoverse")
-    before = scenes.study().rig
-    row = exchange.rig_format(name)
-    path = tmp_path / (row.files[0] if len(row.files) == 1 else "rig")
-    assert bpy.ops.pe.export_rig(filepath=str(path), format=name) == {"FINISHED"}
-    chosen = path / row.files[0] if len(row.files) > 1 else path
-    assert bpy.ops.pe.import_rig(filepath=str(chosen)) == {"FINISHED"}
-    settings, after = axled.perception_entropy, scenes.study().rig
-    assert settings.variants[0].name == "Unsaved", "what stood here is kept"
-    assert bridge.active_variant(axled).note.startswith("Read from")
-    assert len(after) == len(before)
-    by_place = sorted(after, key=lambda s: s.pose.position)
-    for ours, theirs in zip(sorted(before, key=lambda s: s.pose.position), by_place, strict=True):
-        assert theirs.kind == ours.kind
-        assert theirs.pose.position == pytest.approx(ours.pose.position, abs=1e-5)
-        turned = theirs.pose.ground_from_sensor - ours.pose.ground_from_sensor
-        assert np.abs(turned).max() < 1e-5
-
-
 def test_the_suffix_of_a_rig_s_file_chooses_the_format(axled, tmp_path):
     """`prius.urdf` became a CSV: the dialog's format is a default, what is typed is meant."""
     path = tmp_path / "prius.urdf"

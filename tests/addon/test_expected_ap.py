@@ -14,7 +14,7 @@ from blender_addon.search_curve import SearchProgress, searches
 from pe_tools.jobs import result_dict
 from tests.addon import layouts, scenes
 from tests.addon.command_line import pe_here, run_here
-from tests.addon.test_searching import Manager
+from tests.addon.test_search_curve import Manager
 
 OPTIONS = ("--objective", "expected_ap", "--evaluations", "12", "--seed", "4", "--json")
 ALONE = ("run", "inputs")

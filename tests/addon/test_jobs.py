@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import bpy
 import pytest
 
-from blender_addon import bridge, result_staleness
+from blender_addon import result_staleness
 from blender_addon.engine import pe, text
 from blender_addon.live import state
 from blender_addon.operators import declared, jobs, running_job
@@ -33,12 +33,6 @@ def data_of(outcome) -> dict:
     data = json.loads(text.dump_json(pe.result_dict(outcome)))
     del data["run"]
     return data
-
-
-def test_score_is_the_engines(car):
-    expected = finished(pe.ScoreJob(scenes.study()))
-    assert bpy.ops.pe.score() == {"FINISHED"}
-    assert stored(car) == data_of(expected)
 
 
 def test_score_of_the_whole_grid_is_the_engines(car):
@@ -85,72 +79,15 @@ def test_warnings_are_stored_as_the_result_has_them(car):
     assert not rows and stored(car)["warnings"] == []
 
 
-def test_optimize_is_the_engines_and_stays_so(car):
-    """Placements written to the scene and read again are those that were scored."""
+def test_what_a_search_cost_is_stored_and_shown(car):
     expected = finished(pe.OptimizeJob(scenes.study()))
     assert bpy.ops.pe.optimize() == {"FINISHED"}
-    assert stored(car) == data_of(expected)
-    study = scenes.study()
-    assert [s.pose for s in study.rig] == [s.pose for s in expected.study.rig]
-    assert expected.study.rig["roof"].pose != expected.start.rig["roof"].pose
     settings = car.perception_entropy
-    assert settings.result_cost == expected.cost and expected.cost.startswith("It cost ")
+    assert settings.result_cost == expected.cost
     shown, told = expected.blind_m2, settings.result_blind
     assert all(m2 <= up <= m2 + 0.1001 for m2, up in zip(shown, told, strict=True)), "rounded up"
     labels = " ".join(layouts.drawn(main.PE_PT_main, **vars(layouts.Window(car))).texts("label"))
     assert "Blind Ground" in labels and expected.cost.split("(")[0].strip() in labels
-    assert finished(pe.ScoreJob(study)).after == expected.after
-
-
-def test_exported_study_scores_the_same(car, tmp_path):
-    path = tmp_path / "car.toml"
-    assert bpy.ops.pe.export_study(filepath=str(path)) == {"FINISHED"}
-    loaded, study = pe.load_study(path), scenes.study()
-    assert path.with_suffix(".npz").exists()
-    assert (loaded.vehicle.triangles == study.vehicle.triangles).all()
-    assert finished(pe.ScoreJob(loaded)).after == finished(pe.ScoreJob(study)).after
-
-
-def test_fixed_sensor_stays(car):
-    scenes.add_sensor("front", model="Camera 60 deg")
-    sensor = car.objects["roof"]
-    sensor.perception_entropy.free = (False,) * 6
-    before = scenes.study().rig["roof"].pose
-    assert bpy.ops.pe.optimize() == {"FINISHED"}
-    assert scenes.study().rig["roof"].pose == before
-
-
-def test_undo_brings_placement_and_result_back(car):
-    bpy.ops.ed.undo_push(message="before")
-    before = scenes.study().rig["roof"].pose
-    assert bpy.ops.pe.optimize("EXEC_DEFAULT", True) == {"FINISHED"}
-    found = scenes.study().rig["roof"].pose
-    assert found != before
-    bpy.ops.ed.undo()
-    settings = bpy.context.scene.perception_entropy
-    assert scenes.study().rig["roof"].pose == before
-    assert not settings.has_result
-    began, kept = settings.variants
-    assert settings.variant_key == began.key, "it says what stands here"
-    assert kept.name == "Optimized, seed 0" and kept.has_result and not kept.stale
-
-    bpy.ops.pe.switch_variant("EXEC_DEFAULT", True, key=kept.key)
-    assert scenes.study().rig["roof"].pose == found, "what was found is gone"
-    bpy.ops.ed.undo()
-    bpy.ops.ed.undo()
-    assert not bpy.context.scene.perception_entropy.variants, "a second undo takes all back"
-
-
-def test_stopped_search_keeps_the_best(car):
-    job = pe.OptimizeJob(scenes.study())
-    for progress in job:
-        if progress.evaluations >= 8:
-            job.stop()
-    assert job.outcome.stopped
-    bridge.place_rig(car, job.outcome.study.rig)
-    bridge.store_outcome(car, job.outcome, "any")
-    assert job.outcome.after.entropy <= job.outcome.before.entropy
-    assert scenes.study().rig["roof"].pose == job.outcome.study.rig["roof"].pose
 
 
 def test_stopped_before_a_score_is_complete_changes_nothing(car):
@@ -167,22 +104,13 @@ def test_bad_input_is_an_error_and_changes_nothing(car):
     assert not car.perception_entropy.has_result
 
 
-def test_sensor_deleted_meanwhile(car):
-    outcome = finished(pe.OptimizeJob(scenes.study()))
-    bpy.data.objects.remove(car.objects["roof"])
-    assert bridge.place_rig(car, outcome.study.rig) == ["roof"]
-    bridge.store_outcome(car, outcome, "any")
-
-
 def test_one_job_at_a_time(car, monkeypatch):
     monkeypatch.setattr(running_job, "current", object())
     assert not bpy.ops.pe.score.poll()
     with pytest.raises(RuntimeError, match="Another score, search or export is running"):
         bpy.ops.pe.optimize()
     assert bpy.ops.pe.cancel.poll()
-
-
-def test_nothing_to_cancel(car):
+    monkeypatch.setattr(running_job, "current", None)
     assert not bpy.ops.pe.cancel.poll()
 
 

@@ -81,22 +81,30 @@ def told(summary):
     return {name: getattr(summary, name) for name in ("entropy", "coverage", "stderr", "per_zone")}
 
 
-def test_it_begins_with_an_exact_score(live):
-    assert told(reading(live).summary) == told(exact())
-    assert reading(live).exact and not reading(live).summary.preview
-    assert reading(live).before is None
-
-
-def test_a_preview_follows_and_the_rest_is_exact_to_the_bit(live):
-    start = reading(live).summary
+def test_a_drag_is_previewed_exact_at_rest_and_compared_with_where_it_began(live, monkeypatch):
+    """The story of two moves: every score at rest is that of a study, to the bit."""
+    roof, start = live.objects["roof"], reading(live).summary
+    assert told(start) == told(exact()) and reading(live).exact and reading(live).before is None
     for _ in range(3):
-        drag(live.objects["roof"])
+        drag(roof)
         assert reading(live).summary.preview and not reading(live).exact
         assert reading(live).rig["roof"].pose == scenes.study().rig["roof"].pose
         assert reading(live).before == start
     rest()
-    assert told(reading(live).summary) == told(exact()) != told(start)
-    assert reading(live).exact and reading(live).before == start
+    second = reading(live).summary
+    assert told(second) == told(exact()) != told(start)
+    assert is_exact(live) and reading(live).before == start
+    roof.update_tag()  # an update that moves nothing begins no move
+    bpy.context.view_layer.update()
+    for _ in range(2):
+        drag(roof)
+        assert reading(live).before == second
+    rest()
+    monkeypatch.setattr(worker.interactive_worker, "ask", lambda *_: None)  # a machine that is busy
+    drag(roof)
+    assert reading(live).exact and not is_exact(live), "of before the move"
+    rest()
+    assert not is_exact(live), "asked for, not there yet"
 
 
 def test_moves_are_exact_where_the_budget_allows_it(live, monkeypatch):
@@ -132,16 +140,6 @@ def test_a_stored_result_is_not_shown_while_something_moves(live, monkeypatch):
     assert reading(live).exact and not state.shown_score(live).stored
 
 
-def test_the_next_drag_is_compared_with_where_it_began(live):
-    drag(live.objects["roof"])
-    rest()
-    second = reading(live).summary
-    drag(live.objects["roof"])
-    assert reading(live).before == second
-    drag(live.objects["roof"])
-    assert reading(live).before == second
-
-
 def test_a_hand_that_rests_for_a_moment_does_not_begin_a_new_drag(live, monkeypatch):
     start = reading(live).summary
     monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
@@ -174,17 +172,6 @@ def test_the_change_stays_when_the_hand_lets_go(live, monkeypatch, by):
     assert reading(live).before == start
 
 
-def test_an_update_that_moves_nothing_does_not_hide_where_the_next_move_begins(live):
-    """A variant is put there in several updates, and the first one moves nothing."""
-    drag(live.objects["roof"])
-    rest()
-    second = reading(live).summary
-    live.objects["roof"].update_tag()
-    bpy.context.view_layer.update()
-    drag(live.objects["roof"])
-    assert reading(live).before == second
-
-
 def test_of_two_moves_in_a_row_the_first_one_s_end_is_scored_later(live, monkeypatch):
     for operator in (4711, 0, 4712):
         monkeypatch.setattr(session, "_moving_operator", lambda op=operator: op)
@@ -196,15 +183,6 @@ def test_of_two_moves_in_a_row_the_first_one_s_end_is_scored_later(live, monkeyp
     assert told(reading(live).before) == told(between) and told(reading(live).summary) != told(
         between
     )
-
-
-def test_a_reading_of_before_is_a_preview(live, monkeypatch):
-    assert is_exact(live)
-    monkeypatch.setattr(worker.interactive_worker, "ask", lambda *_: None)  # a machine that is busy
-    drag(live.objects["roof"])
-    assert reading(live).exact and not is_exact(live)
-    rest()
-    assert not is_exact(live), "asked for, not there yet"
 
 
 def test_pinned_sensors_stay_what_it_is_compared_with(live):
@@ -539,16 +517,6 @@ def test_without_a_window_nothing_follows(car):
     car.perception_entropy.live.on = True
     drag(car.objects["roof"])
     assert reading(car) is None
-
-
-def test_the_score_s_ground_map_is_kept_in_memory_for_the_views(car):
-    bpy.ops.pe.score()
-    found = state.live_state(car.name).finished
-    assert found.signature == car.perception_entropy.result_signature
-    assert found.score.entropy == pytest.approx(car.perception_entropy.result_entropy, abs=1e-6)
-    assert isinstance(found.study, pe.Study)
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    assert state.live_state(bpy.context.scene.name).finished is None
 
 
 def test_a_simple_body_is_made_once(monkeypatch):

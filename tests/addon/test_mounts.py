@@ -95,33 +95,6 @@ def test_a_material_is_an_area(roof):
         scenes.study()
 
 
-def test_a_sensor_put_on_the_painted_roof_stands_on_it_and_stays_there(roof):
-    on_it = TOP_M + BASE_M + CENTER_M
-    assert place_of("roof")[2] == pytest.approx(on_it, abs=1e-5)
-    before = place_of("roof")
-    assert bpy.ops.pe.optimize() == {"FINISHED"}
-    assert place_of("roof") != before
-    pose = bridge.pose_of(bpy.data.objects["roof"], scenes.depsgraph())
-    base = np.array(pose.position) + pose.ground_from_sensor @ [0.0, 0.0, -CENTER_M]
-    assert base[2] == pytest.approx(TOP_M + BASE_M, abs=1e-5)
-
-
-def test_an_exported_study_gives_the_same_bits(roof, tmp_path):
-    here = scenes.study()
-    pe.export_study(here, pe.prepare_folder(tmp_path / "out") / "study.toml")
-    there = pe.load_study(tmp_path / "out" / "study.toml")
-    assert history(there) == history(here)
-    mount = there.search.mounting.mounts["roof area"]
-    assert np.array_equal(mount.area.triangles, faces())
-
-
-def history(study):
-    job = pe.OptimizeJob(study)
-    list(job)
-    assert len(job.history) > 1
-    return [(row.entropy, row.rig["roof"].pose) for row in job.history], job.outcome.after.entropy
-
-
 def test_a_start_that_is_not_on_its_mount_is_reported(roof):
     bpy.data.objects["roof"].location.z += 0.1
     bpy.context.view_layer.update()
@@ -193,19 +166,6 @@ def test_sensors_on_one_empty_that_is_a_rack_are_a_group(car):
     assert scenes.study().search.mounting.groups == ()
     arm.perception_entropy.is_rack = True
     assert scenes.study().search.mounting.groups == (("eye", "left"),)
-
-
-def test_followers_have_neither_mount_nor_bounds_in_the_study(roof):
-    sensor = bpy.data.objects["roof"]
-    sensor.location.y = 0.3
-    put(sensor, "roof area")
-    assert bpy.ops.pe.mirror_sensor(name="roof", linked=True) == {"FINISHED"}
-    own = bpy.data.objects["roof right"].perception_entropy
-    own.bounded[0] = True
-    study = scenes.study()
-    assert study.search.mounting.on == {"roof": "roof area"}
-    assert study.search.limits == {}
-    assert bpy.ops.pe.optimize() == {"FINISHED"}
 
 
 def test_locks_hold_a_coordinate(car):

@@ -13,7 +13,7 @@ from tests.addon import scenes
 from tests.thorough import pairs
 
 ON_REQUEST = {"front", "ghosts", "place"}
-"""Layers of what was asked for, another variant, a place (see test_overlay_ideas), and of a vehicle
+"""Layers of what was asked for, another variant, a place (see test_annotations), and of a vehicle
 without sensors (see test_first_steps)."""
 ALL_LAYERS = {layer.name for layer in layers.LAYERS} - ON_REQUEST
 

@@ -16,7 +16,6 @@ from pe_core.sensors import ObjectMeasurementCache
 from pe_core.study import requirement_file
 from pe_tools import graphics, wording
 from tests.addon import scenes
-from tests.addon.command_line import pe_here, run_here
 from tests.engine.shapes import box
 from tests.engine.test_sensor_colors import EYES, lab
 
@@ -390,15 +389,6 @@ def test_removing_one_leaves_the_others(held):
     names = [row.name for row in rows(held)]
     assert bpy.ops.pe.remove_requirement() == {"FINISHED"}
     assert [row.name for row in rows(held)] == [names[0], names[2]]
-
-
-def test_the_command_in_blender_says_what_pe_check_says(held, tmp_path):
-    blend, study = tmp_path / "car.blend", tmp_path / "study.toml"
-    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
-    pe.export_study(scenes.study(), study)
-    told, answer = pe_here("check", study, "--json"), run_here(blend, "check", "--json")
-    assert (told.returncode, answer.returncode) == (3, 3), told.stderr + answer.stderr
-    assert json.loads(answer.stdout) == json.loads(told.stdout)
 
 
 def test_they_come_back_from_a_study_file(held, tmp_path):

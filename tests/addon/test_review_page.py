@@ -25,18 +25,6 @@ def test_the_panel_s_page_has_its_title_and_the_picture_once(car, tmp_path, smal
     assert len(PICTURE.findall(text)) == 1
 
 
-def test_the_picture_alone_is_the_engine_s(car, tmp_path, small_pictures):
-    car.perception_entropy.score_samples = 1024
-    path, plain = tmp_path / "picture.png", tmp_path / "plain.png"
-    assert bpy.ops.pe.render_review(filepath=str(path)) == {"FINISHED"}
-    job = pe.ScoreJob(scenes.study())
-    for _ in job:
-        pass
-    assert path.read_bytes() == page.picture_file(job.study, job.outcome)
-    bpy.ops.pe.export_scene(filepath=str(plain), output="picture")
-    assert plain.read_bytes() == page.picture_file(job.study)
-
-
 def test_a_page_that_cannot_be_written_is_one_line(car, tmp_path):
     (tmp_path / "file").touch()
     try:

@@ -9,7 +9,6 @@ import pytest
 from blender_addon import bridge, result_staleness
 from blender_addon.bridge import apply_variant
 from blender_addon.engine import pe
-from blender_addon.live import BETTER, SAME, WORSE
 from blender_addon.operators import compare_variants
 from tests.addon import scenes
 
@@ -262,31 +261,10 @@ def test_a_variant_is_scored_as_if_it_stood_there(ideas):
     assert study.evaluator().score(study.rig) == expected.evaluator().score(expected.rig)
 
 
-def test_a_search_leaves_its_start_and_its_result(car):
-    bpy.ops.pe.optimize()
-    assert variants(car) == ["Before optimize", "Optimized, seed 0"]
-    settings = car.perception_entropy
-    before, after = settings.variants
-    assert settings.variant_key == after.key and not settings.variant_changed
-    assert after.entropy == pytest.approx(settings.result_entropy)
-    assert before.entropy == pytest.approx(settings.result_before)
-    found = poses()
-    switch(car, "Before optimize")
-    assert poses() != found
-    switch(car, "Optimized, seed 0")
-    assert poses() == found
-    assert len(variants(car)) == 2
-
-
 def test_the_start_of_a_search_is_no_second_variant(ideas):
     bpy.ops.pe.optimize()
     assert variants(ideas) == ["Variant", "Optimized, seed 0"]
     assert rows(ideas)["Variant"].has_result
-
-
-def test_unknown_names_are_reported(ideas):
-    with pytest.raises(pe.InputError, match="variant: expected one of Variant, found 'Roof'"):
-        bridge.variant_named(ideas, "Roof")
 
 
 def test_a_name_that_something_else_has(ideas):
@@ -314,45 +292,6 @@ def test_two_scenes_have_variants_of_their_own(ideas):
     assert len(bridge.sensor_objects(first)) == 2
     bpy.context.window.scene = first
     assert set(poses()) == {"eye", "roof"}
-
-
-def test_comparing_scores_what_has_no_score_as_if_it_stood_there(ideas):
-    """One go for all; nothing in the scene moves, and figures are those of the scene's scores."""
-    start = poses()
-    ideas.objects["roof"].location.z = 2.5
-    bpy.context.view_layer.update()
-    bpy.ops.pe.save_variant()
-    higher = scenes.study()
-    assert bpy.ops.pe.compare_variants() == {"FINISHED"}
-    assert poses() != start
-    first, second = ideas.perception_entropy.variants
-    assert bridge.score_of(second).per_zone == higher.evaluator().score(higher.rig).per_zone
-    switch(ideas, "Variant")
-    bpy.ops.pe.score()
-    assert ideas.perception_entropy.result_entropy == first.entropy
-    names, table = compare_variants.comparison_of(ideas)
-    assert names == ["Variant", "Variant 2"]
-    whole = next(row for row in table if row.group == "rig" and row.measure == "entropy")
-    assert whole.values == (bridge.score_of(first).entropy, bridge.score_of(second).entropy)
-    columns = compare_variants.columns_of(names, table)
-    assert [column[0][0] for column in columns] == ["", *names]
-    order = [cell[0] for cell in columns[0] if cell is not None]
-    titles = [order.index(compare_variants.TITLES[each]) for each in ("blind", "reach", "entropy")]
-    assert titles[0] == 1 and titles == sorted(titles), "what a designer asks for comes first"
-    at = [cell and cell[0] for cell in columns[0]].index(compare_variants.TITLES["entropy"]) + 1
-    assert columns[1][at][0] == f"{whole.values[0]:.3f}"
-    assert columns[2][at].change == f"({whole.differences[1]:+.3f})"
-    gain = BETTER if whole.differ(0, 1) else SAME
-    assert columns[2][at].sense == (gain if whole.differences[1] < 0.0 else WORSE)
-    assert (columns[1][at].change, columns[1][at].sense) == ("", SAME)
-    assert [columns[1][at][1], columns[2][at][1]] == list(whole.best)
-    assert bridge.score_of(second).scatter == higher.evaluator().score(higher.rig).scatter
-    said = compare_variants.sentences(names, table, 40)
-    scored = table[:-3]
-    assert " ".join(said) == " ".join(
-        (*pe.advice.ranking(names, scored), *pe.advice.win_words(names, scored))
-    )
-    assert said[0].startswith("Overall ") and max(map(len, said)) <= 40
 
 
 def test_comparing_tells_blind_ground_reach_and_ap_for_the_height_and_class_shown(ideas):

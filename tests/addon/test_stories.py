@@ -1,0 +1,284 @@
+"""Five ways through the add-on from beginning to end, each in one scene, as a designer goes."""
+
+import json
+
+import bpy
+import numpy as np
+import pytest
+
+from blender_addon import bridge, consistency, result_staleness
+from blender_addon.engine import exchange, outputs, page, pe, text
+from blender_addon.operators import compare_variants
+from blender_addon.panels import main
+from tests.addon import layouts, scenes
+from tests.addon.command_line import pe_here, run_here
+
+PUCK = "Velodyne VLP-16 Puck"
+
+
+def finished(job):
+    """Run a job to its end; return its outcome."""
+    for _ in job:
+        pass
+    return job.outcome
+
+
+def without_run(data: dict) -> dict:
+    """A result without what differs from run to run."""
+    data = json.loads(text.dump_json(data))
+    del data["run"]
+    for score in (data["before"], data["after"]):
+        score.pop("scatter", None)  # for the error of a difference: no part of result.json
+    return data
+
+
+def stored(scene) -> dict:
+    return without_run(json.loads(scene.perception_entropy.result_json))
+
+
+def poses() -> dict:
+    return {sensor.name: (sensor.pose, sensor.model) for sensor in scenes.study().rig}
+
+
+def names(rows) -> list[str]:
+    return [row.name for row in rows]
+
+
+def test_place_score_optimize_check_and_export(scene, tmp_path, small_pictures):
+    settings = scene.perception_entropy
+    scenes.add_car(scene)
+    bpy.context.view_layer.update()
+
+    # Place: a LiDAR by a point of the roof, a camera and its mirror image.
+    assert bpy.ops.pe.place_sensor(model=PUCK, location=(-0.4, 0.0, 1.5)) == {"FINISHED"}
+    roof = bpy.context.object
+    assert tuple(roof.location) == pytest.approx((-0.4, 0.0, 1.65), abs=1e-6)
+    eye = scenes.add_sensor("eye_left", "Camera 60 deg", location=(1.9, 0.5, 0.8))
+    bpy.ops.pe.mirror_sensor(name="eye_left")
+    for obj in (eye, scene.objects["eye_right"]):
+        obj.perception_entropy.free = (False,) * 6
+    bpy.context.view_layer.update()
+
+    # Score: the engine's own result, to the bit.
+    assert bpy.ops.pe.score() == {"FINISHED"}
+    start = poses()
+    assert stored(scene) == without_run(pe.result_dict(finished(pe.ScoreJob(scenes.study()))))
+    labels = layouts.drawn(main.PE_PT_main, **vars(layouts.Window(scene))).texts("label")
+    assert any("Coverage" in label for label in labels)
+
+    # Optimize: what the engine finds is placed, scored and kept; undo takes the poses back.
+    first = settings.result_entropy
+    expected = finished(pe.OptimizeJob(scenes.study()))
+    bpy.ops.ed.undo_push(message="before")
+    assert bpy.ops.pe.optimize("EXEC_DEFAULT", True) == {"FINISHED"}
+    found = poses()
+    assert found == {s.name: (s.pose, s.model) for s in expected.study.rig} != start
+    assert found["eye_left"] == start["eye_left"], "it was held"
+    assert stored(scene) == without_run(pe.result_dict(expected))
+    assert finished(pe.ScoreJob(scenes.study())).after == expected.after
+    bpy.ops.ed.undo()
+    scene, settings = bpy.context.scene, bpy.context.scene.perception_entropy
+    assert poses() == start and settings.result_entropy == first
+    assert names(settings.variants) == ["Before optimize", "Optimized, seed 0"]
+    bpy.ops.pe.switch_variant(key=settings.variants[1].key)
+    assert poses() == found and settings.result_entropy == pytest.approx(expected.after.entropy)
+
+    # Check: rows of verdicts are the engine's.
+    bpy.ops.pe.add_requirement(preset="OWN")
+    assert bpy.ops.pe.check_requirements() == {"FINISHED"}
+    (verdict,) = scenes.study().verdicts()
+    (row,) = settings.requirements
+    assert bool(row.met) == verdict.met
+
+    # Export: what is written scores the same, from the panel, headless and outside of Blender.
+    study, glb, review = (tmp_path / name for name in ("car.toml", "car.glb", "car.html"))
+    assert bpy.ops.pe.export_study(filepath=str(study)) == {"FINISHED"}
+    loaded = pe.load_study(study)
+    assert finished(pe.ScoreJob(loaded)).after == finished(pe.ScoreJob(scenes.study())).after
+    assert bpy.ops.pe.export_scene(filepath=str(glb), output="gltf") == {"FINISHED"}
+    assert glb.read_bytes() == outputs.scene_files(scenes.study(), "gltf", None)[0]["scene.glb"]
+    assert bpy.ops.pe.export_review(filepath=str(review)) == {"FINISHED"}
+    assert "</html>" in review.read_text("utf-8")
+    picture = tmp_path / "car.png"
+    assert bpy.ops.pe.render_review(filepath=str(picture)) == {"FINISHED"}
+    job = pe.ScoreJob(scenes.study())
+    assert picture.read_bytes() == page.picture_file(job.study, finished(job))
+    blend = tmp_path / "car.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+    for verb in ("score", "check"):
+        inside, alone = run_here(blend, verb, "--json"), pe_here(verb, study, "--json")
+        assert inside.returncode == alone.returncode, inside.stderr + alone.stderr
+        if verb == "check":
+            assert json.loads(inside.stdout) == json.loads(alone.stdout)
+        else:
+            entropy = json.loads(inside.stdout)["entropy"]
+            assert entropy == json.loads(alone.stdout)["entropy"]
+
+
+FORMATS = ("urdf", "carla", "autoware", "csv")
+
+
+def test_import_rigs_and_compare_them(car, tmp_path):
+    settings = car.perception_entropy
+    place = {"location": (1.5, 0.1, 1.3), "rotation_euler": (0.0, 0.1, 0.2)}
+    scenes.add_sensor("eye", "Front 120 deg 8 MP", **place)
+    bridge.write_reference(settings, pe.Reference(-1.31, 0.33, 2.8))
+    before = scenes.study().rig
+
+    # A rig leaves for another program and comes back as a variant; what stood here is kept.
+    for name in FORMATS:
+        row = exchange.rig_format(name)
+        path = tmp_path / (row.files[0] if len(row.files) == 1 else name)
+        assert bpy.ops.pe.export_rig(filepath=str(path), format=name) == {"FINISHED"}
+        chosen = path / row.files[0] if len(row.files) > 1 else path
+        assert bpy.ops.pe.import_rig(filepath=str(chosen)) == {"FINISHED"}
+        assert settings.variants[0].name == "Unsaved"
+        assert bridge.active_variant(car).note.startswith("Read from")
+        theirs = sorted(scenes.study().rig, key=lambda s: s.pose.position)
+        for ours, other in zip(sorted(before, key=lambda s: s.pose.position), theirs, strict=True):
+            assert other.kind == ours.kind
+            assert other.pose.position == pytest.approx(ours.pose.position, abs=1e-5)
+            turned = other.pose.ground_from_sensor - ours.pose.ground_from_sensor
+            assert np.abs(turned).max() < 1e-5
+
+    # A known rig is fitted to this vehicle.
+    bpy.ops.pe.switch_variant(key=settings.variants[0].key)
+    count = len(settings.variants)
+    bpy.ops.pe.add_rig(key="nuscenes")
+    assert len(settings.variants) == count + 1 and not settings.variant_changed
+    top = scenes.study().vehicle.bounds[1][2]
+    lidar = scenes.study().rig["LIDAR_TOP"].pose.position
+    assert lidar[2] == pytest.approx(top + 1.8402 - 1.562, abs=1e-4)
+
+    # Compared: each is scored as if it stood there, and nothing in the scene moves.
+    for name in [row.name for row in settings.variants if row.name not in ("Unsaved", "nuScenes")]:
+        bpy.ops.pe.delete_variant(key=settings.variants[name].key)
+    start, study = poses(), scenes.study()
+    assert bpy.ops.pe.compare_variants() == {"FINISHED"} and poses() == start
+    shown, table = compare_variants.comparison_of(car)
+    assert shown == ["nuScenes", "Unsaved"]
+    whole = next(row for row in table if row.group == "rig" and row.measure == "entropy")
+    assert whole.values[0] == study.evaluator().score(study.rig).entropy
+    columns = compare_variants.columns_of(shown, table)
+    titles = [cell[0] for cell in columns[0] if cell is not None]
+    order = [titles.index(compare_variants.TITLES[each]) for each in ("blind", "reach", "entropy")]
+    assert order == sorted(order), "what a designer asks for comes first"
+    at = [cell and cell[0] for cell in columns[0]].index(compare_variants.TITLES["entropy"]) + 1
+    assert columns[1][at][0] == f"{whole.values[0]:.3f}"
+    assert columns[2][at].change == f"({whole.differences[1]:+.3f})"
+    bpy.ops.pe.switch_variant(key=settings.variants["Unsaved"].key)
+    assert {s.name for s in scenes.study().rig} == {"roof", "eye"}
+
+
+def base_of(name) -> float:
+    """Height of the middle of a puck's base [m]: 37.7 mm below its origin."""
+    pose = scenes.study().rig[name].pose
+    return float((np.array(pose.position) - 0.0377 * pose.ground_from_sensor[:, 2])[2])
+
+
+def test_mount_bound_tie_and_search(car, tmp_path):
+    settings = car.perception_entropy
+    settings.score_samples = settings.search_samples = 1024
+    settings.candidates = 1
+    roof, cabin = car.objects["roof"], car.objects["cabin"]
+
+    # A mount of painted faces: the sensor moves onto it.
+    scenes.paint(cabin, "top", lambda co: 1.0 if co.z > 0 else 0.0)
+    scenes.add_mount(car, "roof area", faces="GROUP", group="top", standoff=0.04)
+    roof.location.y = 0.3
+    assert bpy.ops.pe.mount_sensor(name="roof", mount="roof area") == {"FINISHED"}
+    bpy.context.view_layer.update()
+    faces = scenes.study().search.mounting.mounts["roof area"].area.triangles
+    assert len(faces) == 2 and np.abs(faces[..., 2] - 1.5).max() < 1e-6
+    assert base_of("roof") == pytest.approx(1.54, abs=1e-5)
+
+    # Its mirror image follows, a camera is bound, and no sensor may be in a box.
+    bpy.ops.pe.mirror_sensor(name="roof", linked=True)
+    eye = scenes.add_sensor("eye", "Camera 60 deg", location=(1.9, 0.0, 0.8))
+    eye.perception_entropy.free = (True, *(False,) * 5)
+    bpy.ops.pe.bound_axis(axis=0)
+    car.cursor.location = (0.0, 0.0, 3.0)
+    bpy.ops.pe.add_no_go()
+    bpy.context.view_layer.update()
+    study = scenes.study()
+    assert study.search.mounting.on == {"roof": "roof area"}
+    assert study.search.limits == {"eye": {"x": pytest.approx((1.4, 2.4))}}
+    assert names(study.search.mounting.constraints.no_go) == ["no_go"]
+
+    # The search keeps to all of it; the study's file gives the same search.
+    bpy.ops.pe.export_study(filepath=str(tmp_path / "car.toml"))
+    there = pe.OptimizeJob(pe.load_study(tmp_path / "car.toml"))
+    outcome = finished(there)
+    assert bpy.ops.pe.optimize() == {"FINISHED"}
+    consistency.repair_scenes()
+    rig = scenes.study().rig
+    assert [s.pose for s in rig] == [s.pose for s in outcome.study.rig]
+    assert base_of("roof") == pytest.approx(1.54, abs=1e-5), "still on the roof"
+    image = rig["roof right"].pose.position
+    assert image == pytest.approx(np.array(rig["roof"].pose.position) * (1, -1, 1), abs=2e-5)
+    assert 1.4 <= rig["eye"].pose.position[0] <= 2.4
+
+    # A variant holds what ties the sensors.
+    bpy.ops.pe.save_variant()
+    bpy.ops.pe.unlink_mirror(name="roof")
+    roof.perception_entropy.mount = ""
+    bpy.ops.pe.switch_variant(key=settings.variants[-1].key)
+    own = roof.perception_entropy
+    assert (own.mirror_of, own.mount) == ("roof right", "roof area")
+
+
+def test_undo_save_and_reload(car, tmp_path):
+    settings = car.perception_entropy
+    bpy.ops.ed.undo_push(message="before")
+    start = poses()
+
+    # Each act is one step of undo.
+    acts = (
+        (lambda: bpy.ops.pe.add_sensor("EXEC_DEFAULT", True, model="Camera 60 deg"), "sensors"),
+        (lambda: bpy.ops.pe.add_focus("EXEC_DEFAULT", True, region="front"), "focus"),
+        (lambda: bpy.ops.pe.add_weather("EXEC_DEFAULT", True, weather="RAIN"), "weathers"),
+        (lambda: bpy.ops.pe.add_requirement("EXEC_DEFAULT", True, preset="OWN"), "requirements"),
+        (lambda: bpy.ops.pe.save_variant("EXEC_DEFAULT", True), "variants"),
+        (lambda: bpy.ops.pe.add_own_sensor("EXEC_DEFAULT", True, kind="lidar"), "own_sensors"),
+    )
+
+    def count(what) -> int:
+        scene = bpy.context.scene
+        if what == "sensors":
+            return len(bridge.sensor_objects(scene))
+        return len(getattr(scene.perception_entropy, what))
+
+    for act, what in acts:
+        before = count(what)
+        assert act() == {"FINISHED"}
+        assert count(what) == before + 1, what
+        bpy.ops.ed.undo()
+        assert count(what) == before, what
+    assert poses() == start
+
+    # What is saved comes back: sensors, settings, result, variants, and what stands here.
+    for act, _ in acts:
+        act()
+    settings = bpy.context.scene.perception_entropy
+    settings.own_sensors[0].channels = 5
+    consistency.repair_scenes()  # as Blender's timer does: each sensor has a colour
+    bpy.ops.pe.score()
+    before, entropy = poses(), settings.result_entropy
+    table = pe.study_to_dict(scenes.study())
+    blend = str(tmp_path / "car.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=blend)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    assert "My LiDAR" not in pe.catalog.entries()
+    bpy.ops.wm.open_mainfile(filepath=blend)
+    scene, settings = bpy.context.scene, bpy.context.scene.perception_entropy
+    assert poses() == before and pe.study_to_dict(scenes.study()) == table
+    assert settings.has_result and settings.result_entropy == entropy
+    assert len(pe.catalog.load("My LiDAR").elevations) == 5
+    assert names(settings.variants) == ["Variant"] and bridge.active_variant(scene) is not None
+    result_staleness.update_result()
+    result_staleness.update_variants()
+    assert not settings.result_stale and not settings.variant_changed
+    scene.objects["roof"].location.x += 0.1
+    bpy.context.view_layer.update()
+    result_staleness.update_result()
+    assert settings.result_stale

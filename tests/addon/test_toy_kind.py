@@ -17,7 +17,7 @@ from pe_core import catalog
 from pe_core import sensors as kinds
 from tests.addon import scenes
 from tests.addon.layouts import Layout, Window, drawn
-from tests.engine.toy_kind import Ring, RingKind
+from tests.engine.toy_kind import RING, Ring
 
 PRESET = "Parking Ring"
 
@@ -25,7 +25,7 @@ PRESET = "Parking Ring"
 @pytest.fixture
 def ring_kind(car):
     """Have the kind and a preset of it in the engine's tables for a test, and a car to try it."""
-    kinds.register(RingKind())
+    kinds.register(RING)
     catalog.add(PRESET, {"kind": "toyring", "range_m": 12.0})
     yield car
     catalog.remove(PRESET)
@@ -171,7 +171,7 @@ def test_a_row_gives_it_a_picture_a_housing_and_fields(ring_kind, ring, monkeypa
 
 def test_without_the_kind_nothing_of_it_is_left(car):
     known = [(o.kind, models(o.kind)) for o in offers()]
-    kinds.register(RingKind())
+    kinds.register(RING)
     catalog.add(PRESET, {"kind": "toyring", "range_m": 12.0})
     scenes.add_sensor("bumper", PRESET)
     assert len(list(offers())) == 5
@@ -189,7 +189,7 @@ def test_without_the_kind_nothing_of_it_is_left(car):
 
 def test_a_preset_of_a_kind_that_is_gone_is_refused(car):
     """The preset was forgotten when the kind went: one line, no sensor of another kind."""
-    kinds.register(RingKind())
+    kinds.register(RING)
     catalog.add(PRESET, {"kind": "toyring", "range_m": 12.0})
     try:
         scenes.add_sensor("bumper", PRESET)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import background_figures, readout, readout_text, sense_icons, session
+from . import background_figures, readout, sense_icons, session
 from .readout_text import BETTER, SAME, WORSE, ReadoutLine, nats_text, sense_of, text_of
 from .sense_icons import sense_icon
 from .state import FinishedScore, ShownScore, live_state, shown_score
@@ -37,11 +37,7 @@ def live_lines(scene: bpy.types.Scene) -> list[ReadoutLine]:
     score, shown = live_state(scene.name).score, shown_score(scene)
     if score is None or shown is None:
         return []
-    figures = background_figures.figures_of(scene.name, score, shown.exact)
-    known_rig = background_figures.known_rig_score(scene.name)
-    lines: list[ReadoutLine] = [] if figures is None else [*readout_text.figure_lines(figures)]
-    lines += [] if known_rig is None else [readout_text.known_rig_line(known_rig, score.summary)]
-    return [line for line in lines if line]
+    return [line for line, _ in background_figures.lines_below(scene.name, score, shown.exact)]
 
 
 def register() -> None:

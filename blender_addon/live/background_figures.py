@@ -6,7 +6,7 @@ the mouse waits for them. Figures of a rig are computed once.
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Iterator
 from dataclasses import replace
 from functools import partial
 
@@ -17,6 +17,7 @@ from ..caches import RecentCache
 from ..choices import NO_ANCHOR
 from ..engine import advice, catalog, pe, sight
 from .evaluation import EvaluatorCache
+from .readout_text import ReadoutLine, figure_lines, known_rig_line
 from .state import (
     Baseline,
     FigureRequest,
@@ -78,10 +79,16 @@ def figures_of(scene_name: str, score: LiveScore, exact: bool) -> ShownFigures |
     return ShownFigures(now, before, current=True)
 
 
-def known_rig_score(scene_name: str) -> KnownRigScore | None:
-    """Return the known rig beside a scene's live score; None until it is scored."""
-    known_rig = live_state(scene_name).known_rig
-    return None if known_rig is None or known_rig.summary is None else known_rig
+def lines_below(
+    scene_name: str, score: LiveScore, exact: bool
+) -> Iterator[tuple[ReadoutLine, bool]]:
+    """Yield lines of key figures and of a known rig, and whether they are of what is shown."""
+    figures, known_rig = figures_of(scene_name, score, exact), live_state(scene_name).known_rig
+    for line in () if figures is None else figure_lines(figures):
+        if line:
+            yield line, figures is not None and figures.current
+    if known_rig is not None and (line := known_rig_line(known_rig, score.summary)):
+        yield line, False
 
 
 def cancel(scene_name: str) -> None:

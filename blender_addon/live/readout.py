@@ -21,10 +21,9 @@ from .readout_text import (
     WORSE,
     ReadoutLine,
     TextPiece,
-    figure_lines,
-    known_rig_line,
     readout_of,
 )
+from .sense_icons import SENSES
 from .state import LiveScore, ShownScore, live_state, shown_score
 
 LARGE = 17.0
@@ -35,8 +34,7 @@ ZONE_ROWS = 2
 WORD_GAP = 0.3
 MIN_WIDTH, MAX_COLUMNS = 236.0, 64
 ALERT: Rgba = (1.0, 0.84, 0.35, 1.0)
-SENSE_COLORS = {BETTER: (0.42, 0.75, 1.0, 1.0), WORSE: (1.0, 0.62, 0.25, 1.0)}
-"""Blue is better, orange worse: told apart by colour-blind eyes too, and an arrow is beside it."""
+SENSE_COLORS = {sense: (*color, 1.0) for sense, color in SENSES.items()}
 ARROWS = {BETTER: "\N{DOWNWARDS ARROW}", WORSE: "\N{UPWARDS ARROW}"}
 PLATE_NAME = "live"
 VIEW_TOPICS = "overlay "
@@ -76,25 +74,14 @@ def draw() -> None:
         state, shown = live_state(scene.name), shown_score(scene)
         if shown is not None and shown.exact and worker.background_worker.awaits(VIEW_TOPICS):
             shown = shown._replace(view_outdated=True)
-        figures = [] if state.score is None else figure_rows(scene.name, state.score, shown)
+        exact, figures = shown is not None and shown.exact, []
+        if state.score is not None:
+            lines = background_figures.lines_below(scene.name, state.score, exact)
+            figures = [row_of(line, INK if current else FAINT) for line, current in lines]
         rows = rows_of(state.score, state.note, shown, figures)
         corner = viewport.beside_toolbar(context), viewport.above_hud(context)
         box = draw_rows(rows, *corner, viewport.ui_scale())
     viewport.reserve_plate(context.region.as_pointer(), PLATE_NAME, box)
-
-
-def figure_rows(scene_name: str, score: LiveScore, shown: ShownScore | None) -> list[TextRow]:
-    """Return rows of key figures and of a known rig; faint where they are of before a move."""
-    exact = shown is not None and shown.exact
-    figures = background_figures.figures_of(scene_name, score, exact)
-    known_rig = background_figures.known_rig_score(scene_name)
-    rows = []
-    if figures is not None:
-        color = INK if figures.current else FAINT
-        rows += [row_of(line, color) for line in figure_lines(figures) if line]
-    if known_rig is not None and (line := known_rig_line(known_rig, score.summary)):
-        rows.append(row_of(line, FAINT))
-    return rows
 
 
 def row_of(line: ReadoutLine, color: Rgba = INK) -> TextRow:

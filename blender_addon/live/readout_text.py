@@ -67,8 +67,12 @@ def readout_of(score: LiveScore | None, shown: ShownScore) -> ReadoutText:
     if score is not None:
         now, before = score.summary, score.before
         what = "Coverage" if now.voxels else "Objects visible:"
-        coverage = TextPiece(f"{what} {shown.coverage:.1%}"), *coverage_change(now, before)
-        lines = coverage, *ap_lines(now, before), *zone_lines(now, before)
+        by = None if before is None else 100.0 * (now.coverage - before.coverage)
+        lines = ((TextPiece(f"{what} {shown.coverage:.1%}"), *change_of(by, 1)),)
+        if now.ap is not None:
+            by = None if before is None or before.ap is None else now.ap - before.ap
+            lines += ((TextPiece(f"Expected AP {now.ap:.3f}"), *change_of(by, 3)),)
+        lines += tuple(zone_lines(now, before))
         if before is not None and score.baseline is not None:
             change, sense = entropy_change(now.entropy, before.entropy)
             against = f"compared with {shortened(score.baseline.label)}"
@@ -103,19 +107,6 @@ def entropy_change(now: float, before: float) -> tuple[str, int]:
     if abs(by) < MIN_CHANGE:
         return "no change", SAME
     return f"{abs(by):.3f} {'worse' if by > 0.0 else 'better'}", WORSE if by > 0.0 else BETTER
-
-
-def coverage_change(now: pe.SummaryScore, before: pe.SummaryScore | None) -> ReadoutLine:
-    """Return how the coverage changed, in percentage points; nothing where it did not."""
-    return change_of(None if before is None else 100.0 * (now.coverage - before.coverage), 1)
-
-
-def ap_lines(now: pe.SummaryScore, before: pe.SummaryScore | None) -> list[ReadoutLine]:
-    """Return "Expected AP 0.653 (+0.012)" where objects are scored; nothing for voxels."""
-    if now.ap is None:
-        return []
-    by = None if before is None or before.ap is None else now.ap - before.ap
-    return [(TextPiece(f"Expected AP {now.ap:.3f}"), *change_of(by, 3))]
 
 
 def zone_lines(now: pe.SummaryScore, before: pe.SummaryScore | None) -> list[ReadoutLine]:

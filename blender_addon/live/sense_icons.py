@@ -10,7 +10,7 @@ from .readout_text import BETTER, WORSE
 
 SIDE_PX, RADIUS_PX = 32, 9
 SENSES = {BETTER: (0.42, 0.75, 1.0), WORSE: (1.0, 0.62, 0.25)}
-"""Blue is better, orange worse: told apart by colour-blind eyes, too."""
+"""Blue is better, orange worse: told apart by colour-blind eyes, too. Each has a shape, too."""
 
 _icons: list[bpy.utils.previews.ImagePreviewCollection] = []
 

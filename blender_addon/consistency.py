@@ -1,8 +1,7 @@
 """Keeps the sensors of scenes consistent, whatever was done outside the add-on's operators.
 
-A duplicated, copied or appended sensor is a new one: the result it brought is dropped, and it gets
-a colour of its own. Sensors that
-are linked to mirror images move with them, and a view camera goes with its sensor. Sensors of older
+A duplicated, copied or appended sensor is a new one and gets a colour of its own. Sensors that are
+linked to mirror images move with them, and a view camera goes with its sensor. Sensors of older
 files may be linked twice. All this happens on the moving signal, after a file was opened and before
 one is saved: at these times data may be written.
 """
@@ -17,10 +16,9 @@ from . import bridge, sensor_cache
 
 
 def after_load(*_: object) -> None:
-    """After a file was opened: bring it up to this version, and repair it."""
+    """After a file was opened: repair it, and say if it is of a newer version."""
     for scene in bpy.data.scenes:
         bridge.unlink_duplicates(scene)
-        bridge.migrate_scene(scene)
         if newer := bridge.newer_version_message(scene):
             print(f"perception_entropy: {newer}", file=sys.stderr)
     bridge.sync_own_sensors()
@@ -34,7 +32,7 @@ def before_save(*_: object) -> None:
     Mirror images of sensors that have just moved follow before they are written.
     """
     for scene in bpy.data.scenes:
-        bridge.migrate_scene(scene)
+        bridge.mark_version(scene)
     repair_scenes()
 
 
@@ -43,7 +41,6 @@ def repair_scenes() -> None:
     bridge.sync_own_sensors()  # undo may have brought others back
     for scene in bpy.data.scenes:
         sensors = sensor_cache.sensors(scene)
-        bridge.drop_foreign_results(scene, sensors)
         bridge.assign_colors(scene, sensors)
         bridge.update_view_cameras(scene, sensors)
     if bpy.context.view_layer is not None:  # other scenes are not evaluated

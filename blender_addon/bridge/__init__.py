@@ -7,7 +7,6 @@ from .loading import load_into, record_of_study
 from .mirroring import (
     SENSORS,
     clear_mirrors,
-    drop_foreign_results,
     follow_mirrors,
     in_the_middle,
     link_mirror,
@@ -23,8 +22,6 @@ from .own_sensors import add_own_sensor, remove_own_sensors, sync_own_sensors, t
 from .plain_objects import plain_objects, put_objects, sensors_of_objects
 from .prior import focus_rows, prior_from_scene, prior_key
 from .requirements import (
-    MET,
-    NOT_MET,
     after_of,
     edit_row,
     forget_verdict,
@@ -33,6 +30,7 @@ from .requirements import (
     requirements_key,
     requirements_of,
     store_verdicts,
+    stored_verdict,
     with_mesh_files_of,
     write_row,
 )
@@ -84,6 +82,16 @@ from .sensor_records import (
     same_sensors,
     write_records,
 )
+from .stored import (
+    FrontRow,
+    SensorFigures,
+    StoredChecks,
+    StoredFront,
+    StoredResult,
+    StoredWarning,
+    figures_of_sensor,
+    stored_fields,
+)
 from .transform_constraints import free_axes, holder_of, locked_axes
 from .variant_results import (
     FigureRule,
@@ -115,7 +123,7 @@ from .variants import (
     variant_named,
 )
 from .vehicle import layers_of, vehicle_from_collection, visible_members
-from .versions import migrate_scene, newer_version_message
+from .versions import mark_version, newer_version_message
 from .view_camera import (
     CAMERA_FROM_SENSOR,
     look_back,
@@ -127,14 +135,18 @@ from .view_camera import (
 
 __all__ = [
     "CAMERA_FROM_SENSOR",
-    "MET",
-    "NOT_MET",
     "SENSORS",
     "FigureRule",
     "Fingerprint",
+    "FrontRow",
     "LimitBox",
     "SceneRecord",
+    "SensorFigures",
     "SensorRecord",
+    "StoredChecks",
+    "StoredFront",
+    "StoredResult",
+    "StoredWarning",
     "activate_variant",
     "active_variant",
     "add_own_sensor",
@@ -155,10 +167,10 @@ __all__ = [
     "conditions_of",
     "copy_scene_score",
     "copy_score",
-    "drop_foreign_results",
     "edit_row",
     "figure_rule",
     "figures_of",
+    "figures_of_sensor",
     "figures_signature",
     "fingerprint",
     "focus_rows",
@@ -177,8 +189,8 @@ __all__ = [
     "look_back",
     "look_through",
     "mark_active",
+    "mark_version",
     "matching_variant",
-    "migrate_scene",
     "mirror_of",
     "mirrored_name",
     "mirrored_pose",
@@ -237,6 +249,8 @@ __all__ = [
     "store_variant_scores",
     "store_verdicts",
     "store_warnings",
+    "stored_fields",
+    "stored_verdict",
     "study_as_drawn",
     "study_from_scene",
     "study_of",

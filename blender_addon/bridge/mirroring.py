@@ -159,35 +159,6 @@ SENSORS = "Sensors"
 """The collection of a scene's sensors."""
 
 
-def drop_foreign_results(
-    scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object] | None = None
-) -> list[str]:
-    """Remove results that belong to another sensor or file; return the names of these sensors.
-
-    A duplicate still stores the result of its original, under the original's name. A renamed
-    sensor keeps its result, because no other sensor has its old name. `sensors` are the scene's
-    sensors, if the caller has already read them.
-    """
-    sensors = sensor_objects(scene) if sensors is None else sensors
-    holding = [each for each in sensors if each.perception_entropy.has_result]
-    wrong = []
-    for obj in holding:
-        settings = obj.perception_entropy
-        copied = is_copy(settings.result_of, obj, sensors)
-        if copied or not _of_the_last_result(settings, scene):
-            settings.has_result = False
-            wrong.append(obj.name)
-        elif settings.result_of != obj.name:
-            settings.result_of = obj.name
-    return wrong
-
-
-def _of_the_last_result(settings: bpy.types.PropertyGroup, scene: bpy.types.Scene) -> bool:
-    """Whether a sensor's figures belong to the scene's last result; always so in older files."""
-    last = scene.perception_entropy
-    return last.has_result and settings.result_run in ("", last.result_signature)
-
-
 def is_copy(whose: str, obj: bpy.types.Object, sensors: Sequence[bpy.types.Object]) -> bool:
     """Whether what a sensor stores under the name `whose` belongs to another sensor."""
     return whose not in ("", obj.name) and any(other.name == whose for other in sensors)

@@ -9,20 +9,21 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import bpy
 
-from ..engine import pe, requirements, studies, text, wording
+from ..engine import pe, requirements, studies, text
 
-UNKNOWN, NOT_MET, MET = -1, 0, 1
-"""Verdicts as a row stores them."""
+REASON = "reason"
+"""Key of a stored text that is why there is no verdict."""
 TableData = dict[str, Any]
 Requirement = requirements.Requirement
 Verdict = requirements.Verdict
+VerdictSummary = requirements.VerdictSummary
 
 
 def requirements_of(settings: bpy.types.PropertyGroup) -> tuple[Requirement, ...]:
@@ -159,25 +160,27 @@ def store_verdicts(
     reasons: Mapping[str, str] | None = None,
 ) -> None:
     """Store verdicts in the rows of their requirements; other rows have none, perhaps a reason."""
-    found = {verdict.name: verdict for verdict in verdicts}
+    found = {verdict.name: verdict.summary for verdict in verdicts}
     for row in settings.requirements:
-        verdict = found.get(row.name)
-        if verdict is None:
-            forget_verdict(row)
-            if reason := (reasons or {}).get(row.name):
-                row.verdict = f"not checked: {reason}"
-            continue
-        row.met = MET if verdict.met else NOT_MET
-        summary = verdict.summary
-        row.margin_text = wording.margin_text(summary)
-        row.verdict = wording.verdict_text(summary)
-        row.has_worst = verdict.worst is not None
-        row.worst = verdict.worst or (0.0, 0.0)
+        forget_verdict(row)
+        if row.name in found:
+            row.verdict = json.dumps(asdict(found[row.name]))
+        elif reasons is not None and row.name in reasons:
+            row.verdict = json.dumps({REASON: reasons[row.name]})
 
 
 def forget_verdict(row: bpy.types.PropertyGroup) -> None:
     """Remove a row's verdict: it is not of the requirement as it is now."""
-    row.met, row.verdict, row.margin_text, row.has_worst = UNKNOWN, "", "", False
+    row.verdict = ""
+
+
+def stored_verdict(row: bpy.types.PropertyGroup) -> VerdictSummary | str | None:
+    """Return a row's last verdict; the reason where it was not checked; None for neither."""
+    stored = json.loads(row.verdict) if row.verdict else None
+    if stored is None or REASON in stored:
+        return None if stored is None else str(stored[REASON])
+    worst = stored["worst"]
+    return VerdictSummary(**stored | {"worst": None if worst is None else tuple(worst)})
 
 
 def _read(name: str, table: TableData) -> Requirement:

@@ -10,12 +10,13 @@ from ..engine import catalog, graphics
 from .apply_variant import inactive_sensors
 from .mirroring import is_copy
 from .rig import color_of
+from .stored import rename_figures
 
 
 def assign_colors(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> None:
     """Give each sensor without a colour, and each copy of another, a tint that no other has.
 
-    A renamed sensor keeps its colour. One whose model is of another kind now gets a tint of that
+    A renamed sensor keeps its colour, and its figures in the last result. One whose model is of another kind now gets a tint of that
     kind, unless its colour was chosen by hand. Sensors of an asset library have none.
     """
     everyone = [*sensors, *inactive_sensors(scene).values()]
@@ -29,4 +30,5 @@ def assign_colors(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -
             taken = (color_of(other) for other in everyone if other != obj)
             settings.color = graphics.rgb_of(graphics.free_tint(entry.kind, filter(None, taken)))
         elif settings.color_of != obj.name:
+            rename_figures(scene, settings.color_of, obj.name)
             settings.color_of = obj.name

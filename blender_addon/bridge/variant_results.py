@@ -16,6 +16,7 @@ from .fingerprint import Fingerprint
 from .outcome import store_outcome
 from .scene_diagnostics import check_placeable, scene_advice
 from .sensor_records import SensorRecord, records_of, records_of_scene, rig_of
+from .stored import FrontRow, StoredFront, store
 from .variants import Variant, find_or_add_variant, mark_active, study_of_variant
 from .versions import score_from_dict, score_to_dict
 
@@ -148,7 +149,7 @@ def store_front(scene: bpy.types.Scene, trade_off: pe.TradeOff, surroundings: st
     """Store each design of a Pareto front as a variant, and the scene's sensors as another one."""
     records, settings = records_of_scene(scene), scene.perception_entropy
     before = find_or_add_variant(scene, BEFORE, records).key
-    settings.front.clear()
+    rows = []
     for design in trade_off.front:
         variant = find_or_add_variant(
             scene, design.name[:MAX_NAME_LENGTH], _designed(records, design)
@@ -156,21 +157,19 @@ def store_front(scene: bpy.types.Scene, trade_off: pe.TradeOff, surroundings: st
         if design.score is not None:
             store_variant_score(variant, design.score, surroundings)
         variant.note = variant.note or _note(design, settings.currency)
-        row = settings.front.add()
         met = f" ({design.met_text})" if design.met_text else ""
         figures = ", ".join(f"{n} {v:.4g}" for n, v in design.figures.items())
-        row.figures = figures.replace("_", " ")
-        row.name, row.key = f"{design.name}{met}", variant.key
-        row.price = design.price
-        row.entropy = 0.0 if math.isnan(design.entropy) else design.entropy
+        entropy = 0.0 if math.isnan(design.entropy) else design.entropy
+        named = f"{design.name}{met}", variant.key, design.price, entropy
+        rows.append(FrontRow(*named, figures.replace("_", " ")))
     count = len(trade_off.designs) + len(trade_off.refused)
     more = "all there are" if trade_off.is_complete else "of more"
     note = f"; {trade_off.requirements_note}" if trade_off.requirements_note else ""
-    settings.front_note = trade_off.hardware_note
     names = ", ".join(trade_off.objectives).replace("_", " ")
     looked = f"Pareto front of {names}" if names else ""
     told = f"{trade_off.searched} searched of {count} looked at, {more}"
-    settings.front_told = f"{looked or told}{note}"
+    front = StoredFront(tuple(rows), f"{looked or told}{note}", trade_off.hardware_note)
+    store(settings, "front_shown", front)
     mark_active(scene, before)
 
 

@@ -110,7 +110,7 @@ def mirrored_copy(context: bpy.types.Context, obj: bpy.types.Object) -> bpy.type
         advice.check_mirror_image(vehicle, sensor, image)
     made = obj.copy()
     made.name = bridge.mirrored_name(obj.name, "right" if pose.position[1] > 0.0 else "left")
-    made.perception_entropy.has_result, made.perception_entropy.mirror_of = False, ""
+    made.perception_entropy.mirror_of = ""
     for collection in obj.users_collection:
         collection.objects.link(made)
     bridge.place_poses(context.scene, {made.name: image})

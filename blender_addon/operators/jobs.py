@@ -17,7 +17,6 @@ from .. import (
     caches,
     diagnostics,
     result_staleness,
-    sensor_cache,
     signals,
     vehicle_cache,
 )
@@ -232,7 +231,7 @@ def cached_score(
 
 def store_result(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) -> None:
     """Store a result in the scene; keep its score for the views and for the next search."""
-    bridge.store_outcome(scene, outcome, signature, sensor_cache.sensors(scene))
+    bridge.store_outcome(scene, outcome, signature)
     live_state(scene.name).finished = FinishedScore(signature, outcome.study, outcome.after)
     diagnostics.explain_score(scene, outcome, signature)
     signals.view_changed.emit()  # there is a ground map of all voxels now
@@ -282,7 +281,8 @@ def store_search(
     gone = bridge.place_rig(scene, outcome.study.rig, outcome.start.rig)
     store_result(scene, outcome, taken.with_rig(outcome.study.rig).text)
     if is_next:  # of searches in a row: where the first began
-        settings.result_before, settings.result_coverage_before, settings.result_blind[0] = before
+        settings.result_before, settings.result_coverage_before, blind = before
+        settings.result_blind = blind, settings.result_blind[1]
     bridge.mark_active(scene, result_key)
     return gone
 

@@ -162,9 +162,16 @@ def shown_verdicts(scene: bpy.types.Scene) -> dict[str, ShownVerdict]:
                 verdict.preview,
             )
         else:
-            met = None if row.met < 0 else bool(row.met)
-            found[row.name] = ShownVerdict(met, row.margin_text, row.verdict)
+            found[row.name] = _stored(row)
     return found
+
+
+def _stored(row: bpy.types.PropertyGroup) -> ShownVerdict:
+    """Return a row's stored verdict in words."""
+    stored = bridge.stored_verdict(row)
+    if stored is None or isinstance(stored, str):
+        return ShownVerdict(None, "", f"not checked: {stored}" if stored else "")
+    return ShownVerdict(stored.met, wording.margin_text(stored), wording.verdict_text(stored))
 
 
 def look_at_worst() -> None:
@@ -192,7 +199,8 @@ def _worst(scene: bpy.types.Scene, row: bpy.types.PropertyGroup) -> tuple[float,
                 if verdict.name == row.name:
                     place: tuple[float, float] | None = verdict.worst
                     return place
-    return (row.worst[0], row.worst[1]) if row.has_worst else None
+    stored = bridge.stored_verdict(row)
+    return None if stored is None or isinstance(stored, str) else stored.worst
 
 
 def _requirement(choice: str) -> tuple[requirements.Requirement, str]:

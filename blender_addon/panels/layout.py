@@ -13,7 +13,7 @@ import bpy
 
 from ..language import draw_label, shown
 from ..operators import FIX_LABELS, SAME, sense_icon, warnings_outdated
-from ..properties import ROWS, DeclaredRow, declared_rows
+from ..properties import ROWS, DeclaredRow, StoredWarning, declared_rows
 
 # Blender registers the subclasses of Panel alone; for the checker of types this is one.
 if TYPE_CHECKING:
@@ -214,7 +214,7 @@ def draw_sentence(
 
 
 def draw_warning(
-    layout: bpy.types.UILayout, context: bpy.types.Context, warning: bpy.types.PropertyGroup
+    layout: bpy.types.UILayout, context: bpy.types.Context, warning: StoredWarning
 ) -> None:
     """Draw a warning, the part that causes it as a button, and a button that fixes it.
 

@@ -7,6 +7,7 @@ import bpy
 from ..choices import BEFORE_MOVE, PINNED
 from ..language import draw_label, shown
 from ..operators import answer, live_lines, reference_label, sense_of, text_of
+from ..properties import figures_of_sensor
 from .layout import BUTTON_PX, Tab, columns, draw_sentence, draw_stale_mark
 from .sensor_lists import draw_sensor_table
 
@@ -86,13 +87,13 @@ def draw_sensor_text(
     layout: bpy.types.UILayout, context: bpy.types.Context, obj: bpy.types.Object
 ) -> None:
     """Draw sentences on one sensor of the last result."""
-    settings = obj.perception_entropy
-    if not settings.has_result:
+    figures = figures_of_sensor(obj)
+    if figures is None:
         return
     box = layout.box().column(align=True)
     box.label(text=obj.name, icon="EMPTY_DATA", translate=False)
-    alone = f"sees {settings.coverage:.1%} of where objects are"
-    for line in (alone, *settings.words.splitlines()):
+    alone = f"sees {figures.coverage:.1%} of where objects are"
+    for line in (alone, *figures.words):
         draw_sentence(box, context, line[:1].upper() + line[1:], icon="DOT")
 
 

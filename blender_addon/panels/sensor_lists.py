@@ -6,6 +6,7 @@ import bpy
 
 from ..language import draw_label
 from ..operators import listed_sensors
+from ..properties import SensorFigures, figures_of_sensor
 from .layout import letters_per_line
 
 MIN_NAME_SHARE = 0.34
@@ -121,7 +122,7 @@ def draw_sensor(
     ).name = obj.name
     if model is not None:
         model.label(text=settings.model, translate=False)
-    draw_label(figure, loss_text(settings))
+    draw_label(figure, loss_text(obj))
 
 
 def draw_swatch(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
@@ -131,9 +132,10 @@ def draw_swatch(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -
     swatch.prop(settings, "color", text="")
 
 
-def loss_text(settings: bpy.types.PropertyGroup) -> str:
+def loss_text(obj: bpy.types.Object) -> str:
     """Return how much the rig's entropy rises without a sensor, from the last result."""
-    return settings.loss_text if settings.has_result and settings.loss_text else "–"
+    figures = figures_of_sensor(obj)
+    return NO_FIGURE if figures is None or not figures.loss else figures.loss
 
 
 def row_cells(
@@ -175,35 +177,33 @@ def draw_sensor_table(layout: bpy.types.UILayout, context: bpy.types.Context) ->
 def _draw_row(
     layout: bpy.types.UILayout, obj: bpy.types.Object, wide: bool, *, active: bool
 ) -> None:
-    settings = obj.perception_entropy
+    figures = figures_of_sensor(obj)
     name, loss, where, *rest = _cells(layout, wide)
-    draw_swatch(name, settings)
+    draw_swatch(name, obj.perception_entropy)
     name.operator(
         "pe.select_sensor", text=obj.name, depress=active, translate=False
     ).name = obj.name
-    if not settings.has_result:
+    if figures is None:
         draw_label(loss, "not scored")
         return
-    loss.label(text=settings.loss_text or NO_FIGURE, translate=False)
-    draw_label(where, settings.loss_where or NO_FIGURE)
+    loss.label(text=figures.loss or NO_FIGURE, translate=False)
+    draw_label(where, figures.where or NO_FIGURE)
     if wide:
-        _draw_parts(rest[0], settings)
-    elif settings.stopped_parts:
+        _draw_parts(rest[0], figures)
+    elif figures.parts:
         below = layout.row(align=True)
         below.label(text="", icon="BLANK1")
         draw_label(below, "Occluded by")
-        _draw_parts(below, settings, 1)
+        _draw_parts(below, figures, 1)
 
 
-def _draw_parts(
-    layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, most: int = 3
-) -> None:
+def _draw_parts(layout: bpy.types.UILayout, figures: SensorFigures, most: int = 3) -> None:
     """Draw the parts that occlude a sensor most, as buttons that select them."""
     row = layout.row(align=True)
-    for part in settings.stopped_parts[:most]:
-        text = f"{part.name} {part.share:.1%}"
-        row.operator("pe.select_part", text=text, translate=False).name = part.name
-    if not settings.stopped_parts:
+    for part, share in figures.parts[:most]:
+        text = f"{part} {share:.1%}"
+        row.operator("pe.select_part", text=text, translate=False).name = part
+    if not figures.parts:
         row.label(text=NO_FIGURE, translate=False)
 
 

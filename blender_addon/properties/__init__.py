@@ -8,6 +8,7 @@ from __future__ import annotations
 import bpy
 from bpy.props import PointerProperty
 
+from ..bridge import SensorFigures, StoredWarning, figures_of_sensor
 from ..sensor_kinds import DEFAULT_MODEL
 from .callbacks import model_suggestions
 from .condition import PE_State, PE_Weather
@@ -22,14 +23,7 @@ from .list_rows import (
     PE_SensorOption,
 )
 from .requirement import PE_Requirement
-from .results import (
-    PE_FrontRow,
-    PE_ResultPart,
-    PE_StoppingPart,
-    PE_Variant,
-    PE_VariantSensor,
-    PE_Warning,
-)
+from .results import PE_Variant, PE_VariantSensor
 from .scene import PE_SceneSettings
 from .sensor import AXIS_LABELS, FREE_BY_DEFAULT, PE_ObjectSettings
 from .view import PE_LiveSettings, PE_ViewSettings
@@ -42,7 +36,10 @@ __all__ = [
     "FREE_BY_DEFAULT",
     "ROWS",
     "DeclaredRow",
+    "SensorFigures",
+    "StoredWarning",
     "declared_rows",
+    "figures_of_sensor",
     "model_suggestions",
 ]
 
@@ -57,12 +54,8 @@ CLASSES = (
     PE_Requirement,
     PE_State,
     PE_Weather,
-    PE_FrontRow,
     PE_VariantSensor,
     PE_Variant,
-    PE_Warning,
-    PE_ResultPart,
-    PE_StoppingPart,
     PE_ViewSettings,
     PE_SceneSettings,
     PE_ObjectSettings,

@@ -12,7 +12,6 @@ from bpy.props import (
     EnumProperty,
     FloatProperty,
     FloatVectorProperty,
-    IntProperty,
     StringProperty,
 )
 
@@ -295,10 +294,6 @@ class PE_Requirement(Declared, X, Y, Ring, Height, bpy.types.PropertyGroup):
         options={"ENUM_FLAG"},
         **_view(_kind_flags, _set_kind_flags),
     )
-    met: IntProperty(name="Met", description="-1 unknown, 0 not met, 1 met", default=-1)
-    verdict: StringProperty(name="Verdict", description="The last verdict, in words")
-    margin_text: StringProperty(name="Margin", description="How far the zone could grow or shrink")
-    has_worst: BoolProperty(name="Has Worst", description="Whether a worst place is known")
-    worst: FloatVectorProperty(
-        name="Worst Place", description="Where the fewest sensors see", size=2, unit="LENGTH"
+    verdict: StringProperty(
+        name="Verdict", description="The last verdict as JSON, or why there is none"
     )

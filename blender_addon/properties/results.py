@@ -1,4 +1,4 @@
-"""Stored results: parts and warnings of the last score, variants, the Pareto front."""
+"""Variants of a scene: sets of sensors with their scores."""
 
 from __future__ import annotations
 
@@ -18,49 +18,6 @@ from bpy.props import (
 from ..choices import free_name
 from ..engine import pe, search
 from .declared import group_of
-
-
-class PE_ResultPart(bpy.types.PropertyGroup):
-    """A zone of the ground or a class of objects, with its label in the table as its name."""
-
-    is_class: BoolProperty(name="Is a Class", description="A class of objects, not a zone")
-    entropy: FloatProperty(
-        name="Entropy", description="Perception entropy in the zone or of the class [nats]"
-    )
-    coverage: FloatProperty(
-        name="Coverage",
-        description="Visible share of the prior in the zone or of the class, 0 to 1",
-    )
-    ap: StringProperty(
-        name="Expected AP", description="Expected AP of a class, if objects were scored"
-    )
-    reach: StringProperty(
-        name="Reach", description="Distance ahead up to which a class is found with an AP of 0.5"
-    )
-
-
-class PE_Warning(bpy.types.PropertyGroup):
-    """A stored warning (`pe_tools.advice.Advice`)."""
-
-    subject: StringProperty(name="Subject", description="Name of the sensor; empty: the vehicle")
-    code: StringProperty(name="Code", description="Code of the warning")
-    text: StringProperty(name="Text", description="The warning in a sentence")
-    part: StringProperty(name="Part", description="Part of the vehicle that causes the warning")
-    fix: StringProperty(name="Fix", description="The correction, if one is known")
-    amount: FloatVectorProperty(
-        name="Amount", description="Amount of the correction: degrees, a factor, metres", size=3
-    )
-    amounts: IntProperty(name="Amounts", description="Number of these numbers that are used", max=3)
-
-
-class PE_StoppingPart(bpy.types.PropertyGroup):
-    """A part of the vehicle that blocks a sensor; the row has the name of the part."""
-
-    share: FloatProperty(
-        name="Share",
-        description="Share of the sensor's beams or pixels that this part occludes, 0 to 1",
-    )
-
 
 MAX_NAME_LENGTH = 60
 
@@ -158,14 +115,3 @@ class PE_Variant(bpy.types.PropertyGroup):
         name="Stale",
         description="Vehicle, prior or settings have changed since the variant was scored",
     )
-
-
-class PE_FrontRow(bpy.types.PropertyGroup):
-    """A design of the Pareto front of price and entropy, with the key of its variant."""
-
-    price: FloatProperty(name="Price", description="Price of all chosen sensors")
-    figures: StringProperty(
-        name="Figures", description="Its objectives, on a front of several objectives"
-    )
-    entropy: FloatProperty(name="Entropy", description="Perception entropy in nats, for display")
-    key: IntProperty(name="Key", description="Key of the design's variant")

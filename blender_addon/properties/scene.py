@@ -11,12 +11,12 @@ from bpy.props import (
     CollectionProperty,
     EnumProperty,
     FloatProperty,
-    FloatVectorProperty,
     IntProperty,
     PointerProperty,
     StringProperty,
 )
 
+from .. import bridge
 from ..choices import PRIORS
 from ..engine import search
 from .callbacks import (
@@ -31,7 +31,7 @@ from .condition import PE_State, PE_Weather
 from .declared import scene_group
 from .list_rows import PE_CurveSettings, PE_FocusSettings, PE_MountSettings, PE_OwnSensorSettings
 from .requirement import PE_Requirement
-from .results import PE_FrontRow, PE_ResultPart, PE_Variant, PE_Warning
+from .results import PE_Variant
 from .view import PE_LiveSettings, PE_ViewSettings
 
 METHODS = tuple(
@@ -50,9 +50,14 @@ PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) 
 
 
 StudyFields: Any = scene_group()
+ResultFields: Any = bridge.stored_fields(bridge.StoredResult, "result_shown")
+CheckFields: Any = bridge.stored_fields(bridge.StoredChecks, "checks_shown")
+FrontFields: Any = bridge.stored_fields(bridge.StoredFront, "front_shown")
 
 
-class PE_SceneSettings(StudyFields, bpy.types.PropertyGroup):
+class PE_SceneSettings(
+    StudyFields, ResultFields, CheckFields, FrontFields, bpy.types.PropertyGroup
+):
     """The study's settings, and the last result."""
 
     version: IntProperty(
@@ -143,9 +148,6 @@ class PE_SceneSettings(StudyFields, bpy.types.PropertyGroup):
         type=PE_Weather, name="Weathers", description="Weathers in which the rig is scored, too"
     )
     weather_index: IntProperty(name="Weather", description="Row of the list", min=0)
-    result_conditions: StringProperty(
-        name="Conditions", description="Scores of the last run by condition"
-    )
     method: EnumProperty(
         items=METHODS,
         name="Method",
@@ -223,30 +225,10 @@ class PE_SceneSettings(StudyFields, bpy.types.PropertyGroup):
         description="3D views as they were before a sensor was looked through, as JSON",
     )
 
+    result_shown: StringProperty(name="Shown Result", description="Figures of the panel, as JSON")
+    checks_shown: StringProperty(name="Checks", description="Warnings, as JSON")
+    front_shown: StringProperty(name="Front", description="The last Pareto front, as JSON")
     has_result: BoolProperty(name="Has Result", description="A score is stored")
-    result_kind: StringProperty(name="Kind", description="score or optimize")
-    result_entropy: FloatProperty(
-        name="Perception Entropy", description="In nats; lower is better. Rounded for display"
-    )
-    result_before: FloatProperty(
-        name="Before", description="Perception entropy at the start of the search"
-    )
-    result_cost: StringProperty(
-        name="Cost", description="What the last search made worse, in one sentence"
-    )
-    result_coverage: FloatProperty(
-        name="Coverage", description="Share of the prior that is visible to a sensor, 0 to 1"
-    )
-    result_coverage_before: FloatProperty(
-        name="Coverage Before", description="Coverage at the start of the search, 0 to 1"
-    )
-    result_blind: FloatVectorProperty(
-        name="Blind Ground", description="Before and after a search [m2], rounded up", size=2
-    )
-    result_stderr: FloatProperty(
-        name="Standard Error",
-        description="Standard error of the perception entropy; 0 if all voxels were evaluated",
-    )
     result_json: StringProperty(
         name="Result", description="The last result in full, as result.json holds it"
     )
@@ -254,58 +236,8 @@ class PE_SceneSettings(StudyFields, bpy.types.PropertyGroup):
         name="Signature",
         description="Identifies the scored scene, to find out whether the result is still valid",
     )
-    result_parts: CollectionProperty(
-        type=PE_ResultPart, name="Parts", description="The last result by zone and by class"
-    )
     result_stale: BoolProperty(
         name="Stale", description="The scene has changed since the result was made"
-    )
-
-    result_words: StringProperty(
-        name="In Words", description="Sentences about the last result, one line each"
-    )
-    result_missing: StringProperty(
-        name="Missing", description="Data that was missing when the scene was scored, one line each"
-    )
-    vehicle_line: StringProperty(
-        name="Vehicle in a Line",
-        description="Size, forward direction, triangles and parts of the vehicle",
-    )
-    result_warnings: CollectionProperty(
-        type=PE_Warning, name="Warnings", description="Warnings about the sensors and the vehicle"
-    )
-    result_ap: StringProperty(
-        name="Expected AP", description="Weighted mean over all objects, and its standard error"
-    )
-    result_in_traffic: StringProperty(
-        name="AP in Traffic",
-        description="Expected AP of objects in traffic before and after a search by it",
-    )
-    result_mounted_off: StringProperty(
-        name="Mounted Off",
-        description="Mean rise of the entropy by mounting errors, before and after",
-    )
-    result_sensor_lost: StringProperty(
-        name="Sensor Lost",
-        description="Mean rise of the entropy by the loss of one sensor, before and after",
-    )
-    result_sureness: StringProperty(
-        name="How Sure",
-        description="How sure the last search is of its result, one line each",
-    )
-    result_fragile: StringProperty(
-        name="Fragile", description="Warning if the result is too sensitive to mounting errors"
-    )
-    front: CollectionProperty(
-        type=PE_FrontRow,
-        name="Front",
-        description="Designs that no other design beats in price and entropy, cheapest first",
-    )
-    front_told: StringProperty(
-        name="Search", description="How many designs were evaluated, and how"
-    )
-    front_note: StringProperty(
-        name="Note", description="What limits a comparison of designs with other sensors"
     )
 
     variants: CollectionProperty(

@@ -17,7 +17,6 @@ from bpy.props import (
     CollectionProperty,
     FloatProperty,
     FloatVectorProperty,
-    IntProperty,
     StringProperty,
 )
 
@@ -34,7 +33,6 @@ from .callbacks import (
 )
 from .declared import group_of
 from .list_rows import PE_SensorOption
-from .results import PE_StoppingPart
 
 AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")
 """Of `search.AXES`."""
@@ -256,43 +254,6 @@ class PE_ObjectSettings(GroundPose, CurveFields, bpy.types.PropertyGroup):
         name="Mirror Of", description="Name of the sensor that is linked as its mirror image"
     )
 
-    has_result: BoolProperty(name="Has Result", description="The last result includes this sensor")
-    result_of: StringProperty(
-        name="Result Of",
-        description="Name of the scored sensor: a copy of the sensor has the same value",
-    )
-    result_run: StringProperty(name="Result Run", description="Signature of the scene's result")
-    entropy: FloatProperty(
-        name="Alone", description="Perception entropy if this were the only sensor [nats]"
-    )
-    coverage: FloatProperty(
-        name="Coverage", description="Share of the prior that this sensor sees, 0 to 1"
-    )
-    beams: IntProperty(
-        name="Beams", description="Beams of one revolution, or positions in a camera's picture"
-    )
-    stopped: IntProperty(
-        name="Occluded", description="Beams, or positions in the picture, that the vehicle occludes"
-    )
-    stopped_text: StringProperty(
-        name="Occluded By",
-        description="Parts of the vehicle with the number of beams that they occlude",
-    )
-
-    loss_text: StringProperty(
-        name="Loss", description="Rise of the rig's entropy when this sensor fails [nats]"
-    )
-    loss_where: StringProperty(
-        name="Costs Most", description="Zone of the largest rise, and the rise there [nats]"
-    )
-    words: StringProperty(
-        name="In Words", description="Sentences of the last result about this sensor, one line each"
-    )
-    stopped_parts: CollectionProperty(
-        type=PE_StoppingPart,
-        name="Occluded By",
-        description="Parts of the vehicle that occlude the sensor",
-    )
     is_view: BoolProperty(
         name="Is a View", description="This camera shows the view of its parent sensor"
     )

@@ -16,8 +16,8 @@ def scored(car):
 
 def results(scene):
     """Return what each sensor holds of a result, by name; None where it holds none."""
-    own = {obj.name: obj.perception_entropy for obj in bridge.sensor_objects(scene)}
-    return {name: each.entropy if each.has_result else None for name, each in own.items()}
+    own = {obj.name: bridge.figures_of_sensor(obj) for obj in bridge.sensor_objects(scene)}
+    return {name: None if each is None else each.entropy for name, each in own.items()}
 
 
 @pytest.mark.parametrize("linked", [False, True])

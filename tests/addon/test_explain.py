@@ -135,7 +135,7 @@ def test_the_table_has_every_sensor_of_the_score(car):
     seen = advice.outlook(study.sight(), study.rig)
     score = study.evaluator().score(study.rig)
     bridge.store_text(car, study, score, seen)
-    assert any(car.objects[name].perception_entropy.loss_where != "-" for name in score.per_sensor)
+    assert any(f.where != "-" for f in car.perception_entropy.result_sensors.values())
     assert not any("without it" in line for line in car.perception_entropy.result_words.split("\n"))
     for width in (240, 600):
         window, layout = Window(car, car.objects["roof"]), Layout()

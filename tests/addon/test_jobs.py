@@ -48,11 +48,12 @@ def test_result_is_shown(car):
     settings, data = car.perception_entropy, stored(car)
     assert settings.has_result and not settings.result_stale
     assert settings.result_entropy == pytest.approx(data["entropy"], abs=1e-6)
-    roof = car.objects["roof"].perception_entropy
-    assert roof.has_result and roof.beams == 16 * 1800
+    roof = bridge.figures_of_sensor(car.objects["roof"])
+    assert roof is not None and roof.beams == 16 * 1800
     assert roof.stopped == data["after"]["per_sensor"]["roof"]["occluded"] > 0
-    assert "cabin" in roof.stopped_text
-    front, told = car.objects["front"].perception_entropy, data["after"]["per_sensor"]["front"]
+    assert "cabin" in dict(roof.parts)
+    front = bridge.figures_of_sensor(car.objects["front"])
+    told = data["after"]["per_sensor"]["front"]
     assert (front.beams, front.stopped) == (told["beams"], told["occluded"]), "rays of its picture"
 
 

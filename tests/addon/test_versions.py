@@ -1,54 +1,11 @@
-"""Files of older versions, of newer ones, and vehicles that are another file's."""
-
-import json
-from pathlib import Path
+"""Files of newer versions, and vehicles that are another file's."""
 
 import bpy
 import pytest
 
 from blender_addon import bridge, choices
-from blender_addon.bridge.versions import STEPS, Stored, migrated
 from tests.addon import scenes
 from tests.addon.command_line import run_here
-
-OLD = Path(__file__).parent / "files" / "version_0.blend"
-"""Written by the add-on before there were versions: a car, two sensors, the result of a search."""
-
-
-@pytest.fixture
-def old(addon):
-    """Return the scene of the old file, as it is once it was opened."""
-    bpy.ops.wm.open_mainfile(filepath=str(OLD))
-    return bpy.context.scene
-
-
-def test_there_is_a_step_for_every_version():
-    assert sorted(STEPS) == list(range(choices.VERSION))
-    assert migrated(Stored()).version == choices.VERSION
-
-
-def test_newer_ones_stay_as_they_are():
-    newer = Stored(version=choices.VERSION + 1, has_result=True, result_json="?")
-    assert migrated(newer) is newer
-
-
-def test_a_damaged_result_says_so():
-    new = migrated(Stored(has_result=True, result_json="{"))
-    assert "earlier version" in new.result_words and new.result_stale
-
-
-def test_an_old_file_is_what_it_was_and_its_result_is_in_words(old):
-    settings = old.perception_entropy
-    assert settings.version == choices.VERSION
-    written = json.loads(settings.result_json)["entropy"]
-    assert settings.result_stale and settings.result_entropy == pytest.approx(written)
-    assert "of where objects are is seen" in settings.result_words
-    assert [obj.name for obj in bridge.sensor_objects(old)] == ["eye", "roof"]
-    assert len(old.objects["roof"].users_collection) == 1
-    assert settings.prior == "highway" and settings.focus[0].region == "far"
-    assert bpy.ops.pe.score() == {"FINISHED"}
-    assert json.loads(settings.result_json)["entropy"] == written
-    assert not settings.result_stale
 
 
 def test_a_saved_file_has_its_version(car, tmp_path):
@@ -99,9 +56,8 @@ def test_a_linked_vehicle_is_the_vehicle(car, tmp_path):
     scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))
     assert_same(scenes.study(), expected)
     bpy.ops.pe.score()
-    assert "cabin [library.blend]" in {
-        part.name for part in scene.objects["roof"].perception_entropy.stopped_parts
-    }
+    parts = bridge.figures_of_sensor(scene.objects["roof"]).parts
+    assert "cabin [library.blend]" in dict(parts)
 
 
 def test_parts_of_a_linked_vehicle_are_selected_and_it_is_not_turned(car, tmp_path):

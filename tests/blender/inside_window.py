@@ -134,7 +134,9 @@ def report_state():
         "perspective": view3d()[1].spaces.active.region_3d.view_perspective,
         "view": view_seen(),
         "pictures": pictures_shown(),
-        "own_results": [s.name for s in sensors if s.perception_entropy.has_result],
+        "own_results": [
+            s.name for s in sensors if s.name in scene.perception_entropy.result_sensors
+        ],
     }
     write("state.json", state)
     report_where()

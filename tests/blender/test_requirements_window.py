@@ -105,7 +105,7 @@ bpy.app.timers.register(tick)
 """
 ROWS = """
 rows = window.scene.perception_entropy.requirements
-kept["met"] = [row.met for row in rows]
+kept["met"] = [bool(row.verdict) for row in rows]
 gaps = [b - a for a, b in zip(kept["ticks"], kept["ticks"][1:])]
 kept["longest"] = max(gaps, default=0.0)
 """
@@ -117,7 +117,7 @@ def test_a_check_of_all_presets_leaves_the_window_free_and_esc_keeps_what_it_fou
     stage.do(HELD)
     stage.do(CHECK)
     running = f"__import__('{NAME}.operators.running_job', fromlist=['current']).current"
-    known = "sum(row.met >= 0 for row in window.scene.perception_entropy.requirements)"
+    known = "sum(bool(row.verdict) for row in window.scene.perception_entropy.requirements)"
     stage.wait_until(f"{known} > 0 or {running} is None", EFFECT_TIMEOUT_S)
     stage.photograph(screenshots / "window_check.png")
     stage.point_at_view()

@@ -16,8 +16,9 @@ from .stored import rename_figures
 def assign_colors(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> None:
     """Give each sensor without a colour, and each copy of another, a tint that no other has.
 
-    A renamed sensor keeps its colour, and its figures in the last result. One whose model is of another kind now gets a tint of that
-    kind, unless its colour was chosen by hand. Sensors of an asset library have none.
+    A renamed sensor keeps its colour, and its figures in the last result. One whose model is of
+    another kind now gets a tint of that kind, unless its colour was chosen by hand. Sensors of an
+    asset library have none.
     """
     everyone = [*sensors, *inactive_sensors(scene).values()]
     for obj in sensors:

@@ -5,6 +5,7 @@ import itertools
 import bpy
 import pytest
 
+from blender_addon import bridge
 from blender_addon.panels import CLASSES, layout, main, sensor_lists
 from tests.addon import layouts, scenes
 

@@ -118,14 +118,13 @@ def _parts(score: pe.Score) -> Iterator[ResultPart]:
 
 def store_warnings(settings: bpy.types.PropertyGroup, warnings: Sequence[pe.Advice]) -> None:
     """Store the warnings about a scene's sensors and vehicle, for the panel."""
-    settings.result_warnings = tuple(
-        StoredWarning(
-            *(warning.subject or "", warning.code, warning.text),
-            *(warning.part or "", warning.fix or "", (*warning.amount, 0.0, 0.0, 0.0)[:3]),
-        )
-        for warning in warnings
-        if warning.code != advice.FRAGILE
-    )
+    rows = []
+    for each in warnings:
+        if each.code != advice.FRAGILE:
+            x, y, z = (*each.amount, 0.0, 0.0, 0.0)[:3]
+            named = each.subject or "", each.code, each.text, each.part or "", each.fix or ""
+            rows.append(StoredWarning(*named, (x, y, z)))
+    settings.result_warnings = tuple(rows)
 
 
 def blender_version() -> dict[str, str]:

@@ -7,19 +7,14 @@ from pathlib import Path
 from typing import Any
 
 import bpy
-from bpy.props import (
-    BoolProperty,
-    EnumProperty,
-    FloatProperty,
-    FloatVectorProperty,
-    StringProperty,
-)
+from bpy.props import EnumProperty, FloatProperty, StringProperty
 
 from .. import bridge, signals
 from ..engine import kinds, requirements, studies
 from . import requirement_fields as fields
 from .callbacks import changed
 from .declared import mixin, property_of
+from .fields import menu, number, numbers, switch, text
 
 BODIES = (
     *(
@@ -193,11 +188,9 @@ Height: Any = _ends("z", ("Height", HEIGHT), (0.0, 0.0), **HIGH)
 class PE_Requirement(Declared, X, Y, Ring, Height, bpy.types.PropertyGroup):
     """A requirement, and its last verdict."""
 
-    enabled: BoolProperty(
-        name="Checked", description="Hold the rig to this requirement", default=True, update=changed
-    )
-    table: StringProperty(name="Table", description="The requirement as JSON", update=changed)
-    problem: StringProperty(name="Problem", description="Why a change was not made")
+    enabled: switch("Checked", "Hold the rig to this requirement", True, update=changed)
+    table: text("Table", "The requirement as JSON", update=changed)
+    problem: text("Problem", "Why a change was not made")
     asks: EnumProperty(
         name="Asks For",
         description="What is asked for in the zone",
@@ -208,34 +201,34 @@ class PE_Requirement(Declared, X, Y, Ring, Height, bpy.types.PropertyGroup):
         description="What stands at each sample of the zone",
         **_choice(BODIES, fields.body_choice, fields.choose_body),
     )
-    bodies: StringProperty(
-        name="Bodies",
-        description="Names of test bodies: child, adult, cyclist",
+    bodies: text(
+        "Bodies",
+        "Names of test bodies: child, adult, cyclist",
         **_view(fields.bodies_text, fields.set_bodies),
     )
-    body_size: FloatVectorProperty(
-        name="Size",
-        description="Length along the heading, width and height",
-        size=3,
+    body_size: numbers(
+        "Size",
+        "Length along the heading, width and height",
+        3,
         min=0.001,
         unit="LENGTH",
         **_view(fields.own_size, fields.set_own_size),
     )
-    body_round: BoolProperty(
-        name="Round",
-        description="An upright cylinder as wide as the body is long",
+    body_round: switch(
+        "Round",
+        "An upright cylinder as wide as the body is long",
         **_view(fields.own_is_round, fields.set_own_round),
     )
-    body_low: FloatProperty(
-        name="Lower Edge",
-        description="Height of the lower edge above the ground",
+    body_low: number(
+        "Lower Edge",
+        "Height of the lower edge above the ground",
         min=0.0,
         unit="LENGTH",
         **_view(fields.own_low, fields.set_own_low),
     )
-    body_mesh: StringProperty(
-        name="Mesh File",
-        description="A closed mesh (.glb, .stl, .obj, .ply, .npz) in place of a box; empty: none",
+    body_mesh: text(
+        "Mesh File",
+        "A closed mesh (.glb, .stl, .obj, .ply, .npz) in place of a box; empty: none",
         **_view(_shown_file, _set_file),
     )
     body_up: EnumProperty(
@@ -248,27 +241,27 @@ class PE_Requirement(Declared, X, Y, Ring, Height, bpy.types.PropertyGroup):
         description="The file's axis that points along the heading of the body",
         **_choice(AXES, *fields.own_text("forward", fields.AS_IN_FILE)),
     )
-    body_scale: FloatProperty(
-        name="Scale",
-        description="Factor for lengths, applied after the file's own unit",
+    body_scale: number(
+        "Scale",
+        "Factor for lengths, applied after the file's own unit",
         min=1e-6,
         max=1e6,
         precision=4,
         **_view(fields.mesh_scale, fields.set_mesh_scale),
     )
-    body_class: StringProperty(
-        name="Class",
-        description="Class of objects whose AP curve holds for the body; empty: none",
+    body_class: text(
+        "Class",
+        "Class of objects whose AP curve holds for the body; empty: none",
         **_view(*fields.own_text("class", "")),
     )
-    body_name: StringProperty(
-        name="Body Name",
-        description="What the body is called in a verdict",
+    body_name: text(
+        "Body Name",
+        "What the body is called in a verdict",
         **_view(*fields.own_text("name", fields.OWN)),
     )
-    headings: StringProperty(
-        name="Headings",
-        description="Headings at which bodies stand, in degrees: 0, 90; empty: those of the body",
+    headings: text(
+        "Headings",
+        "Headings at which bodies stand, in degrees: 0, 90; empty: those of the body",
         **_view(fields.headings_text, fields.set_headings),
     )
     shape: EnumProperty(
@@ -276,24 +269,22 @@ class PE_Requirement(Declared, X, Y, Ring, Height, bpy.types.PropertyGroup):
         description="Shape of the zone",
         **_choice(SHAPES, fields.shape_of, fields.reshape),
     )
-    corners: StringProperty(
-        name="Corners",
-        description="x, y of each corner or spot, separated by semicolons: front + 1, left; "
+    corners: text(
+        "Corners",
+        "x, y of each corner or spot, separated by semicolons: front + 1, left; "
         "front + 5, left + 1",
         **_view(fields.corners_text, fields.set_corners),
     )
-    eyes: StringProperty(
-        name="Driver's Eyes X",
-        description="x of the driver's eyes [m], for the plane eyes; empty: not known",
+    eyes: text(
+        "Driver's Eyes X",
+        "x of the driver's eyes [m], for the plane eyes; empty: not known",
         **_view(fields.eyes_text, fields.set_eyes),
     )
-    of: EnumProperty(
-        name="Only",
-        description="Only these kinds of sensors count; none chosen: all",
-        items=_kind_items,
+    of: menu(
+        "Only",
+        "Only these kinds of sensors count; none chosen: all",
+        _kind_items,
         options={"ENUM_FLAG"},
         **_view(_kind_flags, _set_kind_flags),
     )
-    verdict: StringProperty(
-        name="Verdict", description="The last verdict as JSON, or why there is none"
-    )
+    verdict: text("Verdict", "The last verdict as JSON, or why there is none")

@@ -11,14 +11,6 @@ from typing import Any
 
 import bpy
 import numpy as np
-from bpy.props import (
-    BoolProperty,
-    BoolVectorProperty,
-    CollectionProperty,
-    FloatProperty,
-    FloatVectorProperty,
-    StringProperty,
-)
 
 from .. import bridge
 from ..engine import pe, search
@@ -32,6 +24,7 @@ from .callbacks import (
     redraw,
 )
 from .declared import group_of
+from .fields import number, numbers, rows, switch, switches, text
 from .list_rows import PE_SensorOption
 
 AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")
@@ -80,10 +73,10 @@ def _stand(obj: bpy.types.Object, position: Sequence[float], degrees: Sequence[f
 class GroundPose:
     """Fields of an object's settings that are its transform: nothing is stored here."""
 
-    ground_position: FloatVectorProperty(
-        name="Position",
-        description="Optical centre in the ground frame: forward, left, up",
-        size=3,
+    ground_position: numbers(
+        "Position",
+        "Optical centre in the ground frame: forward, left, up",
+        3,
         subtype="XYZ",
         unit="LENGTH",
         precision=3,
@@ -91,11 +84,11 @@ class GroundPose:
         get=_position,
         set=_set_position,
     )
-    ground_rotation: FloatVectorProperty(
-        name="Rotation",
-        description="Roll, pitch and yaw in the ground frame: a positive pitch is nose down, a "
+    ground_rotation: numbers(
+        "Rotation",
+        "Roll, pitch and yaw in the ground frame: a positive pitch is nose down, a "
         "positive yaw turns left",
-        size=3,
+        3,
         subtype="EULER",
         unit="ROTATION",
         precision=2,
@@ -125,148 +118,121 @@ CurveFields: Any = group_of(pe.ApCurve, prefix="curve_")
 class PE_ObjectSettings(GroundPose, CurveFields, bpy.types.PropertyGroup):
     """What makes an object a sensor, and its part in the last result."""
 
-    is_sensor: BoolProperty(
-        name="Is a Sensor",
-        description="This object is a sensor: its x axis is forward, z is up",
-        update=changed,
+    is_sensor: switch(
+        "Is a Sensor", "This object is a sensor: its x axis is forward, z is up", update=changed
     )
-    model: StringProperty(
-        name="Model",
-        description="Name of the sensor in the catalogue",
-        default=DEFAULT_MODEL,
+    model: text(
+        "Model",
+        "Name of the sensor in the catalogue",
+        DEFAULT_MODEL,
         search=models_of_a_kind,
-        search_options={"SUGGESTION"},  # the typed text is kept; a message reports an unknown name
+        search_options={"SUGGESTION"},
         update=model_chosen,
     )
-    color: FloatVectorProperty(
-        name="Color",
-        description="Colour of this sensor in the panel, the 3D view, pictures, pages and exports",
+    color: numbers(
+        "Color",
+        "Colour of this sensor in the panel, the 3D view, pictures, pages and exports",
+        3,
         subtype="COLOR_GAMMA",
-        size=3,
         min=0.0,
         max=1.0,
         update=recolored,
     )
-    color_of: StringProperty(
-        name="Color Of",
-        description="Name of the sensor that has got this colour: a copy gets another one",
+    color_of: text(
+        "Color Of",
+        "Name of the sensor that has got this colour: a copy gets another one",
         options={"HIDDEN"},
     )
-    fusion: StringProperty(
-        name="Fusion",
-        description="The beams or pixels of all sensors of a group are summed. If empty, all LiDARs"
+    fusion: text(
+        "Fusion",
+        "The beams or pixels of all sensors of a group are summed. If empty, all LiDARs"
         " are one group and each camera is a group of its own",
         update=changed,
     )
-    own_curve: BoolProperty(
-        name="Own AP Curve",
-        description="Use the numbers below for this sensor instead of those of its kind. Sensors of"
+    own_curve: switch(
+        "Own AP Curve",
+        "Use the numbers below for this sensor instead of those of its kind. Sensors of"
         " one fusion group have the same curve",
         update=own_curve_switched,
     )
-    free: BoolVectorProperty(
-        name="Free Axes",
-        description="Axes that the search may change",
-        size=len(search.AXES),
-        default=FREE_BY_DEFAULT,
+    free: switches(
+        "Free Axes", "Axes that the search may change", len(search.AXES), default=FREE_BY_DEFAULT
     )
-    bounded: BoolVectorProperty(
-        name="Bounded",
-        description="The axis has its own bounds in a search; otherwise those of the vehicle's "
-        "outline",
-        size=len(search.AXES),
+    bounded: switches(
+        "Bounded",
+        "The axis has its own bounds in a search; otherwise those of the vehicle's outline",
+        len(search.AXES),
     )
-    bounds_low: FloatVectorProperty(
-        name="From",
-        description="Lowest value that the search may try: metres, or degrees",
-        size=len(search.AXES),
+    bounds_low: numbers(
+        "From",
+        "Lowest value that the search may try: metres, or degrees",
+        len(search.AXES),
         precision=3,
     )
-    bounds_high: FloatVectorProperty(
-        name="To",
-        description="Highest value that the search may try: metres, or degrees",
-        size=len(search.AXES),
+    bounds_high: numbers(
+        "To",
+        "Highest value that the search may try: metres, or degrees",
+        len(search.AXES),
         precision=3,
     )
-    mount: StringProperty(
-        name="Mount",
-        description="Mount of this sensor in a search; empty: a box of coordinates",
+    mount: text(
+        "Mount",
+        "Mount of this sensor in a search; empty: a box of coordinates",
         search=mounts_of_scene,
         search_options={"SUGGESTION"},
         update=redraw,
     )
-    rack: StringProperty(
-        name="Rack",
-        description="Sensors with the same rack move as one in a search; the first by name leads",
+    rack: text(
+        "Rack",
+        "Sensors with the same rack move as one in a search; the first by name leads",
         search=racks_of_scene,
         search_options={"SUGGESTION"},
     )
-    is_rack: BoolProperty(
-        name="Is a Rack",
-        description="Sensors that are parented to this object move as one in a search",
-    )
-    is_no_go: BoolProperty(
-        name="No-Go Area",
-        description="In a search, no part of a sensor may be in the box round this object",
+    is_rack: switch("Is a Rack", "Sensors that are parented to this object move as one in a search")
+    is_no_go: switch(
+        "No-Go Area",
+        "In a search, no part of a sensor may be in the box round this object",
         update=redraw,
     )
-    options: CollectionProperty(
-        type=PE_SensorOption,
-        name="Models",
-        description="Models that a search may choose for this sensor",
+    options: rows("Models", "Models that a search may choose for this sensor", PE_SensorOption)
+    stays: switch("Stays", "A search leaves this sensor where it is, and those that follow it")
+    may_be_left_out: switch("May Be Left Out", "A search may choose a design without this sensor")
+    show: switch(
+        "Show Beams", "Draw this sensor's beams or frustum in the 3D view", True, update=redraw
     )
-    stays: BoolProperty(
-        name="Stays",
-        description="A search leaves this sensor where it is, and those that follow it",
-    )
-    may_be_left_out: BoolProperty(
-        name="May Be Left Out", description="A search may choose a design without this sensor"
-    )
-    show: BoolProperty(
-        name="Show Beams",
-        description="Draw this sensor's beams or frustum in the 3D view",
-        default=True,
-        update=redraw,
-    )
-    placed: FloatVectorProperty(
-        name="Placed",
-        description="Placement last written by a search: x, y, z [m], roll, pitch, yaw [deg]",
-        size=len(search.AXES),
+    placed: numbers(
+        "Placed",
+        "Placement last written by a search: x, y, z [m], roll, pitch, yaw [deg]",
+        len(search.AXES),
         options={"HIDDEN"},
     )
 
-    stands_when_dropped: BoolProperty(
-        name="Stands When Dropped",
-        description="Stands upright on the surface when it is dropped from the asset browser",
+    stands_when_dropped: switch(
+        "Stands When Dropped",
+        "Stands upright on the surface when it is dropped from the asset browser",
         options={"HIDDEN"},
     )
-    is_parked: BoolProperty(
-        name="Is Inactive",
-        description="This sensor is inactive, because only other variants have it",
+    is_parked: switch(
+        "Is Inactive",
+        "This sensor is inactive, because only other variants have it",
         options={"HIDDEN"},
     )
-    parked_from: StringProperty(
-        name="Inactive From",
-        description="Collections of an inactive sensor before it became inactive",
+    parked_from: text(
+        "Inactive From", "Collections of an inactive sensor before it became inactive"
     )
 
-    mirror_of: StringProperty(
-        name="Mirror Of", description="Name of the sensor that is linked as its mirror image"
-    )
+    mirror_of: text("Mirror Of", "Name of the sensor that is linked as its mirror image")
 
-    is_view: BoolProperty(
-        name="Is a View", description="This camera shows the view of its parent sensor"
-    )
+    is_view: switch("Is a View", "This camera shows the view of its parent sensor")
 
-    see_through: BoolProperty(
-        name="Cameras See Through",
-        description="Glass: cameras see through this object; it occludes LiDAR beams",
+    see_through: switch(
+        "Cameras See Through",
+        "Glass: cameras see through this object; it occludes LiDAR beams",
         update=changed,
     )
-    cover_loss_db: FloatProperty(
-        name="Radar Cover",
-        description="Radars measure through this object and lose so many decibels one way; 0: it "
-        "occludes them",
+    cover_loss_db: number(
+        "Radar Cover",
+        "Radars measure through this object and lose so many decibels one way; 0: it occludes them",
         min=0.0,
         max=100.0,
         soft_max=10.0,

@@ -9,18 +9,11 @@ from __future__ import annotations
 import zlib
 
 import bpy
-from bpy.props import (
-    BoolProperty,
-    EnumProperty,
-    FloatProperty,
-    FloatVectorProperty,
-    IntProperty,
-    StringProperty,
-)
 
 from ..choices import BEFORE_MOVE, NO_ANCHOR, PINNED
 from ..engine import catalog, pe
 from .callbacks import redraw, switched
+from .fields import menu, number, numbers, switch, text, whole
 
 DEFAULT_CLASS = "pedestrian"
 HEIGHTS = (
@@ -58,61 +51,57 @@ def classes_of(
 class PE_ViewSettings(bpy.types.PropertyGroup):
     """Settings of what the 3D view draws."""
 
-    show_ground: BoolProperty(
-        name="Ground Map",
-        description="Colour the ground by how well sensors see it",
-        default=True,
-        update=redraw,
+    show_ground: switch(
+        "Ground Map", "Colour the ground by how well sensors see it", True, update=redraw
     )
-    ground_quantity: EnumProperty(
-        items=(
+    ground_quantity: menu(
+        "Show",
+        "Quantity that the colours of the ground show",
+        (
             ("SENSORS", "Sensors", "Number of sensors that see a location: none, 1, 2, 3 or more"),
             ("COVERAGE", "Coverage", "Share of a location that is visible to a sensor"),
             ("ENTROPY", "Entropy", "Uncertainty of a detector in nats; lower is better"),
             ("REDUNDANCY", "Redundancy", "What is left when any one sensor is lost, or kinds"),
         ),
-        name="Show",
-        description="Quantity that the colours of the ground show",
         default="ENTROPY",
         update=redraw,
     )
-    redundancy_of: EnumProperty(
-        items=(
+    redundancy_of: menu(
+        "Redundancy",
+        "What the redundancy map shows",
+        (
             ("SENSORS_LEFT", "Sensors Left", "The fewest sensors when any one is lost"),
             ("KINDS", "Kinds", "How many kinds of sensors see the test body"),
             ("KINDS_LEFT", "Kinds Left", "The fewest kinds when any one sensor is lost"),
         ),
-        name="Redundancy",
-        description="What the redundancy map shows",
         update=redraw,
     )
-    redundancy_height: FloatProperty(
-        name="Body Height",
-        description="Height of the test body: a cylinder 0.3 m wide that stands alone",
-        default=0.8,
+    redundancy_height: number(
+        "Body Height",
+        "Height of the test body: a cylinder 0.3 m wide that stands alone",
+        0.8,
         min=0.01,
         max=5.0,
         unit="LENGTH",
         update=redraw,
     )
-    ground_height: EnumProperty(
-        items=(AVERAGED, *HEIGHTS),
-        name="Height",
-        description="Height above the ground that is evaluated",
-        update=redraw,
+    ground_height: menu(
+        "Height", "Height above the ground that is evaluated", (AVERAGED, *HEIGHTS), update=redraw
     )
-    ground_opacity: FloatProperty(
-        name="Opacity",
-        description="Opacity of the map's colours",
-        default=0.35,
+    ground_opacity: number(
+        "Opacity",
+        "Opacity of the map's colours",
+        0.35,
         min=0.05,
         max=1.0,
         subtype="FACTOR",
         update=redraw,
     )
 
-    ground_range: EnumProperty(
-        items=(
+    ground_range: menu(
+        "Range",
+        "Range of values of the ground map's colours; the bright end is good",
+        (
             (
                 "FITTED",
                 "Fitted",
@@ -127,146 +116,135 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
             ),
             ("FIXED", "Fixed", "Between two values that you set"),
         ),
-        name="Range",
-        description="Range of values of the ground map's colours; the bright end is good",
         update=redraw,
     )
-    ground_fits: IntProperty(
-        name="Fits",
-        description="How often the range of the colours was fitted again",
+    ground_fits: whole(
+        "Fits",
+        "How often the range of the colours was fitted again",
         options={"HIDDEN"},
         update=redraw,
     )
-    entropy_range: FloatVectorProperty(
-        name="Entropy",
-        description="Entropy at the dark and at the bright end [nats]",
-        size=2,
+    entropy_range: numbers(
+        "Entropy",
+        "Entropy at the dark and at the bright end [nats]",
+        2,
         default=(16.7, -11.0),
         precision=1,
         update=redraw,
     )
-    coverage_range: FloatVectorProperty(
-        name="Coverage",
-        description="Coverage at the dark and at the bright end, 0 to 1",
-        size=2,
+    coverage_range: numbers(
+        "Coverage",
+        "Coverage at the dark and at the bright end, 0 to 1",
+        2,
         default=(0.0, 1.0),
         min=0.0,
         max=1.0,
         precision=2,
         update=redraw,
     )
-    ground_difference: BoolProperty(
-        name="Difference",
-        description="Show where the rig is better (blue) or worse (orange) than the rig that Live "
+    ground_difference: switch(
+        "Difference",
+        "Show where the rig is better (blue) or worse (orange) than the rig that Live "
         "is compared with: before the last move, pinned sensors, or a variant",
         update=redraw,
     )
 
-    show_axles: BoolProperty(
-        name="Axles",
-        description="Show the axles, if they are known, and the axes on the ground under the rear "
+    show_axles: switch(
+        "Axles",
+        "Show the axles, if they are known, and the axes on the ground under the rear "
         "axle: the origin of other programs",
-        default=True,
+        True,
         update=redraw,
     )
-    show_front: BoolProperty(
-        name="Front",
-        description="Show with an arrow where the front of the vehicle is, until there is a sensor",
-        default=True,
+    show_front: switch(
+        "Front",
+        "Show with an arrow where the front of the vehicle is, until there is a sensor",
+        True,
         update=redraw,
     )
-    show_ghosts: BoolProperty(
-        name="Other Variant",
-        description="Show the variant whose ghost is switched on in the list of variants",
-        default=True,
+    show_ghosts: switch(
+        "Other Variant",
+        "Show the variant whose ghost is switched on in the list of variants",
+        True,
         update=redraw,
     )
-    ghost_key: IntProperty(
-        name="Ghost", description="Key of the variant that is shown; 0: none", update=redraw
-    )
-    show_requirements: BoolProperty(
-        name="Requirements",
-        description="Draw the zones of requirements: filled where they are met, hatched where "
-        "they are not",
-        default=True,
+    ghost_key: whole("Ghost", "Key of the variant that is shown; 0: none", update=redraw)
+    show_requirements: switch(
+        "Requirements",
+        "Draw the zones of requirements: filled where they are met, hatched where they are not",
+        True,
         update=redraw,
     )
-    show_place: BoolProperty(
-        name="Queried Location",
-        description="Mark the queried location",
-        default=True,
-        update=redraw,
-    )
+    show_place: switch("Queried Location", "Mark the queried location", True, update=redraw)
 
-    show_focus: BoolProperty(
-        name="Focus",
-        description="Outline the regions with a higher or lower weight than in the prior",
-        default=True,
+    show_focus: switch(
+        "Focus",
+        "Outline the regions with a higher or lower weight than in the prior",
+        True,
         update=redraw,
     )
-    show_mounts: BoolProperty(
-        name="Mounts",
-        description="Tint the surfaces of mounts; no-go areas and bounds are boxes",
-        default=True,
+    show_mounts: switch(
+        "Mounts",
+        "Tint the surfaces of mounts; no-go areas and bounds are boxes",
+        True,
         update=redraw,
     )
-    show_blind: BoolProperty(
-        name="Blind Ground",
-        description="Outline the ground round the vehicle that no sensor sees, with its extent on "
-        "each side",
-        default=True,
+    show_blind: switch(
+        "Blind Ground",
+        "Outline the ground round the vehicle that no sensor sees, with its extent on each side",
+        True,
         update=redraw,
     )
-    blind_height: EnumProperty(
-        items=TALL,
-        name="Height",
-        description="Height of an object on the ground; ground where it is invisible is blind",
+    blind_height: menu(
+        "Height",
+        "Height of an object on the ground; ground where it is invisible is blind",
+        TALL,
         default="H50",
         update=redraw,
     )
 
-    show_reach: BoolProperty(
-        name="Reach",
-        description="Draw the distance up to which objects of a class are found: average precision "
+    show_reach: switch(
+        "Reach",
+        "Draw the distance up to which objects of a class are found: average precision "
         "of at least 0.5",
-        default=False,
+        False,
         update=redraw,
     )
-    reach_class: StringProperty(
-        name="Class",
-        description="Class of the objects",
-        default=DEFAULT_CLASS,
+    reach_class: text(
+        "Class",
+        "Class of the objects",
+        DEFAULT_CLASS,
         search=classes_of,
         search_options=set(),
         update=redraw,
     )
-    reach_of: EnumProperty(
-        items=(
+    reach_of: menu(
+        "Of",
+        "Sensors whose reach is drawn",
+        (
             ("RIG", "Rig", "All sensors together"),
             ("SELECTED", "Selected", "All together, and each selected sensor alone"),
             ("ALL", "All", "All together, and each sensor alone"),
         ),
-        name="Of",
-        description="Sensors whose reach is drawn",
         update=redraw,
     )
 
-    show_frustums: BoolProperty(
-        name="Camera Views",
-        description="Draw the cameras' fields of view, true to lens and pitch",
-        default=True,
+    show_frustums: switch(
+        "Camera Views",
+        "Draw the cameras' fields of view, true to lens and pitch",
+        True,
         update=redraw,
     )
-    footprints: BoolProperty(
-        name="On the Ground",
-        description="Draw the ground in a camera's field of view, up to the range or the horizon",
-        default=True,
+    footprints: switch(
+        "On the Ground",
+        "Draw the ground in a camera's field of view, up to the range or the horizon",
+        True,
         update=redraw,
     )
-    view_range: FloatProperty(
-        name="Range",
-        description="Drawn length of a camera's view on the ground",
-        default=12.0,
+    view_range: number(
+        "Range",
+        "Drawn length of a camera's view on the ground",
+        12.0,
         min=0.5,
         soft_max=100.0,
         subtype="DISTANCE",
@@ -274,79 +252,59 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
         update=redraw,
     )
 
-    show_beams: BoolProperty(
-        name="Beams",
-        description="Draw a sample of LiDAR beams, with the true share of beams that end on the "
-        "vehicle",
-        default=True,
+    show_beams: switch(
+        "Beams",
+        "Draw a sample of LiDAR beams, with the true share of beams that end on the vehicle",
+        True,
         update=redraw,
     )
-    beams_of: EnumProperty(
-        items=(
+    beams_of: menu(
+        "Of",
+        "Sensors whose beams are drawn",
+        (
             ("SELECTED", "Selected", "Beams of selected sensors"),
             ("ALL", "All", "Beams of all sensors"),
         ),
-        name="Of",
-        description="Sensors whose beams are drawn",
         update=redraw,
     )
-    channels: EnumProperty(
-        items=(
+    channels: menu(
+        "Channels",
+        "Channels whose beams are drawn",
+        (
             ("FEW", "Few", "A few channels from the highest to the lowest"),
             ("ONE", "One", "A single channel"),
             ("EVERY", "Every nth", "Every nth channel"),
             ("ALL", "All", "All channels"),
         ),
-        name="Channels",
-        description="Channels whose beams are drawn",
         update=redraw,
     )
-    channel: IntProperty(
-        name="Channel",
-        description="Number of the channel; the lowest is 1",
-        default=1,
-        min=1,
-        update=redraw,
-    )
-    every: IntProperty(
-        name="Every", description="2: every second channel", default=4, min=1, update=redraw
-    )
-    beam_colors: EnumProperty(
-        items=COLORS,
-        name="Color By",
-        description="Quantity that the colours of beams show",
+    channel: whole("Channel", "Number of the channel; the lowest is 1", 1, min=1, update=redraw)
+    every: whole("Every", "2: every second channel", 4, min=1, update=redraw)
+    beam_colors: menu(
+        "Color By",
+        "Quantity that the colours of beams show",
+        COLORS,
         default="SENSOR",
         update=redraw,
     )
-    rings: BoolProperty(
-        name="On the Ground",
-        description="Draw the rings in which channels meet the ground",
-        default=True,
-        update=redraw,
+    rings: switch(
+        "On the Ground", "Draw the rings in which channels meet the ground", True, update=redraw
     )
 
-    show_heat: BoolProperty(
-        name="Occluded Beams",
-        description="Colour the vehicle where it occludes beams, by their number",
-        default=False,
+    show_heat: switch(
+        "Occluded Beams",
+        "Colour the vehicle where it occludes beams, by their number",
+        False,
         update=redraw,
     )
-    show_labels: BoolProperty(
-        name="Names",
-        description="Write each sensor's name beside it",
-        default=True,
+    show_labels: switch("Names", "Write each sensor's name beside it", True, update=redraw)
+    show_inset: switch(
+        "Picture in View",
+        "Show what the selected sensor sees in a corner of the 3D view",
         update=redraw,
     )
-    show_inset: BoolProperty(
-        name="Picture in View",
-        description="Show what the selected sensor sees in a corner of the 3D view",
-        update=redraw,
-    )
-    show_legend: BoolProperty(
-        name="Legend",
-        description="Explain the colours in the lower right corner",
-        default=True,
-        update=redraw,
+    show_legend: switch(
+        "Legend", "Explain the colours in the lower right corner", True, update=redraw
     )
 
 
@@ -368,32 +326,32 @@ ANCHORS = (
 class PE_LiveSettings(bpy.types.PropertyGroup):
     """The live score of a scene."""
 
-    on: BoolProperty(
-        name="Live",
-        description="Update a score while a sensor moves: a preview at once, an exact score when "
+    on: switch(
+        "Live",
+        "Update a score while a sensor moves: a preview at once, an exact score when "
         "the scene is idle, on a sample of voxels. Score evaluates all voxels",
         update=switched,
     )
-    against: IntProperty(
-        name="Compared With",
-        description="Reference of the live score: 0, the sensors before the last move; -1, the "
+    against: whole(
+        "Compared With",
+        "Reference of the live score: 0, the sensors before the last move; -1, the "
         "pinned sensors; otherwise the key of a variant",
-        default=BEFORE_MOVE,
+        BEFORE_MOVE,
         min=PINNED,
         update=switched,
     )
-    figures: BoolProperty(
-        name="Blind Ground, Reach, AP",
-        description="Add blind ground, reach ahead and AP when the scene is idle, for the height "
+    figures: switch(
+        "Blind Ground, Reach, AP",
+        "Add blind ground, reach ahead and AP when the scene is idle, for the height "
         "and the class that the 3D view shows",
-        default=True,
+        True,
         update=switched,
     )
-    anchor: EnumProperty(
-        items=ANCHORS,
-        name="Known Rig",
-        description="A known rig, scaled to this vehicle and scored under the same prior, for "
+    anchor: menu(
+        "Known Rig",
+        "A known rig, scaled to this vehicle and scored under the same prior, for "
         "comparison. It is scored once, in the background",
+        ANCHORS,
         default=NO_ANCHOR,
         update=switched,
     )

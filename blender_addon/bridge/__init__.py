@@ -1,11 +1,13 @@
-"""The bridge: the only package that converts Blender's data to the engine's, and back."""
+"""The bridge: the only package that converts Blender's data to the engine's, and back.
 
-from .apply_variant import apply_records, sensors_collection, shown_collection
-from .conditions import as_drawn, conditions_of, read_states, shown_state, write_state
+What is imported here is what other modules of the add-on take from it.
+"""
+
+from .apply_variant import apply_records, shown_collection
+from .conditions import as_drawn, conditions_of, read_states, shown_state
 from .fingerprint import Fingerprint, fingerprint, signature
 from .loading import load_into, record_of_study
 from .mirroring import (
-    SENSORS,
     clear_mirrors,
     follow_mirrors,
     in_the_middle,
@@ -18,13 +20,12 @@ from .mirroring import (
 )
 from .mounting import LimitBox, bounds_box, mount_faces, mount_key, mount_of_row, no_go_boxes
 from .outcome import blender_version, store_outcome, store_text, store_warnings
-from .own_sensors import add_own_sensor, remove_own_sensors, sync_own_sensors, table_of
+from .own_sensors import add_own_sensor, remove_own_sensors, sync_own_sensors
 from .plain_objects import plain_objects, put_objects, sensors_of_objects
 from .prior import focus_rows, prior_from_scene, prior_key
 from .requirements import (
     after_of,
     edit_row,
-    forget_verdict,
     full_table,
     preset_of,
     requirements_key,
@@ -52,9 +53,7 @@ from .rig import (
 )
 from .scene_diagnostics import check_placeable, missing_data, scene_advice
 from .scene_record import (
-    SceneRecord,
     check_scene,
-    record_of_scene,
     study_as_drawn,
     study_from_scene,
     study_of,
@@ -63,7 +62,6 @@ from .scene_record import (
 )
 from .scene_settings import (
     clearance_of,
-    passthrough_of,
     perception_of,
     property_value,
     reference_of,
@@ -83,7 +81,6 @@ from .sensor_records import (
     write_records,
 )
 from .stored import (
-    FrontRow,
     SensorFigures,
     StoredChecks,
     StoredFront,
@@ -92,7 +89,7 @@ from .stored import (
     figures_of_sensor,
     stored_fields,
 )
-from .transform_constraints import free_axes, holder_of, locked_axes
+from .transform_constraints import holder_of
 from .variant_results import (
     FigureRule,
     check_choosable,
@@ -132,149 +129,3 @@ from .view_camera import (
     update_view_cameras,
     view_camera,
 )
-
-__all__ = [
-    "CAMERA_FROM_SENSOR",
-    "SENSORS",
-    "FigureRule",
-    "Fingerprint",
-    "FrontRow",
-    "LimitBox",
-    "SceneRecord",
-    "SensorFigures",
-    "SensorRecord",
-    "StoredChecks",
-    "StoredFront",
-    "StoredResult",
-    "StoredWarning",
-    "activate_variant",
-    "active_variant",
-    "add_own_sensor",
-    "add_variant",
-    "after_of",
-    "apply_records",
-    "as_drawn",
-    "assign_colors",
-    "blender_version",
-    "bounds_box",
-    "check_choosable",
-    "check_placeable",
-    "check_scene",
-    "check_variants",
-    "clear_mirrors",
-    "clearance_of",
-    "color_of",
-    "conditions_of",
-    "copy_scene_score",
-    "copy_score",
-    "edit_row",
-    "figure_rule",
-    "figures_of",
-    "figures_of_sensor",
-    "figures_signature",
-    "fingerprint",
-    "focus_rows",
-    "follow_mirrors",
-    "forget_verdict",
-    "free_axes",
-    "full_table",
-    "hardware_note",
-    "holder_of",
-    "in_the_middle",
-    "last_written_pose",
-    "layers_of",
-    "link_mirror",
-    "load_into",
-    "locked_axes",
-    "look_back",
-    "look_through",
-    "mark_active",
-    "mark_version",
-    "matching_variant",
-    "mirror_of",
-    "mirrored_name",
-    "mirrored_pose",
-    "missing_data",
-    "mount_faces",
-    "mount_key",
-    "mount_of_row",
-    "mounted_on_sensor",
-    "newer_version_message",
-    "no_go_boxes",
-    "passthrough_of",
-    "perception_of",
-    "place_at",
-    "place_poses",
-    "place_rig",
-    "plain_objects",
-    "pose_from_numbers",
-    "pose_of",
-    "pose_of_matrix",
-    "possible_sensors",
-    "preset_of",
-    "prior_from_scene",
-    "prior_key",
-    "property_value",
-    "put_objects",
-    "read_states",
-    "record_of_scene",
-    "record_of_study",
-    "records_of",
-    "records_of_scene",
-    "reference_of",
-    "remove_own_sensors",
-    "requirements_key",
-    "requirements_of",
-    "restore_result",
-    "rig_from_objects",
-    "rig_of",
-    "same_score",
-    "same_sensors",
-    "scene_advice",
-    "score_of",
-    "sensor_from_object",
-    "sensor_objects",
-    "sensors_collection",
-    "sensors_of_objects",
-    "shown_collection",
-    "shown_fov",
-    "shown_state",
-    "signature",
-    "space_of",
-    "store_front",
-    "store_outcome",
-    "store_search",
-    "store_text",
-    "store_variant_score",
-    "store_variant_scores",
-    "store_verdicts",
-    "store_warnings",
-    "stored_fields",
-    "stored_verdict",
-    "study_as_drawn",
-    "study_from_scene",
-    "study_of",
-    "study_of_rig",
-    "study_of_variant",
-    "sync_own_sensors",
-    "table_of",
-    "targets_of",
-    "unlink_duplicates",
-    "unlink_mirror",
-    "update_view_cameras",
-    "value_of_property",
-    "variant_dict",
-    "variant_named",
-    "vehicle_from_collection",
-    "vehicle_of_scene",
-    "view_camera",
-    "view_layer_of",
-    "visible_members",
-    "with_mesh_files_of",
-    "write_figures",
-    "write_passthrough",
-    "write_records",
-    "write_reference",
-    "write_row",
-    "write_state",
-]

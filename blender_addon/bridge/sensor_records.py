@@ -6,6 +6,7 @@ records. `scene_record.study_of` makes a study from records only.
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -22,7 +23,6 @@ from .rig import (
     pose_from_numbers,
     pose_of,
     pose_of_matrix,
-    put_curve,
     sensor_objects,
     view_layer_of,
 )
@@ -193,38 +193,29 @@ def _ground_from_object(obj: bpy.types.Object) -> np.ndarray:
     )
 
 
+STORED = (
+    *("name", "model", "fusion", "free", "visible", "display", "size_m"),
+    *("bounded", "low", "high", "mirror_of", "mount", "rack"),
+)
+"""Fields that a variant stores as they are; pose and AP curve are stored as numbers."""
+
+
 def records_of(variant: bpy.types.PropertyGroup) -> tuple[SensorRecord, ...]:
     """Return a variant's sensors, by name."""
-    records = (_record_of_row(variant, row) for row in variant.sensors)
+    records = (_record_of_table(variant.id_data, row) for row in json.loads(variant.sensors))
     return tuple(sorted(records, key=lambda record: record.name))
 
 
-def _record_of_row(variant: bpy.types.PropertyGroup, row: bpy.types.PropertyGroup) -> SensorRecord:
-    obj = _object_of_row(variant.id_data, row.name)
-    # A variant of an older version stores no links: the present links of its sensors are used.
-    links = row if variant.holds_ties or obj is None else obj.perception_entropy
-    return SensorRecord(
-        name=row.name,
-        model=row.model,
-        pose=pose_from_numbers(row.pose),
-        fusion=row.fusion,
-        free=tuple(row.free),
-        visible=row.visible,
-        display=row.display,
-        size_m=row.size,
-        bounded=tuple(row.bounded),
-        low=tuple(row.bounds_low),
-        high=tuple(row.bounds_high),
-        mirror_of=links.mirror_of,
-        mount=links.mount,
-        rack=links.rack,
-        curve=curve_of(row),
-        **_object_fields(obj),
-    )
+def _record_of_table(scene: bpy.types.Scene, table: dict[str, Any]) -> SensorRecord:
+    values = {key: tuple(v) if isinstance(v, list) else v for key, v in table.items()}
+    pose, curve = pose_from_numbers(values.pop("pose")), values.pop("curve")
+    own = None if curve is None else pe.ApCurve(*curve)
+    obj = _object_named(scene, table["name"])
+    return SensorRecord(**values, pose=pose, curve=own, **_object_fields(obj))
 
 
-def _object_of_row(scene: bpy.types.Scene, name: str) -> bpy.types.Object | None:
-    """Return the sensor, active or inactive, that a variant's row applies to, or None."""
+def _object_named(scene: bpy.types.Scene, name: str) -> bpy.types.Object | None:
+    """Return the sensor of a name, active or inactive, or None."""
     obj = scene.objects.get(name)
     if obj is None:
         return None
@@ -234,16 +225,12 @@ def _object_of_row(scene: bpy.types.Scene, name: str) -> bpy.types.Object | None
 
 def write_records(variant: bpy.types.PropertyGroup, records: Sequence[SensorRecord]) -> None:
     """Store the records of sensors in a variant."""
-    variant.sensors.clear()
-    variant.holds_ties = True
+    rows = []
     for record in records:
-        row = variant.sensors.add()
-        row.name, row.model, row.fusion = record.name, record.model, record.fusion
-        put_curve(row, record.curve)
-        row.pose, row.free, row.visible = record.numbers, record.free, record.visible
-        row.display, row.size = record.display, record.size_m
-        row.bounded, row.bounds_low, row.bounds_high = record.bounded, record.low, record.high
-        row.mirror_of, row.mount, row.rack = record.mirror_of, record.mount, record.rack
+        curve = None if record.curve is None else (record.curve.a, record.curve.b)
+        own = {key: getattr(record, key) for key in STORED}
+        rows.append(own | {"pose": record.numbers, "curve": curve})
+    variant.sensors = json.dumps(rows)
 
 
 def record_of_sensor(sensor: pe.Sensor) -> SensorRecord:

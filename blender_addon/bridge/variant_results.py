@@ -104,10 +104,8 @@ def copy_score(source: Variant, to: Variant) -> None:
 
 
 def _write_figures(variant: Variant, figures: dict) -> None:
-    variant.entropy, variant.coverage = figures["entropy"], figures["coverage"]
-    variant.stderr, variant.voxels = figures["stderr"], figures["voxels"]
     variant.score_json = json.dumps(figures)
-    variant.stale, variant.has_result = False, True
+    variant.stale = False
 
 
 def score_of(variant: Variant) -> pe.Score:

@@ -76,7 +76,7 @@ def update_variant(scene: bpy.types.Scene, _variant: object) -> str:
     row: Any = bridge.active_variant(scene)  # there is one, or the operator is not possible
     records = bridge.records_of_scene(scene)
     if not bridge.same_score(bridge.records_of(row), records):
-        row.has_result, row.figures_json = False, ""
+        row.score_json = row.figures_json = ""
     bridge.write_records(row, records)
     bridge.mark_active(scene, row.key)
     return f"Updated {row.name}"

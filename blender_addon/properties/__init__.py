@@ -23,7 +23,7 @@ from .list_rows import (
     PE_SensorOption,
 )
 from .requirement import PE_Requirement
-from .results import PE_Variant, PE_VariantSensor
+from .results import PE_Variant
 from .scene import PE_SceneSettings
 from .sensor import AXIS_LABELS, FREE_BY_DEFAULT, PE_ObjectSettings
 from .view import PE_LiveSettings, PE_ViewSettings
@@ -54,7 +54,6 @@ CLASSES = (
     PE_Requirement,
     PE_State,
     PE_Weather,
-    PE_VariantSensor,
     PE_Variant,
     PE_ViewSettings,
     PE_SceneSettings,

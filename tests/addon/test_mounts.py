@@ -236,20 +236,6 @@ def test_variants_hold_links_mounts_and_racks(roof):
     assert bpy.data.objects["roof right"].perception_entropy.mirror_of == "roof"
 
 
-def test_a_variant_of_an_older_version_leaves_links_and_mounts_alone(roof):
-    sensor = bpy.data.objects["roof"]
-    sensor.location.y = 0.3
-    put(sensor, "roof area")
-    bpy.ops.pe.save_variant()
-    variant = roof.perception_entropy.variants[0]
-    for row in variant.sensors:  # as one that was saved before there were mounts
-        row.mount = row.mirror_of = row.rack = ""
-    variant.holds_ties = False
-    bridge.activate_variant(roof, variant)
-    assert sensor.perception_entropy.mount == "roof area"
-    assert bridge.same_sensors(bridge.records_of_scene(roof), bridge.records_of(variant))
-
-
 def test_the_view_tints_mounts_and_draws_boxes(roof):
     sensor = bpy.data.objects["roof"]
     sensor.select_set(True)

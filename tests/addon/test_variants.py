@@ -1,6 +1,7 @@
 """Variants: kept, put back exactly, nothing lost; their scores are those of the scene."""
 
 import json
+from dataclasses import replace
 
 import bpy
 import numpy as np
@@ -240,7 +241,7 @@ def test_a_variant_that_is_switched_to_shows_its_own_result(ideas):
     for name, own in (("Variant", first), ("Variant 2", second)):
         switch(ideas, name)
         assert shown() == own
-    ideas.perception_entropy.variants[0].has_result = False
+    ideas.perception_entropy.variants[0].score_json = ""
     switch(ideas, "Variant")
     assert ideas.perception_entropy.result_stale, "what is shown is of the other one"
     ideas.perception_entropy.prior = "uniform"
@@ -275,7 +276,7 @@ def test_a_name_that_something_else_has(ideas):
     assert set(poses()) == {"eye.001", "roof"}
     result_staleness.update_variants()
     assert not ideas.perception_entropy.variant_changed
-    assert [s.name for s in rows(ideas)["Variant"].sensors] == ["eye.001", "roof"]
+    assert [s.name for s in bridge.records_of(rows(ideas)["Variant"])] == ["eye.001", "roof"]
 
 
 def test_two_scenes_have_variants_of_their_own(ideas):
@@ -329,13 +330,19 @@ def test_a_comparison_that_is_stopped_keeps_what_is_complete(ideas):
     assert set(job.outcome) == {1}
 
 
+def unknown(variant):
+    """Give the first sensor of a variant a model that there is not."""
+    first, *others = bridge.records_of(variant)
+    bridge.write_records(variant, [replace(first, model="no such sensor"), *others])
+
+
 def test_a_variant_that_cannot_be_scored_is_reported_and_the_others_are(ideas):
     bpy.ops.pe.duplicate_variant()
-    ideas.perception_entropy.variants[0].sensors[0].model = "no such sensor"
+    unknown(ideas.perception_entropy.variants[0])
     bpy.ops.pe.compare_variants()
     assert [row.has_result for row in ideas.perception_entropy.variants] == [False, True]
-    ideas.perception_entropy.variants[1].sensors[0].model = "no such sensor"
-    ideas.perception_entropy.variants[1].has_result = False
+    unknown(ideas.perception_entropy.variants[1])
+    ideas.perception_entropy.variants[1].score_json = ""
     with pytest.raises(RuntimeError, match=r"variant .Variant.*a name such as"):
         bpy.ops.pe.compare_variants()
 

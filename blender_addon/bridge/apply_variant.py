@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import bpy
+from bpy.types import Collection, Object, Scene, ViewLayer
 
 from ..engine import graphics
 from .mirroring import SENSORS
@@ -21,7 +22,7 @@ BETWEEN = "\n"
 """Separates names of collections in a stored text: no name contains it."""
 
 
-def apply_records(scene: bpy.types.Scene, records: Sequence[SensorRecord]) -> dict[str, str]:
+def apply_records(scene: Scene, records: Sequence[SensorRecord]) -> dict[str, str]:
     """Make the scene hold exactly the sensors of the records.
 
     Missing sensors are created; the scene's other sensors become inactive.
@@ -56,7 +57,7 @@ def apply_records(scene: bpy.types.Scene, records: Sequence[SensorRecord]) -> di
     return {name: obj.name for name, obj in objects.items()}
 
 
-def sensors_collection(scene: bpy.types.Scene) -> bpy.types.Collection:
+def sensors_collection(scene: Scene) -> Collection:
     """Return the scene's collection of sensors; create it if it does not exist."""
     for child in scene.collection.children_recursive:
         if child.name.partition(".")[0] == SENSORS:  # of a second scene: "Sensors.001"
@@ -66,7 +67,7 @@ def sensors_collection(scene: bpy.types.Scene) -> bpy.types.Collection:
     return made
 
 
-def shown_collection(scene: bpy.types.Scene) -> bpy.types.Collection:
+def shown_collection(scene: Scene) -> Collection:
     """Return the collection of sensors, or the scene's root collection if it is excluded."""
     wanted = sensors_collection(scene)
     waiting = [view_layer_of(scene).layer_collection]
@@ -78,14 +79,14 @@ def shown_collection(scene: bpy.types.Scene) -> bpy.types.Collection:
     return scene.collection
 
 
-def _new_sensor(scene: bpy.types.Scene, record: SensorRecord) -> bpy.types.Object:
+def _new_sensor(scene: Scene, record: SensorRecord) -> Object:
     obj = bpy.data.objects.new(record.name, None)
     shown_collection(scene).objects.link(obj)
     obj.empty_display_type, obj.empty_display_size = record.display, record.size_m
     return obj
 
 
-def _write_settings(obj: bpy.types.Object, record: SensorRecord) -> None:
+def _write_settings(obj: Object, record: SensorRecord) -> None:
     """Write a record to a sensor's object, without the pose."""
     settings = obj.perception_entropy
     if settings.model != record.model:
@@ -105,9 +106,7 @@ def _write_settings(obj: bpy.types.Object, record: SensorRecord) -> None:
         settings.is_sensor = True
 
 
-def _place(
-    scene: bpy.types.Scene, records: Sequence[SensorRecord], objects: dict[str, bpy.types.Object]
-) -> None:
+def _place(scene: Scene, records: Sequence[SensorRecord], objects: dict[str, Object]) -> None:
     """Place all sensors, then hide the hidden ones: Blender does not evaluate hidden objects."""
     layer = view_layer_of(scene)
     for record in records:
@@ -118,14 +117,14 @@ def _place(
             objects[record.name].hide_set(True, view_layer=layer)
 
 
-def _show(layer: bpy.types.ViewLayer, obj: bpy.types.Object) -> None:
+def _show(layer: ViewLayer, obj: Object) -> None:
     """Make an object visible: clear all of its visibility switches."""
     obj.hide_viewport = False
     if obj.name in layer.objects:
         obj.hide_set(False, view_layer=layer)
 
 
-def deactivate(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+def deactivate(scene: Scene, obj: Object) -> None:
     """Make a sensor and its child objects inactive; child sensors stay active."""
     aside = _aside(scene)
     for member in (obj, *_children(obj)):
@@ -137,7 +136,7 @@ def deactivate(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
     obj.perception_entropy.is_sensor, obj.perception_entropy.is_parked = False, True
 
 
-def reactivate(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+def reactivate(scene: Scene, obj: Object) -> None:
     """Make an inactive sensor and its child objects active again."""
     aside = _aside(scene)
     for member in (obj, *_children(obj)):
@@ -150,14 +149,14 @@ def reactivate(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
     obj.perception_entropy.is_sensor, obj.perception_entropy.is_parked = True, False
 
 
-def inactive_sensors(scene: bpy.types.Scene) -> dict[str, bpy.types.Object]:
+def inactive_sensors(scene: Scene) -> dict[str, Object]:
     """Return the inactive sensors of a scene, by name."""
     aside = _find(scene)
     objects = () if aside is None else aside.objects
     return {obj.name: obj for obj in objects if obj.perception_entropy.is_parked}
 
 
-def _children(obj: bpy.types.Object) -> Iterator[bpy.types.Object]:
+def _children(obj: Object) -> Iterator[Object]:
     """Yield all descendants of an object, without sensors and their descendants."""
     for child in obj.children:
         if not child.perception_entropy.is_sensor:
@@ -165,17 +164,17 @@ def _children(obj: bpy.types.Object) -> Iterator[bpy.types.Object]:
             yield from _children(child)
 
 
-def _collections(scene: bpy.types.Scene) -> list[bpy.types.Collection]:
+def _collections(scene: Scene) -> list[Collection]:
     return [scene.collection, *scene.collection.children_recursive]
 
 
-def _find(scene: bpy.types.Scene) -> bpy.types.Collection | None:
+def _find(scene: Scene) -> Collection | None:
     """Return the scene's collection of inactive sensors; numbered in a second scene."""
     children = scene.collection.children
     return next((c for c in children if c.name.partition(".")[0] == PARKED), None)
 
 
-def _aside(scene: bpy.types.Scene) -> bpy.types.Collection:
+def _aside(scene: Scene) -> Collection:
     """Return (or create) the collection of inactive sensors, excluded from every view layer."""
     collection = _find(scene)
     if collection is None:

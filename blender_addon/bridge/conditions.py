@@ -14,8 +14,8 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-import bpy
 import numpy as np
+from bpy.types import PropertyGroup, Scene
 
 from ..engine import geometry, pe, studies
 from .rig import pose_of_matrix, sensor_objects, view_layer_of
@@ -52,7 +52,7 @@ class Rigid(NamedTuple):
 STILL = Rigid((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
-def shown_state(scene: bpy.types.Scene) -> str:
+def shown_state(scene: Scene) -> str:
     """Return the name of the state that is shown; empty where the vehicle is shown as drawn."""
     settings, shown = scene.perception_entropy, scene.frame_current
     if shown == settings.drawn_frame:
@@ -61,7 +61,7 @@ def shown_state(scene: bpy.types.Scene) -> str:
 
 
 @contextlib.contextmanager
-def as_drawn(scene: bpy.types.Scene) -> Iterator[None]:
+def as_drawn(scene: Scene) -> Iterator[None]:
     """Show the frame at which the vehicle is drawn, within; only where the scene has states."""
     if not shown_state(scene):
         yield
@@ -74,7 +74,7 @@ def as_drawn(scene: bpy.types.Scene) -> Iterator[None]:
         scene.frame_set(shown)
 
 
-def conditions_of(settings: bpy.types.PropertyGroup) -> pe.Conditions:
+def conditions_of(settings: PropertyGroup) -> pe.Conditions:
     """Return the conditions of a scene that are switched on.
 
     Raises
@@ -87,7 +87,7 @@ def conditions_of(settings: bpy.types.PropertyGroup) -> pe.Conditions:
     return pe.Conditions(states, weathers)
 
 
-def write_conditions(settings: bpy.types.PropertyGroup, conditions: pe.Conditions) -> None:
+def write_conditions(settings: PropertyGroup, conditions: pe.Conditions) -> None:
     """Write conditions to a scene, in place of its own."""
     settings.states.clear()
     for state in conditions.states:
@@ -99,7 +99,7 @@ def write_conditions(settings: bpy.types.PropertyGroup, conditions: pe.Condition
         write_values(row, weather)
 
 
-def write_state(row: bpy.types.PropertyGroup, state: geometry.State) -> None:
+def write_state(row: PropertyGroup, state: geometry.State) -> None:
     """Write a state to a row."""
     table = studies.state_table(state)
     row.name, row.weight = state.name, state.weight
@@ -107,14 +107,14 @@ def write_state(row: bpy.types.PropertyGroup, state: geometry.State) -> None:
     row.table = json.dumps({k: v for k, v in table.items() if k not in ("name", "weight", "frame")})
 
 
-def conditions_signature(settings: bpy.types.PropertyGroup) -> list[object]:
+def conditions_signature(settings: PropertyGroup) -> list[object]:
     """Return what a table of conditions depends on; empty without conditions."""
     states = [(r.name, as_typed(r.weight), r.table) for r in settings.states if r.enabled]
     weathers = [(r.name, values_of(r, pe.Weather)) for r in settings.weathers if r.enabled]
     return [states, weathers] if states or weathers else []
 
 
-def _state_of(row: bpy.types.PropertyGroup) -> geometry.State:
+def _state_of(row: PropertyGroup) -> geometry.State:
     try:
         table = json.loads(row.table or "{}")
     except ValueError:
@@ -124,14 +124,14 @@ def _state_of(row: bpy.types.PropertyGroup) -> geometry.State:
     return studies.state_from_dict(whole, "scene")
 
 
-def _weather_of(row: bpy.types.PropertyGroup) -> pe.Weather:
+def _weather_of(row: PropertyGroup) -> pe.Weather:
     values = values_of(row, pe.Weather)
     if not row.night:
         values["lit_m"] = None
     return pe.Weather(row.name, **values)
 
 
-def read_states(scene: bpy.types.Scene) -> list[str]:
+def read_states(scene: Scene) -> list[str]:
     """Read the motions of all states with a frame again; return the names of those that changed.
 
     Raises
@@ -158,7 +158,7 @@ def read_states(scene: bpy.types.Scene) -> list[str]:
     return changed
 
 
-def _shown_at(scene: bpy.types.Scene, frame: int) -> Shown:
+def _shown_at(scene: Scene, frame: int) -> Shown:
     scene.frame_set(frame)
     layer = view_layer_of(scene)
     layer.update()

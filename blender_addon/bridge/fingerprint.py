@@ -6,8 +6,8 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import bpy
 import numpy as np
+from bpy.types import Object, Scene
 
 from ..engine import pe
 from .conditions import conditions_signature
@@ -45,9 +45,7 @@ class Fingerprint:
 
 
 def fingerprint(
-    scene: bpy.types.Scene,
-    shape: str = "",
-    sensors: Sequence[bpy.types.Object] | None = None,
+    scene: Scene, shape: str = "", sensors: Sequence[Object] | None = None
 ) -> Fingerprint:
     """Return the fingerprint of a scene.
 
@@ -63,16 +61,12 @@ def fingerprint(
     return Fingerprint(states, repr(rest))
 
 
-def signature(
-    scene: bpy.types.Scene,
-    shape: str = "",
-    sensors: Sequence[bpy.types.Object] | None = None,
-) -> str:
+def signature(scene: Scene, shape: str = "", sensors: Sequence[Object] | None = None) -> str:
     """Return the fingerprint as a text."""
     return fingerprint(scene, shape, sensors).text
 
 
-def _sensor_state(obj: bpy.types.Object, visible: bool) -> SensorState:
+def _sensor_state(obj: Object, visible: bool) -> SensorState:
     if not visible:
         return ()
     settings, placement = obj.perception_entropy, np.array(obj.matrix_world, dtype=float)

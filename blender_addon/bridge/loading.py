@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import Any
 
 import bpy
+from bpy.types import Collection, Object, PropertyGroup, Scene
 
 from ..choices import BY_GROUP, BY_PARTS, ON_SLOTS
 from ..engine import catalog, kinds, pe, search, studies
@@ -30,7 +31,7 @@ RACK = "rack {}"
 FAR_M = 1e4
 
 
-def load_into(scene: bpy.types.Scene, study: pe.Study) -> list[str]:
+def load_into(scene: Scene, study: pe.Study) -> list[str]:
     """Write a study to a scene; return the keys of its file that the scene cannot hold.
 
     Before them are the sensors that have another name here, as another object has theirs.
@@ -201,7 +202,7 @@ def _check_model(sensor: pe.Sensor) -> None:
         raise pe.InputError("study", field, "one of the catalogue's", repr(sensor.model.name))
 
 
-def _write_vehicle(scene: bpy.types.Scene, vehicle: pe.Vehicle) -> None:
+def _write_vehicle(scene: Scene, vehicle: pe.Vehicle) -> None:
     settings, layer, present = scene.perception_entropy, view_layer_of(scene), None
     with contextlib.suppress(pe.InputError):
         present = vehicle_of_scene(scene, layer.depsgraph)
@@ -211,7 +212,7 @@ def _write_vehicle(scene: bpy.types.Scene, vehicle: pe.Vehicle) -> None:
         layer.update()
 
 
-def _write_settings(settings: bpy.types.PropertyGroup, record: SceneRecord) -> None:
+def _write_settings(settings: PropertyGroup, record: SceneRecord) -> None:
     """Write the settings of a record to a scene: space, AP curves, score, search and limits.
 
     Vehicle, sensors, prior, mounts and constraints are written by others.
@@ -236,7 +237,7 @@ def _write_settings(settings: bpy.types.PropertyGroup, record: SceneRecord) -> N
     write_passthrough(settings, record.passthrough)
 
 
-def _write_mounts(scene: bpy.types.Scene, mounts: Mapping[str, search.AnyMount]) -> None:
+def _write_mounts(scene: Scene, mounts: Mapping[str, search.AnyMount]) -> None:
     settings = scene.perception_entropy
     settings.mounts.clear()
     members = settings.vehicle.all_objects
@@ -256,7 +257,7 @@ def _write_mounts(scene: bpy.types.Scene, mounts: Mapping[str, search.AnyMount])
             paint_area(list(members), name, mount.area.triangles)
 
 
-def _slots(scene: bpy.types.Scene, name: str, mount: pe.SlotMount) -> bpy.types.Collection:
+def _slots(scene: Scene, name: str, mount: pe.SlotMount) -> Collection:
     """Return the named collection with exactly one empty for each slot."""
     made = bpy.data.collections.get(name) or bpy.data.collections.new(name)
     if made not in scene.collection.children_recursive:
@@ -270,7 +271,7 @@ def _slots(scene: bpy.types.Scene, name: str, mount: pe.SlotMount) -> bpy.types.
     return made
 
 
-def _empty(name: str) -> bpy.types.Object:
+def _empty(name: str) -> Object:
     """Return the empty with that name, or a new one; a sensor is never returned."""
     obj = bpy.data.objects.get(name)
     if obj is not None and obj.type == "EMPTY" and not obj.perception_entropy.is_sensor:
@@ -278,7 +279,7 @@ def _empty(name: str) -> bpy.types.Object:
     return bpy.data.objects.new(name, None)
 
 
-def _write_constraints(scene: bpy.types.Scene, constraints: pe.Constraints) -> None:
+def _write_constraints(scene: Scene, constraints: pe.Constraints) -> None:
     write_values(scene.perception_entropy, constraints)
     for obj in scene.objects:
         if obj.perception_entropy.is_no_go:

@@ -8,6 +8,7 @@ import re
 from collections.abc import Sequence
 
 import bpy
+from bpy.types import Depsgraph, LayerCollection, Object, Scene
 
 from ..engine import advice, pe
 from .rig import place_poses, pose_of, sensor_objects
@@ -46,13 +47,13 @@ def in_the_middle(pose: pe.Pose) -> bool:
     return abs(pose.position[1]) < MIDDLE_M and level
 
 
-def link_mirror(one: bpy.types.Object, other: bpy.types.Object) -> None:
+def link_mirror(one: Object, other: Object) -> None:
     """Link two sensors, so that they stay mirror images of each other."""
     one.perception_entropy.mirror_of = other.name
     other.perception_entropy.mirror_of = one.name
 
 
-def unlink_mirror(obj: bpy.types.Object) -> None:
+def unlink_mirror(obj: Object) -> None:
     """Remove the link between a sensor and its mirror image."""
     other = bpy.data.objects.get(obj.perception_entropy.mirror_of)
     obj.perception_entropy.mirror_of = ""
@@ -60,7 +61,7 @@ def unlink_mirror(obj: bpy.types.Object) -> None:
         other.perception_entropy.mirror_of = ""
 
 
-def mirror_of(obj: bpy.types.Object, scene: bpy.types.Scene) -> bpy.types.Object | None:
+def mirror_of(obj: Object, scene: Scene) -> Object | None:
     """Return the sensor that is linked as a sensor's mirror image; None without a link."""
     other = scene.objects.get(obj.perception_entropy.mirror_of)
     if other is None or other == obj or not other.perception_entropy.is_sensor:
@@ -68,9 +69,7 @@ def mirror_of(obj: bpy.types.Object, scene: bpy.types.Scene) -> bpy.types.Object
     return other if other.perception_entropy.mirror_of == obj.name else None
 
 
-def follow_mirrors(
-    scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, sensors: Sequence[bpy.types.Object]
-) -> list[str]:
+def follow_mirrors(scene: Scene, depsgraph: Depsgraph, sensors: Sequence[Object]) -> list[str]:
     """Move linked sensors whose mirror image has moved; return their names.
 
     If both have moved and are no longer mirror images, the first by name leads. Links of
@@ -104,10 +103,7 @@ def clear_mirrors() -> None:
 
 
 def _mirror_images(
-    scene: bpy.types.Scene,
-    names: tuple[str, str],
-    poses: tuple[pe.Pose, pe.Pose],
-    moved: dict[str, pe.Pose],
+    scene: Scene, names: tuple[str, str], poses: tuple[pe.Pose, pe.Pose], moved: dict[str, pe.Pose]
 ) -> tuple[pe.Pose, pe.Pose]:
     """Return poses that are mirror images of each other; add the one to be moved to `moved`."""
     first, second = poses
@@ -121,7 +117,7 @@ def _mirror_images(
     return first, moved[names[1]]
 
 
-def _repair_links(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> None:
+def _repair_links(scene: Scene, sensors: Sequence[Object]) -> None:
     """Update links to a renamed sensor; remove links that are not mutual."""
     for obj in sensors:
         wanted = obj.perception_entropy.mirror_of
@@ -140,9 +136,7 @@ def _repair_links(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -
             link_mirror(obj, other)
 
 
-def _pointing_at(
-    obj: bpy.types.Object, sensors: Sequence[bpy.types.Object]
-) -> tuple[bpy.types.Object, ...]:
+def _pointing_at(obj: Object, sensors: Sequence[Object]) -> tuple[Object, ...]:
     """Return the only other sensor that links to a sensor, as a tuple; empty if there are more."""
     linked = [o for o in sensors if o.perception_entropy.mirror_of == obj.name and o != obj]
     return tuple(linked) if len(linked) == 1 else ()
@@ -159,12 +153,12 @@ SENSORS = "Sensors"
 """The collection of a scene's sensors."""
 
 
-def is_copy(whose: str, obj: bpy.types.Object, sensors: Sequence[bpy.types.Object]) -> bool:
+def is_copy(whose: str, obj: Object, sensors: Sequence[Object]) -> bool:
     """Whether what a sensor stores under the name `whose` belongs to another sensor."""
     return whose not in ("", obj.name) and any(other.name == whose for other in sensors)
 
 
-def unlink_duplicates(scene: bpy.types.Scene) -> list[str]:
+def unlink_duplicates(scene: Scene) -> list[str]:
     """Unlink sensors from the root collection if they are in the collection of sensors, too.
 
     Return their names. If a view layer excludes the collection of sensors, nothing is unlinked:
@@ -183,7 +177,7 @@ def unlink_duplicates(scene: bpy.types.Scene) -> list[str]:
     return [obj.name for obj in doubled]
 
 
-def _excluded(layer: bpy.types.LayerCollection) -> bool:
+def _excluded(layer: LayerCollection) -> bool:
     """Whether a view layer excludes a collection of sensors."""
     is_excluded = layer.exclude and layer.collection.name == SENSORS
     return is_excluded or any(map(_excluded, layer.children))

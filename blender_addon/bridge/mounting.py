@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import NamedTuple, TypeAlias
 
-import bpy
 import numpy as np
+from bpy.types import Collection, Depsgraph, Material, Mesh, Object, PropertyGroup, Scene
 
 from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, ON_SLOTS, ON_SURFACE
 from ..engine import pe, search, studies
@@ -20,16 +20,14 @@ from .sensor_records import SensorRecord, bounds_by_axis
 from .transform_constraints import free_axes, limit_constraints, search_bounds
 from .vehicle import drawn_meshes, placed_triangles, triangles_of
 
-MountSettings: TypeAlias = bpy.types.PropertyGroup
+MountSettings: TypeAlias = PropertyGroup
 CORNERS = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
 PAINTED = 0.5
 """A vertex with a larger weight counts as painted."""
 
 
 def mounts_of(
-    scene: bpy.types.Scene,
-    depsgraph: bpy.types.Depsgraph,
-    records: Sequence[SensorRecord],
+    scene: Scene, depsgraph: Depsgraph, records: Sequence[SensorRecord]
 ) -> dict[str, search.AnyMount]:
     """Return the scene's mounts that visible sensors are on, by name.
 
@@ -70,9 +68,7 @@ def mounting_of(
         raise of_scene(error) from None
 
 
-def mount_of_row(
-    scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, row: MountSettings
-) -> search.AnyMount:
+def mount_of_row(scene: Scene, depsgraph: Depsgraph, row: MountSettings) -> search.AnyMount:
     """Return one mount of a scene.
 
     Raises
@@ -138,7 +134,7 @@ def followers_of(pairs: Sequence[Sequence[str]], groups: Sequence[Sequence[str]]
     return frozenset([p[1] for p in pairs] + [name for group in groups for name in group[1:]])
 
 
-def constraints_of(scene: bpy.types.Scene) -> pe.Constraints:
+def constraints_of(scene: Scene) -> pe.Constraints:
     """Return the constraints of a scene's search.
 
     Raises
@@ -153,13 +149,13 @@ def constraints_of(scene: bpy.types.Scene) -> pe.Constraints:
         raise of_scene(error) from None
 
 
-def no_go_of(scene: bpy.types.Scene) -> tuple[pe.NoGo, ...]:
+def no_go_of(scene: Scene) -> tuple[pe.NoGo, ...]:
     """Return the boxes that are marked as no-go areas, by name."""
     marked = (obj for obj in scene.objects if obj.perception_entropy.is_no_go)
     return tuple(_no_go(obj) for obj in sorted(marked, key=lambda obj: obj.name))
 
 
-def _no_go(obj: bpy.types.Object) -> pe.NoGo:
+def _no_go(obj: Object) -> pe.NoGo:
     """Return the axis-aligned box in the ground frame round an empty or a mesh."""
     if obj.type == "EMPTY":
         local = CORNERS * obj.empty_display_size
@@ -171,7 +167,7 @@ def _no_go(obj: bpy.types.Object) -> pe.NoGo:
     return pe.NoGo(obj.name, *zip(low.tolist(), high.tolist(), strict=True))
 
 
-def _slots(row: MountSettings, depsgraph: bpy.types.Depsgraph) -> list[pe.Slot]:
+def _slots(row: MountSettings, depsgraph: Depsgraph) -> list[pe.Slot]:
     """Return the empties of a mount's collection as slots, by name."""
     objects = () if row.slots is None else row.slots.all_objects
     empties = (o for o in objects if o.type == "EMPTY" and not o.perception_entropy.is_sensor)
@@ -190,11 +186,7 @@ def of_scene(error: pe.InputError) -> pe.InputError:
     return pe.InputError("scene", f"{error.source}: {error.field}", error.expected, error.found)
 
 
-def painted_area(
-    vehicle: bpy.types.Collection,
-    depsgraph: bpy.types.Depsgraph,
-    mount: bpy.types.PropertyGroup,
-) -> np.ndarray:
+def painted_area(vehicle: Collection, depsgraph: Depsgraph, mount: PropertyGroup) -> np.ndarray:
     """Return a mount's faces (F, 3, 3) [m], with modifiers, parents and instances applied.
 
     They equal triangles of the engine's vehicle to the bit. The array is empty if no face is
@@ -213,16 +205,14 @@ def painted_area(
     return np.concatenate([area for _, area in areas]) if areas else np.empty((0, 3, 3))
 
 
-def _may_have(obj: bpy.types.Object, mount: bpy.types.PropertyGroup) -> bool:
+def _may_have(obj: Object, mount: PropertyGroup) -> bool:
     """Whether an evaluated object has the vertex group or the material of a mount."""
     if mount.faces == BY_GROUP:
         return mount.group in obj.vertex_groups
     return mount.faces == BY_MATERIAL and bool(_slots_of(obj, mount.material))
 
 
-def _chosen(
-    obj: bpy.types.Object, mesh: bpy.types.Mesh, mount: bpy.types.PropertyGroup
-) -> np.ndarray:
+def _chosen(obj: Object, mesh: Mesh, mount: PropertyGroup) -> np.ndarray:
     """Return a mask (F,) of the triangles of a mesh that belong to the mount."""
     count = len(mesh.loop_triangles) if mesh.loop_triangles else _triangulated(mesh)
     if mount.faces == BY_MATERIAL:
@@ -234,7 +224,7 @@ def _chosen(
     return _painted(mesh, obj.vertex_groups[mount.group].index)[corners.reshape(-1, 3)].all(axis=1)
 
 
-def _painted(mesh: bpy.types.Mesh, group: int) -> np.ndarray:
+def _painted(mesh: Mesh, group: int) -> np.ndarray:
     """Return a mask (P,) of the vertices with a weight above 0.5 in a vertex group."""
     weights = (
         any(element.group == group and element.weight > PAINTED for element in vertex.groups)
@@ -243,18 +233,18 @@ def _painted(mesh: bpy.types.Mesh, group: int) -> np.ndarray:
     return np.fromiter(weights, bool, len(mesh.vertices))
 
 
-def _triangulated(mesh: bpy.types.Mesh) -> int:
+def _triangulated(mesh: Mesh) -> int:
     mesh.calc_loop_triangles()
     return len(mesh.loop_triangles)
 
 
-def _slots_of(obj: bpy.types.Object, material: bpy.types.Material | None) -> list[int]:
+def _slots_of(obj: Object, material: Material | None) -> list[int]:
     """Return the indices of a material among an object's slots."""
     slots = (slot.material for slot in obj.material_slots)
     return [n for n, each in enumerate(slots) if each is not None and each.original == material]
 
 
-def area_problem(mount: bpy.types.PropertyGroup) -> pe.InputError:
+def area_problem(mount: PropertyGroup) -> pe.InputError:
     """Return the error of a surface that has no faces."""
     if mount.faces == BY_GROUP:
         expected = "faces of the vehicle that are painted in it, with weights above 0.5"
@@ -265,7 +255,7 @@ def area_problem(mount: bpy.types.PropertyGroup) -> pe.InputError:
 
 
 def _of_mount(
-    mount: bpy.types.PropertyGroup, field: str, expected: str, found: str = "none"
+    mount: PropertyGroup, field: str, expected: str, found: str = "none"
 ) -> pe.InputError:
     return pe.InputError("scene", f"mount {mount.name!r}: {field}", expected, found)
 
@@ -278,7 +268,7 @@ class LimitBox(NamedTuple):
     forbidden: bool
 
 
-def mount_key(row: bpy.types.PropertyGroup) -> Hashable:
+def mount_key(row: PropertyGroup) -> Hashable:
     """Return a cache key of a mount's faces, besides the vehicle; None for a list of slots."""
     if row.kind != ON_SURFACE:
         return None
@@ -291,10 +281,7 @@ def mount_key(row: bpy.types.PropertyGroup) -> Hashable:
 
 
 def mount_faces(
-    scene: bpy.types.Scene,
-    depsgraph: bpy.types.Depsgraph,
-    row: bpy.types.PropertyGroup,
-    vehicle: pe.Vehicle,
+    scene: Scene, depsgraph: Depsgraph, row: PropertyGroup, vehicle: pe.Vehicle
 ) -> np.ndarray:
     """Return the faces (F, 3, 3) of a surface mount [m]; an empty array without faces."""
     if row.faces == BY_PARTS:
@@ -304,10 +291,7 @@ def mount_faces(
 
 
 def bounds_box(
-    obj: bpy.types.Object,
-    sensor: pe.Sensor,
-    vehicle: pe.Vehicle | None,
-    around: np.ndarray | None = None,
+    obj: Object, sensor: pe.Sensor, vehicle: pe.Vehicle | None, around: np.ndarray | None = None
 ) -> LimitBox | None:
     """Return the box of a sensor's own bounds and constraints; None for one without any.
 
@@ -333,7 +317,7 @@ def bounds_box(
     return _box(ends, False)
 
 
-def no_go_boxes(scene: bpy.types.Scene) -> tuple[LimitBox, ...]:
+def no_go_boxes(scene: Scene) -> tuple[LimitBox, ...]:
     """Return the no-go areas of a scene."""
     return tuple(_box((area.x, area.y, area.z), True) for area in no_go_of(scene))
 

@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 import bpy
+from bpy.types import PropertyGroup, Scene
 
 from ..engine import advice, jobs, pe, studies
 from .requirements import store_verdicts
@@ -20,11 +21,7 @@ MARKING = (MISSING, DRIVER)
 """Codes of warnings that mark a result: what was scored is not what was meant."""
 
 
-def store_outcome(
-    scene: bpy.types.Scene,
-    outcome: pe.Outcome,
-    signature: str,
-) -> None:
+def store_outcome(scene: Scene, outcome: pe.Outcome, signature: str) -> None:
     """Store an outcome in the scene: figures for display, and result.json in full.
 
     `signature` is the scene's signature at the time when it was read: the scene may have changed
@@ -80,10 +77,7 @@ def _condition_lines(table: studies.ConditionTable | None) -> list[str]:
 
 
 def store_text(
-    scene: bpy.types.Scene,
-    study: pe.Study,
-    score: pe.Score,
-    seen: advice.Outlook | None = None,
+    scene: Scene, study: pe.Study, score: pe.Score, seen: advice.Outlook | None = None
 ) -> None:
     """Store a result's sentences: on the rig, and on each of its sensors."""
     settings, sensors = scene.perception_entropy, {}
@@ -116,7 +110,7 @@ def _parts(score: pe.Score) -> Iterator[ResultPart]:
         yield row
 
 
-def store_warnings(settings: bpy.types.PropertyGroup, warnings: Sequence[pe.Advice]) -> None:
+def store_warnings(settings: PropertyGroup, warnings: Sequence[pe.Advice]) -> None:
     """Store the warnings about a scene's sensors and vehicle, for the panel."""
     rows = []
     for each in warnings:

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import bpy
+from bpy.types import PropertyGroup, Scene
 
 from ..choices import free_name
 from ..engine import catalog, pe
@@ -50,18 +51,18 @@ def remove_own_sensors() -> None:
         catalog.remove(_added.popitem()[0])
 
 
-def table_of(row: bpy.types.PropertyGroup) -> dict[str, Any]:
+def table_of(row: PropertyGroup) -> dict[str, Any]:
     """Return an own sensor's figures as a table of the catalogue."""
     to_table, _ = CONVERSIONS.get(row.kind, OTHER)
     return {"kind": row.kind} | to_table(row)
 
 
-def _camera_table(row: bpy.types.PropertyGroup) -> dict[str, Any]:
+def _camera_table(row: PropertyGroup) -> dict[str, Any]:
     size, lens = {"width": row.width, "height": row.height}, read_line(row.lens, "distortion")
     return size | ({} if LENS_KEYS & set(lens) else {"hfov_deg": as_typed(row.hfov)}) | lens
 
 
-def _lidar_table(row: bpy.types.PropertyGroup) -> dict[str, Any]:
+def _lidar_table(row: PropertyGroup) -> dict[str, Any]:
     min_range = {"min_range_m": as_typed(row.min_range)} if row.min_range > 0.0 else {}
     return min_range | {
         "elevations_deg": _elevations(row),
@@ -71,7 +72,7 @@ def _lidar_table(row: bpy.types.PropertyGroup) -> dict[str, Any]:
     }
 
 
-def add_own_sensor(scene: bpy.types.Scene, name: str, table: Mapping[str, Any]) -> str:
+def add_own_sensor(scene: Scene, name: str, table: Mapping[str, Any]) -> str:
     """Add an own sensor with the values of a catalogue table; return its name.
 
     The channels of a LiDAR become evenly spread.
@@ -105,7 +106,7 @@ def _lidar_figures(table: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def own_sensors_signature(scene: bpy.types.Scene) -> list[object]:
+def own_sensors_signature(scene: Scene) -> list[object]:
     """Return the tables of the own sensors in use, because a score depends on them."""
     rows = {row.name: row for row in scene.perception_entropy.own_sensors}
     if not rows:
@@ -114,14 +115,14 @@ def own_sensors_signature(scene: bpy.types.Scene) -> list[object]:
     return [(name, table_of(rows[name])) for name in sorted(used & rows.keys())]
 
 
-def _elevations(row: bpy.types.PropertyGroup) -> list[float]:
+def _elevations(row: PropertyGroup) -> list[float]:
     """Return elevations of evenly spread channels, lowest first [deg]."""
     low, high = pair_as_typed(row.elevations)
     steps = max(row.channels - 1, 1)
     return [round(low + (high - low) * n / steps, 6) for n in range(row.channels)]
 
 
-def _follow_name(scene: bpy.types.Scene, row: bpy.types.PropertyGroup) -> None:
+def _follow_name(scene: Scene, row: PropertyGroup) -> None:
     """Update the sensors of a model that was renamed."""
     before = row.known_as
     if before == row.name:

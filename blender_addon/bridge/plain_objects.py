@@ -12,6 +12,7 @@ from typing import cast
 
 import bpy
 import numpy as np
+from bpy.types import Object, Scene
 from mathutils import Matrix
 
 from ..engine import catalog, exchange, pe
@@ -30,23 +31,20 @@ DIGITS_PX, DIGITS_M = 4, 6
 """What single precision leaves of a focal length and a range."""
 
 
-def plain_objects(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
+def plain_objects(objects: Iterable[Object]) -> list[Object]:
     """Return the cameras and empties that are neither sensors nor view cameras."""
     kinds = {"CAMERA", "EMPTY"}
     candidates = (obj for obj in objects if obj.type in kinds and not _is_ours(obj))
     return [obj for obj in candidates if obj.instance_collection is None]
 
 
-def _is_ours(obj: bpy.types.Object) -> bool:
+def _is_ours(obj: Object) -> bool:
     settings = obj.perception_entropy
     return settings.is_sensor or settings.is_view
 
 
 def sensors_of_objects(
-    scene: bpy.types.Scene,
-    objects: Iterable[bpy.types.Object],
-    models: Mapping[str, str],
-    stand_in: str,
+    scene: Scene, objects: Iterable[Object], models: Mapping[str, str], stand_in: str
 ) -> tuple[list[pe.Sensor], list[str]]:
     """Return cameras and empties as sensors, and a message for each one with a substitute model.
 
@@ -70,13 +68,13 @@ def sensors_of_objects(
     return sensors, lines
 
 
-def _model_of(obj: bpy.types.Object) -> str | None:
+def _model_of(obj: Object) -> str | None:
     """Return the model name in an object's custom property, if the catalogue has that model."""
     name = str(obj.get(MODEL, ""))
     return name if name in catalog.entries() else None
 
 
-def _pose(obj: bpy.types.Object) -> pe.Pose:
+def _pose(obj: Object) -> pe.Pose:
     matrix = np.array(obj.matrix_world, dtype=float)
     matrix[:3, :3] /= np.sqrt((matrix[:3, :3] ** 2).sum(axis=0))
     if obj.type == "CAMERA":
@@ -84,9 +82,7 @@ def _pose(obj: bpy.types.Object) -> pe.Pose:
     return pose_of_matrix(matrix)
 
 
-def _camera(
-    scene: bpy.types.Scene, obj: bpy.types.Object, name: str, model_name: str | None
-) -> pe.Camera:
+def _camera(scene: Scene, obj: Object, name: str, model_name: str | None) -> pe.Camera:
     """Return a camera's model: the chosen one if the lens matches it, else a model of the lens."""
     camera = obj.data
     if camera.type != "PERSP":
@@ -100,7 +96,7 @@ def _camera(
     return cast(pe.Camera, catalog.from_table(name, table))
 
 
-def _table(scene: bpy.types.Scene, camera: bpy.types.Camera) -> dict[str, object]:
+def _table(scene: Scene, camera: bpy.types.Camera) -> dict[str, object]:
     """Return a camera's figures with the keys of a study.
 
     Blender measures the sensor along the image's longer side, unless the sensor fit names a side.
@@ -121,7 +117,7 @@ def _table(scene: bpy.types.Scene, camera: bpy.types.Camera) -> dict[str, object
     return table | {key: clip for key, clip, usual in keys if clip != usual}
 
 
-def _picture(scene: bpy.types.Scene, camera: bpy.types.Camera) -> tuple[int, int, float]:
+def _picture(scene: Scene, camera: bpy.types.Camera) -> tuple[int, int, float]:
     """Return width, height [px] and pixel aspect (height / width) of the camera or the scene."""
     render = scene.render
     share = render.resolution_percentage / 100.0
@@ -147,7 +143,7 @@ def _is_of(picture: exchange.Picture, table: Mapping[str, object]) -> bool:
     )
 
 
-def put_objects(scene: bpy.types.Scene, rig: pe.Rig) -> tuple[list[bpy.types.Object], list[str]]:
+def put_objects(scene: Scene, rig: pe.Rig) -> tuple[list[Object], list[str]]:
     """Add a rig to a scene as cameras and empties in a new collection; return them and messages.
 
     The messages name properties that Blender's cameras and empties cannot represent.

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import bpy
+from bpy.types import PropertyGroup, Scene
 
 from ..choices import CUSTOM, FROM_BOXES, HIGHWAY, REGIONS, ROAD, UNIFORM, FocusArea
 from ..engine import pe
@@ -15,7 +16,7 @@ from .scene_settings import as_typed
 MODELS = {ROAD: pe.Prior.road, HIGHWAY: pe.Prior.highway, UNIFORM: pe.Prior.uniform}
 
 
-def prior_from_scene(scene: bpy.types.Scene) -> pe.Prior:
+def prior_from_scene(scene: Scene) -> pe.Prior:
     """Return the scene's prior, focus weights included.
 
     Raises
@@ -31,7 +32,7 @@ def prior_from_scene(scene: bpy.types.Scene) -> pe.Prior:
     return replace(prior, focus=tuple(f for n, row in rows for f in _checked(prior, n, row)))
 
 
-def prior_signature(scene: bpy.types.Scene) -> list[object]:
+def prior_signature(scene: Scene) -> list[object]:
     """Return the settings that the prior depends on, including invalid focus weights."""
     settings = scene.perception_entropy
     rows = [(as_typed(row.factor), _areas(row), _classes(row)) for row in settings.focus]
@@ -39,20 +40,20 @@ def prior_signature(scene: bpy.types.Scene) -> list[object]:
     return [settings.prior, *boxes, *rows]
 
 
-def prior_key(scene: bpy.types.Scene) -> str:
+def prior_key(scene: Scene) -> str:
     """Return a cache key of the prior, valid as long as the file of boxes does not change."""
     return repr(prior_signature(scene))
 
 
 def focus_rows(
-    scene: bpy.types.Scene,
+    scene: Scene,
 ) -> tuple[tuple[str, float, tuple[FocusArea, ...], tuple[str, ...] | None], ...]:
     """Return name, factor, areas and classes (None: all) of each focus weight."""
     rows = scene.perception_entropy.focus
     return tuple((row.name, as_typed(row.factor), _areas(row), _classes(row)) for row in rows)
 
 
-def write_prior(settings: bpy.types.PropertyGroup, prior: pe.Prior) -> None:
+def write_prior(settings: PropertyGroup, prior: pe.Prior) -> None:
     """Write a prior's model and its focus weights to a scene.
 
     A prior of labelled boxes and a focus on a class that is not in the menu are left out.
@@ -93,7 +94,7 @@ def _prior_from_boxes(path: str) -> pe.Prior:
     return prior if boxes is None else replace(prior, boxes=replace(boxes, file=None))
 
 
-def _checked(prior: pe.Prior, number: int, row: bpy.types.PropertyGroup) -> list[pe.Focus]:
+def _checked(prior: pe.Prior, number: int, row: PropertyGroup) -> list[pe.Focus]:
     """Return the focus weights of one row, one for each area; errors name the row."""
     try:
         _check_classes(prior, row)
@@ -103,12 +104,12 @@ def _checked(prior: pe.Prior, number: int, row: bpy.types.PropertyGroup) -> list
         raise pe.InputError("scene", field, error.expected, error.found) from None
 
 
-def _focus_of(row: bpy.types.PropertyGroup) -> Iterator[pe.Focus]:
+def _focus_of(row: PropertyGroup) -> Iterator[pe.Focus]:
     for x, y in _areas(row):
         yield pe.Focus(as_typed(row.factor), x, y, _classes(row))
 
 
-def _areas(row: bpy.types.PropertyGroup) -> tuple[FocusArea, ...]:
+def _areas(row: PropertyGroup) -> tuple[FocusArea, ...]:
     """Return the areas of a focus weight."""
     if row.region != CUSTOM:
         return REGIONS[row.region].areas
@@ -116,13 +117,13 @@ def _areas(row: bpy.types.PropertyGroup) -> tuple[FocusArea, ...]:
     return (((x_low, x_high), (y_low, y_high)),)
 
 
-def _classes(row: bpy.types.PropertyGroup) -> tuple[str, ...] | None:
+def _classes(row: PropertyGroup) -> tuple[str, ...] | None:
     """Return the classes of a focus weight in the order of the menu; None for all classes."""
     names = [item.identifier for item in row.bl_rna.properties["classes"].enum_items]
     return None if row.classes == set(names) else tuple(c for c in names if c in row.classes)
 
 
-def _check_classes(prior: pe.Prior, row: bpy.types.PropertyGroup) -> None:
+def _check_classes(prior: pe.Prior, row: PropertyGroup) -> None:
     classes = _classes(row)
     if classes == ():
         raise pe.InputError("focus", "classes", "at least one class", "none")

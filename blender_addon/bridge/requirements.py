@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import bpy
+from bpy.types import PropertyGroup
 
 from ..engine import pe, requirements, studies, text
 
@@ -26,7 +27,7 @@ Verdict = requirements.Verdict
 VerdictSummary = requirements.VerdictSummary
 
 
-def requirements_of(settings: bpy.types.PropertyGroup) -> tuple[Requirement, ...]:
+def requirements_of(settings: PropertyGroup) -> tuple[Requirement, ...]:
     """Return the requirements of a scene that are switched on.
 
     Raises
@@ -38,12 +39,12 @@ def requirements_of(settings: bpy.types.PropertyGroup) -> tuple[Requirement, ...
     return requirements.checked_requirements(found)
 
 
-def requirement_of(row: bpy.types.PropertyGroup) -> Requirement:
+def requirement_of(row: PropertyGroup) -> Requirement:
     """Return the requirement of a row; `InputError` where its table is wrong."""
     return _read(row.name, table_of_row(row))
 
 
-def table_of_row(row: bpy.types.PropertyGroup) -> TableData:
+def table_of_row(row: PropertyGroup) -> TableData:
     """Return a row's table, without its name; `InputError` where the text is no table."""
     return _loaded(row.name, row.table)
 
@@ -58,7 +59,7 @@ def _loaded(name: str, text_of_row: str) -> TableData:
     return table
 
 
-def full_table(row: bpy.types.PropertyGroup) -> TableData:
+def full_table(row: PropertyGroup) -> TableData:
     """Return a row's table with the keys of its preset; empty where the table is wrong.
 
     It is cached, and not to be changed.
@@ -75,7 +76,7 @@ def _full_table(name: str, table: str) -> TableData:
     return studies.requirement_file.full_table(_read(name, _loaded(name, table)))
 
 
-def after_of(row: bpy.types.PropertyGroup) -> str:
+def after_of(row: PropertyGroup) -> str:
     """Return what a row's verdict is called after; empty where that is nothing, or is unknown."""
     try:
         return _after(row.name, row.table)
@@ -88,7 +89,7 @@ def _after(name: str, table: str) -> str:
     return _read(name, _loaded(name, table)).after
 
 
-def write_row(row: bpy.types.PropertyGroup, requirement: Requirement) -> None:
+def write_row(row: PropertyGroup, requirement: Requirement) -> None:
     """Write a requirement to a row."""
     table = studies.requirement_file.requirement_table(requirement)
     row.name = table.pop("name")
@@ -97,7 +98,7 @@ def write_row(row: bpy.types.PropertyGroup, requirement: Requirement) -> None:
     forget_verdict(row)
 
 
-def write_requirements(settings: bpy.types.PropertyGroup, wanted: Sequence[Requirement]) -> None:
+def write_requirements(settings: PropertyGroup, wanted: Sequence[Requirement]) -> None:
     """Write requirements to a scene, in place of its own."""
     settings.requirements.clear()
     for each in wanted:
@@ -118,7 +119,7 @@ def with_mesh_files_of(study: pe.Study, folder: Path) -> pe.Study:
     return replace(study, requirements=tuple(held))
 
 
-def edit_row(row: bpy.types.PropertyGroup, change: Callable[[TableData], None]) -> None:
+def edit_row(row: PropertyGroup, change: Callable[[TableData], None]) -> None:
     """Change a row's full table; a change that makes it wrong is not made, and the row says why."""
     try:
         table = deepcopy(_full_table(row.name, row.table))
@@ -144,20 +145,18 @@ def _of_preset(requirement: Requirement, preset: str | None) -> Requirement:
     return again if again == changed else requirement
 
 
-def requirements_key(settings: bpy.types.PropertyGroup) -> tuple[tuple[str, str], ...]:
+def requirements_key(settings: PropertyGroup) -> tuple[tuple[str, str], ...]:
     """Return a key of the requirements that are switched on."""
     return tuple((row.name, row.table) for row in settings.requirements if row.enabled)
 
 
-def preset_of(row: bpy.types.PropertyGroup) -> str | None:
+def preset_of(row: PropertyGroup) -> str | None:
     """Return the identifier of a row's preset; None of an own or a wrong one."""
     return full_table(row).get("preset")
 
 
 def store_verdicts(
-    settings: bpy.types.PropertyGroup,
-    verdicts: Sequence[Verdict],
-    reasons: Mapping[str, str] | None = None,
+    settings: PropertyGroup, verdicts: Sequence[Verdict], reasons: Mapping[str, str] | None = None
 ) -> None:
     """Store verdicts in the rows of their requirements; other rows have none, perhaps a reason."""
     found = {verdict.name: verdict.summary for verdict in verdicts}
@@ -169,12 +168,12 @@ def store_verdicts(
             row.verdict = json.dumps({REASON: reasons[row.name]})
 
 
-def forget_verdict(row: bpy.types.PropertyGroup) -> None:
+def forget_verdict(row: PropertyGroup) -> None:
     """Remove a row's verdict: it is not of the requirement as it is now."""
     row.verdict = ""
 
 
-def stored_verdict(row: bpy.types.PropertyGroup) -> VerdictSummary | str | None:
+def stored_verdict(row: PropertyGroup) -> VerdictSummary | str | None:
     """Return a row's last verdict; the reason where it was not checked; None for neither."""
     stored = json.loads(row.verdict) if row.verdict else None
     if stored is None or REASON in stored:

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 
 import bpy
 import numpy as np
+from bpy.types import Depsgraph, Object, PropertyGroup, Scene, ViewLayer
 from mathutils import Matrix
 
 from ..engine import catalog, geometry, graphics, pe, search
@@ -21,13 +22,13 @@ HELD_ROTATION = 2e-6
 parents move it by less. Both tolerances are below half a step of the rounding."""
 
 
-def sensor_objects(scene: bpy.types.Scene) -> list[bpy.types.Object]:
+def sensor_objects(scene: Scene) -> list[Object]:
     """Return all sensors of a scene by name, hidden ones included."""
     sensors = [obj for obj in scene.objects if obj.perception_entropy.is_sensor]
     return sorted(sensors, key=lambda obj: obj.name)
 
 
-def rig_from_objects(objects: Sequence[bpy.types.Object], depsgraph: bpy.types.Depsgraph) -> pe.Rig:
+def rig_from_objects(objects: Sequence[Object], depsgraph: Depsgraph) -> pe.Rig:
     """Return the visible sensors among some objects as a rig.
 
     Raises
@@ -46,7 +47,7 @@ def rig_from_objects(objects: Sequence[bpy.types.Object], depsgraph: bpy.types.D
         raise error.at("scene") from None
 
 
-def sensor_from_object(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> pe.Sensor:
+def sensor_from_object(obj: Object, depsgraph: Depsgraph) -> pe.Sensor:
     """Return one object's model, placement, fusion group and AP curve as a sensor.
 
     Raises
@@ -64,15 +65,13 @@ def sensor_from_object(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) ->
         raise pe.InputError("scene", field, error.expected, error.found) from None
 
 
-def color_of(obj: bpy.types.Object) -> str | None:
+def color_of(obj: Object) -> str | None:
     """Return the colour of a sensor, such as "#5fb8f7"; None before it has one."""
     settings = obj.perception_entropy
     return graphics.color_text(settings.color) if settings.color_of else None
 
 
-def possible_sensors(
-    objects: Sequence[bpy.types.Object], depsgraph: bpy.types.Depsgraph
-) -> list[pe.Sensor]:
+def possible_sensors(objects: Sequence[Object], depsgraph: Depsgraph) -> list[pe.Sensor]:
     """Return the visible sensors among some objects, without those that cannot be scored."""
     sensors = []
     for obj in objects:
@@ -82,7 +81,7 @@ def possible_sensors(
     return sensors
 
 
-def pose_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> pe.Pose:
+def pose_of(obj: Object, depsgraph: Depsgraph) -> pe.Pose:
     """Return the pose of a sensor in the ground frame, rounded as placements are.
 
     Rounding removes the error of single precision, so that a study file and the scene hold the
@@ -93,7 +92,7 @@ def pose_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> pe.Pose:
     return pose_of_matrix(ground_from_sensor) if held is None else held
 
 
-def last_written_pose(obj: bpy.types.Object, ground_from_sensor: np.ndarray) -> pe.Pose | None:
+def last_written_pose(obj: Object, ground_from_sensor: np.ndarray) -> pe.Pose | None:
     """Return the pose that was last written to a sensor; None if the sensor has moved since."""
     _check_rigid(ground_from_sensor)
     written = pose_from_numbers(obj.perception_entropy.placed)
@@ -107,7 +106,7 @@ def pose_of_matrix(ground_from_sensor: np.ndarray) -> pe.Pose:
     return search.pose_from_values(dict(zip(search.AXES, values, strict=True)))
 
 
-def place_rig(scene: bpy.types.Scene, rig: pe.Rig, start: pe.Rig | None = None) -> list[str]:
+def place_rig(scene: Scene, rig: pe.Rig, start: pe.Rig | None = None) -> list[str]:
     """Place the scene's sensors as in a rig; return the names of sensors that no longer exist.
 
     Sensors with the same pose in the rig `start` are not moved, wherever they are now.
@@ -122,7 +121,7 @@ def place_rig(scene: bpy.types.Scene, rig: pe.Rig, start: pe.Rig | None = None) 
     return place_poses(scene, {sensor.name: sensor.pose for sensor in moved}) + left
 
 
-def place_poses(scene: bpy.types.Scene, poses: Mapping[str, pe.Pose]) -> list[str]:
+def place_poses(scene: Scene, poses: Mapping[str, pe.Pose]) -> list[str]:
     """Place sensors, by name, at poses; return the names of sensors that no longer exist.
 
     Raises
@@ -131,7 +130,7 @@ def place_poses(scene: bpy.types.Scene, poses: Mapping[str, pe.Pose]) -> list[st
         When a constraint, a driver or an animation holds a sensor where it is, or it is another
         file's.
     """
-    present: list[tuple[bpy.types.Object, pe.Pose]] = [
+    present: list[tuple[Object, pe.Pose]] = [
         (scene.objects[name], pose)
         for name, pose in poses.items()
         if _is_sensor(scene.objects.get(name))
@@ -151,33 +150,33 @@ def place_poses(scene: bpy.types.Scene, poses: Mapping[str, pe.Pose]) -> list[st
     return [name for name in poses if not _is_sensor(scene.objects.get(name))]
 
 
-def place_at(obj: bpy.types.Object, pose: pe.Pose) -> None:
+def place_at(obj: Object, pose: pe.Pose) -> None:
     """Place an object at a pose; store the pose, because single precision would round it."""
     _move(obj, pose)
     obj.perception_entropy.placed = (*pose.position, *pose.rotation_deg)
 
 
-def _check_own(obj: bpy.types.Object) -> None:
+def _check_own(obj: Object) -> None:
     """Raise `InputError` for a sensor linked from another file: that file defines its pose."""
     if obj.library is not None:
         raise _not_placed(obj, f"linked from {obj.library.filepath}")
 
 
-def _not_placed(obj: bpy.types.Object, found: str) -> pe.InputError:
+def _not_placed(obj: Object, found: str) -> pe.InputError:
     expected = "an object that can be placed"
     return pe.InputError("scene", f"sensor {obj.name!r}: placement", expected, found)
 
 
-def mounted_on_sensor(obj: bpy.types.Object) -> bool:
+def mounted_on_sensor(obj: Object) -> bool:
     """Whether an object is mounted on a sensor, as a housing is; it occludes no beam."""
     return any(_is_sensor(ancestor) for ancestor in (obj, *_ancestors(obj)))
 
 
-def _is_sensor(obj: bpy.types.Object | None) -> bool:
+def _is_sensor(obj: Object | None) -> bool:
     return obj is not None and obj.perception_entropy.is_sensor
 
 
-def _ancestors(obj: bpy.types.Object) -> list[bpy.types.Object]:
+def _ancestors(obj: Object) -> list[Object]:
     ancestors = []
     while obj.parent is not None:
         obj = obj.parent
@@ -185,7 +184,7 @@ def _ancestors(obj: bpy.types.Object) -> list[bpy.types.Object]:
     return ancestors
 
 
-def view_layer_of(scene: bpy.types.Scene) -> bpy.types.ViewLayer:
+def view_layer_of(scene: Scene) -> ViewLayer:
     """Return the view layer in use; the scene's first one when another scene is open."""
     return bpy.context.view_layer if bpy.context.scene == scene else scene.view_layers[0]
 
@@ -220,7 +219,7 @@ def pose_from_numbers(numbers: Sequence[float]) -> pe.Pose:
     return search.pose_from_values(dict(zip(search.AXES, (*position, *radians), strict=True)))
 
 
-def _move(obj: bpy.types.Object, pose: pe.Pose) -> None:
+def _move(obj: Object, pose: pe.Pose) -> None:
     """Set the transform of an object to a pose, whatever its parents."""
     ground_from_sensor = np.eye(4)
     ground_from_sensor[:3, :3] = pose.ground_from_sensor
@@ -234,7 +233,7 @@ def _move(obj: bpy.types.Object, pose: pe.Pose) -> None:
         obj.rotation_euler = geometry.rpy_from_matrix(rotation / lengths)
 
 
-def _ground_from_parent(obj: bpy.types.Object) -> np.ndarray:
+def _ground_from_parent(obj: Object) -> np.ndarray:
     """Return the (4, 4) frame in which an object's location and rotation are given."""
     if obj.parent is None:
         return np.eye(4)
@@ -242,7 +241,7 @@ def _ground_from_parent(obj: bpy.types.Object) -> np.ndarray:
     return parent @ np.array(obj.matrix_parent_inverse, dtype=float)
 
 
-def curve_of(settings: bpy.types.PropertyGroup) -> pe.ApCurve | None:
+def curve_of(settings: PropertyGroup) -> pe.ApCurve | None:
     """Return a sensor's own AP curve; None where it uses that of its kind.
 
     Raises
@@ -255,7 +254,7 @@ def curve_of(settings: bpy.types.PropertyGroup) -> pe.ApCurve | None:
     return pe.ApCurve(**values_of(settings, pe.ApCurve, prefix="curve_"))
 
 
-def put_curve(settings: bpy.types.PropertyGroup, curve: pe.ApCurve | None) -> None:
+def put_curve(settings: PropertyGroup, curve: pe.ApCurve | None) -> None:
     """Set or remove a sensor's own AP curve; equal values are not written again."""
     if curve is not None and (settings.curve_a, settings.curve_b) != (curve.a, curve.b):
         settings.curve_a, settings.curve_b = curve.a, curve.b

@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import Any
 
 import bpy
+from bpy.types import ID, LayerCollection, Object, Scene
 
 from ..engine import pe
 from .mounting import followers_of
@@ -22,16 +23,14 @@ HIDDEN = "hidden_vehicle"
 """Codes of warnings, beside those of the engine."""
 
 
-def scene_advice(scene: bpy.types.Scene) -> tuple[pe.Advice, ...]:
+def scene_advice(scene: Scene) -> tuple[pe.Advice, ...]:
     """Return warnings about a scene: missing data, units, and sensors that cannot be scored."""
     sensors = sensor_objects(scene)
     warnings = (*missing_data(scene, sensors), *_units(scene), *_hidden_vehicle(scene))
     return (*warnings, *_refused(scene, sensors))
 
 
-def missing_data(
-    scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object] | None = None
-) -> tuple[pe.Advice, ...]:
+def missing_data(scene: Scene, sensors: Sequence[Object] | None = None) -> tuple[pe.Advice, ...]:
     """Return warnings about data of lost libraries and about drivers that did not run.
 
     `sensors` are the scene's sensors, if the caller has already read them.
@@ -41,7 +40,7 @@ def missing_data(
     return (*_lost_data(blocks), *_failed_drivers(blocks, set(mounted)))
 
 
-def _lost_data(blocks: Iterable[bpy.types.ID]) -> Iterator[pe.Advice]:
+def _lost_data(blocks: Iterable[ID]) -> Iterator[pe.Advice]:
     """Yield a warning for each lost library: its path, and the data that is missing."""
     lost: dict[str, list[str]] = {}
     for block in blocks:
@@ -52,9 +51,7 @@ def _lost_data(blocks: Iterable[bpy.types.ID]) -> Iterator[pe.Advice]:
         yield pe.Advice(None, MISSING, f"{what} is missing: there is no {path}")
 
 
-def _scored_data(
-    scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]
-) -> Iterator[bpy.types.ID]:
+def _scored_data(scene: Scene, sensors: Sequence[Object]) -> Iterator[ID]:
     """Yield the collections, objects and data blocks of the vehicle and of the sensors."""
     vehicle = scene.perception_entropy.vehicle
     waiting = [] if vehicle is None else [vehicle]
@@ -77,9 +74,7 @@ def _scored_data(
             yield obj.data
 
 
-def _failed_drivers(
-    blocks: Iterable[Any], sensors: Collection[bpy.types.Object]
-) -> Iterator[pe.Advice]:
+def _failed_drivers(blocks: Iterable[Any], sensors: Collection[Object]) -> Iterator[pe.Advice]:
     """Yield a warning for each object with a driver that did not run."""
     for block in blocks:
         drivers = getattr(block.animation_data, "drivers", ()) if _animatable(block) else ()
@@ -93,18 +88,18 @@ def _failed_drivers(
                 yield pe.Advice(None, DRIVER, f"{block.name}: {text}", part=block.name)
 
 
-def _animatable(block: bpy.types.ID) -> bool:
+def _animatable(block: ID) -> bool:
     return getattr(block, "animation_data", None) is not None
 
 
-def _units(scene: bpy.types.Scene) -> Iterator[pe.Advice]:
+def _units(scene: Scene) -> Iterator[pe.Advice]:
     units = scene.unit_settings
     if units.system == "IMPERIAL" or abs(units.scale_length - 1.0) > 1e-6:
         text = "one unit is not one metre in this scene: nothing can be scored"
         yield pe.Advice(None, UNITS, text, fix="metric_units")
 
 
-def _hidden_vehicle(scene: bpy.types.Scene) -> Iterator[pe.Advice]:
+def _hidden_vehicle(scene: Scene) -> Iterator[pe.Advice]:
     """Yield warnings about collections of the vehicle that are excluded or hidden."""
     vehicle, layer = scene.perception_entropy.vehicle, view_layer_of(scene)
     if vehicle is None:
@@ -124,7 +119,7 @@ def _hidden_vehicle(scene: bpy.types.Scene) -> Iterator[pe.Advice]:
             yield pe.Advice(None, HIDDEN, text)
 
 
-def _hidden_children(layer: bpy.types.LayerCollection) -> Iterator[bpy.types.LayerCollection]:
+def _hidden_children(layer: LayerCollection) -> Iterator[LayerCollection]:
     """Yield the outermost hidden collections inside a collection that hold a mesh."""
     for child in layer.children:
         if not hidden_how(child):
@@ -133,7 +128,7 @@ def _hidden_children(layer: bpy.types.LayerCollection) -> Iterator[bpy.types.Lay
             yield child
 
 
-def _refused(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> Iterator[pe.Advice]:
+def _refused(scene: Scene, sensors: Sequence[Object]) -> Iterator[pe.Advice]:
     """Yield a warning for each sensor that cannot be scored."""
     layer = view_layer_of(scene)
     for obj in sensors:
@@ -148,7 +143,7 @@ def _refused(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> Ite
             yield pe.Advice(obj.name, REFUSED, text, fix=fix)
 
 
-def check_placeable(scene: bpy.types.Scene, study: pe.Study) -> None:
+def check_placeable(scene: Scene, study: pe.Study) -> None:
     """Check that a search can place the sensors.
 
     Raises
@@ -174,7 +169,7 @@ def check_placeable(scene: bpy.types.Scene, study: pe.Study) -> None:
             raise pe.InputError("scene", f"sensor {obj.name!r}: placement", expected, holder)
 
 
-def _check_locks(obj: bpy.types.Object, mounting: pe.Mounting) -> None:
+def _check_locks(obj: Object, mounting: pe.Mounting) -> None:
     """Raise `InputError` for a lock that a mount would ignore; angles on a surface are exempt."""
     mount, locked = mounting.mount_of(obj.name), locked_axes(obj)
     if isinstance(mount, pe.SurfaceMount):

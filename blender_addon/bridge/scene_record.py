@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import bpy
+from bpy.types import Collection, Depsgraph, Object, PropertyGroup, Scene
 
 from ..engine import catalog, exchange, pe, requirements, search, studies
 from .conditions import as_drawn, conditions_of, read_states
@@ -74,10 +74,10 @@ class SceneRecord:
 
 
 def study_from_scene(
-    scene: bpy.types.Scene,
-    depsgraph: bpy.types.Depsgraph,
+    scene: Scene,
+    depsgraph: Depsgraph,
     vehicle: pe.Vehicle | None = None,
-    sensors: Sequence[bpy.types.Object] | None = None,
+    sensors: Sequence[Object] | None = None,
 ) -> pe.Study:
     """Return the study that a scene describes.
 
@@ -99,7 +99,7 @@ def study_from_scene(
     return study_of(record_of_scene(scene, depsgraph, records, vehicle=vehicle))
 
 
-def study_as_drawn(scene: bpy.types.Scene) -> pe.Study:
+def study_as_drawn(scene: Scene) -> pe.Study:
     """Return the study of a scene as its vehicle is drawn, with its states read again.
 
     Raises
@@ -114,9 +114,7 @@ def study_as_drawn(scene: bpy.types.Scene) -> pe.Study:
         return study_from_scene(scene, layer.depsgraph)
 
 
-def study_of_rig(
-    scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, rig: Iterable[pe.Sensor]
-) -> pe.Study:
+def study_of_rig(scene: Scene, depsgraph: Depsgraph, rig: Iterable[pe.Sensor]) -> pe.Study:
     """Return the study of a scene's vehicle and settings with any rig in place of its sensors.
 
     The rig's sensors have the free axes of the paper, and no bounds of their own.
@@ -131,8 +129,8 @@ def study_of_rig(
 
 
 def record_of_scene(
-    scene: bpy.types.Scene,
-    depsgraph: bpy.types.Depsgraph,
+    scene: Scene,
+    depsgraph: Depsgraph,
     records: Sequence[SensorRecord],
     *,
     source: str = "scene",
@@ -219,7 +217,7 @@ def _limits(
     return limits
 
 
-def check_scene(scene: bpy.types.Scene) -> None:
+def check_scene(scene: Scene) -> None:
     """Check that a study can be read from a scene.
 
     Raises
@@ -231,7 +229,7 @@ def check_scene(scene: bpy.types.Scene) -> None:
     _vehicle_chosen(scene)
 
 
-def vehicle_of_scene(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> pe.Vehicle:
+def vehicle_of_scene(scene: Scene, depsgraph: Depsgraph) -> pe.Vehicle:
     """Read the chosen vehicle from the scene and return it; no cache is used.
 
     Raises
@@ -242,7 +240,7 @@ def vehicle_of_scene(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> 
     return vehicle_from_collection(_vehicle_chosen(scene), depsgraph, clearance_of(scene))
 
 
-def _vehicle_chosen(scene: bpy.types.Scene) -> bpy.types.Collection:
+def _vehicle_chosen(scene: Scene) -> Collection:
     """Return the vehicle's collection; raise `InputError` where none is chosen."""
     vehicle = scene.perception_entropy.vehicle
     if vehicle is None:
@@ -251,7 +249,7 @@ def _vehicle_chosen(scene: bpy.types.Scene) -> bpy.types.Collection:
     return vehicle
 
 
-def _check_metres(scene: bpy.types.Scene) -> None:
+def _check_metres(scene: Scene) -> None:
     """Raise `InputError` unless one unit is one metre and the scene displays metres."""
     units = scene.unit_settings
     if units.system == "IMPERIAL":
@@ -273,12 +271,12 @@ def selection_of(records: Sequence[SensorRecord], limits: pe.Selection) -> pe.Se
     return replace(limits, choices=choices) if choices else pe.Selection()
 
 
-def selection_limits(settings: bpy.types.PropertyGroup) -> pe.Selection:
+def selection_limits(settings: PropertyGroup) -> pe.Selection:
     """Return a scene's limits on all sensors that are chosen, without the choices."""
     return pe.Selection(**values_of(settings, pe.Selection))
 
 
-def write_options(settings: bpy.types.PropertyGroup, record: SensorRecord) -> None:
+def write_options(settings: PropertyGroup, record: SensorRecord) -> None:
     """Write the model options of a record to a sensor of the scene."""
     settings.options.clear()
     settings.may_be_left_out = record.may_be_left_out

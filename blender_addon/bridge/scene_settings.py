@@ -10,8 +10,8 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-import bpy
 import numpy as np
+from bpy.types import PropertyGroup, Scene
 
 from ..choices import EXPECTED_AP, OBJECTS
 from ..engine import exchange, kinds, pe, search, studies
@@ -35,7 +35,7 @@ PLACED = frozenset({"score_samples", "targets", "traffic", "scenes"})
 
 
 def values_of(
-    settings: bpy.types.PropertyGroup, cls: Any, names: Iterable[str] = (), prefix: str = ""
+    settings: PropertyGroup, cls: Any, names: Iterable[str] = (), prefix: str = ""
 ) -> dict[str, Any]:
     """Return the settings of a dataclass that a group of properties holds, by their fields' names.
 
@@ -49,7 +49,7 @@ def values_of(
 
 
 def write_values(
-    settings: bpy.types.PropertyGroup, instance: Any, names: Iterable[str] = (), prefix: str = ""
+    settings: PropertyGroup, instance: Any, names: Iterable[str] = (), prefix: str = ""
 ) -> None:
     """Write the settings of a dataclass to a group of properties: the inverse of `values_of`."""
     for name, setting in _in_panel(type(instance), names):
@@ -104,7 +104,7 @@ def property_value(setting: studies.Setting, value: Any) -> Any:
     return math.degrees(value) if isinstance(rule, studies.Angle) else value
 
 
-def space_of(settings: bpy.types.PropertyGroup) -> pe.PerceptionSpace:
+def space_of(settings: PropertyGroup) -> pe.PerceptionSpace:
     """Return the space that a scene's settings describe.
 
     Raises
@@ -118,7 +118,7 @@ def space_of(settings: bpy.types.PropertyGroup) -> pe.PerceptionSpace:
         raise pe.InputError("scene", f"space: {error.field}", error.expected, error.found) from None
 
 
-def perception_of(settings: bpy.types.PropertyGroup) -> pe.PerceptionModel:
+def perception_of(settings: PropertyGroup) -> pe.PerceptionModel:
     """Return the AP curves of a scene; a kind without a curve has its default curve."""
     curves: dict[str, Any] = {
         row.name: pe.ApCurve(**values_of(row, pe.ApCurve))
@@ -128,12 +128,12 @@ def perception_of(settings: bpy.types.PropertyGroup) -> pe.PerceptionModel:
     return pe.PerceptionModel(**values_of(settings, pe.PerceptionModel), **curves)
 
 
-def clearance_of(scene: bpy.types.Scene) -> float:
+def clearance_of(scene: Scene) -> float:
     """Return how far a flush-mounted sensor counts as protruding from the surface [m]."""
     return values_of(scene.perception_entropy, pe.Vehicle)["clearance"]
 
 
-def targets_of(settings: bpy.types.PropertyGroup) -> pe.TargetRule:
+def targets_of(settings: PropertyGroup) -> pe.TargetRule:
     """Return whether voxels or objects are scored; traffic concerns objects alone.
 
     So do scenes, unless a search goes by the expected AP of objects.
@@ -144,7 +144,7 @@ def targets_of(settings: bpy.types.PropertyGroup) -> pe.TargetRule:
     return pe.TargetRule(**values_of(settings, pe.TargetRule))
 
 
-def tolerance_of(settings: bpy.types.PropertyGroup) -> pe.Tolerance:
+def tolerance_of(settings: PropertyGroup) -> pe.Tolerance:
     """Return mounting errors and failures; the worst case counts only where there are several."""
     values = values_of(settings, pe.Tolerance)
     if not settings.mounting_errors:
@@ -153,7 +153,7 @@ def tolerance_of(settings: bpy.types.PropertyGroup) -> pe.Tolerance:
     return pe.Tolerance(**values | {"worst": values["worst"] and several})
 
 
-def search_of(settings: bpy.types.PropertyGroup, *, is_choice: bool) -> pe.Search:
+def search_of(settings: PropertyGroup, *, is_choice: bool) -> pe.Search:
     """Return the settings of a scene's search, without its sensors and mounts.
 
     The schedule is the scene's where one is used: by the method, or to screen a choice of sensors.
@@ -169,7 +169,7 @@ def search_of(settings: bpy.types.PropertyGroup, *, is_choice: bool) -> pe.Searc
     )
 
 
-def goals_of(settings: bpy.types.PropertyGroup) -> search.Goals:
+def goals_of(settings: PropertyGroup) -> search.Goals:
     """Return when a scene's searches stop, further starts, objectives, and the analysis.
 
     Raises
@@ -185,7 +185,7 @@ def goals_of(settings: bpy.types.PropertyGroup) -> search.Goals:
     )
 
 
-def write_goals(settings: bpy.types.PropertyGroup, goals: search.Goals) -> None:
+def write_goals(settings: PropertyGroup, goals: search.Goals) -> None:
     """Write the goals of a search to a scene; further starts as JSON text."""
     for each in (goals.stop, goals.front, goals):
         write_values(settings, each)
@@ -193,24 +193,24 @@ def write_goals(settings: bpy.types.PropertyGroup, goals: search.Goals) -> None:
     settings.start_variants = False
 
 
-def samples_of(settings: bpy.types.PropertyGroup) -> int:
+def samples_of(settings: PropertyGroup) -> int:
     """Return how many voxels a score evaluates; 0: all."""
     return values_of(settings, pe.Study)["samples"]
 
 
-def reference_of(settings: bpy.types.PropertyGroup) -> pe.Reference | None:
+def reference_of(settings: PropertyGroup) -> pe.Reference | None:
     """Return the positions of the axles; None if the scene does not have them."""
     return pe.Reference(**values_of(settings, pe.Reference)) if settings.axles_known else None
 
 
-def write_reference(settings: bpy.types.PropertyGroup, reference: pe.Reference | None) -> None:
+def write_reference(settings: PropertyGroup, reference: pe.Reference | None) -> None:
     """Write the positions of the axles; None removes them."""
     settings.axles_known = reference is not None
     if reference is not None:
         write_values(settings, reference)
 
 
-def passthrough_of(settings: bpy.types.PropertyGroup) -> exchange.Passthrough | None:
+def passthrough_of(settings: PropertyGroup) -> exchange.Passthrough | None:
     """Return the contents of an imported file besides the rig; None if there are none.
 
     Raises
@@ -221,12 +221,12 @@ def passthrough_of(settings: bpy.types.PropertyGroup) -> exchange.Passthrough | 
     return studies.passthrough_of_text(settings.passthrough, "scene")
 
 
-def write_passthrough(settings: bpy.types.PropertyGroup, kept: exchange.Passthrough | None) -> None:
+def write_passthrough(settings: PropertyGroup, kept: exchange.Passthrough | None) -> None:
     """Write the contents of an imported file besides the rig, as JSON text."""
     settings.passthrough = studies.passthrough_text(kept)
 
 
-def settings_signature(settings: bpy.types.PropertyGroup) -> list[object]:
+def settings_signature(settings: PropertyGroup) -> list[object]:
     """Return the settings of a score that were set, including invalid ones."""
     scored = (
         setting.panel.property
@@ -239,7 +239,7 @@ def settings_signature(settings: bpy.types.PropertyGroup) -> list[object]:
     return [*zip(names, values, strict=True), *curves]
 
 
-def targets_signature(settings: bpy.types.PropertyGroup) -> list[object]:
+def targets_signature(settings: PropertyGroup) -> list[object]:
     """Return the settings of targets if they differ from the paper's voxels."""
     rule = targets_of(settings)
     return [rule.targets, rule.traffic, rule.scenes] if rule.are_objects else []

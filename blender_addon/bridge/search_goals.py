@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import bpy
+from bpy.types import Scene
 
 from ..engine import pe, search
 from .sensor_records import SensorRecord, records_of
 
 
-def with_starts(settings: pe.Search, scene: bpy.types.Scene) -> pe.Search:
+def with_starts(settings: pe.Search, scene: Scene) -> pe.Search:
     """Return the settings of a search with the scene's other variants as starts, if they are on."""
     own = scene.perception_entropy
     if not own.start_variants:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import bpy
+from bpy.types import Object, Scene
 
 from ..engine import catalog, graphics
 from .apply_variant import inactive_sensors
@@ -13,7 +13,7 @@ from .rig import color_of
 from .stored import rename_figures
 
 
-def assign_colors(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> None:
+def assign_colors(scene: Scene, sensors: Sequence[Object]) -> None:
     """Give each sensor without a colour, and each copy of another, a tint that no other has.
 
     A renamed sensor keeps its colour, and its figures in the last result. One whose model is of

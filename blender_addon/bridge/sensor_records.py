@@ -12,8 +12,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-import bpy
 import numpy as np
+from bpy.types import Depsgraph, Object, PropertyGroup, Scene, ViewLayer
 
 from ..engine import catalog, pe, search
 from .rig import (
@@ -108,7 +108,7 @@ def same_sensors(records: Iterable[SensorRecord], others: Iterable[SensorRecord]
     return [record.identity for record in records] == [record.identity for record in others]
 
 
-def records_of_scene(scene: bpy.types.Scene) -> tuple[SensorRecord, ...]:
+def records_of_scene(scene: Scene) -> tuple[SensorRecord, ...]:
     """Return all sensors of a scene by name, hidden ones included.
 
     Raises
@@ -121,9 +121,7 @@ def records_of_scene(scene: bpy.types.Scene) -> tuple[SensorRecord, ...]:
     return tuple(record_of_object(obj, layer.depsgraph, layer) for obj in sensor_objects(scene))
 
 
-def record_of_object(
-    obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, layer: bpy.types.ViewLayer
-) -> SensorRecord:
+def record_of_object(obj: Object, depsgraph: Depsgraph, layer: ViewLayer) -> SensorRecord:
     """Return the record of one sensor of a scene.
 
     Raises
@@ -157,7 +155,7 @@ def record_of_object(
     )
 
 
-def _object_fields(obj: bpy.types.Object | None) -> dict[str, Any]:
+def _object_fields(obj: Object | None) -> dict[str, Any]:
     """Return the fields of a record that belong to the object; empty without an object."""
     if obj is None:
         return {}
@@ -174,14 +172,14 @@ def _object_fields(obj: bpy.types.Object | None) -> dict[str, Any]:
     }
 
 
-def _hidden_pose(obj: bpy.types.Object) -> pe.Pose:
+def _hidden_pose(obj: Object) -> pe.Pose:
     """Return the pose of a hidden sensor, which Blender does not evaluate and no file stores."""
     ground_from_sensor = _ground_from_object(obj)
     held = last_written_pose(obj, ground_from_sensor)
     return pose_of_matrix(ground_from_sensor) if held is None else held
 
 
-def _ground_from_object(obj: bpy.types.Object) -> np.ndarray:
+def _ground_from_object(obj: Object) -> np.ndarray:
     """Return an object's (4, 4) pose from its own and its parents' transforms, in double."""
     ground_from_basis = np.array(obj.matrix_basis, dtype=float)
     if obj.parent is None:
@@ -200,21 +198,23 @@ STORED = (
 """Fields that a variant stores as they are; pose and AP curve are stored as numbers."""
 
 
-def records_of(variant: bpy.types.PropertyGroup) -> tuple[SensorRecord, ...]:
+def records_of(variant: PropertyGroup) -> tuple[SensorRecord, ...]:
     """Return a variant's sensors, by name."""
     records = (_record_of_table(variant.id_data, row) for row in json.loads(variant.sensors))
     return tuple(sorted(records, key=lambda record: record.name))
 
 
-def _record_of_table(scene: bpy.types.Scene, table: dict[str, Any]) -> SensorRecord:
-    values = {key: tuple(v) if isinstance(v, list) else v for key, v in table.items()}
+def _record_of_table(scene: Scene, table: dict[str, Any]) -> SensorRecord:
+    values: dict[str, Any] = {
+        key: tuple(v) if isinstance(v, list) else v for key, v in table.items()
+    }
     pose, curve = pose_from_numbers(values.pop("pose")), values.pop("curve")
     own = None if curve is None else pe.ApCurve(*curve)
     obj = _object_named(scene, table["name"])
     return SensorRecord(**values, pose=pose, curve=own, **_object_fields(obj))
 
 
-def _object_named(scene: bpy.types.Scene, name: str) -> bpy.types.Object | None:
+def _object_named(scene: Scene, name: str) -> Object | None:
     """Return the sensor of a name, active or inactive, or None."""
     obj = scene.objects.get(name)
     if obj is None:
@@ -223,7 +223,7 @@ def _object_named(scene: bpy.types.Scene, name: str) -> bpy.types.Object | None:
     return obj if settings.is_sensor or settings.is_parked else None
 
 
-def write_records(variant: bpy.types.PropertyGroup, records: Sequence[SensorRecord]) -> None:
+def write_records(variant: PropertyGroup, records: Sequence[SensorRecord]) -> None:
     """Store the records of sensors in a variant."""
     rows = []
     for record in records:

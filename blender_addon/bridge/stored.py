@@ -11,6 +11,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import bpy
+from bpy.types import Object, PropertyGroup, Scene
 
 
 class ResultPart(NamedTuple):
@@ -123,10 +124,10 @@ def stored_fields(cls: Any, text: str) -> Any:
     """Return a mixin of a property group: the fields of a dataclass, stored as JSON in a text."""
 
     def attribute(name: str) -> property:
-        def read(group: bpy.types.PropertyGroup) -> Any:
+        def read(group: PropertyGroup) -> Any:
             return getattr(_loaded(cls, getattr(group, text)), name)
 
-        def write(group: bpy.types.PropertyGroup, value: Any) -> None:
+        def write(group: PropertyGroup, value: Any) -> None:
             store(group, text, replace(_loaded(cls, getattr(group, text)), **{name: value}))
 
         return property(read, write)
@@ -135,7 +136,7 @@ def stored_fields(cls: Any, text: str) -> Any:
     return type(cls.__name__, (), {"__doc__": cls.__doc__, "__module__": __name__, **content})
 
 
-def store(group: bpy.types.PropertyGroup, text: str, values: Any) -> None:
+def store(group: PropertyGroup, text: str, values: Any) -> None:
     """Store a dataclass in a text property."""
     setattr(group, text, json.dumps(asdict(values)))
 
@@ -155,7 +156,7 @@ def _value(value: Any, row: Any) -> Any:
     return tuple(row(*own) for own in value)
 
 
-def figures_of_sensor(obj: bpy.types.Object) -> SensorFigures | None:
+def figures_of_sensor(obj: Object) -> SensorFigures | None:
     """Return an object's figures in the last result of its scene; None where it has none."""
     here = bpy.context.scene
     scene = here if here in obj.users_scene else next(iter(obj.users_scene), None)
@@ -165,7 +166,7 @@ def figures_of_sensor(obj: bpy.types.Object) -> SensorFigures | None:
     return found
 
 
-def rename_figures(scene: bpy.types.Scene, before: str, name: str) -> None:
+def rename_figures(scene: Scene, before: str, name: str) -> None:
     """Keep a sensor's figures in the last result under its new name."""
     settings = scene.perception_entropy
     if before in settings.result_sensors:

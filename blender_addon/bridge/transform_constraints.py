@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple, cast
 
 import bpy
+from bpy.types import Object
 
 from ..engine import pe, search
 from .scene_settings import as_typed
@@ -32,13 +33,13 @@ class AxisLimit(NamedTuple):
     high: float | None
 
 
-def locked_axes(obj: bpy.types.Object) -> tuple[str, ...]:
+def locked_axes(obj: Object) -> tuple[str, ...]:
     """Return the locked axes of a sensor, in its parent's frame if it has a parent."""
     locks = (*obj.lock_location, *obj.lock_rotation)
     return tuple(axis for axis, lock in zip(search.AXES, locks, strict=True) if lock)
 
 
-def free_axes(obj: bpy.types.Object) -> tuple[str, ...]:
+def free_axes(obj: Object) -> tuple[str, ...]:
     """Return the axes that the search may change: those that are ticked and not locked."""
     return unlocked_axes(obj.perception_entropy.free, locked_axes(obj))
 
@@ -49,7 +50,7 @@ def unlocked_axes(free: Iterable[bool], locked: Iterable[str]) -> tuple[str, ...
     return tuple(axis for axis, ticked in pairs if ticked and axis not in locked)
 
 
-def limit_constraints(obj: bpy.types.Object) -> tuple[AxisLimit, ...]:
+def limit_constraints(obj: Object) -> tuple[AxisLimit, ...]:
     """Return the limits that an object's enabled Limit constraints set in the ground frame."""
     return tuple(_axis_limits(obj))
 
@@ -80,7 +81,7 @@ def search_bounds(
     return {axis: limits[axis] for axis in search.AXES if axis in limits}
 
 
-def _axis_limits(obj: bpy.types.Object) -> Iterator[AxisLimit]:
+def _axis_limits(obj: Object) -> Iterator[AxisLimit]:
     for constraint in obj.constraints:
         if not constraint.enabled or constraint.influence <= 0.0:
             continue
@@ -103,21 +104,21 @@ def _axis_limits(obj: bpy.types.Object) -> Iterator[AxisLimit]:
                 yield AxisLimit(axis, low, high)
 
 
-def _is_in_ground_frame(obj: bpy.types.Object, constraint: bpy.types.Constraint) -> bool:
+def _is_in_ground_frame(obj: Object, constraint: bpy.types.Constraint) -> bool:
     """Return whether a constraint limits coordinates of the ground frame, not of its own one."""
     return constraint.owner_space == "WORLD" or (
         constraint.owner_space == "LOCAL" and obj.parent is None
     )
 
 
-def holder_of(obj: bpy.types.Object) -> str:
+def holder_of(obj: Object) -> str:
     """Return a text that names what overrides an object's transform; "" for nothing."""
     if obj.library is not None:
         return f"the file that it is linked from, {obj.library.name}"
     return next(holders(obj), "")
 
 
-def holders(obj: bpy.types.Object) -> Iterator[str]:
+def holders(obj: Object) -> Iterator[str]:
     """Yield a text for everything that places an object besides its location and rotation."""
     for path in _animated(obj):
         if path.startswith(PLACING):
@@ -131,7 +132,7 @@ def holders(obj: bpy.types.Object) -> Iterator[str]:
             yield f"a constraint that holds it, {constraint.name!r}"
 
 
-def _animated(obj: bpy.types.Object) -> Iterator[str]:
+def _animated(obj: Object) -> Iterator[str]:
     """Yield the data paths of an object that curves or drivers set."""
     data = obj.animation_data
     if data is None:

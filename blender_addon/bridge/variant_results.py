@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import NamedTuple
 
-import bpy
+from bpy.types import Depsgraph, Scene
 
 from ..engine import advice, jobs, pe
 from .fingerprint import Fingerprint
@@ -29,9 +29,7 @@ def same_score(records: Sequence[SensorRecord], others: Sequence[SensorRecord]) 
     return [record.scored for record in records] == [record.scored for record in others]
 
 
-def store_variant_scores(
-    scene: bpy.types.Scene, rig: pe.Rig, score: pe.Score, surroundings: str
-) -> None:
+def store_variant_scores(scene: Scene, rig: pe.Rig, score: pe.Score, surroundings: str) -> None:
     """Store a score with every variant of exactly these sensors.
 
     `surroundings` is the fingerprint of the scene without its sensors when it was scored.
@@ -57,7 +55,7 @@ def _scored_values(sensor: pe.Sensor) -> tuple[object, ...]:
     return sensor.name, id(sensor.model), sensor.fusion, sensor.pose, sensor.curve
 
 
-def store_search(scene: bpy.types.Scene, outcome: pe.Outcome, surroundings: str) -> int:
+def store_search(scene: Scene, outcome: pe.Outcome, surroundings: str) -> int:
     """Store the start and the result of a search as variants; return the key of the result.
 
     The start becomes the active variant, as the sensors have not been moved yet.
@@ -87,7 +85,7 @@ def store_variant_score(variant: Variant, score: pe.Score, surroundings: str) ->
     variant.signature = surroundings
 
 
-def copy_scene_score(scene: bpy.types.Scene, variant: Variant, now: Fingerprint) -> None:
+def copy_scene_score(scene: Scene, variant: Variant, now: Fingerprint) -> None:
     """Copy the scene's result to a variant if the result is still valid."""
     settings = scene.perception_entropy
     if settings.has_result and now.text == settings.result_signature:
@@ -122,7 +120,7 @@ def hardware_note(variants: Sequence[Variant]) -> str:
     return advice.hardware_note(rigs)
 
 
-def check_choosable(scene: bpy.types.Scene, study: pe.Study) -> None:
+def check_choosable(scene: Scene, study: pe.Study) -> None:
     """Check that a scene has sensors to choose, and that they can be placed.
 
     Raises
@@ -143,7 +141,7 @@ def check_choosable(scene: bpy.types.Scene, study: pe.Study) -> None:
         check_placeable(scene, study)
 
 
-def store_front(scene: bpy.types.Scene, trade_off: pe.TradeOff, surroundings: str) -> None:
+def store_front(scene: Scene, trade_off: pe.TradeOff, surroundings: str) -> None:
     """Store each design of a Pareto front as a variant, and the scene's sensors as another one."""
     records, settings = records_of_scene(scene), scene.perception_entropy
     before = find_or_add_variant(scene, BEFORE, records).key
@@ -198,14 +196,14 @@ class FigureRule(NamedTuple):
     class_name: str
 
 
-def figure_rule(scene: bpy.types.Scene, prior: pe.Prior) -> FigureRule:
+def figure_rule(scene: Scene, prior: pe.Prior) -> FigureRule:
     """Return the height and the class that the 3D view's blind ground and reach are set to."""
     view, classes = scene.perception_entropy.view, prior.class_names
     class_name = view.reach_class if view.reach_class in classes else classes[0]
     return FigureRule(int(view.blind_height.removeprefix("H")) / 100.0, class_name)
 
 
-def figures_signature(scene: bpy.types.Scene, now: Fingerprint) -> str:
+def figures_signature(scene: Scene, now: Fingerprint) -> str:
     """Return the settings of the scene that key figures depend on, besides the sensors."""
     view = scene.perception_entropy.view
     return f"{now.surroundings} {view.blind_height} {view.reach_class}"
@@ -224,7 +222,7 @@ def figures_of(variant: Variant, signature: str) -> advice.KeyFigures | None:
 
 
 def restore_result(
-    scene: bpy.types.Scene, variant: Variant, now: Fingerprint, depsgraph: bpy.types.Depsgraph
+    scene: Scene, variant: Variant, now: Fingerprint, depsgraph: Depsgraph
 ) -> pe.Outcome | None:
     """Show the stored score of the variant that was applied to the scene.
 

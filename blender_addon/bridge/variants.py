@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TypeAlias
 
-import bpy
+from bpy.types import Depsgraph, PropertyGroup, Scene
 
 from ..choices import free_name
 from ..engine import pe
@@ -22,17 +22,17 @@ from .sensor_records import (
     write_records,
 )
 
-Variant: TypeAlias = bpy.types.PropertyGroup
+Variant: TypeAlias = PropertyGroup
 
 
-def active_variant(scene: bpy.types.Scene) -> Variant | None:
+def active_variant(scene: Scene) -> Variant | None:
     """Return the variant that was last applied to the scene, or saved from it."""
     settings = scene.perception_entropy
     matches = (row for row in settings.variants if row.key == settings.variant_key)
     return next(matches, None)
 
 
-def variant_named(scene: bpy.types.Scene, name: str) -> Variant:
+def variant_named(scene: Scene, name: str) -> Variant:
     """Return a variant by its name.
 
     Raises
@@ -48,13 +48,13 @@ def variant_named(scene: bpy.types.Scene, name: str) -> Variant:
     raise pe.InputError("scene", "variant", expected, repr(name))
 
 
-def matching_variant(scene: bpy.types.Scene, records: Sequence[SensorRecord]) -> Variant | None:
+def matching_variant(scene: Scene, records: Sequence[SensorRecord]) -> Variant | None:
     """Return a variant with exactly these sensors, the active one first; None without."""
     rows = [active_variant(scene), *scene.perception_entropy.variants]
     return next((r for r in rows if r is not None and same_sensors(records_of(r), records)), None)
 
 
-def add_variant(scene: bpy.types.Scene, name: str, records: Sequence[SensorRecord]) -> Variant:
+def add_variant(scene: Scene, name: str, records: Sequence[SensorRecord]) -> Variant:
     """Return a new variant of these sensors, at the end of the list."""
     settings = scene.perception_entropy
     key = 1 + max((row.key for row in settings.variants), default=0)
@@ -64,7 +64,7 @@ def add_variant(scene: bpy.types.Scene, name: str, records: Sequence[SensorRecor
     return row
 
 
-def activate_variant(scene: bpy.types.Scene, variant: Variant) -> None:
+def activate_variant(scene: Scene, variant: Variant) -> None:
     """Apply a variant to the scene, and make it the active one.
 
     Raises
@@ -85,7 +85,7 @@ def _renamed(record: SensorRecord, names: Mapping[str, str]) -> SensorRecord:
     return replace(record, name=names[record.name], mirror_of=other)
 
 
-def mark_active(scene: bpy.types.Scene, key: int) -> None:
+def mark_active(scene: Scene, key: int) -> None:
     """Store the key of the active variant, and select its row in the list."""
     settings = scene.perception_entropy
     settings.variant_key, settings.variant_changed = key, False
@@ -93,9 +93,7 @@ def mark_active(scene: bpy.types.Scene, key: int) -> None:
     settings.variant_index = keys.index(key) if key in keys else 0
 
 
-def study_of_variant(
-    scene: bpy.types.Scene, variant: Variant, depsgraph: bpy.types.Depsgraph
-) -> pe.Study:
+def study_of_variant(scene: Scene, variant: Variant, depsgraph: Depsgraph) -> pe.Study:
     """Return the study that the scene would have if the variant were applied to it.
 
     Raises
@@ -111,16 +109,14 @@ def study_of_variant(
         raise error.at(named) if error.source == "variant" else error from None
 
 
-def find_or_add_variant(
-    scene: bpy.types.Scene, name: str, records: Sequence[SensorRecord]
-) -> Variant:
+def find_or_add_variant(scene: Scene, name: str, records: Sequence[SensorRecord]) -> Variant:
     """Return the variant with these sensors; a new one where there is none."""
     taken = {row.name for row in scene.perception_entropy.variants}
     existing = matching_variant(scene, records)
     return existing if existing is not None else add_variant(scene, free_name(name, taken), records)
 
 
-def variant_dict(scene: bpy.types.Scene, variant: Variant) -> dict[str, object]:
+def variant_dict(scene: Scene, variant: Variant) -> dict[str, object]:
     """Return a variant's summary as plain JSON data; figures are None where it was not scored."""
     figures = json.loads(variant.score_json) if variant.has_result else {}
     return {
@@ -133,7 +129,7 @@ def variant_dict(scene: bpy.types.Scene, variant: Variant) -> dict[str, object]:
     }
 
 
-def check_variants(scene: bpy.types.Scene, now: Fingerprint) -> None:
+def check_variants(scene: Scene, now: Fingerprint) -> None:
     """Update the list of variants: whether the scene differs from the active one, stale scores."""
     settings, current = scene.perception_entropy, now.surroundings
     active = active_variant(scene)
@@ -146,7 +142,7 @@ def check_variants(scene: bpy.types.Scene, now: Fingerprint) -> None:
             row.stale = stale
 
 
-def _is_applied(scene: bpy.types.Scene, variant: Variant) -> bool:
+def _is_applied(scene: Scene, variant: Variant) -> bool:
     """Whether the scene equals a variant; False for a variant with an invalid sensor."""
     try:
         return same_sensors(records_of_scene(scene), records_of(variant))

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import bpy
 import numpy as np
+from bpy.types import Collection, Depsgraph, LayerCollection, Mesh, Object, Scene, ViewLayer
 
 from ..engine import geometry, pe
 from .rig import mounted_on_sensor
@@ -27,9 +28,7 @@ class Part(NamedTuple):
 
 
 def vehicle_from_collection(
-    collection: bpy.types.Collection,
-    depsgraph: bpy.types.Depsgraph,
-    clearance_m: float = pe.Vehicle.clearance,
+    collection: Collection, depsgraph: Depsgraph, clearance_m: float = pe.Vehicle.clearance
 ) -> pe.Vehicle:
     """Return the vehicle of a collection, with modifiers, parents and instances applied.
 
@@ -56,9 +55,7 @@ def vehicle_from_collection(
     return pe.Vehicle(triangles, np.concatenate(labels), names, glass, clearance_m, covers)
 
 
-def visible_members(
-    collection: bpy.types.Collection, layer: bpy.types.ViewLayer
-) -> set[bpy.types.Object]:
+def visible_members(collection: Collection, layer: ViewLayer) -> set[Object]:
     """Return the visible objects of a collection and of its children."""
     if collection.hide_render:
         return set()
@@ -70,9 +67,7 @@ def visible_members(
     return members.union(*(visible_members(child, layer) for child in collection.children))
 
 
-def layers_of(
-    layer: bpy.types.LayerCollection, collection: bpy.types.Collection
-) -> list[bpy.types.LayerCollection]:
+def layers_of(layer: LayerCollection, collection: Collection) -> list[LayerCollection]:
     """Return a collection in a view layer and the collections it is in, innermost first.
 
     Empty where the view layer does not have the collection.
@@ -85,7 +80,7 @@ def layers_of(
     return []
 
 
-def hidden_how(layer: bpy.types.LayerCollection) -> str:
+def hidden_how(layer: LayerCollection) -> str:
     """Return a text that says how a collection is hidden; "" for a visible one."""
     if layer.exclude:
         return "excluded from the view layer"
@@ -95,8 +90,8 @@ def hidden_how(layer: bpy.types.LayerCollection) -> str:
 
 
 def drawn_meshes(
-    collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph
-) -> Iterator[tuple[bpy.types.Object, np.ndarray]]:
+    collection: Collection, depsgraph: Depsgraph
+) -> Iterator[tuple[Object, np.ndarray]]:
     """Yield every visible mesh and instance of a vehicle, evaluated, and its (4, 4) pose.
 
     An object is valid only until the next one is yielded: do not store references to it. The pose
@@ -113,7 +108,7 @@ def drawn_meshes(
             yield obj, np.array(instance.matrix_world, dtype=float)
 
 
-def _parts(collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph) -> Iterator[Part]:
+def _parts(collection: Collection, depsgraph: Depsgraph) -> Iterator[Part]:
     """Yield a part for every drawn object and instance that belongs to the collection."""
     local: dict[int, np.ndarray] = {}
     for obj, ground_from_object in drawn_meshes(collection, depsgraph):
@@ -128,7 +123,7 @@ def _parts(collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph) -> 
         yield Part(original.name_full, placed, own.see_through, as_typed(own.cover_loss_db))
 
 
-def _triangles_local(obj: bpy.types.Object, cache: dict[int, np.ndarray]) -> np.ndarray:
+def _triangles_local(obj: Object, cache: dict[int, np.ndarray]) -> np.ndarray:
     """Return triangles (F, 3, 3) of an evaluated object in its own frame, cached by mesh."""
     key = obj.data.as_pointer()
     if key in cache:
@@ -139,7 +134,7 @@ def _triangles_local(obj: bpy.types.Object, cache: dict[int, np.ndarray]) -> np.
     return cache[key]
 
 
-def triangles_of(mesh: bpy.types.Mesh) -> np.ndarray:
+def triangles_of(mesh: Mesh) -> np.ndarray:
     """Return (F, 3, 3) triangles of a mesh in its own frame."""
     mesh.calc_loop_triangles()
     points = np.empty(3 * len(mesh.vertices), np.float32)
@@ -149,7 +144,7 @@ def triangles_of(mesh: bpy.types.Mesh) -> np.ndarray:
     return (points.reshape(-1, 3).astype(float) + residual_of(mesh))[corners.reshape(-1, 3)]
 
 
-def residual_of(mesh: bpy.types.Mesh) -> np.ndarray:
+def residual_of(mesh: Mesh) -> np.ndarray:
     """Return the rounding errors (P, 3) of a mesh's single-precision points; else zeros."""
     attribute = mesh.attributes.get(RESIDUAL)
     residual = np.zeros(3 * len(mesh.vertices), np.float32)
@@ -184,7 +179,7 @@ def same_body(one: pe.Vehicle | None, other: pe.Vehicle | None) -> bool:
     return same and np.array_equal(one.parts, other.parts)
 
 
-def make_body(scene: bpy.types.Scene, vehicle: pe.Vehicle) -> bpy.types.Collection:
+def make_body(scene: Scene, vehicle: pe.Vehicle) -> Collection:
     """Return a new collection of the scene with one object for each part of a vehicle."""
     made = bpy.data.collections.new(VEHICLE)
     scene.collection.children.link(made)
@@ -198,7 +193,7 @@ def make_body(scene: bpy.types.Scene, vehicle: pe.Vehicle) -> bpy.types.Collecti
     return made
 
 
-def mesh_of(name: str, triangles: np.ndarray) -> bpy.types.Mesh:
+def mesh_of(name: str, triangles: np.ndarray) -> Mesh:
     """Return a mesh of triangles (F, 3, 3) [m]; equal corners are merged.
 
     Blender's points have single precision: the rounding errors are stored in an attribute.
@@ -214,7 +209,7 @@ def mesh_of(name: str, triangles: np.ndarray) -> bpy.types.Mesh:
     return mesh
 
 
-def paint_area(objects: Sequence[bpy.types.Object], name: str, area: np.ndarray) -> None:
+def paint_area(objects: Sequence[Object], name: str, area: np.ndarray) -> None:
     """Paint the faces (F, 3, 3) of an area in a vertex group on the meshes of a vehicle."""
     wanted = {corner.tobytes() for corner in np.ascontiguousarray(area.reshape(-1, 3) + 0.0)}
     for obj in objects:

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import bpy
+from bpy.types import Scene
 
 from ..choices import VERSION
 from ..engine import pe
 
 
-def mark_version(scene: bpy.types.Scene) -> None:
+def mark_version(scene: Scene) -> None:
     """Mark a scene as one of this version; those of a newer one and of another file stay."""
     settings = scene.perception_entropy
     if scene.library is None and settings.version < VERSION:
         settings.version = VERSION
 
 
-def newer_version_message(scene: bpy.types.Scene) -> str:
+def newer_version_message(scene: Scene) -> str:
     """Return a warning about a scene that a newer version wrote; "" for others."""
     version = scene.perception_entropy.version
     if version <= VERSION:

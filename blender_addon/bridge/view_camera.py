@@ -7,6 +7,7 @@ import math
 from collections.abc import Sequence
 
 import bpy
+from bpy.types import Object, Scene
 from mathutils import Matrix
 
 from ..engine import catalog, pe
@@ -23,13 +24,13 @@ CAMERA_FROM_SENSOR = Matrix(((0, 0, -1, 0), (-1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 
 """In the sensor's frame (x ahead, y left, z up): Blender's cameras look along -z, y is up."""
 
 
-def view_camera(obj: bpy.types.Object) -> bpy.types.Object | None:
+def view_camera(obj: Object) -> Object | None:
     """Return a sensor's view camera; None if it does not exist."""
     views = (child for child in obj.children if child.perception_entropy.is_view)
     return next(views, None)
 
 
-def make_view_camera(obj: bpy.types.Object, model: pe.Camera) -> bpy.types.Object:
+def make_view_camera(obj: Object, model: pe.Camera) -> Object:
     """Return a sensor's view camera with the model's lens; create it if it does not exist."""
     view = view_camera(obj)
     if view is None:
@@ -70,9 +71,7 @@ def set_lens(camera: bpy.types.Camera, model: pe.Camera) -> None:
     camera.clip_start, camera.clip_end = NEAR_M, FAR_M
 
 
-def look_through(
-    scene: bpy.types.Scene, obj: bpy.types.Object, model: pe.Camera
-) -> bpy.types.Object:
+def look_through(scene: Scene, obj: Object, model: pe.Camera) -> Object:
     """Make a sensor's view camera the scene's camera; the previous settings are stored."""
     view = make_view_camera(obj, model)
     if not scene.perception_entropy.before_look:
@@ -85,7 +84,7 @@ def look_through(
     return view
 
 
-def look_back(scene: bpy.types.Scene) -> None:
+def look_back(scene: Scene) -> None:
     """Restore the scene's camera and picture size, if they were stored."""
     noted = scene.perception_entropy.before_look
     if not noted:
@@ -97,7 +96,7 @@ def look_back(scene: bpy.types.Scene) -> None:
     scene.perception_entropy.before_look = ""
 
 
-def update_view_cameras(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> None:
+def update_view_cameras(scene: Scene, sensors: Sequence[Object]) -> None:
     """Update view cameras to their sensors' models; remove those whose sensor is gone."""
     for obj in sensors:
         view, model = view_camera(obj), _camera_of(obj)
@@ -109,7 +108,7 @@ def update_view_cameras(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Obje
             _remove(scene, view)
 
 
-def _follow(scene: bpy.types.Scene, view: bpy.types.Object, model: pe.Camera) -> None:
+def _follow(scene: Scene, view: Object, model: pe.Camera) -> None:
     """Update the lens of a view camera when its sensor has another model."""
     size = model.width, model.height
     if abs(view.data.angle_x - shown_fov(model)) > 1e-5:
@@ -119,7 +118,7 @@ def _follow(scene: bpy.types.Scene, view: bpy.types.Object, model: pe.Camera) ->
         scene.render.resolution_x, scene.render.resolution_y = size
 
 
-def _remove(scene: bpy.types.Scene, view: bpy.types.Object) -> None:
+def _remove(scene: Scene, view: Object) -> None:
     if scene.camera == view:
         look_back(scene)
     data = view.data
@@ -128,7 +127,7 @@ def _remove(scene: bpy.types.Scene, view: bpy.types.Object) -> None:
         bpy.data.cameras.remove(data)
 
 
-def _camera_of(obj: bpy.types.Object) -> pe.Camera | None:
+def _camera_of(obj: Object) -> pe.Camera | None:
     """Return the model of a camera sensor; None for any other object."""
     if not obj.perception_entropy.is_sensor:
         return None
@@ -139,7 +138,7 @@ def _camera_of(obj: bpy.types.Object) -> pe.Camera | None:
     return model if isinstance(model, pe.Camera) else None
 
 
-def _settings(scene: bpy.types.Scene) -> dict[str, object]:
+def _settings(scene: Scene) -> dict[str, object]:
     """Return the scene's settings that `look_through` changes."""
     names = (
         *("resolution_x", "resolution_y", "resolution_percentage"),

@@ -2,43 +2,27 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
+from bpy.types import Context, PropertyGroup, UILayout
 
-from .layout import Tab, columns, draw_declared, draw_properties, draw_sentence
+from .layout import Rows, Tab, columns, draw_declared, draw_properties, draw_sentence
 
 
-class PE_UL_states(bpy.types.UIList):
+class PE_UL_states(Rows, bpy.types.UIList):
     """The states: used, name, and a button that shows the state"""
 
-    def draw_item(
-        self,
-        context: bpy.types.Context,
-        layout: bpy.types.UILayout,
-        _settings: bpy.types.PropertyGroup,
-        item: bpy.types.PropertyGroup,
-        _icon: int,
-        _active_data: bpy.types.PropertyGroup,
-        _active_property: str,
-        index: int = 0,
-    ) -> None:
-        row = _draw_row(layout, item)
+    def draw_row(self, context: Context, layout: UILayout, settings: Any, item: Any) -> None:
+        row, row_index = _draw_row(layout, item), list(settings.states).index(item)
         icon = "HIDE_OFF" if item.frame == context.scene.frame_current else "HIDE_ON"
-        row.operator("pe.show_state", text="", icon=icon, emboss=False).index = index
+        row.operator("pe.show_state", text="", icon=icon, emboss=False).index = row_index
 
 
-class PE_UL_weathers(bpy.types.UIList):
+class PE_UL_weathers(Rows, bpy.types.UIList):
     """The weathers: used and name"""
 
-    def draw_item(
-        self,
-        _context: bpy.types.Context,
-        layout: bpy.types.UILayout,
-        _settings: bpy.types.PropertyGroup,
-        item: bpy.types.PropertyGroup,
-        _icon: int,
-        _active_data: bpy.types.PropertyGroup,
-        _active_property: str,
-    ) -> None:
+    def draw_row(self, _context: Context, layout: UILayout, _settings: Any, item: Any) -> None:
         _draw_row(layout, item)
 
 
@@ -50,7 +34,7 @@ class PE_PT_conditions(Tab, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
     bl_ui_units_x = 17
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings, layout = context.scene.perception_entropy, self.layout
         _draw_list(layout, settings, PE_UL_states, "state", "pe.add_state")
         if settings.states:
@@ -69,7 +53,7 @@ class PE_PT_conditions(Tab, bpy.types.Panel):
             draw_sentence(layout, context, line)
 
 
-def _draw_row(layout: bpy.types.UILayout, item: bpy.types.PropertyGroup) -> bpy.types.UILayout:
+def _draw_row(layout: UILayout, item: PropertyGroup) -> UILayout:
     """Draw whether a condition is used, its name and its weight; return the row."""
     row = layout.row(align=True)
     row.prop(item, "enabled", text="")
@@ -81,8 +65,8 @@ def _draw_row(layout: bpy.types.UILayout, item: bpy.types.PropertyGroup) -> bpy.
 
 
 def _draw_list(
-    layout: bpy.types.UILayout,
-    settings: bpy.types.PropertyGroup,
+    layout: UILayout,
+    settings: PropertyGroup,
     of: type[bpy.types.UIList],
     name: str,
     add: str | None,

@@ -6,20 +6,22 @@ import re
 from bisect import bisect_left
 from collections.abc import Collection, Iterable
 from functools import lru_cache
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import blf
 import bpy
+from bpy.types import Context, PropertyGroup, UILayout
 
 from ..language import draw_label, shown
 from ..operators import FIX_LABELS, SAME, sense_icon, warnings_outdated
 from ..properties import ROWS, DeclaredRow, StoredWarning, declared_rows
 
-# Blender registers the subclasses of Panel alone; for the checker of types this is one.
+# Blender registers the subclasses of its classes alone; for the checker of types these are some.
 if TYPE_CHECKING:
     _Panel: TypeAlias = bpy.types.Panel
+    _List: TypeAlias = bpy.types.UIList
 else:
-    _Panel = object
+    _Panel = _List = object
 
 
 class Tab(_Panel):
@@ -30,9 +32,27 @@ class Tab(_Panel):
     bl_category = "Perception"
 
 
-def draw_properties(
-    layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, names: Iterable[str]
-) -> None:
+class Rows(_List):
+    """A list: Blender asks for the type of each argument, of which rows need four."""
+
+    def draw_item(
+        self,
+        context: Context,
+        layout: UILayout,
+        settings: Any,
+        item: Any,
+        _icon: int,
+        _active_data: Any,
+        _active_property: str,
+    ) -> None:
+        self.draw_row(context, layout, settings, item)
+
+    def draw_row(self, context: Context, layout: UILayout, settings: Any, item: Any) -> None:
+        """Draw a row of the list that `settings` have."""
+        raise NotImplementedError
+
+
+def draw_properties(layout: UILayout, settings: PropertyGroup, names: Iterable[str]) -> None:
     """Draw properties below each other, their names in a column of its own."""
     layout.use_property_split = True
     layout.use_property_decorate = False
@@ -41,26 +61,21 @@ def draw_properties(
 
 
 def draw_declared(
-    layout: bpy.types.UILayout,
-    settings: bpy.types.PropertyGroup,
-    part: str,
-    leave_out: Collection[str] = (),
+    layout: UILayout, settings: PropertyGroup, part: str, leave_out: Collection[str] = ()
 ) -> None:
     """Draw what the engine declares for a part of the panel, each field where it is asked for."""
     rows = (row for row in declared_rows(part) if row.name not in leave_out)
     draw_properties(layout, settings, [row.name for row in rows if _is_asked(settings, row.when)])
 
 
-def _is_asked(settings: bpy.types.PropertyGroup, when: str) -> bool:
+def _is_asked(settings: PropertyGroup, when: str) -> bool:
     """Whether a condition holds: "night", "targets=objects"; an empty one does."""
     name, _, value = when.partition("=")
     found = getattr(settings, name) if name else True
     return found == value if value else bool(found)
 
 
-def _draw_row(
-    layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, row: DeclaredRow
-) -> None:
+def _draw_row(layout: UILayout, settings: PropertyGroup, row: DeclaredRow) -> None:
     """Draw a property; a range as two fields, marked where it is none."""
     if row.is_list:
         layout.column(align=True).prop(settings, row.name)
@@ -82,13 +97,13 @@ def _draw_row(
 
 
 def draw_list(
-    layout: bpy.types.UILayout,
+    layout: UILayout,
     kind: type[bpy.types.UIList],
-    settings: bpy.types.PropertyGroup,
+    settings: PropertyGroup,
     names: tuple[str, str],
     buttons: tuple[str, str],
     rows: int = 3,
-) -> bpy.types.UILayout:
+) -> UILayout:
     """Draw a list with the buttons Add and Remove beside it; return the column of buttons.
 
     `names` are the properties of the rows and of the selected row's index, `buttons` the operators.
@@ -101,15 +116,13 @@ def draw_list(
     return column
 
 
-def draw_stale_mark(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def draw_stale_mark(layout: UILayout, settings: PropertyGroup) -> None:
     """Draw a mark above figures of a result that is out of date."""
     if settings.result_stale:
         draw_label(layout, "From the last score, before a change", "FILE_REFRESH")
 
 
-def columns(
-    layout: bpy.types.UILayout, factor: float
-) -> tuple[bpy.types.UILayout, bpy.types.UILayout]:
+def columns(layout: UILayout, factor: float) -> tuple[UILayout, UILayout]:
     """Return two rows beside each other; the first takes that share of the width."""
     split = layout.split(factor=factor)
     return split.row(), split.row()
@@ -129,13 +142,13 @@ MIN_ROOM_PX = 40
 FONT = 0
 
 
-def letters_per_line(context: bpy.types.Context) -> int:
+def letters_per_line(context: Context) -> int:
     """Return the approximate number of letters in a line of the sidebar."""
     room = context.region.width / _scale(context) - BESIDE_PX - ICON_PX
     return max(MIN_LETTERS, int(room / LETTER_PX))
 
 
-def wrapped(context: bpy.types.Context, text: str, beside_px: float = 0.0) -> tuple[str, ...]:
+def wrapped(context: Context, text: str, beside_px: float = 0.0) -> tuple[str, ...]:
     """Return a sentence in lines that fit the sidebar, measured in its font."""
     scale = _scale(context)
     is_popup = getattr(context.region, "type", "UI") != "UI"  # its own width is not known
@@ -181,13 +194,13 @@ def _width(text: str) -> float:
     return blf.dimensions(FONT, text)[0]
 
 
-def _scale(context: bpy.types.Context) -> float:
+def _scale(context: Context) -> float:
     return context.preferences.system.ui_scale or 1.0  # 0 without a window
 
 
 def draw_sentence(
-    layout: bpy.types.UILayout,
-    context: bpy.types.Context,
+    layout: UILayout,
+    context: Context,
     text: str,
     icon: str = "NONE",
     beside_px: float = 0.0,
@@ -213,9 +226,7 @@ def draw_sentence(
             column.label(text=line, icon=rest if k else icon, translate=False)
 
 
-def draw_warning(
-    layout: bpy.types.UILayout, context: bpy.types.Context, warning: StoredWarning
-) -> None:
+def draw_warning(layout: UILayout, context: Context, warning: StoredWarning) -> None:
     """Draw a warning, the part that causes it as a button, and a button that fixes it.
 
     After a move it is dimmed and marked until the checks have run again.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bpy
+from bpy.types import Context, PropertyGroup, Scene, UILayout
 
 from ..choices import VERSION
 from ..language import draw_label, shown
@@ -33,7 +34,7 @@ from .sensor_lists import draw_sensors
 from .sensor_menus import KIND, PE_MT_add_sensor
 
 
-def draw_written(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+def draw_written(layout: UILayout, context: Context) -> None:
     """Draw which files the last export wrote, warnings, and a button for their folder."""
     written = exports.last
     if written is None:
@@ -47,7 +48,7 @@ def draw_written(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     box.operator("pe.open_folder", icon="FILE_FOLDER")
 
 
-def draw_actions(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def draw_actions(layout: UILayout, settings: PropertyGroup) -> None:
     """Draw the buttons of jobs; while a job runs, its progress in the same place."""
     row = layout.row(align=True)
     row.scale_y = 1.5
@@ -64,7 +65,7 @@ def draw_actions(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) 
     row.operator("pe.cancel", text="", icon="CANCEL")
 
 
-def draw_result(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+def draw_result(layout: UILayout, context: Context) -> None:
     """Draw the live score; or the stored one, if it is current or Live is off.
 
     Each takes the same rows, those that come late included: what is below stays where it is.
@@ -84,9 +85,7 @@ def draw_result(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         draw_sentence(layout, context, f"Shown: state {state}. Scored: as drawn", icon="INFO")
 
 
-def draw_live(
-    layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, live: ShownScore
-) -> None:
+def draw_live(layout: UILayout, settings: PropertyGroup, live: ShownScore) -> None:
     """Draw the live score, as in the corner of the 3D view."""
     column = layout.box().column(align=True)
     error = max(live.stderr, 1e-3)
@@ -98,13 +97,13 @@ def draw_live(
     draw_changed(layout, is_changed=is_changed)
 
 
-def draw_changed(layout: bpy.types.UILayout, *, is_changed: bool) -> None:
+def draw_changed(layout: UILayout, *, is_changed: bool) -> None:
     """Draw that the scene has changed since its score; else room for that line."""
     text, icon = ("Changed since it was scored", "FILE_REFRESH") if is_changed else ("", "BLANK1")
     draw_label(layout, text, icon)
 
 
-def draw_stored(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+def draw_stored(layout: UILayout, context: Context) -> None:
     """Draw the stored result: figures with names and units, and whether they are current."""
     settings = context.scene.perception_entropy
     column = layout.box().column(align=True)
@@ -133,9 +132,7 @@ def draw_stored(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         draw_sentence(state, context, f"Scored without it: {line}", icon="ERROR")
 
 
-def draw_changes(
-    layout: bpy.types.UILayout, context: bpy.types.Context, settings: bpy.types.PropertyGroup
-) -> None:
+def draw_changes(layout: UILayout, context: Context, settings: PropertyGroup) -> None:
     """Draw what the last search changed, gains and losses marked, and what it cost."""
     by = settings.result_entropy - settings.result_before
     text = nats_text(settings.result_before, by)
@@ -159,7 +156,7 @@ def sense_of_change(by: float, least: float) -> int:
     return SAME if abs(by) < least else WORSE if by > 0.0 else BETTER
 
 
-def draw_figure(layout: bpy.types.UILayout, name: str, value: str, sense: int = SAME) -> None:
+def draw_figure(layout: UILayout, name: str, value: str, sense: int = SAME) -> None:
     """Draw a figure with its name; a gain or a loss is marked."""
     left, right = columns(layout, 0.34)
     draw_label(left, name)
@@ -169,14 +166,14 @@ def draw_figure(layout: bpy.types.UILayout, name: str, value: str, sense: int = 
         right.label(text=value, icon_value=sense_icon(sense), translate=False)
 
 
-def draw_vehicle_line(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+def draw_vehicle_line(layout: UILayout, context: Context) -> None:
     """Draw a line on the vehicle below its field."""
     settings = context.scene.perception_entropy
     if settings.vehicle is not None and settings.vehicle_line:
         draw_sentence(layout, context, settings.vehicle_line)
 
 
-def draw_warnings(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+def draw_warnings(layout: UILayout, context: Context) -> None:
     """Draw the warnings: those of the vehicle, then those of each sensor."""
     warnings = list(context.scene.perception_entropy.result_warnings)
     for subject in dict.fromkeys(["", *(warning.subject for warning in warnings)]):
@@ -194,7 +191,7 @@ STEPS = {1: "Choose the vehicle", 2: "Add a sensor"}
 """The way from an empty tab to *Score*."""
 
 
-def next_step(scene: bpy.types.Scene) -> int | None:
+def next_step(scene: Scene) -> int | None:
     """Return the key of the next of `STEPS`; None once a sensor is there, or a score."""
     settings = scene.perception_entropy
     if settings.has_result:
@@ -204,13 +201,13 @@ def next_step(scene: bpy.types.Scene) -> int | None:
     return None if listed_sensors(scene) else 2
 
 
-def draw_step(layout: bpy.types.UILayout, context: bpy.types.Context, step: int) -> None:
+def draw_step(layout: UILayout, context: Context, step: int) -> None:
     """Draw the heading of a step while it is the next one."""
     if next_step(context.scene) == step:
         layout.label(text=f"{step}  {shown(STEPS[step])}", icon="FORWARD", translate=False)
 
 
-def draw_vehicle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+def draw_vehicle(layout: UILayout, context: Context) -> None:
     """Draw the vehicle's field and warnings; while none is chosen, ways to one."""
     settings = context.scene.perception_entropy
     draw_step(layout, context, 1)
@@ -238,7 +235,7 @@ class PE_PT_main(Tab, bpy.types.Panel):
     bl_idname = "PE_PT_main"
     bl_label = "Perception Entropy"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings = context.scene.perception_entropy
         if settings.version > VERSION:
             newer = "Saved by a newer version of the extension: its new settings are not shown"
@@ -259,18 +256,18 @@ class PE_PT_warnings(Tab, bpy.types.Panel):
     bl_label = "Warnings"
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def poll(cls, context: Context) -> bool:
         return bool(context.scene.perception_entropy.result_warnings)
 
-    def draw_header_preset(self, context: bpy.types.Context) -> None:
+    def draw_header_preset(self, context: Context) -> None:
         count = len(context.scene.perception_entropy.result_warnings)
         self.layout.label(text=str(count), translate=False)  # visible also when closed
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         draw_warnings(self.layout, context)
 
 
-def draw_add(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def draw_add(layout: UILayout, settings: PropertyGroup) -> None:
     """Draw a row: the kind; add its usual sensor, place it by pointing, and a menu of all."""
     by_kind = {offer.kind: offer for offer in offers()}  # a plugin's kind may have gone
     offer = by_kind.get(settings.kind_to_add) or next(iter(by_kind.values()))
@@ -290,7 +287,7 @@ class PE_PT_export(Tab, bpy.types.Panel):
     bl_label = "Export and Import"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         layout = self.layout
         layout.operator("pe.export_study", icon="EXPORT")
         layout.operator("pe.import_study", icon="IMPORT")
@@ -308,7 +305,7 @@ class PE_PT_export(Tab, bpy.types.Panel):
         draw_axles(layout, context.scene.perception_entropy)
 
 
-def draw_axles(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def draw_axles(layout: UILayout, settings: PropertyGroup) -> None:
     """Draw the positions of the axles, and the button that finds them."""
     row = layout.row()
     row.prop(settings, "axles_known", text="Axles")
@@ -317,7 +314,7 @@ def draw_axles(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) ->
         draw_declared(layout.column(), settings, "reference")
 
 
-def draw_export(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
+def draw_export(menu: bpy.types.Menu, _context: Context) -> None:
     """File > Export."""
     menu.layout.operator("pe.export_study", text="Study (Perception Entropy, .toml)")
     menu.layout.operator("pe.export_rig", text="Rig of Sensors (Perception Entropy)")
@@ -327,7 +324,7 @@ def draw_export(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     menu.layout.operator_menu_enum("pe.export_scene", "output", text=shown(text), translate=False)
 
 
-def draw_import(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
+def draw_import(menu: bpy.types.Menu, _context: Context) -> None:
     """File > Import."""
     menu.layout.operator("pe.import_study", text="Study (Perception Entropy, .toml)")
     menu.layout.operator("pe.import_rig", text="Rig of Sensors (Perception Entropy)")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bpy
+from bpy.types import Context, UILayout
 
 
 class PE_MT_object(bpy.types.Menu):
@@ -11,7 +12,7 @@ class PE_MT_object(bpy.types.Menu):
     bl_idname = "PE_MT_object"
     bl_label = "Perception"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         layout = self.layout
         layout.operator_context = "INVOKE_DEFAULT"
         draw_of_sensor(layout)
@@ -31,20 +32,20 @@ class PE_MT_object(bpy.types.Menu):
         layout.operator("pe.ghost_variant", text="Show Ghost of the Variant")
 
 
-def draw_of_sensor(layout: bpy.types.UILayout) -> None:
+def draw_of_sensor(layout: UILayout) -> None:
     """Draw what can be done with a sensor; Blender greys out what cannot."""
     layout.operator("pe.look_through", icon="HIDE_OFF")
     layout.operator("pe.stand_upright")
     layout.operator("pe.mirror_sensor", text="Mirror Sensor", icon="MOD_MIRROR")
 
 
-def draw_object_menu(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
+def draw_object_menu(menu: bpy.types.Menu, _context: Context) -> None:
     """Object menu of 3D views."""
     menu.layout.separator()
     menu.layout.menu(PE_MT_object.bl_idname, icon="OUTLINER_OB_CAMERA")
 
 
-def draw_context_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+def draw_context_menu(menu: bpy.types.Menu, context: Context) -> None:
     """Right click on an object: of a sensor what is done with it, of a mesh to be the vehicle."""
     obj, layout = context.active_object, menu.layout
     if obj is None or context.mode != "OBJECT":

@@ -6,12 +6,13 @@ from collections.abc import Callable
 from typing import TypeAlias
 
 import bpy
+from bpy.types import Context, PropertyGroup
 
 from ..language import draw_label, shown
 from ..operators import reference_label
 
 UILayout: TypeAlias = bpy.types.UILayout
-OverlaySettings: TypeAlias = bpy.types.PropertyGroup
+OverlaySettings: TypeAlias = PropertyGroup
 
 
 class PE_PT_view(bpy.types.Panel):
@@ -23,7 +24,7 @@ class PE_PT_view(bpy.types.Panel):
     bl_region_type = "HEADER"
     bl_ui_units_x = 13
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings = context.scene.perception_entropy
         draw_label(self.layout, "Perception")
         column = self.layout.column()
@@ -117,7 +118,7 @@ def _indented(layout: UILayout) -> UILayout:
     return row.column(align=True)
 
 
-def draw_in_header(self: bpy.types.Header, context: bpy.types.Context) -> None:
+def draw_in_header(self: bpy.types.Header, context: Context) -> None:
     """Draw the switch of everything, and the button that opens the popover."""
     settings = context.scene.perception_entropy
     row = self.layout.row(align=True)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
+from bpy.types import Context, PropertyGroup, UILayout
 
 from ..language import draw_label
 from ..operators import ShownSource, after_of, shown_verdicts, source_of
@@ -14,7 +17,7 @@ from ..properties.requirement_fields import (
     RING,
     SEVERAL,
 )
-from .layout import Tab, columns, draw_declared, draw_list, draw_properties, draw_sentence
+from .layout import Rows, Tab, columns, draw_declared, draw_list, draw_properties, draw_sentence
 
 ADD_REMOVE = ("pe.add_requirement", "pe.remove_requirement")
 
@@ -24,19 +27,10 @@ ICONS = {True: "CHECKMARK", False: "CANCEL", None: "QUESTION"}
 """By what is known of a requirement: met, not met, not checked."""
 
 
-class PE_UL_requirements(bpy.types.UIList):
+class PE_UL_requirements(Rows, bpy.types.UIList):
     """The requirements: verdict and name, and below them the regulation and the margin"""
 
-    def draw_item(
-        self,
-        context: bpy.types.Context,
-        layout: bpy.types.UILayout,
-        _settings: bpy.types.PropertyGroup,
-        item: bpy.types.PropertyGroup,
-        _icon: int,
-        _active_data: bpy.types.PropertyGroup,
-        _active_property: str,
-    ) -> None:
+    def draw_row(self, context: Context, layout: UILayout, _settings: Any, item: Any) -> None:
         verdict = shown_verdicts(context.scene).get(item.name)
         lines = layout.column(align=True)
         row = lines.row(align=True)
@@ -63,7 +57,7 @@ class PE_PT_requirements(Tab, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
     bl_ui_units_x = 17  # where it is called as a popup
 
-    def draw_header_preset(self, context: bpy.types.Context) -> None:
+    def draw_header_preset(self, context: Context) -> None:
         verdicts = shown_verdicts(context.scene).values()
         if not verdicts:
             return
@@ -72,7 +66,7 @@ class PE_PT_requirements(Tab, bpy.types.Panel):
         text = f"{met} of {len(checked)} met" if checked else str(len(verdicts))
         draw_label(self.layout, text)  # visible also when closed
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings, layout = context.scene.perception_entropy, self.layout
         names, operators = ("requirements", "requirement_index"), ADD_REMOVE
         buttons = draw_list(layout, PE_UL_requirements, settings, names, operators, rows=4)
@@ -88,9 +82,7 @@ class PE_PT_requirements(Tab, bpy.types.Panel):
             draw_requirement(layout, context, settings.requirements[settings.requirement_index])
 
 
-def draw_requirement(
-    layout: bpy.types.UILayout, context: bpy.types.Context, row: bpy.types.PropertyGroup
-) -> None:
+def draw_requirement(layout: UILayout, context: Context, row: PropertyGroup) -> None:
     """Draw the last verdict and the settings of a requirement."""
     verdict = shown_verdicts(context.scene).get(row.name)
     if verdict is not None and verdict.sentence:
@@ -110,9 +102,7 @@ def draw_requirement(
     draw_declared(layout, row, "requirement.under")
 
 
-def _draw_source(
-    layout: bpy.types.UILayout, context: bpy.types.Context, source: ShownSource
-) -> None:
+def _draw_source(layout: UILayout, context: Context, source: ShownSource) -> None:
     """Draw what the requirement is after, and its source where that is opened."""
     if not source.text:
         return
@@ -125,7 +115,7 @@ def _draw_source(
         draw_sentence(inside, context, source.text)
 
 
-def _draw_body(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup) -> None:
+def _draw_body(layout: UILayout, row: PropertyGroup) -> None:
     """Draw which body stands at the samples, and the size of an own one."""
     draw_properties(layout, row, ("body",))
     if row.body == SEVERAL:
@@ -143,7 +133,7 @@ def _draw_body(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup) -> None
     draw_properties(layout, row, ("headings",))
 
 
-def _draw_mesh_file(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup) -> None:
+def _draw_mesh_file(layout: UILayout, row: PropertyGroup) -> None:
     """Draw the mesh file with a button for the file browser.
 
     A property of a file has such a button of its own, but bpy ends when one with callbacks is set.
@@ -153,7 +143,7 @@ def _draw_mesh_file(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup) ->
     line.operator("pe.open_body_mesh", text="", icon="FILEBROWSER")
 
 
-def _draw_zone(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup) -> None:
+def _draw_zone(layout: UILayout, row: PropertyGroup) -> None:
     """Draw the zone: its shape with the fields of it, and what is less often changed."""
     draw_properties(layout, row, ("shape",))
     if row.shape == AREA:
@@ -171,7 +161,7 @@ def _draw_zone(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup) -> None
         draw_properties(inside, row, ("eyes",))
 
 
-def _draw_criterion(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup) -> None:
+def _draw_criterion(layout: UILayout, row: PropertyGroup) -> None:
     """Draw what has to be seen; 0 stands for what is not asked for."""
     if row.asks != BODIES_ASKED:
         draw_properties(layout, row, OF_GROUND)
@@ -183,15 +173,13 @@ def _draw_criterion(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup) ->
         draw_declared(inside, row, "requirement.criterion", ("sensors", "kinds", *OF_GROUND))
 
 
-def _section(
-    layout: bpy.types.UILayout, name: str, title: str
-) -> tuple[bpy.types.UILayout, bpy.types.UILayout | None]:
+def _section(layout: UILayout, name: str, title: str) -> tuple[UILayout, UILayout | None]:
     header, inside = layout.panel(name, default_closed=True)
     draw_label(header, title)
     return header, inside
 
 
-def _draw_pair(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup, name: str) -> None:
+def _draw_pair(layout: UILayout, row: PropertyGroup, name: str) -> None:
     pair = layout.column(align=True)
     draw_properties(pair, row, (f"{name}_from", f"{name}_to"))
 

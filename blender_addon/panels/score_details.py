@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bpy
+from bpy.types import Context, Object, UILayout
 
 from ..choices import BEFORE_MOVE, PINNED
 from ..language import draw_label, shown
@@ -18,7 +19,7 @@ class PE_MT_live_against(bpy.types.Menu):
     bl_idname = "PE_MT_live_against"
     bl_label = "Compare Live With"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         layout = self.layout
         layout.operator("pe.live_against", text="Before the Last Move").key = BEFORE_MOVE
         layout.operator("pe.live_against", text="Pin These Sensors", icon="PINNED").key = PINNED
@@ -37,10 +38,10 @@ class PE_PT_live(Tab, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def poll(cls, context: Context) -> bool:
         return context.scene.perception_entropy.live.on
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         name, menu = columns(self.layout, 0.4)
         draw_label(name, "Compared With")
         label = reference_label(context.scene)
@@ -60,7 +61,7 @@ class PE_PT_explain(Tab, bpy.types.Panel):
     bl_idname = "PE_PT_explain"
     bl_label = "Explain"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings, obj = context.scene.perception_entropy, context.active_object
         layout = self.layout
         layout.operator("pe.ask_place", icon="EYEDROPPER")
@@ -83,9 +84,7 @@ class PE_PT_explain(Tab, bpy.types.Panel):
             draw_sensor_text(layout, context, obj)
 
 
-def draw_sensor_text(
-    layout: bpy.types.UILayout, context: bpy.types.Context, obj: bpy.types.Object
-) -> None:
+def draw_sensor_text(layout: UILayout, context: Context, obj: Object) -> None:
     """Draw sentences on one sensor of the last result."""
     figures = figures_of_sensor(obj)
     if figures is None:
@@ -97,7 +96,7 @@ def draw_sensor_text(
         draw_sentence(box, context, line[:1].upper() + line[1:], icon="DOT")
 
 
-def draw_answer(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+def draw_answer(layout: UILayout, context: Context) -> None:
     """Draw the answer of the last location query."""
     found = answer(context.scene)
     if found is None:
@@ -121,11 +120,11 @@ class PE_PT_breakdown(Tab, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def poll(cls, context: Context) -> bool:
         settings = context.scene.perception_entropy
         return settings.has_result and len(settings.result_parts) > 0
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings = context.scene.perception_entropy
         draw_stale_mark(self.layout, settings)
         column = self.layout.box().column(align=True)
@@ -144,9 +143,7 @@ class PE_PT_breakdown(Tab, bpy.types.Panel):
                 column.separator()
 
 
-def draw_part_row(
-    layout: bpy.types.UILayout, name: str, *figures: str, header: bool = False
-) -> None:
+def draw_part_row(layout: UILayout, name: str, *figures: str, header: bool = False) -> None:
     """Draw a row of the table; figures are aligned to the right."""
     split = layout.split(factor=PART_SHARE if len(figures) == 2 else NARROW_PART_SHARE)
     split.active = not header

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
+from bpy.types import Context, PropertyGroup, UILayout
 
 from ..choices import CUSTOM, FROM_BOXES, OBJECTS, REGIONS
 from ..language import draw_label, shown
 from ..operators import kind_label, own_fields
-from .layout import Tab, columns, draw_declared, draw_list, draw_properties, draw_sentence
+from .layout import Rows, Tab, columns, draw_declared, draw_list, draw_properties, draw_sentence
 
 
 class PE_PT_prior(Tab, bpy.types.Panel):
@@ -17,10 +20,10 @@ class PE_PT_prior(Tab, bpy.types.Panel):
     bl_label = "Prior"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw_header_preset(self, context: bpy.types.Context) -> None:
+    def draw_header_preset(self, context: Context) -> None:
         draw_chosen(self.layout, context.scene.perception_entropy, "prior")
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings = context.scene.perception_entropy
         boxes = ("boxes",) if settings.prior == FROM_BOXES else ()
         draw_properties(self.layout, settings, ("prior", *boxes))
@@ -33,35 +36,26 @@ class PE_PT_targets(Tab, bpy.types.Panel):
     bl_label = "Targets"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw_header_preset(self, context: bpy.types.Context) -> None:
+    def draw_header_preset(self, context: Context) -> None:
         draw_chosen(self.layout, context.scene.perception_entropy, "targets")
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings = context.scene.perception_entropy
         draw_declared(self.layout, settings, "metric")
         draw_declared(self.layout, settings, "ap" if settings.targets == OBJECTS else "score")
 
 
-def draw_chosen(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, name: str) -> None:
+def draw_chosen(layout: UILayout, settings: PropertyGroup, name: str) -> None:
     """Draw the chosen entry of a menu: it is visible also when the panel is closed."""
     layout.label(
         text=layout.enum_item_name(settings, name, getattr(settings, name)), translate=False
     )
 
 
-class PE_UL_focus(bpy.types.UIList):
+class PE_UL_focus(Rows, bpy.types.UIList):
     """The focus weights: name, region, factor"""
 
-    def draw_item(
-        self,
-        _context: bpy.types.Context,
-        layout: bpy.types.UILayout,
-        _settings: bpy.types.PropertyGroup,
-        item: bpy.types.PropertyGroup,
-        _icon: int,
-        _active_data: bpy.types.PropertyGroup,
-        _active_property: str,
-    ) -> None:
+    def draw_row(self, _context: Context, layout: UILayout, _settings: Any, item: Any) -> None:
         name, figures = columns(layout, 0.4)
         name.prop(item, "name", text="", emboss=False)
         region, factor = columns(figures, 0.61)
@@ -77,11 +71,11 @@ class PE_PT_focus(Tab, bpy.types.Panel):
     bl_label = "Focus"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw_header_preset(self, context: bpy.types.Context) -> None:
+    def draw_header_preset(self, context: Context) -> None:
         count = len(context.scene.perception_entropy.focus)
         self.layout.label(text=str(count or ""), translate=False)  # visible also when closed
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings, layout = context.scene.perception_entropy, self.layout
         names, buttons = ("focus", "focus_index"), ("pe.add_focus", "pe.remove_focus")
         draw_list(layout, PE_UL_focus, settings, names, buttons)
@@ -89,7 +83,7 @@ class PE_PT_focus(Tab, bpy.types.Panel):
             draw_focus(layout, settings.focus[settings.focus_index])
 
 
-def draw_focus(layout: bpy.types.UILayout, focus: bpy.types.PropertyGroup) -> None:
+def draw_focus(layout: UILayout, focus: PropertyGroup) -> None:
     """Draw the settings of one focus."""
     draw_properties(layout, focus, ("factor", "region"))
     if focus.region == CUSTOM:
@@ -97,19 +91,10 @@ def draw_focus(layout: bpy.types.UILayout, focus: bpy.types.PropertyGroup) -> No
     layout.column().prop(focus, "classes")
 
 
-class PE_UL_own_sensors(bpy.types.UIList):
+class PE_UL_own_sensors(Rows, bpy.types.UIList):
     """This file's own sensors: name, kind"""
 
-    def draw_item(
-        self,
-        _context: bpy.types.Context,
-        layout: bpy.types.UILayout,
-        _settings: bpy.types.PropertyGroup,
-        item: bpy.types.PropertyGroup,
-        _icon: int,
-        _active_data: bpy.types.PropertyGroup,
-        _active_property: str,
-    ) -> None:
+    def draw_row(self, _context: Context, layout: UILayout, _settings: Any, item: Any) -> None:
         layout.prop(item, "name", text="", emboss=False, icon="ERROR" if item.problem else "NONE")
         draw_label(layout, kind_label(item.kind))
 
@@ -121,7 +106,7 @@ class PE_PT_advanced(Tab, bpy.types.Panel):
     bl_label = "Advanced"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings = context.scene.perception_entropy
         draw_own_sensors(self.layout, context)
         draw_curves(self.layout, settings)
@@ -131,7 +116,7 @@ class PE_PT_advanced(Tab, bpy.types.Panel):
         draw_declared(column, settings, "vehicle")
 
 
-def draw_own_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+def draw_own_sensors(layout: UILayout, context: Context) -> None:
     """Draw the file's own sensors, and the figures of the one that is selected."""
     settings = context.scene.perception_entropy
     draw_label(layout, "Own Sensors")
@@ -148,7 +133,7 @@ def draw_own_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> 
             draw_sentence(layout, context, sensor.problem, icon="ERROR")
 
 
-def draw_curves(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def draw_curves(layout: UILayout, settings: PropertyGroup) -> None:
     """Draw the AP curve of each kind."""
     draw_label(layout, "AP = a ln m + b")
     if not settings.curves:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
+from bpy.types import Context, PropertyGroup, UILayout
 
 from ..choices import (
     BY_GROUP,
@@ -15,7 +18,7 @@ from ..choices import (
     RANDOM,
 )
 from ..language import shown
-from .layout import Tab, columns, draw_declared, draw_list, draw_properties
+from .layout import Rows, Tab, columns, draw_declared, draw_list, draw_properties
 from .variant_panels import draw_front
 
 ICONS = {BY_PARTS: "OBJECT_DATA", BY_MATERIAL: "MATERIAL", BY_GROUP: "WPAINT_HLT"}
@@ -35,7 +38,7 @@ class PE_PT_search(Tab, bpy.types.Panel):
     bl_label = "Search"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings, layout = context.scene.perception_entropy, self.layout
         draw_properties(layout, settings, FIRST)
         methods = layout.row(align=True)
@@ -51,19 +54,10 @@ class PE_PT_search(Tab, bpy.types.Panel):
         draw_declared(layout, settings, "search", ELSEWHERE)
 
 
-class PE_UL_mounts(bpy.types.UIList):
+class PE_UL_mounts(Rows, bpy.types.UIList):
     """The mounts: name, faces or slots"""
 
-    def draw_item(
-        self,
-        _context: bpy.types.Context,
-        layout: bpy.types.UILayout,
-        _settings: bpy.types.PropertyGroup,
-        item: bpy.types.PropertyGroup,
-        _icon: int,
-        _active_data: bpy.types.PropertyGroup,
-        _active_property: str,
-    ) -> None:
+    def draw_row(self, _context: Context, layout: UILayout, _settings: Any, item: Any) -> None:
         name, what = columns(layout, 0.6)
         icon = SLOTS_ICON if item.kind == ON_SLOTS else ICONS[item.faces]
         name.prop(item, "name", text="", emboss=False, icon=icon)
@@ -72,7 +66,7 @@ class PE_UL_mounts(bpy.types.UIList):
         what.label(text="" if made == item.name else shown(made), translate=False)
 
 
-def made_of(mount: bpy.types.PropertyGroup) -> str:
+def made_of(mount: PropertyGroup) -> str:
     """Return in a word or two which faces or slots a mount has."""
     if mount.kind == ON_SLOTS:
         return mount.slots.name if mount.slots else "no collection"
@@ -92,11 +86,11 @@ class PE_PT_mounts(Tab, bpy.types.Panel):
     bl_parent_id = "PE_PT_search"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw_header_preset(self, context: bpy.types.Context) -> None:
+    def draw_header_preset(self, context: Context) -> None:
         count = len(context.scene.perception_entropy.mounts)
         self.layout.label(text=str(count or ""), translate=False)  # visible also when closed
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings, layout = context.scene.perception_entropy, self.layout
         names, buttons = ("mounts", "mount_index"), ("pe.add_mount", "pe.remove_mount")
         draw_list(layout, PE_UL_mounts, settings, names, buttons)
@@ -104,7 +98,7 @@ class PE_PT_mounts(Tab, bpy.types.Panel):
             draw_mount(layout, settings.mounts[settings.mount_index])
 
 
-def draw_mount(layout: bpy.types.UILayout, mount: bpy.types.PropertyGroup) -> None:
+def draw_mount(layout: UILayout, mount: PropertyGroup) -> None:
     """Draw the settings of one mount."""
     layout.row(align=True).prop(mount, "kind", expand=True)
     if mount.kind == ON_SLOTS:
@@ -118,7 +112,7 @@ def draw_mount(layout: bpy.types.UILayout, mount: bpy.types.PropertyGroup) -> No
     draw_declared(layout, mount, "optimize.mount")
 
 
-def draw_parts(layout: bpy.types.UILayout, mount: bpy.types.PropertyGroup) -> None:
+def draw_parts(layout: UILayout, mount: PropertyGroup) -> None:
     """Draw the parts of a mount, and the button that replaces them."""
     column = layout.column(align=True)
     for row in mount.parts:
@@ -134,7 +128,7 @@ class PE_PT_constraints(Tab, bpy.types.Panel):
     bl_parent_id = "PE_PT_search"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         layout = self.layout
         draw_declared(layout, context.scene.perception_entropy, "constraints")
         layout.operator("pe.add_no_go", icon="CUBE")
@@ -152,7 +146,7 @@ class PE_PT_goals(Tab, bpy.types.Panel):
     bl_parent_id = "PE_PT_search"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings, layout = context.scene.perception_entropy, self.layout
         draw_declared(layout, settings, "optimize.stop")
         draw_properties(layout, settings, ("start_variants",))
@@ -171,7 +165,7 @@ class PE_PT_tolerance(Tab, bpy.types.Panel):
     bl_parent_id = "PE_PT_search"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings, layout = context.scene.perception_entropy, self.layout
         draw_properties(layout, settings, ("mounting_errors",))
         column = layout.column()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bpy
+from bpy.types import Context, Object, PropertyGroup, UILayout
 
 from ..language import draw_label, shown
 from ..operators import holder_of
@@ -20,11 +21,11 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
     bl_label = "Sensor"
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def poll(cls, context: Context) -> bool:
         obj = context.active_object
         return obj is not None and obj.perception_entropy.is_sensor
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         obj = context.active_object
         settings = obj.perception_entropy
         layout = self.layout
@@ -45,9 +46,7 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
         draw_free(column, settings)
 
 
-def draw_pose(
-    layout: bpy.types.UILayout, context: bpy.types.Context, obj: bpy.types.Object
-) -> None:
+def draw_pose(layout: UILayout, context: Context, obj: Object) -> None:
     """Draw the pose in the ground frame; fixed poses and locked axes are disabled."""
     settings, holder = obj.perception_entropy, holder_of(obj)
     pair = layout.split()
@@ -67,7 +66,7 @@ def draw_pose(
         draw_sentence(layout, context, f"Pose is fixed by {holder}", icon="LOCKED")
 
 
-def draw_mirror(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
+def draw_mirror(layout: UILayout, obj: Object) -> None:
     """Draw the buttons that mirror a sensor; of a linked sensor, its partner."""
     row = layout.row(align=True)
     other = obj.perception_entropy.mirror_of
@@ -80,7 +79,7 @@ def draw_mirror(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
     linked.name, linked.linked = obj.name, True
 
 
-def draw_free(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def draw_free(layout: UILayout, settings: PropertyGroup) -> None:
     """Draw a switch for each axis; x, y and z are dimmed where a mount gives the position."""
     row = layout.row(align=True)
     for index, label in enumerate(AXIS_LABELS):
@@ -89,7 +88,7 @@ def draw_free(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> 
         part.prop(settings, "free", index=index, text=shown(label), translate=False, toggle=True)
 
 
-def draw_mounted(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def draw_mounted(layout: UILayout, settings: PropertyGroup) -> None:
     """Draw the mount of a sensor, and its rack."""
     split = layout.split(factor=0.4)
     draw_label(split, "Mounted on")
@@ -98,7 +97,7 @@ def draw_mounted(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) 
     layout.prop(settings, "rack")
 
 
-def draw_bounds(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def draw_bounds(layout: UILayout, settings: PropertyGroup) -> None:
     """Draw the bounds of each axis that the search may change."""
     column = layout.column(align=True)
     for index, label in enumerate(AXIS_LABELS):
@@ -124,7 +123,7 @@ class PE_PT_bounds(Tab, bpy.types.Panel):
     bl_parent_id = "PE_PT_sensor"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         draw_bounds(self.layout, context.active_object.perception_entropy)
 
 
@@ -136,10 +135,10 @@ class PE_PT_own_curve(Tab, bpy.types.Panel):
     bl_parent_id = "PE_PT_sensor"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw_header(self, context: bpy.types.Context) -> None:
+    def draw_header(self, context: Context) -> None:
         self.layout.prop(context.active_object.perception_entropy, "own_curve", text="")
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings = context.active_object.perception_entropy
         column = self.layout.column()
         column.active = settings.own_curve
@@ -156,11 +155,11 @@ class PE_PT_part(Tab, bpy.types.Panel):
     bl_label = "Vehicle Part"
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def poll(cls, context: Context) -> bool:
         obj = context.active_object
         return obj is not None and obj.type != "EMPTY" and not obj.perception_entropy.is_sensor
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         obj = context.active_object
         self.layout.label(text=obj.name, icon="OBJECT_DATA", translate=False)
         self.layout.prop(obj.perception_entropy, "see_through")

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
+from bpy.types import Context, Object, PropertyGroup, Scene, UILayout
 
 from ..language import draw_label
 from ..operators import listed_sensors
 from ..properties import SensorFigures, figures_of_sensor
-from .layout import letters_per_line
+from .layout import Rows, letters_per_line
 
 MIN_NAME_SHARE = 0.34
 """Smallest share of a row for the name."""
@@ -23,7 +26,7 @@ FIGURE_SHARE = 0.26
 """Room for a loss of two digits before the point: "10.37"."""
 
 
-def draw_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+def draw_sensors(layout: UILayout, context: Context) -> None:
     """Draw a row for each sensor under a header; of many, a list that scrolls."""
     objects = listed_sensors(context.scene)
     box = layout.box().column(align=True)
@@ -40,33 +43,20 @@ def draw_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
         draw_sensor(box, context, obj, share)
 
 
-class PE_UL_sensors(bpy.types.UIList):
+class PE_UL_sensors(Rows, bpy.types.UIList):
     """The sensors of the scene, without its other objects"""
 
-    def draw_item(
-        self,
-        context: bpy.types.Context,
-        layout: bpy.types.UILayout,
-        _scene: bpy.types.Scene,
-        item: bpy.types.Object,
-        _icon: int,
-        _active_data: bpy.types.PropertyGroup,
-        _active_property: str,
-    ) -> None:
+    def draw_row(self, context: Context, layout: UILayout, _scene: Any, item: Any) -> None:
         objects = listed_sensors(context.scene)
         share = name_share(objects, letters_per_line(context) - BESIDE_LETTERS)
         draw_sensor(layout, context, item, share)
 
-    def filter_items(
-        self, context: bpy.types.Context, data: bpy.types.Scene, name: str
-    ) -> tuple[list[int], list[int]]:
+    def filter_items(self, context: Context, data: Scene, name: str) -> tuple[list[int], list[int]]:
         """Show the sensors alone, in the order of the list."""
         return shown_rows(list(getattr(data, name)), listed_sensors(context.scene))
 
 
-def shown_rows(
-    objects: list[bpy.types.Object], sensors: list[bpy.types.Object]
-) -> tuple[list[int], list[int]]:
+def shown_rows(objects: list[Object], sensors: list[Object]) -> tuple[list[int], list[int]]:
     """Return Blender's filter flags of objects, and their places: sensors first, as listed."""
     order = {sensor.name: place for place, sensor in enumerate(sensors)}
     flags = [SHOWN_ITEM if o.name in order else 0 for o in objects]
@@ -74,7 +64,7 @@ def shown_rows(
     return flags, [order[o.name] if o.name in order else next(rest) for o in objects]
 
 
-def name_share(objects: list[bpy.types.Object], room: int) -> float:
+def name_share(objects: list[Object], room: int) -> float:
     """Return the share of a row for names; 1 where models would leave too little room for them.
 
     The selected sensor's model is also in its own panel, and a wider sidebar shows all models.
@@ -84,7 +74,7 @@ def name_share(objects: list[bpy.types.Object], room: int) -> float:
     return 1.0 if names + models > room else max(MIN_NAME_SHARE, names / (names + models))
 
 
-def draw_header(layout: bpy.types.UILayout, share: float) -> None:
+def draw_header(layout: UILayout, share: float) -> None:
     """Draw the header of the columns."""
     row = layout.row(align=True)
     row.active = False
@@ -98,12 +88,7 @@ def draw_header(layout: bpy.types.UILayout, share: float) -> None:
     draw_label(figure, "Loss")
 
 
-def draw_sensor(
-    layout: bpy.types.UILayout,
-    context: bpy.types.Context,
-    obj: bpy.types.Object,
-    share: float,
-) -> None:
+def draw_sensor(layout: UILayout, context: Context, obj: Object, share: float) -> None:
     """Draw a sensor's row: the Outliner's eye, the switch of its beams, and its colour."""
     settings, counts = obj.perception_entropy, obj.visible_get()
     row = layout.row(align=True)
@@ -125,22 +110,20 @@ def draw_sensor(
     draw_label(figure, loss_text(obj))
 
 
-def draw_swatch(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def draw_swatch(layout: UILayout, settings: PropertyGroup) -> None:
     """Draw a sensor's colour: a click chooses another one."""
     swatch = layout.row(align=True)
     swatch.ui_units_x = SWATCH_UNITS
     swatch.prop(settings, "color", text="")
 
 
-def loss_text(obj: bpy.types.Object) -> str:
+def loss_text(obj: Object) -> str:
     """Return how much the rig's entropy rises without a sensor, from the last result."""
     figures = figures_of_sensor(obj)
     return NO_FIGURE if figures is None or not figures.loss else figures.loss
 
 
-def row_cells(
-    layout: bpy.types.UILayout, share: float
-) -> tuple[bpy.types.UILayout, bpy.types.UILayout | None, bpy.types.UILayout]:
+def row_cells(layout: UILayout, share: float) -> tuple[UILayout, UILayout | None, UILayout]:
     """Return the cells of a row: name, model (None where there is no room), figure at the right."""
     left = layout.split(factor=1.0 - FIGURE_SHARE, align=True)
     if share < 1.0:
@@ -160,7 +143,7 @@ NO_FIGURE = "–"
 HEADER = ("Sensor", "Loss", "Most in", "Occluded by")
 
 
-def draw_sensor_table(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+def draw_sensor_table(layout: UILayout, context: Context) -> None:
     """Draw loss, where it is largest, and what occludes each sensor of the last result."""
     draw_label(layout, "Loss: rise of entropy without it, nats")
     table = layout.box().column(align=True)
@@ -174,9 +157,7 @@ def draw_sensor_table(layout: bpy.types.UILayout, context: bpy.types.Context) ->
         _draw_row(table, obj, wide, active=obj == context.active_object)
 
 
-def _draw_row(
-    layout: bpy.types.UILayout, obj: bpy.types.Object, wide: bool, *, active: bool
-) -> None:
+def _draw_row(layout: UILayout, obj: Object, wide: bool, *, active: bool) -> None:
     figures = figures_of_sensor(obj)
     name, loss, where, *rest = _cells(layout, wide)
     draw_swatch(name, obj.perception_entropy)
@@ -197,7 +178,7 @@ def _draw_row(
         _draw_parts(below, figures, 1)
 
 
-def _draw_parts(layout: bpy.types.UILayout, figures: SensorFigures, most: int = 3) -> None:
+def _draw_parts(layout: UILayout, figures: SensorFigures, most: int = 3) -> None:
     """Draw the parts that occlude a sensor most, as buttons that select them."""
     row = layout.row(align=True)
     for part, share in figures.parts[:most]:
@@ -207,7 +188,7 @@ def _draw_parts(layout: bpy.types.UILayout, figures: SensorFigures, most: int = 
         row.label(text=NO_FIGURE, translate=False)
 
 
-def _cells(layout: bpy.types.UILayout, wide: bool) -> list[bpy.types.UILayout]:
+def _cells(layout: UILayout, wide: bool) -> list[UILayout]:
     """Return the cells of a row: name, loss, where; and the parts where there is room."""
     half = layout.split(factor=0.6, align=True) if wide else None
     left = layout if half is None else half

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bpy
+from bpy.types import Context, UILayout
 
 from ..language import shown
 from ..operators import brief, known_makers, makers, models, offers
@@ -17,7 +18,7 @@ class PE_MT_add_sensor(bpy.types.Menu):
     bl_idname = "PE_MT_add_sensor"
     bl_label = "Place Sensor"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         layout, kind = self.layout, getattr(context, KIND, None)
         layout.operator_context = "INVOKE_DEFAULT"
         search = layout.operator("pe.search_sensor", text="Search...", icon="VIEWZOOM")
@@ -31,9 +32,9 @@ class MakerMenu:
     """Sensors of one maker in the catalogue"""
 
     maker: str
-    layout: bpy.types.UILayout
+    layout: UILayout
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         self.layout.operator_context = "INVOKE_DEFAULT"
         for name in models(getattr(context, KIND, None), self.maker):
             text = f"{name}   {shown(brief(name))}"
@@ -61,7 +62,7 @@ class PE_MT_add(bpy.types.Menu):
     bl_idname = "PE_MT_add"
     bl_label = "Perception"
 
-    def draw(self, _context: bpy.types.Context) -> None:
+    def draw(self, _context: Context) -> None:
         for offer in offers():
             add = self.layout.operator(
                 "pe.add_sensor", text=shown(offer.label), icon="ADD", translate=False
@@ -71,7 +72,7 @@ class PE_MT_add(bpy.types.Menu):
         self.layout.menu(PE_MT_add_sensor.bl_idname, icon="RESTRICT_SELECT_OFF")
 
 
-def draw_add_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+def draw_add_menu(menu: bpy.types.Menu, context: Context) -> None:
     """Add (Shift A), in Object Mode."""
     if context.mode == "OBJECT":
         menu.layout.menu(PE_MT_add.bl_idname, icon="OUTLINER_OB_CAMERA")

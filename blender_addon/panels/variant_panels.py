@@ -2,27 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
+from bpy.types import Context, Object, PropertyGroup, UILayout
 
 from ..choices import RANDOM
 from ..language import draw_label, shown
 from ..operators import known_rigs
-from .layout import Tab, columns, draw_declared, draw_list, draw_properties, draw_sentence
+from .layout import Rows, Tab, columns, draw_declared, draw_list, draw_properties, draw_sentence
 
 
-class PE_UL_variants(bpy.types.UIList):
+class PE_UL_variants(Rows, bpy.types.UIList):
     """Variants: which one is in the scene, name, entropy"""
 
-    def draw_item(
-        self,
-        _context: bpy.types.Context,
-        layout: bpy.types.UILayout,
-        settings: bpy.types.PropertyGroup,
-        item: bpy.types.PropertyGroup,
-        _icon: int,
-        _active_data: bpy.types.PropertyGroup,
-        _active_property: str,
-    ) -> None:
+    def draw_row(self, _context: Context, layout: UILayout, settings: Any, item: Any) -> None:
         active = item.key == settings.variant_key
         row = layout.row(align=True)
         tick = "RADIOBUT_ON" if active else "RADIOBUT_OFF"
@@ -47,11 +41,11 @@ class PE_PT_variants(Tab, bpy.types.Panel):
     bl_idname = "PE_PT_variants"
     bl_label = "Variants"
 
-    def draw_header_preset(self, context: bpy.types.Context) -> None:
+    def draw_header_preset(self, context: Context) -> None:
         count = len(context.scene.perception_entropy.variants)
         self.layout.label(text=str(count or ""), translate=False)  # visible also when closed
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings, layout = context.scene.perception_entropy, self.layout
         if not settings.variants:
             layout.operator("pe.save_variant", icon="ADD")
@@ -68,23 +62,23 @@ class PE_MT_known_rigs(bpy.types.Menu):
     bl_idname = "PE_MT_known_rigs"
     bl_label = "Add Known Rig"
 
-    def draw(self, _context: bpy.types.Context) -> None:
+    def draw(self, _context: Context) -> None:
         for key, title in known_rigs():
             self.layout.operator("pe.add_rig", text=title, translate=False).key = key
 
 
-def selected(settings: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup:
+def selected(settings: PropertyGroup) -> PropertyGroup:
     """Return the selected row; the last one where the list has become shorter."""
     return settings.variants[min(settings.variant_index, len(settings.variants) - 1)]
 
 
-def draw_note(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+def draw_note(layout: UILayout, context: Context) -> None:
     """Draw the note of the selected variant, in a field."""
     row = selected(context.scene.perception_entropy)
     layout.prop(row, "note", text="", icon="TEXT", placeholder="Note")
 
 
-def draw_variants(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def draw_variants(layout: UILayout, settings: PropertyGroup) -> None:
     """Draw the list with its buttons beside it."""
     names, operators = ("variants", "variant_index"), ("pe.save_variant", "pe.delete_variant")
     buttons = draw_list(layout, PE_UL_variants, settings, names, operators, rows=4)
@@ -92,7 +86,7 @@ def draw_variants(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup)
     buttons.operator("pe.duplicate_variant", text="", icon="DUPLICATE")
 
 
-def draw_state(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def draw_state(layout: UILayout, settings: PropertyGroup) -> None:
     """Draw the buttons of the scene's variant, always in the same place."""
     active = (
         settings.variants[min(settings.variant_index, len(settings.variants) - 1)].key
@@ -117,7 +111,7 @@ class PE_PT_selection(Tab, bpy.types.Panel):
     bl_label = "Sensor Choices"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings, layout = context.scene.perception_entropy, self.layout
         obj = context.active_object
         if obj is not None and obj.perception_entropy.is_sensor:
@@ -130,7 +124,7 @@ class PE_PT_selection(Tab, bpy.types.Panel):
             draw_front(layout, settings, context)
 
 
-def draw_options(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
+def draw_options(layout: UILayout, obj: Object) -> None:
     """Draw the models that may be chosen for a sensor, with their prices."""
     settings = obj.perception_entropy
     layout.label(text=obj.name, icon="EMPTY_AXIS", translate=False)
@@ -145,7 +139,7 @@ def draw_options(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
         layout.prop(settings, "may_be_left_out")
 
 
-def draw_limits(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def draw_limits(layout: UILayout, settings: PropertyGroup) -> None:
     """Draw the limits of every design; 0 means no limit."""
     # Candidates of the screening; the method that has them, too, shows them beside itself.
     own = () if settings.method == RANDOM else ("candidates",)
@@ -153,9 +147,7 @@ def draw_limits(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -
     draw_declared(layout, settings, "selection", ("currency",))
 
 
-def draw_front(
-    layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, context: bpy.types.Context
-) -> None:
+def draw_front(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Draw the Pareto front: price, entropy and name, with a button for each design's variant."""
     column = layout.box().column(align=True)
     if settings.front_note:
@@ -172,9 +164,7 @@ def draw_front(
     draw_label(column, settings.front_told)
 
 
-def draw_front_of_objectives(
-    column: bpy.types.UILayout, settings: bpy.types.PropertyGroup, context: bpy.types.Context
-) -> None:
+def draw_front_of_objectives(column: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Draw a front of several objectives: two lines a design, its name and its figures."""
     for row in settings.front:
         icon = "RADIOBUT_ON" if row.key == settings.variant_key else "RADIOBUT_OFF"
@@ -186,7 +176,7 @@ def draw_front_of_objectives(
 
 
 def _draw_design(
-    line: bpy.types.UILayout, icon: str, texts: tuple[str, str, str], key: int | None = None
+    line: UILayout, icon: str, texts: tuple[str, str, str], key: int | None = None
 ) -> None:
     """Draw a line of the table: a button that switches to the variant, if there is one."""
     if key is None:

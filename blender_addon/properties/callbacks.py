@@ -3,34 +3,35 @@
 from __future__ import annotations
 
 import bpy
+from bpy.types import Context, PropertyGroup
 
 from .. import signals
 from ..engine import catalog, kinds
 
 
-def redraw(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+def redraw(_settings: PropertyGroup, _context: Context) -> None:
     """Update callback of properties that change the 3D view alone."""
     signals.view_changed.emit()
 
 
-def recolored(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+def recolored(settings: PropertyGroup, _context: Context) -> None:
     """Update callback of a sensor's colour: from now on it is this sensor's own."""
     settings.color_of = settings.id_data.name
     signals.view_changed.emit()
 
 
-def changed(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+def changed(_settings: PropertyGroup, _context: Context) -> None:
     """Update callback of properties that change the score."""
     signals.study_changed.emit()
 
 
-def selected_object_index(_settings: bpy.types.PropertyGroup) -> int:
+def selected_object_index(_settings: PropertyGroup) -> int:
     """Return the place of the active object among the scene's objects, for a list of them."""
     active = bpy.context.view_layer.objects.active
     return -1 if active is None else bpy.context.scene.objects.find(active.name)
 
 
-def select_object_by_index(_settings: bpy.types.PropertyGroup, number: int) -> None:
+def select_object_by_index(_settings: PropertyGroup, number: int) -> None:
     """Select the object at a place among the scene's objects, and nothing else."""
     objects, layer = bpy.context.scene.objects, bpy.context.view_layer
     if 0 <= number < len(objects) and objects[number].visible_get():
@@ -40,17 +41,17 @@ def select_object_by_index(_settings: bpy.types.PropertyGroup, number: int) -> N
         layer.objects.active = objects[number]
 
 
-def requirement_chosen(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+def requirement_chosen(_settings: PropertyGroup, _context: Context) -> None:
     """Update callback of the list of requirements: the view goes to the chosen one."""
     signals.requirement_chosen.emit()
 
 
-def switched(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+def switched(_settings: PropertyGroup, _context: Context) -> None:
     """Update callback of the switch of the live score."""
     signals.live_toggled.emit()
 
 
-def model_chosen(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+def model_chosen(settings: PropertyGroup, context: Context) -> None:
     """Update callback of a sensor's model: a unique part of a name is completed."""
     if settings.model not in catalog.entries():
         found = catalog.matching(settings.model)
@@ -60,7 +61,7 @@ def model_chosen(settings: bpy.types.PropertyGroup, context: bpy.types.Context) 
     changed(settings, context)
 
 
-def own_curve_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+def own_curve_switched(settings: PropertyGroup, context: Context) -> None:
     """Update callback of a sensor's own AP curve: it starts with the values of its kind."""
     entry = catalog.entries().get(settings.model)
     if settings.own_curve and entry is not None and not settings.is_property_set("curve_a"):
@@ -70,7 +71,7 @@ def own_curve_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Con
 
 
 def models_of_a_kind(
-    settings: bpy.types.PropertyGroup, _context: bpy.types.Context, _typed: str
+    settings: PropertyGroup, _context: Context, _typed: str
 ) -> list[tuple[str, str]]:
     """Return the models of a sensor's kind, each with a short description."""
     entry = catalog.entries().get(settings.model)
@@ -80,7 +81,7 @@ def models_of_a_kind(
 
 
 def model_suggestions(
-    _settings: bpy.types.PropertyGroup, _context: bpy.types.Context, _typed: str
+    _settings: PropertyGroup, _context: Context, _typed: str
 ) -> list[tuple[str, str]]:
     """Return the catalogue's names with what they are; Blender filters by what was typed."""
     labels = {n: kind.label for kind in kinds.KINDS.values() for n in catalog.names(kind.name)}
@@ -92,7 +93,7 @@ _kind_items: list[tuple[str, str, str, int]] = []
 
 
 def kinds_to_add(
-    _settings: bpy.types.PropertyGroup, _context: bpy.types.Context | None
+    _settings: PropertyGroup, _context: Context | None
 ) -> list[tuple[str, str, str, int]]:
     """Return the kinds of sensors that the catalogue has, as items of a Blender menu."""
     listed = [kind for kind in kinds.KINDS.values() if catalog.names(kind.name)]

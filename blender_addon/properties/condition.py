@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-import bpy
+from bpy.types import PropertyGroup
 
 from ..engine import geometry, kinds
 from .callbacks import changed
@@ -15,7 +15,7 @@ StateFields: Any = group_of(geometry.State)
 WeatherFields: Any = group_of(kinds.Weather)
 
 
-class PE_State(StateFields, bpy.types.PropertyGroup):
+class PE_State(StateFields, PropertyGroup):
     """A state of the vehicle: a frame of the scene, and the motions that were read there."""
 
     enabled: switch("Used", "Score this state, too", True, update=changed)
@@ -23,7 +23,7 @@ class PE_State(StateFields, bpy.types.PropertyGroup):
     table: text("Motions", "Motions as JSON", update=changed)
 
 
-class PE_Weather(WeatherFields, bpy.types.PropertyGroup):
+class PE_Weather(WeatherFields, PropertyGroup):
     """A weather. At most one of rain, snow and fog is above 0."""
 
     enabled: switch("Used", "Score this weather, too", True, update=changed)

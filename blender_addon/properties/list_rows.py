@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-import bpy
+from bpy.types import Collection, Context, Material, Object, PropertyGroup
 
 from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, ON_SLOTS, ON_SURFACE, REGION_ITEMS, free_name
 from ..engine import pe
@@ -29,7 +29,7 @@ OptionFields: Any = group_of(pe.Option)
 SurfaceMountFields: Any = group_of(pe.SurfaceMount)
 
 
-class PE_FocusSettings(FocusFields, bpy.types.PropertyGroup):
+class PE_FocusSettings(FocusFields, PropertyGroup):
     """A focus weight: a region and classes that count more or less than the prior says."""
 
     region: menu(
@@ -45,7 +45,7 @@ class PE_FocusSettings(FocusFields, bpy.types.PropertyGroup):
     )
 
 
-class PE_CurveSettings(ApCurveFields, bpy.types.PropertyGroup):
+class PE_CurveSettings(ApCurveFields, PropertyGroup):
     """The AP curve of a kind of sensor: AP = a ln m + b. The row has the name of the kind."""
 
     own: switch(
@@ -55,7 +55,7 @@ class PE_CurveSettings(ApCurveFields, bpy.types.PropertyGroup):
     )
 
 
-class PE_OwnSensorSettings(bpy.types.PropertyGroup):
+class PE_OwnSensorSettings(PropertyGroup):
     """A sensor of the user's own; the row has the name of its model."""
 
     kind: menu("Kind", "Kind of the sensor", own_kinds, update=changed)
@@ -136,7 +136,7 @@ class PE_OwnSensorSettings(bpy.types.PropertyGroup):
     known_as: text("Known As", "Last known name")
 
 
-class PE_SensorOption(OptionFields, bpy.types.PropertyGroup):
+class PE_SensorOption(OptionFields, PropertyGroup):
     """A model that may be chosen, and its price."""
 
     model: text(
@@ -162,7 +162,7 @@ FACES = (
 )  # fmt: skip
 
 
-def _keep_apart(mount: PE_MountSettings, _context: bpy.types.Context) -> None:
+def _keep_apart(mount: PE_MountSettings, _context: Context) -> None:
     """Update callback of a mount's name: names are unique, and sensors follow a new name."""
     scene = mount.id_data
     rows = scene.perception_entropy.mounts
@@ -177,22 +177,20 @@ def _keep_apart(mount: PE_MountSettings, _context: bpy.types.Context) -> None:
     mount.known_as = name
 
 
-def groups_of_vehicle(
-    mount: PE_MountSettings, _context: bpy.types.Context, _typed: str
-) -> list[str]:
+def groups_of_vehicle(mount: PE_MountSettings, _context: Context, _typed: str) -> list[str]:
     """Return the names of all vertex groups of the vehicle's meshes."""
     vehicle = mount.id_data.perception_entropy.vehicle
     objects = () if vehicle is None else vehicle.all_objects
     return sorted({group.name for obj in objects for group in obj.vertex_groups})
 
 
-class PE_MountPart(bpy.types.PropertyGroup):
+class PE_MountPart(PropertyGroup):
     """An object of the vehicle whose faces belong to a mount."""
 
-    part: pointer("Part", "Object of the vehicle", bpy.types.Object, update=redraw)
+    part: pointer("Part", "Object of the vehicle", Object, update=redraw)
 
 
-class PE_MountSettings(SurfaceMountFields, bpy.types.PropertyGroup):
+class PE_MountSettings(SurfaceMountFields, PropertyGroup):
     """A mount: surfaces or slots for sensors."""
 
     name: text(
@@ -206,7 +204,7 @@ class PE_MountSettings(SurfaceMountFields, bpy.types.PropertyGroup):
     faces: menu("Faces", "How the faces of the vehicle are chosen", FACES, update=redraw)
     parts: rows("Parts", "Objects whose faces belong to the mount", PE_MountPart)
     material: pointer(
-        "Material", "Faces of the vehicle with this material", bpy.types.Material, update=redraw
+        "Material", "Faces of the vehicle with this material", Material, update=redraw
     )
     group: text(
         "Vertex Group",
@@ -218,6 +216,6 @@ class PE_MountSettings(SurfaceMountFields, bpy.types.PropertyGroup):
     slots: pointer(
         "Slots",
         "Each empty of the collection is a slot with a position and angles",
-        bpy.types.Collection,
+        Collection,
         update=redraw,
     )

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import bpy
 from bpy.props import EnumProperty, FloatProperty, StringProperty
+from bpy.types import Context, PropertyGroup
 
 from .. import bridge, signals
 from ..engine import kinds, requirements, studies
@@ -49,7 +49,7 @@ ZERO_COUNTS = ("blind_m2",)
 """Settings that are asked for at 0, too."""
 PLACE = "a number [m], or a plane with an offset outwards: front + 0.8, near, rear_axle, 25 %"
 HIGH: dict[str, Any] = {"min": 0.0, "unit": "LENGTH"}
-EditedRow = bpy.types.PropertyGroup
+EditedRow = PropertyGroup
 Getter = Callable[[EditedRow], Any]
 Change = Callable[[dict[str, Any], Any], None]
 
@@ -152,9 +152,7 @@ def _set_file(table: dict[str, Any], path: str) -> None:
     fields.set_mesh_file(table, path.strip().replace("\\", "/").removeprefix("//"))
 
 
-def _kind_items(
-    _self: EditedRow, _context: bpy.types.Context | None
-) -> list[tuple[str, str, str, str, int]]:
+def _kind_items(_self: EditedRow, _context: Context | None) -> list[tuple[str, str, str, str, int]]:
     return _kinds
 
 
@@ -185,7 +183,7 @@ Ring: Any = _ends("ring", ("Ring", RING), (0.0, 1.0), **HIGH)
 Height: Any = _ends("z", ("Height", HEIGHT), (0.0, 0.0), **HIGH)
 
 
-class PE_Requirement(Declared, X, Y, Ring, Height, bpy.types.PropertyGroup):
+class PE_Requirement(Declared, X, Y, Ring, Height, PropertyGroup):
     """A requirement, and its last verdict."""
 
     enabled: switch("Checked", "Hold the rig to this requirement", True, update=changed)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 
-import bpy
+from bpy.types import Context, PropertyGroup
 
 from ..choices import free_name
 from .fields import switch, text, whole
@@ -12,7 +12,7 @@ from .fields import switch, text, whole
 MAX_NAME_LENGTH = 60
 
 
-def _keep_apart(variant: PE_Variant, _context: bpy.types.Context) -> None:
+def _keep_apart(variant: PE_Variant, _context: Context) -> None:
     """Update callback of a variant's name: names are unique and not empty."""
     rows = variant.id_data.perception_entropy.variants
     taken = {row.name for row in rows if row.key != variant.key}
@@ -21,7 +21,7 @@ def _keep_apart(variant: PE_Variant, _context: bpy.types.Context) -> None:
         variant.name = name
 
 
-class PE_Variant(bpy.types.PropertyGroup):
+class PE_Variant(PropertyGroup):
     """A variant: the records of all sensors, and the result of scoring them."""
 
     name: text(

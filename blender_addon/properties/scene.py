@@ -6,6 +6,7 @@ import zlib
 from typing import Any
 
 import bpy
+from bpy.types import Collection, PropertyGroup
 
 from .. import bridge
 from ..choices import PRIORS
@@ -47,9 +48,7 @@ CheckFields: Any = bridge.stored_fields(bridge.StoredChecks, "checks_shown")
 FrontFields: Any = bridge.stored_fields(bridge.StoredFront, "front_shown")
 
 
-class PE_SceneSettings(
-    StudyFields, ResultFields, CheckFields, FrontFields, bpy.types.PropertyGroup
-):
+class PE_SceneSettings(StudyFields, ResultFields, CheckFields, FrontFields, PropertyGroup):
     """The study's settings, and the last result."""
 
     version: whole(
@@ -60,7 +59,7 @@ class PE_SceneSettings(
         "Vehicle",
         "Collection of the vehicle's meshes: x forward, y left, z up, in metres, "
         "with the origin on the ground",
-        bpy.types.Collection,
+        Collection,
         update=changed,
     )
     prior: menu("Prior", "Where objects are expected", PRIORS, update=changed)

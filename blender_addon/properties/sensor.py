@@ -9,8 +9,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-import bpy
 import numpy as np
+from bpy.types import Context, Object, PropertyGroup
 
 from .. import bridge
 from ..engine import pe, search
@@ -33,7 +33,7 @@ AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")
 FREE_BY_DEFAULT = tuple(axis in search.PAPER_FREE for axis in search.AXES)
 
 
-def shown_pose(obj: bpy.types.Object) -> pe.Pose:
+def shown_pose(obj: Object) -> pe.Pose:
     """Return the pose of an object in the ground frame, rounded as a score reads it.
 
     A scaled or mirrored object, which cannot be scored, gets the nearest pose.
@@ -48,25 +48,25 @@ def shown_pose(obj: bpy.types.Object) -> pe.Pose:
         return bridge.pose_from_numbers((*location, *(math.degrees(angle) for angle in angles)))
 
 
-def _position(settings: bpy.types.PropertyGroup) -> tuple[float, ...]:
+def _position(settings: PropertyGroup) -> tuple[float, ...]:
     return shown_pose(settings.id_data).position
 
 
-def _rotation(settings: bpy.types.PropertyGroup) -> tuple[float, ...]:
+def _rotation(settings: PropertyGroup) -> tuple[float, ...]:
     return tuple(map(math.radians, shown_pose(settings.id_data).rotation_deg))
 
 
-def _set_position(settings: bpy.types.PropertyGroup, value: Sequence[float]) -> None:
+def _set_position(settings: PropertyGroup, value: Sequence[float]) -> None:
     obj = settings.id_data
     _stand(obj, value, shown_pose(obj).rotation_deg)
 
 
-def _set_rotation(settings: bpy.types.PropertyGroup, value: Sequence[float]) -> None:
+def _set_rotation(settings: PropertyGroup, value: Sequence[float]) -> None:
     obj = settings.id_data
     _stand(obj, shown_pose(obj).position, [math.degrees(angle) for angle in value])
 
 
-def _stand(obj: bpy.types.Object, position: Sequence[float], degrees: Sequence[float]) -> None:
+def _stand(obj: Object, position: Sequence[float], degrees: Sequence[float]) -> None:
     bridge.place_at(obj, bridge.pose_from_numbers((*position, *degrees)))
 
 
@@ -98,16 +98,12 @@ class GroundPose:
     )
 
 
-def mounts_of_scene(
-    _settings: bpy.types.PropertyGroup, context: bpy.types.Context, _typed: str
-) -> list[str]:
+def mounts_of_scene(_settings: PropertyGroup, context: Context, _typed: str) -> list[str]:
     """Return the names of the scene's mounts."""
     return [row.name for row in context.scene.perception_entropy.mounts]
 
 
-def racks_of_scene(
-    _settings: bpy.types.PropertyGroup, context: bpy.types.Context, _typed: str
-) -> list[str]:
+def racks_of_scene(_settings: PropertyGroup, context: Context, _typed: str) -> list[str]:
     """Return the names of the racks that sensors of the scene are on."""
     return sorted({obj.perception_entropy.rack for obj in context.scene.objects} - {""})
 
@@ -115,7 +111,7 @@ def racks_of_scene(
 CurveFields: Any = group_of(pe.ApCurve, prefix="curve_")
 
 
-class PE_ObjectSettings(GroundPose, CurveFields, bpy.types.PropertyGroup):
+class PE_ObjectSettings(GroundPose, CurveFields, PropertyGroup):
     """What makes an object a sensor, and its part in the last result."""
 
     is_sensor: switch(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import zlib
 
-import bpy
+from bpy.types import Context, PropertyGroup
 
 from ..choices import BEFORE_MOVE, NO_ANCHOR, PINNED
 from ..engine import catalog, pe
@@ -40,15 +40,13 @@ COLORS = (
 )
 
 
-def classes_of(
-    _view: bpy.types.PropertyGroup, context: bpy.types.Context, _typed: str
-) -> list[str]:
+def classes_of(_view: PropertyGroup, context: Context, _typed: str) -> list[str]:
     """Return the classes of the scene's prior; for boxes from a file, those of the road."""
     highway = context.scene.perception_entropy.prior == "highway"
     return list((pe.Prior.highway() if highway else pe.Prior.road()).class_names)
 
 
-class PE_ViewSettings(bpy.types.PropertyGroup):
+class PE_ViewSettings(PropertyGroup):
     """Settings of what the 3D view draws."""
 
     show_ground: switch(
@@ -323,7 +321,7 @@ ANCHORS = (
 """Of known rigs; a file holds a number that stays a rig's whatever others there are."""
 
 
-class PE_LiveSettings(bpy.types.PropertyGroup):
+class PE_LiveSettings(PropertyGroup):
     """The live score of a scene."""
 
     on: switch(

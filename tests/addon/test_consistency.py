@@ -10,6 +10,7 @@ from tests.addon import scenes
 @pytest.fixture
 def scored(car):
     """Return the scene with its LiDAR scored."""
+    consistency.repair_scenes()
     assert bpy.ops.pe.score() == {"FINISHED"}
     return car
 

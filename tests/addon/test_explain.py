@@ -115,11 +115,11 @@ def test_words_are_the_engines(car):
     study = scenes.study()
     score = study.evaluator().score(study.rig)
     assert car.perception_entropy.result_words.splitlines() == list(advice.rig_words(score))
-    own = car.objects["roof"].perception_entropy
-    assert own.words.splitlines()[0] == "the only sensor"
+    own = bridge.figures_of_sensor(car.objects["roof"])
+    assert own.words[0] == "the only sensor"
     shares = advice.stopped_shares(study.rig["roof"], score.per_sensor["roof"], study.vehicle)
-    assert {row.name: row.share for row in own.stopped_parts} == pytest.approx(shares)
-    assert own.stopped_parts, "a score without a part in the way proves nothing here"
+    assert dict(own.parts) == pytest.approx(shares)
+    assert own.parts, "a score without a part in the way proves nothing here"
 
 
 def test_the_table_has_every_sensor_of_the_score(car):

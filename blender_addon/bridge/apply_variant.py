@@ -33,10 +33,7 @@ def apply_records(scene: Scene, records: Sequence[SensorRecord]) -> dict[str, st
         Name of each sensor's object, by the name of its record. The names differ where another
         object in the file already has the record's name.
 
-    Raises
-    ------
-    InputError
-        When a constraint, a driver or an animation holds a sensor where it is.
+    `InputError` when a constraint, a driver or an animation holds a sensor where it is.
     """
     wanted = {record.name: record for record in records}
     present = {obj.name: obj for obj in sensor_objects(scene)}

@@ -77,10 +77,7 @@ def as_drawn(scene: Scene) -> Iterator[None]:
 def conditions_of(settings: PropertyGroup) -> pe.Conditions:
     """Return the conditions of a scene that are switched on.
 
-    Raises
-    ------
-    InputError
-        When a row is wrong, names repeat, or all weights are 0.
+    `InputError` when a row is wrong, names repeat, or all weights are 0.
     """
     states = [_state_of(row) for row in settings.states if row.enabled]
     weathers = [_weather_of(row) for row in settings.weathers if row.enabled]
@@ -134,10 +131,7 @@ def _weather_of(row: PropertyGroup) -> pe.Weather:
 def read_states(scene: Scene) -> list[str]:
     """Read the motions of all states with a frame again; return the names of those that changed.
 
-    Raises
-    ------
-    InputError
-        When a part bends or has other triangles at a frame, or the vehicle cannot be read.
+    `InputError` when a part bends or has other triangles at a frame, or the vehicle cannot be read.
     """
     rows = [row for row in scene.perception_entropy.states if row.frame >= 0]
     if not rows:

@@ -38,10 +38,8 @@ def load_into(scene: Scene, study: pe.Study) -> list[str]:
 
     The scene's vehicle is kept if its triangles are equal to the study's to the bit.
 
-    Raises
-    ------
-    InputError
-        When the study has no vehicle, or a sensor is of a model that the catalogue does not have.
+    `InputError` when the study has no vehicle, or a sensor is of a model that the catalogue does
+    not have.
     """
     record = record_of_study(study)  # an error comes before anything is changed
     _write_vehicle(scene, record.vehicle)
@@ -70,10 +68,8 @@ def record_of_study(study: pe.Study) -> SceneRecord:
     If sensors choose their model together, each of them gets the options. A scene cannot store a
     limit by kind.
 
-    Raises
-    ------
-    InputError
-        When the study has no vehicle, or a sensor is of a model that the catalogue does not have.
+    `InputError` when the study has no vehicle, or a sensor is of a model that the catalogue does
+    not have.
     """
     if study.vehicle is None:
         raise pe.InputError("study", "vehicle.mesh", "a vehicle", "none")

@@ -31,10 +31,7 @@ def mounts_of(
 ) -> dict[str, search.AnyMount]:
     """Return the scene's mounts that visible sensors are on, by name.
 
-    Raises
-    ------
-    InputError
-        When a mount that a sensor is on has no faces or slots, or does not exist.
+    `InputError` when a mount that a sensor is on has no faces or slots, or does not exist.
     """
     rows, on = {row.name: row for row in scene.perception_entropy.mounts}, mounted(records)
     for name, mount in on.items():
@@ -55,10 +52,7 @@ def mounting_of(
 ) -> pe.Mounting:
     """Return where a search may put the visible sensors of some records.
 
-    Raises
-    ------
-    InputError
-        When a sensor is in two groups, or a mount is missing.
+    `InputError` when a sensor is in two groups, or a mount is missing.
     """
     try:
         return pe.Mounting(
@@ -71,10 +65,7 @@ def mounting_of(
 def mount_of_row(scene: Scene, depsgraph: Depsgraph, row: MountSettings) -> search.AnyMount:
     """Return one mount of a scene.
 
-    Raises
-    ------
-    InputError
-        When it has no faces, or no slots.
+    `InputError` when it has no faces, or no slots.
     """
     if row.kind == ON_SLOTS:
         return pe.SlotMount(_slots(row, depsgraph))
@@ -137,10 +128,7 @@ def followers_of(pairs: Sequence[Sequence[str]], groups: Sequence[Sequence[str]]
 def constraints_of(scene: Scene) -> pe.Constraints:
     """Return the constraints of a scene's search.
 
-    Raises
-    ------
-    InputError
-        When a limit or a no-go area is impossible.
+    `InputError` when a limit or a no-go area is impossible.
     """
     values = values_of(scene.perception_entropy, pe.Constraints)
     try:

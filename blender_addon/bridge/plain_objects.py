@@ -50,10 +50,7 @@ def sensors_of_objects(
 
     `models` are the chosen models by sensor name; an empty without a model gets `stand_in`.
 
-    Raises
-    ------
-    InputError
-        When there is none, or a camera has no perspective or no possible lens.
+    `InputError` when there is none, or a camera has no perspective or no possible lens.
     """
     sensors, lines = [], []
     for obj in plain_objects(objects):

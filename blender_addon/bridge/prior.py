@@ -19,11 +19,8 @@ MODELS = {ROAD: pe.Prior.road, HIGHWAY: pe.Prior.highway, UNIFORM: pe.Prior.unif
 def prior_from_scene(scene: Scene) -> pe.Prior:
     """Return the scene's prior, focus weights included.
 
-    Raises
-    ------
-    InputError
-        When boxes cannot be read, or a focus is no possible one; the line names the file, or the
-        focus by its place in the list.
+    `InputError` when boxes cannot be read, or a focus is no possible one; the line names the file,
+    or the focus by its place in the list.
     """
     settings = scene.perception_entropy
     from_boxes = settings.prior == FROM_BOXES

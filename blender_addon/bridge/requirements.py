@@ -30,10 +30,7 @@ VerdictSummary = requirements.VerdictSummary
 def requirements_of(settings: PropertyGroup) -> tuple[Requirement, ...]:
     """Return the requirements of a scene that are switched on.
 
-    Raises
-    ------
-    InputError
-        When a row's table is wrong, or two rows have one name.
+    `InputError` when a row's table is wrong, or two rows have one name.
     """
     found = [requirement_of(row) for row in settings.requirements if row.enabled]
     return requirements.checked_requirements(found)

@@ -31,10 +31,7 @@ def sensor_objects(scene: Scene) -> list[Object]:
 def rig_from_objects(objects: Sequence[Object], depsgraph: Depsgraph) -> pe.Rig:
     """Return the visible sensors among some objects as a rig.
 
-    Raises
-    ------
-    InputError
-        When there is none, or one of them is no possible sensor.
+    `InputError` when there is none, or one of them is no possible sensor.
     """
     visible = [obj for obj in objects if obj.visible_get(view_layer=depsgraph.view_layer)]
     if not visible:
@@ -50,10 +47,7 @@ def rig_from_objects(objects: Sequence[Object], depsgraph: Depsgraph) -> pe.Rig:
 def sensor_from_object(obj: Object, depsgraph: Depsgraph) -> pe.Sensor:
     """Return one object's model, placement, fusion group and AP curve as a sensor.
 
-    Raises
-    ------
-    InputError
-        When it is no possible sensor; the line names the object.
+    `InputError` when it is no possible sensor; the line names the object.
     """
     settings = obj.perception_entropy
     try:
@@ -111,10 +105,7 @@ def place_rig(scene: Scene, rig: pe.Rig, start: pe.Rig | None = None) -> list[st
 
     Sensors with the same pose in the rig `start` are not moved, wherever they are now.
 
-    Raises
-    ------
-    InputError
-        When a constraint, a driver or an animation holds a sensor where it is.
+    `InputError` when a constraint, a driver or an animation holds a sensor where it is.
     """
     moved = [s for s in rig if start is None or start[s.name].pose != s.pose]
     left = [s.name for s in rig if s not in moved and not _is_sensor(scene.objects.get(s.name))]
@@ -124,11 +115,8 @@ def place_rig(scene: Scene, rig: pe.Rig, start: pe.Rig | None = None) -> list[st
 def place_poses(scene: Scene, poses: Mapping[str, pe.Pose]) -> list[str]:
     """Place sensors, by name, at poses; return the names of sensors that no longer exist.
 
-    Raises
-    ------
-    InputError
-        When a constraint, a driver or an animation holds a sensor where it is, or it is another
-        file's.
+    `InputError` when a constraint, a driver or an animation holds a sensor where it is, or it is
+    another file's.
     """
     present: list[tuple[Object, pe.Pose]] = [
         (scene.objects[name], pose)
@@ -244,10 +232,7 @@ def _ground_from_parent(obj: Object) -> np.ndarray:
 def curve_of(settings: PropertyGroup) -> pe.ApCurve | None:
     """Return a sensor's own AP curve; None where it uses that of its kind.
 
-    Raises
-    ------
-    InputError
-        When the numbers are no curve.
+    `InputError` when the numbers are no curve.
     """
     if not settings.own_curve:
         return None

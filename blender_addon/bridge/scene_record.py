@@ -83,10 +83,7 @@ def study_from_scene(
 
     `vehicle` and `sensors` (all, by name) are given by callers that have already read them.
 
-    Raises
-    ------
-    InputError
-        One line that says what in the scene is wrong, what was expected and what was found.
+    `InputError` with one line that says what is wrong.
     """
     objects = sensor_objects(scene) if sensors is None else sensors
     check_scene(scene)  # its errors come before those of a sensor
@@ -102,10 +99,7 @@ def study_from_scene(
 def study_as_drawn(scene: Scene) -> pe.Study:
     """Return the study of a scene as its vehicle is drawn, with its states read again.
 
-    Raises
-    ------
-    InputError
-        As `study_from_scene`, and where a part of a state bends.
+    `InputError` as `study_from_scene`, and where a part of a state bends.
     """
     with as_drawn(scene):
         read_states(scene)
@@ -119,10 +113,7 @@ def study_of_rig(scene: Scene, depsgraph: Depsgraph, rig: Iterable[pe.Sensor]) -
 
     The rig's sensors have the free axes of the paper, and no bounds of their own.
 
-    Raises
-    ------
-    InputError
-        One line that says what in the scene is wrong, what was expected and what was found.
+    `InputError` with one line that says what is wrong.
     """
     records = [record_of_sensor(sensor) for sensor in rig]
     return study_of(record_of_scene(scene, depsgraph, records))
@@ -138,10 +129,8 @@ def record_of_scene(
 ) -> SceneRecord:
     """Return a scene's vehicle, mounts and settings with these sensors.
 
-    Raises
-    ------
-    InputError
-        When no study can be read from the scene, or a mount that a sensor is on is incomplete.
+    `InputError` when no study can be read from the scene, or a mount that a sensor is on is
+    incomplete.
     """
     check_scene(scene)
     settings = scene.perception_entropy
@@ -170,10 +159,7 @@ def record_of_scene(
 def study_of(record: SceneRecord) -> pe.Study:
     """Return the study that a record describes: of a scene, a variant or an imported file alike.
 
-    Raises
-    ------
-    InputError
-        One line that says what is wrong with the scene or the variant.
+    `InputError` with one line that says what is wrong.
     """
     rig = rig_of(record.sensors, record.source)
     counted = [sensor for sensor in record.sensors if sensor.visible]
@@ -220,10 +206,7 @@ def _limits(
 def check_scene(scene: Scene) -> None:
     """Check that a study can be read from a scene.
 
-    Raises
-    ------
-    InputError
-        When a unit is not a metre, or no vehicle is chosen.
+    `InputError` when a unit is not a metre, or no vehicle is chosen.
     """
     _check_metres(scene)
     _vehicle_chosen(scene)
@@ -232,10 +215,7 @@ def check_scene(scene: Scene) -> None:
 def vehicle_of_scene(scene: Scene, depsgraph: Depsgraph) -> pe.Vehicle:
     """Read the chosen vehicle from the scene and return it; no cache is used.
 
-    Raises
-    ------
-    InputError
-        When none is chosen, or it cannot be scored.
+    `InputError` when none is chosen, or it cannot be scored.
     """
     return vehicle_from_collection(_vehicle_chosen(scene), depsgraph, clearance_of(scene))
 
@@ -262,10 +242,7 @@ def _check_metres(scene: Scene) -> None:
 def selection_of(records: Sequence[SensorRecord], limits: pe.Selection) -> pe.Selection:
     """Return the choices of visible sensors with the scene's limits on all of them.
 
-    Raises
-    ------
-    InputError
-        When a model is not in the catalogue, is there twice, or has no price.
+    `InputError` when a model is not in the catalogue, is there twice, or has no price.
     """
     choices = [_choice(record) for record in records if record.visible and record.options]
     return replace(limits, choices=choices) if choices else pe.Selection()

@@ -107,10 +107,7 @@ def property_value(setting: studies.Setting, value: Any) -> Any:
 def space_of(settings: PropertyGroup) -> pe.PerceptionSpace:
     """Return the space that a scene's settings describe.
 
-    Raises
-    ------
-    InputError
-        When a bound is not below the other, or the voxels do not fit.
+    `InputError` when a bound is not below the other, or the voxels do not fit.
     """
     try:
         return pe.PerceptionSpace(**values_of(settings, pe.PerceptionSpace))
@@ -172,10 +169,7 @@ def search_of(settings: PropertyGroup, *, is_choice: bool) -> pe.Search:
 def goals_of(settings: PropertyGroup) -> search.Goals:
     """Return when a scene's searches stop, further starts, objectives, and the analysis.
 
-    Raises
-    ------
-    InputError
-        When only one objective is chosen.
+    `InputError` when only one objective is chosen.
     """
     return search.Goals(
         search.Stop(**values_of(settings, search.Stop)),
@@ -213,10 +207,7 @@ def write_reference(settings: PropertyGroup, reference: pe.Reference | None) -> 
 def passthrough_of(settings: PropertyGroup) -> exchange.Passthrough | None:
     """Return the contents of an imported file besides the rig; None if there are none.
 
-    Raises
-    ------
-    InputError
-        When the scene's text is none that an import has written.
+    `InputError` when the scene's text is none that an import has written.
     """
     return studies.passthrough_of_text(settings.passthrough, "scene")
 

@@ -111,10 +111,7 @@ def same_sensors(records: Iterable[SensorRecord], others: Iterable[SensorRecord]
 def records_of_scene(scene: Scene) -> tuple[SensorRecord, ...]:
     """Return all sensors of a scene by name, hidden ones included.
 
-    Raises
-    ------
-    InputError
-        When one of them is scaled or sheared, or has no finite place.
+    `InputError` when one of them is scaled or sheared, or has no finite place.
     """
     layer = view_layer_of(scene)
     layer.update()
@@ -124,10 +121,7 @@ def records_of_scene(scene: Scene) -> tuple[SensorRecord, ...]:
 def record_of_object(obj: Object, depsgraph: Depsgraph, layer: ViewLayer) -> SensorRecord:
     """Return the record of one sensor of a scene.
 
-    Raises
-    ------
-    InputError
-        When it is scaled or sheared, has no finite place, or its AP curve is impossible.
+    `InputError` when it is scaled or sheared, has no finite place, or its AP curve is impossible.
     """
     settings, visible = obj.perception_entropy, obj.visible_get(view_layer=layer)
     try:
@@ -254,10 +248,7 @@ def rig_of(records: Sequence[SensorRecord], source: str = "variant") -> pe.Rig:
 
     `source` is named by errors: "scene" or "variant".
 
-    Raises
-    ------
-    InputError
-        When there is none, or one of them cannot be scored.
+    `InputError` when there is none, or one of them cannot be scored.
     """
     visible = [record for record in records if record.visible]
     if not visible:
@@ -273,10 +264,8 @@ def rig_of(records: Sequence[SensorRecord], source: str = "variant") -> pe.Rig:
 def sensor_of(record: SensorRecord, source: str = "variant") -> pe.Sensor:
     """Return a record as the engine's sensor.
 
-    Raises
-    ------
-    InputError
-        When the catalogue does not have its model, or the name or the fusion group is impossible.
+    `InputError` when the catalogue does not have its model, or the name or the fusion group is
+    impossible.
     """
     try:
         model = record.intrinsics or catalog.load(record.model)

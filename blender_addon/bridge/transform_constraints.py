@@ -60,10 +60,7 @@ def search_bounds(
 ) -> Limits:
     """Return the bounds of a sensor: the typed bounds intersected with its Limit constraints.
 
-    Raises
-    ------
-    InputError
-        When the intersection is empty.
+    `InputError` when the intersection is empty.
     """
     default = search.default_bounds(sensor, vehicle)
     limits = dict(bounds)

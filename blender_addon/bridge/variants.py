@@ -35,10 +35,7 @@ def active_variant(scene: Scene) -> Variant | None:
 def variant_named(scene: Scene, name: str) -> Variant:
     """Return a variant by its name.
 
-    Raises
-    ------
-    InputError
-        When there is no such variant; the message names the existing ones.
+    `InputError` when there is no such variant; the message names the existing ones.
     """
     rows = scene.perception_entropy.variants
     for row in rows:
@@ -67,10 +64,7 @@ def add_variant(scene: Scene, name: str, records: Sequence[SensorRecord]) -> Var
 def activate_variant(scene: Scene, variant: Variant) -> None:
     """Apply a variant to the scene, and make it the active one.
 
-    Raises
-    ------
-    InputError
-        When a sensor cannot be placed.
+    `InputError` when a sensor cannot be placed.
     """
     key = variant.key
     records = records_of(variant)
@@ -96,10 +90,7 @@ def mark_active(scene: Scene, key: int) -> None:
 def study_of_variant(scene: Scene, variant: Variant, depsgraph: Depsgraph) -> pe.Study:
     """Return the study that the scene would have if the variant were applied to it.
 
-    Raises
-    ------
-    InputError
-        One line that says what is wrong with the scene, or with the variant.
+    `InputError` with one line that says what is wrong.
     """
     try:
         record = record_of_scene(scene, depsgraph, records_of(variant), source="variant")

@@ -35,10 +35,7 @@ def vehicle_from_collection(
     Objects that are hidden in the viewport or in renders, or mounted on a sensor, are left out.
     `clearance_m` is how far a flush-mounted sensor counts as protruding from the surface [m].
 
-    Raises
-    ------
-    InputError
-        When no solid object remains, or a coordinate is not finite.
+    `InputError` when no solid object remains, or a coordinate is not finite.
     """
     parts = sorted(_parts(collection, depsgraph), key=lambda part: part.name)
     if not parts:

@@ -48,10 +48,7 @@ def read_bytes(path: Path, max_bytes: int = TEXT_BYTES) -> bytes:
     A pipe, a terminal or a device is refused without being opened. A file that grows while it is
     read is read no further than `max_bytes`.
 
-    Raises
-    ------
-    InputError
-        When the file is missing, not a regular file, too large or not readable.
+    `InputError` when the file is missing, not a regular file, too large or not readable.
     """
     try:
         _require_regular(path, os.stat(path), "a readable file")
@@ -67,10 +64,8 @@ def read_bytes(path: Path, max_bytes: int = TEXT_BYTES) -> bytes:
 def named_path(source: object, field: str, text: str) -> Path:
     """Return the path of a file or folder that somebody named, in a name that can be.
 
-    Raises
-    ------
-    InputError
-        When the text is empty, has a NUL, or a name in it has more bytes than file systems take.
+    `InputError` when the text is empty, has a NUL, or a name in it has more bytes than file systems
+    take.
     """
     if not text:
         raise InputError(source, field, "the name of a file or folder", "an empty text")
@@ -95,10 +90,7 @@ def require_new(path: Path, *, replace: bool, inputs: Iterable[Path] = ()) -> No
     inputs : iterable of path
         Files that the output is made from; none of them is ever replaced.
 
-    Raises
-    ------
-    InputError
-        When there is something of that name, or it is an input.
+    `InputError` when there is something of that name, or it is an input.
     """
     if any(_is_same(path, given) for given in inputs):
         raise InputError(path, "file", "another file than the input", "the input")
@@ -120,10 +112,7 @@ def write_bytes(path: Path, data: bytes) -> None:
     A folder, pipe or device of that name is refused, not replaced. The file is on the disk, not in
     its cache, when the function returns.
 
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
+    `InputError` when the file cannot be written.
     """
     write_all_bytes({path: data})
 
@@ -134,10 +123,7 @@ def write_all_bytes(files: Mapping[Path, bytes]) -> None:
     A folder, pipe or device of such a name is refused, not replaced. All files are on the disk when
     the function returns.
 
-    Raises
-    ------
-    InputError
-        For the first file that cannot be written.
+    `InputError` for the first file that cannot be written.
     """
     # Not the tempfile module: only the owner may read its files, and os.replace keeps that mode.
     token = secrets.token_hex(4)
@@ -171,10 +157,7 @@ def put_in_place(moves: Mapping[Path, Path]) -> None:
     moves : mapping of path to path
         Final by temporary path, in the same folder each.
 
-    Raises
-    ------
-    InputError
-        When one of them cannot be renamed. The old files are back then.
+    `InputError` when one of them cannot be renamed. The old files are back then.
     """
     old: dict[Path, Path] = {}
     new: list[Path] = []

@@ -27,10 +27,7 @@ def available_bytes() -> int | None:
 def require_memory(source: object, field: str, needed: int) -> None:
     """Refuse work that needs more than the available memory.
 
-    Raises
-    ------
-    InputError
-        With the needed and the available memory.
+    `InputError` With the needed and the available memory.
     """
     available = available_bytes()
     if available is not None and needed > available:

@@ -108,10 +108,7 @@ def load_plugin(point: EntryPoint) -> Any:
 def call_plugin(point: EntryPoint, function: Any, *arguments: Any) -> Any:
     """Call a plugin's function.
 
-    Raises
-    ------
-    InputError
-        When it is not a function, or raises any exception; its own `InputError` is kept.
+    `InputError` when it is not a function, or raises any exception; its own `InputError` is kept.
     """
     if not callable(function):
         raise InputError(plugin_name(point), "entry point", "a function", type(function).__name__)
@@ -125,10 +122,7 @@ def required_plugin(sort: str, name: str, source: str, field: str, expected: str
     -------
     tuple of EntryPoint and what it leads to
 
-    Raises
-    ------
-    InputError
-        There is no such plugin, or a library is missing: `expected` says what to install.
+    `InputError` There is no such plugin, or a library is missing: `expected` says what to install.
     """
     point = find_plugin(sort, name)
     if point is None:

@@ -26,11 +26,8 @@ LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-])(?:{PART}){{{MAX_KEY_PARTS},}}+")
 def load_toml(source: object, field: str, text: str) -> dict[str, Any]:
     """Return the tables of a TOML text.
 
-    Raises
-    ------
-    InputError
-        When it is not TOML, is nested too deep, or has an integer of thousands of digits or a key
-        of more than `MAX_KEY_PARTS` parts.
+    `InputError` when it is not TOML, is nested too deep, or has an integer of thousands of digits
+    or a key of more than `MAX_KEY_PARTS` parts.
     """
     if found := LONG_KEY.search(text):
         line = text.count("\n", 0, found.start()) + 1

@@ -235,10 +235,7 @@ def check_settings(instance: Any, source: str, prefix: str = "", names: Iterable
     names : iterable of str
         Only these settings; all by default.
 
-    Raises
-    ------
-    InputError
-        When a value breaks its rule.
+    `InputError` when a value breaks its rule.
     """
     settings = settings_of(type(instance))
     for name in names or settings:

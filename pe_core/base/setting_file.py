@@ -25,10 +25,7 @@ def read_settings(
 
     An instance as `default` has the defaults in place of the declared ones.
 
-    Raises
-    ------
-    InputError
-        When a value breaks its rule; the line names the key in the file.
+    `InputError` when a value breaks its rule; the line names the key in the file.
     """
     settings = settings_of(cls)
     return {

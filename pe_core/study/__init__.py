@@ -27,32 +27,13 @@ from .setting_table import is_switch, menu_of, panel_default, setting_keys, sett
 from .study import Search, Study, vehicle_digest
 from .study_file import load_study, load_study_data, save_study, study_from_dict, study_to_dict
 
-__all__ = ["AREAS", "MESH", "ConditionScore", "ConditionTable", "Conditions", "StateInWeather"]
-__all__ += ["METHODS", "OBJECTIVES", "OPTIMIZED", "REQUIRED", "RESULT", "REVIEW_PAGE"]
-__all__ += ["SCHEDULED_METHOD", "SEARCH", "STUDY", "Angle", "Number", "OneOf", "Pair", "Panel"]
-__all__ += [
-    "Name",
-    "Robustness",
-    "Search",
-    "Setting",
-    "Several",
-    "Study",
-    "Texts",
-    "Toggle",
-    "Triple",
-    "Whole",
-    "condition_table",
-]
-__all__ += [
-    "is_switch",
-    "load_study",
-    "load_study_data",
-    "menu_of",
-    "mounts_table",
-    "panel_default",
-]
-__all__ += ["passthrough_of_text", "passthrough_table", "passthrough_text", "read_passthrough"]
-__all__ += ["requirement_file", "requirement_search", "save_study", "setting_keys", "settings_of"]
-__all__ += ["settings_of_part"]
-__all__ += ["state_from_dict", "state_table", "study_from_dict", "study_to_dict"]
-__all__ += ["value_in_file", "vehicle_digest"]
+__all__ = ["AREAS", "MESH", "METHODS", "OBJECTIVES", "OPTIMIZED", "REQUIRED", "RESULT"]
+__all__ += ["REVIEW_PAGE", "SCHEDULED_METHOD", "SEARCH", "STUDY"]
+__all__ += ["Angle", "ConditionScore", "ConditionTable", "Conditions", "Name", "Number", "OneOf"]
+__all__ += ["Pair", "Panel", "Robustness", "Search", "Setting", "Several", "StateInWeather"]
+__all__ += ["Study", "Texts", "Toggle", "Triple", "Whole"]
+__all__ += ["condition_table", "is_switch", "load_study", "load_study_data", "menu_of"]
+__all__ += ["mounts_table", "panel_default", "passthrough_of_text", "passthrough_table"]
+__all__ += ["passthrough_text", "read_passthrough", "requirement_file", "requirement_search"]
+__all__ += ["save_study", "setting_keys", "settings_of", "settings_of_part", "state_from_dict"]
+__all__ += ["state_table", "study_from_dict", "study_to_dict", "value_in_file", "vehicle_digest"]

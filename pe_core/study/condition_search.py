@@ -66,10 +66,7 @@ def study_objective(
 ) -> Objective:
     """Return what a study's search minimises, without its requirements.
 
-    Raises
-    ------
-    InputError
-        When conditions are to be searched over and the study has none.
+    `InputError` when conditions are to be searched over and the study has none.
     """
     search = study.search
     if search.conditions is None:

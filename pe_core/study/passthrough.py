@@ -126,10 +126,7 @@ def _numbers(pose: Pose) -> list[float]:
 def read_passthrough(table: Table) -> Passthrough:
     """Read the tables of `passthrough_table`.
 
-    Raises
-    ------
-    InputError
-        When a key is unknown, or a value is not valid.
+    `InputError` when a key is unknown, or a value is not valid.
     """
     files = table.table("files")
     for name in files.names:

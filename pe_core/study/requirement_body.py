@@ -22,10 +22,7 @@ AXES = ("up", "forward", "scale")
 def read_mesh_body(own: Table, name: str, folder: Path) -> Body:
     """Return a body from its table, with a mesh file relative to a folder.
 
-    Raises
-    ------
-    InputError
-        For a file that is no mesh, a body that is not closed, or one of no likely size.
+    `InputError` for a file that is no mesh, a body that is not closed, or one of no likely size.
     """
     file = own.text("mesh", rule=A_PATH)
     up, forward = own.text("up", None), own.text("forward", None)

@@ -107,10 +107,7 @@ class ConditionedChecker(RequirementChecker):
 def conditions_of(requirement: Requirement, conditions: Conditions) -> Iterator[StateInWeather]:
     """Yield the conditions under which a requirement has to be met, besides as drawn.
 
-    Raises
-    ------
-    InputError
-        For an unknown state or weather; the nearest names are offered.
+    `InputError` for an unknown state or weather; the nearest names are offered.
     """
     under = requirement.under
     states = _expanded(under.states, [each.name for each in conditions.states])

@@ -98,10 +98,7 @@ def _shipped() -> Mapping[str, Preset]:
 def read_requirements(table: Table, folder: Path = Path()) -> tuple[Requirement, ...]:
     """Return the requirements of a study's table; mesh files are relative to a folder.
 
-    Raises
-    ------
-    InputError
-        One line with the file and the key.
+    `InputError` with one line that says what is wrong.
     """
     tables = table.tables("requirement")
     if len(tables) > MAX_REQUIREMENTS:

@@ -167,13 +167,15 @@ class Start:
         put(self, "name", A_NAME.checked("optimize", "start.name", self.name))
         put(self, "poses", ReadOnlyDict(self.poses))
 
+    @property
+    def numbers(self) -> dict[str, list[float]]:
+        """Position [m] and roll, pitch, yaw [deg] of each sensor, by name."""
+        return {name: [*p.position, *p.rotation_deg] for name, p in self.poses.items()}
+
     @staticmethod
     def text_of(starts: Sequence[Start]) -> str:
         """Return starts as JSON text; empty for none."""
-        rows = [
-            [start.name, {n: [*p.position, *p.rotation_deg] for n, p in start.poses.items()}]
-            for start in starts
-        ]
+        rows = [[start.name, start.numbers] for start in starts]
         return json.dumps(rows) if rows else ""
 
     @staticmethod

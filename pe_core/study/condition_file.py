@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from ..base.errors import InputError
@@ -18,8 +19,11 @@ OF_STATE, BODY = ("weight", "frame"), ("heave", "roll_rad", "pitch_rad", "about"
 
 def read_conditions(table: Table) -> Conditions:
     """Return the conditions of a study's table; `InputError` with the file and the key."""
-    states = [_read_state(each) for each in table.tables("state")]
-    weathers = [_read_weather(each) for each in table.tables("weather")]
+    states, weathers = [_read_state(each) for each in table.tables("state")], []
+    for each in table.tables("weather"):
+        name, values = each.text("name", rule=A_NAME), read_settings(each, Weather)
+        each.finish()
+        weathers.append(_made(each, partial(Weather, name, **values)))
     try:
         return Conditions(states, weathers)
     except InputError as error:
@@ -42,26 +46,17 @@ def state_from_dict(data: Any, source: str = "state") -> State:
     return _read_state(Table(data, source))
 
 
-def _read_weather(table: Table) -> Weather:
-    name = table.text("name", rule=A_NAME)
-    values = read_settings(table, Weather)
-    table.finish()
-    return _made(table, lambda: Weather(name, **values))
-
-
 def _read_state(table: Table) -> State:
     name, body = table.text("name", rule=A_NAME), table.table("body")
     values = read_settings(table, State, OF_STATE) | read_settings(body, State, BODY)
     body.finish()
-    motions = [_read_motion(each) for each in table.tables("move")]
+    motions = []
+    for each in table.tables("move"):
+        motion = read_settings(each, Motion)
+        each.finish()
+        motions.append(_made(each, partial(Motion, **motion)))
     table.finish()
     return _made(table, lambda: State(name, motions, **values))
-
-
-def _read_motion(table: Table) -> Motion:
-    values = read_settings(table, Motion)
-    table.finish()
-    return _made(table, lambda: Motion(**values))
 
 
 def _made(table: Table, make: Any) -> Any:

@@ -48,12 +48,7 @@ def goals_tables(goals: Goals) -> dict[str, Any]:
     return {
         "stop": None if goals.stop == default.stop else settings_table(goals.stop),
         "fixed": own.pop("fixed") or None,
-        "start": [_start_table(each) for each in goals.starts] or None,
+        "start": [{"name": each.name, "placements": each.numbers} for each in goals.starts] or None,
         "front": None if goals.front == default.front else settings_table(goals.front),
         **own,
     }
-
-
-def _start_table(start: Start) -> dict[str, Any]:
-    rows = {name: [*pose.position, *pose.rotation_deg] for name, pose in start.poses.items()}
-    return {"name": start.name, "placements": rows}

@@ -33,11 +33,14 @@ def read_model(curves: Table, fusion: Table) -> PerceptionModel:
     """Return the perception model: AP curves of voxels and objects, the rule for blind sensors."""
     default = PerceptionModel()
     tables = {kind: curves.table(kind) for kind in KINDS}
-    objects = {kind: _read_objects(table.table(CLASSES)) for kind, table in tables.items()}
-    own = {kind: read_curve(table, default.curve(kind)) for kind, table in tables.items()}
+    objects = {}
+    for kind, table in tables.items():
+        own = table.table(CLASSES)
+        objects[kind] = {name: read_curve(own.table(name)) for name in own.names}
+    by_kind = {kind: read_curve(table, default.curve(kind)) for kind, table in tables.items()}
     blind = fusion.text("blind", default.blind, BLIND_RULES)
     chosen = read_settings(curves, PerceptionModel)["model"]
-    model = PerceptionModel(blind, objects=objects, model=chosen, **own)
+    model = PerceptionModel(blind, objects=objects, model=chosen, **by_kind)
     curves.finish()
     fusion.finish()
     return model
@@ -47,21 +50,12 @@ def curves_table(model: PerceptionModel) -> dict[str, Any]:
     """Return the table [ap]: all curves by kind, and the model and classes that are not default."""
     named = settings_table(model) if model.model != PerceptionModel().model else {}
     return named | {
-        kind: {**settings_table(curve), CLASSES: _objects_table(model, kind)}
+        kind: {
+            **settings_table(curve),
+            CLASSES: {n: settings_table(c) for n, c in model.objects.get(kind, {}).items()} or None,
+        }
         for kind, curve in model.curves.items()
     }
-
-
-def _read_objects(table: Table) -> dict[str, ApCurve]:
-    found = {}
-    for name in table.names:
-        found[name] = read_curve(table.table(name))
-    return found
-
-
-def _objects_table(model: PerceptionModel, kind: str) -> dict[str, Any] | None:
-    own = model.objects.get(kind, {})
-    return {name: settings_table(curve) for name, curve in own.items()} or None
 
 
 def read_curve(table: Table, default: ApCurve | None = None) -> ApCurve:

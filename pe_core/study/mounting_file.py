@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -87,19 +88,16 @@ def _read_mount(table: Table, folder: Path) -> tuple[str, AnyMount]:
         found = "both" if slots else "neither"
         expected = "parts of the vehicle or an area, or a list of slots"
         raise table.error("parts, area, slot", expected, found)
-    mount = _made(table, lambda: SlotMount(slots)) if slots else _read_surface(table, folder)
+    if slots:
+        mount: AnyMount = _made(table, lambda: SlotMount(slots))
+    else:
+        file = table.text("area", None, rule=A_PATH)
+        parts = table.texts("parts", ()) if file else table.texts("parts")
+        area = None if file is None else _read_area(table, folder, file, parts)
+        own = read_settings(table, SurfaceMount) | ({} if area is None else {"area": area})
+        mount = _made(table, lambda: SurfaceMount(() if area else parts, **own))
     table.finish()
     return name, mount
-
-
-def _read_surface(table: Table, folder: Path) -> SurfaceMount:
-    file = table.text("area", None, rule=A_PATH)
-    parts = table.texts("parts", ()) if file else table.texts("parts")
-    own = read_settings(table, SurfaceMount)
-    if file is None:
-        return _made(table, lambda: SurfaceMount(parts, **own))
-    area = _read_area(table, folder, file, parts)
-    return _made(table, lambda: SurfaceMount((), **own, area=area))
 
 
 def _read_area(table: Table, folder: Path, file: str, parts: tuple[str, ...]) -> MountArea:
@@ -131,16 +129,12 @@ def _read_ties(table: Table, key: str) -> list[tuple[str, ...]]:
 
 
 def _read_constraints(table: Table) -> Constraints:
-    values = read_settings(table, Constraints)
-    areas = [_read_no_go(each) for each in table.tables("no_go")]
+    values, areas = read_settings(table, Constraints), []
+    for each in table.tables("no_go"):
+        name, sides = each.text("name", rule=A_NAME), read_settings(each, NoGo)
+        each.finish()
+        areas.append(_made(each, partial(NoGo, name, **sides)))
     return _made(table, lambda: Constraints(**values, no_go=areas))
-
-
-def _read_no_go(table: Table) -> NoGo:
-    name = table.text("name", rule=A_NAME)
-    sides = read_settings(table, NoGo)
-    table.finish()
-    return _made(table, lambda: NoGo(name, **sides))
 
 
 def _made(table: Table, make: Callable[[], T]) -> T:
@@ -154,20 +148,19 @@ def _made(table: Table, make: Callable[[], T]) -> T:
 
 
 def _mount_table(name: str, mount: AnyMount) -> dict[str, Any]:
-    if isinstance(mount, SurfaceMount):
-        return {"name": name, **_faces_table(mount), **settings_table(mount)}
-    return {"name": name, "slot": [_slot_table(slot) for slot in mount.slots]}
-
-
-def _faces_table(mount: SurfaceMount) -> dict[str, Any]:
-    if mount.area is None:
-        return {"parts": list(mount.parts)}
-    return {"area": mount.area.file, "parts": list(mount.area.parts) or None}
-
-
-def _slot_table(slot: Slot) -> dict[str, Any]:
-    return {
-        "name": slot.name,
-        "position": list(slot.pose.position),
-        "rotation": list(slot.pose.rotation_deg),
-    }
+    if isinstance(mount, SlotMount):
+        slots = [
+            {
+                "name": slot.name,
+                "position": list(slot.pose.position),
+                "rotation": list(slot.pose.rotation_deg),
+            }
+            for slot in mount.slots
+        ]
+        return {"name": name, "slot": slots}
+    area = mount.area
+    if area is None:
+        faces: dict[str, Any] = {"parts": list(mount.parts)}
+    else:
+        faces = {"area": area.file, "parts": list(area.parts) or None}
+    return {"name": name, **faces, **settings_table(mount)}

@@ -1,9 +1,23 @@
-"""Which tests share a processor, when `make test` gives them several."""
+"""Which tests share a processor when `make test` gives them several, and what each may take."""
 
 import os
 
 import pytest
 from xdist.scheduler import LoadScopeScheduling
+
+from tests.limits import (
+    heeded_signals,
+    pytest_runtest_call,
+    pytest_runtest_setup,
+    pytest_runtest_teardown,
+)
+
+__all__ = [
+    "heeded_signals",
+    "pytest_runtest_call",
+    "pytest_runtest_setup",
+    "pytest_runtest_teardown",
+]
 
 WINDOWS = "tests/blender/"
 """The folder whose tests open a real Blender's window: one at a time, and begun first."""

@@ -13,9 +13,9 @@ import bpy
 
 from blender_addon.__main__ import run_on_file
 from pe_tools.cli import verbs
+from tests.limits import HANG_S
 
 ROOT = Path(__file__).resolve().parents[2]
-TIMEOUT_S = 120
 FAST = (
     *("--grid-samples", "4096", "--samples", "4096"),
     *("--method", "random", "--candidates", "2", "--seed", "3"),
@@ -60,7 +60,7 @@ def run_alone(blend, *arguments) -> Answer:
     """``python -m blender_addon FILE VERB`` in a process of its own."""
     # The bpy of this process has set OCIO; another one would tell of it on stdout.
     env = {key: value for key, value in os.environ.items() if key != "OCIO"}
-    options = {"capture_output": True, "text": True, "timeout": TIMEOUT_S}
+    options = {"capture_output": True, "text": True, "timeout": HANG_S}
     answer = subprocess.run(command(blend, *arguments), cwd=ROOT, env=env, **options)
     return Answer(answer.returncode, answer.stdout, answer.stderr)
 
@@ -72,7 +72,7 @@ def complaints(answer) -> list[str]:
 
 def wait_for(text: str, log: Path) -> None:
     """Wait until a running command has written a text to its log."""
-    deadline = time.monotonic() + TIMEOUT_S
+    deadline = time.monotonic() + HANG_S
     while text not in log.read_text():
         assert time.monotonic() < deadline, log.read_text()
         time.sleep(0.1)

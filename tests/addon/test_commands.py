@@ -16,7 +16,6 @@ from tests.addon import scenes
 from tests.addon.command_line import (
     FAST,
     ROOT,
-    TIMEOUT_S,
     command,
     complaints,
     pe_here,
@@ -24,6 +23,7 @@ from tests.addon.command_line import (
     run_here,
     wait_for,
 )
+from tests.limits import HANG_S
 
 
 def without_run(path: Path) -> dict:
@@ -175,6 +175,7 @@ def test_sensors(blend):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for one process on Windows")
+@pytest.mark.usefixtures("heeded_signals")
 def test_interrupt_keeps_the_best_so_far(blend, tmp_path):
     folder = tmp_path / "result"
     arguments = (*FAST[:6], "--candidates", 100_000, "-o", folder)
@@ -188,7 +189,7 @@ def test_interrupt_keeps_the_best_so_far(blend, tmp_path):
         try:
             wait_for("optimizing", tmp_path / "log")
             os.kill(process.pid, signal.SIGINT)
-            assert process.wait(TIMEOUT_S) == 130
+            assert process.wait(HANG_S) == 130
         finally:
             process.kill()
     result = without_run(folder / "result.json")
@@ -210,7 +211,7 @@ os._exit(0)  # bpy 4.5 would not end by itself
 def test_the_process_ends_though_the_file_has_a_driver_in_python(blend):
     """Plain bpy 4.5 hangs at its exit after it has evaluated one."""
     made = subprocess.run(
-        [sys.executable, "-c", DRIVE, str(blend)], capture_output=True, timeout=TIMEOUT_S
+        [sys.executable, "-c", DRIVE, str(blend)], capture_output=True, timeout=HANG_S
     )
     assert made.returncode == 0, made.stderr
     answer = run_alone(blend, "score", *FAST[:2], "--json")

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 import pe_core as pe
+from tests.limits import HANG_S
 
 ROOT = Path(__file__).resolve().parents[2]
 SEDAN = ROOT / "blend_assets" / "sedan.blend"
-TIMEOUT_S = 300
 
 INSTALL_AND_SCORE = """
 import pathlib
@@ -41,7 +41,7 @@ def archive():
         [sys.executable, str(ROOT / "tools" / "build_extension.py")],
         capture_output=True,
         text=True,
-        timeout=TIMEOUT_S,
+        timeout=HANG_S,
     )
     assert answer.returncode == 0, answer.stderr
     return answer.stdout.strip().splitlines()[-1]
@@ -56,7 +56,7 @@ def test_the_zip_installs_and_scores_the_sedan_as_the_engine_does(archive, tmp_p
         env=env,
         capture_output=True,
         text=True,
-        timeout=TIMEOUT_S,
+        timeout=HANG_S,
     )
     assert answer.returncode == 0, answer.stdout + answer.stderr
     loaded = pe.load_study(study)

@@ -16,12 +16,12 @@ from tests.addon import scenes
 from tests.addon.command_line import (
     FAST,
     ROOT,
-    TIMEOUT_S,
     command,
     complaints,
     run_here,
     wait_for,
 )
+from tests.limits import HANG_S
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals and files")
 
@@ -63,6 +63,7 @@ def test_the_same_folder_again_is_one_set(blend, tmp_path, small_pictures):
     assert jobs.files_of_other_runs(out) == []
 
 
+@pytest.mark.usefixtures("heeded_signals")
 def test_being_told_to_end_keeps_the_best(blend, tmp_path):
     out, log = tmp_path / "out", tmp_path / "log"
     arguments = (*FAST[:6], "--candidates", 100_000, "-o", out)
@@ -76,7 +77,7 @@ def test_being_told_to_end_keeps_the_best(blend, tmp_path):
         try:
             wait_for("optimizing", log)
             process.send_signal(signal.SIGTERM)
-            assert process.wait(TIMEOUT_S) == 143, log.read_text()
+            assert process.wait(HANG_S) == 143, log.read_text()
         finally:
             process.kill()
     assert json.loads((out / "result.json").read_text())["stopped"]
@@ -89,7 +90,7 @@ def test_a_full_stderr_ends_nothing(blend, tmp_path):
     arguments = command(blend, "score", *FAST[:2], "-o", out)
     with open("/dev/full", "w") as full:
         answer = subprocess.run(
-            arguments, cwd=ROOT, stdout=subprocess.PIPE, stderr=full, timeout=TIMEOUT_S
+            arguments, cwd=ROOT, stdout=subprocess.PIPE, stderr=full, timeout=HANG_S
         )
     assert answer.returncode == 0 and b"entropy" in answer.stdout
     assert (out / "result.json").exists()
@@ -111,7 +112,7 @@ def test_a_scene_that_does_not_fit_on_the_disk_sets_the_old_one_aside(blend, tmp
         env={**os.environ, "TMPDIR": str(elsewhere), "OCIO": ""},
         capture_output=True,
         text=True,
-        timeout=TIMEOUT_S,
+        timeout=HANG_S,
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, 50_000)),
     )
     assert answer.returncode == 1, answer.stderr

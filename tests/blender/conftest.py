@@ -11,6 +11,7 @@ import pytest
 from tests.blender.runner import Blender, Installed, output_of
 from tests.blender.stage import Stage
 from tests.blender.window import TOOLS
+from tests.limits import HANG_S
 from tests.needed import unavailable
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -21,7 +22,7 @@ HERE = Path(__file__).resolve().parent
 def blender() -> Blender:
     """Return a real Blender, not bpy."""
     finder = [sys.executable, ROOT / "tools" / "real_blender.py"]
-    found = subprocess.run(finder, capture_output=True, text=True, timeout=120)
+    found = subprocess.run(finder, capture_output=True, text=True, timeout=HANG_S)
     if found.returncode != 0:
         unavailable(found.stderr.strip().removeprefix("real_blender: "))
     return Blender(found.stdout.strip())
@@ -31,7 +32,7 @@ def blender() -> Blender:
 def extension_zip() -> Path:
     """Return the extension, built from the sources as they are."""
     builder = [sys.executable, ROOT / "tools" / "build_extension.py"]
-    built = subprocess.run(builder, capture_output=True, text=True, timeout=300)
+    built = subprocess.run(builder, capture_output=True, text=True, timeout=HANG_S)
     assert built.returncode == 0, output_of(built)
     return Path(built.stdout.strip())
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tests.blender import process
+from tests.limits import HANG_S
 
 ADDON = "bl_ext.user_default.perception_entropy"
-RUN_TIMEOUT_S = 300
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class Blender:
     command: str
     env: dict[str, str] = field(default_factory=dict)
 
-    def run(self, *arguments, timeout_s: float = RUN_TIMEOUT_S) -> subprocess.CompletedProcess[str]:
+    def run(self, *arguments, timeout_s: float = HANG_S) -> subprocess.CompletedProcess[str]:
         """Run ``blender ARGUMENTS`` to its end."""
         return process.run([self.command, *map(str, arguments)], timeout_s, self.env)
 

@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 
 from tests.blender.runner import output_of
+from tests.limits import HANG_S
 
-SCORE_TIMEOUT_S = 300
 FAST = ("--grid-samples", 4096)  # to be quick: all else is the same as on the whole grid
 IN_TRAFFIC = """
 import sys, bpy
@@ -117,7 +117,7 @@ def test_radars_weathers_and_states_of_nuscenes_have_the_same_bits(installed, se
 def alone(*arguments) -> dict:
     """What the engine alone prints, numbers as text."""
     command = [sys.executable, "-m", "pe_core", *map(str, arguments)]
-    answer = subprocess.run(command, capture_output=True, text=True, timeout=SCORE_TIMEOUT_S)
+    answer = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S)
     assert answer.returncode == 0, output_of(answer)
     return document_in(answer.stdout)
 

@@ -11,9 +11,9 @@ from types import SimpleNamespace
 
 import pe_core
 from pe_tools.cli.verbs import main
+from tests.limits import HANG_S
 
 ROOT = Path(pe_core.__file__).parent.parent
-GUARD_S = 120
 FEW_ERRORS = (
     "import dataclasses, importlib\n"
     "found = importlib.import_module('pe_core.search.robustness')\n"
@@ -98,7 +98,7 @@ class Command:
         """Wait for a line of stderr, and return it."""
         with self._more:
             found = self._more.wait_for(
-                lambda: next(filter(is_it, self.lines), None) or self._ended, GUARD_S
+                lambda: next(filter(is_it, self.lines), None) or self._ended, HANG_S
             )
         assert isinstance(found, str), "".join(self.lines)
         return found
@@ -118,9 +118,9 @@ class Command:
 
     def end(self):
         """Wait for the end; return the exit status."""
-        status = self.process.wait(GUARD_S)
+        status = self.process.wait(HANG_S)
         with self._more:
-            self._more.wait_for(lambda: self._ended or self.process.stderr is None, GUARD_S)
+            self._more.wait_for(lambda: self._ended or self.process.stderr is None, HANG_S)
         return status
 
     @property

@@ -23,6 +23,7 @@ from pe_core.search import Processes, evaluate_all, processes, start_processes
 from pe_core.search.payload import Payload
 from pe_tools.cli.executors import workplace
 from tests.engine import shapes
+from tests.limits import HANG_S
 
 CANDIDATES = 7
 ROOM = pe.PerceptionSpace((-8.0, 8.0), (-8.0, 8.0), (0.0, 2.0), 0.5)
@@ -248,5 +249,5 @@ def test_workers_of_an_engine_packed_into_an_add_on_run_no_add_on(tmp_path):
     script.write_text(PACKED)
     arguments = [str(tmp_path), str(Path(pe.__file__).parent)]
     command = [sys.executable, str(script), *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S)
     assert done.stdout == "done\n", done.stderr

@@ -61,6 +61,7 @@ def test_the_exit_status_says_whether_all_are_met(study, capsys):
     assert "[[requirement]] in the study" in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("heeded_signals")
 def test_ctrl_c_keeps_the_verdicts_that_were_found(study, tmp_path, monkeypatch, capsys):
     study.write_text(STUDY + SMALL)
     steps, ended = CheckJob._steps, threading.Event()

@@ -12,6 +12,7 @@ import pytest
 import pe_core as pe
 from pe_tools.cli.verbs import main
 from tests.engine import shapes
+from tests.limits import HANG_S
 
 ROOT = Path(pe.__file__).parent.parent
 
@@ -129,6 +130,7 @@ def test_an_output_that_cannot_be_written_is_reported_at_once(study, tmp_path, c
     assert "output: expected a folder that can be written" in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("heeded_signals")
 def test_interrupt_keeps_the_best_so_far(study, tmp_path):
     """A real process, a real SIGINT in the middle of a search."""
     out = tmp_path / "out"
@@ -152,7 +154,7 @@ def test_interrupt_keeps_the_best_so_far(study, tmp_path):
         if line.startswith("optimizing"):
             break
     process.send_signal(signal.SIGINT)
-    process.communicate(timeout=60)
+    process.communicate(timeout=HANG_S)
     assert process.returncode == 130
     data = json.loads((out / "result.json").read_text())
     assert data["stopped"] and 1 <= data["evaluations"] < 100_000

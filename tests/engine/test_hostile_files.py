@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from tests.engine.hostile_files import all_cases
+from tests.limits import HANG_S
 
-GUARD_S = 300
 """Nothing is measured by this: it ends a reader that hangs, so that the test can say which."""
 
 
@@ -23,7 +23,7 @@ def outcomes_of(cases, new_folder):
         command, cwd=Path(__file__).parents[2], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE
     ) as child:
         try:
-            out, _ = child.communicate(timeout=GUARD_S)
+            out, _ = child.communicate(timeout=HANG_S)
         except subprocess.TimeoutExpired:
             child.kill()
             out, _ = child.communicate()

@@ -14,11 +14,13 @@ import pytest
 import pe_core as pe
 from pe_tools import jobs
 from tests.engine import shapes
-from tests.engine.processes import GUARD_S, ROOT, Command
+from tests.engine.processes import ROOT, Command
+from tests.limits import HANG_S
 from tests.thorough import THOROUGH, pairs
 
 if sys.platform == "win32":
     pytest.skip("POSIX signals and files", allow_module_level=True)
+pytestmark = pytest.mark.usefixtures("heeded_signals")
 ENDLESS = ("--candidates", 100_000)
 SHORT = ("--candidates", 4)
 
@@ -117,11 +119,6 @@ def test_nohup_means_it(study, out):
         assert command.end() == 143  # of two signals that count, it would be the second
 
 
-def heed_ctrl_c():
-    """What a shell starts in the background ignores it, and so does all that it starts."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-
-
 @pytest.mark.parametrize("module", ["numpy", "pe_tools.cli.terminal"])
 def test_ctrl_c_while_loading_is_one_line(module):
     """Python tells of each module that it has loaded; many more follow these."""
@@ -131,7 +128,6 @@ def test_ctrl_c_while_loading_is_one_line(module):
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        preexec_fn=heed_ctrl_c,
     )
     told = []
     for line in process.stderr:
@@ -139,7 +135,7 @@ def test_ctrl_c_while_loading_is_one_line(module):
         if line.split("|")[-1].strip().startswith(module):
             process.send_signal(signal.SIGINT)
             break
-    _, rest = process.communicate(timeout=GUARD_S)
+    _, rest = process.communicate(timeout=HANG_S)
     own = [line for line in (*told, *rest.splitlines()) if not line.startswith("import time:")]
     assert (process.returncode, [line.strip() for line in own]) == (130, ["pe: interrupted"])
 

@@ -18,8 +18,9 @@ from pe_tools import jobs
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import SearchState, fingerprint, read_search
 from tests.engine import shapes
-from tests.engine.processes import GUARD_S, ROOT
+from tests.engine.processes import ROOT
 from tests.engine.recording import Recorder, distance_to
+from tests.limits import HANG_S
 
 pytestmark = pytest.mark.usefixtures("few_errors")
 CANDIDATES = 12
@@ -167,7 +168,7 @@ def broken_off(signum, moment, *arguments):
     """Run a search that a signal ends; return the number of placements it had told of."""
     code = ENDING_ITSELF.format(signal=signum.name, moment=moment)
     command = [sys.executable, "-c", code, *map(str, arguments)]
-    answer = subprocess.run(command, cwd=ROOT, stderr=subprocess.PIPE, text=True, timeout=GUARD_S)
+    answer = subprocess.run(command, cwd=ROOT, stderr=subprocess.PIPE, text=True, timeout=HANG_S)
     assert answer.returncode in (-signum, 128 + signum), answer.stderr
     return max(int(line) for line in answer.stderr.splitlines() if line.isdecimal())
 
@@ -184,6 +185,7 @@ def test_a_kill_at_any_moment_loses_at_most_a_round(path, tmp_path, out):
     assert result(out) == result(tmp_path / "whole")
 
 
+@pytest.mark.usefixtures("heeded_signals")
 def test_a_search_that_ctrl_c_stopped_goes_on(path, tmp_path, out):
     assert main(["optimize", "--no-review", str(path), "-o", str(tmp_path / "whole")]) == 0
     told = broken_off(signal.SIGINT, ("told", 31), "optimize", "--no-review", path, "-o", out)

@@ -20,6 +20,8 @@ from tests.engine.test_docs import ROOT
 sys.path.insert(0, str(ROOT / "tools"))
 import release
 
+from tests.limits import HANG_S
+
 FOR_DEVELOPERS = {"test", "release", "dev", "docs", "bench"}
 
 
@@ -161,7 +163,7 @@ def test_zsh_completes_verbs_options_and_shells(tmp_path, capsys):
     assert main(["completion", "zsh"]) == 0
     (tmp_path / "_pe").write_text(capsys.readouterr().out)
     run = subprocess.run(
-        [zsh, "-f", "-c", ZSH], cwd=tmp_path, capture_output=True, text=True, timeout=60
+        [zsh, "-f", "-c", ZSH], cwd=tmp_path, capture_output=True, text=True, timeout=HANG_S
     )
     for whole in ("optimize", "--grid-samples", "fish"):
         assert whole in run.stdout, run

@@ -34,7 +34,8 @@ from pe_tools.sweep import (
 from pe_tools.sweep.parameter_grid import MAX_NAME_LENGTH, folder_names
 from pe_tools.sweep.sweep_runner import FolderCheckpoints
 from tests.engine import shapes
-from tests.engine.processes import GUARD_S, Command
+from tests.engine.processes import Command
+from tests.limits import HANG_S
 from tests.thorough import THOROUGH
 
 pytestmark = pytest.mark.usefixtures("few_errors")
@@ -158,7 +159,7 @@ def test_a_peer_that_is_no_scheduler_ends_in_time(greeting, study, out, capsys, 
         address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
         begun = time.monotonic()
         assert main(["sweep", str(study), "-o", str(out), "--scheduler", address]) == 1
-        assert time.monotonic() - begun < GUARD_S
+        assert time.monotonic() - begun < HANG_S
         for peer in peers:
             peer.close()
     (line,) = capsys.readouterr().err.splitlines()
@@ -169,7 +170,7 @@ def test_the_first_signal_ends_the_wait_for_a_silent_peer(study, out):
     pytest.importorskip("distributed", reason="of the extra cluster")
     with socket.create_server(("127.0.0.1", 0)) as server:
         address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
-        server.settimeout(GUARD_S)
+        server.settimeout(HANG_S)
         with Command("sweep", study, "-o", out, "--scheduler", address) as command:
             peer, _ = server.accept()
             command.send(signal.SIGTERM)
@@ -323,11 +324,12 @@ ENDINGS = [signal.SIGTERM, signal.SIGKILL, *([signal.SIGHUP] if THOROUGH else []
 
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 @pytest.mark.parametrize("ending", ENDINGS)
+@pytest.mark.usefixtures("heeded_signals")
 def test_a_sweep_that_is_ended_keeps_what_is_under_way(study, out, ending, capsys, noted):
     argv = ["sweep", str(study), "--optimize", "--set", "optimize.seed=3,4", "--workers", "1"]
     first = out / "car,optimize.seed=3"
     with Command(*argv, "-o", out, hang_in_score=2) as command:
-        deadline = time.monotonic() + GUARD_S
+        deadline = time.monotonic() + HANG_S
         while not (first / SEARCH).exists():
             assert time.monotonic() < deadline
             time.sleep(0.02)

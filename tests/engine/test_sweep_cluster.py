@@ -16,11 +16,11 @@ from pe_tools.cli.verbs import main
 from pe_tools.jobs import SearchState, read_search
 from tests.engine import shapes
 from tests.engine.processes import ROOT
+from tests.limits import HANG_S
 
 Client = pytest.importorskip("distributed").Client
 if sys.platform == "win32":
     pytest.skip("POSIX signals", allow_module_level=True)
-GUARD_S = 30
 HEIGHTS = ("1.6", "1.8", "2.0", "2.1")
 WAITING = """
 import os, pathlib, time
@@ -54,7 +54,7 @@ class Cluster:
         self.scheduler = started("scheduler", *where, *quiet, *local, "--port", 0)
         self.folder, script = folder, folder / "waiting.py"
         script.write_text(WAITING.format(folder=str(folder)))
-        one = ("--nthreads", 1, "--no-nanny", "--death-timeout", GUARD_S, "--preload", script)
+        one = ("--nthreads", 1, "--no-nanny", "--death-timeout", HANG_S, "--preload", script)
         self.workers = [started("worker", *where, *quiet, *local, *one) for _ in range(2)]
         self.address = self._address(folder / "scheduler.json")
 
@@ -62,7 +62,7 @@ class Cluster:
         wait_until(lambda: file.exists() and file.read_text())
         address = json.loads(file.read_text())["address"]
         with Client(address) as client:
-            client.wait_for_workers(2, GUARD_S)
+            client.wait_for_workers(2, HANG_S)
         return address
 
     def busy(self, worker):
@@ -76,7 +76,7 @@ class Cluster:
 
 def wait_until(is_so):
     """Wait for something that comes for certain, and give up where it does not."""
-    for _ in range(50 * GUARD_S):
+    for _ in range(50 * HANG_S):
         if is_so():
             return
         time.sleep(0.02)

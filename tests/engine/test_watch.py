@@ -7,11 +7,9 @@ import pytest
 import pe_core as pe
 from pe_core.scoring import ScoreStopped
 from tests.engine import shapes
+from tests.limits import HANG_S
 
 SPACE = pe.PerceptionSpace((-40, 40), (-10, 10), (0, 4), 0.5)  # five blocks of 32 planes
-
-GUARD_S = 60.0
-"""Only so that a failure does not hang."""
 
 
 def evaluator(samples=0):
@@ -74,7 +72,7 @@ def test_a_stopped_job_s_thread_stops_as_well(monkeypatch):
 
     def score(self, *args, **kwargs):
         started.set()
-        go.wait(GUARD_S)
+        go.wait(HANG_S)
         try:
             ended.append(whole(self, *args, **kwargs))
         except ScoreStopped:
@@ -88,8 +86,8 @@ def test_a_stopped_job_s_thread_stops_as_well(monkeypatch):
     steps = iter(job)
     next(steps)
     next(steps)
-    assert started.wait(GUARD_S)
+    assert started.wait(HANG_S)
     job.stop()
     assert not list(steps) and job.outcome is None
     go.set()
-    assert done.wait(GUARD_S) and ended == ["stopped"]
+    assert done.wait(HANG_S) and ended == ["stopped"]

@@ -22,12 +22,12 @@ import pytest
 from pe_core import catalog
 from pe_core.study import setting_keys
 from pe_tools.cli.verbs import parser
+from tests.limits import HANG_S
 from tests.needed import unavailable
 from tests.review.browser import DESKTOP, PHONE, Heard, settle
 from tests.thorough import THOROUGH
 
 ROOT = Path(__file__).resolve().parents[2]
-BUILD_TIMEOUT_S = 300
 SIDEWAYS = "() => document.documentElement.scrollWidth - window.innerWidth"
 SOME = ("index.html", "guide.html", "settings.html", "howto/requirements.html",
         "reference/catalogue/hesai.html", "reference/commands.html")  # fmt: skip
@@ -82,7 +82,7 @@ def built(folder: Path, docstrings: bool) -> None:
         env={**os.environ, "NO_MKDOCS_2_WARNING": "1", "PE_SITE_DOCSTRINGS": str(int(docstrings))},
         capture_output=True,
         text=True,
-        timeout=BUILD_TIMEOUT_S,
+        timeout=HANG_S,
     )
     assert done.returncode == 0, done.stdout + done.stderr
     assert "WARNING" not in done.stderr, done.stderr

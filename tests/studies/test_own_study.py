@@ -38,6 +38,7 @@ from studies.detectors.scenes import CLASSES, NOBODY, scene
 from studies.detectors.scores import PRIMARY
 from studies.detectors.segmentation import section
 from studies.detectors.study_page import page
+from tests.limits import HANG_S
 from tests.studies.conftest import ROOT, study
 from tests.thorough import THOROUGH
 
@@ -222,7 +223,11 @@ def in_a_process(*command):
     if importlib.util.find_spec("tensorflow") is None:
         pytest.skip("tensorflow is not installed")
     return subprocess.run(
-        [sys.executable, *map(str, command)], cwd=ROOT, capture_output=True, text=True, timeout=600
+        [sys.executable, *map(str, command)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=HANG_S,
     )
 
 

@@ -13,6 +13,7 @@ from pe_core import InputError
 from studies.paper import reproduce
 from studies.paper.plan import FULL, QUICK, plan, scores_and_figures
 from studies.results_file import ResultsFile
+from tests.limits import HANG_S
 from tests.studies.conftest import ROOT, numbers, study
 from tests.thorough import THOROUGH
 
@@ -104,7 +105,7 @@ def test_what_is_done_is_kept_when_it_is_interrupted(quick, tmp_path):
     assert "going on from" in process.stderr.readline()
     assert "] pitch/" in process.stderr.readline()
     process.send_signal(signal.SIGTERM)
-    _, error = process.communicate(timeout=120)
+    _, error = process.communicate(timeout=HANG_S)
     assert process.returncode == 128 + signal.SIGTERM
     assert "interrupted" in error and "Traceback" not in error
     kept = json.loads((tmp_path / "results.json").read_text("utf-8"))["results"]

@@ -13,6 +13,7 @@ from mathutils import Euler, Matrix, Vector
 from .. import bridge, signals
 from ..engine import geometry, pe, text
 from .declared import operator
+from .edit_sensors import rigid
 
 AdviceAmount = tuple[float, float, float]
 AMOUNT, FACTOR = text.Number(cap=1e6), text.Number(1e-6, 1e6)
@@ -57,8 +58,7 @@ def roll_sensor(context: bpy.types.Context, subject: str, amount: AdviceAmount) 
 def apply_scale(context: bpy.types.Context, subject: str, _amount: AdviceAmount) -> None:
     """Set a sensor's scale to 1, also if its parents cause the scale."""
     obj = _sensor_named(context, subject)
-    location, rotation, _ = obj.matrix_world.decompose()
-    obj.matrix_world = Matrix.LocRotScale(location, rotation, Vector((1.0, 1.0, 1.0)))
+    obj.matrix_world = rigid(obj.matrix_world)
     context.view_layer.update()
 
 
@@ -182,14 +182,10 @@ def _bounds(members: Iterable[bpy.types.Object]) -> tuple[Vector, Vector]:
     return low, high
 
 
-def _unless_vehicle(context: bpy.types.Context) -> str | None:
-    return "" if context.scene.perception_entropy.vehicle is None else None
-
-
 @operator(
     "Turn Round",
     mode="The vehicle is turned in Object Mode",
-    unless=_unless_vehicle,
+    unless=lambda context: "" if context.scene.perception_entropy.vehicle is None else None,
     signal=signals.study_changed,
     angle=FloatProperty(
         name="Angle",

@@ -375,11 +375,7 @@ CHECK = JobRow(
 ).declare()
 
 
-def _unless_job(_context: bpy.types.Context) -> str | None:
-    return "" if running_job.current is None else None
-
-
-@operator("Stop", unless=_unless_job, options=INTERNAL)
+@operator("Stop", unless=lambda _: "" if running_job.current is None else None, options=INTERNAL)
 def cancel(context: bpy.types.Context) -> None:
     """Stop the search, keep the best placement so far. Pressed again: all changes are discarded"""
     job = running_job.current

@@ -133,15 +133,13 @@ def _click(
     return {"FINISHED"}
 
 
-def _unless_busy(_context: bpy.types.Context) -> str | None:
-    why = "Something else waits for Esc: a search, or a sensor to place"
-    return why if placement.busy() else None
+BUSY = "Something else waits for Esc: a search, or a sensor to place"
 
 
 @operator(
     "Place Sensor",
     mode="Sensors are added in Object Mode",
-    unless=_unless_busy,
+    unless=lambda _: BUSY if placement.busy() else None,
     tooltip=with_data_sheet,
     invoke=_hold,
     modal=_modal,

@@ -51,13 +51,11 @@ def _end(_self: Any, context: bpy.types.Context) -> None:
         workspace.status_text_set(None)
 
 
-def _unless_sensors(context: bpy.types.Context) -> str | None:
-    return None if bridge.sensor_objects(context.scene) else "There are no sensors yet"
-
-
 @operator(
     "Query Location",
-    unless=_unless_sensors,
+    unless=lambda context: (
+        None if bridge.sensor_objects(context.scene) else "There are no sensors yet"
+    ),
     options=frozenset(),
     invoke=_begin,
     modal=_modal,

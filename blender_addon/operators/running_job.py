@@ -135,7 +135,9 @@ class RunningJob:
         viewport.redraw_editors()
 
     def end(self, context: bpy.types.Context) -> None:
-        """Remove everything that shows the job, however it ended."""
+        """Remove everything that shows the job, however it ended; drop one that still runs."""
+        if not self.ended:
+            self.job.drop()
         job_worker.drop(TOPIC)
         search_curve.drop(self.scene_name)
         signals.view_changed.emit()

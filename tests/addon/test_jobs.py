@@ -115,6 +115,34 @@ def test_one_job_at_a_time(car, monkeypatch):
     assert not bpy.ops.pe.cancel.poll()
 
 
+class Manager:
+    """A window manager without windows."""
+
+    windows = ()
+    event_timer_add = event_timer_remove = progress_begin = progress_end = lambda *_, **__: None
+
+
+def test_the_worker_runs_a_job_and_tells_how_it_ended(car):
+    context = SimpleNamespace(scene=car, window_manager=Manager(), window=None)
+
+    def broken():
+        yield pe.Progress("scoring", 0.5)
+        raise pe.InputError("job", "work", "none", "any")
+
+    job = pe.OptimizeJob(scenes.study())
+    running = running_job.RunningJob(context, job)
+    assert not running.ended
+    running.start()  # without a window the worker does it at once
+    assert running.ended and running.error is None and job.outcome is not None
+    running = running_job.RunningJob(context, broken())
+    running.start()
+    assert running.ended and isinstance(running.error, pe.InputError)
+    assert running.progress.fraction == 0.5
+    job = pe.OptimizeJob(scenes.study())
+    running_job.RunningJob(context, job).end(context)  # its window or file was closed
+    assert job.dropped
+
+
 def test_result_goes_stale_and_comes_back(car):
     settings, sensor = car.perception_entropy, car.objects["roof"]
     bpy.ops.pe.score()

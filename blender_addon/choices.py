@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 
 VERSION = 1
-"""Of what is stored in a .blend file; `bridge.versions` brings older files up to it."""
+"""Of what is stored in a .blend file: files of newer versions are said to be newer."""
 
 Range = tuple[float, float]
 """Low and high bound [m]."""

@@ -1,9 +1,9 @@
 """Keeps the sensors of scenes consistent, whatever was done outside the add-on's operators.
 
 A duplicated, copied or appended sensor is a new one and gets a colour of its own. Sensors that are
-linked to mirror images move with them, and a view camera goes with its sensor. Sensors of older
-files may be linked twice. All this happens on the moving signal, after a file was opened and before
-one is saved: at these times data may be written.
+linked to mirror images move with them, and a view camera goes with its sensor. All this happens on
+the moving signal, after a file was opened and before one is saved: at these times data may be
+written.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ from . import bridge, sensor_cache
 def after_load(*_: object) -> None:
     """After a file was opened: repair it, and say if it is of a newer version."""
     for scene in bpy.data.scenes:
-        bridge.unlink_duplicates(scene)
         if newer := bridge.newer_version_message(scene):
             print(f"perception_entropy: {newer}", file=sys.stderr)
     bridge.sync_own_sensors()

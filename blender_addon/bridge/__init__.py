@@ -15,7 +15,6 @@ from .mirroring import (
     mirror_of,
     mirrored_name,
     mirrored_pose,
-    unlink_duplicates,
     unlink_mirror,
 )
 from .mounting import LimitBox, bounds_box, mount_faces, mount_key, mount_of_row, no_go_boxes

@@ -8,10 +8,10 @@ import re
 from collections.abc import Sequence
 
 import bpy
-from bpy.types import Depsgraph, LayerCollection, Object, Scene
+from bpy.types import Depsgraph, Object, Scene
 
 from ..engine import advice, pe
-from .rig import place_poses, pose_of, sensor_objects
+from .rig import place_poses, pose_of
 
 SIDES = (("left", "right"), ("l", "r"))
 MIDDLE_M, MIDDLE_RAD = 1e-4, 1e-5
@@ -156,28 +156,3 @@ SENSORS = "Sensors"
 def is_copy(whose: str, obj: Object, sensors: Sequence[Object]) -> bool:
     """Whether what a sensor stores under the name `whose` belongs to another sensor."""
     return whose not in ("", obj.name) and any(other.name == whose for other in sensors)
-
-
-def unlink_duplicates(scene: Scene) -> list[str]:
-    """Unlink sensors from the root collection if they are in the collection of sensors, too.
-
-    Return their names. If a view layer excludes the collection of sensors, nothing is unlinked:
-    the sensors would disappear from that layer.
-    """
-    if any(_excluded(layer.layer_collection) for layer in scene.view_layers):
-        return []
-    doubled = [
-        obj
-        for obj in sensor_objects(scene)
-        if scene.collection in obj.users_collection
-        and any(collection.name == SENSORS for collection in obj.users_collection)
-    ]
-    for obj in doubled:
-        scene.collection.objects.unlink(obj)
-    return [obj.name for obj in doubled]
-
-
-def _excluded(layer: LayerCollection) -> bool:
-    """Whether a view layer excludes a collection of sensors."""
-    is_excluded = layer.exclude and layer.collection.name == SENSORS
-    return is_excluded or any(map(_excluded, layer.children))

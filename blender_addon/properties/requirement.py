@@ -222,7 +222,7 @@ class PE_Requirement(Declared, X, Y, Ring, Height, PropertyGroup):
         "Height of the lower edge above the ground",
         min=0.0,
         unit="LENGTH",
-        **_view(fields.own_low, fields.set_own_low),
+        **_view(*fields.own_number("low", 0.0)),
     )
     body_mesh: text(
         "Mesh File",
@@ -245,7 +245,7 @@ class PE_Requirement(Declared, X, Y, Ring, Height, PropertyGroup):
         min=1e-6,
         max=1e6,
         precision=4,
-        **_view(fields.mesh_scale, fields.set_mesh_scale),
+        **_view(*fields.own_number("scale", 1.0)),
     )
     body_class: text(
         "Class",

@@ -6,11 +6,13 @@ A table is that of a study file, with the keys of its preset (`requirement_file.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeAlias
 
 from ..engine import pe, requirements
 
 TableData = dict[str, Any]
+Getter: TypeAlias = Callable[[TableData], Any]
+Setter: TypeAlias = Callable[[TableData, Any], None]
 SEVERAL, OWN = "several", "own"
 BODIES_ASKED, GROUND_ASKED = "bodies", "ground"
 AREA, POLYGON, RING, PATH, SPOTS = "area", "polygon", "ring", "path", "spots"
@@ -210,16 +212,6 @@ def set_own_round(table: TableData, is_round: bool) -> None:
     own |= {"diameter": length, "height": height} if is_round else {"size": [length, width, height]}
 
 
-def own_low(table: TableData) -> float:
-    """Return the height of the lower edge of the own body [m]."""
-    return float(_own(table).get("low", 0.0))
-
-
-def set_own_low(table: TableData, low: float) -> None:
-    """Set the height of the lower edge of the own body [m]."""
-    _own(table)["low"] = round(low, 6)
-
-
 def mesh_file(table: TableData) -> str:
     """Return the mesh file of the own body; empty where the body is a box or a cylinder."""
     return str(_own(table).get("mesh", ""))
@@ -236,7 +228,7 @@ def set_mesh_file(table: TableData, file: str) -> None:
         own.setdefault("size", list(USUAL_SIZE))
 
 
-def own_text(key: str, usual: str) -> tuple[Callable[[TableData], str], Callable[..., None]]:
+def own_text(key: str, usual: str) -> tuple[Getter, Setter]:
     """Return how a text of the own body is read and set; the usual text removes the key."""
 
     def put(table: TableData, text: str) -> None:
@@ -248,14 +240,13 @@ def own_text(key: str, usual: str) -> tuple[Callable[[TableData], str], Callable
     return (lambda table: str(_own(table).get(key, usual))), put
 
 
-def mesh_scale(table: TableData) -> float:
-    """Return the factor for lengths of the mesh file."""
-    return float(_own(table).get("scale", 1.0))
+def own_number(key: str, usual: float) -> tuple[Getter, Setter]:
+    """Return how a number of the own body is read and set."""
 
+    def put(table: TableData, value: float) -> None:
+        _own(table)[key] = round(value, 6)
 
-def set_mesh_scale(table: TableData, scale: float) -> None:
-    """Set the factor for lengths of the mesh file."""
-    _own(table)["scale"] = round(scale, 6)
+    return (lambda table: float(_own(table).get(key, usual))), put
 
 
 def _bodies(table: TableData) -> list[Any]:

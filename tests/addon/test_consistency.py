@@ -76,23 +76,6 @@ def collections_of(obj):
     return [each.name for each in obj.users_collection]
 
 
-def test_double_links_of_an_older_file_are_mended_when_it_is_opened(car, tmp_path):
-    car.collection.objects.link(car.objects["roof"])
-    blend = str(tmp_path / "older.blend")
-    bpy.ops.wm.save_as_mainfile(filepath=blend)
-    bpy.ops.wm.open_mainfile(filepath=blend)
-    assert collections_of(bpy.data.objects["roof"]) == ["Sensors"]
-
-
-def test_where_the_collection_is_excluded_nothing_vanishes(car, tmp_path):
-    car.collection.objects.link(car.objects["roof"])
-    bpy.context.view_layer.layer_collection.children["Sensors"].exclude = True
-    blend = str(tmp_path / "older.blend")
-    bpy.ops.wm.save_as_mainfile(filepath=blend)
-    bpy.ops.wm.open_mainfile(filepath=blend)
-    assert bpy.data.objects["roof"].visible_get()
-
-
 @pytest.mark.parametrize("name", ["sedan", "bus"])
 def test_shipped_files_link_sensors_once(name, tmp_path):
     """As they are on disk: opened without the add-on, which would mend them."""

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import bpy
 import pytest
 
-from blender_addon import result_staleness
+from blender_addon import bridge, result_staleness
 from blender_addon.engine import pe, text
 from blender_addon.live import state
 from blender_addon.operators import declared, jobs, running_job

@@ -252,7 +252,7 @@ def test_the_engine_is_low_and_its_chains_are_short():
     assert len(chain) <= MAX_CHAIN_LENGTH, "\n".join(chain)
 
 
-@pytest.mark.parametrize("package", ["pe_core", "pe_tools"])
+@pytest.mark.parametrize("package", ["pe_core", "pe_tools", "blender_addon"])
 def test_no_modules_import_each_other_in_a_circle(package):
     """A type hint is an arrow, too."""
     graphlib.TopologicalSorter(import_graph(package, hints=True)).prepare()

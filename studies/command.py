@@ -18,14 +18,7 @@ def page_parser(
 ) -> tuple[argparse.ArgumentParser, argparse._MutuallyExclusiveGroup]:
     """Return the parser of a study, and the group of what it can do instead of a full run.
 
-    Parameters
-    ----------
-    name, about : str
-        The study, and what it does.
-    folders : tuple of str
-        Default folders of a full and of a quick run.
-    quick : str
-        What a quick run does, for the help.
+    `folders` are those of a full and of a quick run by default; `quick` says what the latter does.
     """
     parser = Parser(prog=f"python -m studies.{name}", description=about)
     about = f"folder for page, plots and results.json (default {folders[0]}, or {folders[1]})"
@@ -47,14 +40,12 @@ def main(
     """Run a study with the options of the command line, and exit with its status."""
     args = parser.parse_args()
     folder = Path(args.output or args.default_folders[args.quick])
-    leave(run(lambda: _answer(study, args, folder)))
 
+    def answer() -> Answer:
+        try:
+            return study(args, folder)
+        except ImportError as error:
+            hint, found = "pip install -e '.[studies]'", " ".join(str(error).split())
+            raise InputError("studies", "package", hint, found) from error
 
-def _answer(
-    study: Callable[[argparse.Namespace, Path], Answer], args: argparse.Namespace, folder: Path
-) -> Answer:
-    try:
-        return study(args, folder)
-    except ImportError as error:
-        hint = "pip install -e '.[studies]'"
-        raise InputError("studies", "package", hint, " ".join(str(error).split())) from error
+    leave(run(answer))

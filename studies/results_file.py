@@ -1,4 +1,4 @@
-"""The file results.json of a study: each result is written as soon as it is there."""
+"""Tasks in worker processes, and results.json, to which each result is written at once."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ import json
 import os
 import platform
 import subprocess
-from collections.abc import Mapping
-from dataclasses import asdict
+import sys
+import time
+from collections.abc import Callable, Mapping
+from concurrent.futures import as_completed
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -17,59 +20,56 @@ import numpy as np
 import pe_core as pe
 from pe_core import InputError
 from pe_core.base import dump_json, parse_json, read_bytes, write_bytes
+from pe_core.search import Processes
+from pe_tools.cli import noted_when_interrupted, show
+
+Json = dict[str, Any]
+Values = Mapping[str, Any]
+"""Values that were computed, by the name of their task."""
 
 RESULTS = "results.json"
 SCHEMA = 1
 
 
+@dataclass(frozen=True)
+class Task:
+    """A function that worker processes can import, its arguments, and the name of its result."""
+
+    name: str
+    function: Callable[..., Json]
+    arguments: Json = field(default_factory=dict)
+
+
 class ResultsFile:
-    """Results by task name, kept in a file.
+    """Results by task name, kept in results.json of a folder.
 
     Results of another commit, effort or NumPy are not gone on with: they are moved to a file of
-    their own.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of results.json.
-    effort : dataclass
-        How much is computed.
-
-    Attributes
-    ----------
-    entries : dict
-        Value and duration ("seconds") by task name.
-    loaded : int
-        Number of results that the file had already.
-
-    Raises
-    ------
-    InputError
-        When the file is no JSON.
+    their own. `entries` has value and duration by task name, `loaded` is how many the file had.
     """
 
     def __init__(self, folder: Path, effort: Any) -> None:
         self.path = folder / RESULTS
         self.made = made_by(effort)
-        self.entries: dict[str, dict[str, Any]] = {}
+        self.entries: dict[str, Json] = {}
         data = read_json(self.path) if self.path.exists() else {}
         if data.get("made") == self.made:
             self.entries = data["results"]
         elif data:
-            self.path.rename(_unused_name(folder))
+            names = (folder / f"results-{k}.json" for k in itertools.count(2))
+            self.path.rename(next(name for name in names if not name.exists()))
         self.loaded = len(self.entries)
 
     @property
-    def values(self) -> dict[str, Any]:
+    def values(self) -> Json:
         """The computed values, by task name."""
         return {name: entry["value"] for name, entry in self.entries.items()}
 
-    def add(self, name: str, value: dict[str, Any], seconds: float) -> None:
+    def add(self, name: str, value: Json, seconds: float) -> None:
         """Add a result, and write the file."""
         self.entries[name] = {"value": value, "seconds": round(seconds, 3)}
         self.save()
 
-    def save(self, **conclusions: Any) -> dict[str, Any]:
+    def save(self, **conclusions: Any) -> Json:
         """Write the file, with conclusions from the results as a whole; return its data."""
         ordered = dict(sorted(self.entries.items()))
         data = {"schema": SCHEMA, "made": self.made, **conclusions, "results": ordered}
@@ -77,64 +77,97 @@ class ResultsFile:
         return data
 
 
-def made_by(effort: Any) -> dict[str, Any]:
-    """Return what makes the results: commit, versions, machine, effort."""
-    data: dict[str, Any] = json.loads(
-        dump_json(
-            {
-                "commit": _commit(),
-                "version": pe.__version__,
-                "numpy": np.__version__,
-                "python": platform.python_version(),
-                "machine": f"{_processor()}, {os.cpu_count()} processors",
-                "effort": asdict(effort),
-            }
-        )
-    )
-    return data
+def compute(
+    folder: Path, effort: Any, ready: Callable[[Values], list[Task]], workers: int | None
+) -> ResultsFile:
+    """Compute all results that a folder does not have yet, in worker processes.
 
-
-def read_json(path: Path) -> dict[str, Any]:
-    """Read a file that holds a JSON object.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be read, or holds something else.
+    `ready` takes the values and returns the tasks that can run now and have none. There are as many
+    processes as processors, or fewer.
     """
+    results = ResultsFile(folder, effort)
+    if results.loaded:
+        print_progress(f"going on from {results.path}, which has {results.loaded} results")
+    note = f"{results.path} keeps the finished tasks; the same command goes on from them"
+    processors = os.cpu_count() or 1
+    with noted_when_interrupted(note), Processes(min(workers or processors, processors)) as pool:
+        try:
+            while tasks := ready(results.values):
+                total = results.loaded + len(tasks)
+                futures = {pool.submit(_timed, task): task.name for task in tasks}
+                for future in as_completed(futures):
+                    name, (value, seconds) = futures[future], future.result()
+                    results.add(name, value, seconds)
+                    print_progress(f"[{len(results.entries)}/{total}] {name}  {seconds:.1f} s")
+        except BaseException:  # Ctrl-C and SIGTERM end the workers in the middle of a task
+            pool.shutdown(cancel_futures=True)
+            raise
+    return results
+
+
+def _timed(task: Task) -> tuple[Json, float]:
+    started = time.perf_counter()
+    value = task.function(**task.arguments)
+    return value, time.perf_counter() - started
+
+
+def print_progress(line: str) -> None:
+    """Write a line to stderr; a closed stderr does not end the work."""
+    show(f"{line}\n", sys.stderr)
+
+
+def made_by(effort: Any) -> Json:
+    """Return what makes the results: commit, versions, machine, effort (a dataclass)."""
+    made = {
+        "commit": _commit(),
+        "version": pe.__version__,
+        "numpy": np.__version__,
+        "python": platform.python_version(),
+        "machine": f"{_processor()}, {os.cpu_count()} processors",
+        "effort": asdict(effort),
+    }
+    return plain(made)
+
+
+def plain(data: Any) -> Any:
+    """Return data as they are when they have been written to JSON and read again."""
+    return json.loads(dump_json(data))
+
+
+def read_json(path: Path) -> Json:
+    """Read a file that holds a JSON object; `InputError` where it cannot be read, or does not."""
     data = parse_json(path, read_bytes(path))
     if not isinstance(data, dict):
         raise InputError(path, "file", "a JSON object", type(data).__name__)
     return data
 
 
-def read_complete(path: Path, *conclusions: str) -> dict[str, Any]:
-    """Read a results.json that has all its conclusions; `InputError` for any other file."""
+def read_complete(path: Path, conclusions: Callable[[Json, Json], Json], *keys: str) -> Json:
+    """Read a results.json whose conclusions, at some keys, follow from its values.
+
+    `conclusions` takes the values and the effort. Any other file is an `InputError`.
+    """
     data = read_json(path)
-    if data.get("schema") != SCHEMA or not all(key in data for key in conclusions):
+    if data.get("schema") != SCHEMA or not all(key in data for key in keys):
         raise InputError(path, "schema", f"complete results of schema {SCHEMA}", "other data")
+    for key, value in conclusions(values_of(data), data["made"]["effort"]).items():
+        if data[key] != plain(value):
+            raise InputError(path, key, "those that follow from the results", "others")
     return data
 
 
-def values_of(data: Mapping[str, Any]) -> dict[str, Any]:
+def values_of(data: Mapping[str, Any]) -> Json:
     """Return the values of complete results, by task name."""
     return {name: entry["value"] for name, entry in data["results"].items()}
-
-
-def _unused_name(folder: Path) -> Path:
-    """Return a name for the results of another run: results-2.json, or the next that is free."""
-    names = (folder / f"results-{k}.json" for k in itertools.count(2))
-    return next(name for name in names if not name.exists())
 
 
 def _commit() -> str:
     """Return the commit of the checkout, marked when the code has changes that are not in it."""
     root = Path(__file__).resolve().parents[1]
+    code = ("pe_core", "pe_tools", "studies", "blend_assets")
     try:
         commit = _git(root, "rev-parse", "--short=12", "HEAD")
-        changed = _git(
-            root, "status", "--porcelain", "--", "pe_core", "pe_tools", "studies", "blend_assets"
-        )
+        changed = _git(root, "status", "--porcelain", "--", *code)
     except (OSError, subprocess.CalledProcessError):
         return "not a checkout"
     return f"{commit}, changed since" if changed else commit
@@ -151,30 +184,3 @@ def _processor() -> str:
         return next(x.split(":")[1].strip() for x in lines if x.startswith("model name"))
     except (OSError, StopIteration):
         return platform.processor() or platform.machine()
-
-
-class CompleteResults:
-    """Complete results, and the verdicts that a page draws from them.
-
-    Parameters
-    ----------
-    data : mapping
-        The content of results.json.
-
-    Attributes
-    ----------
-    seconds : dict
-        Durations by task.
-    verdicts : dict
-        Every verdict that the page has drawn from the results, by name.
-    """
-
-    def __init__(self, data: Mapping[str, Any]) -> None:
-        self.made: Mapping[str, Any] = data["made"]
-        self.seconds = {name: entry["seconds"] for name, entry in data["results"].items()}
-        self.verdicts: dict[str, str] = {}
-
-    def verdict(self, name: str, text: str) -> str:
-        """Note a verdict by name, and return its text."""
-        self.verdicts[name] = text
-        return text

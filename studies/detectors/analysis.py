@@ -8,39 +8,37 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..published.ranks import holm
-from .placements import placements
-from .plan import ACROSS, FIXED, GRID, MIXED, PLAIN, StudyPlan
-from .posed_sensors import PosedSensors
+from ..ranks import holm
+from ..results_file import Json
+from .placements import Placement, placements
+from .plan import ACROSS, CAMERAS, FIXED, GRID, MIXED, PLAIN, StudyPlan
 from .rank_tests import (
     PlacementSamples,
     Resample,
-    better_half,
+    Statistic,
     interval,
     ordered_share,
     partial_rho,
     permutation_p,
-    pooled_noise,
     rho_within,
 )
-from .result_files import PlacementRun
-from .runs import runs
+from .runs import Run, runs
 from .scores import COMPARED, EXPECTED_AP, HEIGHT, PRIMARY, ComparedScore
 
-Json = dict[str, Any]
 Floats = NDArray[np.float64]
+Results = Mapping[str, Json]
+"""Results by the name of the run, or scores by that of the placement."""
+ApOf = Callable[[Json], float]
+"""Returns the AP of a run's results."""
 
 HOLDS, REFUTED, UNDECIDED, OPEN = "holds", "refuted", "not decided", "open"
 FRESH = "mixed, fresh"
 """The mixed detector at placements that it was never trained with."""
-CAMERAS = "cameras"
-"""The study of camera placements."""
 WITH_PRIMARY_TEST = (FIXED, CAMERAS)
 """Designs in which the primary score's test is the one that counts, without a correction."""
 MIN_SO_FAR = 6
@@ -51,21 +49,13 @@ MOSTLY_RIGHT = 2.0 / 3.0
 
 @dataclass(frozen=True)
 class DesignResults:
-    """The finished part of a design.
+    """The finished part of a design: placements with a result, AP of the seeds that all have.
 
-    Attributes
-    ----------
-    name : str
-    chosen : list of PosedSensors
-        Those with a result.
-    samples : PlacementSamples
-        Their AP, of the seeds that all of them have.
-    done, planned : int
-        Runs.
+    `done` and `planned` count runs.
     """
 
     name: str
-    chosen: Sequence[PosedSensors]
+    chosen: Sequence[Placement]
     samples: PlacementSamples
     done: int
     planned: int
@@ -80,18 +70,28 @@ class DesignResults:
         """Whether there are enough placements for a figure."""
         return len(self.chosen) >= MIN_SO_FAR and bool(self.samples.members)
 
+    @property
+    def state(self) -> Json:
+        """How many runs are done."""
+        return {"done": self.done, "planned": self.planned}
 
-def analysis(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, Json]) -> Json:
-    """Return all that follows from the results of the runs, as JSON data.
+    def values(self, score: ComparedScore, scores: Results) -> Floats:
+        """Return a score's value at each placement, (P,)."""
+        return np.array([score.value(p, scores[p.name]) for p in self.chosen])
 
-    Parameters
-    ----------
-    plan : StudyPlan
-    results : mapping
-        Results by the name of the run.
-    scores : mapping
-        Scores by the name of the placement, of all placements with results.
-    """
+    def all_values(self, scores: Results) -> dict[str, Floats]:
+        """Return the values of all scores by name."""
+        return {score.name: self.values(score, scores) for score in COMPARED}
+
+    def all_round(self) -> DesignResults:
+        """Return the placements that see all round."""
+        index = np.flatnonzero([p.all_round for p in self.chosen])
+        chosen = [self.chosen[k] for k in index]
+        return replace(self, chosen=chosen, samples=self.samples.subset(index))
+
+
+def analysis(plan: StudyPlan, results: Results, scores: Results) -> Json:
+    """Return what the plan asks for, as JSON data."""
     tables = {d.name: design_table(plan, d, scores) for d in designs_of(plan, results)}
     pairs, steps = _pairs(plan, results, scores), _steps(plan, results, scores)
     return {
@@ -103,7 +103,7 @@ def analysis(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, 
     }
 
 
-def designs_of(plan: StudyPlan, results: Mapping[str, Json]) -> list[DesignResults]:
+def designs_of(plan: StudyPlan, results: Results) -> list[DesignResults]:
     """Return the finished parts of all designs."""
     own = [plain_design(plan, [name], results) for name in (FIXED, ACROSS)]
     return own + [_mixed(plan, results, name) for name in (MIXED, FRESH)]
@@ -114,53 +114,36 @@ def mean_ap(found: Json) -> float:
     return float(found["ap"])
 
 
-def mean_ap_in(ring: str) -> Callable[[Json], float]:
+def mean_ap_in(ring: str) -> ApOf:
     """Return what takes the mean AP of the classes in a ring from what a run has found."""
     return lambda found: float(np.mean(list(found["by_ring"][ring].values())))
 
 
 def plain_design(
-    plan: StudyPlan,
-    names: Sequence[str],
-    results: Mapping[str, Json],
-    ap_of: Callable[[Json], float] = mean_ap,
+    plan: StudyPlan, names: Sequence[str], results: Results, ap_of: ApOf = mean_ap
 ) -> DesignResults:
-    """Return the finished part of designs with a detector a placement, in the plain world.
-
-    Parameters
-    ----------
-    plan : StudyPlan
-    names : sequence of str
-        Of the designs; the first one is that of the results.
-    results : mapping
-    ap_of : callable
-        Returns the AP of a run's results.
-    """
+    """Return the finished part of designs with a detector a placement, in the plain world."""
     wanted = [r for r in runs(plan) if r.design in names and (r.world, r.detector) == (PLAIN, GRID)]
     return of_runs(names[0], wanted, results, ap_of)
 
 
 def of_runs(
-    name: str,
-    wanted: Sequence[PlacementRun],
-    results: Mapping[str, Json],
-    ap_of: Callable[[Json], float] = mean_ap,
+    name: str, wanted: Sequence[Run], results: Results, ap_of: ApOf = mean_ap
 ) -> DesignResults:
     """Return what runs with a detector a placement have found, as far as they are done."""
-    aps: dict[PosedSensors, list[float]] = {}
+    aps: dict[Placement, list[float]] = {}
     for run in wanted:
         if run.name in results and run.placement is not None:
             aps.setdefault(run.placement, []).append(ap_of(results[run.name]))
-    done = sum(map(len, aps.values()))
-    return DesignResults(name, list(aps), _samples(aps), done, len(wanted))
+    return DesignResults(name, list(aps), _samples(aps), sum(map(len, aps.values())), len(wanted))
 
 
-def _mixed(plan: StudyPlan, results: Mapping[str, Json], name: str) -> DesignResults:
+def _mixed(plan: StudyPlan, results: Results, name: str) -> DesignResults:
     """Return the placements at which the mixed detector was tested; only fresh ones for `FRESH`."""
     by_name = {p.name: p for p in placements(plan)}
     wanted = [run for run in runs(plan) if run.placement is None]
-    aps: dict[PosedSensors, list[float]] = {}
     done = [run for run in wanted if run.name in results]
+    aps: dict[Placement, list[float]] = {}
     for run in done:
         for placement, found in results[run.name]["placements"].items():
             if name == MIXED or not found["trained_with"]:
@@ -168,7 +151,7 @@ def _mixed(plan: StudyPlan, results: Mapping[str, Json], name: str) -> DesignRes
     return DesignResults(name, list(aps), _samples(aps), len(done), len(wanted))
 
 
-def _samples(aps: Mapping[PosedSensors, Sequence[float]]) -> PlacementSamples:
+def _samples(aps: Mapping[Placement, Sequence[float]]) -> PlacementSamples:
     """Return samples with the seeds that all placements have."""
     count = min(map(len, aps.values()), default=0)
     values = np.array([list(row)[:count] for row in aps.values()]).reshape(len(aps), count)
@@ -176,20 +159,13 @@ def _samples(aps: Mapping[PosedSensors, Sequence[float]]) -> PlacementSamples:
     return PlacementSamples(values, groups, np.array([p.hardware for p in aps]))
 
 
-def values_of(
-    score: ComparedScore, chosen: Sequence[PosedSensors], scores: Mapping[str, Json]
-) -> Floats:
-    """Return a score's value at each placement, (P,)."""
-    return np.array([score.value(p, scores[p.name]) for p in chosen])
-
-
 def _of_design(name: str) -> list[ComparedScore]:
     return [s for s in COMPARED if name == ACROSS or not s.across_only]
 
 
-def design_table(plan: StudyPlan, design: DesignResults, scores: Mapping[str, Json]) -> Json:
+def design_table(plan: StudyPlan, design: DesignResults, scores: Results) -> Json:
     """Return the correlations of a design with each score."""
-    head = {"done": design.done, "planned": design.planned, "placements": len(design.chosen)}
+    head = {**design.state, "placements": len(design.chosen)}
     if not design.has_figures:
         return {**head, "scores": {}}
     rows = {s.name: _row(plan, design, s, scores) for s in _of_design(design.name)}
@@ -202,15 +178,13 @@ def design_table(plan: StudyPlan, design: DesignResults, scores: Mapping[str, Js
         **head,
         "seeds": design.samples.aps.shape[1],
         "ap": [rounded(float(v)) for v in (ap.min(), np.median(ap), ap.max())],
-        "noise": rounded(pooled_noise(design.samples)),
+        "noise": rounded(design.samples.noise),
         "scores": rows,
     }
 
 
-def _row(
-    plan: StudyPlan, design: DesignResults, score: ComparedScore, scores: Mapping[str, Json]
-) -> Json:
-    values, samples = values_of(score, design.chosen, scores), design.samples
+def _row(plan: StudyPlan, design: DesignResults, score: ComparedScore, scores: Results) -> Json:
+    values, samples = design.values(score, scores), design.samples
     heights = np.array([p.mean_height for p in design.chosen])
     row = rho_of(plan, samples, values)
     row["p"] = permutation_p(values, samples, plan.statistics, plan.seed)
@@ -218,7 +192,8 @@ def _row(
         row["given_height"] = partial_of(plan, samples, values, heights)
         row["height_given"] = partial_of(plan, samples, heights, values)
     if samples.aps.shape[1] > 1:
-        row["better_half"] = _better_half(plan, samples, values)
+        index, half = samples.better_half()
+        row["better_half"] = rho_of(plan, half, values[index]) if half.members else None
     return row
 
 
@@ -229,10 +204,8 @@ def rho_of(plan: StudyPlan, samples: PlacementSamples, values: Floats) -> Json:
     def rho(resample: Resample) -> Floats:
         return rho_within(values[resample.index], resample.ap, members)
 
-    return {
-        "rho": rounded(float(rho_within(values, samples.ap, members))),
-        "interval": interval_of(plan, samples, rho),
-    }
+    found = rounded(float(rho_within(values, samples.ap, members)))
+    return {"rho": found, "interval": interval_of(plan, samples, rho)}
 
 
 def partial_of(plan: StudyPlan, samples: PlacementSamples, values: Floats, given: Floats) -> Json:
@@ -243,65 +216,54 @@ def partial_of(plan: StudyPlan, samples: PlacementSamples, values: Floats, given
         index = resample.index
         return partial_rho(values[index], resample.ap, given[index], members)
 
-    return {
-        "rho": rounded(float(partial_rho(values, samples.ap, given, members))),
-        "interval": interval_of(plan, samples, partial),
-    }
-
-
-def _better_half(plan: StudyPlan, samples: PlacementSamples, values: Floats) -> Json | None:
-    of_half, half = better_half_of(samples, values)
-    return rho_of(plan, half, of_half) if half.members else None
-
-
-def better_half_of(samples: PlacementSamples, values: Floats) -> tuple[Floats, PlacementSamples]:
-    """Return the values of the better half of each vehicle's placements, and their samples."""
-    index, half = better_half(samples)
-    return values[index], half
+    found = rounded(float(partial_rho(values, samples.ap, given, members)))
+    return {"rho": found, "interval": interval_of(plan, samples, partial)}
 
 
 def interval_of(
-    plan: StudyPlan, samples: PlacementSamples, statistic: Callable[[Resample], Floats]
+    plan: StudyPlan, samples: PlacementSamples, statistic: Statistic
 ) -> list[float | None]:
     """Return the interval that the plan names, of any statistic."""
     return [rounded(v) for v in interval(samples, plan.statistics, plan.seed, statistic)]
 
 
-def _pairs(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, Json]) -> Json:
+def share_of(
+    plan: StudyPlan, samples: PlacementSamples, values: Floats, less: Floats | None = None
+) -> Json:
+    """Return the share of pairs with different hardware that values order rightly, its interval.
+
+    With other values, `less`, it is the difference from theirs.
+    """
+    tie = plan.statistics.tie_ap
+
+    def share(index: NDArray[np.int64], ap: Floats) -> float:
+        hardware, groups = samples.hardware[index], samples.groups[index]
+        found = ordered_share(values[index], ap, hardware, groups, tie)
+        return (
+            found if less is None else found - ordered_share(less[index], ap, hardware, groups, tie)
+        )
+
+    def of_each(resample: Resample) -> Floats:
+        return np.array([share(i, ap) for i, ap in zip(resample.index, resample.ap, strict=True)])
+
+    found = rounded(share(np.arange(len(samples.ap)), samples.ap))
+    return {"share": found, "interval": interval_of(plan, samples, of_each)}
+
+
+def _pairs(plan: StudyPlan, results: Results, scores: Results) -> Json:
     """Return how many pairs of placements with different hardware each score orders rightly."""
     parts = [plain_design(plan, [name], results) for name in (FIXED, ACROSS)]
     design = plain_design(plan, (FIXED, ACROSS), results)
     head = {"done": sum(p.done for p in parts), "planned": sum(p.planned for p in parts)}
     if not all(part.has_figures for part in parts):
         return {**head, "scores": {}}
-    samples, tie = design.samples, plan.statistics.tie_ap
-    values = {s.name: values_of(s, design.chosen, scores) for s in COMPARED}
-
-    def share(name: str) -> Callable[[Resample], Floats]:
-        def statistic(resample: Resample) -> Floats:
-            found = [
-                ordered_share(values[name][i], ap, samples.hardware[i], samples.groups[i], tie)
-                for i, ap in zip(resample.index, resample.ap, strict=True)
-            ]
-            return np.array(found)
-
-        return statistic
-
-    def of_all(name: str) -> float:
-        return ordered_share(values[name], samples.ap, samples.hardware, samples.groups, tie)
-
-    rows = {
-        name: {"share": rounded(of_all(name)), "interval": interval_of(plan, samples, share(name))}
-        for name in values
-    }
-    difference = {
-        "share": rounded(of_all(EXPECTED_AP) - of_all(PRIMARY)),
-        "interval": interval_of(plan, samples, lambda r: share(EXPECTED_AP)(r) - share(PRIMARY)(r)),
-    }
+    values, samples = design.all_values(scores), design.samples
+    rows = {name: share_of(plan, samples, v) for name, v in values.items()}
+    difference = share_of(plan, samples, values[EXPECTED_AP], values[PRIMARY])
     return {**head, "scores": rows, "expected_ap_minus_primary": difference}
 
 
-def _steps(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, Json]) -> list[Json]:
+def _steps(plan: StudyPlan, results: Results, scores: Results) -> list[Json]:
     """Return rho of each score in the steps, and of the same placements in the plain world."""
     found = []
     for step in plan.steps:
@@ -309,7 +271,7 @@ def _steps(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, Js
         for name in (FIXED, ACROSS):
             design = of_runs(name, [r for r in wanted if r.design == name], results)
             entry: Json = {"world": step.world, "detector": step.detector, "design": name}
-            entry |= {"done": design.done, "planned": design.planned, "scores": {}}
+            entry |= {**design.state, "scores": {}}
             plain = plain_design(plan, [name], results)
             if design.has_figures and set(design.chosen) <= set(plain.chosen):
                 index = np.array([plain.chosen.index(p) for p in design.chosen])
@@ -317,7 +279,7 @@ def _steps(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, Js
                 entry |= {"placements": len(design.chosen), "seeds": design.samples.aps.shape[1]}
                 entry["order"] = rho_of(plan, same, design.samples.ap)
                 for score in _of_design(name):
-                    values = values_of(score, design.chosen, scores)
+                    values = design.values(score, scores)
                     here, there = (rho_of(plan, s, values) for s in (design.samples, same))
                     entry["scores"][score.name] = {**here, "plain": there}
             found.append(entry)
@@ -333,26 +295,17 @@ def _statements(
     half = primary.get("better_half") or {}
     given = primary.get("given_height") or {}
     share = pairs["scores"].get(PRIMARY, {})
-    difference = pairs.get("expected_ap_minus_primary", {})
+    more = pairs.get("expected_ap_minus_primary", {})
     significant = bool(primary) and primary["p"] < rule.alpha and primary["rho"] > 0.0
     first = HOLDS if significant else REFUTED
+    useful = _beside(primary, rule.useful_rho)
     rows: list[tuple[str, Json, str, Json]] = [
         ("Within one rig, a lower entropy goes with more found objects", primary, first, fixed),
-        (
-            "It is a useful ranking within one rig",
-            primary,
-            _beside(primary, rule.useful_rho),
-            fixed,
-        ),
+        ("It is a useful ranking within one rig", primary, useful, fixed),
         ("It still ranks among good placements", half, _beside(half, 0.0), fixed),
         ("It says more than height", given, _beside(given, 0.0), fixed),
         ("It may be compared across hardware", share, _beside(share, MOSTLY_RIGHT), pairs),
-        (
-            "Expected AP in traffic is better across hardware",
-            difference,
-            _beside(difference, 0.0),
-            pairs,
-        ),
+        ("Expected AP in traffic is better across hardware", more, _beside(more, 0.0), pairs),
     ]
     return [
         {
@@ -362,7 +315,7 @@ def _statements(
             "sign_changes": _sign_changes(
                 steps,
                 FIXED if part is fixed else ACROSS,
-                EXPECTED_AP if figures is difference else PRIMARY,
+                EXPECTED_AP if figures is more else PRIMARY,
             ),
         }
         for text, figures, verdict, part in rows

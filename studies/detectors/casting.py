@@ -135,14 +135,7 @@ def first_hits(
 ) -> tuple[Floats, Ints]:
     """Return distance (B,) [m], inf for a miss, and triangle (B,), -1 for flat ground and misses.
 
-    Parameters
-    ----------
-    tree : TriangleTree
-    flat : bool
-        Whether there is flat ground at z = 0.
-    origin : (3,) float
-    directions : (B, 3) float
-        Unit directions, ground frame.
+    `flat` says whether there is flat ground at z = 0; directions (B, 3) are of length 1.
     """
     hits = VisibleTriangles(tree, origin).first_hit(directions)
     distance, face = hits.distance, hits.face
@@ -165,8 +158,8 @@ class FreeBeams:
         Unit directions, ground frame.
     """
 
-    def __init__(self, plan: StudyPlan, placement: Placement, number: int) -> None:
-        sensor = placement.rig(plan).sensors[number]
+    def __init__(self, placement: Placement, number: int) -> None:
+        sensor = placement.rig().sensors[number]
         model = sensor.model
         assert isinstance(model, Lidar)
         self.origin = np.array(sensor.pose.position)
@@ -187,7 +180,7 @@ class Caster:
 
     def __init__(self, plan: StudyPlan, placement: Placement, world: str) -> None:
         self._plan, self._placement, self._world = plan, placement, world
-        self._beams = [FreeBeams(plan, placement, k) for k in range(placement.lidars)]
+        self._beams = [FreeBeams(placement, k) for k in range(len(placement.poses))]
 
     def voxels(self, split: str, number: int) -> RegionVoxels:
         """Return the voxels of a scene."""

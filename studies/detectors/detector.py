@@ -2,7 +2,7 @@
 
 Both are trained as CenterNet is (Zhou, Wang, Kraehenbuehl: Objects as Points, arXiv 1904.07850):
 focal loss on the heat maps, L1 loss on the offset of the centre within its cell. One training step
-takes 51 ms of one processor; in JAX, which computed four results that were replaced (`history`),
+takes 51 ms of one processor; in JAX, which computed four results that were replaced (`afterwards`),
 118 ms, and in PyTorch 57 ms, side by side on one machine.
 """
 

@@ -1,26 +1,28 @@
-"""One run of the study: scenes are cast, a detector is trained and tested. It needs TensorFlow."""
+"""One run of a study: scenes are made, a detector is trained and tested. It needs TensorFlow."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
-from ..results_file import made_by
+from ..results_file import Json, made_by
 from .batches import FEATURES, LAYERS
-from .casting import Caster, RegionObjects, RegionVoxels
+from .cameras.lifting import Lifting
+from .cameras.network import pictures_network
+from .cameras.plan import CameraPlan
+from .cameras.rendering import Renderer
+from .casting import Caster, RegionObjects
 from .detector import Detector, Network, grid_network, points_network, versions
 from .placements import Placement, placements
 from .plan import FIXED, MIXED, POINTS, SPLITS, StudyPlan
-from .result_files import run_digest
-from .runs import Run
+from .precision import results
+from .runs import Run, run_digest
 from .scenes import CLASSES
-from .training import results, test_scenes, timed_training
-
-Json = dict[str, Any]
+from .training import tested, train
 
 TRAIN, VALIDATION, TEST = SPLITS
+BySplit = dict[str, list[RegionObjects]]
 
 
 @dataclass(frozen=True)
@@ -32,94 +34,81 @@ class RunIdentity:
 
 
 def run_one(plan: StudyPlan, run: Run) -> Json:
-    """Return the results of a run as JSON data.
-
-    Parameters
-    ----------
-    plan : StudyPlan
-    run : Run
-    """
+    """Return the results of a run of LiDARs as JSON data."""
     started = time.process_time()
-    detector = Detector(_network(plan, run.detector), plan.training.rate, plan.training.average)
-    compute = _mixed if run.placement is None else _of_placement
-    return with_origin(compute(plan, run, detector), run.name, plan.digest, started)
-
-
-def with_origin(data: Json, name: str, digest: str, started: float) -> Json:
-    """Return the results of a run with its time and what made them.
-
-    Parameters
-    ----------
-    data : dict
-    name, digest : str
-        Of the run and of its plan.
-    started : float
-        Processor time at its beginning [s].
-    """
-    made = {**made_by(RunIdentity(name, digest)), **versions()}
-    made["digest"] = run_digest(digest, {k: made[k] for k in ("python", "numpy", "tensorflow")})
-    seconds = round(time.process_time() - started, 1)
-    return {**data, "seconds": seconds, "made": made}
-
-
-def _network(plan: StudyPlan, name: str) -> Network:
-    if name == POINTS:
-        return points_network(FEATURES, plan.region.shape, len(CLASSES))
-    return grid_network(LAYERS, len(CLASSES))
-
-
-def _of_placement(plan: StudyPlan, run: Run, detector: Detector) -> Json:
-    """Train and test a detector with one placement's points."""
-    assert run.placement is not None
-    placement, counts = run.placement, plan.scenes.counts
-    scenes: dict[str, Sequence[RegionObjects]]
+    network = grid_network(LAYERS, len(CLASSES))
     if run.detector == POINTS:
-        caster = Caster(plan, placement, run.world)
-        scenes = {s: [caster.cloud(s, k) for k in range(counts[s])] for s in SPLITS}
+        network = points_network(FEATURES, plan.region.shape, len(CLASSES))
+    if run.placement is None:
+        found = _mixed(plan, run, _detector(plan, network))
     else:
-        scenes = {s: _cast(plan, placement, run.world, s, counts[s]) for s in SPLITS}
-    trained, training = timed_training(detector, plan, scenes[TRAIN], scenes[VALIDATION], run.seed)
-    tested = test_scenes(detector, trained.weights, plan, scenes[TEST])
-    return {**results(plan, scenes[TEST], tested), "training": training}
+        caster = Caster(plan, run.placement, run.world)
+        make = caster.cloud if run.detector == POINTS else caster.voxels
+        counts = plan.scenes.counts
+        scenes: BySplit = {s: [make(s, k) for k in range(counts[s])] for s in SPLITS}
+        found = _of_placement(plan, run, _detector(plan, network), scenes)
+    return _with_origin(found, run, plan, started)
+
+
+def run_camera(plan: CameraPlan, run: Run) -> Json:
+    """Return the results of a run of cameras as JSON data."""
+    started = time.process_time()
+    assert run.placement is not None
+    renderer = Renderer(plan, run.placement)
+    scenes: BySplit = {
+        split: [renderer.pictures(split, number) for number in range(plan.scenes[split])]
+        for split in SPLITS
+    }
+    network = pictures_network(Lifting.of(plan, run.placement), len(CLASSES))
+    found = _of_placement(plan.study, run, _detector(plan.study, network), scenes)
+    return _with_origin(found, run, plan.study, started)
+
+
+def _detector(plan: StudyPlan, network: Network) -> Detector:
+    return Detector(network, plan.training.rate, plan.training.average)
+
+
+def _with_origin(data: Json, run: Run, plan: StudyPlan, started: float) -> Json:
+    """Return the results of a run with its processor time and what made them."""
+    made = {**made_by(RunIdentity(run.name, plan.digest)), **versions()}
+    libraries = {k: made[k] for k in ("python", "numpy", "tensorflow")}
+    made["digest"] = run_digest(plan.digest, libraries)
+    return {**data, "seconds": round(time.process_time() - started, 1), "made": made}
+
+
+def _of_placement(plan: StudyPlan, run: Run, detector: Detector, scenes: BySplit) -> Json:
+    """Train and test a detector with what one placement sees."""
+    trained, training = train(detector, plan, scenes[TRAIN], scenes[VALIDATION], run.seed)
+    found = results(plan, scenes[TEST], tested(detector, trained.weights, plan, scenes[TEST]))
+    return {**found, "training": training}
 
 
 def _mixed(plan: StudyPlan, run: Run, detector: Detector) -> Json:
     """Train one detector with many placements, and test it with each, and with others."""
     trained_with, fresh = mixed_placements(plan)
     counts = {TRAIN: plan.mixed["scenes"], VALIDATION: plan.scenes.counts[VALIDATION]}
-    scenes = {s: _cast_in_turn(plan, trained_with, run.world, s, n) for s, n in counts.items()}
-    trained, training = timed_training(detector, plan, scenes[TRAIN], scenes[VALIDATION], run.seed)
+    casters = [Caster(plan, placement, run.world) for placement in trained_with]
+    scenes = {
+        split: [casters[k % len(casters)].voxels(split, k) for k in range(count)]
+        for split, count in counts.items()
+    }
+    trained, training = train(detector, plan, scenes[TRAIN], scenes[VALIDATION], run.seed)
     by_placement = {}
     for placement in (*trained_with, *fresh):
-        test = _cast(plan, placement, run.world, TEST, plan.mixed["test_scenes"])
-        tested = test_scenes(detector, trained.weights, plan, test)
-        found = results(plan, test, tested)
+        caster = Caster(plan, placement, run.world)
+        test = [caster.voxels(TEST, k) for k in range(plan.mixed["test_scenes"])]
+        found = results(plan, test, tested(detector, trained.weights, plan, test))
         kept = {key: found[key] for key in ("ap", "by_class")}
         by_placement[placement.name] = {**kept, "trained_with": placement in trained_with}
     return {"placements": by_placement, "training": training}
 
 
-def mixed_placements(plan: StudyPlan) -> tuple[list[Placement], list[Placement]]:
+def mixed_placements(plan: StudyPlan) -> tuple[list[Placement], Sequence[Placement]]:
     """Return the placements that the mixed detector is trained with, and fresh ones."""
     drawn = placements(plan)
     by_vehicle = [[p for p in drawn if p.design == MIXED and p.vehicle == v] for v in plan.vehicles]
     each = plan.mixed["trained"] // len(plan.vehicles)
-    trained = [
-        p for turn in zip(*(group[:each] for group in by_vehicle), strict=True) for p in turn
-    ]
+    turns = zip(*(group[:each] for group in by_vehicle), strict=True)
     fresh = [p for group in by_vehicle for p in group[each:]]
-    return trained, [*(p for p in drawn if p.design == FIXED), *fresh]
-
-
-def _cast(
-    plan: StudyPlan, placement: Placement, world: str, split: str, count: int
-) -> list[RegionVoxels]:
-    caster = Caster(plan, placement, world)
-    return [caster.voxels(split, k) for k in range(count)]
-
-
-def _cast_in_turn(
-    plan: StudyPlan, chosen: list[Placement], world: str, split: str, count: int
-) -> list[RegionVoxels]:
-    casters = [Caster(plan, placement, world) for placement in chosen]
-    return [casters[k % len(casters)].voxels(split, k) for k in range(count)]
+    fixed = [p for p in drawn if p.design == FIXED]
+    return [p for turn in turns for p in turn], [*fixed, *fresh]

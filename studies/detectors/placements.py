@@ -3,26 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 import pe_core as pe
 from pe_core import catalog
-from pe_core.geometry import rotate, rotation_matrix
+from pe_core.geometry import Pose, rotate, rotation_matrix
+from pe_core.scene.rig import SensorModel
 from pe_core.sensors.lidar import Lidar
 
 from ..paper.paper import STUDIES
 from ..published.scores import box_triangles
+from ..results_file import Json
 from .plan import ACROSS, FIXED, MIXED, PlacementRule, StudyPlan
-from .posed_sensors import PosedSensors, PoseValues, first_of_each, numbered, pose_of, pose_texts
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+PoseValues = tuple[float, ...]
+"""x, y, z, roll, pitch, yaw of a sensor [m, deg], rounded as in a file."""
+InView = Callable[[Floats], Mask]
+"""Whether a sensor's field of view has directions (N, 3), sensor frame."""
 
 SHUTTLE = "shuttle"
 SHUTTLE_BOXES = {
@@ -39,39 +43,57 @@ EDGE_M = 0.1
 
 
 @dataclass(frozen=True, slots=True)
-class Placement(PosedSensors):
-    """LiDARs of a design on a vehicle.
+class Placement:
+    """Where the sensors of a rig, all of one model and fused early, are on a vehicle.
 
     Attributes
     ----------
-    design : str
-    channels : int
-        Of each LiDAR.
+    name : str
+        Design, vehicle and number: ``fixed-sedan-01``.
+    vehicle, design : str
+    poses : tuple of PoseValues
+        Of each sensor.
+    all_round : bool
+        Whether a point near the ground is seen in each direction.
+    model : str
+        Its name in the catalogue; empty for cameras, whose model the plan has.
     """
 
+    name: str
+    vehicle: str
+    poses: tuple[PoseValues, ...]
+    all_round: bool
     design: str
-    channels: int
-
-    @property
-    def lidars(self) -> int:
-        """Number of LiDARs."""
-        return len(self.poses)
+    model: str
 
     @property
     def hardware(self) -> str:
-        """Number of LiDARs and channels."""
-        return f"{self.lidars} x {self.channels}"
+        """Number of sensors and their model."""
+        return f"{len(self.poses)} x {self.model}"
 
-    def rig(self, plan: StudyPlan) -> pe.Rig:
-        """Return the rig, all LiDARs fused early."""
-        return self.rig_of(lidar_model(plan, self.channels))
+    @property
+    def mean_height(self) -> float:
+        """Mean height of the sensors above the ground [m]."""
+        return float(np.mean([pose[2] for pose in self.poses]))
+
+    def rig(self, model: SensorModel | None = None) -> pe.Rig:
+        """Return the rig, with sensors of the catalogue's model or of another one."""
+        model = model or catalog.load(self.model)
+        named = enumerate(self.poses)
+        return pe.Rig([pe.Sensor(f"{model.kind} {k}", model, pose_of(p)) for k, p in named])
+
+    def listed(self) -> Json:
+        """Return the placement as JSON data, for people."""
+        model = {"lidar": self.model} if self.model else {}
+        texts = [" ".join(f"{w:g}" for w in pose) for pose in self.poses]
+        return {**model, "all_round": self.all_round, "x y z roll pitch yaw": texts}
 
 
-def lidar_model(plan: StudyPlan, channels: int) -> Lidar:
-    """Return the LiDAR of the catalogue that the plan names for a channel count."""
-    model = catalog.load(plan.hardware[channels])
-    assert isinstance(model, Lidar)
-    return model
+def pose_of(values: PoseValues) -> Pose:
+    """Return the pose of values that are rounded as in a file."""
+    x, y, z, *angles = values
+    roll, pitch, yaw = (math.radians(a) for a in angles)
+    return Pose((x, y, z), (roll, pitch, yaw))
 
 
 @cache
@@ -99,6 +121,11 @@ _drawn: dict[tuple[object, ...], list[Placement]] = {}
 """Placements that were drawn, by what they depend on: drawing takes seconds."""
 
 
+def listing(digest: str, drawn: Sequence[Placement]) -> Json:
+    """Return placements as JSON data, for people."""
+    return {"plan": digest, "placements": {p.name: p.listed() for p in drawn}}
+
+
 def _fixed(plan: StudyPlan, name: str) -> list[Placement]:
     count = {True: plan.fixed["all_round"], False: plan.fixed["blind"]}
     drawn = _draws(plan, name, FIXED, plan.fixed["lidars"], plan.fixed["channels"])
@@ -116,9 +143,24 @@ def _across(plan: StudyPlan, name: str) -> list[Placement]:
 def _mixed(plan: StudyPlan, name: str) -> list[Placement]:
     """Placements of the mixed detector besides those of the fixed design; trained ones first."""
     drawn = _draws(plan, name, MIXED, plan.fixed["lidars"], plan.fixed["channels"])
-    share = len(plan.vehicles)
-    total = (plan.mixed["trained"] + plan.mixed["fresh"]) // share
+    total = (plan.mixed["trained"] + plan.mixed["fresh"]) // len(plan.vehicles)
     return numbered([next(drawn) for _ in range(total)])
+
+
+def first_of_each(drawn: Iterator[Placement], count: Mapping[bool, int]) -> list[Placement]:
+    """Return the first so many placements that see all round (True), and then that do not."""
+    kept: list[Placement] = []
+    for placement in drawn:
+        if sum(p.all_round == placement.all_round for p in kept) < count[placement.all_round]:
+            kept.append(placement)
+        if len(kept) == sum(count.values()):
+            break
+    return sorted(kept, key=lambda p: not p.all_round)
+
+
+def numbered(kept: Sequence[Placement]) -> list[Placement]:
+    """Return placements with their number after their name."""
+    return [replace(p, name=f"{p.name}-{k:02}") for k, p in enumerate(kept, 1)]
 
 
 def _draws(
@@ -127,7 +169,8 @@ def _draws(
     """Yield placements of some hardware on a vehicle, without end but for `MAX_DRAWS`."""
     keys = (plan.seed, plan.vehicles.index(name), (FIXED, ACROSS, MIXED).index(design))
     rng = np.random.default_rng([*keys, lidars, channels])
-    body, rule, model = vehicle(name), plan.placements, lidar_model(plan, channels)
+    body, rule, model = vehicle(name), plan.placements, catalog.load(plan.hardware[channels])
+    assert isinstance(model, Lidar)
     elevations = float(model.elevations.min()), float(model.elevations.max())
 
     def in_view(directions: Floats) -> Mask:
@@ -136,7 +179,7 @@ def _draws(
 
     for poses in drawn_poses(body, rule, rng, lidars):
         seen = sees_all_round(body, rule, in_view, poses)
-        yield Placement(f"{design}-{name}", name, tuple(poses), seen, design, channels)
+        yield Placement(f"{design}-{name}", name, tuple(poses), seen, design, model.name)
     raise AssertionError(f"no placement of {design} on {name} in {MAX_DRAWS} draws")
 
 
@@ -197,48 +240,19 @@ def _top_at(body: pe.Vehicle, x: float, y: float) -> float:
 
 
 def sees_all_round(
-    body: pe.Vehicle,
-    rule: PlacementRule,
-    in_view: Callable[[Floats], Mask],
-    poses: Sequence[PoseValues],
+    body: pe.Vehicle, rule: PlacementRule, in_view: InView, poses: Sequence[PoseValues]
 ) -> bool:
-    """Whether in each direction a point near the ground is seen by a sensor.
-
-    Parameters
-    ----------
-    body : Vehicle
-        A point is not seen when the body is between it and the sensor.
-    rule : PlacementRule
-    in_view : callable
-        Whether the sensor's field of view has directions (N, 3), sensor frame.
-    poses : sequence of PoseValues
-    """
+    """Whether in each direction a point near the ground is seen by a sensor, past the body."""
     seen = np.zeros(rule.round_directions, bool)
+    angles = 2.0 * np.pi * np.arange(rule.round_directions) / rule.round_directions
+    x, y = rule.round_distance_m * np.cos(angles), rule.round_distance_m * np.sin(angles)
     for values in poses:
         pose = pose_of(values)
         for height in rule.round_heights_m:
-            offsets = _ring(rule, height) - np.array(pose.position)
+            ring = np.stack([x, y, np.full(len(angles), height)], axis=1)
+            offsets = ring - np.array(pose.position)
             distance = np.sqrt((offsets**2).sum(axis=1))
             directions = offsets / distance[:, None]
             inside = in_view(rotate(rotation_matrix(*pose.rpy).T, directions))
             seen |= inside & (body.first_hit(pose.position, directions).distance > distance)
     return bool(seen.all())
-
-
-def _ring(rule: PlacementRule, height: float) -> Floats:
-    angles = 2.0 * np.pi * np.arange(rule.round_directions) / rule.round_directions
-    x, y = rule.round_distance_m * np.cos(angles), rule.round_distance_m * np.sin(angles)
-    return np.stack([x, y, np.full(len(angles), height)], axis=1)
-
-
-def listing(plan: StudyPlan) -> dict[str, Any]:
-    """Return all placements as JSON data, for people."""
-    rows = {
-        p.name: {
-            "lidar": plan.hardware[p.channels],
-            "all_round": p.all_round,
-            **pose_texts(p),
-        }
-        for p in placements(plan)
-    }
-    return {"plan": plan.digest, "placements": rows}

@@ -16,6 +16,8 @@ T = TypeVar("T")
 PLAN_FILE = "plan.toml"
 FIXED, ACROSS, MIXED = "fixed", "across", "mixed"
 """The designs: one rig at many placements; rigs of other hardware; one detector for many."""
+CAMERAS, AFTER_SEARCH = "cameras", "after_search"
+"""The designs of the other studies, and their folders."""
 SPLITS = ("train", "validation", "test")
 PLAIN, TOWN = "plain", "town"
 """Worlds: flat ground with distractors; hills, houses and parked rows besides."""
@@ -25,7 +27,7 @@ GRID, POINTS = "grid", "points"
 
 @dataclass(frozen=True, slots=True)
 class PlacementRule:
-    """How the place of a LiDAR is drawn; the fields are those of the table in the file."""
+    """How the place of a sensor is drawn; the fields are those of the table in the file."""
 
     roof_share: float
     roof_height_m: tuple[float, float]
@@ -115,32 +117,18 @@ class RealismStep:
 
 @dataclass(frozen=True, slots=True)
 class StudyPlan:
-    """The whole plan.
-
-    Attributes
-    ----------
-    digest : str
-        SHA-256 of the file's content, which results keep.
-    seed : int
-    vehicles : tuple of str
-    hardware : mapping
-        Name in the catalogue by channel count.
-    fixed : mapping
-        LiDARs, channels, and how many placements see all round or do not, on each vehicle.
-    across : tuple of (lidars, channels, placements)
-    mixed : mapping
-        Placements and scenes of the mixed detector.
-    step_fixed, step_across : int, tuple of str
-        Placements of the steps.
-    """
+    """The whole plan; `digest` is the SHA-256 of the file's content, which results keep."""
 
     digest: str
     seed: int
     vehicles: tuple[str, ...]
     placements: PlacementRule
     hardware: Mapping[int, str]
+    """Name in the catalogue by channel count."""
     fixed: Mapping[str, int]
+    """LiDARs, channels, and how many placements see all round or do not, on each vehicle."""
     across: tuple[tuple[int, int, int], ...]
+    """LiDARs, channels, placements."""
     mixed: Mapping[str, int]
     scenes: SceneRule
     region: DetectionRegion
@@ -149,6 +137,7 @@ class StudyPlan:
     statistics: StatisticsRule
     step_fixed: int
     step_across: tuple[str, ...]
+    """How many placements of the fixed design the steps have; all across of these vehicles."""
     steps: tuple[RealismStep, ...]
 
 
@@ -190,10 +179,24 @@ def quick_plan() -> StudyPlan:
     )
 
 
+def quickly(study: StudyPlan) -> StudyPlan:
+    """Return the plan of another study with the scenes and trainings of `quick_plan`."""
+    quick = quick_plan()
+    return replace(
+        study,
+        digest=f"quick-{study.digest}",
+        scenes=quick.scenes,
+        mixed=quick.mixed,
+        training=replace(quick.training, mirrored=study.training.mirrored),
+        statistics=replace(study.statistics, permutations=99, resamples=50, scenes=8),
+    )
+
+
 def plan_of(text: str) -> StudyPlan:
     """Return the plan of a file's text; a key that is missing or unknown is an exception."""
     data = tomllib.loads(text)
     scenes, steps = data["scenes"], data["steps"]
+    counts = {split: scenes.pop(split) for split in SPLITS}
     return StudyPlan(
         digest=_digest(text),
         seed=data["seed"],
@@ -203,13 +206,7 @@ def plan_of(text: str) -> StudyPlan:
         fixed=data["fixed"],
         across=tuple(map(tuple, data["across"]["hardware"])),
         mixed=data["mixed"],
-        scenes=SceneRule(
-            {split: scenes[split] for split in SPLITS},
-            scenes["shifts"],
-            float(scenes["distractors"]),
-            scenes["range_noise_m"],
-            scenes["dropped"],
-        ),
+        scenes=SceneRule(counts, **scenes),
         region=rule_of(DetectionRegion, data["region"]),
         training=rule_of(TrainingRule, data["training"]),
         precision=rule_of(PrecisionRule, data["precision"]),

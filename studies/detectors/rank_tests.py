@@ -15,14 +15,13 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import NDArray
 
+from ..ranks import SAME, standard_ranks
 from .plan import StatisticsRule
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Interval = tuple[float, float]
 
-SAME = 1e-9
-"""Correlations that differ by less than this are equal."""
 MIN_GROUP = 3
 """A group of fewer placements has no rank correlation worth the name."""
 AT_ONCE = 2_000_000
@@ -31,17 +30,7 @@ AT_ONCE = 2_000_000
 
 @dataclass(frozen=True, eq=False)
 class PlacementSamples:
-    """Placements with AP of each seed.
-
-    Attributes
-    ----------
-    aps : (P, S) float
-        AP by placement and seed.
-    groups : (P,) str or int
-        Vehicle of each placement.
-    hardware : (P,) str or int
-        Hardware of each placement.
-    """
+    """Placements: AP by placement and seed (P, S), and of each (P,) its vehicle and hardware."""
 
     aps: Floats
     groups: NDArray
@@ -62,26 +51,34 @@ class PlacementSamples:
         """Return some of the placements."""
         return PlacementSamples(self.aps[index], self.groups[index], self.hardware[index])
 
+    @property
+    def noise(self) -> float:
+        """Standard deviation over seeds, pooled over the placements; NaN for one seed."""
+        if self.aps.shape[1] < 2:
+            return float("nan")
+        return float(np.sqrt(self.aps.var(axis=1, ddof=1).mean()))
 
-def ranks_of(values: Floats) -> Floats:
-    """Return midranks along the last axis, from 1 up; equal values have the mean of their ranks."""
-    lower = (values[..., None, :] < values[..., :, None]).sum(axis=-1)
-    equal = (values[..., None, :] == values[..., :, None]).sum(axis=-1)
-    return lower + (equal + 1) / 2.0
+    def better_half(self) -> tuple[Ints, PlacementSamples]:
+        """Return the half of each group with the higher AP at the first seed, with the other seeds.
 
-
-def standardized(values: Floats) -> Floats:
-    """Return midranks minus their mean, scaled to length 1; zeros where all values are equal."""
-    ranks = ranks_of(values)
-    centred = ranks - ranks.mean(axis=-1, keepdims=True)
-    length = np.sqrt((centred**2).sum(axis=-1, keepdims=True))
-    return centred / np.where(length > 0.0, length, 1.0)
+        Selection and result do not share their noise. The indices (Q,) are those of the placements.
+        """
+        index = np.sort(
+            np.concatenate(
+                [
+                    group[np.argsort(-self.aps[group, 0], kind="stable")[: (len(group) + 1) // 2]]
+                    for group in self.members
+                ]
+            )
+        )
+        part = self.subset(index)
+        return index, PlacementSamples(part.aps[:, 1:], part.groups, part.hardware)
 
 
 def rho_within(score: Floats, ap: Floats, members: Sequence[Ints]) -> Floats:
     """Return the mean over groups of Spearman's rho, (...); arrays are (..., P)."""
     rhos = [
-        (standardized(score[..., index]) * standardized(ap[..., index])).sum(axis=-1)
+        (standard_ranks(score[..., index]) * standard_ranks(ap[..., index])).sum(axis=-1)
         for index in members
     ]
     return np.mean(rhos, axis=0)
@@ -94,7 +91,7 @@ def partial_rho(score: Floats, ap: Floats, given: Floats, members: Sequence[Ints
     """
     parts = []
     for index in members:
-        x, y, z = (standardized(w[..., index]) for w in (score, ap, given))
+        x, y, z = (standard_ranks(w[..., index]) for w in (score, ap, given))
         xy, xz, yz = (x * y).sum(axis=-1), (x * z).sum(axis=-1), (y * z).sum(axis=-1)
         free = np.sqrt(np.maximum((1.0 - xz**2) * (1.0 - yz**2), 0.0))
         parts.append(np.where(free > SAME, (xy - xz * yz) / np.maximum(free, SAME), 0.0))
@@ -112,7 +109,7 @@ def permutation_p(
     rng = np.random.default_rng([seed, 2])
     total = np.zeros(rule.permutations)
     for index in samples.members:
-        fixed, moved = standardized(score[index]), standardized(samples.ap[index])
+        fixed, moved = standard_ranks(score[index]), standard_ranks(samples.ap[index])
         tiled = np.broadcast_to(moved, (rule.permutations, len(index)))
         total += (rng.permuted(tiled, axis=1) * fixed).sum(axis=1)
     extreme = np.abs(total / len(samples.members)) >= abs(observed) - SAME
@@ -125,6 +122,10 @@ class Resample:
 
     index: Ints
     ap: Floats
+
+
+Statistic = Callable[[Resample], Floats]
+"""Maps bootstrap samples to (R,) numbers."""
 
 
 def resamples(samples: PlacementSamples, rule: StatisticsRule, seed: int) -> Iterator[Resample]:
@@ -142,12 +143,9 @@ def resamples(samples: PlacementSamples, rule: StatisticsRule, seed: int) -> Ite
 
 
 def interval(
-    samples: PlacementSamples,
-    rule: StatisticsRule,
-    seed: int,
-    statistic: Callable[[Resample], Floats],
+    samples: PlacementSamples, rule: StatisticsRule, seed: int, statistic: Statistic
 ) -> Interval:
-    """Return the percentile interval of a statistic, which maps a portion to (R,) numbers."""
+    """Return the percentile interval of a statistic."""
     values = np.concatenate([statistic(portion) for portion in resamples(samples, rule, seed)])
     low, high = np.nanpercentile(values, [2.5, 97.5])
     return float(low), float(high)
@@ -195,7 +193,7 @@ def power(
     rng = np.random.default_rng([seed, 4])
     r = 2.0 * math.sin(math.pi * rho / 6.0)
     spread = float(np.mean([samples.ap[index].std(ddof=1) for index in samples.members]))
-    noise = pooled_noise(samples) / spread
+    noise = samples.noise / spread
 
     def is_above() -> bool:
         score, other = rng.normal(size=(2, len(samples.ap)))
@@ -211,6 +209,19 @@ def power(
     return sum(is_above() for _ in range(studies)) / studies
 
 
+def student_interval(values: Sequence[float], confidence: float) -> Interval:
+    """Return Student's interval of the mean of three values.
+
+    With two degrees of freedom the quantile at p is (2 p - 1) / sqrt(2 p (1 - p)).
+    """
+    assert len(values) == 3
+    p = (1.0 + confidence) / 2.0
+    quantile = (2.0 * p - 1.0) / math.sqrt(2.0 * p * (1.0 - p))
+    half = quantile * float(np.std(values, ddof=1)) / math.sqrt(len(values))
+    middle = float(np.mean(values))
+    return middle - half, middle + half
+
+
 def better_ones(ap: Floats, hardware: NDArray, groups: NDArray, tie: float) -> NDArray[np.bool_]:
     """Return the pairs of a group with different hardware, (P, P), each once: row finds more."""
     counted = (groups[:, None] == groups) & (hardware[:, None] != hardware)
@@ -222,43 +233,11 @@ def ordered_share(
 ) -> float:
     """Return the share of pairs with different hardware that a score orders as AP does.
 
-    Pairs that differ in AP by less than `tie` are not counted; a tie of the score counts half.
-    NaN without any pair.
-
-    Parameters
-    ----------
-    score, ap : (P,) float
-    hardware, groups : (P,)
-    tie : float
+    Arrays are (P,). Pairs that differ in AP by less than `tie` are not counted; a tie of the score
+    counts half. NaN without any pair.
     """
     counted = better_ones(ap, hardware, groups, tie)
     if not counted.any():
         return float("nan")
     of_score = (score[:, None] - score)[counted]
     return float(((of_score > 0.0) + 0.5 * (of_score == 0.0)).mean())
-
-
-def pooled_noise(samples: PlacementSamples) -> float:
-    """Return the standard deviation over seeds, pooled over the placements; NaN for one seed."""
-    if samples.aps.shape[1] < 2:
-        return float("nan")
-    return float(np.sqrt(samples.aps.var(axis=1, ddof=1).mean()))
-
-
-def better_half(samples: PlacementSamples) -> tuple[Ints, PlacementSamples]:
-    """Return the half of each group with the higher AP at the first seed, with the other seeds.
-
-    Selection and result do not share their noise.
-
-    Returns
-    -------
-    tuple of (Q,) int and PlacementSamples
-        Indices of the placements, and those placements.
-    """
-    chosen = [
-        index[np.argsort(-samples.aps[index, 0], kind="stable")[: (len(index) + 1) // 2]]
-        for index in samples.members
-    ]
-    index = np.sort(np.concatenate(chosen))
-    part = samples.subset(index)
-    return index, PlacementSamples(part.aps[:, 1:], part.groups, part.hardware)

@@ -1,48 +1,46 @@
-"""The runs of the plan in their order, and the files of their results."""
+"""The runs of the plans in their order, and their results: a file each, so none is done twice."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import hashlib
+import itertools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from importlib import resources
 from pathlib import Path
 
-from pe_core.base import Table
+from pe_core import InputError
+from pe_core.base import Number, Table, dump_json, write_bytes
 
+from ..results_file import Json, read_json
 from .placements import Placement, placements
 from .plan import ACROSS, FIXED, GRID, MIXED, PLAIN, StudyPlan
-from .result_files import ResultFiles, check_ap
 
 FIXED_IN_TURN = 2
 """Placements of the fixed design after each one across hardware, within a seed."""
+RUNS = "runs"
+"""Folder of the results."""
+SCHEMA = 1
+CODE = ("pe_core", "studies.detectors")
+"""Packages of which a run is made; they have the prior, the catalogue and the plans, too."""
+SHARE = Number(0.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A detector trained with a seed, for one placement or (placement None) for many.
-
-    Attributes
-    ----------
-    placement : Placement or None
-    world, detector : str
-    seed : int
-    """
+    """A detector trained with a seed, for one placement or (placement None) for many."""
 
     placement: Placement | None
-    world: str
-    detector: str
     seed: int
+    world: str = PLAIN
+    detector: str = GRID
 
     @property
     def name(self) -> str:
         """Its name, which is that of its file."""
         what = self.placement.name if self.placement else MIXED
-        step = "" if (self.world, self.detector) == (PLAIN, GRID) else self.step + "-"
-        return f"{step}{what}-s{self.seed}"
-
-    @property
-    def step(self) -> str:
-        """World and detector."""
-        return f"{self.world}-{self.detector}"
+        step = (self.world, self.detector)
+        return f"{'' if step == (PLAIN, GRID) else '-'.join(step) + '-'}{what}-s{self.seed}"
 
     @property
     def design(self) -> str:
@@ -51,65 +49,115 @@ class Run:
 
 
 def runs(plan: StudyPlan) -> list[Run]:
-    """Return all runs of a plan in their order."""
-    return [*_main_runs(plan), *_step_runs(plan)]
+    """Return all runs of the plan of LiDARs: the designs seed by seed, then the steps.
 
-
-def _main_runs(plan: StudyPlan) -> Iterator[Run]:
-    """Yield the runs of the designs, seed by seed: an early stop leaves whole seeds."""
+    So an early stop leaves whole seeds.
+    """
     drawn = placements(plan)
     ordered = [*_in_turn(drawn, plan.vehicles), None]
-    for seed in plan.training.seeds:
-        for placement in ordered:
-            yield Run(placement, PLAIN, GRID, seed)
+    main = [Run(placement, seed) for seed in plan.training.seeds for placement in ordered]
+    chosen = _step_placements(plan, drawn)
+    return main + [
+        Run(placement, seed, step.world, step.detector)
+        for step in plan.steps
+        for seed in step.seeds
+        for placement in chosen
+    ]
 
 
-def _in_turn(drawn: Sequence[Placement], vehicles: Sequence[str]) -> list[Placement]:
-    """Return placements of both designs by turns, and of all vehicles by turns."""
+def seed_by_seed(plan: StudyPlan, drawn: Sequence[Placement]) -> list[Run]:
+    """Return the runs of placements with the seeds of a plan."""
+    return [Run(placement, seed) for seed in plan.training.seeds for placement in drawn]
+
+
+def _in_turn(drawn: Sequence[Placement], vehicles: Sequence[str]) -> Iterator[Placement]:
+    """Yield placements of both designs by turns, and of all vehicles by turns."""
     across, fixed = (
         _by_turns([[p for p in drawn if p.design == d and p.vehicle == v] for v in vehicles])
         for d in (ACROSS, FIXED)
     )
-    ordered = []
     while across or fixed:
-        ordered += [across.pop(0)] if across else []
-        ordered += fixed[:FIXED_IN_TURN]
-        del fixed[:FIXED_IN_TURN]
-    return ordered
+        yield from across[:1] + fixed[:FIXED_IN_TURN]
+        del across[:1], fixed[:FIXED_IN_TURN]
 
 
 def _by_turns(groups: Sequence[Sequence[Placement]]) -> list[Placement]:
-    longest = max((len(group) for group in groups), default=0)
-    return [group[k] for k in range(longest) for group in groups if k < len(group)]
+    turns = itertools.zip_longest(*groups)
+    return [placement for turn in turns for placement in turn if placement is not None]
 
 
-def _step_runs(plan: StudyPlan) -> Iterator[Run]:
-    chosen = step_placements(plan)
-    for step in plan.steps:
-        for seed in step.seeds:
-            for placement in chosen:
-                yield Run(placement, step.world, step.detector, seed)
-
-
-def step_placements(plan: StudyPlan) -> list[Placement]:
+def _step_placements(plan: StudyPlan, drawn: Sequence[Placement]) -> list[Placement]:
     """Return the placements of the steps towards reality."""
-    drawn = placements(plan)
-    fixed = [
-        [p for p in drawn if p.design == FIXED and p.vehicle == v and p.all_round]
-        for v in plan.vehicles
-    ]
+    all_round = [p for p in drawn if p.design == FIXED and p.all_round]
+    fixed = [[p for p in all_round if p.vehicle == v][: plan.step_fixed] for v in plan.vehicles]
     across = [p for p in drawn if p.design == ACROSS and p.vehicle in plan.step_across]
-    return [*_by_turns([group[: plan.step_fixed] for group in fixed]), *across]
+    return [*_by_turns(fixed), *across]
 
 
-class RunFiles(ResultFiles[Run]):
-    """The results of a plan's runs in the folder of the study."""
+class RunFiles:
+    """The results of the runs of a plan, in their order, in the folder of its study."""
 
-    def __init__(self, folder: Path, plan: StudyPlan) -> None:
-        super().__init__(folder, plan.digest, runs(plan))
-        self.plan = plan
+    def __init__(self, folder: Path, plan: StudyPlan, planned: Sequence[Run]) -> None:
+        self.folder, self.plan, self.all = folder, plan, list(planned)
 
-    def _check(self, run: Run, table: Table) -> None:
+    def path(self, run: Run) -> Path:
+        """Return the file of a run."""
+        return self.folder / RUNS / f"{run.name}.json"
+
+    def missing(self) -> list[Run]:
+        """Return the runs without a file, in their order."""
+        return [run for run in self.all if not self.path(run).exists()]
+
+    def write(self, run: Run, data: Json) -> None:
+        """Write a run's results atomically."""
+        self.path(run).parent.mkdir(parents=True, exist_ok=True)
+        head = {"schema": SCHEMA, "plan": self.plan.digest, "run": run.name}
+        write_bytes(self.path(run), dump_json({**head, **data}).encode())
+
+    def read(self) -> dict[str, Json]:
+        """Return the results that are there, by the name of the run, in the order of the plan.
+
+        A file that is damaged, or of another plan or run, is an `InputError`.
+        """
+        return {run.name: self._checked(run) for run in self.all if self.path(run).exists()}
+
+    def _checked(self, run: Run) -> Json:
+        path = self.path(run)
+        data = read_json(path)
+        table = Table(data, str(path))
+        head = (("schema", SCHEMA), ("plan", self.plan.digest), ("run", run.name))
+        for key, expected in head:
+            if table.raw(key) != expected:
+                raise InputError(path, key, str(expected), table.raw(key))
         parts = table.table("placements") if run.placement is None else None
-        for part in [parts.table(k) for k in parts.names] if parts is not None else [table]:
-            check_ap(part)
+        for part in [table] if parts is None else [parts.table(k) for k in parts.names]:
+            part.number("ap", rule=SHARE)
+        return data
+
+
+def run_digest(plan: str, versions: Mapping[str, str]) -> str:
+    """Return the digest of what makes a run: plan, code with prior and catalogue, and versions.
+
+    `plan` is the digest of the plan, `versions` are those of Python and the libraries.
+    """
+    code = sorted(
+        (f"{package}/{path.relative_to(root).as_posix()}", path)
+        for package in CODE
+        for root in [Path(str(resources.files(package)))]
+        for path in root.rglob("*")
+        if path.suffix in (".py", ".toml")
+    )
+    parts = [("plan", plan.encode()), ("versions", dump_json(dict(versions)).encode())]
+    return _digest_of(itertools.chain(parts, ((name, path.read_bytes()) for name, path in code)))
+
+
+def digest_of_files(folder: Path) -> str:
+    """Return the SHA-256 of the results in a folder, 16 digits: of their names and contents."""
+    return _digest_of((path.name, path.read_bytes()) for path in sorted(folder.glob("*.json")))
+
+
+def _digest_of(parts: Iterable[tuple[str, bytes]]) -> str:
+    total = hashlib.sha256()
+    for name, content in parts:
+        total.update(f"{name} {len(content)}\n".encode() + content)
+    return total.hexdigest()[:16]

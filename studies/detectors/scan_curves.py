@@ -6,9 +6,8 @@ placements with odd numbers of the fixed design; the error is judged on those wi
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,13 +18,13 @@ from pe_core.metric.fusion import early_fusion
 from pe_core.sensors import ObjectMeasurementCache
 from pe_core.sensors.lidar import LIDAR
 
-from .analysis import DesignResults, plain_design
+from ..results_file import Json
+from .analysis import DesignResults, Results, plain_design
 from .placements import Placement, vehicle
 from .plan import FIXED, StudyPlan
 from .rank_tests import PlacementSamples, resamples
 from .scores import scored_objects
 
-Json = dict[str, Any]
 Floats = NDArray[np.float64]
 
 A_BOUNDS, B_BOUNDS = (0.001, 1.0), (-4.0, 1.5)
@@ -69,20 +68,13 @@ class BeamCounts:
 
 
 def beam_counts(plan: StudyPlan, chosen: Sequence[Placement]) -> dict[str, BeamCounts]:
-    """Return how many beams end on the objects of the shipped score's scenes, by class.
-
-    Parameters
-    ----------
-    plan : StudyPlan
-    chosen : sequence of Placement
-        LiDARs that are fused early.
-    """
+    """Return how many beams end on the objects of the shipped score's scenes, by class."""
     found: dict[str, list[tuple[Floats, Floats]]] = {}
     for name in plan.vehicles:
         drawn = scored_objects(name, True, plan.statistics.scenes).drawn
         cache = ObjectMeasurementCache(drawn.objects, vehicle(name), True)
         for placement in (p for p in chosen if p.vehicle == name):
-            m = early_fusion(list(cache.measure(placement.rig(plan)).values()))
+            m = early_fusion(list(cache.measure(placement.rig()).values()))
             for label, of_class in enumerate(drawn.objects.class_names):
                 rows = drawn.objects.labels == label
                 found.setdefault(of_class, []).append((m[rows], drawn.weights[rows]))
@@ -104,15 +96,8 @@ def fitted_curve(beams: BeamCounts, ap: Floats, start: pe.ApCurve | None = None)
     """Return the curve whose expected AP is nearest to the AP found: least squares.
 
     A coarse grid gives the start; damped Gauss-Newton steps descend from there within `A_BOUNDS`
-    and `B_BOUNDS` (Levenberg and Marquardt), until a step is below `SMALLEST`.
-
-    Parameters
-    ----------
-    beams : BeamCounts
-    ap : (P,) float
-        AP found at each placement.
-    start : ApCurve, optional
-        Where the descent starts, in place of the grid.
+    and `B_BOUNDS` (Levenberg and Marquardt), until a step is below `SMALLEST`. `ap` is the AP found
+    at each placement (P,); `start` takes the place of the grid.
     """
     start = start or min(_grid(), key=lambda curve: _square(beams, ap, curve))
     at, damping = np.array([start.a, start.b]), DAMPING
@@ -147,17 +132,10 @@ def _square(beams: BeamCounts, ap: Floats, curve: pe.ApCurve) -> float:
     return float(((beams.expected_ap(curve) - ap) ** 2).sum())
 
 
-def scan_curves(plan: StudyPlan, results: Mapping[str, Json]) -> Json:
-    """Return the curves of all classes with their errors, as JSON data.
-
-    Parameters
-    ----------
-    plan : StudyPlan
-    results : mapping
-        Results by the name of the run.
-    """
+def scan_curves(plan: StudyPlan, results: Results) -> Json:
+    """Return the curves of all classes with their errors, as JSON data."""
     whole = plain_design(plan, [FIXED], results)
-    chosen = [p for p in whole.chosen if isinstance(p, Placement)]
+    chosen = whole.chosen
     odd, even = (
         np.array([k for k, p in enumerate(chosen) if _number(p) % 2 == rest], np.int64)
         for rest in (1, 0)

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import pe_core as pe
 from pe_core import InputError
@@ -14,12 +13,9 @@ from pe_core.base import dump_json, write_bytes
 from pe_core.scoring.targets import ObjectEvaluator, TargetRule
 from pe_core.sensors.lidar import Lidar
 
-from ..results_file import read_json
-from .placements import vehicle
+from ..results_file import Json, read_json
+from .placements import Placement, vehicle
 from .plan import StudyPlan
-from .posed_sensors import PosedSensors
-
-Json = dict[str, Any]
 
 SCORES = "scores.json"
 SPACE = pe.PerceptionSpace()
@@ -32,19 +28,13 @@ HEIGHT, BEAMS = "mean height", "number of beams"
 
 @dataclass(frozen=True, slots=True)
 class ComparedScore:
-    """A score that is compared with AP.
+    """A score that is compared with AP; `value` takes a placement and its computed scores.
 
-    Attributes
-    ----------
-    name : str
-    value : callable
-        Takes a placement and its computed scores; higher is better.
-    across_only : bool
-        Whether it is the same for all placements of one rig.
+    Higher is better. With `across_only` it is the same for all placements of one rig.
     """
 
     name: str
-    value: Callable[[PosedSensors, Json], float]
+    value: Callable[[Placement, Json], float]
     across_only: bool = False
 
 
@@ -64,25 +54,13 @@ COMPARED = (
 
 def placement_scores(
     plan: StudyPlan,
-    needed: Iterable[tuple[PosedSensors, pe.Rig]],
+    needed: Iterable[tuple[Placement, pe.Rig]],
     folder: Path,
     report: Callable[[str], None],
 ) -> dict[str, Json]:
     """Return the scores of placements by name; those that scores.json does not have are computed.
 
-    Parameters
-    ----------
-    plan : StudyPlan
-    needed : iterable of (PosedSensors, Rig)
-    folder : Path
-        Folder of scores.json.
-    report : callable
-        Takes a line for each placement that is scored.
-
-    Raises
-    ------
-    InputError
-        When the file is of another plan.
+    `report` takes a line for each that is scored. A file of another plan is an `InputError`.
     """
     path = folder / SCORES
     scores: dict[str, Json] = {}

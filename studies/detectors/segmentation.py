@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -15,17 +14,13 @@ from pe_core import InputError
 from pe_core.base import dump_json, write_bytes
 from pe_core.scoring.targets import ObjectEvaluator, TargetRule
 
-from ..published.findings import p_text, rho_text
+from ..pages import p_text, rho_text
 from ..published.published import DEGREES, Paper, paper_of
-from ..published.ranks import holm, mean_ranks, standard_ranks
 from ..published.scores import body_of
-from ..results_file import read_json
-from ..wording import joined, table
+from ..ranks import SAME, holm, mean_ranks, standard_ranks
+from ..results_file import Json, read_json
 from .plan import StatisticsRule
-from .rank_tests import SAME
 from .scores import SPACE
-
-Json = dict[str, Any]
 
 TABLE = Path(__file__).parents[1] / "published" / "data" / "place3d_segmentation.json"
 SCORES = "segmentation.json"
@@ -77,34 +72,24 @@ def _scorer() -> Callable[[str], Json]:
     return score
 
 
-def section(scores: Mapping[str, Json], rule: StatisticsRule, seed: int) -> str:
-    """Return the section of the page."""
-    names = list(published()["placements"])
-    tables = "\n\n".join(
-        f"### mIoU, {title}\n\n{_table(condition, scores, rule, seed)}"
-        for condition, title in CONDITIONS.items()
-    )
-    networks = joined(list(published()["miou"]["clean"]))
-    return f"""
-## From outside: segmentation in Place3D
-
-{len(names)} placements of four LiDARs of 16 channels with {networks}. Source: {published()["source"]}. One training a placement,
-no error bars; seven of the placements are also those of Place3D's detectors. Rolls are read in degrees, the body is the
-box of the page on [published detectors](../README.md). Mean rho over the networks, two-sided p by random permutations of the
-placements, Holm's correction for the scores.
-
-{tables}
-"""
-
-
-def _table(condition: str, scores: Mapping[str, Json], rule: StatisticsRule, seed: int) -> str:
-    rows = correlations(condition, scores, rule, seed)
-    adjusted = holm([row["p"] for row in rows.values()])
-    lines = [
-        [name, rho_text(row["rho"]), p_text(row["p"]), p_text(p)]
-        for (name, row), p in zip(rows.items(), adjusted, strict=True)
-    ]
-    return table(["score", "mean rho", "p", "p after Holm"], lines)
+def tables(scores: Mapping[str, Json], rule: StatisticsRule, seed: int) -> Json:
+    """Return for the page: the lines of its table, and what they are of."""
+    by_condition = [correlations(condition, scores, rule, seed) for condition in CONDITIONS]
+    adjusted = [holm([row["p"] for row in rows.values()]) for rows in by_condition]
+    lines = []
+    for k, name in enumerate(by_condition[0]):
+        cells = [
+            f"{rho_text(rows[name]['rho'])} ({p_text(rows[name]['p'])}, {p_text(corrected[k])})"
+            for rows, corrected in zip(by_condition, adjusted, strict=True)
+        ]
+        lines.append([name, *cells])
+    return {
+        "lines": lines,
+        "titles": ["score", *(f"mIoU, {title}" for title in CONDITIONS.values())],
+        "placements": len(published()["placements"]),
+        "networks": list(published()["miou"]["clean"]),
+        "source": published()["source"],
+    }
 
 
 def correlations(
@@ -117,7 +102,7 @@ def correlations(
     rows = {}
     for score in scores[names[0]]:
         ranks = standard_ranks([scores[n][score] for n in names])
-        if ranks is None:
+        if not ranks.any():
             raise InputError(SCORES, score, "values that differ", "one value")
         rng = np.random.default_rng([seed, 4])
         tiled = np.broadcast_to(ranks, (rule.permutations, len(names)))

@@ -17,8 +17,12 @@ from numpy.typing import NDArray
 
 from pe_tools.plots.plotting import BLUE, GREY, ORANGE, remove_frame, save_plot, styled
 
-from .analysis import DesignResults
-from .plan import StudyPlan
+from .analysis import DesignResults, Results, designs_of
+from .cameras.analysis import design_of_cameras
+from .cameras.rendering import Renderer
+from .findings import plot_name
+from .page import Study
+from .plan import CAMERAS, StudyPlan
 from .scores import COMPARED, EXPECTED_AP, HEIGHT, PRIMARY
 
 DISTANCE_BINS = 6
@@ -29,12 +33,31 @@ LABELS = ("perception entropy [nats]", "expected AP in traffic", "mean height [m
 PAIR_LABELS = ("perception entropy", "expected AP in traffic", "mean height")
 COLORS = (BLUE, ORANGE)
 CURVES, CURVE_LABELS = ("shipped", "scans"), ("shipped curves", "from scans")
+SHOWN_SCENE = ("test", 0)
+"""Split and number of the scene whose pictures are shown."""
+
+
+def draw_all(study: Study, folder: Path, scores: Results) -> None:
+    """Draw the plots of the study of LiDARs."""
+    for design in designs_of(study.plan, study.runs):
+        if design.has_figures:
+            ap_against_scores(folder / plot_name(design.name), study.plan, design, scores)
+            pairs_by_distance(folder / plot_name(design.name, pairs=True), design, scores)
+    if classes := study.found["ap_curves"]["classes"]:
+        expected_against_found(folder / "ap_curves.png", classes)
+
+
+def draw_cameras(study: Study, folder: Path, scores: Results) -> None:
+    """Draw the plots of the study of cameras."""
+    design = design_of_cameras(study.cameras, study.camera_runs)
+    scene = Renderer(study.cameras, design.chosen[0]).pictures(*SHOWN_SCENE)
+    pictures_of_scene(folder / "pictures.png", scene.pictures)
+    if design.has_figures:
+        ap_against_scores(folder / plot_name(CAMERAS), study.cameras.study, design, scores)
 
 
 @styled
-def ap_against_scores(
-    path: Path, plan: StudyPlan, design: DesignResults, scores: Mapping[str, dict[str, Any]]
-) -> None:
+def ap_against_scores(path: Path, plan: StudyPlan, design: DesignResults, scores: Results) -> None:
     """Draw AP against three scores: a dot a placement, a bar from lowest to highest seed."""
     figure, axes = plt.subplots(1, 3, figsize=(9.4, 3.3), sharey=True, layout="constrained")
     chosen = {s.name: s for s in COMPARED}
@@ -92,9 +115,7 @@ def expected_against_found(path: Path, classes: Mapping[str, dict[str, Any]]) ->
 
 
 @styled
-def pairs_by_distance(
-    path: Path, design: DesignResults, scores: Mapping[str, dict[str, Any]]
-) -> None:
+def pairs_by_distance(path: Path, design: DesignResults, scores: Results) -> None:
     """Draw the share of pairs on one vehicle that a score orders rightly, by their distance."""
     first, second = np.triu_indices(len(design.chosen), 1)
     same = design.samples.groups[first] == design.samples.groups[second]

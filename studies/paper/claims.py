@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from ..task_runner import Values
+from ..results_file import Values
+from .experiments import Effort, best_search, pilot_name, pitch_differences
 from .paper import PRIORS, ROW
-from .plan import Effort, best_search, pilot_name, pitch_differences
 
 STRONG_NATS = 0.39
 """A smaller improvement is not strong: half of what two cameras gain in the paper

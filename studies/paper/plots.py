@@ -32,8 +32,8 @@ from pe_tools.plots.plotting import (
     styled,
 )
 
+from .findings import Findings
 from .paper import PRIORS, ROW, ROWS, Row, study_of
-from .result_view import ReproductionResults
 
 Floats = NDArray[np.float64]
 
@@ -49,18 +49,17 @@ PITCH_LINE_M = 0.7
 """Length of the line that shows where a sensor's x axis points."""
 
 
-def draw_all(data: Mapping[str, Any], folder: Path) -> None:
+def draw_all(findings: Findings, folder: Path) -> None:
     """Draw every plot of the page."""
-    results = ReproductionResults(data)
-    values = results.values
+    values = findings.values
     priors(folder / "priors.png", values)
     rows(folder / "rows.png", values)
-    pitch(folder / "pitch.png", results.with_prefix("pitch/"))
-    sensitivity(folder / "sensitivity.png", results.with_prefix("vary/"))
+    pitch(folder / "pitch.png", findings.with_prefix("pitch/"))
+    sensitivity(folder / "sensitivity.png", findings.with_prefix("vary/"))
     bounds(folder / "camera_bound.png", values)
-    draw_ap_curves(folder / "ap_curves.png", results.with_prefix("fit/"))
+    draw_ap_curves(folder / "ap_curves.png", findings.with_prefix("fit/"))
     for row in ROWS:
-        ends = results.final_placements(row.name) if results.was_searched(row.name) else []
+        ends = [search["placements"] for search in findings.searches(row.name)]
         draw_placements(folder / f"placements_{row.name}.png", row, ends)
 
 

@@ -1,9 +1,70 @@
 """``python -m studies.published``: compare the scores with published results of detectors."""
 
-from ..command import main, page_parser
-from .validate import validate
+from __future__ import annotations
 
+import argparse
+from functools import partial
+from pathlib import Path
+
+from pe_core import prepare_folder
+from pe_core.base import dump_json, write_bytes
+from pe_tools.cli import DONE, Answer
+
+from ..command import main, page_parser
+from ..pages import PAGE, check_page, render
+from ..results_file import RESULTS, Json, compute, read_complete, read_json
+from .correlations import ValidityResults, correlations, over_papers
+from .findings import page_values, summary
+from .plots import draw_all
+from .scores import BASE, variants
+from .tasks import FULL, QUICK, ValidityEffort, plan
+
+TITLE = "# Do the scores rank placements as detectors do?"
 FOLDER, QUICK_FOLDER = "docs/validity", "validity-quick"
+
+
+def validate(args: argparse.Namespace, folder: Path) -> Answer:
+    """Compute the scores that are missing, correlate them, write the page and its plots."""
+    folder = prepare_folder(folder)
+    check_page(folder, TITLE, "published")
+    data = read_results(folder / RESULTS) if args.page_only else _computed(args, folder)
+    results = ValidityResults(data)
+    write_bytes(folder / PAGE, page(results, own_answer(folder)).encode())
+    draw_all(results, folder)
+    return dump_json(data) if args.json else summary(results), DONE
+
+
+def _computed(args: argparse.Namespace, folder: Path) -> Json:
+    effort = QUICK if args.quick else FULL
+    results = compute(folder, effort, partial(plan, effort), args.workers)
+    return results.save(**conclusions(results.values, effort))
+
+
+def conclusions(values: Json, effort: ValidityEffort) -> Json:
+    """Return what follows from the scores: correlations, and the test over both papers."""
+    varied = [choice for choice in variants(effort.all_variants) if choice != BASE]
+    return {"correlations": correlations(values, varied), "over_papers": over_papers(values)}
+
+
+def read_results(path: Path) -> Json:
+    """Read a complete results.json; its correlations must follow from its scores."""
+
+    def following(values: Json, effort: Json) -> Json:
+        return conclusions(values, ValidityEffort(**effort))
+
+    return read_complete(path, following, "correlations", "over_papers")
+
+
+def page(results: ValidityResults, own: str) -> str:
+    """Return the page as Markdown; `own` is the answer of our own study."""
+    return render(Path(__file__).parent, page_values(results, own))
+
+
+def own_answer(folder: Path) -> str:
+    """Return the answer of our own study, whose results are in a folder of its own within."""
+    path = folder / "own" / RESULTS
+    return str(read_json(path)["answer"]) if path.exists() else "it is not done here."
+
 
 if __name__ == "__main__":
     parser, _ = page_parser(

@@ -4,32 +4,37 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache
 from typing import Any
 
 import numpy as np
 
-from ..results_file import CompleteResults
-from ..task_runner import Values
+from ..ranks import (
+    Floats,
+    agreement,
+    exact_p,
+    exact_p_of_mean,
+    holm,
+    spearman,
+    under_chance,
+)
+from ..results_file import Json, Values, values_of
 from .published import CLEAN, READINGS, Paper, papers
-from .ranks import Floats, agreement, exact_p, exact_p_of_mean, holm, spearman, under_chance
 from .scores import BASE, CANDIDATES, RankedScore, Rating, ScoreChoice, candidates_of
 from .tasks import ValidityEffort
-
-Json = dict[str, Any]
-Record = Mapping[str, Any]
 
 ALL, LEVEL, LAYOUTS = "all", "none rolled", "LiDAR layouts"
 """Which placements are ranked: all; all without a printed roll; or all, where those that differ
 only in their cameras count as one."""
-TREATMENTS = (
-    (READINGS[0], ALL),
-    (READINGS[1], ALL),
-    (READINGS[0], LEVEL),
-    (READINGS[0], LAYOUTS),
-)
+TREATMENTS = {
+    (READINGS[0], ALL): "rolls in degrees",
+    (READINGS[1], ALL): "rolls in radians",
+    (READINGS[0], LEVEL): "without rolled ones",
+    (READINGS[0], LAYOUTS): "the second paper's four layouts",
+}
 """How doubtful placements are treated: how rolls are read, and which placements are ranked. The
 test is made with each of them, all other tables with the first."""
+MAIN = next(iter(TREATMENTS))
 MAIN_CLASS = "car"
 """The class of the test over both papers; the other classes are only shown."""
 MIN_AGREEMENT = 0.5
@@ -42,16 +47,8 @@ SIGNIFICANCE = 0.05
 class RankComparison:
     """A ranking of a paper's placements by the AP of a class, which a score should predict.
 
-    Attributes
-    ----------
-    paper : Paper
-    condition : str
-        "clean", or a corruption of the point clouds.
-    cls : str
-    reading : str
-        How printed rolls are read.
-    selection : str
-        Which placements are ranked: `ALL`, `LEVEL` or `LAYOUTS`.
+    `condition` is "clean" or a corruption of the point clouds, `reading` how printed rolls are
+    read, `selection` which placements are ranked.
     """
 
     paper: Paper
@@ -91,6 +88,20 @@ class RankComparison:
 
         return [_mean(map(value, names)) for names in self.placements]
 
+    def mean_rho(self, score_values: list[float]) -> float | None:
+        """Return the mean of rho over the detectors; None where one of them is not defined."""
+        rhos = [spearman(score_values, values) for values in self.ap.values()]
+        return None if None in rhos else float(np.mean([rho for rho in rhos if rho is not None]))
+
+    def chance(self, score_values: list[float]) -> Floats | None:
+        """Return the distribution of the mean rho under chance."""
+        return _chance(tuple(score_values), tuple(map(tuple, self.ap.values())))
+
+
+@cache
+def _chance(score: tuple[float, ...], ap: tuple[tuple[float, ...], ...]) -> Floats | None:
+    return under_chance(score, ap)
+
 
 def _layout(placement: str) -> str:
     """Return the name of a placement's LiDAR layout: what follows the name of its cameras."""
@@ -103,31 +114,25 @@ def _mean(values: Iterable[float]) -> float:
 
 def comparisons(paper: Paper) -> list[RankComparison]:
     """Return all comparisons that a paper's results allow."""
-    found = []
-    for condition, by_detector in paper.ap.items():
-        classes = [cls for cls in paper.classes if all(cls in row for row in by_detector.values())]
-        for cls in classes:
-            found += [RankComparison(paper, condition, cls, *t) for t in _treatments(paper)]
-    return found
-
-
-def _treatments(paper: Paper) -> list[tuple[str, str]]:
-    """Return the treatments that differ for a paper's placements."""
-    if not any(map(paper.rolled, paper.placements)):
+    treatments = list(TREATMENTS)
+    if any(map(paper.rolled, paper.placements)):
+        treatments = treatments[:3]
+    else:
         has_cameras = any("+" in name for name in paper.placements)
-        return [TREATMENTS[0], TREATMENTS[3]] if has_cameras else [TREATMENTS[0]]
-    return list(TREATMENTS[:3])
+        treatments = [treatments[0], treatments[3]] if has_cameras else treatments[:1]
+    return [
+        RankComparison(paper, condition, cls, *treatment)
+        for condition, by_detector in paper.ap.items()
+        for cls in paper.classes
+        if all(cls in row for row in by_detector.values())
+        for treatment in treatments
+    ]
 
 
 def correlations(values: Values, varied: list[ScoreChoice]) -> list[Json]:
     """Return a record for each comparison of each paper and each score.
 
-    Parameters
-    ----------
-    values : mapping
-        The computed values, by the name of their task.
-    varied : list of ScoreChoice
-        The choices that the lowest and the highest correlation are over, besides `BASE`.
+    The lowest and the highest correlation are over the varied choices, besides `BASE`.
     """
     return [
         _correlation(comparison, score, values, varied)
@@ -142,11 +147,9 @@ def _correlation(
 ) -> Json:
     ap = comparison.ap
     score_values = comparison.score_values(score, values)
-    by_detector = {name: spearman(score_values, by_name) for name, by_name in ap.items()}
-    chance = _chance(tuple(score_values), tuple(map(tuple, ap.values())))
-    mean = _mean_rho(score_values, ap)
+    chance, mean = comparison.chance(score_values), comparison.mean_rho(score_values)
     means = [mean]
-    means += [_mean_rho(comparison.score_values(score, values, c), ap) for c in varied]
+    means += [comparison.mean_rho(comparison.score_values(score, values, c)) for c in varied]
     defined = [rho for rho in means if rho is not None]
     return {
         "paper": comparison.paper.id,
@@ -157,24 +160,13 @@ def _correlation(
         "count": len(comparison.placements),
         "score": score.name,
         "values": score_values,
-        "by_detector": by_detector,
+        "by_detector": {name: spearman(score_values, by_name) for name, by_name in ap.items()},
         "mean": mean,
         "p": None if chance is None or mean is None else exact_p(mean, chance),
         "lowest": min(defined, default=None),
         "highest": max(defined, default=None),
         "agreement": agreement(list(ap.values())),
     }
-
-
-def _mean_rho(score_values: list[float], ap: Mapping[str, list[float]]) -> float | None:
-    """Return the mean of rho over the detectors; None where one of them is not defined."""
-    rhos = [spearman(score_values, values) for values in ap.values()]
-    return None if None in rhos else float(np.mean([rho for rho in rhos if rho is not None]))
-
-
-@cache
-def _chance(score: tuple[float, ...], ap: tuple[tuple[float, ...], ...]) -> Floats | None:
-    return under_chance(score, ap)
 
 
 def over_papers(values: Values, cls: str = MAIN_CLASS) -> list[Json]:
@@ -201,95 +193,67 @@ def over_papers(values: Values, cls: str = MAIN_CLASS) -> list[Json]:
 def _over_both(
     score: RankedScore, pair: tuple[RankComparison, RankComparison], values: Values
 ) -> Json:
-    rho, chance = [], []
-    for comparison in pair:
-        score_values, ap = comparison.score_values(score, values), comparison.ap
-        rho.append(_mean_rho(score_values, ap))
-        chance.append(_chance(tuple(score_values), tuple(map(tuple, ap.values()))))
+    score_values = [comparison.score_values(score, values) for comparison in pair]
+    rho = [c.mean_rho(v) for c, v in zip(pair, score_values, strict=True)]
     record: Json = {"score": score.name, "rho": rho, "mean": None, "p": 1.0}
     if rho[0] is not None and rho[1] is not None:
-        assert chance[0] is not None and chance[1] is not None
+        first, second = (c.chance(v) for c, v in zip(pair, score_values, strict=True))
+        assert first is not None and second is not None
         record["mean"] = (rho[0] + rho[1]) / 2.0
-        record["p"] = exact_p_of_mean(record["mean"], chance[0], chance[1])
+        record["p"] = exact_p_of_mean(record["mean"], first, second)
     return record
 
 
-class ValidityResults(CompleteResults):
-    """Complete results of ``python -m studies.published``, as the page asks for them."""
+class ValidityResults:
+    """Complete results of ``python -m studies.published``, as page and plots ask for them."""
 
     def __init__(self, data: Mapping[str, Any]) -> None:
-        super().__init__(data)
+        self.made: Json = data["made"]
+        self.seconds = [entry["seconds"] for entry in data["results"].values()]
         self.effort = ValidityEffort(**self.made["effort"])
-        self.correlations: list[Record] = data["correlations"]
-        self.tests: list[Record] = data["over_papers"]
+        self.values = values_of(data)
+        self.correlations: list[Json] = data["correlations"]
+        self.tests: list[Json] = data["over_papers"]
+        self.scores = [row["score"] for row in self.tests_of(MAIN)]
 
-    @cached_property
-    def treatments(self) -> list[tuple[str, str]]:
-        """The treatments of doubtful placements, the main one first: reading and selection."""
-        return list(dict.fromkeys((row["reading"], row["placements"]) for row in self.tests))
-
-    def tests_of(self, treatment: tuple[str, str]) -> list[Record]:
+    def tests_of(self, treatment: tuple[str, str]) -> list[Json]:
         """Return the tests over both papers with a treatment, one for each score."""
         return [row for row in self.tests if (row["reading"], row["placements"]) == treatment]
 
-    @property
-    def main_tests(self) -> list[Record]:
-        """The tests over both papers with the main treatment."""
-        return self.tests_of(self.treatments[0])
+    def test(self, score: str, treatment: tuple[str, str] = MAIN) -> Json:
+        """Return the test of a score over both papers."""
+        return next(row for row in self.tests_of(treatment) if row["score"] == score)
 
-    def correlations_of(self, paper: Paper, cls: str, condition: str = CLEAN) -> list[Record]:
+    def correlations_of(self, paper: Paper, cls: str, condition: str = CLEAN) -> list[Json]:
         """Return the correlations of all scores in one paper, with the main treatment."""
-        wanted = (paper.id, condition, cls, *self.treatments[0])
+        wanted = (paper.id, condition, cls, *MAIN)
         keys = ("paper", "condition", "class", "reading", "placements")
         return [row for row in self.correlations if tuple(row[key] for key in keys) == wanted]
 
-    def correlation_of(self, paper: Paper, cls: str, score: str) -> Record:
-        """Return the correlation of one score, with clean results and the main treatment."""
-        return next(row for row in self.correlations_of(paper, cls) if row["score"] == score)
+    def correlation_of(self, paper: Paper, cls: str, score: str, condition: str = CLEAN) -> Json:
+        """Return the correlation of one score, with the main treatment."""
+        rows = self.correlations_of(paper, cls, condition)
+        return next(row for row in rows if row["score"] == score)
 
-    def significant(self) -> list[str]:
-        """Return the scores that are significant with every treatment, after Holm's correction."""
-        names = [row["score"] for row in self.main_tests]
-        return [n for n in names if all(self._is_significant(n, t) for t in self.treatments)]
-
-    def sometimes_significant(self) -> list[str]:
-        """Return the scores that are significant with some of the treatments, not with all."""
-        names = [row["score"] for row in self.main_tests]
-        some = [n for n in names if any(self._is_significant(n, t) for t in self.treatments)]
-        return [n for n in some if n not in self.significant()]
+    def significant(self) -> dict[str, list[str]]:
+        """Return the scores that are significant after Holm's correction, by how often."""
+        counts = {
+            score: sum(self.test(score, t)["holm"] < SIGNIFICANCE for t in TREATMENTS)
+            for score in self.scores
+        }
+        always = [score for score, count in counts.items() if count == len(TREATMENTS)]
+        return {
+            "always": always,
+            "sometimes": [s for s, n in counts.items() if n and s not in always],
+        }
 
     def opposite_in_papers(self) -> list[str]:
         """Return the scores whose correlations with the two papers' cars differ in sign."""
-        return [
-            row["score"]
-            for row in self.main_tests
-            if None not in row["rho"] and row["rho"][0] * row["rho"][1] < 0.0
-        ]
-
-    def _is_significant(self, name: str, treatment: tuple[str, str]) -> bool:
-        row = next(row for row in self.tests_of(treatment) if row["score"] == name)
-        return bool(row["holm"] < SIGNIFICANCE)
+        rhos = {score: self.test(score)["rho"] for score in self.scores}
+        return [s for s, rho in rhos.items() if None not in rho and rho[0] * rho[1] < 0.0]
 
 
-def detectors_disagree(correlation: Record) -> bool:
+def detectors_disagree(correlation: Json) -> bool:
     """Return whether the detectors disagree too much for a score to predict their ranking."""
     agreed = correlation["agreement"]
     return agreed is None or agreed < MIN_AGREEMENT
-
-
-def min_significant_rho(count: int) -> float | None:
-    """Return the smallest significant rho of so many placements without ties, or None.
-
-    It is significant by the exact p of a single test; there is none for very few placements.
-    """
-    ranks = list(map(float, range(count)))
-    chance = under_chance(ranks, [ranks])
-    assert chance is not None
-    positive = sorted({round(float(rho), 9) for rho in chance if rho > 0.0})
-    return next((rho for rho in positive if exact_p(rho, chance) <= SIGNIFICANCE), None)
-
-
-def common_classes() -> list[str]:
-    """Return the classes that every paper has."""
-    first, *others = papers()
-    return [cls for cls in first.classes if all(cls in paper.classes for paper in others)]

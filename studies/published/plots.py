@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import matplotlib
 
@@ -17,14 +16,10 @@ from matplotlib.lines import Line2D
 
 from pe_tools.plots.plotting import BLUE, GREY, ORANGE, remove_frame, save_plot, styled
 
-from .correlations import (
-    MAIN_CLASS,
-    Record,
-    ValidityResults,
-    detectors_disagree,
-    min_significant_rho,
-)
-from .findings import rho_text
+from ..pages import rho_text
+from ..ranks import min_significant_rho
+from ..results_file import Json
+from .correlations import MAIN_CLASS, ValidityResults, detectors_disagree
 from .published import CLEAN, Paper, papers
 
 PAPER_COLORS = (BLUE, ORANGE)
@@ -35,9 +30,8 @@ DOT_OFFSET = 0.13
 """Dots of the two papers are this far above and below their line."""
 
 
-def draw_all(data: Mapping[str, Any], folder: Path) -> None:
+def draw_all(results: ValidityResults, folder: Path) -> None:
     """Draw every plot of the page."""
-    results = ValidityResults(data)
     height(folder / "height.png")
     over_papers(folder / "over_papers.png", results)
     by_class(folder / "by_class.png", results)
@@ -88,18 +82,18 @@ def _labels(paper: Paper, names: Sequence[str], mean: np.ndarray) -> list[tuple[
 @styled
 def over_papers(path: Path, results: ValidityResults) -> None:
     """Draw rho of every score with cars, a dot for each paper, and the range over the choices."""
-    rows = results.main_tests
+    rows = results.scores
     figure, axes = plt.subplots(figsize=(8.6, 0.42 * len(rows) + 1.3), layout="constrained")
     significant = min_significant_rho(len(papers()[0].placements)) or 1.0
     for edge in (-significant, significant):
         axes.axvline(edge, color=GREY, lw=0.8, ls="--")
     axes.axvline(0.0, color=GREY, lw=0.8)
     offsets = (-DOT_OFFSET, DOT_OFFSET)
-    for line, row in enumerate(rows):
+    for line, score in enumerate(rows):
         for paper, color, offset in zip(papers(), PAPER_COLORS, offsets, strict=True):
-            correlation = results.correlation_of(paper, MAIN_CLASS, row["score"])
+            correlation = results.correlation_of(paper, MAIN_CLASS, score)
             _dot(axes, correlation, line + offset, color)
-    axes.set_yticks(range(len(rows)), [row["score"] for row in rows])
+    axes.set_yticks(range(len(rows)), rows)
     axes.set_ylim(len(rows) - 0.5, -0.5)
     axes.set_xlim(-1.02, 1.02)
     axes.set_xlabel("Spearman's rho with the AP of cars, mean over four detectors")
@@ -110,7 +104,7 @@ def over_papers(path: Path, results: ValidityResults) -> None:
     save_plot(figure, path)
 
 
-def _dot(axes: Axes, row: Record, y: float, color: str) -> None:
+def _dot(axes: Axes, row: Json, y: float, color: str) -> None:
     if row["mean"] is not None:
         axes.plot([row["lowest"], row["highest"]], [y, y], color=color, lw=2.5, alpha=0.35)
         axes.plot(row["mean"], y, "o", color=color, ms=6)

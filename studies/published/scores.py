@@ -17,7 +17,7 @@ from pe_core.metric import POINTPILLARS
 from pe_core.sensors import derived_object_curves
 
 from ..paper.paper import STUDIES
-from ..task_runner import Values
+from ..results_file import Values
 from .published import Paper
 
 NumberVector = Sequence[float] | np.ndarray

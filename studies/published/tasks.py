@@ -12,7 +12,7 @@ import numpy as np
 import pe_core as pe
 from pe_core.scoring.targets import ObjectEvaluator, SampledObjects, TargetRule, sample_objects
 
-from ..task_runner import Task, Values
+from ..results_file import Json, Task, Values
 from .published import paper_of, papers
 from .scores import (
     ALONE,
@@ -27,8 +27,6 @@ from .scores import (
     variants,
     voxel_name,
 )
-
-Json = dict[str, Any]
 
 PRIORS = {"road": pe.Prior.road, "uniform": pe.Prior.uniform}
 SPACE = pe.PerceptionSpace()

@@ -20,10 +20,13 @@ def study(name, *arguments):
     out, err = io.StringIO(), io.StringIO()
     streams = contextlib.redirect_stdout(out), contextlib.redirect_stderr(err)
     argv = [name, *map(str, arguments)]
+    imported = sys.modules.pop(f"studies.{name}.__main__", None)  # by a test: Python would warn
     with streams[0], streams[1], warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("default")
         with mock.patch.object(sys, "argv", argv), pytest.raises(SystemExit) as ended:
             runpy.run_module(f"studies.{name}", run_name="__main__")
+    if imported is not None:
+        sys.modules[imported.__name__] = imported
     said = "".join(f"{each.category.__name__}: {each.message}\n" for each in warned)
     text = err.getvalue() + said
     return SimpleNamespace(returncode=ended.value.code, stdout=out.getvalue(), stderr=text)

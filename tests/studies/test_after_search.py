@@ -10,34 +10,24 @@ import pytest
 from benchmarks.search_problems import PROBLEMS
 from pe_core import InputError
 from pe_core.study import load_study
+from studies.detectors.after_search.analysis import after_search_analysis
 from studies.detectors.after_search.plan import (
     START,
     full_after_search_plan,
     quick_after_search_plan,
 )
-from studies.detectors.after_search.searches import (
-    FOLDER,
-    PLACEMENTS,
-    placement_name,
-    searched_placements,
-    study_of,
-)
-from studies.detectors.after_search.section import after_search_section, answer
-from studies.detectors.after_search.study import (
-    AfterSearchFiles,
-    after_search_analysis,
-    after_search_runs,
-    planned_runs,
-    student_interval,
-)
+from studies.detectors.after_search.searches import PLACEMENTS, searched_placements, study_of
 from studies.detectors.analysis import HOLDS, OPEN, REFUTED
 from studies.detectors.casting import Caster
+from studies.detectors.findings import answer_after_search
 from studies.detectors.placements import SHUTTLE
-from studies.detectors.plan import PLAIN, full_plan
+from studies.detectors.plan import AFTER_SEARCH, PLAIN, full_plan
+from studies.detectors.rank_tests import student_interval
+from studies.detectors.runs import RunFiles, seed_by_seed
 from studies.detectors.scenes import scene
 from studies.paper.paper import STUDIES
 from tests.studies.conftest import ROOT, study
-from tests.studies.test_own_study import in_a_process
+from tests.studies.test_detectors import in_a_process
 from tests.thorough import THOROUGH
 
 PLAN = full_after_search_plan()
@@ -55,13 +45,13 @@ def results_of(gain, seeds=3, noise=0.003):
                 more = gain.get((rig.name, what), 0.0)
                 ap = 0.5 + 0.1 * k + more + noise * math.sin(7.0 * seed + len(what))
                 rings = {ring: {"car": ap, "cone": ap} for ring in PLAN.study.precision.rings}
-                found[f"{placement_name(rig, what)}-s{seed}"] = {"ap": ap, "by_ring": rings}
+                found[f"{rig.placement_name(what)}-s{seed}"] = {"ap": ap, "by_ring": rings}
     return found
 
 
 def test_the_plan_is_the_one_before_the_first_run():
-    assert PLAN.digest == DIGEST != full_plan().digest
-    assert planned_runs(PLAN) == 18 and PLAN.study.training.seeds == (1, 2, 3)
+    assert PLAN.study.digest == DIGEST != full_plan().digest
+    assert PLAN.study.training.seeds == (1, 2, 3)
 
 
 def test_rigs_are_the_lidars_of_the_studies_that_the_plan_names():
@@ -92,16 +82,16 @@ def test_scenes_of_the_bus_are_those_of_the_study_and_the_shuttle_has_its_own():
 def test_a_short_search_is_kept_and_its_runs_are_gone_on_with_by_resume_alone(tmp_path):
     """It ends within its bounds, and its file is not searched again."""
     plan, said = quick_after_search_plan(), []
-    assert [p.what for p in searched_placements(plan, tmp_path)] == [START]
+    assert [p.name for p in searched_placements(plan, tmp_path)] == ["after-shuttle-start"]
     found = searched_placements(plan, tmp_path, said.append)
-    assert len(said) == 2 and [p.what for p in found] == [START, *plan.objectives]
+    assert len(said) == 2 and len(found) == 1 + len(plan.objectives)
     again = searched_placements(plan, tmp_path, lambda line: pytest.fail(line))
     assert again == found
-    files = AfterSearchFiles(tmp_path, plan, found)
+    files = RunFiles(tmp_path / AFTER_SEARCH, plan.study, seed_by_seed(plan.study, found))
     files.write(files.all[0], {"ap": 0.5})
     run = study("detectors", "--after-search", "--quick", "--output", tmp_path)
     assert run.returncode == 1 and "1 of 3 runs; pass --resume" in run.stderr
-    kept = json.loads((tmp_path / FOLDER / PLACEMENTS).read_text("utf-8"))["searches"]
+    kept = json.loads((tmp_path / AFTER_SEARCH / PLACEMENTS).read_text("utf-8"))["searches"]
     by_ap = kept["shuttle, expected_ap"]
     assert by_ap["evaluations"] == 6 and by_ap["expected_ap"][1] >= by_ap["expected_ap"][0]
     (x, y, z, _, pitch, _), *_ = found[1].poses
@@ -114,15 +104,15 @@ def test_a_short_search_is_kept_and_its_runs_are_gone_on_with_by_resume_alone(tm
 def test_its_lidars_are_cast(tmp_path):
     plan = quick_after_search_plan()
     (start,) = searched_placements(plan, tmp_path)
-    assert start.lidars == 4 and start.channels == 16
+    assert len(start.poses) == 4
     voxels = Caster(plan.study, start, PLAIN).voxels("test", 0)
     assert voxels.counts.sum() > 5000 and voxels.beams.sum() > 100
 
 
 def test_runs_come_seed_by_seed():
     placements = searched_placements(PLAN, FOLDER_OF_DOCS)
-    names = [run.name for run in after_search_runs(PLAN, placements)]
-    assert len(set(names)) == planned_runs(PLAN)
+    names = [run.name for run in seed_by_seed(PLAN.study, placements)]
+    assert len(set(names)) == 18
     assert names[0] == "after-experiment-4-start-s1" and names[-1] == "after-shuttle-expected-ap-s3"
     assert [name[-1] for name in names] == sorted(name[-1] for name in names)
 
@@ -148,7 +138,7 @@ def test_a_verdict_needs_all_seeds_of_its_comparison_and_a_sentence_both_rigs():
         ("shuttle", "expected_ap"): HOLDS,
     }
     assert found["answers"] == {"entropy": HOLDS, "expected_ap": REFUTED}
-    all_rigs, one_rig = answer(found).split(". ")
+    all_rigs, one_rig = answer_after_search(found).split(". ")
     assert all_rigs == (
         "After a search by perception entropy a detector finds more than at the start on "
         "2 of 2 rigs (experiment 4 and shuttle)"
@@ -158,27 +148,20 @@ def test_a_verdict_needs_all_seeds_of_its_comparison_and_a_sentence_both_rigs():
         "1 of 2 rigs (shown: shuttle; not shown: experiment 4)."
     )
     partly = after_search_analysis(PLAN, results_of(gains, seeds=2), {})
-    assert set(partly["answers"].values()) == {OPEN} and "is open" in answer(partly)
+    assert set(partly["answers"].values()) == {OPEN} and "is open" in answer_after_search(partly)
     assert partly["rigs"]["shuttle"]["after"]["entropy"]["mean"] == pytest.approx(0.05, abs=0.01)
     worse = results_of({(rig.name, "entropy"): -0.05 for rig in PLAN.rigs})
-    told = answer(after_search_analysis(PLAN, worse, {}))
+    told = answer_after_search(after_search_analysis(PLAN, worse, {}))
     assert "It was not shown that a detector finds more" in told
 
 
-def test_the_committed_placements_are_of_this_plan_and_the_section_is_that_of_the_results():
-    placements = searched_placements(PLAN, FOLDER_OF_DOCS)
-    assert len(placements) == 6
-    results = AfterSearchFiles(FOLDER_OF_DOCS, PLAN, placements).read()
-    saved = json.loads((FOLDER_OF_DOCS / FOLDER / "results.json").read_text("utf-8"))
-    assert saved["done"] == len(results) and saved["planned"] == planned_runs(PLAN)
-    section = after_search_section(PLAN, saved, {})
-    assert "experiment 4" in section and answer(saved) in section
-    means = {
-        rig: [v["mean"] for v in row["by_ring"].values()] for rig, row in saved["rigs"].items()
-    }
-    assert [v[0] for v in means.values()] == pytest.approx([-0.0475, -0.0306], abs=1e-4)
-    assert [v[-1] for v in means.values()] == pytest.approx([0.0859, 0.1139], abs=1e-4)
-    assert "| shuttle | -0.031 (-0.051 to -0.011) |" in section
+def test_the_committed_placements_are_of_this_plan_and_other_pages_tell_the_results():
+    assert len(searched_placements(PLAN, FOLDER_OF_DOCS)) == 6
+    saved = json.loads((FOLDER_OF_DOCS / AFTER_SEARCH / "results.json").read_text("utf-8"))
+    assert saved["done"] == saved["planned"] == 18
+    means = [[v["mean"] for v in rig["by_ring"].values()] for rig in saved["rigs"].values()]
+    assert [v[0] for v in means] == pytest.approx([-0.0475, -0.0306], abs=1e-4)
+    assert [v[-1] for v in means] == pytest.approx([0.0859, 0.1139], abs=1e-4)
     told = (ROOT / "docs" / "optimize.md").read_text("utf-8")
     gains = [row["mean"] for rig in saved["rigs"].values() for row in rig["after"].values()]
     assert all(f"{gain:+.3f}" in told for gain in gains), "and the documentation its figures"

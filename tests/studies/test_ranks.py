@@ -6,13 +6,13 @@ import math
 import numpy as np
 import pytest
 
-from studies.published.correlations import min_significant_rho
-from studies.published.ranks import (
+from studies.ranks import (
     agreement,
     exact_p,
     exact_p_of_mean,
     holm,
     midranks,
+    min_significant_rho,
     spearman,
     under_chance,
 )

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from studies.published import correlations, scores
+from studies.published.__main__ import own_answer, page, read_results
 from studies.published.correlations import (
     LAYOUTS,
     LEVEL,
@@ -17,11 +18,10 @@ from studies.published.correlations import (
     ValidityResults,
     comparisons,
 )
-from studies.published.page import page, placements_for
+from studies.published.findings import placements_for
 from studies.published.published import CLEAN, DEGREES, RADIANS, paper_of, papers
 from studies.published.scores import BASE, BODY_M, body_of, box_triangles, variants
 from studies.published.tasks import FULL, QUICK, names, plan
-from studies.published.validate import own_answer, read_results
 from tests.studies.conftest import ROOT, numbers, study
 
 
@@ -104,7 +104,7 @@ def test_the_quick_run_is_complete(quick):
 
 def test_height_is_what_the_papers_disagree_on(quick):
     """Independent of any score: 0.88 and -0.69, as a table of both papers' cars gives by hand."""
-    reading, selection = correlations.TREATMENTS[0]
+    reading, selection = correlations.MAIN
     rows = [row for row in quick.data["over_papers"] if row["score"] == "mean height"]
     found = {(row["reading"], row["placements"]): row["rho"] for row in rows}
     assert found[reading, selection] == pytest.approx([0.877, -0.694], abs=1e-3)

@@ -9,14 +9,13 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
-from ..placements import SHUTTLE
-from ..plan import StudyPlan, full_plan, quick_plan, text_and_digest
-from ..posed_sensors import PoseValues
+from ..placements import SHUTTLE, PoseValues
+from ..plan import StudyPlan, full_plan, quickly, text_and_digest
 
 START = "start"
 """Name of the placement before a search; those after it have that of their objective."""
-RIGS = ("experiment_4", "shuttle")
-TITLES = {RIGS[0]: "experiment 4", RIGS[1]: "shuttle"}
+TITLES = {"experiment_4": "experiment 4", "shuttle": "shuttle"}
+"""The rigs of the plan, in words."""
 AxisRanges = Mapping[str, tuple[float, float]]
 
 
@@ -24,15 +23,7 @@ AxisRanges = Mapping[str, tuple[float, float]]
 class SearchedRig:
     """A rig of LiDARs of one model on a vehicle, before a search.
 
-    Attributes
-    ----------
-    name, vehicle, model : str
-    poses : tuple of PoseValues
-        Where the LiDARs are at the start.
-    bounds : mapping
-        Of each LiDAR, by axis [m, rad]; empty: as shipped.
-    clear_housings : bool
-        Whether the search keeps housings clear of the body and of each other.
+    `bounds` are those of each LiDAR, by axis [m, rad]; empty: as shipped.
     """
 
     name: str
@@ -42,23 +33,16 @@ class SearchedRig:
     bounds: AxisRanges
     clear_housings: bool
 
+    def placement_name(self, what: str) -> str:
+        """Return the name of a placement by what found it."""
+        return f"after-{self.name}-{what}".replace("_", "-")
+
 
 @dataclass(frozen=True, slots=True)
 class AfterSearchPlan:
     """The whole plan.
 
-    Attributes
-    ----------
-    study : StudyPlan
-        The LiDAR study's plan, with this one's seeds, and with the digest of both files.
-    rigs : tuple of SearchedRig
-    objectives : tuple of str
-    search_seed, samples : int
-        Of the searches; voxels on which their start and result are scored.
-    evaluations : int
-        Of a search; 0: as many as the method takes.
-    confidence : float
-        Of the intervals.
+    `study` is the LiDAR study's plan, with this one's seeds, and with the digest of both files.
     """
 
     study: StudyPlan
@@ -66,38 +50,22 @@ class AfterSearchPlan:
     objectives: tuple[str, ...]
     search_seed: int
     samples: int
+    """Voxels on which start and result of a search are scored."""
     evaluations: int
+    """Of a search; 0: as many as the method takes."""
     confidence: float
+    """Of the intervals."""
 
     @property
-    def digest(self) -> str:
-        """SHA-256 of the two files' content, which placements and results keep."""
-        return self.study.digest
+    def whats(self) -> tuple[str, ...]:
+        """What the placements of a rig are: the start, and what each objective found."""
+        return (START, *self.objectives)
 
 
 @cache
 def full_after_search_plan() -> AfterSearchPlan:
     """Return the plan of the study."""
-    return after_search_plan_of(*text_and_digest(__package__))
-
-
-@cache
-def quick_after_search_plan() -> AfterSearchPlan:
-    """Return a plan that only shows that everything runs: one rig, few scenes, short searches."""
-    plan, quick = full_after_search_plan(), quick_plan()
-    study = replace(
-        plan.study,
-        digest=f"quick-{plan.digest}",
-        scenes=quick.scenes,
-        mixed=quick.mixed,
-        training=quick.training,
-        statistics=quick.statistics,
-    )
-    return replace(plan, study=study, rigs=plan.rigs[1:], samples=4096, evaluations=6)
-
-
-def after_search_plan_of(text: str, digest: str) -> AfterSearchPlan:
-    """Return the plan of a file's text; a key that is missing is an exception."""
+    text, digest = text_and_digest(__package__)
     data, shared = tomllib.loads(text), full_plan()
     return AfterSearchPlan(
         study=replace(
@@ -106,13 +74,20 @@ def after_search_plan_of(text: str, digest: str) -> AfterSearchPlan:
             vehicles=(*shared.vehicles, SHUTTLE),  # those before keep their scenes
             training=replace(shared.training, seeds=tuple(data["seeds"])),
         ),
-        rigs=tuple(_rig(name, data[name]) for name in RIGS),
+        rigs=tuple(_rig(name, data[name]) for name in TITLES),
         objectives=tuple(data["search"]["objectives"]),
         search_seed=data["search"]["seed"],
         samples=data["search"]["samples"],
         evaluations=0,
         confidence=data["confidence"],
     )
+
+
+@cache
+def quick_after_search_plan() -> AfterSearchPlan:
+    """Return a plan that only shows that everything runs: one rig, few scenes, short searches."""
+    plan = full_after_search_plan()
+    return replace(plan, study=quickly(plan.study), rigs=plan.rigs[1:], samples=4096, evaluations=6)
 
 
 def _rig(name: str, table: Mapping[str, Any]) -> SearchedRig:

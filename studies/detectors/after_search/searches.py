@@ -6,56 +6,25 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pe_core as pe
-from pe_core import InputError, catalog
+from pe_core import InputError
 from pe_core.base import dump_json, write_bytes
 from pe_core.search import PAPER_FREE
 
-from ...results_file import made_by, read_json
-from ..placements import Placement, vehicle
-from ..plan import StudyPlan
-from ..posed_sensors import PoseValues, pose_texts
-from .plan import START, TITLES, AfterSearchPlan, SearchedRig
+from ...results_file import Json, made_by, read_json
+from ..placements import Placement, PoseValues, vehicle
+from ..plan import AFTER_SEARCH
+from .plan import START, AfterSearchPlan, SearchedRig
 
-Json = dict[str, Any]
-
-FOLDER = "after_search"
 PLACEMENTS = "placements.json"
 POSITION_DIGITS, ANGLE_DIGITS = 3, 2
 """Of a placement [m, deg]: what is scored and cast is what the file says."""
 
 
-@dataclass(frozen=True, slots=True)
-class SearchedPlacement(Placement):
-    """A placement before or after a search.
-
-    Attributes
-    ----------
-    model : str
-        Name of the LiDARs in the catalogue.
-    rig_name, what : str
-        Name of the rig in the plan; `START`, or the objective of the search that found it.
-    """
-
-    model: str
-    rig_name: str
-    what: str
-
-    def rig(self, plan: StudyPlan) -> pe.Rig:
-        """Return the rig, all LiDARs fused early."""
-        return self.rig_of(catalog.load(self.model))
-
-    @property
-    def title(self) -> str:
-        """What it is, in words."""
-        return f"{TITLES[self.rig_name]}, {self.what}"
-
-
 def study_of(plan: AfterSearchPlan, rig: SearchedRig, objective: str) -> pe.Study:
     """Return the study whose search is run: the shipped defaults, but for what the plan says."""
-    sensors = placement_of(rig, START, rig.poses).rig(plan.study)
+    sensors = placement_of(rig, START, rig.poses).rig()
     axes = tuple(rig.bounds) or PAPER_FREE
     search = pe.Search(
         {sensor.name: axes for sensor in sensors},
@@ -68,46 +37,26 @@ def study_of(plan: AfterSearchPlan, rig: SearchedRig, objective: str) -> pe.Stud
     return pe.Study(sensors, vehicle(rig.vehicle), samples=plan.samples, search=search)
 
 
-def placement_name(rig: SearchedRig, what: str) -> str:
-    """Return the name of a placement of a rig by what found it."""
-    return f"after-{rig.name}-{what}".replace("_", "-")
-
-
-def placement_of(rig: SearchedRig, what: str, poses: tuple[PoseValues, ...]) -> SearchedPlacement:
+def placement_of(rig: SearchedRig, what: str, poses: tuple[PoseValues, ...]) -> Placement:
     """Return a placement of a rig by what found it."""
-    name = placement_name(rig, what)
-    model = catalog.load(rig.model)
-    channels = len(model.elevations)  # type: ignore[attr-defined]  # the plan names LiDARs
-    found = (name, rig.vehicle, poses, False, FOLDER, channels, rig.model, rig.name, what)
-    return SearchedPlacement(*found)
+    name = rig.placement_name(what)
+    return Placement(name, rig.vehicle, poses, False, AFTER_SEARCH, rig.model)
 
 
 def searched_placements(
     plan: AfterSearchPlan, folder: Path, report: Callable[[str], None] | None = None
-) -> list[SearchedPlacement]:
-    """Return the placements of all rigs; searches that the file does not have are run.
+) -> list[Placement]:
+    """Return the placements of all rigs; searches that the study's folder does not have are run.
 
-    Without `report` none is run, and placements that are not there are left out.
-
-    Parameters
-    ----------
-    plan : AfterSearchPlan
-    folder : Path
-        Of the study of LiDARs.
-    report : callable, optional
-        Takes a line for each search that is run.
-
-    Raises
-    ------
-    InputError
-        When the file is of another plan.
+    `report` takes a line for each. Without it none is run, and placements that are not there are
+    left out. A file of another plan is an `InputError`.
     """
-    path = folder / FOLDER / PLACEMENTS
-    kept: Json = {"plan": plan.digest, "searches": {}}
+    path = folder / AFTER_SEARCH / PLACEMENTS
+    kept: Json = {"plan": plan.study.digest, "searches": {}}
     if path.exists():
         kept = read_json(path)
-        if kept.get("plan") != plan.digest or not isinstance(kept.get("searches"), dict):
-            raise InputError(path, "plan", plan.digest, str(kept.get("plan")))
+        if kept.get("plan") != plan.study.digest or not isinstance(kept.get("searches"), dict):
+            raise InputError(path, "plan", plan.study.digest, str(kept.get("plan")))
     placements = []
     for rig in plan.rigs:
         placements.append(placement_of(rig, START, rig.poses))
@@ -141,13 +90,14 @@ def _search(plan: AfterSearchPlan, rig: SearchedRig, objective: str) -> Json:
     assert outcome is not None
     poses = tuple(_rounded(sensor.pose) for sensor in outcome.study.rig)
     in_traffic = outcome.in_traffic
+    shown = placement_of(rig, objective, poses).listed()
     return {
         "method": outcome.start.search.method,
         "seed": plan.search_seed,
         "evaluations": outcome.evaluations,
         "entropy": [outcome.before.entropy, outcome.after.entropy],
         "expected_ap": in_traffic and [score.ap for score in in_traffic],
-        **pose_texts(placement_of(rig, objective, poses)),
+        "x y z roll pitch yaw": shown["x y z roll pitch yaw"],
         "poses": [list(pose) for pose in poses],
         "seconds": round(outcome.seconds, 1),
         "made": made_by(_SearchIdentity(objective, plan.search_seed)),

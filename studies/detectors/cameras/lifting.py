@@ -16,8 +16,8 @@ from pe_core.scene.rig import Sensor
 from pe_core.sensors.camera.picture import picture_rays
 
 from ..batches import STRIDE
+from ..placements import Placement, pose_of
 from ..plan import DetectionRegion
-from ..posed_sensors import PosedSensors, pose_of
 from .placements import in_picture
 from .plan import CameraPlan
 from .rendering import FreePixels, Renderer
@@ -58,7 +58,7 @@ class Lifting:
     nearness: NDArray[np.float32]
 
     @classmethod
-    def of(cls, plan: CameraPlan, placement: PosedSensors) -> Lifting:
+    def of(cls, plan: CameraPlan, placement: Placement) -> Lifting:
         """Return that of a placement; a coarse pixel is `STRIDE` by `STRIDE` pixels."""
         cameras = Renderer(plan, placement).cameras
         shape = plan.model.width // STRIDE, plan.model.height // STRIDE
@@ -84,7 +84,7 @@ class Lifting:
             pixels.astype(np.int32),
             shares.astype(np.float32),
             cells.reshape(nx, ny, CELL_VALUES).astype(np.float32),
-            np.stack([_nearness(s, shape) for s in placement.rig_of(plan.model)]),
+            np.stack([_nearness(s, shape) for s in placement.rig(plan.model)]),
         )
 
 

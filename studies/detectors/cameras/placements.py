@@ -4,35 +4,40 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import permutations
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pe_core.sensors.camera import Camera
 
-from ..placements import drawn_poses, sees_all_round, vehicle
-from ..posed_sensors import PosedSensors, PoseValues, first_of_each, numbered, pose_texts
+from ..placements import (
+    Placement,
+    PoseValues,
+    drawn_poses,
+    first_of_each,
+    numbered,
+    sees_all_round,
+    vehicle,
+)
+from ..plan import CAMERAS
 from .plan import CameraPlan
 
 Floats = NDArray[np.float64]
 
-NAME = "cameras"
 YAW_DIGITS = 1
 
-
-def camera_placements(plan: CameraPlan) -> list[PosedSensors]:
-    """Return all placements of the plan: those that see all round first."""
-    if plan.digest not in _drawn:
-        _drawn[plan.digest] = numbered(first_of_each(_draws(plan), plan.count))
-    return list(_drawn[plan.digest])
-
-
-_drawn: dict[str, list[PosedSensors]] = {}
+_drawn: dict[str, list[Placement]] = {}
 """Placements that were drawn, by the digest of their plan: drawing takes seconds."""
 
 
-def _draws(plan: CameraPlan) -> Iterator[PosedSensors]:
+def camera_placements(plan: CameraPlan) -> list[Placement]:
+    """Return all placements of the plan: those that see all round first."""
+    if plan.study.digest not in _drawn:
+        _drawn[plan.study.digest] = numbered(first_of_each(_draws(plan), plan.count))
+    return list(_drawn[plan.study.digest])
+
+
+def _draws(plan: CameraPlan) -> Iterator[Placement]:
     """Yield placements, without end but for the limit of the shared rule."""
     rng = np.random.default_rng([plan.seed, plan.cameras])
     body, rule = vehicle(plan.vehicle), plan.placements
@@ -43,9 +48,9 @@ def _draws(plan: CameraPlan) -> Iterator[PosedSensors]:
     for poses in drawn_poses(body, rule, rng, plan.cameras):
         yaws = rng.uniform(0.0, 90.0) + np.arange(plan.cameras) * 360.0 / plan.cameras
         yaws += rng.uniform(-plan.yaw_deg, plan.yaw_deg, plan.cameras)
-        turned = _looking_outwards(body.bounds, poses, yaws)
+        turned = tuple(_looking_outwards(body.bounds, poses, yaws))
         seen = sees_all_round(body, rule, in_view, turned)
-        yield PosedSensors(f"{NAME}-{plan.vehicle}", plan.vehicle, tuple(turned), seen)
+        yield Placement(f"{CAMERAS}-{plan.vehicle}", plan.vehicle, turned, seen, CAMERAS, "")
     raise AssertionError(f"no placement of cameras on {plan.vehicle}")
 
 
@@ -68,20 +73,11 @@ def _looking_outwards(
 
 
 def in_picture(model: Camera, directions: Floats) -> tuple[Floats, Floats, NDArray[np.bool_]]:
-    """Return where directions (..., 3), sensor frame, are in the picture.
+    """Return where directions (..., 3), sensor frame, are: column, row [px], and whether inside.
 
-    Returns
-    -------
-    tuple of (...) float, (...) float, (...) bool
-        Column and row from the upper left corner [px], and whether they are in the picture.
+    Columns and rows are counted from the upper left corner.
     """
     depth, left, up = np.moveaxis(directions, -1, 0)
     columns, rows = model.projection.project(depth, left, up)
     inside = (depth > 0.0) & (columns >= 0.0) & (columns < model.width)
     return columns, rows, inside & (rows >= 0.0) & (rows < model.height)
-
-
-def listing(plan: CameraPlan) -> dict[str, Any]:
-    """Return all placements as JSON data, for people."""
-    rows = {p.name: {"all_round": p.all_round, **pose_texts(p)} for p in camera_placements(plan)}
-    return {"plan": plan.digest, "placements": rows}

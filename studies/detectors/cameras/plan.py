@@ -16,7 +16,7 @@ from ..plan import (
     StudyPlan,
     TrainingRule,
     full_plan,
-    quick_plan,
+    quickly,
     rule_of,
     text_and_digest,
 )
@@ -35,80 +35,37 @@ class PictureRule:
 class CameraPlan:
     """The whole plan.
 
-    Attributes
-    ----------
-    study : StudyPlan
-        The LiDAR study's plan, whose scenes and precision are shared, with the seed of the scenes;
-        digest, region, training and statistics are those of the cameras.
-    seed : int
-        Of placements.
-    vehicle : str
-    cameras : int
-        Of a rig.
-    model : Camera
-    count : mapping
-        Placements that see all round (True) and that do not (False).
-    placements : PlacementRule
-    yaw_deg : float
-        Greatest deviation from four directions at right angles.
-    scenes : mapping
-        How many of the shared scenes are used, by split.
-    pictures : PictureRule
-    min_seed_rho, min_ap : float
-        With less, nothing is said.
+    `study` is the LiDAR study's plan, whose scenes and precision are shared, with the seed of the
+    scenes; digest (of both files), region, training and statistics are those of the cameras.
     """
 
     study: StudyPlan
     seed: int
+    """Of placements."""
     vehicle: str
     cameras: int
     model: Camera
     count: Mapping[bool, int]
+    """Placements that see all round (True) and that do not (False)."""
     placements: PlacementRule
     yaw_deg: float
+    """Greatest deviation from four directions at right angles."""
     scenes: Mapping[str, int]
+    """How many of the shared scenes are used, by split."""
     pictures: PictureRule
     min_seed_rho: float
     min_ap: float
-
-    @property
-    def digest(self) -> str:
-        """SHA-256 of the two files' content, which results keep."""
-        return self.study.digest
+    """With less, nothing is said."""
 
 
 @cache
 def full_camera_plan() -> CameraPlan:
     """Return the plan of the study of cameras."""
-    return camera_plan_of(*text_and_digest(__package__))
-
-
-@cache
-def quick_camera_plan() -> CameraPlan:
-    """Return a plan that only shows that everything runs: two placements, few scenes and pixels."""
-    plan, quick = full_camera_plan(), quick_plan()
-    study = replace(
-        plan.study,
-        digest=f"quick-{plan.digest}",
-        scenes=quick.scenes,
-        mixed=quick.mixed,
-        training=replace(quick.training, mirrored=False),
-        statistics=replace(plan.study.statistics, permutations=99, resamples=50, scenes=8),
-    )
-    return replace(
-        plan,
-        study=study,
-        count={True: 1, False: 1},
-        model=replace(plan.model, width=plan.model.width // 2, height=plan.model.height // 2),
-        scenes={"train": 16, "validation": 4, "test": 8},
-    )
-
-
-def camera_plan_of(text: str, digest: str) -> CameraPlan:
-    """Return the plan of a file's text; a key that is missing or unknown is an exception."""
+    text, digest = text_and_digest(__package__)
     data, shared = tomllib.loads(text), full_plan()
     rig, placements, tested = data["rig"], data["placements"], data["statistics"]
     limits = {key: tested.pop(key) for key in ("min_seed_rho", "min_ap")}
+    size = rig["width_px"], rig["height_px"]
     return CameraPlan(
         study=replace(
             shared,
@@ -121,13 +78,24 @@ def camera_plan_of(text: str, digest: str) -> CameraPlan:
         seed=data["seed"],
         vehicle=rig["vehicle"],
         cameras=rig["cameras"],
-        model=Camera(
-            "study camera", rig["width_px"], rig["height_px"], math.radians(rig["hfov_deg"])
-        ),
+        model=Camera("study camera", *size, math.radians(rig["hfov_deg"])),
         count={True: rig["all_round"], False: rig["blind"]},
         yaw_deg=placements.pop("yaw_deg"),
         placements=rule_of(PlacementRule, placements),
         scenes=data["scenes"],
         pictures=PictureRule(**data["pictures"]),
         **limits,
+    )
+
+
+@cache
+def quick_camera_plan() -> CameraPlan:
+    """Return a plan that only shows that everything runs: two placements, few scenes and pixels."""
+    plan = full_camera_plan()
+    return replace(
+        plan,
+        study=quickly(plan.study),
+        count={True: 1, False: 1},
+        model=replace(plan.model, width=plan.model.width // 2, height=plan.model.height // 2),
+        scenes={"train": 16, "validation": 4, "test": 8},
     )

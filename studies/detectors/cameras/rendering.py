@@ -15,9 +15,8 @@ from pe_core.geometry.triangle_tree import TriangleTree
 from pe_core.sensors.camera.picture import picture_rays
 
 from ..casting import RegionPictures, beams_on_objects, first_hits, region_objects
-from ..placements import vehicle
+from ..placements import Placement, vehicle
 from ..plan import PLAIN, SPLITS
-from ..posed_sensors import PosedSensors
 from ..scenes import Scene, scene
 from .plan import CameraPlan, PictureRule
 
@@ -108,8 +107,8 @@ class FreePixels:
     free : (W, H) bool
     """
 
-    def __init__(self, plan: CameraPlan, placement: PosedSensors, number: int) -> None:
-        sensor = placement.rig_of(plan.model).sensors[number]
+    def __init__(self, plan: CameraPlan, placement: Placement, number: int) -> None:
+        sensor = placement.rig(plan.model).sensors[number]
         width, height = plan.model.width, plan.model.height
         rays = picture_rays(sensor, width * height)
         self.origin = np.array(sensor.pose.position)
@@ -121,7 +120,7 @@ class FreePixels:
 class Renderer:
     """Renders scenes as a placement's cameras see them."""
 
-    def __init__(self, plan: CameraPlan, placement: PosedSensors) -> None:
+    def __init__(self, plan: CameraPlan, placement: Placement) -> None:
         self._plan, self._placement = plan, placement
         self.cameras = [FreePixels(plan, placement, k) for k in range(len(placement.poses))]
 

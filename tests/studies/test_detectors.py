@@ -1,4 +1,4 @@
-"""Our own study: scenes, points, targets of the detector, average precision, order of runs."""
+"""Our own study: its plan, scenes, points, targets, average precision, runs and page."""
 
 import hashlib
 import importlib.util
@@ -6,6 +6,7 @@ import json
 import re
 import subprocess
 import sys
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -15,35 +16,43 @@ from benchmarks.embree import Embree
 from pe_core import InputError
 from pe_core.geometry.raycast import VisibleTriangles
 from pe_core.geometry.triangle_tree import TriangleTree
-from studies.detectors import result_files, shapes
+from studies.detectors import runs as of_runs
+from studies.detectors import shapes
 from studies.detectors.after_search.plan import full_after_search_plan
 from studies.detectors.after_search.searches import searched_placements
-from studies.detectors.after_search.section import after_search_section
-from studies.detectors.after_search.study import AfterSearchFiles
-from studies.detectors.afterwards_section import afterwards_section, short_answer
+from studies.detectors.afterwards import history
 from studies.detectors.analysis import UNDECIDED
 from studies.detectors.batches import NEITHER, detections, inputs, targets
-from studies.detectors.cameras.plan import full_camera_plan
-from studies.detectors.cameras.section import camera_section
-from studies.detectors.cameras.study import CameraFiles, camera_analysis
+from studies.detectors.cameras.placements import camera_placements
+from studies.detectors.cameras.plan import full_camera_plan, quick_camera_plan
 from studies.detectors.casting import GROUND_M, MAX_POINTS, Caster, FreeBeams
-from studies.detectors.curve_section import curve_section
-from studies.detectors.history import history, history_section
-from studies.detectors.placements import placements
-from studies.detectors.plan import PLAIN, TOWN, full_plan, quick_plan
+from studies.detectors.findings import short_answer
+from studies.detectors.page import Study, page
+from studies.detectors.placements import listing, placements
+from studies.detectors.plan import (
+    ACROSS,
+    AFTER_SEARCH,
+    CAMERAS,
+    FIXED,
+    MIXED,
+    PLAIN,
+    TOWN,
+    full_plan,
+    quick_plan,
+)
 from studies.detectors.precision import ClassScene, average_precision, in_ring
-from studies.detectors.result_files import digest_of_files, run_digest
-from studies.detectors.runs import RunFiles, runs
+from studies.detectors.runs import RunFiles, digest_of_files, run_digest, runs, seed_by_seed
 from studies.detectors.scenes import CLASSES, NOBODY, scene
 from studies.detectors.scores import PRIMARY
-from studies.detectors.segmentation import section
-from studies.detectors.study_page import page
 from tests.limits import HANG_S
 from tests.studies.conftest import ROOT, study
 from tests.thorough import THOROUGH
 
+FOLDER = ROOT / "docs" / "validity" / "own"
 PLAN = full_plan()
 PLACEMENT = placements(PLAN)[0]
+DIGEST = "33306cc19714a1fa"
+"""Of the plan that the study began with. A changed plan is another study, with its own results."""
 SCENE = "bdedc09a393d7688"
 """Digest of what a placement sees in a scene: results of several sessions belong together."""
 TOWN_RUN = """
@@ -56,7 +65,7 @@ from studies.detectors.runs import Run
 plan = quick_plan()
 counts = {"train": 4, "validation": 4, "test": 4}
 plan = replace(plan, scenes=replace(plan.scenes, counts=counts))
-print(json.dumps(run_one(plan, Run(placements(plan)[0], TOWN, POINTS, 1))))
+print(json.dumps(run_one(plan, Run(placements(plan)[0], 1, TOWN, POINTS))))
 """
 
 
@@ -68,6 +77,21 @@ def caster():
 @pytest.fixture(scope="module")
 def voxels(caster):
     return [caster.voxels("test", number) for number in range(4)]
+
+
+def test_the_plan_and_its_placements_are_those_that_the_study_began_with():
+    assert PLAN.digest == DIGEST != quick_plan().digest
+    drawn = placements(PLAN)
+    assert json.loads((FOLDER / "placements.json").read_text("utf-8")) == listing(DIGEST, drawn)
+    assert len({p.name for p in drawn}) == len({p.poses for p in drawn}) == len(drawn)
+    fixed = Counter((p.vehicle, p.all_round) for p in drawn if p.design == FIXED)
+    assert fixed == {(v, r): 12 if r else 4 for v in ("sedan", "bus") for r in (True, False)}
+    across = [p for p in drawn if p.design == ACROSS]
+    hardware = {(len(p.poses), p.model) for p in across}
+    assert hardware == {(n, model) for n in (1, 2, 4) for model in PLAN.hardware.values()}
+    assert all(p.all_round for p in across) and len(across) == 18
+    assert sum(p.design == MIXED for p in drawn) == 68
+    assert sum(p.design != MIXED for p in placements(quick_plan())) == 3
 
 
 def test_scenes_and_their_noise_are_the_same_in_every_session(voxels):
@@ -103,7 +127,7 @@ def test_beams_end_where_embree_says(world):
     embree = Embree.of(content.triangles)
     if embree is None:
         pytest.skip("embreex is not installed")
-    lidar = FreeBeams(PLAN, PLACEMENT, 0)
+    lidar = FreeBeams(PLACEMENT, 0)
     hits = VisibleTriangles(TriangleTree(content.triangles), lidar.origin)
     face = hits.first_hit(lidar.directions).face
     expected = embree.first_hit(lidar.origin, lidar.directions)
@@ -199,7 +223,7 @@ def test_runs_come_seed_by_seed_and_designs_by_turns():
 
 
 def test_files_of_another_plan_are_refused(tmp_path):
-    files = RunFiles(tmp_path, quick_plan())
+    files = RunFiles(tmp_path, quick_plan(), runs(quick_plan()))
     first, second = files.all[:2]
     files.write(first, {"ap": 0.5})
     assert files.missing()[0] == second and files.read() == {
@@ -210,7 +234,7 @@ def test_files_of_another_plan_are_refused(tmp_path):
             "ap": 0.5,
         }
     }
-    other = RunFiles(tmp_path, replace(quick_plan(), digest="other"))
+    other = RunFiles(tmp_path, replace(quick_plan(), digest="other"), files.all)
     with pytest.raises(InputError, match="plan"):
         other.read()
     files.write(first, {"ap": 1.5})
@@ -266,39 +290,31 @@ def test_the_steps_run_with_their_world_and_detector():
     assert data["made"]["digest"] == run_digest(quick_plan().digest, made)
 
 
+def saved(*folders):
+    return json.loads(FOLDER.joinpath(*folders, "results.json").read_text("utf-8"))
+
+
 def test_the_page_is_that_of_the_saved_results():
-    folder = ROOT / "docs" / "validity" / "own"
-    done = RunFiles(folder, PLAN).read()
-    saved = json.loads((folder / "results.json").read_text("utf-8"))
-    assert saved["runs"]["done"] == len(done) == len(list((folder / "runs").glob("*.json")))
-    outside = section(
-        json.loads((folder / "segmentation.json").read_text("utf-8")), PLAN.statistics, PLAN.seed
-    )
-    cameras = full_camera_plan()
-    done_with_cameras = CameraFiles(folder, cameras).read()
-    found = camera_analysis(cameras, {}, {})
-    if done_with_cameras:
-        found = json.loads((folder / "cameras" / "results.json").read_text("utf-8"))
-    assert found["done"] == len(done_with_cameras)
-    curves = curve_section(saved["ap_curves"])
-    searches = full_after_search_plan()
-    searched = json.loads((folder / "after_search" / "results.json").read_text("utf-8"))
-    placements = searched_placements(searches, folder)
-    done_after = AfterSearchFiles(folder, searches, placements).read()
-    after = after_search_section(searches, searched, done_after)
-    groups = {".": done, "after_search": done_after, "cameras": done_with_cameras}
-    happened = history(folder, groups)
-    assert saved["history"] == happened, "no result was replaced since the page was written"
-    more = (
-        *(afterwards_section(saved), curves, after),
-        *(camera_section(cameras, found, done_with_cameras), outside, history_section(happened)),
-    )
-    assert (folder / "README.md").read_text("utf-8") == page(PLAN, saved, done, *more)
-    assert saved["answer"] == short_answer(PLAN, saved, searched, found)
+    cameras, searches = full_camera_plan(), full_after_search_plan()
+    done = RunFiles(FOLDER, PLAN, runs(PLAN)).read()
+    with_cameras = seed_by_seed(cameras.study, camera_placements(cameras))
+    camera_runs = RunFiles(FOLDER / CAMERAS, cameras.study, with_cameras).read()
+    after = seed_by_seed(searches.study, searched_placements(searches, FOLDER))
+    after_runs = RunFiles(FOLDER / AFTER_SEARCH, searches.study, after).read()
+    found, of_cameras, searched = saved(), saved(CAMERAS), saved(AFTER_SEARCH)
+    for results, all_runs in ((found["runs"], done), (of_cameras, camera_runs)):
+        assert results["done"] == len(all_runs)
+    happened = history(FOLDER, {".": done, AFTER_SEARCH: after_runs, CAMERAS: camera_runs})
+    assert found["history"] == happened, "no result was replaced since the page was written"
+    plans = PLAN, cameras, searches
+    whole = Study(*plans, found, of_cameras, searched, done, camera_runs, after_runs)
+    outside = json.loads((FOLDER / "segmentation.json").read_text("utf-8"))
+    assert (FOLDER / "README.md").read_text("utf-8") == page(whole, outside)
+    assert found["answer"] == short_answer(PLAN, found, searched, of_cameras)
 
 
 def test_other_pages_give_the_answer_of_the_study_and_the_readme_in_seventy_words():
-    answer = json.loads((ROOT / "docs/validity/own/results.json").read_text("utf-8"))["answer"]
+    answer = saved()["answer"]
     for page_of_it in ("README.md", "docs/howto/compare.md", "docs/validity/README.md"):
         blocks = (ROOT / page_of_it).read_text("utf-8").split("\n\n")
         (told,) = (text for b in blocks if answer in (text := " ".join(b.split())))
@@ -310,21 +326,21 @@ def test_other_pages_give_the_answer_of_the_study_and_the_readme_in_seventy_word
 
 def test_the_better_half_is_not_decided_and_other_methods_lean_to_it():
     """As others computed it from the same runs, with code of their own."""
-    saved = json.loads((ROOT / "docs/validity/own/results.json").read_text("utf-8"))
-    half = saved["afterwards"]["better_half"]
-    assert saved["statements"][2]["verdict"] == UNDECIDED
+    found = saved()
+    half = found["afterwards"]["better_half"]
+    assert found["statements"][2]["verdict"] == UNDECIDED
     assert half["p"] == pytest.approx(0.017, abs=1e-3)
     assert half["bca"] == pytest.approx([0.18, 0.88], abs=0.01)
     assert half["bootstrap_mean"] == pytest.approx(0.53, abs=0.005)
     assert 0.25 < half["power"][0]["share"] < half["power"][1]["share"] < 0.52
-    rows = saved["afterwards"]
+    rows = found["afterwards"]
     assert rows["minus_beams"]["interval"] == pytest.approx([-0.006, 0.11], abs=0.005)
     assert (rows["fewer_beams"]["pairs"], rows["fewer_beams"]["wrong"][PRIMARY]) == (10, 10)
     assert rows["curves_across"]["rmse"] == pytest.approx(0.020, abs=5e-4)
 
 
 def test_the_page_tells_which_results_were_replaced_and_which_commits_are_lost():
-    happened = json.loads((ROOT / "docs/validity/own/results.json").read_text("utf-8"))["history"]
+    happened = saved()["history"]
     changes = [row["after"] - row["before"] for row in happened["replaced"].values()]
     assert [round(f(changes), 3) for f in (min, max)] == [0.003, 0.025] and len(changes) == 4
     lost = {name: sum(group["lost"].values()) for name, group in happened["groups"].items()}
@@ -342,7 +358,7 @@ def test_a_run_s_digest_covers_plan_code_prior_and_versions(tmp_path, monkeypatc
     for root in roots.values():
         (root / "prior").mkdir(parents=True)
         (root / "prior" / "classes.py").write_text("x = 1")
-    monkeypatch.setattr(result_files.resources, "files", lambda package: roots[package])
+    monkeypatch.setattr(of_runs.resources, "files", lambda package: roots[package])
     one = run_digest("plan", versions)
     for root in roots.values():
         (root / "prior" / "classes.py").write_text("x = 2")
@@ -350,17 +366,23 @@ def test_a_run_s_digest_covers_plan_code_prior_and_versions(tmp_path, monkeypatc
 
 
 def test_a_replaced_result_changes_the_digest_of_the_files(tmp_path):
-    files = RunFiles(tmp_path, quick_plan())
+    files = RunFiles(tmp_path, quick_plan(), runs(quick_plan()))
     files.write(files.all[0], {"ap": 0.5})
     before = digest_of_files(tmp_path / "runs")
     files.write(files.all[0], {"ap": 0.6})
     assert digest_of_files(tmp_path / "runs") != before
 
 
-def test_the_command_refuses_to_mix_results_and_says_what_is_missing(tmp_path):
-    """Results that are there are gone on with by --resume alone."""
-    plan = quick_plan()
-    files = RunFiles(tmp_path, plan)
-    files.write(files.all[0], {"ap": 0.5})
-    run = study("detectors", "--quick", "--output", tmp_path)
-    assert run.returncode == 1 and "1 of 4 runs; pass --resume" in run.stderr
+@pytest.mark.parametrize(
+    ("folder", "option", "told"),
+    [(".", (), "1 of 4 runs"), (CAMERAS, ("--cameras",), "1 of 2 runs")],
+)
+def test_results_that_are_there_are_gone_on_with_by_resume_alone(tmp_path, folder, option, told):
+    run = "fixed-sedan-01-s1" if folder == "." else "cameras-sedan-01-s1"
+    plan = quick_plan() if folder == "." else quick_camera_plan().study
+    path = tmp_path / folder / "runs" / f"{run}.json"
+    path.parent.mkdir(parents=True)
+    data = {"schema": 1, "plan": plan.digest, "run": run, "ap": 0.5}
+    path.write_text(json.dumps(data), "utf-8")
+    answer = study("detectors", "--quick", *option, "--output", tmp_path)
+    assert answer.returncode == 1 and f"{told}; pass --resume" in answer.stderr

@@ -1,4 +1,4 @@
-"""Rank correlation of so few placements that all their permutations can be evaluated."""
+"""Rank correlation: Spearman's rho, what chance gives, and corrections for several tests."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
 
@@ -17,58 +17,50 @@ SAME = 1e-9
 """Correlations that differ by less than this are equal."""
 
 
-def midranks(values: Sequence[float]) -> Floats:
-    """Return ranks from 1 up, (n,); equal values have the mean of their ranks."""
+def midranks(values: ArrayLike) -> Floats:
+    """Return ranks along the last axis, from 1 up; equal values have the mean of their ranks."""
     array = np.asarray(values, dtype=float)
-    less = (array[None, :] < array[:, None]).sum(axis=1)
-    equal = (array[None, :] == array[:, None]).sum(axis=1)
-    return less + (equal + 1) / 2.0
+    lower = (array[..., None, :] < array[..., :, None]).sum(axis=-1)
+    equal = (array[..., None, :] == array[..., :, None]).sum(axis=-1)
+    return np.asarray(lower + (equal + 1) / 2.0)
 
 
-def standard_ranks(values: Sequence[float]) -> Floats | None:
-    """Return midranks minus their mean, scaled to length 1; None where all values are equal.
+def standard_ranks(values: ArrayLike) -> Floats:
+    """Return midranks minus their mean, scaled to length 1; zeros where all values are equal.
 
     Spearman's rho is the scalar product of two of these.
     """
-    centred = midranks(values) - (len(values) + 1) / 2.0
-    length = float(np.sqrt((centred**2).sum()))
-    return centred / length if length > 0.0 else None
+    ranks = midranks(values)
+    centred = ranks - ranks.mean(axis=-1, keepdims=True)
+    length = np.sqrt((centred**2).sum(axis=-1, keepdims=True))
+    return np.asarray(centred / np.where(length > 0.0, length, 1.0))
 
 
 def spearman(first: Sequence[float], second: Sequence[float]) -> float | None:
     """Return Spearman's rho; None where all values of one of the two are equal."""
     a, b = standard_ranks(first), standard_ranks(second)
-    return None if a is None or b is None else float((a * b).sum())
+    return float((a * b).sum()) if a.any() and b.any() else None
 
 
 def mean_ranks(aps: Sequence[Sequence[float]]) -> Floats:
-    """Return the mean of several detectors' standard ranks, (n,).
+    """Return the mean of several detectors' standard ranks, (n,), but for those that rank nothing.
 
     The scalar product of a score's standard ranks with it is the score's mean rho.
     """
-    ranks = [standard_ranks(values) for values in aps]
-    return np.mean([r for r in ranks if r is not None], axis=0)
+    return np.mean([r for r in map(standard_ranks, aps) if r.any()], axis=0)
 
 
 def under_chance(score: Sequence[float], aps: Sequence[Sequence[float]]) -> Floats | None:
     """Return the distribution of the mean rho under chance, (n!,), sorted; None as in `spearman`.
 
-    It has the mean rho over the detectors for every permutation of the placements. A permutation
-    is the same for all detectors: detectors that were trained on the same placements are no
-    further samples.
-
-    Parameters
-    ----------
-    score : sequence of float
-        The score of each placement.
-    aps : sequence of sequence of float
-        AP of each placement, by detector.
+    It has the mean rho over the detectors (`aps` has the AP of the placements of each) for every
+    permutation of the placements. A permutation is the same for all detectors: detectors that were
+    trained on the same placements are no further samples.
     """
     ranks = standard_ranks(score)
-    if ranks is None:
+    if not ranks.any():
         return None
-    ap_ranks = mean_ranks(aps)
-    return np.sort((ranks[permutations(len(ranks))] * ap_ranks).sum(axis=1))
+    return np.sort((ranks[permutations(len(ranks))] * mean_ranks(aps)).sum(axis=1))
 
 
 @cache
@@ -93,6 +85,18 @@ def exact_p_of_mean(observed: float, first: Floats, second: Floats) -> float:
     at_least = len(second) - np.searchsorted(second, edge - first, side="left")
     at_most = np.searchsorted(second, -edge - first, side="right")
     return float(min(1.0, (at_least.sum() + at_most.sum()) / (len(first) * len(second))))
+
+
+def min_significant_rho(count: int, significance: float = 0.05) -> float | None:
+    """Return the smallest significant rho of so many placements without ties, or None.
+
+    It is significant by the exact p of a single test; there is none for very few placements.
+    """
+    ranks = list(map(float, range(count)))
+    chance = under_chance(ranks, [ranks])
+    assert chance is not None
+    positive = sorted({round(float(rho), 9) for rho in chance if rho > 0.0})
+    return next((rho for rho in positive if exact_p(rho, chance) <= significance), None)
 
 
 def holm(p_values: Sequence[float]) -> list[float]:

@@ -33,34 +33,26 @@ from pe_core.study import (  # noqa: E402
 PAGE = ROOT / "docs" / "settings.md"
 HEAD = """# Settings
 
-Numbers and switches of a study, as the engine declares them: written by `tools/settings_page.py`. A
-section has the keys of one table of the file, in dotted form: `optimize.seed` is the key `seed` of
-`[optimize]`. Angles are in degrees in a file. [study.md](study.md) explains the file, its lists and
-tables.
+Numbers and switches of a study, as the engine declares them: written by `tools/settings_page.py`.
+`optimize.seed` is the key `seed` of `[optimize]`. Angles are in degrees in a file.
+[study.md](study.md) explains the file, its lists and tables.
+
+| key | values, and default | meaning | in Blender's panel |
+| --- | --- | --- | --- |
 """
-COLUMNS = """
-| key | type, unit | range | default | meaning | in Blender's panel |
-| --- | --- | --- | --- | --- | --- |
-"""
-TOP = "top of the file"
-"""Heading of the keys that are in no table."""
 
 
 def page() -> str:
     """Return the whole page."""
-    tables: dict[str, list[str]] = {}
-    for key, setting in setting_keys():
-        tables.setdefault(key.rpartition(".")[0] or TOP, []).append(row(key, setting))
-    sections = [f"\n## {table}\n{COLUMNS}{''.join(rows)}" for table, rows in tables.items()]
-    return HEAD + "".join(sections)
+    return HEAD + "".join(row(key, setting) for key, setting in setting_keys())
 
 
 def row(key: str, setting: Setting) -> str:
-    """Return the row of one setting."""
+    """Return the row of one setting: its type with unit, range and default in one cell."""
     panel = "" if setting.panel is None else setting.panel.label
-    kind = type_text(setting.rule)
-    cells = f"`{key}`", kind, range_text(setting.rule), default_text(setting), setting.text, panel
-    return re.sub(" +", " ", f"| {' | '.join(cells)} |\n")
+    parts = type_text(setting.rule), range_text(setting.rule), default_text(setting)
+    values = ", ".join(part for part in parts if part)
+    return re.sub(" +", " ", f"| `{key}` | {values} | {setting.text} | {panel} |\n")
 
 
 def type_text(rule: object) -> str:
@@ -68,16 +60,20 @@ def type_text(rule: object) -> str:
     match rule:
         case Toggle():
             return "switch"
-        case OneOf() | Name():
+        case OneOf():
+            return ""
+        case Name():
             return "text"
-        case Several() | Texts():
+        case Several():
+            return "list"
+        case Texts():
             return "list of texts"
         case Pair():
             return f"two numbers{_unit(rule.rule.unit)}"
         case Triple():
             return f"three numbers{_unit(rule.rule.unit)}"
         case Whole():
-            return f"whole number{_unit(rule.unit)}"
+            return f"whole{_unit(rule.unit)}"
         case Number():
             return f"number{_unit(rule.unit)}"
     return str(getattr(rule, "words", type(rule).__name__))
@@ -99,7 +95,7 @@ def range_text(rule: object) -> str:
     """Return what a rule allows, in a few words."""
     match rule:
         case Toggle():
-            return "true or false"
+            return ""
         case OneOf() | Several():
             return " or ".join(f'"{text}"' for text in rule.among)
         case Pair():

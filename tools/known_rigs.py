@@ -18,6 +18,8 @@ import pe_core as pe  # noqa: E402
 from pe_core import catalog  # noqa: E402
 from pe_tools.cli import study_of_rig  # noqa: E402
 
+SEPARATOR, SEVERAL = ", ", "The rigs of the paper"
+"""Between keys; what the rigs of one source are called together."""
 PAGE = ROOT / "docs" / "known_rigs.md"
 SAMPLES = 65_536
 WINDOWS = ("rear_window", "windows_left", "windows_right", "windshield")
@@ -110,11 +112,27 @@ def figures(score: pe.Score) -> tuple[str, str]:
 
 
 def sources() -> list[str]:
-    """Return where the figures of each rig come from, and what has to be known of them."""
-    lines = ["", "## Sources", ""]
-    for rig in catalog.known_rigs().values():
-        lines.append(f"- **{rig.title}** ({rig.vehicle}): {rig.source}. {rig.note}")
+    """Return where the figures come from, a line a source, and what has to be known of each rig."""
+    lines, by_source = ["", "## Sources", ""], dict[str, dict[str, catalog.KnownRig]]()
+    for key, rig in catalog.known_rigs().items():
+        by_source.setdefault(rig.source, {})[key] = rig
+    for source, rigs in by_source.items():
+        first = next(iter(rigs.values()))
+        titles = f"{first.title}** ({first.vehicle})" if len(rigs) == 1 else f"{SEVERAL}**"
+        lines.append(f"- **{titles}: {source}. {' '.join(_notes(rigs))}")
     return lines
+
+
+def _notes(rigs: dict[str, catalog.KnownRig]) -> list[str]:
+    """Return the sentences of the rigs' notes, with the keys of those that one is of."""
+    keys: dict[str, list[str]] = {}
+    for key, rig in rigs.items():
+        for sentence in rig.note.split(". "):
+            keys.setdefault(sentence.rstrip("."), []).append(f"`{key}`")
+    return [
+        f"{sentence}{'' if len(of) == len(rigs) else f' ({SEPARATOR.join(of)})'}."
+        for sentence, of in keys.items()
+    ]
 
 
 def main() -> int:

@@ -237,16 +237,15 @@ class Findings:
                 lines.append([prior, ROW[row].label, *cells, *(f"{e:.2f}" for e in entropies)])
         return lines
 
-    def pilots(self) -> list[list[str]]:
-        """Return the lines of the table of pilots."""
-        names = {
-            (row, s): pilot_name(row, PRIORS[0], s) for row in CORNER_ROWS for s in ROW[row].starts
-        }
-        return [
-            [row_label(row), start, f"{self.values[name]['entropy']:.4f}"]
-            for (row, start), name in names.items()
+    def pilots(self, row: str) -> str:
+        """Return the entropies at which the pilots of a row end, by their corners."""
+        names = {start: pilot_name(row, PRIORS[0], start) for start in ROW[row].starts}
+        ends = {
+            start: self.values[name]["entropy"]
+            for start, name in names.items()
             if name in self.values
-        ]
+        }
+        return joined([f"{entropy:.4f} ({start})" for start, entropy in ends.items()])
 
     def varied(self) -> dict[str, list[float]]:
         """Return the entropies of both roof LiDARs by what was changed."""
@@ -257,18 +256,10 @@ class Findings:
             if all(name in self.values for name in both)
         }
 
-    def settings(self) -> list[list[str]]:
-        """Return the lines of the table of settings of experiment 1."""
-        return [
-            [
-                name,
-                f"{a:.4f}",
-                f"{b:.4f}",
-                f"{b - a:.2f}",
-                "holds" if a < b else "**does not hold**",
-            ]
-            for name, (a, b) in self.varied().items()
-        ]
+    def varied_ordering(self) -> str:
+        """Return whether the ordering of experiment 1 holds with all settings."""
+        lost = [name for name, (a, b) in self.varied().items() if not a < b]
+        return f"does not hold with {joined(lost)}" if lost else "holds with all of them"
 
     def fits(self) -> list[list[str]]:
         """Return the lines of the table of fits of the AP curve."""

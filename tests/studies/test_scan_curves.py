@@ -84,7 +84,7 @@ def test_expected_ap_is_that_of_the_evaluator():
         body, rule = vehicle(placement.vehicle), TargetRule("objects", True, 16)
         space, road = engine.PerceptionSpace(), engine.Prior.road()
         evaluator = ObjectEvaluator(space, road, body, targets=rule, model=model)
-        per_class = evaluator.score(placement.rig(PLAN)).objects.per_class
+        per_class = evaluator.score(placement.rig()).objects.per_class
         for name, part in beams.items():
             assert part.expected_ap(TRUE)[k] == pytest.approx(per_class[name].ap, abs=1e-8)
 

@@ -66,17 +66,8 @@ class ColumnRuns(NamedTuple):
         return np.repeat(some * nz + first[some], counts) + count_up(counts)
 
 
-class CameraPlanes:
-    """A mounted camera, ready to measure a space plane by plane.
-
-    Parameters
-    ----------
-    camera : Camera
-    pose : Pose
-    space : PerceptionSpace
-    seen : VisibleMesh, optional
-        The vehicle, seen from the camera's position.
-    """
+class _Planes:
+    """A mounted camera, ready to measure a space plane by plane; `seen` is the vehicle from it."""
 
     def __init__(
         self, camera: Camera, pose: Pose, space: PerceptionSpace, seen: VisibleMesh | None
@@ -85,21 +76,53 @@ class CameraPlanes:
         side, self._axes = space.interval, axes_of(pose)
         self._offsets = [offsets_of(space.centers(k), pose.position[k], side) for k in range(3)]
         self._aims = [aims_at(w, side, NUDGE[k]) for k, w in enumerate(self._offsets)]
-        self._forward = self._axes[:, 0]
-        wide, high = _slopes(camera)
-        self._sides = _sides(self._axes, wide, high)
         _, y, z = self._offsets
-        self._depth = np.add.outer(self._forward[1] * y, self._forward[2] * z).astype(np.float32)
         self._away = np.add.outer(distance_along(y, side), distance_along(z, side)).astype(
             np.float32
         )
+        self._cover: VoxelOcclusion | None = None
+
+    def _hide_by_rays(self, area: Singles, index: Ints, aims: Floats) -> None:
+        """Set the areas of the voxels to 0 of which rays say that the vehicle hides them."""
+        assert self._seen is not None
+        area.reshape(-1)[index[hidden(self._seen, aims)]] = 0.0
+
+    def _hide_surely(self, area: Singles, first: tuple[int, int]) -> tuple[Ints, Floats]:
+        """Set surely hidden voxels to 0; return the undecided ones and the points rays aim at."""
+        assert self._cover is not None
+        planes, rows = (slice(f, f + n) for f, n in zip(first, area.shape[:2], strict=True))
+        flags = self._cover.classify(planes, rows)
+        np.copyto(area, 0.0, where=flags.hidden)
+        index = np.flatnonzero(flags.unsure)
+        index = index[area.reshape(-1)[index] > 0.0]
+        return index, positions_of(self._aims, index, area.shape, first)
+
+
+class CameraPlanes(_Planes):
+    """A mounted camera whose lens is a pinhole."""
+
+    def __init__(
+        self, camera: Camera, pose: Pose, space: PerceptionSpace, seen: VisibleMesh | None
+    ) -> None:
+        super().__init__(camera, pose, space, seen)
+        self._forward = self._axes[:, 0]
+        lens = camera.projection
+        wide = -(camera.width - lens.cx) / lens.fx, lens.cx / lens.fx  # left / depth
+        high = -(camera.height - lens.cy) / lens.fy, lens.cy / lens.fy  # up / depth
+        self._sides = _sides(self._axes, wide, high)
+        _, y, z = self._offsets
+        self._depth = np.add.outer(self._forward[1] * y, self._forward[2] * z).astype(np.float32)
         below = np.tri(len(z) + 1, len(z), -1, dtype=np.int32)  # row k: 1 for heights below k
         self._keep_below, self._keep_from = -below, below - 1  # masks: all bits set, or none
-        self._shadow = self._cover = None
+        self._shadow: PictureBins | None = None
         if seen is not None:
             self._shadow = PictureBins(camera, self._axes, seen.seen.triangles)
-            widest = (max(abs(low), top) for low, top in (wide, high))
-            self._cover = VoxelOcclusion(self._aims, seen, self._corners(*widest))
+            forward, left, up = self._axes.T
+            a, b = (BORDER * max(abs(low), top) for low, top in (wide, high))
+            corners = [
+                forward + i * a * left + j * b * up for i in (-1.0, 1.0) for j in (-1.0, 1.0)
+            ]
+            self._cover = VoxelOcclusion(self._aims, seen, np.array(corners))
 
     def areas(self, planes: slice) -> VisibleRows:
         """Pixels covered by each voxel of the x-planes; rows out of view are left out."""
@@ -113,35 +136,25 @@ class CameraPlanes:
         before = ColumnRuns(touched.first, plain.first)
         behind = ColumnRuns(plain.end, touched.end)
         edge = np.concatenate([before.listed(nz), behind.listed(nz)])
-        self._settle_edges(area, edge, (planes.start, rows.start))
+        first = planes.start, rows.start
+        offsets = positions_of(self._offsets, edge, area.shape, first)
+        exact = clipped_pixel_area(self._camera, self._axes, offsets, self._space.interval)
+        area.reshape(-1)[edge] = exact
         if is_ranged(self._camera):
-            cut_to_range(self._camera, area, self._offsets, (planes.start, rows.start))
+            cut_to_range(self._camera, area, self._offsets, first)
         if self._shadow is not None:
-            asked = np.concatenate([edge, self._shaded(planes, rows, plain).listed(nz)])
-            self._settle_hidden(area, asked, (planes.start, rows.start))
+            asked = edge
+            if not self._shadow.empty:  # voxels in the directions of the vehicle's triangles, too
+                sides = _sides(self._axes, *self._shadow.extent)
+                shaded = self._runs(planes, rows, [(n, -MARGIN) for n in sides]).within(plain)
+                asked = np.concatenate([edge, shaded.listed(nz)])
+            self._settle_hidden(area, asked[area.reshape(-1)[asked] > 0.0], first)
         return VisibleRows(rows, area)
-
-    def _shaded(self, planes: slice, rows: slice, plain: ColumnRuns) -> ColumnRuns:
-        """Of the voxels inside the picture, those in the directions of the vehicle's triangles."""
-        assert self._shadow is not None
-        if self._shadow.empty:
-            return ColumnRuns(plain.end, plain.end)
-        sides = _sides(self._axes, *self._shadow.extent)
-        return self._runs(planes, rows, [(n, -MARGIN) for n in sides]).within(plain)
-
-    def _corners(self, wide: float, high: float) -> Floats:
-        """Directions (4, 3) to the corners of the bins that the vehicle may touch."""
-        forward, left, up = self._axes.T
-        ends = [(i * BORDER * wide, j * BORDER * high) for i in (-1.0, 1.0) for j in (-1.0, 1.0)]
-        return np.array([forward + a * left + b * up for a, b in ends])
 
     def _at_sides(self, radii: float) -> list[HalfSpace]:
         """Half spaces of voxels inside the frustum's sides by a number of the voxels' radii."""
-        return [(n, radii * self._radius(n)) for n in self._sides]
-
-    def _radius(self, normal: Floats) -> float:
-        """Extent of a voxel from its centre along a direction [m]."""
-        return (float(np.abs(normal).sum()) / 2.0 + MARGIN) * self._space.interval
+        side = self._space.interval
+        return [(n, radii * ((float(np.abs(n).sum()) / 2.0 + MARGIN) * side)) for n in self._sides]
 
     def _rows_in_view(self, planes: slice) -> slice:
         """Rows (y) with a voxel that may touch the picture, on any of the planes."""
@@ -203,26 +216,14 @@ class CameraPlanes:
         out *= np.float32((self._camera.focal_px * side) ** 2)
         out /= cube
 
-    def _settle_edges(self, area: Singles, index: Ints, first: tuple[int, int]) -> None:
-        """Measure voxels on the picture's border, and voxels near the camera, exactly."""
-        offsets = positions_of(self._offsets, index, area.shape, first)
-        exact = clipped_pixel_area(self._camera, self._axes, offsets, self._space.interval)
-        area.reshape(-1)[index] = exact
-
     def _settle_hidden(self, area: Singles, index: Ints, first: tuple[int, int]) -> None:
         """Set the areas of the voxels that the vehicle hides to 0."""
-        assert self._seen is not None
-        index = index[area.reshape(-1)[index] > 0.0]
-        if len(index) > MANY_RAYS and self._may_hide_many(index, area.shape, first):
-            index, aims = self._unsure(area, first)
-        else:
-            index, aims = self._maybe_hidden(index, area.shape, first)
-        area.reshape(-1)[index[hidden(self._seen, aims)]] = 0.0
-
-    def _may_hide_many(self, index: Ints, shape: tuple[int, ...], first: tuple[int, int]) -> bool:
-        """Whether the vehicle may hide very many of these voxels, estimated from some of them."""
-        some, _ = self._maybe_hidden(index[::ASKED], shape, first)
-        return len(some) * ASKED > MANY_RAYS
+        if len(index) > MANY_RAYS:
+            some, _ = self._maybe_hidden(index[::ASKED], area.shape, first)
+            if len(some) * ASKED > MANY_RAYS:
+                self._hide_by_rays(area, *self._hide_surely(area, first))
+                return
+        self._hide_by_rays(area, *self._maybe_hidden(index, area.shape, first))
 
     def _maybe_hidden(
         self, index: Ints, shape: tuple[int, ...], first: tuple[int, int]
@@ -232,23 +233,6 @@ class CameraPlanes:
         aims = positions_of(self._aims, index, shape, first)
         perhaps = np.flatnonzero(self._shadow.may_hide(*in_sensor_frame(self._axes, aims)))
         return index[perhaps], aims[perhaps]
-
-    def _unsure(self, area: Singles, first: tuple[int, int]) -> tuple[Ints, Floats]:
-        """Set surely hidden voxels to 0; return the undecided ones and the points rays aim at."""
-        assert self._cover is not None
-        planes, rows = (slice(f, f + n) for f, n in zip(first, area.shape[:2], strict=True))
-        flags = self._cover.classify(planes, rows)
-        np.copyto(area, 0.0, where=flags.hidden)
-        index = np.flatnonzero(flags.unsure)
-        index = index[area.reshape(-1)[index] > 0.0]
-        return index, positions_of(self._aims, index, area.shape, first)
-
-
-def _slopes(camera: Camera) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Minimum and maximum of left / depth, and of up / depth, in the picture."""
-    lens = camera.projection
-    wide = -(camera.width - lens.cx) / lens.fx, lens.cx / lens.fx
-    return wide, (-(camera.height - lens.cy) / lens.fy, lens.cy / lens.fy)
 
 
 def _sides(axes: Floats, wide: tuple[float, float], high: tuple[float, float]) -> list[Floats]:
@@ -262,26 +246,21 @@ def _sides(axes: Floats, wide: tuple[float, float], high: tuple[float, float]) -
     return [n / np.sqrt(dot(n, n)) for n in normals]
 
 
-class BentPlanes:
-    """A mounted camera whose lens has distortion; parameters as of `grid_areas.CameraPlanes`."""
+class BentPlanes(_Planes):
+    """A mounted camera whose lens has distortion."""
 
     def __init__(
         self, camera: Camera, pose: Pose, space: PerceptionSpace, seen: VisibleMesh | None
     ) -> None:
-        self._camera, self._space, self._seen = camera, space, seen
-        side, self._axes = space.interval, axes_of(pose)
-        self._sorter = Sorter(camera, side)
-        self._offsets = [offsets_of(space.centers(k), pose.position[k], side) for k in range(3)]
-        self._aims = [aims_at(w, side, NUDGE[k]) for k, w in enumerate(self._offsets)]
+        super().__init__(camera, pose, space, seen)
+        self._sorter = Sorter(camera, space.interval)
         _, y, z = self._offsets
         self._seen_yz = [
             np.add.outer(axis[1] * y, axis[2] * z).astype(np.float32) for axis in self._axes.T
         ]
         self._square = np.add.outer(y * y, z * z).astype(np.float32)
-        self._away = np.add.outer(distance_along(y, side), distance_along(z, side)).astype(
-            np.float32
-        )
-        self._cover = None if seen is None else VoxelOcclusion(self._aims, seen, ALL_ROUND)
+        if seen is not None:
+            self._cover = VoxelOcclusion(self._aims, seen, ALL_ROUND)
 
     def areas(self, planes: slice) -> VisibleRows:
         """Pixels covered by each voxel of the x-planes; rows out of view are left out."""
@@ -294,7 +273,7 @@ class BentPlanes:
         if is_ranged(self._camera):
             cut_to_range(self._camera, area, self._offsets, first)
         if self._cover is not None:
-            self._settle_hidden(area, first)
+            self._hide_by_rays(area, *self._hide_surely(area, first))
         return VisibleRows(rows, area)
 
     def _rows_in_view(self, planes: slice) -> slice:
@@ -330,17 +309,6 @@ class BentPlanes:
             np.multiply(found.area, found.plain, out=plane)
             edges.append(np.flatnonzero(found.edge) + number * plane.size)
         return area, np.concatenate(edges) if edges else np.zeros(0, np.int64)
-
-    def _settle_hidden(self, area: Singles, first: tuple[int, int]) -> None:
-        """Set the areas of the voxels that the vehicle hides to 0."""
-        assert self._cover is not None and self._seen is not None
-        planes, rows = (slice(f, f + n) for f, n in zip(first, area.shape[:2], strict=True))
-        flags = self._cover.classify(planes, rows)
-        np.copyto(area, 0.0, where=flags.hidden)
-        index = np.flatnonzero(flags.unsure)
-        index = index[area.reshape(-1)[index] > 0.0]
-        aims = positions_of(self._aims, index, area.shape, first)
-        area.reshape(-1)[index[hidden(self._seen, aims)]] = 0.0
 
 
 def _least(offsets: Floats) -> float:

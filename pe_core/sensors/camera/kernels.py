@@ -194,7 +194,13 @@ class PostVisibility:
     def _sees_points(self, offsets: Floats) -> Flags:
         """Whether points (N, 3) from the camera are in the picture, in range, and not hidden."""
         depth, left, up = in_sensor_frame(self._axes, offsets)
-        shown = self._shows(depth, left, up)
+        camera, lens = self._camera, self._camera.projection
+        if lens.is_straight:
+            shown = (frustum_distance(camera, depth, left, up) >= 0.0) & (depth > IN_FRONT)
+        else:
+            right, down = lens.project(depth, left, up)
+            shown = (right >= 0.0) & (right <= camera.width) & (down >= 0.0)
+            shown &= (down <= camera.height) & (np.arctan2(np.hypot(left, up), depth) <= lens.edge)
         if is_ranged(self._camera):
             shown &= ~out_of_range(self._camera, offsets)
         if self._seen is None:
@@ -204,18 +210,6 @@ class PostVisibility:
             asked = asked[self._shadow.may_hide(depth[asked], left[asked], up[asked])]
         shown[asked] = ~hidden(self._seen, aims_at(offsets[asked], self._view.grid.step))
         return shown
-
-    def _shows(self, depth: Floats, left: Floats, up: Floats) -> Flags:
-        """Whether points are within the lens's field and in the picture."""
-        camera, lens = self._camera, self._camera.projection
-        if lens.is_straight:
-            inside = frustum_distance(camera, depth, left, up) >= 0.0
-            return np.asarray(inside & (depth > IN_FRONT))
-        flat = np.hypot(left, up)
-        right, down = lens.project(depth, left, up)
-        inside = (right >= 0.0) & (right <= camera.width)
-        inside &= (down >= 0.0) & (down <= camera.height)
-        return np.asarray(inside & (np.arctan2(flat, depth) <= lens.edge))
 
 
 def _edges(seen: Flags) -> Flags:

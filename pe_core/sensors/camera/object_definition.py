@@ -34,9 +34,16 @@ from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
 from ..boxes import BoxRays, PlacedBoxes, Rivals, behind_others
 from .definition import out_of_range
-from .lens import Lens
 from .model import Camera
-from .pixel_area import QUAD, RIGHT_BEHIND, ROUNDING_PX, ImagePoints, aperture_of, clamped_integral
+from .pixel_area import (
+    QUAD,
+    RIGHT_BEHIND,
+    ROUNDING_PX,
+    ImagePoints,
+    aperture_of,
+    clamped_integral,
+    round_a_face,
+)
 from .tie_rules import axes_of
 
 ImagedFaces = tuple[Ints, Floats, ImagePoints]
@@ -76,12 +83,7 @@ class BoxImages:
 def box_images(camera: Camera, axes: Floats, boxes: PlacedBoxes) -> BoxImages:
     """Return the images of boxes; a box that contains the camera has no area.
 
-    Parameters
-    ----------
-    camera : Camera
-    axes : (3, 3) float
-        Rotation from the camera's frame to the ground frame (`tie_rules.axes_of`).
-    boxes : PlacedBoxes
+    `axes` (3, 3) rotate from the camera's frame to the ground frame (`tie_rules.axes_of`).
     """
     faces = _straight_faces if camera.projection.is_straight else _bent_faces
     count, size = len(boxes.offsets), np.array([camera.width, camera.height], dtype=float)
@@ -181,40 +183,29 @@ def _bent_faces(
 def _outlined(
     camera: Camera, axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int, pieces: int
 ) -> tuple[Floats, ImagePoints]:
-    """Area of faces in the picture and the field, with so many pieces an edge; their outlines."""
-    aperture = aperture_of(camera)
-    outline = face_points(boxes, which, axis, _round_a_face(pieces))
-    depth, left, up = np.moveaxis(along_camera(axes, boxes, which, outline), -1, 0)
-    places = _projected(camera.projection, depth, left, up)
-    area = aperture.area(places)
-    behind = _holds_behind(axes, boxes, which, axis)
-    if behind.any():
-        picture = _picture(camera, places[0].shape[1])
-        area[behind] = aperture.area(picture)[0] - area[behind]
-        for own, all_ in zip(places, picture, strict=True):
-            own[behind] = all_
-    return area, places
+    """Area of faces in the picture and the field, with so many pieces an edge; their outlines.
 
-
-def _projected(lens: Lens, depth: Floats, left: Floats, up: Floats) -> ImagePoints:
-    """Image positions of directions [px]; those beyond the edge of the field are moved outwards.
-
-    So a straight piece between two such positions does not cross the picture, even if the edge
-    of the face passes right behind the camera.
+    Positions beyond the edge of the field are moved outwards. So a straight piece between two of
+    them does not cross the picture, even if the edge of the face passes right behind the camera.
     """
+    aperture, lens = aperture_of(camera), camera.projection
+    outline = face_points(boxes, which, axis, round_a_face(pieces))
+    depth, left, up = np.moveaxis(along_camera(axes, boxes, which, outline), -1, 0)
     theta = np.arctan2(np.hypot(left, up), depth)
     most = np.minimum(theta, RIGHT_BEHIND) / 2.0
     farther = np.maximum(np.tan(most) / math.tan(min(lens.edge, RIGHT_BEHIND) / 2.0), 1.0)
     x, y = lens.project(depth, left, up)
-    return lens.cx + (x - lens.cx) * farther, lens.cy + (y - lens.cy) * farther
-
-
-def _round_a_face(pieces: int) -> Floats:
-    """(4 pieces, 2) points on the border of a face, in half sides."""
-    corners = np.array(QUAD)
-    share = (np.arange(pieces) / pieces)[None, :, None]
-    steps = np.roll(corners, -1, axis=0) - corners
-    return (corners[:, None] + steps[:, None] * share).reshape(-1, 2)
+    places = lens.cx + (x - lens.cx) * farther, lens.cy + (y - lens.cy) * farther
+    area = aperture.area(places)
+    behind = _holds_behind(axes, boxes, which, axis)
+    if behind.any():
+        wide, high, shape = float(camera.width), float(camera.height), (1, x.shape[1])
+        picture = np.zeros(shape), np.full(shape, high)  # its last corner is repeated
+        picture[0][0, 1:3], picture[1][0, :2] = wide, 0.0
+        area[behind] = aperture.area(picture)[0] - area[behind]
+        for own, all_ in zip(places, picture, strict=True):
+            own[behind] = all_
+    return area, places
 
 
 def _holds_behind(axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int) -> NDArray[np.bool_]:
@@ -228,14 +219,6 @@ def _holds_behind(axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int) -> N
     aside = np.abs(offsets - distance[:, None] * speed) < halves
     aside[:, axis] = True
     return runs & aside.all(axis=1)
-
-
-def _picture(camera: Camera, count: int) -> ImagePoints:
-    """Outline (1, count) of the picture [px]; the last corner is repeated to fill it."""
-    wide, high = float(camera.width), float(camera.height)
-    x, y = np.zeros((1, count)), np.full((1, count), high)
-    x[0, 1:3], y[0, :2] = wide, 0.0
-    return x, y
 
 
 def visible_share(
@@ -273,32 +256,21 @@ def _met(
     level = np.clip(np.searchsorted(FIBONACCI, wanted), 1, len(FIBONACCI) - 1)
     for k in np.unique(level).tolist():
         of_level = np.flatnonzero(level == k)
-        for some in blocks(len(of_level), max(1, RAYS_AT_ONCE // int(FIBONACCI[k]))):
-            yield from _met_by_lattice(camera, axes, boxes, images, which, of_level[some], k)
-
-
-def _met_by_lattice(
-    camera: Camera,
-    axes: Floats,
-    boxes: PlacedBoxes,
-    images: BoxImages,
-    which: Ints,
-    ranks: Ints,
-    level: int,
-) -> Iterator[tuple[Ints, Floats, Floats]]:
-    turn, count = FIBONACCI[level - 1 : level + 1].tolist()
-    step = np.arange(count) + 0.5
-    lattice = np.stack([step / count, (step * turn / count) % 1.0], axis=1)
-    low, high = images.low[which[ranks], None], images.high[which[ranks], None]
-    places = (low + (high - low) * lattice).reshape(-1, 2)
-    directions, exists = _through(camera, axes, places)
-    rank = np.repeat(ranks, count)[exists]
-    enter, leave = boxes.crossing(which[rank], directions)
-    met = np.flatnonzero((enter < leave) & (enter > 0.0))
-    yield (hit := rank[met]), directions[met], enter[met]
-    missed = ranks[np.bincount(hit, minlength=len(which))[ranks] == 0]
-    if len(missed):
-        yield _to_sides(camera, axes, boxes, which[missed], missed)
+        turn, count = FIBONACCI[k - 1 : k + 1].tolist()
+        step = np.arange(count) + 0.5
+        lattice = np.stack([step / count, (step * turn / count) % 1.0], axis=1)
+        for some in blocks(len(of_level), max(1, RAYS_AT_ONCE // count)):
+            ranks = of_level[some]
+            low, high = images.low[which[ranks], None], images.high[which[ranks], None]
+            places = (low + (high - low) * lattice).reshape(-1, 2)
+            directions, exists = _through(camera, axes, places)
+            rank = np.repeat(ranks, count)[exists]
+            enter, leave = boxes.crossing(which[rank], directions)
+            met = np.flatnonzero((enter < leave) & (enter > 0.0))
+            yield (hit := rank[met]), directions[met], enter[met]
+            missed = ranks[np.bincount(hit, minlength=len(which))[ranks] == 0]
+            if len(missed):
+                yield _to_sides(camera, axes, boxes, which[missed], missed)
 
 
 def _to_sides(

@@ -46,18 +46,10 @@ CUBES_AT_ONCE = 4096
 
 
 def clipped_pixel_area(camera: Camera, axes: Floats, offsets: Floats, side: float) -> Floats:
-    """(V,) pixels covered by cubes of side `side` [m].
+    """(V,) pixels covered by cubes of side `side` [m]; 0 with a corner not in front of the camera.
 
-    0 where a corner of the cube is not in front of the camera.
-
-    Parameters
-    ----------
-    camera : Camera
-    axes : (3, 3) float
-        Rotation from the camera's frame to the ground frame (`tie_rules.axes_of`).
-    offsets : (V, 3) float
-        The cubes' centres from the camera, ground axes (`tie_rules.offsets_of`) [m].
-    side : float
+    `axes` (3, 3) rotate from the camera's frame to the ground frame (`tie_rules.axes_of`),
+    `offsets` (V, 3) are the cubes' centres from the camera, ground axes (`tie_rules.offsets_of`).
     """
     depth, left, up = in_sensor_frame(axes, offsets)
     area = np.zeros(len(offsets))
@@ -111,7 +103,10 @@ def _area_in_view(camera: Camera, axes: Floats, offsets: Floats, side: float) ->
         corners = [
             _project(camera, face, (a * half) * axes[i] + (b * half) * axes[j]) for a, b in QUAD
         ]
-        area += np.where(np.abs(offsets[:, k]) > half, _clipped_quad_area(corners, camera), 0.0)
+        total = np.zeros(len(offsets))
+        for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
+            total += clamped_integral(x0, y0, x1, y1, float(camera.width), float(camera.height))
+        area += np.where(np.abs(offsets[:, k]) > half, np.abs(total), 0.0)
     return np.where((depth > reach) & (area > ROUNDING_PX), area, 0.0)
 
 
@@ -122,13 +117,6 @@ def _project(camera: Camera, face: SensorAxes, corner: Floats) -> tuple[Floats, 
     scale = lens.fx / safe
     high = scale if lens.fx == lens.fy else lens.fy / safe
     return lens.cx - left * scale, lens.cy - up * high
-
-
-def _clipped_quad_area(corners: list[tuple[Floats, Floats]], camera: Camera) -> Floats:
-    total = np.zeros_like(corners[0][0])
-    for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
-        total += clamped_integral(x0, y0, x1, y1, float(camera.width), float(camera.height))
-    return np.abs(total)
 
 
 def clamped_integral(
@@ -188,7 +176,10 @@ class RoundAperture(Aperture):
         area, centers = np.empty(len(x)), self._centers(places)
         for some, folds in ((inside, False), (~inside, True)):
             held = x[some], y[some]
-            area[some] = self._in_ellipse(self._folded(held) if folds else held, centers[some])
+            right, down = self._folded(held) if folds else held
+            cx, cy = centers[some].T[..., None]
+            circle = _area_in_circle(((right - cx) / self.wide, (down - cy) / self.high))
+            area[some] = circle * (self.wide * self.high)
         return area
 
     def _centers(self, places: ImagePoints) -> Floats:
@@ -204,11 +195,6 @@ class RoundAperture(Aperture):
         away = np.maximum(np.hypot(x, y), 1e-12)
         moved = lens.shift(np.full(len(x), lens.edge), x / away, y / away)
         return centers + np.stack(moved, axis=1) * (lens.fx, lens.fy)
-
-    def _in_ellipse(self, places: ImagePoints, centers: Floats) -> Floats:
-        (x, y), (cx, cy) = places, centers.T[..., None]
-        circle = _area_in_circle(((x - cx) / self.wide, (y - cy) / self.high))
-        return circle * (self.wide * self.high)
 
     def _folded(self, places: ImagePoints) -> ImagePoints:
         """Outlines clamped to the picture, with corners where they cross its sides: (V, 5 N)."""
@@ -273,11 +259,16 @@ def bent_pixel_area(
     """(V,) pixels covered by cubes of side `side` [m] through a camera's lens.
 
     0 where the camera is inside the ball round a cube, or the ball reaches the direction opposite
-    to the view. Parameters are those of `clipped_pixel_area`, and `pieces` of an edge: fewer are
+    to the view. Arguments are those of `clipped_pixel_area`, and `pieces` of an edge: fewer are
     enough for distant cubes.
     """
-    area = np.zeros(len(offsets))
-    shown = in_reach(camera.projection, axes, offsets, side)
+    area, edge = np.zeros(len(offsets)), camera.projection.edge
+    distance = np.sqrt(dot(offsets, offsets))
+    shown = distance > BALL * side
+    safe = np.where(shown, distance, 1.0)
+    theta = np.arccos(np.clip(dot(offsets, axes[:, 0]) / safe, -1.0, 1.0))
+    half = np.arcsin(np.minimum(BALL * side / safe, 1.0))
+    shown &= (theta - half < edge) & (theta + half < RIGHT_BEHIND)  # at least every visible cube
     beside = dot(offsets, offsets) < (BESIDE_SIDES * side) ** 2
     for which, count in ((shown & beside, max(pieces, BESIDE_PIECES)), (shown & ~beside, pieces)):
         near = np.flatnonzero(which)
@@ -287,16 +278,6 @@ def bent_pixel_area(
     return area
 
 
-def in_reach(lens: Lens, axes: Floats, offsets: Floats, side: float) -> NDArray[np.bool_]:
-    """Whether cubes may be visible, by their angle from the axis; true for every visible cube."""
-    distance = np.sqrt(dot(offsets, offsets))
-    outside = distance > BALL * side
-    safe = np.where(outside, distance, 1.0)
-    theta = np.arccos(np.clip(dot(offsets, axes[:, 0]) / safe, -1.0, 1.0))
-    half = np.arcsin(np.minimum(BALL * side / safe, 1.0))
-    return outside & (theta - half < lens.edge) & (theta + half < RIGHT_BEHIND)
-
-
 def _area(camera: Camera, axes: Floats, offsets: Floats, side: float, pieces: int) -> Floats:
     half, aperture = side / 2.0, aperture_of(camera)
     area = np.zeros(len(offsets))
@@ -304,26 +285,18 @@ def _area(camera: Camera, axes: Floats, offsets: Floats, side: float, pieces: in
         toward = -np.sign(offsets[:, k]) * half  # the face that faces the camera
         face = offsets.copy()
         face[:, k] += toward
-        outline = _outline(k, half, pieces)
-        points = face[:, None, :] + outline[None]
-        places = camera.projection.project(*_seen(points, axes))
+        outline = np.zeros((4 * pieces, 3))  # from the face's centre
+        outline[:, [(k + 1) % 3, (k + 2) % 3]] = round_a_face(pieces) * half
+        x, y, z = np.moveaxis(face[:, None, :] + outline[None], -1, 0)
+        depth, left, up = (x * a[0] + y * a[1] + z * a[2] for a in axes.T)
+        places = camera.projection.project(depth, left, up)
         area += np.where(np.abs(offsets[:, k]) > half, aperture.area(places), 0.0)
     return np.where(area > ROUNDING_PX, area, 0.0)
 
 
-def _outline(axis: int, half: float, pieces: int) -> Floats:
-    """(4 pieces, 3) points on the border of a face, normal along `axis`, from its centre."""
-    share = np.arange(pieces) / pieces
-    points = np.zeros((4, pieces, 3))
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    for n, ((a0, b0), (a1, b1)) in enumerate(zip(QUAD, QUAD[1:] + QUAD[:1], strict=True)):
-        points[n, :, i] = (a0 + (a1 - a0) * share) * half
-        points[n, :, j] = (b0 + (b1 - b0) * share) * half
-    return points.reshape(-1, 3)
-
-
-def _seen(points: Floats, axes: Floats) -> SensorAxes:
-    """Points (..., 3) along ground axes, converted to the camera's axes."""
-    x, y, z = points[..., 0], points[..., 1], points[..., 2]
-    depth, left, up = (x * a[0] + y * a[1] + z * a[2] for a in axes.T)
-    return depth, left, up
+def round_a_face(pieces: int) -> Floats:
+    """(4 pieces, 2) points on the border of a face, in half sides."""
+    corners = np.array(QUAD)
+    share = (np.arange(pieces) / pieces)[None, :, None]
+    steps = np.roll(corners, -1, axis=0) - corners
+    return (corners[:, None] + steps[:, None] * share).reshape(-1, 2)

@@ -172,24 +172,23 @@ def _widest_in(camera: Camera) -> float:
 def pixel_areas(
     camera: Camera, pose: Pose, centers: Floats, side: float, seen: VisibleMesh | None
 ) -> Floats:
-    """(V,) pixels covered by each voxel; 0 where the vehicle hides its centre.
+    """(V,) pixels covered by voxels with centres (V, 3) and a side [m]; 0 where hidden.
 
-    Parameters
-    ----------
-    camera : Camera
-    pose : Pose
-    centers : (V, 3) float
-        Ground frame [m].
-    side : float
-        Side of a voxel [m].
-    seen : VisibleMesh, optional
-        The vehicle from the camera's position.
+    `seen` is the vehicle from the camera's position; it hides a voxel by its centre.
     """
     axes, area = axes_of(pose), np.zeros(len(centers))
     roughly = in_sensor_frame(axes, centers - np.asarray(pose.position))
     index = np.flatnonzero(in_view(camera, *roughly, side))
     offsets = offsets_of(centers[index], pose.position, side)
-    found = _areas_in_view(camera, axes, offsets, side)
+    depth, left, up = in_sensor_frame(axes, offsets)
+    plain = depth > (NEAR_SIDES + MARGIN) * side
+    plain &= frustum_distance(camera, depth, left, up) > (BALL + MARGIN) * side
+    found = np.empty(len(offsets))
+    away = [np.maximum(np.abs(offsets[plain, k]) - side / 2.0, 0.0) for k in range(3)]
+    cube = (depth[plain] * depth[plain] - side * side / 2.0) * depth[plain]
+    near = away[0] + away[1] + away[2] + 1.5 * side
+    found[plain] = (camera.focal_px * side) ** 2 * near / cube
+    found[~plain] = clipped_pixel_area(camera, axes, offsets[~plain], side)
     if is_ranged(camera):
         found[out_of_range(camera, offsets)] = 0.0
     if seen is not None:
@@ -197,22 +196,6 @@ def pixel_areas(
         found[visible[hidden(seen, aims_at(offsets[visible], side))]] = 0.0
     area[index] = found
     return area
-
-
-def _areas_in_view(camera: Camera, axes: Floats, offsets: Floats, side: float) -> Floats:
-    depth, left, up = in_sensor_frame(axes, offsets)
-    plain = depth > (NEAR_SIDES + MARGIN) * side
-    plain &= frustum_distance(camera, depth, left, up) > (BALL + MARGIN) * side
-    area = np.empty(len(offsets))
-    area[plain] = _flat_area(camera, offsets[plain], depth[plain], side)
-    area[~plain] = clipped_pixel_area(camera, axes, offsets[~plain], side)
-    return area
-
-
-def _flat_area(camera: Camera, offsets: Floats, depth: Floats, side: float) -> Floats:
-    away = [np.maximum(np.abs(offsets[:, k]) - side / 2.0, 0.0) for k in range(3)]
-    cube = (depth * depth - side * side / 2.0) * depth
-    return (camera.focal_px * side) ** 2 * (away[0] + away[1] + away[2] + 1.5 * side) / cube
 
 
 class Sorted(NamedTuple):

@@ -5,10 +5,6 @@ import math
 import numpy as np
 
 import pe_core as pe
-from pe_core.sensors.lidar.beams import FixedEnds, RotatedBeams
-from pe_core.sensors.lidar.lattice import lattice_of
-from pe_core.sensors.lidar.tie_rules import position_in_voxels
-from pe_core.sensors.lidar.voxel_beams import PlacedLidar, VoxelPoints, count_voxel_beams
 
 BOX_FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 
@@ -61,17 +57,3 @@ def camera(hfov_deg=60.0, position=(1.0, 0.0, 1.5), rotation=(0.0, 0.0, 0.0), na
 def small_space(interval=0.5):
     """A space of a few ten thousand voxels."""
     return pe.PerceptionSpace((-20, 20), (-10, 10), (0, 5), interval)
-
-
-def counted(sensor, space, index, vehicle=None, saturation_count=None):
-    """Beams through voxels of a space, as the sampled kernels count them."""
-    field = pe.beam_field(sensor, vehicle)
-    lidar = PlacedLidar(
-        lattice_of(sensor.model),
-        position_in_voxels(sensor.pose.position, space.origin, space.interval),
-        sensor.pose.ground_from_sensor,
-        RotatedBeams(sensor),
-        FixedEnds(field.ends),
-        space.interval,
-    )
-    return count_voxel_beams(VoxelPoints(index), lidar, saturation_count)

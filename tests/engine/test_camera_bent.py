@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.sensors import Voxels, kind_of
 from pe_core.sensors.camera.lens_models import BrownConrady, FTheta, KannalaBrandt, Pinhole
 from pe_core.sensors.camera.pixel_area import bent_pixel_area
 from pe_core.sensors.camera.sample_areas import bent_pixel_areas
@@ -66,39 +65,6 @@ def test_areas_are_those_of_dense_rays(lens):
     assert area.sum() == pytest.approx(rays.sum(), rel=0.003)
 
 
-def measured_on_grid(own, vehicle, run=16):
-    kernel = kind_of(own).on_grid(SPACE, vehicle, 1000)
-    planes = kernel.planes([[kernel.prepare(own)]], None)[0]
-    whole = np.zeros(SPACE.shape)
-    for start in range(0, SPACE.shape[0], run):
-        some = slice(start, min(start + run, SPACE.shape[0]))
-        found = planes(some)
-        whole[some, found.rows] = found.m
-    return whole.reshape(-1)
-
-
-def measured_on_sample(own, vehicle, index):
-    voxels = Voxels(SPACE, index, SPACE.center_of(index))
-    return kind_of(own).on_sample(voxels, vehicle, 1000).measure(own, False).m
-
-
-@pytest.mark.parametrize("options", [{}, {"min_range": 1.5, "max_range": 4.0}])
-@pytest.mark.parametrize("lens", SMALL)
-def test_grid_and_sample_equal_the_definition(lens, options):
-    """All voxels of a space with a car in it; those with less than a pixel are told to one."""
-    own = sensor(lens, **options)
-    index = np.stack(np.unravel_index(np.arange(SPACE.size), SPACE.shape), axis=1)
-    exact = pe.measure(own, SPACE.center_of(index), SPACE.interval, CAR)
-    assert np.count_nonzero(exact) > 300
-    for found in (
-        measured_on_grid(own, CAR),
-        measured_on_grid(own, CAR, 5),
-        measured_on_sample(own, CAR, index),
-    ):
-        np.testing.assert_allclose(found, exact, rtol=0.01, atol=0.5)
-        assert found.sum() == pytest.approx(exact.sum(), rel=0.001)
-
-
 def test_a_lens_that_bends_nothing_is_a_pinhole():
     straight = Pinhole(232.0, 240.0, 250.0, 120.0)
     bent = Pinhole(232.0, 240.0, 250.0, 120.0, math.radians(150.0))
@@ -111,19 +77,6 @@ def test_a_lens_that_bends_nothing_is_a_pinhole():
     ahead = one > 0.0  # the pinhole leaves out what a corner of is behind
     assert np.count_nonzero(ahead) > 300
     np.testing.assert_allclose(other[ahead], one[ahead], rtol=1e-6, atol=1e-4)
-
-
-def test_an_off_centre_pinhole_is_measured_alike_everywhere():
-    own = pe.Sensor(
-        "eye",
-        camera(Pinhole(232.0, 240.0, 300.0, 60.0), min_range=1.0),
-        pe.Pose.from_degrees(*POSE),
-    )
-    index = np.stack(np.unravel_index(np.arange(SPACE.size), SPACE.shape), axis=1)
-    exact = pe.measure(own, SPACE.center_of(index), SPACE.interval, CAR)
-    assert np.count_nonzero(exact) > 300
-    np.testing.assert_allclose(measured_on_grid(own, CAR), exact, rtol=0.01, atol=0.01)
-    np.testing.assert_allclose(measured_on_sample(own, CAR, index), exact, rtol=0.01, atol=0.01)
 
 
 def test_a_camera_sees_between_its_ranges_alone():

@@ -11,7 +11,7 @@ from pe_core.geometry.poses import dot, rotate
 from pe_core.sensors.camera import grid_areas
 from pe_core.sensors.camera.voxel_occlusion import VoxelOcclusion
 from tests.engine import fixed_bins, shapes
-from tests.engine.test_camera_kernels import whole_grid
+from tests.engine.kernels import on_grid
 
 ASSETS = Path(pe.__file__).parents[1] / "blend_assets"
 SPACE = pe.PerceptionSpace((-16, 16), (-8, 8), (0, 4), 0.2)
@@ -78,12 +78,12 @@ def test_hidden_voxels_are_those_whose_ray_is_stopped(case, monkeypatch):
     mesh, position, rotation, hfov = CASES[case]
     vehicle = pe.Vehicle(mesh())
     sensor = shapes.camera(float(hfov), position, rotation)
-    free = whole_grid(sensor, SPACE, None, 20).reshape(-1)
+    free = on_grid(sensor, SPACE, None, 20).reshape(-1)
     count, areas = counted(monkeypatch), []
     for many in (NEVER, ALWAYS):
         monkeypatch.setattr(grid_areas, "MANY_RAYS", many)
         count["evaluated"] = 0
-        areas.append(whole_grid(sensor, SPACE, vehicle, 20).reshape(-1))
+        areas.append(on_grid(sensor, SPACE, vehicle, 20).reshape(-1))
         assert (count["evaluated"] == 8) == (many == ALWAYS)
     area = areas[0]
     assert area.tobytes() == areas[1].tobytes()
@@ -118,7 +118,7 @@ def counted(monkeypatch):
 def test_the_cover_is_asked_where_very_many_rays_would_be_cast(monkeypatch):
     """A camera 5 cm over a roof in fine voxels: few of its rays are left; over a bonnet none is."""
     space, count = pe.PerceptionSpace((-20, 20), (-10, 10), (0, 4), 0.1), counted(monkeypatch)
-    whole_grid(shapes.camera(60.0, (0.0, 0.0, 3.05), (0, 0, 0)), space, pe.Vehicle(roof()), 32)
+    on_grid(shapes.camera(60.0, (0.0, 0.0, 3.05), (0, 0, 0)), space, pe.Vehicle(roof()), 32)
     assert count["evaluated"] > 1
     assert count["cast"] < 0.2 * _cast_without_cover(space, monkeypatch)
 
@@ -126,7 +126,7 @@ def test_the_cover_is_asked_where_very_many_rays_would_be_cast(monkeypatch):
 def _cast_without_cover(space, monkeypatch):
     monkeypatch.setattr(grid_areas, "MANY_RAYS", NEVER)
     count = counted(monkeypatch)
-    whole_grid(shapes.camera(60.0, (0.0, 0.0, 3.05), (0, 0, 0)), space, pe.Vehicle(roof()), 32)
+    on_grid(shapes.camera(60.0, (0.0, 0.0, 3.05), (0, 0, 0)), space, pe.Vehicle(roof()), 32)
     assert count["evaluated"] == 0
     return count["cast"]
 

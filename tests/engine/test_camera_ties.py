@@ -7,23 +7,19 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.sensors.camera.sample_areas import pixel_areas
 from tests.engine import oracle, shapes
-from tests.engine.test_camera_kernels import whole_grid
+from tests.engine.kernels import FLAT, every_voxel, on_grid, on_sample
 from tests.thorough import pairs
 
 SPACE = pe.PerceptionSpace((-3, 3), (-2, 2), (0, 2), 0.2)
-INDEX = np.stack(np.unravel_index(np.arange(SPACE.size), SPACE.shape), axis=1)
-CENTERS = SPACE.center_of(INDEX)
-FLAT = 0.004
-"""How far the closed form of an area may be off, relative."""
+VOXELS = every_voxel(SPACE)
+CENTERS = VOXELS.centers
 
 
 def in_every_way(sensor, vehicle=None):
     """Areas by the definition, on a sample and on the grid."""
-    seen = None if vehicle is None else vehicle.seen_from(sensor.pose.position, through_glass=True)
-    sample = pixel_areas(sensor.model, sensor.pose, CENTERS, SPACE.interval, seen)
-    grid = whole_grid(sensor, SPACE, vehicle, 7).reshape(-1)
+    sample = on_sample(sensor, SPACE, VOXELS.index, vehicle)
+    grid = on_grid(sensor, SPACE, vehicle, 7).reshape(-1)
     return pe.measure(sensor, CENTERS, SPACE.interval, vehicle), sample, grid
 
 

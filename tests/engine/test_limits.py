@@ -150,3 +150,14 @@ def test_numbers_of_an_array():
     assert mixed[0] == 1.0 and np.isnan(mixed[1:4]).all()
     assert numbers(["1", "2"]) is None and numbers([True, False]) is None
     assert numbers([[1.0], [1.0, 2.0]]) is None and numbers([1j]) is None
+
+
+@pytest.mark.parametrize("beams", [[], [[1, 0]], [[0, 0, 0]], [[1, 0, np.nan]]])
+def test_impossible_patterns_are_refused(beams):
+    with pytest.raises(pe.InputError, match="mine: directions"):
+        pe.Lidar.from_directions("mine", beams, 10.0)
+
+
+def test_the_least_is_below_the_most():
+    with pytest.raises(pe.InputError, match="small: min_range: expected a length below max_range"):
+        shapes.small_lidar(max_range=5.0, min_range=5.0)

@@ -392,3 +392,24 @@ def test_tables_say_what_they_said():
 def test_wrong_tables_are_one_line(table, message):
     with pytest.raises(pe.InputError, match=message):
         pe.catalog.from_table("mine", table)
+
+
+def test_a_face_straight_ahead():
+    """A 0.1 m face at 9.95 m, focal length 1662.77 px: (16.711 px)^2."""
+    sensor = shapes.camera(60.0, (0.0, 0.0, 1.0))
+    area = pe.measure(sensor, [[10.0, 0.0, 1.0]], 0.1)
+    assert area[0] == pytest.approx((0.1 * 1662.7688 / 9.95) ** 2, rel=1e-6)
+
+
+def test_behind_and_beside_the_camera_nothing_is_seen():
+    sensor = shapes.camera(60.0, (0.0, 0.0, 1.0))
+    centers = [[-5.0, 0.0, 1.0], [0.0, 5.0, 1.0], [0.02, 0.0, 1.0], [5.0, 5.0, 1.0]]
+    assert pe.measure(sensor, centers, 0.1).tolist() == [0.0] * 4
+
+
+def test_a_beam_counts_where_it_leaves_a_voxel_no_nearer():
+    """One beam along x from 0.5 in a row of metre cubes: with 1.6 m the first seen ends at 2.5."""
+    ahead = pe.Lidar.from_directions("one", [[1.0, 0.0, 0.0]], 100.0, 1.6)
+    sensor = pe.Sensor("one", ahead, pe.Pose((0.5, 0.5, 0.5)))
+    centers = [[x + 0.5, 0.5, 0.5] for x in range(5)]
+    assert pe.measure(sensor, centers, 1.0).tolist() == [0, 0, 1, 1, 1]

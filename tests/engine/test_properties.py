@@ -1,22 +1,17 @@
 """What must hold for any rig: on random ones, most of them at round places, where ties are."""
 
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 
 import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.sensors import kind_of
 from pe_core.sensors.camera.tie_rules import NUDGE as CAMERA_NUDGE
-from pe_core.sensors.kernels import Voxels
 from pe_core.sensors.lidar.tie_rules import NUDGE as LIDAR_NUDGE
+from tests.engine import kernels
+from tests.engine.kernels import FLAT, every_voxel
 from tests.engine.random_rigs import RIGS, free_scene, round_scene
 
-ALL = 1 << 16
-"""Beams from which on a kernel need not count: more than any LiDAR of these has."""
-FLAT = 0.004
-"""How far the closed form of an area may be off, relative."""
 SINGLE = 4e-6
 """Rounding of areas in single precision, relative: they go with the cube of a sum of two."""
 NUDGES = (LIDAR_NUDGE, CAMERA_NUDGE)
@@ -27,32 +22,14 @@ each_rig = pytest.mark.parametrize("number", range(RIGS))
 
 def on_grid(scene):
     """m of every sensor, (nx, ny, nz) each, as the grid's kernels have it."""
-    with ThreadPoolExecutor(1) as pool:
-        return [_on_grid(scene, sensor, pool) for sensor in scene.rig]
-
-
-def _on_grid(scene, sensor, pool):
-    kernel = kind_of(sensor).on_grid(scene.space, scene.vehicle, ALL)
-    (planes,) = kernel.planes([[kernel.prepare(sensor)]], pool)
-    found = planes(slice(0, scene.space.shape[0]))
-    if sensor.kind == "lidar":
-        return found.astype(float)
-    m = np.zeros(scene.space.shape)
-    m[:, found.rows] = found.m
-    return m
-
-
-def every_voxel(space):
-    index = np.stack(np.unravel_index(np.arange(space.size), space.shape), axis=1)
-    return Voxels(space, index, space.center_of(index))
+    return [kernels.on_grid(sensor, scene.space, scene.vehicle) for sensor in scene.rig]
 
 
 def on_sample(scene):
     """The same as the kernels of samples have it, asked for every voxel."""
-    voxels = every_voxel(scene.space)
-    kernels = [kind_of(s).on_sample(voxels, scene.vehicle, ALL) for s in scene.rig]
-    found = [k.measure(s, False).m for k, s in zip(kernels, scene.rig, strict=True)]
-    return [np.asarray(m, dtype=float).reshape(scene.space.shape) for m in found]
+    index, shape = every_voxel(scene.space).index, scene.space.shape
+    found = (kernels.on_sample(s, scene.space, index, scene.vehicle) for s in scene.rig)
+    return [m.reshape(shape) for m in found]
 
 
 def defined(scene):

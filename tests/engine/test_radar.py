@@ -15,6 +15,7 @@ from pe_core.sensors.radar import Reflectivity, detection_probability, signal_to
 from pe_tools.advice.mount_checks import SensorAtBody, odd_mounting
 from pe_tools.advice.vehicle_checks import Bodywork
 from tests.engine import shapes
+from tests.engine.kernels import every_voxel
 from tests.engine.radar_oracle import expected_detections
 
 ARS = "Continental ARS408-21"
@@ -148,19 +149,6 @@ def tomllib_of(table):
     return tomllib.loads("\n".join(lines))
 
 
-@pytest.mark.parametrize("traffic", [False, True])
-def test_the_kernel_of_objects_is_the_definition(traffic):
-    some = objects(count=80)
-    scenes = np.arange(80) // 10
-    some = pe.Objects(some.centers, some.sizes, some.yaws, some.labels, some.class_names, scenes)
-    car, kind = shapes.box_car(), kinds.KINDS["radar"]
-    view = kinds.ObjectView(some, car, traffic)
-    for sensor in (radar(rotation=(0, 2, 0)), radar(catalog.load(ARS), (0, 1.2, 0.6), (0, 0, 90))):
-        kernel = kind.on_objects(view).measure(sensor)
-        np.testing.assert_array_equal(kernel, kinds.measure_objects(sensor, some, car, traffic))
-        assert (kernel > 0).any()
-
-
 def test_traffic_hides():
     some = pe.Objects(
         [[20, 0, 1.5], [40, 0, 0.875]], [SIZES["truck"], SIZES["pedestrian"]], [0, 0], [0, 1],
@@ -171,24 +159,9 @@ def test_traffic_hides():
     assert alone[1] > 0.5 and together[1] == 0.0 and alone[0] == together[0] > 2.0
 
 
-def test_voxels_have_their_share_of_a_car():
-    """On the axis: m of the mean car over k; the kernels of grid and sample are the definition."""
-    sensor = radar(rotation=(1, 4, -20))
-    space = pe.PerceptionSpace((-4, 36), (-20, 20), (0, 3), 0.5)
-    car = shapes.box_car()
-    index = np.stack(np.meshgrid(*map(np.arange, space.shape), indexing="ij"), -1).reshape(-1, 3)
-    m = pe.measure(sensor, space.center_of(index), 0.5, car)
-    kind = kinds.KINDS["radar"]
-    grid = kind.on_grid(space, car, 1)
-    (planes,) = grid.planes([[grid.prepare(sensor)]], None)
-    block = planes(slice(0, space.shape[0]))
-    whole = np.zeros(space.shape)
-    whole[:, block.rows] = block.m
-    np.testing.assert_allclose(whole.reshape(-1), m, rtol=1e-12)
-    assert 0.1 < (m > 0).mean() < 0.6
-    sample = kind.on_sample(kinds.Voxels(space, index, space.center_of(index)), car, 1)
-    np.testing.assert_allclose(sample.measure(sensor, False).m, m, rtol=1e-12)
-    assert (sample.unoccluded(sensor) >= m * (1 - 1e-12)).all()
+def test_a_sensor_beside_the_body_has_rays_that_end_on_it():
+    space, car = pe.PerceptionSpace((-4, 36), (-20, 20), (0, 3), 0.5), shapes.box_car()
+    sample = kinds.KINDS["radar"].on_sample(every_voxel(space), car, 1)
     inside = radar(position=(1.0, 1.1, 0.6), rotation=(0, 0, -20))
     occlusion = sample.occlusion(sample.measure(inside, False))
     assert 0 < occlusion.occluded == sum(occlusion.by_part.values()) <= occlusion.rays

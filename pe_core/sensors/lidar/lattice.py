@@ -26,6 +26,9 @@ WINDOW_MARGIN = 1e-7
 CACHED_LATTICES = 16
 """Lattices in the cache, by model; a rig has few models, and a search the same few."""
 BAND_RAD = math.radians(0.5)
+SEAM_RAD = 1.2345e-5
+"""A full circle begins this much beside 180 degrees: there beams often are, and rounding would
+decide whether one of them counts once or twice [rad]."""
 TURN = 2.0 * math.pi
 STRIDE = 4.0 * TURN
 """Distance between the keys of two bands: wider than any azimuth or window [rad]."""
@@ -191,9 +194,9 @@ class BeamBands:
         voxel = np.repeat(np.arange(len(n)), n)
         start = (np.repeat(first, n) + count_up(n)) * STRIDE
         full_circle = half[voxel] >= math.pi
-        middle = np.where(full_circle, 0.0, azimuth[voxel])
+        middle = np.where(full_circle, SEAM_RAD, azimuth[voxel])
         reach = np.where(full_circle, math.pi, half[voxel])
-        # The full circle is [-pi, pi): the copies a turn away begin just outside.
+        # The full circle is half open: the copies a turn away begin just outside.
         i0 = np.searchsorted(self.keys, start + middle - reach, side="left")
         left, right = (
             np.searchsorted(self.keys, start + middle + reach, side=side)

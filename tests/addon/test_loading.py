@@ -1,5 +1,6 @@
 """A study put into a scene: the scene is that study again, to the bit, or says what it is not."""
 
+import math
 from dataclasses import replace
 
 import bpy
@@ -8,6 +9,8 @@ import pytest
 
 import pe_core as pe
 from blender_addon import bridge
+from blender_addon.engine import studies
+from pe_core.study.setting_table import SECTIONS
 from tests.addon import scenes
 
 CORNERS = scenes.ASSETS / "examples" / "four_corners" / "study.toml"
@@ -74,6 +77,63 @@ def test_all_that_a_scene_says_of_its_search_comes_back(car, tmp_path):
     assert again.search == saved.search
     assert (again.space, again.model, again.samples) == (saved.space, saved.model, saved.samples)
     assert {s.name: s.pose for s in again.rig} == {s.name: s.pose for s in saved.rig}
+
+
+ROWS = {
+    "weather": "weathers",
+    "state": "states",
+    "prior.focus": "focus",
+    "ap.KIND": "curves",
+    "optimize.mount": "mounts",
+}
+"""Lists of a scene with the settings of a table."""
+IN_SCENE = [
+    (section, setting)
+    for section in SECTIONS
+    for setting in section.settings
+    if setting.panel is not None and (section.table in ROWS or not section.rows)
+]
+
+
+def other_value(setting):
+    """Return a value of a setting that is not its default."""
+    rule = setting.rule
+    match rule:
+        case studies.Toggle():
+            return not setting.default
+        case studies.OneOf():
+            return next(text for text in reversed(rule.among) if text != setting.default)
+        case studies.Several():
+            return rule.among[:2]
+        case studies.Pair():
+            return (-30.0, 31.5)
+        case studies.Texts():
+            return ("door open", "loaded")
+        case studies.Name():
+            return "EUR"
+        case studies.Whole():
+            return 4096 if (rule.maximum or 4096) >= 4096 else rule.minimum + 3
+        case studies.Angle():
+            return math.radians(0.7)
+    least = max(rule.minimum, -10.0 if setting.panel.min is None else setting.panel.min)
+    return least + 0.37 * (min(rule.maximum, least + 1.0) - least)
+
+
+@pytest.mark.parametrize(
+    ("section", "setting"), IN_SCENE, ids=[f"{s.table}.{each.name}" for s, each in IN_SCENE]
+)
+def test_each_declared_setting_is_held_by_the_scene_as_it_was(scene, section, setting):
+    settings = scene.perception_entropy
+    group = getattr(settings, ROWS[section.table]).add() if section.rows else settings
+    name, value = setting.panel.property, other_value(setting)
+    value = setting.rule.checked("test", setting.name, value)
+    setattr(group, name, bridge.property_value(setting, value))
+    found = bridge.value_of_property(setting, getattr(group, name))
+    assert found == value or found == pytest.approx(value, rel=1e-7)
+    assert setting.rule.checked("test", setting.name, found) == found
+    if setting.is_optional:
+        setattr(group, name, bridge.property_value(setting, None))
+        assert bridge.value_of_property(setting, getattr(group, name)) is None
 
 
 def test_a_sensor_named_like_a_part_is_reported_with_its_new_name(scene):

@@ -117,7 +117,8 @@ class Fusion:
         H is looked up at voxels that only one group with integer m sees, and computed at all
         others. A blind group changes nothing, except by the literal formula (eq. 7).
         """
-        counting = (g for g in groups if is_whole(g[1]) and self._ignores_blind)
+        ignores_blind = self.model.blind == "floor"
+        counting = (g for g in groups if is_whole(g[1]) and ignores_blind)
         tabulated = next(counting, None)
         others = [g for g in groups if g is not tabulated]
         if tabulated is not None:
@@ -129,18 +130,10 @@ class Fusion:
         if others:
             by_others = np.logical_or.reduce([m > 0 for _, m in others])
             visible |= by_others
-            seen = np.flatnonzero(by_others | (not self._ignores_blind))  # faster than by flags
-            np.put(entropies, seen, self._computed([(kind, m.take(seen)) for kind, m in groups]))
+            seen = np.flatnonzero(by_others | (not ignores_blind))  # faster than by flags
+            precisions = [self.precision(m.take(seen), kind) for kind, m in groups]  # eqs. 4 and 5
+            np.put(entropies, seen, entropy_of(late_fusion(precisions, self.model.blind)))
         return entropies, visible
-
-    @property
-    def _ignores_blind(self) -> bool:
-        return self.model.blind == "floor"
-
-    def _computed(self, groups: Sequence[Measurement]) -> Floats:
-        """Entropy by eqs. 4, 5, 7 and 8."""
-        precisions = [self.precision(m, kind) for kind, m in groups]
-        return entropy_of(late_fusion(precisions, self.model.blind))
 
 
 def is_whole(m: NDArray) -> bool:
@@ -201,7 +194,8 @@ class PlaneFusion:
             entropies = np.take(self._alone(kind, blind), m, mode="clip")
         else:
             entropies = entropy_of(self._counted(counts, blind, slice(None)))
-        rows = _rows_of(areas)
+        starts, stops = [own.start for _, own, _ in areas], [own.stop for _, own, _ in areas]
+        rows = slice(min(starts, default=0), max(stops, default=0))  # with any area
         if rows.stop > rows.start:
             precision = self._counted(counts, blind, rows)
             for kind, own, m in areas:
@@ -259,15 +253,15 @@ class PlaneFusion:
         )
 
     def _by_digits(self, kind: CurveOf) -> Floats:
-        """Table over the leading digits of m: what m adds to 1 / sigma^2."""
-        return self._cached(("digits", kind, 0), lambda: self._added_by_digits(kind))
+        """Table over the leading digits of m: what the middle of these adds to 1 / sigma^2."""
 
-    def _added_by_digits(self, kind: CurveOf) -> Floats:
-        """What the middle of the numbers with the same leading digits adds."""
-        middle = (_CODES << SHIFT) + (1 << SHIFT - 1)
-        added = self._fusion.precision(middle.view(np.float32), kind) - BLIND_PRECISION
-        added[0] = 0.0
-        return added
+        def made() -> Floats:
+            middle = (_CODES << SHIFT) + (1 << SHIFT - 1)
+            added = self._fusion.precision(middle.view(np.float32), kind) - BLIND_PRECISION
+            added[0] = 0.0
+            return added
+
+        return self._cached(("digits", kind, 0), made)
 
     def _cached(self, key: tuple[str, CurveOf, int], make: Callable[[], Floats]) -> Floats:
         if key not in self._tables:
@@ -288,9 +282,3 @@ def _planes(groups: Sequence[Group], plane: int) -> tuple[list[GroupCounts], lis
         elif measured.m.size:
             areas.append((kind, measured.rows, measured.m[plane]))
     return counts, areas
-
-
-def _rows_of(areas: Sequence[Areas]) -> slice:
-    """Rows from the first to the last with any area."""
-    starts, stops = [rows.start for _, rows, _ in areas], [rows.stop for _, rows, _ in areas]
-    return slice(min(starts, default=0), max(stops, default=0))

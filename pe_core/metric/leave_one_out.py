@@ -9,7 +9,6 @@ floor rule for blind sensors is assumed.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -52,33 +51,21 @@ class VisibleVoxels(NamedTuple):
 class LeaveOneOut:
     """Sums over planes for each sensor S of the fusion groups.
 
-    Parameters
-    ----------
-    fused : PlaneFusion
-    groups : sequence of sequence of Group
-        The measurements of the sensors of each fusion group.
-    totals : sequence of Group
-        The sum over the sensors of each fusion group.
+    `groups` are the measurements of the sensors of each fusion group, `totals` (G,) their sums.
     """
 
     def __init__(
         self, fused: PlaneFusion, groups: Sequence[Sequence[Group]], totals: Sequence[Group]
     ) -> None:
         self._fused = fused
-        pairs = zip(groups, totals, strict=True)
-        self._groups = [_fusion_group(fused, sensors, total) for sensors, total in pairs]
+        self._groups = [_FusionGroup(*pair) for pair in zip(groups, totals, strict=True)]
 
     def of_plane(self, plane: int, entropies: Floats, weights: Floats) -> Floats:
         """Return weighted sums (3, S) over the voxels of a plane that each sensor sees.
 
         Row 0: entropy without the sensor, less that of the rig. Row 1: entropy of the sensor
-        alone, less that of a blind voxel. Row 2: the weights.
-
-        Parameters
-        ----------
-        plane : int
-        entropies, weights : (ny, nz) float
-            Entropies of the rig, and the prior.
+        alone, less that of a blind voxel. Row 2: the weights. `entropies` (ny, nz) are those of the
+        rig, `weights` (ny, nz) the prior.
         """
         whole, weighing = (RowValues(slice(0, len(w)), w) for w in (entropies, weights))
         sums = []
@@ -89,7 +76,7 @@ class LeaveOneOut:
                     sums.append((0.0, 0.0, 0.0))
                     continue
                 weight, precision = weighing.at(visible), others.at(visible)
-                group.add_rest(precision, rank, visible, plane)
+                self._add_rest(group, precision, rank, visible, plane)
                 lost = entropy_of(precision)
                 lost -= whole.at(visible)
                 lost *= weight  # in place: a new array costs as much as the product
@@ -97,6 +84,30 @@ class LeaveOneOut:
                 gained *= weight
                 sums.append((lost.sum(), gained.sum(), weight.sum()))
         return np.array(sums).T
+
+    def _add_rest(
+        self,
+        group: _FusionGroup,
+        precision: Floats,
+        rank: int,
+        visible: VisibleVoxels,
+        plane: int,
+    ) -> None:
+        """Add to 1 / sigma^2 (N,) what a group adds without its sensor `rank`."""
+        if len(group.sensors) == 1:
+            return
+        if not group.rests:
+            rest = RowValues(*_on_plane(group.total, plane)).at(visible) - visible.m
+            precision += self._fused.added(visible.kind, rest)
+            return
+        kind, others = group.rests[rank][0], RowValues(*_on_plane(group.rests[rank], plane))
+        rows, nz = visible.rows, others.values.shape[-1]
+        added = np.zeros((rows.stop - rows.start, nz))
+        start, stop = max(rows.start, others.rows.start), min(rows.stop, others.rows.stop)
+        if start < stop:  # the sum over the others may cover other rows
+            m = others.values[start - others.rows.start : stop - others.rows.start]
+            added[start - rows.start : stop - rows.start] = self._fused.added(kind, m)
+        precision += RowValues(rows, added).at(visible)
 
     def _gained(self, visible: VisibleVoxels) -> Floats:
         """Entropy (N,) of one sensor alone, less that of a blind voxel."""
@@ -123,60 +134,21 @@ class LeaveOneOut:
         return others
 
 
-class _FusionGroup(ABC):
-    """A fusion group: the measurements of its sensors, and their sum."""
+class _FusionGroup:
+    """A fusion group: the measurements of its sensors, and their sum.
 
-    def __init__(self, fused: PlaneFusion, sensors: Sequence[Group], total: Group) -> None:
-        self.fused, self.sensors, self.total = fused, sensors, total
+    Of a group with areas a difference would lose digits, so `rests` are the sums over the sensors
+    but each one. Other groups count in whole numbers: the sum less the sensor's count is exact.
+    """
 
-    @abstractmethod
-    def add_rest(self, precision: Floats, rank: int, visible: VisibleVoxels, plane: int) -> None:
-        """Add to 1 / sigma^2 (N,) what the group adds without its sensor `rank`."""
-
-
-class _LoneSensor(_FusionGroup):
-    """A group of one sensor: nothing is left without it."""
-
-    def add_rest(self, precision: Floats, rank: int, visible: VisibleVoxels, plane: int) -> None:
-        """Add nothing."""
-
-
-class _CountingGroup(_FusionGroup):
-    """A group that counts in whole numbers: the sum less the sensor's own count is exact."""
-
-    def add_rest(self, precision: Floats, rank: int, visible: VisibleVoxels, plane: int) -> None:
-        """Look up the difference."""
-        rest = RowValues(*_on_plane(self.total, plane)).at(visible) - visible.m
-        precision += self.fused.added(visible.kind, rest)
-
-
-class _AreaGroup(_FusionGroup):
-    """A group with areas: a difference would lose digits, so each sum over the others is made."""
-
-    def __init__(self, fused: PlaneFusion, sensors: Sequence[Group], total: Group) -> None:
-        super().__init__(fused, sensors, total)
-        self._rests: list[Group] = [
-            (kind, group_sum([m for j, (_, m) in enumerate(sensors) if j != k]))
-            for k, (kind, _) in enumerate(sensors)
-        ]
-
-    def add_rest(self, precision: Floats, rank: int, visible: VisibleVoxels, plane: int) -> None:
-        """Compute what the sum over the others adds, which may cover other rows."""
-        kind, rest = self._rests[rank][0], RowValues(*_on_plane(self._rests[rank], plane))
-        rows, nz = visible.rows, rest.values.shape[-1]
-        added = np.zeros((rows.stop - rows.start, nz))
-        start, stop = max(rows.start, rest.rows.start), min(rows.stop, rest.rows.stop)
-        if start < stop:
-            m = rest.values[start - rest.rows.start : stop - rest.rows.start]
-            added[start - rows.start : stop - rows.start] = self.fused.added(kind, m)
-        precision += RowValues(rows, added).at(visible)
-
-
-def _fusion_group(fused: PlaneFusion, sensors: Sequence[Group], total: Group) -> _FusionGroup:
-    if len(sensors) == 1:
-        return _LoneSensor(fused, sensors, total)
-    has_areas = any(isinstance(m, VisibleRows) for _, m in sensors)
-    return (_AreaGroup if has_areas else _CountingGroup)(fused, sensors, total)
+    def __init__(self, sensors: Sequence[Group], total: Group) -> None:
+        self.sensors, self.total = sensors, total
+        self.rests: list[Group] = []
+        if len(sensors) > 1 and any(isinstance(m, VisibleRows) for _, m in sensors):
+            self.rests = [
+                (kind, group_sum([m for j, (_, m) in enumerate(sensors) if j != k]))
+                for k, (kind, _) in enumerate(sensors)
+            ]
 
 
 def _on_plane(group: Group, plane: int) -> tuple[slice, NDArray]:

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,8 +26,7 @@ STRAIGHT = 1e-12
 """A sine or cosine below this counts as zero: the box is parallel to the grid."""
 
 
-@dataclass(frozen=True, slots=True)
-class Voxelised:
+class Voxelised(NamedTuple):
     """The density of every class on one space, and the report on the boxes."""
 
     shapes: tuple[Shape, ...]
@@ -40,12 +39,7 @@ def voxelised(boxes: Boxes, space: PerceptionSpace) -> Voxelised:
 
     A voxel belongs to a box if its centre lies inside. A box without any voxel centre (thinner than
     a voxel) gets the column or layer of its own centre. A class without boxes in the space has no
-    mass. The last two results are cached.
-
-    Raises
-    ------
-    InputError
-        When no box is in the space.
+    mass. `InputError` when no box is in the space. The last two results are cached.
     """
     shapes, inside = [], 0
     for name in boxes.classes:

@@ -72,18 +72,27 @@ class Boxes:
 
     def __post_init__(self) -> None:
         names = np.array(self.names, dtype=np.str_).reshape(-1)
-        _check_names(names)
+        for name in set(names.tolist()):
+            if not is_class_name(name):
+                raise InputError("boxes", "class", "a name in printable letters", shown(name))
         object.__setattr__(self, "names", read_only(names))
         for column in COLUMNS:
             values = _column(column, getattr(self, column), len(names))
             object.__setattr__(self, column, read_only(values))
-        object.__setattr__(self, "yaw", read_only(_rounded_yaw(self.yaw)))
+        degrees = self.yaw * (180.0 / math.pi)
+        degrees = np.round(degrees - 360.0 * np.rint(degrees / 360.0), YAW_DECIMALS) + 0.0
+        object.__setattr__(self, "yaw", read_only(degrees * (math.pi / 180.0)))
         if self.file is not None:
             object.__setattr__(self, "file", A_PATH.checked("boxes", "file", self.file))
         if self.origin is not None:
             object.__setattr__(self, "origin", vector("boxes", "origin", self.origin, 3, ORIGIN))
-        self._check_classes()
-        object.__setattr__(self, "digest", self._digest())
+        if (count := len(set(names.tolist()))) > MAX_CLASSES:
+            expected = f"at most {MAX_CLASSES} names (is this the column of the class?)"
+            raise InputError(self.source, "class", expected, f"{count:,}")
+        digest = hashlib.sha256("\n".join(names.tolist()).encode("utf-8", "surrogatepass"))
+        for column in COLUMNS:
+            digest.update(getattr(self, column).tobytes())
+        object.__setattr__(self, "digest", digest.hexdigest())
 
     def __len__(self) -> int:
         return len(self.names)
@@ -120,19 +129,6 @@ class Boxes:
     def source(self) -> str:
         """Name of the boxes in messages."""
         return self.file or "boxes"
-
-    def _check_classes(self) -> None:
-        count = len(set(self.names.tolist()))
-        if count > MAX_CLASSES:
-            expected = f"at most {MAX_CLASSES} names (is this the column of the class?)"
-            raise InputError(self.source, "class", expected, f"{count:,}")
-
-    def _digest(self) -> str:
-        """SHA-256 of all boxes."""
-        digest = hashlib.sha256("\n".join(self.names.tolist()).encode("utf-8", "surrogatepass"))
-        for column in COLUMNS:
-            digest.update(getattr(self, column).tobytes())
-        return digest.hexdigest()
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,12 +168,6 @@ def _columns_of(rows: Any) -> dict[str, Sequence[Any]]:
     return {name: [row[k] for row in rows] for k, name in enumerate(names)}
 
 
-def _check_names(names: NDArray[np.str_]) -> None:
-    for name in set(names.tolist()):
-        if not is_class_name(name):
-            raise InputError("boxes", "class", "a name in printable letters", shown(name))
-
-
 def is_class_name(name: str) -> bool:
     """Whether a text can be the name of a class: it survives being written to a line of a file."""
     return bool(name) and name.isprintable() and name == name.strip()
@@ -200,13 +190,6 @@ def _column(name: str, values: ArrayLike, count: int) -> Floats:
         first = int(np.flatnonzero(wrong)[0])
         raise InputError("boxes", f"box {first}: {name}", expected, column[first])
     return column
-
-
-def _rounded_yaw(yaw: Floats) -> Floats:
-    """Return yaws within +-180 degrees, as they come back from degrees in a file [rad]."""
-    degrees = yaw * (180.0 / math.pi)
-    degrees = degrees - 360.0 * np.rint(degrees / 360.0)
-    return (np.round(degrees, YAW_DECIMALS) + 0.0) * (math.pi / 180.0)
 
 
 def degrees_of(yaw: Floats) -> Floats:

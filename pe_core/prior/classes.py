@@ -83,14 +83,10 @@ class ObjectClass:
         object.__setattr__(self, "size", vector(who, "size", self.size, 3, LENGTH))
         for name, rule in RULES.items():
             object.__setattr__(self, name, rule.checked(who, name, getattr(self, name)))
-        object.__setattr__(self, "lanes", _lanes(who, self.lanes))
-
-
-def _lanes(who: str, values: Any) -> tuple[float, ...]:
-    lanes = listed(values) or []
-    if not lanes or not all(LANE.holds(real(lane)) for lane in lanes):
-        raise InputError(who, "lanes", "one or more finite numbers", shown(values))
-    return tuple(map(real, lanes))
+        lanes = listed(self.lanes) or []
+        if not lanes or not all(LANE.holds(real(lane)) for lane in lanes):
+            raise InputError(who, "lanes", "one or more finite numbers", shown(self.lanes))
+        object.__setattr__(self, "lanes", tuple(map(real, lanes)))
 
 
 FIELDS = tuple(field.name for field in fields(ObjectClass))
@@ -249,13 +245,14 @@ def _exponential_mass(x: float, scale: float) -> float:
 
 
 def _lateral_mass(y: float, cls: ObjectClass) -> float:
-    return sum(_lane_mass(y - lane, cls) for lane in cls.lanes) / len(cls.lanes)
+    """Mass from minus infinity to y, up to a constant: the mean over the lanes."""
 
+    def in_lane(off: float) -> float:
+        laplace = 0.5 * math.copysign(-math.expm1(-abs(off) / cls.laplace_y), off)
+        normal = _normal_cdf(off / cls.gauss_y)
+        return cls.laplace_share * laplace + (1.0 - cls.laplace_share) * normal
 
-def _lane_mass(y: float, cls: ObjectClass) -> float:
-    """Mass from minus infinity to y, up to a constant."""
-    laplace = 0.5 * math.copysign(-math.expm1(-abs(y) / cls.laplace_y), y)
-    return cls.laplace_share * laplace + (1.0 - cls.laplace_share) * _normal_cdf(y / cls.gauss_y)
+    return sum(in_lane(y - lane) for lane in cls.lanes) / len(cls.lanes)
 
 
 def _normal_cdf(z: float) -> float:

@@ -48,10 +48,7 @@ and 1 cone), KITTI tracking's fewer, of the front camera's view alone (4, 2, 0.2
 def checked_densities(values: Any, names: Sequence[str]) -> Densities:
     """Return traffic densities in the order of the classes.
 
-    Raises
-    ------
-    InputError
-        When there is no class of a name, or a number is wrong.
+    `InputError` when there is no class of a name, or a number is wrong.
     """
     pairs = dict(values) if isinstance(values, Mapping | tuple) else None
     if pairs is None:
@@ -66,23 +63,13 @@ def checked_densities(values: Any, names: Sequence[str]) -> Densities:
 def density_of(name: str, given: Densities) -> float:
     """Return how many objects of a class are in the paper's space at once.
 
-    Raises
-    ------
-    InputError
-        When neither the study nor `DOCUMENTED` has a number for the class.
+    `InputError` when neither the study nor `DOCUMENTED` has a number for the class.
     """
     densities = DOCUMENTED | dict(given)
     if name not in densities:
         raise InputError("prior", "density", f"a number of {name!r} in the space at once", "none")
     return densities[name]
 
-
-def share_in(cls: ObjectClass, space: PerceptionSpace) -> float:
-    """Return the number of objects of a class in a space, for each one in the paper's space."""
-    return mass_in(cls, space) / mass_in(cls, PAPER_SPACE)
-
-
-__all__ = ["HIGHWAY_CLASSES", "ROAD_CLASSES", "ClassDensity", "Focus", "ObjectClass", "Prior"]
 
 FROM_BOXES, UNIFORM = "boxes", "uniform"
 MODELS = (*SHIPPED, UNIFORM, FROM_BOXES)
@@ -235,7 +222,8 @@ class Prior:
                 "prior", "model", "a prior with classes, because objects need them", UNIFORM
             )
         counts = {name: density_of(name, self.density) for name in self.class_names}
-        shares = {c.name: share_in(c, space) for c in self.classes}
+        # for each object of a class in the paper's space, the number in this space
+        shares = {c.name: mass_in(c, space) / mass_in(c, PAPER_SPACE) for c in self.classes}
         return {name: count * shares.get(name, 1.0) for name, count in counts.items()}
 
     def focus_at(self, name: str, x: Floats, y: Floats) -> Floats:

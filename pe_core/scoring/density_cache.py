@@ -48,10 +48,7 @@ def outside_masses(
 ) -> list[float]:
     """Return each class's mass of the prior outside the vehicle (`tops` None: no vehicle).
 
-    Raises
-    ------
-    InputError
-        When no weight is left outside the vehicle.
+    `InputError` when no weight is left outside.
     """
     if tops is None:
         return [float(d.ground.sum()) for d in densities]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from math import inf
 
 from ..base.values import Number, Whole, vector
@@ -15,7 +16,7 @@ from ..sensors import PerceptionModel
 from .density_cache import cached_densities
 from .grid_scorer import GridScorer
 from .memory_need import columns_bytes, require_room_for, require_room_for_samples
-from .protocol import Evaluation, Scorer
+from .protocol import Evaluation
 from .sampled_scorer import SampledScorer
 from .sampling import CENTERED, SAMPLES_OR_GRID
 from .score import Score, SummaryScore, Watch
@@ -72,7 +73,7 @@ class Evaluator:
         require_room_for_samples(samples, columns_bytes(space, classes))
         require_room_for(space, lambda any_space: columns_bytes(any_space, classes))
         fusion = Fusion(model or PerceptionModel())
-        self._scorer: Scorer
+        self._scorer: GridScorer | SampledScorer
         if samples == 0:
             densities = prior.densities(space)
             self._scorer = GridScorer(space, densities, vehicle, fusion, workers)
@@ -83,7 +84,8 @@ class Evaluator:
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the arguments: another process makes an evaluator of its own from them."""
         what = self.space, self.prior, self.vehicle
-        return _evaluator_again, (*what, self.samples, self._shift, self._model, self._workers)
+        again = partial(Evaluator, *what, samples=self.samples, shift=self._shift)
+        return partial(again, model=self._model, workers=self._workers), ()
 
     def score(self, rig: Rig, *, preview: bool = False, watch: Watch | None = None) -> Score:
         """Score a rig in full: entropy, coverage, by class, by sensor, ground map.
@@ -95,15 +97,13 @@ class Evaluator:
             Return an approximate preview, for use while a sensor is being moved: which LiDAR beams
             the vehicle occludes is read from a map of its top surface, if the sensor is above it,
             and not ray cast. `Score.preview` is then set. The next score without it is exact.
-            Sampled scores only.
+            A score of all voxels is always exact.
         watch : callable, optional
             Called repeatedly with the completed share, 0 to 1. When it returns False, the
             score is stopped.
 
         Raises
         ------
-        InputError
-            For a preview of a grid score.
         ScoreStopped
             When `watch` returned False.
         """
@@ -112,27 +112,14 @@ class Evaluator:
     def entropy(self, rig: Rig, *, preview: bool = False) -> float:
         """Return the perception entropy of a rig [nats], without the other figures.
 
-        Parameters
-        ----------
-        rig : Rig
-        preview : bool
-            As in `score`, with the same error.
+        `preview` as in `score`.
         """
         return self._scorer.entropy(rig, preview)
 
     def summary(self, rig: Rig, *, preview: bool = False) -> SummaryScore:
         """Return the score of a rig without the part by sensor, for use while one is being moved.
 
-        Parameters
-        ----------
-        rig : Rig
-        preview : bool
-            As in `score`.
-
-        Raises
-        ------
-        InputError
-            For a grid score.
+        `preview` as in `score`.
         """
         return self._scorer.summary(rig, preview)
 
@@ -194,18 +181,3 @@ class Evaluator:
             The mean (or highest) of the rigs' entropies, or of lower bounds of them.
         """
         return self._scorer.evaluate_together(rigs, cutoff, worst)
-
-
-def _evaluator_again(
-    space: PerceptionSpace,
-    prior: Prior,
-    vehicle: Vehicle | None,
-    samples: int,
-    shift: tuple[float, float, float],
-    model: PerceptionModel | None,
-    workers: int | None,
-) -> Evaluator:
-    """Make an evaluator from its pickled arguments, in a worker process."""
-    return Evaluator(
-        space, prior, vehicle, samples=samples, shift=shift, model=model, workers=workers
-    )

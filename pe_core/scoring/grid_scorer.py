@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from functools import partial, reduce
 from operator import add
-from threading import Event, Lock
-from typing import Any, NamedTuple, TypeVar
+from threading import Lock
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.errors import InputError
 from ..base.values import rounded
 from ..geometry.grids import PerceptionSpace
 from ..geometry.indexing import blocks
@@ -40,7 +39,7 @@ from .scenarios import (
 from .score import (
     PartScore,
     Score,
-    ScoreStopped,
+    ScoreProgress,
     SensorScore,
     SummaryScore,
     Watch,
@@ -49,7 +48,6 @@ from .score import (
     sensor_score,
 )
 
-T = TypeVar("T")
 KernelKey = tuple[str, ApCurve | None]
 """A kind, and the AP curve of its own that a sensor may have."""
 MeasuredGroup = tuple[CurveOf, Planes]
@@ -66,34 +64,11 @@ class Sums(NamedTuple):
     coverage: Floats
 
 
-class _GridProgress:
-    """Reports progress to a `Watch`; when that returns False, threads stop at their next block."""
-
-    def __init__(self, watch: Watch | None) -> None:
-        self._watch, self._stopped = watch, Event()
-        self._report(0.0)
-
-    def check(self) -> None:
-        """Raise `ScoreStopped` if the score was stopped; called in threads."""
-        if self._stopped.is_set():
-            raise ScoreStopped
-
-    def collected(self, results: Iterable[T], count: int) -> list[T]:
-        """Collect the results of `count` blocks, and report each."""
-        collected = []
-        for result in results:
-            collected.append(result)
-            self._report(len(collected) / count)
-        return collected
-
-    def _report(self, share: float) -> None:
-        if self._watch is not None and not self._watch(share):
-            self._stopped.set()
-        self.check()
-
-
 class GridScorer:
-    """Scores rigs on all voxels, in runs of x-planes; `workers` threads share them."""
+    """Scores rigs on all voxels, in runs of x-planes; `workers` threads share them.
+
+    No score is a preview: `preview` has no effect.
+    """
 
     def __init__(
         self,
@@ -106,6 +81,7 @@ class GridScorer:
         self._space, self._vehicle, self._fusion = space, vehicle, fusion
         self._planes = PlaneFusion(fusion, space.shape[1:])
         self._workers = workers or os.cpu_count() or 1
+        self._blocks = list(blocks(space.shape[0], BLOCK_PLANES))
         self._names = [d.name for d in densities]
         self._grounds = np.stack([d.ground for d in densities], axis=-1)  # (nx, ny, C)
         self._profiles = np.stack([d.profile for d in densities], axis=-1)  # (nz, C)
@@ -117,7 +93,6 @@ class GridScorer:
 
     def entropy(self, rig: Rig, preview: bool = False) -> float:
         """Return the perception entropy alone."""
-        _refuse_preview(preview)
         require_room_for(self._space, partial(self.needs, list(rig.groups.values())))
         with self._lock, ThreadPoolExecutor(self._workers) as pool:
             ready = self._ready(rig, pool)
@@ -128,11 +103,13 @@ class GridScorer:
                 weighed = self._weighed(fused, planes, coverage=False)
                 return np.sum([plane[0, 0].sum(axis=0) for plane, _ in weighed], axis=0)
 
-            return self._mean(np.sum(list(pool.map(work, self._blocks())), axis=0))
+            return self._mean(np.sum(list(pool.map(work, self._blocks)), axis=0))
 
     def summary(self, rig: Rig, preview: bool = False) -> SummaryScore:
-        """Raise `InputError`: a grid is too slow for it."""
-        raise InputError("evaluator", "summary", "a sampled score", "a grid score")
+        """Return the score without the part by sensor."""
+        whole = self.score(rig)
+        figures = whole.entropy, whole.coverage, whole.stderr, whole.per_class, whole.per_zone
+        return SummaryScore(*figures, whole.voxels)
 
     def evaluate(self, rig: Rig, cutoff: float) -> Evaluation:
         """Return the entropy, whatever the cutoff."""
@@ -148,9 +125,8 @@ class GridScorer:
 
     def score(self, rig: Rig, preview: bool = False, watch: Watch | None = None) -> Score:
         """Return the full score."""
-        _refuse_preview(preview)
         require_room_for(self._space, partial(self.needs, [[s] for s in rig]))
-        progress = _GridProgress(watch)
+        progress = ScoreProgress(watch, len(self._blocks))
         # By the literal formula (eq. 7) a sensor changes the fusion also where it sees nothing.
         is_sparse = self._fusion.model.blind == "floor" and len(rig.sensors) > 1
         parts = parts_of(rig)[: 1 if is_sparse else None]
@@ -166,7 +142,10 @@ class GridScorer:
                 members = LeaveOneOut(self._planes, measurements, fused[0]) if is_sparse else None
                 return self._reduced(fused, planes, members)
 
-            reduced = progress.collected(pool.map(work, self._blocks()), len(self._blocks()))
+            reduced = []
+            for block in pool.map(work, self._blocks):
+                reduced.append(block)
+                progress.add()
         sums = np.sum([by_part for by_part, _, _ in reduced], axis=0)
         by_part = {members: Sums(*row) for members, row in zip(parts, sums, strict=True)}
         columns = np.concatenate([columns for _, columns, _ in reduced], axis=1)
@@ -218,11 +197,6 @@ class GridScorer:
             of_key = [[ready[s.name] for s in groups[k]] for k in positions]
             planes |= zip(positions, self._kernels[key].planes(of_key, pool), strict=True)
         return [(curve or kind, planes[k]) for k, (kind, curve) in enumerate(keys)]
-
-    def _blocks(self) -> list[slice]:
-        """Return the blocks of x-planes that threads work on."""
-        nx = self._space.shape[0]
-        return list(blocks(nx, BLOCK_PLANES))
 
     def _weighed(
         self, parts: Sequence[Sequence[Group]], planes: slice, *, coverage: bool
@@ -322,10 +296,5 @@ class GridScorer:
         without = by_part.get(tuple(n for n in names if n != sensor.name))
         failed = H_BLIND if without is None else self._mean(without.entropy)
         lost = rounded(failed - self._mean(whole.entropy))
-        stopped = self._kernel(sensor).occlusion(ready)
-        return sensor_score(self._mean(alone.entropy), self._mean(alone.coverage), lost, stopped)
-
-
-def _refuse_preview(preview: bool) -> None:
-    if preview:
-        raise InputError("evaluator", "preview", "a sampled score", "a grid score")
+        occlusion = self._kernel(sensor).occlusion(ready)
+        return sensor_score(self._mean(alone.entropy), self._mean(alone.coverage), lost, occlusion)

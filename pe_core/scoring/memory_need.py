@@ -60,26 +60,15 @@ def columns_bytes(space: PerceptionSpace, classes: int) -> int:
 def require_room_for(space: PerceptionSpace, needed: Callable[[PerceptionSpace], int]) -> None:
     """Refuse a score of a grid that takes more memory than there is.
 
-    Parameters
-    ----------
-    space : PerceptionSpace
-    needed : function
-        Returns the memory that a score of a space takes [bytes].
-
-    Raises
-    ------
-    InputError
-        One line with how much it takes, how much there is, and what would fit.
+    `needed` returns the memory that a score of a space takes [bytes]. The message of the
+    `InputError` has how much it takes, how much there is, and what would fit.
     """
     there, amount = available_bytes(), needed(space)
-    if there is None or amount <= there:
-        return
-    fitting = next(
-        (f"interval = {s.interval:g}" for s in _coarser(space) if needed(s) <= there), ""
-    )
-    ways = " or ".join(filter(None, (f"samples = {FIRST_SAMPLES}", fitting)))
-    expected = f"what fits in the {size_text(there)} of memory that are free; try {ways}"
-    raise InputError("score", "memory", expected, f"about {size_text(amount)}")
+    if there is not None and amount > there:
+        fitting = next((s.interval for s in _coarser(space) if needed(s) <= there), None)
+        ways = [f"samples = {FIRST_SAMPLES}"]
+        ways += [] if fitting is None else [f"interval = {fitting:g}"]
+        _refuse(amount, there, f"; try {' or '.join(ways)}")
 
 
 def samples_bytes(samples: int, columns: int) -> int:
@@ -90,18 +79,17 @@ def samples_bytes(samples: int, columns: int) -> int:
 def require_room_for_samples(samples: int, columns: int) -> None:
     """Refuse a sample that takes more memory than there is; `columns` is the prior's part [bytes].
 
-    Raises
-    ------
-    InputError
-        One line with how much it takes, how much there is, and how many voxels would fit.
+    The message of the `InputError` says how many voxels would fit.
     """
-    available, amount = available_bytes(), samples_bytes(samples, columns)
-    if samples == 0 or available is None or amount <= available:
-        return
-    max_samples = max(0, available - columns) // SAMPLE_BYTES
-    fitting = 1 << max(0, max_samples.bit_length() - 1)
-    way = f"; try samples = {fitting}" if fitting >= MIN_SAMPLES else ""
-    expected = f"what fits in the {size_text(available)} of memory that are free{way}"
+    there, amount = available_bytes(), samples_bytes(samples, columns)
+    if samples and there is not None and amount > there:
+        max_samples = max(0, there - columns) // SAMPLE_BYTES
+        fitting = 1 << max(0, max_samples.bit_length() - 1)
+        _refuse(amount, there, f"; try samples = {fitting}" if fitting >= MIN_SAMPLES else "")
+
+
+def _refuse(amount: int, there: int, ways: str) -> None:
+    expected = f"what fits in the {size_text(there)} of memory that are free{ways}"
     raise InputError("score", "memory", expected, f"about {size_text(amount)}")
 
 

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import inf
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 from ..scene.rig import Rig
-
-if TYPE_CHECKING:
-    from .score import Score, SummaryScore, Watch
+from .score import Score, SummaryScore, Watch
 
 
 class Evaluation(NamedTuple):
@@ -36,35 +34,10 @@ class Objective(Protocol):
         """
 
 
-class Scorer(Protocol):
-    """Scores rigs on the voxels of one evaluator: all of them, or a sample."""
-
-    def score(self, rig: Rig, preview: bool = False, watch: Watch | None = None) -> Score:
-        """Return the full score of a rig."""
-
-    def summary(self, rig: Rig, preview: bool = False) -> SummaryScore:
-        """Return the score of a rig without the part by sensor."""
-
-    def entropy(self, rig: Rig, preview: bool = False) -> float:
-        """Return the entropy of a rig [nats]."""
-
-    def evaluate(self, rig: Rig, cutoff: float) -> Evaluation:
-        """Return the entropy of a rig, or a lower bound that is not below the cutoff."""
-
-    def entropies(self, rigs: Sequence[Rig]) -> list[float]:
-        """Return the entropy of each of several rigs [nats]."""
-
-    def evaluate_together(self, rigs: Sequence[Rig], cutoff: float, worst: bool) -> Evaluation:
-        """Evaluate the mean of several rigs' entropies, or the highest, with a cutoff."""
-
-
 class RigEvaluator(Protocol):
     """Scores rigs in one space, under one prior, on one vehicle; methods are as `Evaluator`'s.
 
-    Attributes
-    ----------
-    samples : int
-        How many voxels or objects are evaluated; 0: all voxels.
+    `samples` is how many voxels or objects are evaluated; 0: all voxels.
     """
 
     samples: int

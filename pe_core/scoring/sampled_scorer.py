@@ -26,7 +26,7 @@ from .scenarios import Scenarios, fused_early, mean_or_worst
 from .score import (
     PartScore,
     Score,
-    ScoreStopped,
+    ScoreProgress,
     SensorScore,
     SummaryScore,
     Watch,
@@ -36,31 +36,6 @@ from .score import (
 
 SENSORS_FUSED = 80
 """Sensors that are fused in the time in which one is measured (measured: 40 to 100)."""
-
-
-class _SampleProgress:
-    """Reports the share of a score to a `Watch`, and raises `ScoreStopped` when it returns False.
-
-    The work is to measure each of `count` sensors, and to fuse all others without it.
-    """
-
-    def __init__(self, watch: Watch | None, count: int) -> None:
-        self._watch, self._fusing = watch, count / SENSORS_FUSED
-        self._total, self._done = count * (1.0 + self._fusing), 0.0
-        self._report(0.0)
-
-    def measured(self) -> None:
-        """Count a sensor as measured."""
-        self._report(1.0)
-
-    def fused_without_it(self) -> None:
-        """Count the loss of a sensor as computed."""
-        self._report(self._fusing)
-
-    def _report(self, work: float) -> None:
-        self._done += work
-        if self._watch is not None and not self._watch(min(self._done / self._total, 1.0)):
-            raise ScoreStopped
 
 
 class SampledScorer:
@@ -102,9 +77,7 @@ class SampledScorer:
     def evaluate(self, rig: Rig, cutoff: float) -> Evaluation:
         """Return the entropy, or a lower bound of it if the bound is not below the cutoff."""
         with self._lock:
-            can_bound = cutoff < np.inf and self._vehicle is not None
-            bound = self._lower_bound(rig, cutoff) if can_bound else -np.inf
-            if bound >= cutoff:
+            if (bound := self._lower_bound(rig, cutoff)) >= cutoff:
                 return Evaluation(bound, True)
             return Evaluation(self.entropy(rig), False)
 
@@ -115,12 +88,9 @@ class SampledScorer:
         higher. Occlusion is computed for one moved sensor after the other, while the bound is below
         the cutoff.
         """
-        cached = {s.name: self._sensors.cached(s, False) for s in rig}
-        moved = [s for s in rig if cached[s.name] is None]
-        m = {
-            s.name: self._sensors.unoccluded(s) if (one := cached[s.name]) is None else one.m
-            for s in rig
-        }
+        if cutoff == np.inf or self._vehicle is None:
+            return -np.inf
+        m, moved = self._unoccluded(rig)
         bound = self._entropy_of(rig, m)
         for sensor in moved[:-1]:
             if bound >= cutoff:
@@ -128,6 +98,15 @@ class SampledScorer:
             m[sensor.name] = self._sensors.measure_again(sensor)
             bound = self._entropy_of(rig, m)
         return bound
+
+    def _unoccluded(self, rig: Rig) -> tuple[dict[str, NDArray], list[Sensor]]:
+        """Return m by name without the occlusion of sensors that moved, and these sensors."""
+        m, moved = dict[str, NDArray](), list[Sensor]()
+        for sensor in rig:
+            if (known := self._sensors.cached(sensor, False)) is None:
+                moved.append(sensor)
+            m[sensor.name] = self._sensors.unoccluded(sensor) if known is None else known.m
+        return m, moved
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the entropy of each of several rigs; sensors that they share are measured once."""
@@ -140,9 +119,7 @@ class SampledScorer:
     def evaluate_together(self, rigs: Sequence[Rig], cutoff: float, worst: bool) -> Evaluation:
         """Evaluate the mean of several rigs' entropies, or the highest, with a cutoff."""
         with self._lock:
-            can_bound = cutoff < np.inf and self._vehicle is not None
-            bound = self._bound_together(Scenarios(rigs), cutoff, worst) if can_bound else -np.inf
-            if bound >= cutoff:
+            if (bound := self._bound_together(Scenarios(rigs), cutoff, worst)) >= cutoff:
                 return Evaluation(bound, True)
             return Evaluation(mean_or_worst(self.entropies(rigs), worst), False)
 
@@ -152,12 +129,9 @@ class SampledScorer:
         Occlusion is computed for half of the moved sensors at once, because fusing all rigs again
         takes time, too.
         """
-        cached = {s.name: self._sensors.cached(s, False) for s in scenarios.all}
-        moved = [s for s in scenarios.all if cached[s.name] is None]
-        m = {
-            s.name: self._sensors.unoccluded(s) if (one := cached[s.name]) is None else one.m
-            for s in scenarios.all
-        }
+        if cutoff == np.inf or self._vehicle is None:
+            return -np.inf
+        m, moved = self._unoccluded(scenarios.all)
         bound = mean_or_worst([self._entropy_of(part, m) for part in scenarios.parts], worst)
         first_half = moved[: len(moved) // 2]
         if bound >= cutoff or not first_half:
@@ -173,9 +147,10 @@ class SampledScorer:
 
     def score(self, rig: Rig, preview: bool = False, watch: Watch | None = None) -> Score:
         """Return the full score; `watch` gets the share that is done after each sensor."""
-        progress = _SampleProgress(watch, len(rig.sensors))
+        count = len(rig.sensors)  # each is measured, then all others are fused without it
+        progress = ScoreProgress(watch, count * (1.0 + count / SENSORS_FUSED))
         with self._lock:
-            self._sensors.measure(rig, preview, progress.measured)
+            self._sensors.measure(rig, preview, progress.add)
             values = self._entropies(rig, [s.name for s in rig])
             whole = self._summary(rig, *values)
             return Score(
@@ -249,14 +224,14 @@ class SampledScorer:
         return Scatter(self._digest, by_figure)
 
     def _sensor(
-        self, sensor: Sensor, rig: Rig, entropy: float, progress: _SampleProgress
+        self, sensor: Sensor, rig: Rig, entropy: float, progress: ScoreProgress
     ) -> SensorScore:
         alone, coverage = self._whole(*self._entropies(rig, [sensor.name]))
         remaining = [s.name for s in rig if s.name != sensor.name]
         failed = self._whole(*self._entropies(rig, remaining))[0] if remaining else H_BLIND
-        stopped = self._sensors.occlusion(sensor)
-        progress.fused_without_it()
-        return sensor_score(alone, coverage, rounded(failed - entropy), stopped)
+        occlusion = self._sensors.occlusion(sensor)
+        progress.add(len(rig.sensors) / SENSORS_FUSED)
+        return sensor_score(alone, coverage, rounded(failed - entropy), occlusion)
 
     def _standard_error(self, entropies: Floats, groups: int) -> float:
         """Return the standard error from the scatter of runs of the sequence.

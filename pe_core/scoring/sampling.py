@@ -179,17 +179,13 @@ def draw(
     ground = np.sum([d.ground for d in densities], axis=0)
     i, j = _draw_column(ground, space, u[:, RING], u[:, AZIMUTH])
     k, classes = _draw_height(densities, i, j, u[:, HEIGHT])
-    rows = _nearest_first(space.centers(0)[i], space.centers(1)[j])
+    x, y = space.centers(0)[i], space.centers(1)[j]
+    rows = np.argsort(x * x + y * y, kind="stable")
     if excluded is not None:
         rows = rows[(space.centers(2)[k] >= excluded[i, j])[rows]]
     index = np.stack([i, j, k], axis=1)[rows]
     names = tuple(d.name for d in densities)
     return VoxelSample(index, space.center_of(index), rows * BLOCKS // count, names, classes[rows])
-
-
-def _nearest_first(x: Floats, y: Floats) -> Ints:
-    """Return the order of points by distance from the origin."""
-    return np.argsort(x * x + y * y, kind="stable")
 
 
 def _draw_column(ground: Floats, space: PerceptionSpace, u: Floats, v: Floats) -> tuple[Ints, Ints]:

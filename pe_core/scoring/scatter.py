@@ -88,16 +88,9 @@ def paired_error(one: Scatter | None, other: Scatter | None, figure: FigureKey) 
 def residuals(
     values: Floats, weights: Floats | None, batch: NDArray[np.int64], batches: int
 ) -> tuple[float, ...]:
-    """Return the residuals of a weighted mean by batch, (R,); see `Scatter`.
+    """Return the residuals by batch (R,) of a mean of values (N,); see `Scatter`.
 
-    Parameters
-    ----------
-    values : (N,) float or bool
-    weights : (N,) float, optional
-        None: equal weights.
-    batch : (N,) int
-        Batch of each value, 0 to `batches` - 1.
-    batches : int
+    `weights` None: equal ones. `batch` (N,) numbers the batch of each value.
     """
     shares = np.ones(len(values)) if weights is None else weights
     mass = float(shares.sum())

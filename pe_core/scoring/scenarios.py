@@ -23,23 +23,10 @@ from ..scene.rig import Rig, Sensor, SensorModel
 class Scenarios:
     """Rigs of the same sensors, in the same or other poses; sensors may be missing.
 
-    Parameters
-    ----------
-    rigs : sequence of Rig
-        Sensors of the same name and pose in several rigs are one sensor.
-
-    Attributes
-    ----------
-    parts : tuple of Rig
-        The rigs, with new names for the sensors: a number for each sensor and pose.
-    all : Rig
-        Every sensor of the parts once. The names are the same in every call with rigs in the same
-        order, so that measurements can be cached by name.
-
-    Raises
-    ------
-    InputError
-        When there is no rig.
+    Sensors of one name and pose in several rigs are one sensor. `parts` are the rigs, with new
+    names for the sensors: a number for each sensor and pose. `all` is a rig of every sensor of the
+    parts once. The names are the same in every call with rigs in the same order, so that
+    measurements can be cached by name. Without a rig: `InputError`.
     """
 
     def __init__(self, rigs: Sequence[Rig]) -> None:

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arrays import read_only
 from ..geometry.grids import PerceptionSpace
-
-if TYPE_CHECKING:
-    from ..sensors import Occlusion
-    from .scatter import Scatter
+from ..sensors import Occlusion
+from .scatter import Scatter
 
 FARTHEST_M = 80.0
 """Maximum distance of lone objects: a reach of this value means "at least"."""
@@ -123,6 +121,26 @@ Watch = Callable[[float], bool]
 
 class ScoreStopped(Exception):
     """The `watch` callable stopped a score; there is no result."""
+
+
+class ScoreProgress:
+    """Tells a `Watch` the completed share of some work; raises `ScoreStopped` if it says stop."""
+
+    def __init__(self, watch: Watch | None, total: float) -> None:
+        self._watch, self._total, self._done, self._stopped = watch, total, 0.0, False
+        self.add(0.0)
+
+    def add(self, work: float = 1.0) -> None:
+        """Count work as done."""
+        self._done += work
+        if self._watch is not None and not self._watch(min(self._done / self._total, 1.0)):
+            self._stopped = True
+        self.check()
+
+    def check(self) -> None:
+        """Raise `ScoreStopped` if the score was stopped; threads ask before each block."""
+        if self._stopped:
+            raise ScoreStopped
 
 
 @dataclass(frozen=True, slots=True)

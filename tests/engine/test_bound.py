@@ -8,7 +8,6 @@ import pytest
 import pe_core as pe
 from pe_core.scoring import Evaluation
 from pe_core.scoring.targets import ObjectEvaluator
-from pe_core.scoring.targets.bound_log import BoundLog
 from pe_core.search import SearchSpace
 from tests.engine import shapes
 from tests.thorough import tries
@@ -100,7 +99,7 @@ def on_objects(traffic=True, vehicle=VEHICLE, **options):
     """Score on a few scenes; every bound is tried."""
     rule = pe.TargetRule("objects", traffic, 8)
     evaluator = ObjectEvaluator(SPACE, pe.Prior.road(), vehicle, targets=rule, **options)
-    evaluator._bounds.pay = lambda: True
+    evaluator._bounds_pay = lambda: True
     return evaluator
 
 
@@ -129,11 +128,13 @@ def test_a_search_in_traffic_finds_the_same_with_bounds_and_without():
     for kind in (ObjectEvaluator, Plain):
         rule = pe.TargetRule("objects", True, 8)
         evaluator = kind(SPACE, pe.Prior.road(), VEHICLE, targets=rule)
-        noted = evaluator._bounds.note
-        evaluator._bounds.note = lambda settled, noted=noted: (
-            bounds.append(settled),
-            noted(settled),
-        )
+        bound_of = evaluator._lower_bound
+
+        def noted(rig, cutoff, bound_of=bound_of):
+            bounds.append((bound := bound_of(rig, cutoff)) >= cutoff)
+            return bound
+
+        evaluator._lower_bound = noted
         steps = pe.optimize(evaluator, rig, space, 3, method="random", evaluations=60)
         found.append([(s.entropy, s.improved, [b.pose for b in s.best]) for s in steps])
     assert found[0] == found[1]
@@ -141,15 +142,16 @@ def test_a_search_in_traffic_finds_the_same_with_bounds_and_without():
     assert any(bounds) and not all(bounds), "some candidates are settled by a bound, some are not"
 
 
-def test_bounds_are_seldom_tried_while_they_settle_nothing():
-    log = BoundLog()
-    tried = 0
+def test_bounds_are_seldom_tried_while_they_settle_nothing(monkeypatch):
+    rule, rig = pe.TargetRule("objects", False, 8), sensors(np.random.default_rng(3))
+    evaluator, tried = ObjectEvaluator(SPACE, pe.Prior.road(), targets=rule), []
+    monkeypatch.setattr(evaluator, "_lower_bound", lambda _rig, _cutoff: tried.append(1) or -1e9)
     for _ in range(200):
-        if log.pay():
-            tried += 1
-            log.note(False)
-    assert 20 < tried < 40
+        evaluator.evaluate(rig, 0.0)
+    assert 20 < len(tried) < 40
+    monkeypatch.setattr(evaluator, "_lower_bound", lambda _rig, cutoff: tried.append(1) or cutoff)
     for _ in range(60):
-        if log.pay():
-            log.note(True)
-    assert log.pay() and log.pay()
+        evaluator.evaluate(rig, 0.0)
+    tried.clear()
+    assert evaluator.evaluate(rig, 0.0).is_lower_bound
+    assert evaluator.evaluate(rig, 0.0).is_lower_bound and len(tried) == 2

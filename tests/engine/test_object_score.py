@@ -10,7 +10,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.scoring import sight
-from pe_core.scoring.targets.lone_objects import RINGS, SECTORS, RingObjects, _mirrored
+from pe_core.scoring.targets.lone_objects import RINGS, SECTORS, RingObjects, _positions
 from pe_core.scoring.targets.lone_objects import _reach as reach_of
 from pe_core.scoring.targets.lone_objects import reach as reach_by_direction
 from pe_core.scoring.targets.object_metric import ObjectSums
@@ -303,7 +303,9 @@ def test_a_search_finds_better_places_for_objects():
 
 
 def test_lone_objects_in_depth_are_far_apart_in_angle():
-    assert [_mirrored(k) for k in range(8)] == [0, 4, 2, 6, 1, 5, 3, 7]
+    x, y = _positions()[:8].T  # of the first ring ahead
+    assert np.argsort(np.hypot(x, y)).tolist() == list(range(8))
+    assert np.argsort(np.argsort(np.arctan2(y, x))).tolist() == [0, 4, 2, 6, 1, 5, 3, 7]
 
 
 def test_reach_by_hand():

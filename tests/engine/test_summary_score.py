@@ -49,6 +49,8 @@ def test_an_exact_summary_after_previews_is_that_of_a_new_evaluator():
     assert kept.summary(rig) == evaluator().summary(rig)
 
 
-def test_the_grid_has_none():
-    with pytest.raises(pe.InputError, match="summary: expected a sampled score"):
-        evaluator(samples=0).summary(rig_at((0.0, 0.0, 1.9)))
+def test_the_grid_has_one_as_well():
+    on_grid, rig = evaluator(samples=0), rig_at((0.0, 0.0, 1.9))
+    summary, score = on_grid.summary(rig), on_grid.score(rig, preview=True)
+    assert summary.preview == score.preview is False
+    assert (summary.entropy, summary.per_zone) == (score.entropy, score.per_zone)

@@ -32,7 +32,7 @@ NOTHING = np.zeros(0)
 PART = ("part",)
 
 
-class SceneCaches:
+class SceneCaches(dict[int, dict[str, Any]]):
     """Caches of kernels by scene, shared by all sets of samples: a beam is cast once.
 
     Scene 0 is the rig as it stands, the others are the rig with mounting errors.
@@ -40,19 +40,17 @@ class SceneCaches:
 
     def __init__(self, vehicle: Vehicle | None) -> None:
         self.vehicle = vehicle
-        self._known: dict[int, dict[str, Any]] = {}
 
-    def by_kernel(self, number: int) -> dict[str, Any]:
-        """Return the caches of a scene."""
-        return self._known.setdefault(number, {})
+    def __missing__(self, number: int) -> dict[str, Any]:
+        return self.setdefault(number, {})
 
 
 @dataclass(frozen=True, eq=False)
 class _BodySet:
-    """One body of a requirement: the number of its objects, and where these are among all."""
+    """One body of a requirement: its objects, and where these and their cells are among all."""
 
     body: Body
-    number: int
+    objects: Objects
     box: slice
     cells: slice | None
 
@@ -66,15 +64,7 @@ class _PointsByBand:
 
 
 class BodyChecks:
-    """The bodies of some requirements at samples of their zones, and the sensors measured on them.
-
-    Parameters
-    ----------
-    wanted : sequence of (Requirement, Samples)
-        Requirements on bodies.
-    model : PerceptionModel
-    caches : SceneCaches
-    """
+    """The bodies of requirements at samples of their zones, and the sensors measured on them."""
 
     def __init__(
         self,
@@ -83,17 +73,27 @@ class BodyChecks:
         caches: SceneCaches,
     ) -> None:
         self._wanted, self._caches = wanted, caches
-        self._objects: list[Objects] = []
-        self._all_parts: list[BodyParts] = []
-        self._count = self._cell_count = 0
-        self._bodies = [self._placed(*pair) for pair in wanted]
-        self._joined = _joined(self._objects)
-        self._parts = _joined_parts(self._all_parts)
+        self._bodies, all_parts = [list[_BodySet]() for _ in wanted], list[BodyParts]()
+        count = cell_count = 0
+        for own, (requirement, samples) in zip(self._bodies, wanted, strict=True):
+            feet = _feet(requirement, samples)
+            for body in requirement.bodies:
+                objects = placed(body, feet, body.headings, False)
+                box, cells = slice(count, count := count + len(objects)), None
+                if requirement.criterion.share is not None:
+                    all_parts.append(parts_of(body, feet, body.headings))
+                    cells = slice(cell_count, cell_count := cell_count + len(all_parts[-1].cells))
+                own.append(_BodySet(body, objects, box, cells))
+        self._joined = _joined([body.objects for own in self._bodies for body in own])
+        self._parts = _joined_parts(all_parts)
         self._measurers: dict[int, ObjectMeasurementCache] = {}
         self._part_measurers: dict[int, PartMeasurementCache] = {}
-        weights = None if self._joined is None else self._asked(len(self._joined))
+        weights = np.zeros(count)  # of the objects whose AP is asked for
+        for own, (requirement, _) in zip(self._bodies, wanted, strict=True):
+            for body_set in own if requirement.criterion.ap is not None else ():
+                weights[body_set.box] = 1.0
         self._fused = None
-        if self._joined is not None and weights is not None and weights.any():
+        if self._joined is not None and weights.any():
             self._fused = FusedObjects(self._joined, weights, model)
 
     def results(self, rig: Rig, cases: Sequence[Rig] = ()) -> list[ZoneResult]:
@@ -156,7 +156,7 @@ class BodyChecks:
         """Return what measures bodies in a scene; what measures their cells is made, too."""
         if number not in self._measurers:
             assert self._joined is not None
-            vehicle, caches = self._caches.vehicle, self._caches.by_kernel(number)
+            vehicle, caches = self._caches.vehicle, self._caches[number]
             self._measurers[number] = ObjectMeasurementCache(
                 self._joined, vehicle, kernel_caches=caches
             )
@@ -185,8 +185,7 @@ class BodyChecks:
             return np.zeros((len(samples.points), width), bool)
         m, parts = measured.m[sensor.name], measured.parts.get(sensor.name, NOTHING)
         for each in self._bodies[number]:
-            objects = self._objects[each.number]
-            seen = body_has_enough(each.body, sensor, objects, m[each.box], criterion)
+            seen = body_has_enough(each.body, sensor, each.objects, m[each.box], criterion)
             if each.cells is not None and criterion.share is not None and seen.any():
                 cells = (parts[each.cells] > 0.0).reshape(len(seen), -1)
                 seen[seen] = visible_share(each.body, cells[seen]) >= criterion.share
@@ -216,37 +215,12 @@ class BodyChecks:
         passed: Flags = enough.all(axis=1)
         return passed
 
-    def _placed(self, requirement: Requirement, samples: Samples) -> tuple[_BodySet, ...]:
-        """Put a requirement's bodies at all samples, heights and headings."""
-        count = levels_of(requirement)
-        heights, points = np.linspace(*requirement.zone.z, count), samples.points
-        feet = np.column_stack([np.repeat(points, count, axis=0), np.tile(heights, len(points))])
-        return tuple(self._body_set(each, feet, requirement) for each in requirement.bodies)
 
-    def _body_set(self, body: Body, feet: Floats, requirement: Requirement) -> _BodySet:
-        number = len(self._objects)
-        box = self._added(placed(body, feet, body.headings, False))
-        cells = None
-        if requirement.criterion.share is not None:
-            parts = parts_of(body, feet, body.headings)
-            self._all_parts.append(parts)
-            self._cell_count += len(parts.cells)
-            cells = slice(self._cell_count - len(parts.cells), self._cell_count)
-        return _BodySet(body, number, box, cells)
-
-    def _added(self, objects: Objects) -> slice:
-        self._objects.append(objects)
-        self._count += len(objects)
-        return slice(self._count - len(objects), self._count)
-
-    def _asked(self, count: int) -> Floats:
-        """Return weights (N,) of objects: 1 of those whose AP is asked for."""
-        weights = np.zeros(count)
-        for (requirement, _), bodies in zip(self._wanted, self._bodies, strict=True):
-            if requirement.criterion.ap is not None:
-                for each in bodies:
-                    weights[each.box] = 1.0
-        return weights
+def _feet(requirement: Requirement, samples: Samples) -> Floats:
+    """Return where bodies stand (N, 3): at all samples and heights."""
+    count, points = levels_of(requirement), samples.points
+    heights = np.linspace(*requirement.zone.z, count)
+    return np.column_stack([np.repeat(points, count, axis=0), np.tile(heights, len(points))])
 
 
 def counted(

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from threading import RLock
 from typing import Any, NamedTuple
 
@@ -89,10 +90,8 @@ class RequirementChecker:
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the arguments: another process makes a checker of its own from them."""
-        return _checker_again, (
-            *(self.requirements, self.vehicle, self._model),
-            *(self._reference, self._space, self.anchor),
-        )
+        again = partial(RequirementChecker, self.requirements, self.vehicle, model=self._model)
+        return partial(again, reference=self._reference, space=self._space, anchor=self.anchor), ()
 
     def check_rig(self, rig: Rig) -> None:
         """Raise `InputError` for a requirement on kinds of sensors that the rig lacks."""
@@ -160,33 +159,6 @@ class RequirementChecker:
         return self._sets[name]
 
 
-def _at(
-    fraction: float, work: Generator[None, None, tuple[float, bool]]
-) -> Generator[CheckStep, None, tuple[float, bool]]:
-    """Yield a step whenever some work yields; return its result."""
-    try:
-        while True:
-            next(work)
-            yield CheckStep(fraction)
-    except StopIteration as end:
-        result: tuple[float, bool] = end.value
-        return result
-
-
-def _checker_again(
-    requirements: Sequence[Requirement],
-    vehicle: Vehicle | None,
-    model: PerceptionModel,
-    reference: Reference | None,
-    space: PerceptionSpace,
-    anchor: Vehicle | None,
-) -> RequirementChecker:
-    """Make a checker from its pickled arguments."""
-    return RequirementChecker(
-        requirements, vehicle, model=model, reference=reference, space=space, anchor=anchor
-    )
-
-
 class _CheckedSet:
     """Samples of all zones: those of bodies as one set, and blind ground zone by zone."""
 
@@ -230,8 +202,9 @@ class _CheckedSet:
                 given = *pairs[number], results[number], rig, self._vehicle, preview
                 verdict = body_verdict(*given)
                 if verdict.at_least:
-                    growing = self._growths[number].margin(results[number], rig, cases)
-                    margin, at_least = yield from _at(done / total, growing)
+                    for grown in self._growths[number].margins(results[number], rig, cases):
+                        margin, at_least = grown
+                        yield CheckStep(done / total)
                     verdict = replace(verdict, margin=margin, at_least=at_least)
             else:
                 verdict = self._grounds[number].verdict(rig, preview, cases)

@@ -33,20 +33,9 @@ MAX_CELLS = 120_000
 
 
 class GroundCheck:
-    """Holds rigs to a requirement on blind ground.
+    """Holds rigs to a requirement on blind ground in a space.
 
-    Parameters
-    ----------
-    requirement : Requirement
-    zone : PlacedZone
-    space : PerceptionSpace
-        Ground outside of it is not looked at.
-    vehicle : Vehicle or None
-        It occludes.
-    anchor : Vehicle or None
-        The vehicle as drawn: distances are from its rectangle.
-    caches : SceneCaches
-        Shared by several of these, and by checks of bodies.
+    The `vehicle` occludes; distances are from the rectangle of the `anchor`, the vehicle as drawn.
     """
 
     def __init__(
@@ -228,7 +217,7 @@ class _ZoneGround:
         if number not in self._searches:
             height, caches = (
                 check.requirement.criterion.blind_height,
-                check._caches.by_kernel(number),
+                check._caches[number],
             )
             self._searches[number] = BlindSearch.of(self.cells, height, check._vehicle, caches)
         search = self._searches[number]

@@ -36,17 +36,8 @@ def margin_of(
     that fails would have to shrink. Between two samples nothing is known, so a step is taken off,
     and figures are rounded down.
 
-    Parameters
-    ----------
-    distance : (N,) float
-        Of the samples to the zone, negative inside [m].
-    passed : (N,) bool
-    wanted : float
-        Share of the samples that has to pass.
-    step : float
-        Of the samples [m].
-    looked : float
-        How far round the zone samples were taken [m].
+    The `distance` (N,) of samples to the zone is negative inside [m]; a share of `wanted` of them
+    has to be `passed` (N,). Samples are a `step` apart, and reach as far as was `looked` [m].
     """
     order = np.argsort(distance, kind="stable")
     away, ok = distance[order], passed[order]

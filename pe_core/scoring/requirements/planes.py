@@ -130,10 +130,7 @@ def parsed(
 ) -> tuple[str | None, float, str | None, float]:
     """Return plane (or None), share [%], sign and offset [m] of a place written as text.
 
-    Raises
-    ------
-    InputError
-        When it is no plane with an offset, or the plane is one of the other axis.
+    `InputError` when it is no plane with an offset, or the plane is one of the other axis.
     """
     known = (X_PLANES, Y_PLANES)[axis]
     match = PLACE.fullmatch(place.strip())

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.arrays import Floats
 from ...scene.rig import Rig
 from .body_checks import counted
 from .criteria import Requirement
@@ -28,21 +28,18 @@ def shortfall(requirement: Requirement, samples: Samples, result: ZoneResult, ri
     wanted = criterion.sensors + spare + criterion.kinds
     has = np.minimum(counts, criterion.sensors + spare) + np.minimum(kinds, criterion.kinds)
     lacks = 1.0 - float(has.mean()) / wanted
-    away = _turned_away(requirement, samples, rig, ~result.passed & inside)
     fails = 1.0 - share / criterion.zone_share
+    away = _turned_away(requirement, samples.points[~result.passed & inside], rig)
     return SHARE_WEIGHT * fails + LACKING_WEIGHT * lacks + AWAY_WEIGHT * away
 
 
-def _turned_away(
-    requirement: Requirement, samples: Samples, rig: Rig, failing: NDArray[np.bool_]
-) -> float:
-    """Return the mean angle between failing samples and the nearest boresight, 1 for 180 deg."""
+def _turned_away(requirement: Requirement, points: Floats, rig: Rig) -> float:
+    """Return the mean angle between points (N, 2) and the nearest boresight, 1 for 180 deg."""
     sensors = [s for s in rig if requirement.criterion.counts(s.kind)]
-    if not sensors or not failing.any():
+    if not sensors or not len(points):
         return 1.0
-    body, points = requirement.bodies[0], samples.points[failing]
-    middle = np.full(len(points), body.low + body.size[2] / 2.0)
-    places, cosines = np.column_stack([points, middle]), []
+    body, cosines = requirement.bodies[0], []
+    places = np.column_stack([points, np.full(len(points), body.low + body.size[2] / 2.0)])
     for sensor in sensors:
         x, y, z = (places - np.asarray(sensor.pose.position)).T
         ahead = sensor.pose.ground_from_sensor[:, 0]

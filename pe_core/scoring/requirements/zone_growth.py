@@ -9,7 +9,7 @@ sample fail, so the samples that pass are those of `BodyChecks.results`.
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -33,13 +33,7 @@ PART_BOXES = 8_000
 class ZoneGrowth:
     """Grows the zone of one requirement on bodies.
 
-    Parameters
-    ----------
-    requirement : Requirement
-    inside, around : Samples
-        In the zone, and of the ground round it up to `zone.grow`.
-    model : PerceptionModel
-    caches : SceneCaches
+    Samples are given `inside` the zone, and `around` it up to `zone.grow`.
     """
 
     def __init__(
@@ -56,31 +50,30 @@ class ZoneGrowth:
             inside.zone.grow: self._parts(around.points, around.distance)
         }
 
-    def margin(
+    def margins(
         self, result: ZoneResult, rig: Rig, cases: Sequence[Rig]
-    ) -> Generator[None, None, tuple[float, bool]]:
-        """Return the margin of a zone that meets its requirement, and whether it could grow more.
+    ) -> Iterator[tuple[float, bool]]:
+        """Yield the margin of a zone that meets its requirement, and whether it could grow more.
 
-        The zone is grown to twice as far again and again, as long as it does not fail. Yields when
-        a part is measured.
+        The zone is grown to twice as far again and again, as long as it does not fail, and a margin
+        is yielded after each part that is measured: the last one counts.
         """
         wanted, step = self._requirement.criterion.zone_share, self._requirement.zone.step
-        distance, passed = self._inside.distance, result.passed
+        distance, passed, inner = self._inside.distance, result.passed, 0.0
         saw = {name: int(np.count_nonzero(flags)) for name, flags in result.seen.items()}
-        margin, inner = (0.0, True), 0.0
         for outer in (self._inside.zone.grow, *growth(self._inside.zone)):
             parts = self._ring(inner, outer)
             if parts is None:
-                break
+                return
             for part in parts:
                 distance = np.concatenate([distance, part.samples.distance])
                 passed = np.concatenate([passed, part.passed(rig, cases, saw)])
-                yield
                 margin = margin_of(distance, passed, wanted, step, outer)
+                yield margin
                 if not margin[1]:
-                    return margin
-            margin, inner = margin_of(distance, passed, wanted, step, outer), outer
-        return margin
+                    return
+            inner = outer
+            yield margin_of(distance, passed, wanted, step, outer)
 
     def _ring(self, inner: float, outer: float) -> list[RingPart] | None:
         """Return the ground round the zone between two distances; None where it is too much."""

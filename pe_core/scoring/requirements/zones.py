@@ -40,6 +40,8 @@ GROWN_M = 0.6
 """How far round a zone samples are taken to find how far it could grow [m]."""
 INSIDE_M = 1e-6
 """A sample this far outside of a zone is on its edge: rounding."""
+AREA_M2 = 2e-6
+"""Twice the area of the smallest polygon."""
 WHO = "zone"
 SIDES_MENU = (("Right", "As in countries that drive on the right"), ("Left", "As in the UK"))
 SHAPES = ("x and y", "polygon", "ring", "path", "spots")
@@ -160,22 +162,10 @@ class Zone:
         name: str,
         planes: dict[tuple[Any, ...], VehiclePlanes] | None = None,
     ) -> PlacedZone:
-        """Return the zone round a vehicle.
+        """Return the zone round a vehicle, for the requirement of a name.
 
-        Parameters
-        ----------
-        vehicle : Vehicle or None
-        reference : Reference or None
-            The vehicle's axles.
-        name : str
-            The requirement's, for messages.
-        planes : dict, optional
-            A cache of the vehicle's planes, for several zones.
-
-        Raises
-        ------
-        InputError
-            When there is no vehicle, a plane is not found, or the zone has no extent.
+        `planes` caches the vehicle's planes, for several zones. `InputError` when there is no
+        vehicle, a plane is not found, or the zone has no extent.
         """
         who = f"requirement {name!r}"
         if vehicle is None:
@@ -207,14 +197,14 @@ class Zone:
             if min(x[1] - x[0], y[1] - y[0]) <= 0.0:
                 found = f"x = {x}, y = {y}"
                 raise InputError(who, "zone", "an area of some extent (else a path)", found)
-            corners, kind = (
-                np.array([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])]),
-                "area",
-            )
+            corners = np.array([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])])
+            kind = "area"
         for key in ("polygon", "path", "spots"):
             if own := getattr(self, key):
                 corners, kind = at(own, key), {"polygon": "area"}.get(key, key)
-        if kind == "area" and abs(_area(corners)) < INSIDE_M:
+        ahead = np.roll(corners, -1, axis=0)
+        area = (corners[:, 0] * ahead[:, 1] - corners[:, 1] * ahead[:, 0]).sum()
+        if kind == "area" and abs(area) < AREA_M2:
             raise InputError(who, "zone.polygon", "an area of some extent", corners.tolist())
         return PlacedZone(self, planes, kind, corners, who)
 
@@ -277,19 +267,9 @@ class PlacedZone:
     def samples(self, coarser: float = 1.0, grown: bool = True) -> tuple[Floats, Floats]:
         """Return samples (N, 2) [m] of the zone and of the ground round it, and their distances.
 
-        Samples inside the vehicle's outline are left out: nobody stands there.
-
-        Parameters
-        ----------
-        coarser : float
-            Factor of the step, for a preview.
-        grown : bool
-            Whether the ground round the zone is sampled.
-
-        Raises
-        ------
-        InputError
-            When there are too many samples, or all of them are inside the vehicle.
+        Samples inside the vehicle's outline are left out: nobody stands there. The step is that of
+        the zone times `coarser`; with `grown` the ground round the zone is sampled. `InputError`
+        when there are too many samples, or all of them are inside the vehicle.
         """
         most = (self.grow if grown else 0.0) + INSIDE_M
         points = self._lattice(self.zone.step * coarser, self.grow if grown else 0.0)
@@ -353,11 +333,7 @@ class PlacedZone:
 def signed_distance(points: Floats, corners: Floats) -> Floats:
     """Return the distance (N,) of points (N, 2) to a polygon's edge, negative inside [m].
 
-    Parameters
-    ----------
-    points : (N, 2) float
-    corners : (K, 2) float
-        Of the polygon, in either sense of rotation.
+    Its corners (K, 2) are in either sense of rotation.
     """
     others = np.roll(corners, -1, axis=0)
     away = _to_lines(points, corners, others)
@@ -426,11 +402,6 @@ def _offset(outline: Floats, distance: float) -> Floats:
         points.append(corner + distance * np.stack([np.cos(angles), np.sin(angles)], axis=1))
     closed = np.concatenate(points)
     return np.vstack([closed, closed[:1]])
-
-
-def _area(corners: Floats) -> float:
-    x, y = corners.T
-    return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum()) / 2.0
 
 
 def _places(

@@ -47,14 +47,8 @@ SQUARES_PER_VOXEL = 16
 class BlindSearch:
     """Ground that is searched for blind squares: squares with a margin, and the sensors on them.
 
-    Attributes
-    ----------
-    cells : GroundCells
-        The cells of the result.
-    squares : VisibleGroundCache
-        The same squares, and `margin` more on each side.
-    own : (NX, NY) bool
-        Squares with the vehicle over their centres.
+    `cells` are those of the result, `squares` the same and `margin` more on each side, `own`
+    (NX, NY) those of the squares with the vehicle over their centres.
     """
 
     cells: GroundCells
@@ -103,14 +97,8 @@ def blind_squares(marked: Flags, covered: Flags, step: float) -> Flags:
     All squares that other bodies touch may be blind. Of these, the unmarked squares in large enough
     pieces are blind, and the squares beside them: a marked square may be visible only in part.
 
-    Parameters
-    ----------
-    marked : (NX, NY) bool
-        Squares with a point at which something is visible.
-    own : (NX, NY) bool
-        The vehicle's squares: never blind, but a body may be partly under the vehicle.
-    step : float
-        Side of a square [m].
+    `marked` (NX, NY) squares have a point at which something is visible. Those `covered` by the
+    vehicle are never blind, but a body may be partly under the vehicle.
     """
     radius = BODY_M / 2.0 / step
     invisible = ~dilated(marked, squares_within(radius))

@@ -15,8 +15,9 @@ def opened(flags: Flags, radius: float) -> Flags:
 
     Beyond the edge, the region continues with the values at the edge.
     """
-    disc = _disc(radius)
-    reach = int(np.abs(disc).max())
+    reach = int(radius)
+    steps = np.indices((2 * reach + 1, 2 * reach + 1)).reshape(2, -1).T - reach
+    disc = steps[(steps**2).sum(axis=1) <= radius**2]  # (N, 2) to cells with their middle within it
     padded = np.pad(flags, 2 * reach, mode="edge")
     union = _moved(~_moved(~padded, disc), disc)
     inner = tuple(slice(2 * reach, n - 2 * reach) for n in union.shape)
@@ -76,7 +77,17 @@ def without_specks(flags: Flags, min_cells: float) -> Flags:
     width = flags.shape[1] + 1  # one more cell, so that no run continues in the next row
     edges = np.diff(np.pad(flags, ((0, 0), (1, 1))).astype(np.int8), axis=1).reshape(-1)
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
-    piece = _connected(len(starts), *_touching(starts, ends, width))
+    # pairs (a, b) of runs of cells in neighbouring rows that share a side
+    first = np.searchsorted(ends, starts + width, side="right")
+    n = np.maximum(np.searchsorted(starts, ends + width, side="left") - first, 0)
+    a = np.repeat(np.arange(len(starts)), n)
+    b = first[a] + count_up(n)
+    piece = np.arange(len(starts))  # the smallest number in each run's component
+    while (differ := piece[a] != piece[b]).any():
+        one, other = piece[a[differ]], piece[b[differ]]
+        np.minimum.at(piece, np.maximum(one, other), np.minimum(one, other))
+        while ((further := piece[piece]) != piece).any():
+            piece = further
     small = np.bincount(piece, ends - starts, len(starts))[piece] < min_cells
     edges[starts[small]] = edges[ends[small]] = 0
     return np.cumsum(edges.reshape(-1, width), axis=1, dtype=np.int8)[:, :-1] > 0
@@ -95,13 +106,6 @@ def gauss(values: Floats, sigma: float) -> Floats:
     return values
 
 
-def _disc(radius: float) -> Ints:
-    """(N, 2) steps from a cell to the cells with their middle within the radius."""
-    reach = int(radius)
-    steps = np.indices((2 * reach + 1, 2 * reach + 1)).reshape(2, -1).T - reach
-    return steps[(steps**2).sum(axis=1) <= radius**2]
-
-
 def _moved(flags: Flags, steps: Ints) -> Flags:
     """Set every cell that one of the steps leads to from a set cell."""
     moved = np.zeros_like(flags)
@@ -111,25 +115,6 @@ def _moved(flags: Flags, steps: Ints) -> Flags:
         of = slice(max(-i, 0), nx + min(-i, 0)), slice(max(-j, 0), ny + min(-j, 0))
         moved[to] |= flags[of]
     return moved
-
-
-def _touching(starts: Ints, ends: Ints, width: int) -> tuple[Ints, Ints]:
-    """Pairs of runs of cells in neighbouring rows that share a side."""
-    first = np.searchsorted(ends, starts + width, side="right")
-    n = np.maximum(np.searchsorted(starts, ends + width, side="left") - first, 0)
-    run = np.repeat(np.arange(len(starts)), n)
-    return run, first[run] + count_up(n)
-
-
-def _connected(count: int, a: Ints, b: Ints) -> Ints:
-    """Return (count,) the smallest number in each item's component, by pairs (a, b)."""
-    smallest = np.arange(count)
-    while (differ := smallest[a] != smallest[b]).any():
-        one, other = smallest[a[differ]], smallest[b[differ]]
-        np.minimum.at(smallest, np.maximum(one, other), np.minimum(one, other))
-        while ((further := smallest[smallest]) != smallest).any():
-            smallest = further
-    return smallest
 
 
 BOTTOM, RIGHT, TOP, LEFT = range(4)
@@ -158,27 +143,14 @@ EDGE = 1e-9
 
 
 def outlines(values: Floats, level: float, x: Floats, y: Floats) -> tuple[Floats, ...]:
-    """Closed outlines of the region where a field is above a level.
+    """Return closed outlines (N, 2) of the region where a field is above a level, longest first.
 
-    Parameters
-    ----------
-    values : (NX, NY) float
-        The field at the middles of cells (x, y); outside of them it is below the level.
-    level : float
-    x : (NX,) float
-    y : (NY,) float
-        Evenly spaced.
-
-    Returns
-    -------
-    tuple of (N, 2) float
-        The region is on the left of each outline; the last point repeats the first. Longest first.
+    The field (NX, NY) is that at the middles of evenly spaced cells (x, y); outside of them it is
+    below the level. The region is on the left of each outline; the last point repeats the first.
     """
     field = np.pad(values - level, 1, constant_values=-EDGE)
     xs, ys = _widened(x), _widened(y)
-    starts, ends = _segments(field)
-    points = _EdgePoints(field, xs, ys)
-    rings = [points.at(ring) for ring in chained(starts, ends)]
+    rings = [_points_on(ring, field, xs, ys) for ring in chained(*_segments(field))]
     return tuple(sorted(rings, key=len, reverse=True))
 
 
@@ -225,19 +197,13 @@ def chained(starts: Ints, ends: Ints) -> list[list[int]]:
     return rings
 
 
-class _EdgePoints:
-    """Points where a field crosses the level along edges of the grid."""
-
-    def __init__(self, field: Floats, x: Floats, y: Floats) -> None:
-        self._field, self._x, self._y = field, x, y
-
-    def at(self, edges: list[int]) -> Floats:
-        """Points (N, 2) on numbered edges."""
-        number, along_y = np.divmod(np.asarray(edges), 2)
-        i, j = np.divmod(number, self._field.shape[1])
-        i1, j1 = i + (1 - along_y), j + along_y
-        a, b = self._field[i, j], self._field[i1, j1]
-        t = a / (a - b)
-        x = self._x[i] + t * (self._x[i1] - self._x[i])
-        y = self._y[j] + t * (self._y[j1] - self._y[j])
-        return np.stack([x, y], axis=1)
+def _points_on(edges: list[int], field: Floats, xs: Floats, ys: Floats) -> Floats:
+    """Return the points (N, 2) where a field crosses the level along numbered edges of the grid."""
+    number, along_y = np.divmod(np.asarray(edges), 2)
+    i, j = np.divmod(number, field.shape[1])
+    i1, j1 = i + (1 - along_y), j + along_y
+    a, b = field[i, j], field[i1, j1]
+    t = a / (a - b)
+    x = xs[i] + t * (xs[i1] - xs[i])
+    y = ys[j] + t * (ys[j1] - ys[j])
+    return np.stack([x, y], axis=1)

@@ -58,10 +58,9 @@ class VoxelsByCell:
         """Whether a flag is set for any of a cell's voxels outside the vehicle, (NX, NY)."""
         outside = flags.reshape(self.weights.shape) & (self.weights > 0.0)
         cells = outside.any(axis=1).reshape(self.cells.shape)
-        return self._without_noise(cells) if self.spread else cells
-
-    def _without_noise(self, cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Fill holes and drop pieces that are too small to be distinguished from sampling noise."""
+        if not self.spread:
+            return cells
+        # without holes and pieces that are too small to be distinguished from sampling noise
         filled = closed(cells, CLOSED * self.spread / self.cells.step)
         min_cells = GRAIN_M2 / self.cells.step**2
         return without_specks(~without_specks(~filled, min_cells), min_cells)
@@ -99,10 +98,7 @@ def in_layer(
 def layer_at(space: PerceptionSpace, height: float) -> int:
     """Return the number of the layer of voxels that holds a height [m].
 
-    Raises
-    ------
-    InputError
-        When the height is not in the space.
+    `InputError` when it is not in the space.
     """
     height = FINITE.checked("sight", "height", height)
     layer = math.floor((height - space.z[0]) / space.interval + ROUNDING)
@@ -230,17 +226,20 @@ class VoxelSetCache:
 
     def __init__(self, space: PerceptionSpace, vehicle: Vehicle | None, fusion: Fusion) -> None:
         self._space, self._vehicle, self._fusion = space, vehicle, fusion
-        self._kernel_cache: dict[str, Any] = {}  # by kind: beams are cast once for all voxel sets
+        self.kernel_cache: dict[str, Any] = {}  # by kind: beams are cast once for all voxel sets
         self._sets: dict[Hashable, Any] = {}  # least recently used first
-
-    @property
-    def kernel_cache(self) -> dict[str, Any]:
-        """Caches of the kernels (sensors and vehicle) by kind, shared by all voxel sets."""
-        return self._kernel_cache
 
     def voxels(self, key: Hashable, choose: Callable[[], P]) -> MeasuredVoxels[P]:
         """Return the voxel set with a key, from the cache or newly chosen."""
-        return self.cached(key, lambda: self._measurable(choose()))
+
+        def measurable() -> MeasuredVoxels[P]:
+            chosen = choose()
+            voxels = Voxels(self._space, chosen.index, self._space.center_of(chosen.index))
+            count = self._fusion.saturation_count
+            sensors = MeasurementCache(voxels, self._vehicle, count, self.kernel_cache)
+            return MeasuredVoxels(chosen, sensors)
+
+        return self.cached(key, measurable)
 
     def cached(self, key: Hashable, make: Callable[[], K]) -> K:
         """Return the value with a key, from the cache or newly made."""
@@ -252,9 +251,3 @@ class VoxelSetCache:
             if room < 0 and other != key:
                 del self._sets[other]
         return value
-
-    def _measurable(self, chosen: P) -> MeasuredVoxels[P]:
-        voxels = Voxels(self._space, chosen.index, self._space.center_of(chosen.index))
-        count = self._fusion.saturation_count
-        sensors = MeasurementCache(voxels, self._vehicle, count, self._kernel_cache)
-        return MeasuredVoxels(chosen, sensors)

@@ -102,29 +102,18 @@ def _positions() -> Floats:
         for ring in range(RINGS):
             for k in range(PER_CELL):
                 radius = RING_M * (ring + (k + 0.5) / PER_CELL)
-                turn = sector - 0.5 + (_mirrored(k) + 0.5) / PER_CELL
+                mirrored = (k & 1) << 2 | (k & 2) | k >> 2  # neighbours in depth are far in angle
+                turn = sector - 0.5 + (mirrored + 0.5) / PER_CELL
                 angle = 2.0 * math.pi * turn / len(SECTORS)
                 rows.append((radius * math.cos(angle), radius * math.sin(angle)))
     return np.round(np.array(rows), 4)
 
 
-def _mirrored(k: int) -> int:
-    """Reverse three bits, so that neighbours in depth are far apart in angle."""
-    return (k & 1) << 2 | (k & 2) | k >> 2
-
-
 class LoneObjects:
     """Objects of every class of a study, alone in rings round the vehicle.
 
-    A sensor that has not moved is not measured again.
-
-    Parameters
-    ----------
-    drawn : SampledObjects
-        The sampled objects, whose mean sizes by class the lone objects have.
-    vehicle : Vehicle or None
-    model : PerceptionModel
-        AP curves by class and kind, and the fusion rule.
+    They have the mean sizes of the `drawn` objects by class. A sensor that has not moved is not
+    measured again.
     """
 
     def __init__(
@@ -139,10 +128,7 @@ class LoneObjects:
     def ap(self, rig: Rig, members: Collection[str] | None = None) -> Floats:
         """Return the AP (N,) of each object, for the whole rig or the sensors named by `members`.
 
-        Raises
-        ------
-        InputError
-            When a sensor has a curve of its own, or a class has none.
+        `InputError` when a sensor has a curve of its own, or a class has none.
         """
         self._fused.check(rig)
         entropies, _ = self._fused.entropies(rig, self._sensors.measure(rig), members)

@@ -50,7 +50,11 @@ class FusedObjects:
         `members` names the sensors that are fused; all, by default.
         """
         entropies, visible = np.full(self._count, H_BLIND), np.zeros(self._count, bool)
-        groups = _summed(rig, m, members)
+        groups = []  # kind and sum (N,) of each fusion group, eq. 6
+        for sensors in rig.groups.values():
+            present = [m[s.name] for s in sensors if members is None or s.name in members]
+            if present:
+                groups.append((sensors[0].kind, early_fusion(present)))
         if not groups:
             return entropies, visible
         for name, rows in self._rows.items():
@@ -59,18 +63,6 @@ class FusedObjects:
             ]
             entropies[rows], visible[rows] = self._fusion.entropies(measured)
         return entropies, visible
-
-
-def _summed(
-    rig: Rig, m: Mapping[str, Floats], members: Collection[str] | None
-) -> list[tuple[str, Floats]]:
-    """Return kind and sum (N,) of each fusion group, eq. 6."""
-    groups = []
-    for sensors in rig.groups.values():
-        present = [m[s.name] for s in sensors if members is None or s.name in members]
-        if present:
-            groups.append((sensors[0].kind, early_fusion(present)))
-    return groups
 
 
 BATCHES = 32

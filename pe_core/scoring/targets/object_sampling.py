@@ -37,16 +37,10 @@ CLASS_STEP = math.sqrt(2.0) - 1.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SampledObjects:
-    """Objects and their weights in the score.
+    """Objects, sorted by scene, and their weights in the score.
 
-    Attributes
-    ----------
-    objects : Objects
-        Sorted by scene.
-    weights : (N,) float
-        Share of each in the score, summing to 1: classes share as in the prior, however many of
-        each there are, and focus weights multiply.
-    scenes : int
+    `weights` (N,) sum to 1: classes share as in the prior, however many of each there are, and
+    focus weights multiply. `scenes` is the number of scenes.
     """
 
     objects: Objects
@@ -72,16 +66,8 @@ def sample_objects(
     The objects of each class are a low-discrepancy sample of the prior; their scenes are random.
     Without traffic, labelled boxes are taken as they are, each once.
 
-    Parameters
-    ----------
-    prior : Prior
-    space : PerceptionSpace
-        It contains the centres of objects, seen from above.
-    vehicle : Vehicle, optional
-        No object overlaps its rectangle on the ground.
-    targets : TargetRule
-    shift : float
-        A number in [0, 1); another one gives another sample of the same quality.
+    Their centres are in the space, seen from above, and none overlaps the vehicle's rectangle on
+    the ground. `shift` is in [0, 1); another one gives another sample of the same quality.
 
     Raises
     ------

@@ -7,11 +7,10 @@ at the first attempt at which its rectangle on the ground is free.
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from functools import cache
 from statistics import NormalDist
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,15 +46,14 @@ class LaidOutBoxes(NamedTuple):
         return LaidOutBoxes(*(values[which] for values in self))
 
 
-class BoxSource(ABC):
+class BoxSource(Protocol):
     """A source of boxes of one class, which are to be placed in scenes."""
 
-    @abstractmethod
     def proposed(self, attempt: int) -> LaidOutBoxes:
         """Return the boxes at proposed positions, which differ from attempt to attempt."""
 
 
-class ModelBoxes(BoxSource):
+class ModelBoxes:
     """Boxes of a class of a prior's model; sizes and headings are the same in all attempts."""
 
     def __init__(self, cls: ObjectClass, space: PerceptionSpace, count: int, shift: float) -> None:
@@ -77,7 +75,7 @@ class ModelBoxes(BoxSource):
         return LaidOutBoxes(np.round(centers, DECIMALS + 1), self._sizes, self._yaws)
 
 
-class LabelledBoxes(BoxSource):
+class LabelledBoxes:
     """Labelled boxes at their positions; only which of them are in a scene is sampled."""
 
     def __init__(self, boxes: LaidOutBoxes, count: int, shift: float) -> None:
@@ -148,12 +146,6 @@ def ground_rectangles(centers: Floats, sizes: Floats, yaws: Floats) -> GroundRec
     )
 
 
-def distant_rectangles(shape: tuple[int, ...]) -> GroundRectangles:
-    """Return rectangles that are infinitely far away, and so overlap none."""
-    zeros = [np.zeros(shape) for _ in range(4)]
-    return GroundRectangles(np.full(shape, np.inf), np.zeros(shape), *zeros)
-
-
 def overlap(a: GroundRectangles, b: GroundRectangles) -> NDArray[np.bool_]:
     """Whether rectangles, broadcast together, overlap: no axis separates them.
 
@@ -196,23 +188,10 @@ def place_boxes(
 ) -> LaidOutBoxes:
     """Place objects in scenes, one after the other, at the first proposed position that is free.
 
-    Parameters
-    ----------
-    sources : sequence of BoxSource
-        One for each class: their boxes, one class after the other, are the N objects.
-    labels, scenes : (N,) int
-        Class and scene of each. In a scene they are placed in the order of the arrays.
-    free : GroundRectangles
-        Ground that is kept free.
-    ground_m2 : float
-        Area of the ground.
-    names : sequence of str
-        Names of the classes.
-
-    Raises
-    ------
-    InputError
-        When no free position is found for an object.
+    The boxes of the sources, one for each class in `names`, one class after the other, are the N
+    objects; `labels` and `scenes` (N,) are the class and scene of each. In a scene they are placed
+    in the order of the arrays, beside the rectangles in `free`. `InputError` when there is no free
+    position for an object, or all boxes of a scene are larger than the ground.
     """
 
     @cache
@@ -227,7 +206,9 @@ def place_boxes(
     if np.bincount(scenes, areas)[fullest] > ground_m2:
         _no_room(f"{np.bincount(scenes)[fullest]:,} in a scene, larger than the space together")
     turns = _turns(scenes)
-    taken = distant_rectangles((int(scenes.max()) + 1, int(turns.max()) + 1))
+    shape = int(scenes.max()) + 1, int(turns.max()) + 1
+    zeros = [np.zeros(shape) for _ in range(5)]
+    taken = GroundRectangles(np.full(shape, np.inf), *zeros)  # infinitely far away at first
     for turn in range(int(turns.max()) + 1):
         waiting = np.flatnonzero(turns == turn)
         for attempt in range(MAX_ATTEMPTS):

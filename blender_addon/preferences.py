@@ -9,7 +9,7 @@ import bpy
 
 from .engine import catalog, graphics
 
-COLORS = {"free_color": "free", "blocked_color": "stopped", "blind_color": "blind"}
+COLORS = {"free_color": "free", "blocked_color": "occluded", "blind_color": "blind"}
 """Properties of colours, and the fields of the palette that they are."""
 LIVE_BUDGET_MS = 20.0
 """A frame at 50 Hz: a move of a LiDAR on the roof of a sedan is scored exactly within it."""

@@ -117,7 +117,7 @@ class PE_Preferences(bpy.types.AddonPreferences):
         "Free Beams", "Beams that the vehicle does not block", graphics.VIEWPORT.free
     )
     blocked_color: _color(
-        "Occluded Beams", "Beams that end on the vehicle", graphics.VIEWPORT.stopped
+        "Occluded Beams", "Beams that end on the vehicle", graphics.VIEWPORT.occluded
     )
     blind_color: _color("Blind Ground", "Ground that no sensor sees", graphics.VIEWPORT.blind)
 

@@ -21,10 +21,10 @@ def reason_text(reason: Reason) -> str:
     return reason.part or REASONS.get(reason.code, reason.code)
 
 
-def hidden_text(hidden: Mapping[str, Reason]) -> str:
+def unseen_text(unseen_by: Mapping[str, Reason]) -> str:
     """Say why sensors, by name, do not see a body: "roof (left, right); out of view (rear)"."""
     by_reason: dict[str, list[str]] = {}
-    for name, reason in hidden.items():
+    for name, reason in unseen_by.items():
         by_reason.setdefault(reason_text(reason), []).append(name)
     return "; ".join(f"{text} ({', '.join(names)})" for text, names in by_reason.items())
 

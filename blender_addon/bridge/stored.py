@@ -32,7 +32,7 @@ class ResultPart(NamedTuple):
 class SensorFigures(NamedTuple):
     """A sensor in the last result.
 
-    `entropy` [nats] and `coverage` (0 to 1) are of the sensor alone; `stopped` of its `beams` (or
+    `entropy` [nats] and `coverage` (0 to 1) are of the sensor alone; `occluded` of its `beams` (or
     positions of a camera's picture) end on the vehicle, at `parts` by share. `loss` [nats] is how
     much the rig's entropy rises without it, and `where` the zone of the largest rise.
     """
@@ -40,7 +40,7 @@ class SensorFigures(NamedTuple):
     entropy: float
     coverage: float
     beams: int
-    stopped: int
+    occluded: int
     parts: tuple[tuple[str, float], ...] = ()
     loss: str = ""
     where: str = ""

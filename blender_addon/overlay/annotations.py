@@ -78,7 +78,7 @@ POST_M = 0.6
 """A voxel alone would be too small to see: a post marks it."""
 VISIBLE, OCCLUDED = (
     graphics.with_alpha(graphics.VIEWPORT.free, 0.9),
-    graphics.with_alpha(graphics.VIEWPORT.stopped, 0.9),
+    graphics.with_alpha(graphics.VIEWPORT.occluded, 0.9),
 )
 MARK = (1.0, 1.0, 1.0, 0.95)
 

@@ -26,16 +26,16 @@ MIN_DENSITY, MAX_DENSITY = 1.0, 100.0
 
 def hit_density(casts: Sequence[graphics.Cast], triangles: Floats) -> graphics.LayerShape:
     """Return tiles on triangles (F, 3, 3) with hits; colours by the hits of all sensors."""
-    hits = [each.stopped for each in casts]
-    if not any(stopped.any() for stopped in hits):
+    hits = [each.occluded for each in casts]
+    if not any(occluded.any() for occluded in hits):
         return graphics.LayerShape()
     pairs = list(zip(casts, hits, strict=True))
-    points = np.concatenate([each.points[stopped] for each, stopped in pairs])
-    looks = np.concatenate([each.directions[stopped] for each, stopped in pairs])
-    faces = np.concatenate([each.face[stopped] for each, stopped in pairs])
+    points = np.concatenate([each.points[occluded] for each, occluded in pairs])
+    looks = np.concatenate([each.directions[occluded] for each, occluded in pairs])
+    faces = np.concatenate([each.face[occluded] for each, occluded in pairs])
     # A cast represents several beams; all are of kinds that have beams.
     beams = [cast(Any, c.sensor.model).beam_count / max(len(c.ends), 1) for c in casts]
-    weight = np.repeat(beams, [stopped.sum() for stopped in hits])
+    weight = np.repeat(beams, [occluded.sum() for occluded in hits])
     normals = _normals(triangles[faces])
     away = (normals * looks).sum(axis=1, keepdims=True) > 0.0
     normals = np.where(away, -normals, normals)

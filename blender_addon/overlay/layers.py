@@ -138,7 +138,7 @@ def _beams(request: ViewRequest, cache: LayerCache, name: str) -> graphics.Layer
     choice = graphics.BeamChoice(budget, graphics.ChannelMode(view.channels), view.channel)
     found = cache.cast(request, of)
     beams = graphics.shown_beams(found, choice)
-    colors = _beam_colors(of, view, beams.channel, beams.stopped)
+    colors = _beam_colors(of, view, beams.channel, beams.occluded)
     around = None if request.vehicle is None else request.vehicle.bounds
     parts = [graphics.free_lines(of.sensor, beams, view.beam_length, colors, around)]
     if view.rings:
@@ -146,22 +146,22 @@ def _beams(request: ViewRequest, cache: LayerCache, name: str) -> graphics.Layer
         whole = _beam_colors(of, view, rows, np.zeros(len(rows), bool))
         whole[:, 3] = RING_ALPHA
         parts.append(graphics.ground_rings(found, rows, whole))
-    stopped = graphics.stopped_lines(of.sensor, beams, colors)
+    occluded = graphics.occluded_lines(of.sensor, beams, colors)
     ghosts = graphics.Primitives.of(
-        stopped.points, stopped.colors * [1.0, 1.0, 1.0, OCCLUDED_ALPHA]
+        occluded.points, occluded.colors * [1.0, 1.0, 1.0, OCCLUDED_ALPHA]
     )
-    lines = graphics.Primitives.joined([*parts, stopped])
+    lines = graphics.Primitives.joined([*parts, occluded])
     return graphics.LayerShape(lines=lines, through=ghosts, legend=_beam_legend(view))
 
 
 def _beam_colors(
-    of: SceneSensor, view: ViewSettings, channel: NDArray[np.int64], stopped: NDArray[np.bool_]
+    of: SceneSensor, view: ViewSettings, channel: NDArray[np.int64], occluded: NDArray[np.bool_]
 ) -> NDArray[np.float32]:
     """(N, 4) colours of beams of these channels."""
     by_sensor = view.beam_colors == BY_SENSOR
     palette = graphics.sensor_palette(of.color, view.palette) if by_sensor else view.palette
-    free, hit = (np.asarray(c, np.float32) for c in (palette.free, palette.stopped))
-    colors = np.where(stopped[:, None], hit, free)
+    free, hit = (np.asarray(c, np.float32) for c in (palette.free, palette.occluded))
+    colors = np.where(occluded[:, None], hit, free)
     if view.beam_colors == BY_CHANNEL:
         elevations = cast(pe.Lidar, of.sensor.model).elevations
         rank = np.argsort(np.argsort(elevations, kind="stable"))
@@ -175,11 +175,11 @@ def _beam_legend(view: ViewSettings) -> graphics.ColorKey:
         swatches = tuple((float(red), float(green), float(blue), 1.0) for red, green, blue in row)
         return graphics.ColorKey("Channel", swatches, ("lowest", "highest"))
     palette = view.palette
-    stopped = (graphics.with_alpha(palette.stopped, 1.0), "occluded by the vehicle")
+    occluded = (graphics.with_alpha(palette.occluded, 1.0), "occluded by the vehicle")
     if view.beam_colors == BY_SENSOR:  # free beams have the colours of the labels
-        return graphics.ColorKey("Beams", classes=(stopped,))
+        return graphics.ColorKey("Beams", classes=(occluded,))
     return graphics.ColorKey(
-        "Beams", classes=((graphics.with_alpha(palette.free, 1.0), "free"), stopped)
+        "Beams", classes=((graphics.with_alpha(palette.free, 1.0), "free"), occluded)
     )
 
 

@@ -1,7 +1,7 @@
 """Scores of a rig: on all voxels, or on a sample of them."""
 
 from .evaluator import Evaluator
-from .protocol import Evaluation, Objective, RigEvaluator
+from .protocol import Evaluation, RigEvaluator
 from .sampling import VoxelSample, draw
 from .scatter import Scatter
 from .score import (
@@ -21,7 +21,6 @@ __all__ = [
     "FoundClass",
     "GroundMap",
     "ObjectScore",
-    "Objective",
     "PartScore",
     "RigEvaluator",
     "Scatter",

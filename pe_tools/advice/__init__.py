@@ -21,7 +21,7 @@ from .key_figures import (
     sensor_table,
 )
 from .location import AskedPlace, SensorAtPlace, ask_place
-from .mount_checks import check_mirror_image, stopped_shares
+from .mount_checks import check_mirror_image, occluded_shares
 from .mounting_places import place_name, plain_name, sensor_labels
 from .ranking import Notation, ranking, win_words
 from .score_comparison import ComparedRow, compare, compare_figures
@@ -34,7 +34,7 @@ from .summary import (
     objects_looked_at,
     outlook,
 )
-from .summary_text import WHERE, rig_words, sensor_words, stopped_words, words
+from .summary_text import WHERE, occluded_words, rig_words, sensor_words, words
 from .warnings import HiddenSensor, hidden_sensors, hidden_words, warnings
 
 __all__ = [
@@ -74,6 +74,8 @@ __all__ = [
     "loss_text",
     "object_words",
     "objects_looked_at",
+    "occluded_shares",
+    "occluded_words",
     "off_by",
     "outlook",
     "percent",
@@ -86,8 +88,6 @@ __all__ = [
     "sensor_rows",
     "sensor_table",
     "sensor_words",
-    "stopped_shares",
-    "stopped_words",
     "unmet",
     "warnings",
     "win_words",

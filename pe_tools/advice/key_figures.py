@@ -12,7 +12,7 @@ from pe_core.scoring.score import FAR_M, NEAR_M, Score
 from pe_core.scoring.sight import BLIND_TO_M, Reach, Sight, ends_with_space
 from pe_tools.advice.advice import percent
 
-from .mount_checks import stopped_shares
+from .mount_checks import occluded_shares
 from .summary import Outlook, class_of
 
 SENSOR_COLUMNS = ("sensor", "loss [nats]", "costs most", "occluded by")
@@ -102,7 +102,7 @@ def sensor_rows(
         zone = max(by_zone, key=lambda zone_name: by_zone[zone_name], default="")
         if not zone or by_zone[zone] < MIN_RISE:
             zone = ""
-        parts = stopped_shares(None if rig is None else rig[name], sensor_score, vehicle)
+        parts = occluded_shares(None if rig is None else rig[name], sensor_score, vehicle)
         shown = {part: share for part, share in parts.items() if share >= MIN_SHARE}
         loss = None if only else sensor_score.lost
         rows.append(SensorRow(name, loss, zone, by_zone.get(zone, 0.0), shown))

@@ -43,7 +43,7 @@ UPSIDE_DOWN = -0.2
 """Vertical component of a sensor's unit upward axis below which its picture is upside down."""
 
 
-def stopped_shares(
+def occluded_shares(
     sensor: Sensor | None, own: SensorScore | None = None, vehicle: Vehicle | None = None
 ) -> dict[str, float]:
     """Return the share of a sensor's rays that each part of the vehicle blocks, highest first.

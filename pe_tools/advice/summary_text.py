@@ -11,7 +11,7 @@ from pe_core.sensors import kind_of
 from pe_tools.advice.advice import percent
 
 from .advice import Advice
-from .mount_checks import stopped_shares
+from .mount_checks import occluded_shares
 from .summary import Outlook, object_words, objects_looked_at, outlook_words
 from .warnings import hidden_sensors, hidden_words
 
@@ -124,7 +124,7 @@ def sensor_words(
     phrases = (
         "the only sensor" if alone else _adds(own),
         "" if zones is None else _extreme_zones(zones),
-        stopped_words(sensor, own, vehicle),
+        occluded_words(sensor, own, vehicle),
     )
     return tuple(filter(None, phrases))
 
@@ -171,20 +171,20 @@ def _extreme_zones(zones: Mapping[str, float]) -> str:
     return f"sees most {best}, least {worst}"
 
 
-def stopped_words(
+def occluded_words(
     sensor: Sensor | None, own: SensorScore | None = None, vehicle: Vehicle | None = None
 ) -> str:
     """Describe which parts block a sensor's view, as in "7.5% of its beams occluded by roof".
 
     The beams counted by the score are used where it has them, otherwise a sample of the sensor's
-    rays (`stopped_shares`, which also explains the parameters).
+    rays (`occluded_shares`, which also explains the parameters).
 
     Returns
     -------
     str
         Empty where nothing blocks the view.
     """
-    shares = stopped_shares(sensor, own, vehicle)
+    shares = occluded_shares(sensor, own, vehicle)
     total = sum(shares.values())
     if not total:
         return ""

@@ -20,7 +20,7 @@ from pe_core.study.requirement_help import suggestions
 
 from ..advice import curve_note
 from ..jobs import CheckJob
-from ..wording import hidden_text, margin_text, reason_text
+from ..wording import margin_text, reason_text, unseen_text
 from .command import add_curve_option, with_curves
 from .interrupts import stop_at_first
 from .run_job import drive, print_vehicle
@@ -33,7 +33,7 @@ STOPPED = "stopped before"
 ALL = "all"
 COLUMNS = (
     *("name", "check", "met", "margin_m", "share", "worst_x", "worst_y", "worst_body"),
-    *("seen_by", "hidden", "breaks_without", "blind_m2", "source"),
+    *("seen_by", "unseen_by", "breaks_without", "blind_m2", "source"),
 )
 LONGEST = 34
 """Longer names are cut in the table."""
@@ -200,9 +200,9 @@ def _reason(verdict: Verdict) -> str:
     if verdict.worst is None:
         return ""
     x, y = verdict.worst
-    hidden = hidden_text(verdict.hidden)
+    unseen = unseen_text(verdict.unseen_by)
     what = f"{verdict.body or 'nearest blind ground'} at "
-    return f"{what}({x:.2f}, {y:.2f}){f': {hidden}' if hidden else ''}"
+    return f"{what}({x:.2f}, {y:.2f}){f': {unseen}' if unseen else ''}"
 
 
 def verdicts_csv(verdicts: Sequence[Verdict]) -> str:
@@ -215,7 +215,7 @@ def verdicts_csv(verdicts: Sequence[Verdict]) -> str:
             "worst_x": x,
             "worst_y": y,
             "seen_by": "; ".join(verdict.seen_by),
-            "hidden": "; ".join(f"{k}: {reason_text(v)}" for k, v in verdict.hidden.items()),
+            "unseen_by": "; ".join(f"{k}: {reason_text(v)}" for k, v in verdict.unseen_by.items()),
             "breaks_without": "; ".join(verdict.breaks_without),
         }
         rows.append([(data | listed)[c] for c in COLUMNS])

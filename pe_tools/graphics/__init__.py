@@ -15,8 +15,8 @@ from .beams import channels_of as channels_of
 from .beams import free_lines as free_lines
 from .beams import ground_distance as ground_distance
 from .beams import ground_rings as ground_rings
+from .beams import occluded_lines as occluded_lines
 from .beams import shown_beams as shown_beams
-from .beams import stopped_lines as stopped_lines
 from .colors import CIVIDIS as CIVIDIS
 from .colors import COUNTS as COUNTS
 from .colors import DIFFERENCE as DIFFERENCE

@@ -58,7 +58,7 @@ class Cast:
     face: Ints
 
     @property
-    def stopped(self) -> NDArray[np.bool_]:
+    def occluded(self) -> NDArray[np.bool_]:
         """(R * K,) whether the vehicle stops the beam."""
         return self.face >= 0
 
@@ -129,13 +129,13 @@ class Beams:
     """Some beams of a mounted LiDAR.
 
     `directions` (N, 3) unit, ground frame; `ends` (N,) the vehicle or the maximum range [m];
-    `stopped` (N,) whether the vehicle occludes the beam; `channel` (N,) its channel; `share` the
+    `occluded` (N,) whether the vehicle occludes the beam; `channel` (N,) its channel; `share` the
     share of occluded beams among all beams of the choice.
     """
 
     directions: Floats
     ends: Floats
-    stopped: NDArray[np.bool_]
+    occluded: NDArray[np.bool_]
     channel: Ints
     share: float
 
@@ -147,14 +147,14 @@ def shown_beams(found: Cast, choice: BeamChoice) -> Beams:
     """
     lidar, few = lidar_of(found.sensor), choice.channels == ChannelMode.FEW
     rows = np.flatnonzero(np.isin(found.rows, channels_of(lidar, choice)))
-    stopped = found.stopped
-    meant = stopped.reshape(len(found.rows), -1)
+    occluded = found.occluded
+    meant = occluded.reshape(len(found.rows), -1)
     meant = meant[rows] if choice.channels == ChannelMode.ONE else meant
     share = float(meant.mean()) if meant.size else 0.0
     budget = min(choice.budget, A_FEW * AZIMUTHS_OF_FEW) if few else choice.budget
     chosen = _fair(found, rows, share, budget)
     channel = found.rows[chosen // max(len(found.columns), 1)]
-    return Beams(found.directions[chosen], found.ends[chosen], stopped[chosen], channel, share)
+    return Beams(found.directions[chosen], found.ends[chosen], occluded[chosen], channel, share)
 
 
 def channels_of(lidar: Lidar, choice: BeamChoice) -> Ints:
@@ -179,19 +179,19 @@ def _a_few(elevations: Floats, count: int) -> Ints:
 
 def _fair(found: Cast, rows: Ints, share: float, budget: int) -> Ints:
     """Indices within a cast: free beams in a regular pattern, and occluded ones by their share."""
-    stopped, width = found.stopped, len(found.columns)
+    occluded, width = found.occluded, len(found.columns)
     columns = np.searchsorted(
         found.columns, around(lidar_of(found.sensor), budget // max(len(rows), 1))
     )
     columns = np.unique(np.minimum(columns, max(width - 1, 0)))
     pattern = (rows[:, None] * width + columns).ravel()
     of_rows = (rows[:, None] * width + np.arange(width)).ravel()
-    free_count = min(round(budget * (1.0 - share)), int((~stopped[of_rows]).sum()))
-    free = _some(free_count, pattern[~stopped[pattern]], np.flatnonzero(~stopped))
+    free_count = min(round(budget * (1.0 - share)), int((~occluded[of_rows]).sum()))
+    free = _some(free_count, pattern[~occluded[pattern]], np.flatnonzero(~occluded))
     wanted = round(len(free) * share / (1.0 - share)) if len(free) else budget
     room = budget - len(free)
     count = min(max(wanted, 1), max(room, 1)) if share > 0.0 else 0
-    hit = _some(count, of_rows[stopped[of_rows]], np.flatnonzero(stopped))
+    hit = _some(count, of_rows[occluded[of_rows]], np.flatnonzero(occluded))
     return np.concatenate([free[: budget - len(hit)], hit])
 
 
@@ -213,7 +213,7 @@ def free_lines(
     The lines end at the range, the ground (z = 0) or `length_m`, and fade out towards that length.
     Inside the box `around` they are faint.
     """
-    free = ~beams.stopped
+    free = ~beams.occluded
     directions = beams.directions[free]
     ends = np.minimum(np.minimum(beams.ends[free], length_m), ground_distance(sensor, directions))
     leave = np.minimum(_housing_exits(sensor, directions, around), ends)
@@ -228,17 +228,17 @@ def free_lines(
     return Primitives.of(points, shown)
 
 
-def stopped_lines(sensor: Sensor, beams: Beams, colors: Colors) -> Primitives:
+def occluded_lines(sensor: Sensor, beams: Beams, colors: Colors) -> Primitives:
     """Lines of the occluded beams, one piece each, in (N, 4) colours.
 
     A shorter line is drawn `STUB_M` long, because it would not be visible otherwise.
     """
-    stopped = beams.stopped
-    ends = np.maximum(beams.ends[stopped], STUB_M)
+    occluded = beams.occluded
+    ends = np.maximum(beams.ends[occluded], STUB_M)
     points = np.empty((len(ends), 2, 3))
     points[:] = sensor.pose.position
-    points[:, 1] += beams.directions[stopped] * ends[:, None]
-    return Primitives.of(points, np.repeat(colors[stopped], 2, axis=0))
+    points[:, 1] += beams.directions[occluded] * ends[:, None]
+    return Primitives.of(points, np.repeat(colors[occluded], 2, axis=0))
 
 
 def ground_rings(found: Cast, rows: NDArray[np.int64], colors: Colors) -> Primitives:

@@ -23,13 +23,13 @@ Rgba = tuple[float, float, float, float]
 class Palette:
     """Colours for one kind of background.
 
-    `free` and `stopped` are a LiDAR's beams, `camera` a frustum's lines, `camera_face` its sides;
+    `free` and `occluded` are a LiDAR's beams, `camera` a frustum's lines, `camera_face` its sides;
     `other` are lines of kinds that have no colour of their own; `blind` is ground that nobody sees,
     `reach` the rig's reach; `words` are labels.
     """
 
     free: Rgba
-    stopped: Rgba
+    occluded: Rgba
     camera: Rgba
     camera_face: Rgba
     other: Rgba
@@ -40,7 +40,7 @@ class Palette:
 
 VIEWPORT = Palette(
     free=(0.45, 0.78, 0.96, 0.28),
-    stopped=(0.98, 0.52, 0.10, 0.60),
+    occluded=(0.98, 0.52, 0.10, 0.60),
     camera=(0.90, 0.62, 0.78, 0.80),
     camera_face=(0.80, 0.47, 0.65, 0.07),
     other=(0.20, 0.80, 0.62, 0.85),
@@ -49,7 +49,7 @@ VIEWPORT = Palette(
 
 PAPER = Palette(
     free=(0.0, 0.45, 0.70, 0.60),
-    stopped=(0.84, 0.37, 0.0, 1.0),
+    occluded=(0.84, 0.37, 0.0, 1.0),
     camera=(0.60, 0.25, 0.45, 0.9),
     camera_face=(0.80, 0.47, 0.65, 0.14),
     other=(0.0, 0.50, 0.37, 0.9),

@@ -29,7 +29,7 @@ NEAREST_M = 0.5
 """All that is nearer has the brightest colour."""
 NO_ECHO = (0.16, 0.16, 0.17)
 BODY_NEAR, BODY_FAR = (1.0, 0.62, 0.20), (0.72, 0.28, 0.0)
-"""Vermillion, as stopped beams are drawn: nearer parts are lighter."""
+"""Vermillion, as occluded beams are drawn: nearer parts are lighter."""
 BODY_SILENT = (0.42, 0.17, 0.0)
 """Colour of a beam that the body blocks so near that there is no echo."""
 BODY_FAR_M = 5.0
@@ -43,8 +43,8 @@ def range_colors(picture: RangePicture, far_m: float) -> NDArray[np.float32]:
     distance = np.where(heard, np.maximum(picture.distance, NEAREST_M), far_m)
     colors = on_scale(range_share(distance, far_m), RANGES)
     colors[~heard] = NO_ECHO
-    colors[picture.stopped & ~heard] = BODY_SILENT
-    own = picture.stopped & heard
+    colors[picture.occluded & ~heard] = BODY_SILENT
+    own = picture.occluded & heard
     colors[own] = on_scale(distance[own] / BODY_FAR_M, (BODY_NEAR, BODY_FAR))
     return colors
 

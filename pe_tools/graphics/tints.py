@@ -94,7 +94,7 @@ def sensor_palette(color: Rgb, palette: Palette = VIEWPORT) -> Palette:
     """Return a palette in which all lines of one sensor have that sensor's colour.
 
     Opacities stay those of the palette, but for sides of views: sensors' colours are light, and
-    `FACE_SHARE` of them hides as much. `stopped`, `blind` and the rig's own colours are kept.
+    `FACE_SHARE` of them hides as much. `occluded`, `blind` and the rig's own colours are kept.
     """
     hues = {
         name: with_alpha(color, getattr(palette, name)[3]) for name in ("free", "camera", "other")

@@ -117,7 +117,7 @@ def test_words_are_the_engines(car):
     assert car.perception_entropy.result_words.splitlines() == list(advice.rig_words(score))
     own = bridge.figures_of_sensor(car.objects["roof"])
     assert own.words[0] == "the only sensor"
-    shares = advice.stopped_shares(study.rig["roof"], score.per_sensor["roof"], study.vehicle)
+    shares = advice.occluded_shares(study.rig["roof"], score.per_sensor["roof"], study.vehicle)
     assert dict(own.parts) == pytest.approx(shares)
     assert own.parts, "a score without a part in the way proves nothing here"
 

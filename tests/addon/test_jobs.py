@@ -50,11 +50,11 @@ def test_result_is_shown(car):
     assert settings.result_entropy == pytest.approx(data["entropy"], abs=1e-6)
     roof = bridge.figures_of_sensor(car.objects["roof"])
     assert roof is not None and roof.beams == 16 * 1800
-    assert roof.stopped == data["after"]["per_sensor"]["roof"]["occluded"] > 0
+    assert roof.occluded == data["after"]["per_sensor"]["roof"]["occluded"] > 0
     assert "cabin" in dict(roof.parts)
     front = bridge.figures_of_sensor(car.objects["front"])
     told = data["after"]["per_sensor"]["front"]
-    assert (front.beams, front.stopped) == (told["beams"], told["occluded"]), "rays of its picture"
+    assert (front.beams, front.occluded) == (told["beams"], told["occluded"]), "rays of its picture"
 
 
 def test_warnings_are_stored_as_the_result_has_them(car):

@@ -236,7 +236,7 @@ def test_a_lidar_s_picture_is_in_its_image(car):
     pixels = np.array(image.pixels[:]).reshape(height, width, 4)[::-1]
     study = scenes.study()
     picture = kinds.range_picture(study.rig["roof"], study.vehicle)
-    assert picture.stopped.any()
+    assert picture.occluded.any()
     orange = (pixels[..., 0] > 0.7) & (pixels[..., 2] < 0.25) & (pixels[..., 1] < 0.65)
     assert orange.mean() == pytest.approx(_share(picture), abs=0.05)
     assert pixels[0, 0, :3] == pytest.approx(graphics.NO_ECHO, abs=0.01)  # 15 degrees up: sky
@@ -246,7 +246,7 @@ def _share(picture):
     """Share of the picture that the body stops, rows as high as the angle they stand for."""
     edges = (picture.elevations[1:] + picture.elevations[:-1]) / 2
     bounds = np.concatenate([picture.elevations[:1], edges, picture.elevations[-1:]])
-    return float(np.average(picture.stopped.mean(axis=1), weights=-np.diff(bounds)))
+    return float(np.average(picture.occluded.mean(axis=1), weights=-np.diff(bounds)))
 
 
 def test_the_picture_takes_what_moved(car):

@@ -223,10 +223,10 @@ def test_heat_is_hits_per_area_on_the_surface():
     np.testing.assert_allclose(points[:, 2], heatmap.LIFT_M, atol=1e-6)
     radius = np.hypot(points[:, 0], points[:, 1]).max()
     assert radius == pytest.approx(2.0 * math.tan(math.radians(20.0)), abs=0.1)
-    hits = found.stopped.sum()
+    hits = found.occluded.sum()
     assert len(points) / 6 == pytest.approx(math.pi * 0.73**2 / heatmap.TILE_M**2, rel=0.15)
     upwards = np.tile([0.0, 0.0, 1.0], (hits, 1))
-    tiles = heatmap._Tiles.of(found.points[found.stopped], upwards, np.ones(hits))
+    tiles = heatmap._Tiles.of(found.points[found.occluded], upwards, np.ones(hits))
     ring = np.hypot(tiles.points[:, 0], tiles.points[:, 1])
     at = (ring > 0.35) & (ring < 0.45)
     # d beams / d area at radius r: beams a radian of elevation and azimuth, over the Jacobian.

@@ -81,7 +81,7 @@ def test_a_sensor_has_one_colour_in_every_layer_the_list_and_the_study(car):
         for part in (shape.lines, shape.faces):
             assert len(part.colors) and (part.colors[:, :3] == wanted[name]).all()
     beams = drawn["beams"]["roof"].lines.colors[:, :3]
-    stopped = np.float32(graphics.VIEWPORT.stopped[:3])
+    stopped = np.float32(graphics.VIEWPORT.occluded[:3])
     own, hit = ((beams == color).all(axis=1) for color in (wanted["roof"], stopped))
     assert own.any() and hit.any() and (own | hit).all()
 

@@ -126,19 +126,19 @@ def test_a_loss_is_reported_where_it_costs_most():
 )
 def test_what_stops_a_sensor(by_part, text):
     own = pe.SensorScore(4.0, 0.8, 0.1, 1000, sum(by_part.values()), by_part)
-    assert advice.stopped_words(None, own) == text
+    assert advice.occluded_words(None, own) == text
 
 
 def test_pixels_are_looked_for_where_no_score_counts_them():
     """A level camera over the bonnet loses what is below its edge, which is 1.45 m ahead."""
     sensor = shapes.camera(40.0, (0.85, 0.0, 0.95))
     uncounted = pe.SensorScore(4.0, 0.8, 0.1, 0, 0, {})
-    shares = advice.stopped_shares(sensor, uncounted, shapes.box_car())
+    shares = advice.occluded_shares(sensor, uncounted, shapes.box_car())
     edge = sensor.model.focal_px * 0.05 / 1.45  # pixels below the middle where the bonnet ends
     assert shares == {"body": pytest.approx((540 - edge) / 1080, abs=0.02)}
-    words = advice.stopped_words(sensor, uncounted, shapes.box_car())
+    words = advice.occluded_words(sensor, uncounted, shapes.box_car())
     assert words == f"{100 * shares['body']:.0f}% of its pixels occluded by body"
-    assert advice.stopped_words(sensor, uncounted) == ""
+    assert advice.occluded_words(sensor, uncounted) == ""
 
 
 def test_side_by_side():

@@ -44,9 +44,9 @@ def test_budget_above_all_beams_shows_each_once(vehicle):
 def test_agrees_with_the_engine_beam_by_beam(vehicle):
     sensor = mounted(position=(-0.3, 0.2, 1.8), rotation=(0, 5, 30))
     found, field = beams.cast(sensor, vehicle), pe.beam_field(sensor, vehicle)
-    np.testing.assert_array_equal(found.stopped, field.occluded_by >= 0)
+    np.testing.assert_array_equal(found.occluded, field.occluded_by >= 0)
     np.testing.assert_array_equal(found.ends, field.ends)
-    assert found.stopped.any()
+    assert found.occluded.any()
 
 
 @pytest.mark.parametrize("channels", [ChannelMode.FEW, ChannelMode.EVERY, ChannelMode.ALL])
@@ -59,7 +59,7 @@ def test_the_share_of_stopped_beams_is_the_true_one(channels, height, low, high,
     assert low < true < high
     found = shown(sensor, vehicle, 300, channels, 2)
     assert found.share == pytest.approx(true)
-    assert abs(found.stopped.sum() - true * len(found.ends)) <= 1.0
+    assert abs(found.occluded.sum() - true * len(found.ends)) <= 1.0
 
 
 def test_few_stopped_beams_are_neither_lost_nor_a_fan():
@@ -69,16 +69,16 @@ def test_few_stopped_beams_are_neither_lost_nor_a_fan():
     true = (pe.beam_field(sensor, post).occluded_by >= 0).mean()
     assert 0.0 < true < 0.005
     for channels in (ChannelMode.FEW, ChannelMode.ALL):
-        assert 1 <= shown(sensor, post, 300, channels).stopped.sum() <= 2
+        assert 1 <= shown(sensor, post, 300, channels).occluded.sum() <= 2
 
 
 def test_one_channel_shows_its_own_share(vehicle):
     """The lowest channel's, which the roof stops; not that of the whole sensor."""
     sensor = mounted(position=(0.0, 0.0, 1.6))
     lowest = shown(sensor, vehicle, 200, ChannelMode.ONE, 1)
-    assert elevations_of(lowest) == {-40.0} and lowest.stopped.all() and lowest.share == 1.0
+    assert elevations_of(lowest) == {-40.0} and lowest.occluded.all() and lowest.share == 1.0
     highest = shown(sensor, vehicle, 200, ChannelMode.ONE, 5)
-    assert elevations_of(highest) == {10.0} and not highest.stopped.any()
+    assert elevations_of(highest) == {10.0} and not highest.occluded.any()
     assert elevations_of(shown(sensor, vehicle, 200, ChannelMode.ONE, 99)) == {10.0}
 
 
@@ -125,7 +125,7 @@ def test_a_preview_casts_few_beams_of_every_channel(vehicle):
     found = beams.cast(sensor, vehicle, beams.PREVIEW_BEAMS)
     assert len(found.rows) == 64 and 10_000 < len(found.ends) <= beams.PREVIEW_BEAMS
     fine = beams.cast(sensor, vehicle)
-    assert abs(found.stopped.mean() - fine.stopped.mean()) < 0.01
+    assert abs(found.occluded.mean() - fine.occluded.mean()) < 0.01
 
 
 def test_same_input_same_arrays(vehicle):
@@ -136,7 +136,7 @@ def test_same_input_same_arrays(vehicle):
 
 def test_buried_lidar_shows_only_stopped_beams(vehicle):
     found = shown(mounted(position=(0.0, 0.0, 0.9)), vehicle, 200)
-    assert found.stopped.all() and 0 < len(found.ends) <= 200
+    assert found.occluded.all() and 0 < len(found.ends) <= 200
 
 
 COLOR = np.array([0.1, 0.2, 0.3, 0.5])
@@ -188,9 +188,9 @@ def test_without_a_vehicle_beams_are_plain_from_the_start():
 def test_stopped_beams_end_on_the_vehicle(vehicle):
     sensor = mounted(position=(0.0, 0.0, 2.4))
     found = shown(sensor, vehicle, 2000)
-    lines = beams.stopped_lines(sensor, found, np.tile(COLOR, (len(found.ends), 1)))
+    lines = beams.occluded_lines(sensor, found, np.tile(COLOR, (len(found.ends), 1)))
     ends = lines.points.reshape(-1, 2, 3)[:, 1]
-    assert len(ends) == found.stopped.sum() > 0
+    assert len(ends) == found.occluded.sum() > 0
     np.testing.assert_allclose(ends[:, 2], 1.5, atol=1e-6)  # from above, only its roof is hit
     assert (np.abs(ends[:, 0]) <= 2.0).all() and (np.abs(ends[:, 1]) <= 1.0).all()
 
@@ -198,8 +198,8 @@ def test_stopped_beams_end_on_the_vehicle(vehicle):
 def test_beams_that_are_stopped_at_once_still_show(vehicle):
     sensor = mounted(position=(2.0, 0.0, 0.9))
     found = shown(sensor, vehicle, 500)
-    assert found.ends[found.stopped].min() < 0.1
-    lines = beams.stopped_lines(sensor, found, np.tile(COLOR, (len(found.ends), 1)))
+    assert found.ends[found.occluded].min() < 0.1
+    lines = beams.occluded_lines(sensor, found, np.tile(COLOR, (len(found.ends), 1)))
     length = np.linalg.norm(np.diff(lines.points.reshape(-1, 2, 3), axis=1)[:, 0], axis=1)
     assert length.min() >= beams.STUB_M - 1e-5
 

@@ -183,11 +183,11 @@ def test_beams_ask_which_part_stops_them():
     assert field.occluded_by.tolist() == [0, -1, 2, 3] * 2
     near = [3.0, 7.0, 5.0, 6.0]
     assert field.ends.tolist() == pytest.approx(near * 2, abs=1e-4)
-    counts = field.stopped_count(tuple(walls))
+    counts = field.occluded_count(tuple(walls))
     assert counts == {"near": 2, "back": 2, "more": 2} and list(counts) == ["near", "back", "more"]
     free = pe.beam_field(at(lidar(max_range=7.0)), None)
     assert free.occluded_by.tolist() == [-1] * 4 and free.ends.tolist() == [7.0] * 4
-    assert free.stopped_count(()) == {}
+    assert free.occluded_count(()) == {}
 
 
 def test_the_part_that_stops_most_comes_first():
@@ -195,7 +195,7 @@ def test_the_part_that_stops_most_comes_first():
     ahead, left = shapes.box((3, -1, -1), (3.1, 1, 0.1)), shapes.box((-1, 3, -1), (1, 3.1, 2))
     vehicle = pe.Vehicle(np.concatenate([ahead, left]), np.repeat([0, 1], 12), ("ahead", "left"))
     field = pe.beam_field(at(lidar((0.0, 20.0))), vehicle)
-    assert list(field.stopped_count(("ahead", "left")).items()) == [("left", 2), ("ahead", 1)]
+    assert list(field.occluded_count(("ahead", "left")).items()) == [("left", 2), ("ahead", 1)]
 
 
 def camera(width=200, height=100, hfov_deg=90.0):

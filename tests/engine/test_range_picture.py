@@ -36,13 +36,13 @@ def test_by_hand():
     level, down = picture.distance
     assert level == pytest.approx([math.inf, math.inf, 2.0, math.inf])
     assert down == pytest.approx([math.sqrt(2)] * 4)  # the ground comes before the wall
-    assert picture.stopped.tolist() == [[False, False, True, False], [False] * 4]
+    assert picture.occluded.tolist() == [[False, False, True, False], [False] * 4]
 
 
 def test_beyond_its_range_is_nothing():
     sensor = pe.Sensor("toy", lidar([-45, 0], max_range=1.4), pe.Pose((0.0, 0.0, 1.0)))
     picture = range_picture(sensor, WALL)
-    assert np.isinf(picture.distance).all() and not picture.stopped.any()
+    assert np.isinf(picture.distance).all() and not picture.occluded.any()
 
 
 def test_below_the_ground_there_is_no_ground():
@@ -67,8 +67,8 @@ def test_each_pixel_is_its_beam_s_first_hit(model):
         nearest = min(body, ground)
         expected = nearest if nearest <= sensor.model.max_range else math.inf
         assert picture.distance[row, column] == pytest.approx(expected, rel=1e-9)
-        assert picture.stopped[row, column] == (body <= ground and expected < math.inf)
-        seen.add((bool(picture.stopped[row, column]), expected < math.inf))
+        assert picture.occluded[row, column] == (body <= ground and expected < math.inf)
+        seen.add((bool(picture.occluded[row, column]), expected < math.inf))
     assert (True, True) in seen  # some met the wall
 
 
@@ -78,7 +78,7 @@ def test_nearer_than_its_least_range_nothing_comes_back():
     near = catalog.from_table("toy", table | {"min_range_m": 2.5})
     picture = range_picture(pe.Sensor("toy", near, pe.Pose((0.0, 0.0, 1.0))), WALL)
     assert np.isinf(picture.distance).all()
-    assert picture.stopped.tolist() == [[False, False, True, False], [False] * 4]
+    assert picture.occluded.tolist() == [[False, False, True, False], [False] * 4]
     colors = range_colors(picture, 50.0)
     silent, nothing = colors[0, 2], colors[0, 0]
     assert silent[0] > silent[2] + 0.3 and np.ptp(nothing) < 0.02  # brown, and grey
@@ -94,8 +94,8 @@ def test_things_end_beams_unless_something_is_before_them():
     picture = range_picture(sensor, WALL, things)
     assert picture.things[0].tolist() == [-1, 2, 0, -1]  # behind, left, ahead, right
     assert picture.distance[0] == pytest.approx([math.inf, 5.0, 1.0, math.inf])
-    assert not picture.stopped.any()
-    assert range_picture(sensor, WALL, pe.Vehicle(boxes[1])).stopped[0].tolist()[2]
+    assert not picture.occluded.any()
+    assert range_picture(sensor, WALL, pe.Vehicle(boxes[1])).occluded[0].tolist()[2]
 
 
 def test_colours_run_from_bright_to_dark_and_are_the_body_s_own_hue():

@@ -81,7 +81,7 @@ def test_a_share_is_refused_to_kinds_whose_rays_end_on_no_body():
         (both,) = check(own, of=pe.Rig([ahead, rig()["front"]]))
         (camera,) = check(own, of=pe.Rig([rig()["front"]]))
         assert both.passed.tolist() == camera.passed.tolist() and both.sensors == camera.sensors
-        assert "radar" not in both.hidden or both.hidden["radar"].code == "not counted"
+        assert "radar" not in both.unseen_by or both.unseen_by["radar"].code == "not counted"
         two = replace(own, criterion=replace(criterion, kinds=2))
         with pytest.raises(pe.InputError, match="the number of kinds"):
             check(two, of=pe.Rig([ahead, rig()["front"]]))

@@ -24,7 +24,7 @@ from pe_core.scoring.requirements.body_checks import BodyChecks, SceneCaches
 from pe_core.scoring.sight import Sight
 from pe_core.search import Tolerance, mounted_off
 from pe_core.sensors import ObjectMeasurementCache
-from pe_tools.wording import hidden_text, margin_text, reason_text, verdict_text
+from pe_tools.wording import margin_text, reason_text, unseen_text, verdict_text
 from tests.engine import shapes
 from tests.engine.requirement_scene import AHEAD, MIDDLE, check, rig, van
 
@@ -176,12 +176,11 @@ def test_losses_hidden_parts_and_the_worst_place_are_named():
     alone = pe.Rig([rig()["top"], rig()["front"]])
     (lost,) = check(behind, of=alone)
     assert not lost.met and lost.margin < 0.0 and lost.worst is not None
-    assert (
-        set(lost.hidden) == {"top", "front"} and Reason("occluded", "body") in lost.hidden.values()
-    )
-    told = [part.removesuffix(")").split(" (") for part in hidden_text(lost.hidden).split("; ")]
+    assert set(lost.unseen_by) == {"top", "front"}
+    assert Reason("occluded", "body") in lost.unseen_by.values()
+    told = [part.removesuffix(")").split(" (") for part in unseen_text(lost.unseen_by).split("; ")]
     texts = {name: text for text, names in told for name in names.split(", ")}
-    assert texts == {name: reason_text(reason) for name, reason in lost.hidden.items()}
+    assert texts == {name: reason_text(reason) for name, reason in lost.unseen_by.items()}
     assert lost.to_dict()["worst"] == lost.worst
 
 

@@ -72,8 +72,8 @@ def test_eleven_sensors_are_told_apart_and_from_what_is_occluded_or_blind(shade,
     for counts in MIXES:
         own = [shown(color) for color in tints.sensor_colors(rig_of(counts)).values()]
         assert len(own) == 11
-        for one, other in combinations([*own, palette.stopped, palette.blind], 2):
-            if (one, other) != (palette.stopped, palette.blind):
+        for one, other in combinations([*own, palette.occluded, palette.blind], 2):
+            if (one, other) != (palette.occluded, palette.blind):
                 apart = np.linalg.norm(lab(one, EYES[eyes]) - lab(other, EYES[eyes]))
                 assert apart > MIN_DISTANCE, (counts, one, other)
 

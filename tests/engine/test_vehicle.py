@@ -52,7 +52,7 @@ def test_rays_on_shared_edges_do_not_leak():
 def test_the_part_that_stops_a_beam_is_reported():
     vehicle = shapes.box_car()
     sensor = shapes.lidar_on_roof(position=(0.6, 0.0, 1.6))
-    stopped = pe.beam_field(sensor, vehicle).stopped_count(vehicle.part_names)
+    stopped = pe.beam_field(sensor, vehicle).occluded_count(vehicle.part_names)
     assert set(stopped) == {"body", "cabin"}
     down = vehicle.first_hit((0, 0, 3.0), [[0, 0, -1.0]])
     assert vehicle.part_names[vehicle.parts[down.face[0]]] == "cabin"

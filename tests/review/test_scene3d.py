@@ -116,11 +116,11 @@ def test_maps_are_those_of_the_engine(data, scored):
 def test_a_camera_s_own_vehicle_is_drawn_where_it_sees_it(scored):
     """From behind the car, looking ahead: all that is stopped ends on its rear face, x = -2.2."""
     behind = pe.Sensor("eye", scored.rig.sensors[1].model, pe.Pose((-6.0, 0.0, 0.9)))
-    lines = graphics.hidden_lines(behind, scored.vehicle, graphics.PAPER.stopped)
+    lines = graphics.hidden_lines(behind, scored.vehicle, graphics.PAPER.occluded)
     ends = lines.points[1::2]
     np.testing.assert_allclose(ends[:, 0], -2.2, atol=1e-5)
     assert np.abs(ends[:, 1]).max() <= 0.9 and len(ends) > 20
-    assert not len(graphics.hidden_lines(behind, None, graphics.PAPER.stopped).points)
+    assert not len(graphics.hidden_lines(behind, None, graphics.PAPER.occluded).points)
 
 
 def test_without_a_vehicle_sensors_are_drawn_alone(bare):

@@ -9,7 +9,7 @@ from .mesh_shape import MeshShape
 from .planes import VehiclePlanes
 from .reasons import Reason
 from .redundancy import Redundancy, RedundancyMap
-from .verdict import GroundFigures, Samples, Verdict, VerdictSummary
+from .verdict import Samples, Verdict, VerdictSummary
 from .zones import PlacedZone, Zone, signed_distance
 
 __all__ = [
@@ -18,7 +18,6 @@ __all__ = [
     "Body",
     "CheckStep",
     "Criterion",
-    "GroundFigures",
     "MeshShape",
     "PlacedZone",
     "Reason",

@@ -131,7 +131,7 @@ class Verdict:
     seen_by : tuple of str
         Sensors that see that body.
     why : callable
-        Computes `hidden`.
+        Computes `unseen_by`.
     without : dict of bool
         Whether it is met without each sensor, by name.
     sensors : tuple of int
@@ -173,7 +173,7 @@ class Verdict:
         return self.requirement.name
 
     @cached_property
-    def hidden(self) -> Mapping[str, Reason]:
+    def unseen_by(self) -> Mapping[str, Reason]:
         """Why each other sensor does not see that body, by name; computed when asked."""
         return self.why()
 
@@ -215,7 +215,7 @@ class Verdict:
             "met_whole": self.met_whole,
             "worst_body": self.body,
             "seen_by": list(self.seen_by),
-            "hidden": {name: reason._asdict() for name, reason in self.hidden.items()},
+            "unseen_by": {name: reason._asdict() for name, reason in self.unseen_by.items()},
             "without": dict(self.without),
             "fewest_sensors": self.sensors[0],
             "most_sensors": self.sensors[1],

@@ -2,7 +2,7 @@
 
 from .blind_ground import BLIND_TO_M, BlindGround, BlindSpot, shown_end, shown_start
 from .grid_regions import outlines
-from .reach import Reach, ReachLine, ends_with_space, reach_line
+from .reach import Reach, ends_with_space, reach_line
 from .sight import Sight
 from .visibility import GroundSight, VisibleShares
 
@@ -12,7 +12,6 @@ __all__ = [
     "BlindSpot",
     "GroundSight",
     "Reach",
-    "ReachLine",
     "Sight",
     "VisibleShares",
     "ends_with_space",

@@ -50,13 +50,13 @@ class BeamField:
         parts = np.asarray(self._vehicle.parts)[self._hits.face]
         return np.where(self._hits.distance < self._max_range, parts, -1)
 
-    def stopped_count(self, part_names: Sequence[str]) -> dict[str, int]:
+    def occluded_count(self, part_names: Sequence[str]) -> dict[str, int]:
         """Return the number of beams that end on each part, the largest number first."""
         return count_by_part(self.occluded_by, part_names)
 
     def occlusion(self) -> Occlusion:
         """Count the beams, those that the vehicle occludes, and the latter by part."""
-        by_part = {} if self._vehicle is None else self.stopped_count(self._vehicle.part_names)
+        by_part = {} if self._vehicle is None else self.occluded_count(self._vehicle.part_names)
         return Occlusion(len(self.ends), sum(by_part.values()), by_part)
 
 

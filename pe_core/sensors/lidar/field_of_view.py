@@ -101,7 +101,7 @@ class RangePicture:
     distance : (C, A) float
         Distance at which each beam ends on the vehicle, on a thing or on the ground (z = 0) [m];
         inf where there is no echo between minimum and maximum range.
-    stopped : (C, A) bool
+    occluded : (C, A) bool
         Whether the vehicle ends the beam, also nearer than the minimum range.
     things : (C, A) int
         The part of `things` that ends the beam; -1 where none does, or without an echo.
@@ -112,7 +112,7 @@ class RangePicture:
     """
 
     distance: Floats
-    stopped: NDArray[np.bool_]
+    occluded: NDArray[np.bool_]
     things: NDArray[np.int64]
     elevations: Floats
     azimuths: Floats
@@ -149,7 +149,7 @@ def range_picture(
     distance = np.minimum(body, surroundings)
     no_echo = (distance > lidar.max_range) | (distance < lidar.min_range)
     on_thing = (part >= 0) & (thing < np.minimum(body, ground)) & ~no_echo
-    stopped = (body <= surroundings) & (body <= lidar.max_range)
+    occluded = (body <= surroundings) & (body <= lidar.max_range)
     rows = np.argsort(-lidar.elevations, kind="stable")
     columns = np.argsort(-columns_around(lidar), kind="stable")
 
@@ -158,7 +158,7 @@ def range_picture(
 
     return RangePicture(
         as_image(np.where(no_echo, np.inf, distance)),
-        as_image(stopped),
+        as_image(occluded),
         as_image(np.where(on_thing, part, -1)),
         lidar.elevations[rows],
         columns_around(lidar)[columns],
@@ -175,9 +175,9 @@ def columns_around(lidar: Lidar) -> Floats:
 def revolution_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
     """Return which beams end on the vehicle within their maximum range, however near."""
     lidar = lidar_of(sensor)
-    stopped, azimuths = beam_field(sensor, vehicle).occluded_by, columns_around(lidar)
+    occluded, azimuths = beam_field(sensor, vehicle).occluded_by, columns_around(lidar)
     rows, columns = (np.argsort(-angles, kind="stable") for angles in (lidar.elevations, azimuths))
-    parts = stopped.reshape(len(rows), len(columns))[np.ix_(rows, columns)]
+    parts = occluded.reshape(len(rows), len(columns))[np.ix_(rows, columns)]
     return EgoMask(parts.astype(np.int32), lidar.elevations[rows], azimuths[columns])
 
 

@@ -42,7 +42,7 @@ def view(context: ReportContext) -> dict[str, Any]:
     """Return what the 3-D view and its panel show."""
     return {
         "script_data": scene_data(context),
-        "occluded_color": css_color(graphics.PAPER.stopped),
+        "occluded_color": css_color(graphics.PAPER.occluded),
     }
 
 
@@ -75,7 +75,7 @@ BEAMS_EACH, BEAM_M, VIEW_M, FOOT_M = 180, 7.0, 2.5, 20.0
 """Beams drawn of a sensor and their length; length of a field of view; reach of its footprint."""
 MAX_RINGS = 10
 PALETTE = graphics.PAPER
-OCCLUDED = graphics.with_alpha(PALETTE.stopped, 0.9)
+OCCLUDED = graphics.with_alpha(PALETTE.occluded, 0.9)
 BEAM, RING, EDGE, SIDE = 0.5, 0.8, 0.9, 0.12
 """Opacity of a sensor's colour in beams, rings, and edges and sides of its field of view."""
 NOTHING = graphics.Primitives.empty()
@@ -111,14 +111,14 @@ def _beam_layers(
     beams_cast = graphics.cast(sensor, vehicle, MAX_BEAMS)
     choice = graphics.BeamChoice(BEAMS_EACH, graphics.ChannelMode.FEW)
     beams = graphics.shown_beams(beams_cast, choice)
-    colors = np.where(beams.stopped[:, None], OCCLUDED, graphics.with_alpha(color, BEAM))
+    colors = np.where(beams.occluded[:, None], OCCLUDED, graphics.with_alpha(color, BEAM))
     around = None if vehicle is None else vehicle.bounds
     rows = _rings(beams_cast)
     ring_colors = np.tile(graphics.with_alpha(color, RING), (len(rows), 1))
     rings = graphics.ground_rings(beams_cast, rows, ring_colors)
     return {
         "fov": _layer(graphics.free_lines(sensor, beams, BEAM_M, colors, around)),
-        "occluded": _layer(graphics.stopped_lines(sensor, beams, colors)),
+        "occluded": _layer(graphics.occluded_lines(sensor, beams, colors)),
         "ground": _layer(rings),
     }
 

@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from pe_core.scoring import requirements
 
-from ...wording import hidden_text, margin_text, verdict_text
+from ...wording import margin_text, unseen_text, verdict_text
 from ..markup import percent
 from ..pictures.requirement_plans import requirement_plan
 from ..pictures.sensor_views import sensor_view
@@ -28,7 +28,7 @@ def requirement_verdicts(context: ReportContext) -> dict[str, Any] | None:
         "verdicts": verdicts,
         "texts": [verdict_text(verdict.summary) for verdict in verdicts],
         "margins": [_margin(verdict) for verdict in verdicts],
-        "hidden": ["" if v.met else hidden_text(v.hidden) for v in verdicts],
+        "unseen": ["" if v.met else unseen_text(v.unseen_by) for v in verdicts],
         "plans": [
             requirement_plan(verdict, context.vehicle, alt)
             for verdict, alt in zip(verdicts, alts, strict=True)

@@ -230,7 +230,7 @@ def test_the_colours_of_the_preferences_are_those_of_the_overlay(enabled):
     own = enabled[1].preferences
     assert preferences.palette() == graphics.VIEWPORT
     own.blocked_color = (1.0, 0.0, 0.5, 0.75)
-    assert preferences.palette().stopped == (1.0, 0.0, 0.5, 0.75)
+    assert preferences.palette().occluded == (1.0, 0.0, 0.5, 0.75)
     assert view_of(bpy.context.scene).palette == preferences.palette()
     own.property_unset("blocked_color")
     assert preferences.palette() == graphics.VIEWPORT

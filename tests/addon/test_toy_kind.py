@@ -75,7 +75,7 @@ def test_the_operator_scores_it_as_the_engine_does(ring_kind, ring):
     expected = study.evaluator().score(study.rig)
     assert bpy.ops.pe.score() == {"FINISHED"}
     own = bridge.figures_of_sensor(ring)
-    assert own.beams == own.stopped == 0
+    assert own.beams == own.occluded == 0
     assert own.entropy == pytest.approx(expected.per_sensor["bumper"].entropy, abs=1e-5)
     assert own.coverage == pytest.approx(expected.per_sensor["bumper"].coverage, abs=1e-6) != 0.0
     assert own.entropy != bridge.figures_of_sensor(ring_kind.objects["roof"]).entropy

@@ -180,7 +180,10 @@ class SampledScorer:
             coverage,
             self._standard_error(entropies, len(rig.groups)),
             self._classes(entropies, visible),
-            self._by_zone(entropies, visible),
+            {
+                name: PartScore(*self._whole(entropies.take(inside), visible.take(inside)), share)
+                for name, (inside, share) in self._zones.items()
+            },
             len(self._sample.index),
             any(m.approximate for m in self._sensors.last.values()),
         )
@@ -198,13 +201,6 @@ class SampledScorer:
                 h, c = (float((values * likely).sum()) / mass for values in (entropies, visible))
                 per_class[name] = PartScore(rounded(h), rounded(c), rounded(mass / len(likely)))
         return per_class
-
-    def _by_zone(self, entropies: Floats, visible: NDArray[np.bool_]) -> dict[str, PartScore]:
-        """Return the score by zone."""
-        return {
-            name: PartScore(*self._whole(entropies.take(inside), visible.take(inside)), share)
-            for name, (inside, share) in self._zones.items()
-        }
 
     def _scatter(self, entropies: Floats, visible: NDArray[np.bool_]) -> Scatter:
         """Return the residuals of entropy and coverage: of the rig, of zones and classes."""

@@ -32,20 +32,20 @@ class Scenarios:
     def __init__(self, rigs: Sequence[Rig]) -> None:
         if not rigs:
             raise InputError("evaluator", "rigs", "at least one rig", "none")
-        self._by_pose: dict[tuple[str, Pose, SensorModel], Sensor] = {}
-        self._counts: dict[str, int] = {}
-        self.parts = tuple(Rig([self._numbered(sensor) for sensor in rig]) for rig in rigs)
-        self.all = Rig(list(self._by_pose.values()))
+        by_pose: dict[tuple[str, Pose, SensorModel], Sensor] = {}
+        counts: dict[str, int] = {}  # poses by sensor
 
-    def _numbered(self, sensor: Sensor) -> Sensor:
-        """Return a sensor under a name for its pose, in its fusion group."""
-        key = sensor.name, sensor.pose, sensor.model
-        if key not in self._by_pose:
-            pose = self._counts.get(sensor.name, 0)
-            self._counts[sensor.name] = pose + 1
-            number = list(self._counts).index(sensor.name)
-            self._by_pose[key] = replace(sensor, name=f"{number}.{pose}", fusion=sensor.group)
-        return self._by_pose[key]
+        def numbered(sensor: Sensor) -> Sensor:
+            key = sensor.name, sensor.pose, sensor.model
+            if key not in by_pose:
+                pose = counts.get(sensor.name, 0)
+                counts[sensor.name] = pose + 1
+                name = f"{list(counts).index(sensor.name)}.{pose}"
+                by_pose[key] = replace(sensor, name=name, fusion=sensor.group)
+            return by_pose[key]
+
+        self.parts = tuple(Rig([numbered(sensor) for sensor in rig]) for rig in rigs)
+        self.all = Rig(list(by_pose.values()))
 
 
 def mean_or_worst(entropies: Sequence[float], worst: bool) -> float:

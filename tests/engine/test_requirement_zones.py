@@ -26,7 +26,7 @@ def test_planes_leave_out_mirrors_and_what_is_above():
     assert (planes.across["left"], planes.across["right"]) == (1.0, -1.0)
     assert (planes.across["near"], planes.across["off"]) == (1.0, -1.0)
     assert (planes.along["front"], planes.along["rear"]) == (2.5, -2.5)
-    assert "mirror_left" in planes.found["left"]
+    assert "mirror_left" in planes.found["left"]["parts"]
     assert signed_distance(np.array([[0.0, 0.0], [3.5, 2.0]]), planes.outline) == pytest.approx(
         [-1.0, math.hypot(1.0, 1.0)]
     )
@@ -65,10 +65,9 @@ def test_a_mesh_without_names_has_its_axles_and_mirrors_by_shape():
     assert planes.along["rear_axle"] == pytest.approx(-1.3, abs=1e-6)
     assert planes.along["front_axle"] == pytest.approx(1.4, abs=1e-6)
     assert (planes.across["left"], planes.across["right"]) == (0.9, -0.9)
-    assert "shape of mirrors: x 0.60 to 0.80 m" in planes.found["left"]
+    assert planes.found["left"]["x"] == [0.6, 0.8]
     assert np.abs(planes.outline[:, 1]).max() == 0.9
-    names = {name: planes.found[name] for name in ("rear_axle", "front_axle")}
-    assert set(names.values()) == {"where tyres touch the ground, by shape"}
+    assert planes.found["rear_axle"] == planes.found["front_axle"] == {"code": "tyres"}
 
 
 @pytest.mark.parametrize("turned", [1.0, -1.0], ids=["forward", "backward"])
@@ -84,7 +83,7 @@ def test_features_by_shape_are_told_as_missing_where_they_are_not_clear():
     """Mirrors that hang together with the body stay; a box on the ground has no axles."""
     welded = VehiclePlanes.of(nameless(welded=True, tyres=False))
     assert welded.across["left"] == pytest.approx(1.08)
-    assert "none is found by shape" in welded.found["left"]
+    assert welded.found["left"] == {"code": "mesh"}
     assert "tyres alone on the ground" in welded.missing["front_axle"]
     one_side = nameless().triangles
     one_side = one_side[
@@ -128,7 +127,7 @@ def test_the_door_is_the_drivers(name):
             and "left" in planes.missing["door"]
         )
         return
-    assert planes.found["door"] == f"rear edge of {[*doors][-1]}"
+    assert planes.found["door"] == {"code": "door", "parts": [[*doors][-1]]}
     kerb_left = VehiclePlanes.of(*with_doors(doors), near_side="left")
     assert kerb_left.along.get("door") == (x if "both" in name else None)
     assert "rear axle" in VehiclePlanes.of(*with_doors(doors, axles=False)).missing["door"]

@@ -26,43 +26,20 @@ DISTANCE = Number(0.0, 100.0, unit="m", noun="length")
 
 @dataclass(frozen=True)
 class Criterion:
-    """What has to be seen of a body at a sample of the zone.
+    """What has to be seen of a body at a sample of the zone; its fields say what they ask for.
 
     A sensor sees a body if it has at least `points` on it (kinds that count points) or `pixels` of
-    it (other kinds), and at least the `share` of it is visible.
+    it (other kinds), and at least the `share` of it is visible, of its height (bands of 0.1 m) and
+    its width. Only the kinds `of` sensors count, all by default; with `share` or `per_degree` only
+    kinds whose rays end on bodies (`Kind.shows_parts`).
 
-    Parameters
-    ----------
-    sensors, kinds : int
-        At least so many sensors, of at least so many kinds, see the body.
-    of : sequence of str
-        Only these kinds of sensors count; all by default. The rig has to have one of them.
-    points, pixels : float
-        At least so many beams end on the body, or so many pixels show it.
-    pixels_high : float, optional
-        The image of the body is at least so many pixels high, where a sensor counts pixels: m over
-        the width of the box's image, which errs low.
-    per_degree : float, optional
-        At least so many beams or pixels on a degree, on average over the body's box: the square
-        root of m over its solid angle, which errs high.
-    share : float, optional
-        At least this share of the body is visible, of its height (bands of 0.1 m) and its width.
-        Only kinds whose rays end on bodies count then (`Kind.shows_parts`), as with `per_degree`.
-    ap : float, optional
-        The AP of the body's class, all sensors fused, is at least this.
-    zone_share : float
-        For at least this share of the zone's samples.
-    blind_m2 : float, optional
-        At most so much of the zone's ground is blind.
-    blind_out : float, optional
-        Blind ground in the zone is at most this far from the body's rectangle [m].
-    blind_height : float
-        Of what is this tall [m].
+    `pixels_high` is m over the width of the box's image, which errs low. `per_degree` is on average
+    over the body's box: the square root of m over its solid angle, which errs high.
 
     Raises
     ------
     InputError
-        When a value is none.
+        When a value is none, or keys of bodies are mixed with those of the ground.
     """
 
     sensors: int = setting(
@@ -193,14 +170,7 @@ class Criterion:
 class Under:
     """What a requirement has to be met under, besides the rig as it stands.
 
-    Parameters
-    ----------
-    one_lost : bool
-        Also with any one sensor lost.
-    mounting : bool
-        Also with the mounting errors of the search's tolerance.
-    states, weathers : tuple of str
-        Also in these states and weathers of the study, by name; "*": in all.
+    `states` and `weathers` are those of the study, by name; "*": all.
     """
 
     one_lost: bool = setting(

@@ -12,6 +12,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +27,12 @@ from .body_features import axles_of, mirror_faces, parts_below
 Place = float | str
 """A coordinate of a zone: metres in the ground frame, or a plane with an offset."""
 
+PlaneSource = dict[str, Any]
+FOUND = ("mesh", "without named", "without shaped", "stated", "wheels", "tyres", "door")
+"""Codes of how planes are found: of the mesh; without `parts` that are named mirrors, or without
+what has the shape of mirrors in ranges `x` and `z` [m]; each perhaps `below` a height [m]; stated
+in the study; of parts named wheel, tire or tyre; where tyres touch the ground; the rear edge of a
+door."""
 MIRRORS = ("mirror", "antenna", "aerial", "wiper")
 """Beginnings of words in the names of parts that the planes leave out, as UN R159 does."""
 DOORS, NO_DOORS = ("door",), ("window", "windows", "handle", "mirror")
@@ -50,8 +57,8 @@ class VehiclePlanes:
     ----------
     along, across : dict of float
         x of the planes across the vehicle, y of the planes along it [m].
-    found : dict of str
-        By plane: how it was found, in words.
+    found : dict of dict
+        By plane how it was found: a `code` (`FOUND`), and values.
     missing : dict of str
         By plane that was not found: what would be needed.
     outline : (K, 2) float
@@ -60,7 +67,7 @@ class VehiclePlanes:
 
     along: Mapping[str, float]
     across: Mapping[str, float]
-    found: Mapping[str, str]
+    found: Mapping[str, PlaneSource]
     missing: Mapping[str, str]
     outline: Floats
 
@@ -95,14 +102,14 @@ class VehiclePlanes:
         across["near"], across["off"] = (
             across[side] for side in (SIDES if near_side == "left" else SIDES[::-1])
         )
-        found = dict.fromkeys((*OUTWARD, "near", "off", "center"), how)
+        found: dict[str, PlaneSource] = dict.fromkeys((*OUTWARD, "near", "off", "center"), how)
         missing = _add_axles(along, found, vehicle, reference)
         driver = SIDES[near_side == SIDES[0]]
         missing |= _add_door(along, found, vehicle, driver, across["center"])
         if eyes is None:
             missing["eyes"] = "eyes = x of the driver's eyes"
         else:
-            along["eyes"], found["eyes"] = eyes, "eyes"
+            along["eyes"], found["eyes"] = eyes, {"code": "stated"}
         rounded = ({k: round(v, DECIMALS) for k, v in own.items()} for own in (along, across))
         x, y = (MappingProxyType(each) for each in rounded)
         outline = read_only(convex_outline(points[:, :2]))
@@ -180,30 +187,30 @@ def _chain(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
     return chain
 
 
-def _body_points(vehicle: Vehicle, below: float | None) -> tuple[Floats, str]:
+def _body_points(vehicle: Vehicle, below: float | None) -> tuple[Floats, PlaneSource]:
     """Return corners (N, 3) of the body without mirrors, below a height, and how it was made."""
     names = vehicle.part_names
     named = [k for k, name in enumerate(names) if is_called(name, MIRRORS, ())]
     left_out = np.isin(vehicle.parts, named) if named else mirror_faces(vehicle)
     body = vehicle.triangles[~left_out]
-    how = "of the mesh; no part is named a mirror, and none is found by shape"
+    how: PlaneSource = {"code": "mesh"}
     if named and len(body):
-        how = f"of the mesh without {', '.join(names[k] for k in named)}"
+        how = {"code": "without named", "parts": [names[k] for k in named]}
     elif left_out.any():
         x, z = vehicle.triangles[left_out][..., 0], vehicle.triangles[left_out][..., 2]
-        where = f"x {x.min():.2f} to {x.max():.2f} m, z {z.min():.2f} to {z.max():.2f} m"
-        how = f"of the mesh without what has the shape of mirrors: {where}"
+        x_m, z_m = ([round(float(end), 2) for end in (w.min(), w.max())] for w in (x, z))
+        how = {"code": "without shaped", "x": x_m, "z": z_m}
     body = body if len(body) else vehicle.triangles
     if below is None:
         return body.reshape(-1, 3), how
     low = parts_below(body, below).reshape(-1, 3)
     low = low[~np.isnan(low[:, 0])]
-    return (low, f"{how}, below {below:g} m") if len(low) else (body.reshape(-1, 3), how)
+    return (low, how | {"below": below}) if len(low) else (body.reshape(-1, 3), how)
 
 
 def _add_axles(
     along: dict[str, float],
-    found: dict[str, str],
+    found: dict[str, PlaneSource],
     vehicle: Vehicle,
     reference: Reference | None,
 ) -> dict[str, str]:
@@ -215,9 +222,9 @@ def _add_axles(
             needed += "on the ground"
             return {"rear_axle": needed, "front_axle": needed}
         for name, x in zip(("rear_axle", "front_axle"), axles, strict=True):
-            along[name], found[name] = x, "where tyres touch the ground, by shape"
+            along[name], found[name] = x, {"code": "tyres"}
         return {}
-    how = "of [reference]" if reference is not None else "of the parts named wheel, tire or tyre"
+    how: PlaneSource = {"code": "stated" if reference is not None else "wheels"}
     along["rear_axle"], found["rear_axle"] = own.rear_axle_x, how
     if own.wheelbase is None:
         return {"front_axle": "[reference] with a wheelbase"}
@@ -226,7 +233,11 @@ def _add_axles(
 
 
 def _add_door(
-    along: dict[str, float], found: dict[str, str], vehicle: Vehicle, side: str, middle: float
+    along: dict[str, float],
+    found: dict[str, PlaneSource],
+    vehicle: Vehicle,
+    side: str,
+    middle: float,
 ) -> dict[str, str]:
     """Add the rear edge of the driver's door to the planes; return what is missing.
 
@@ -254,5 +265,5 @@ def _add_door(
         needed = f"a door on the driver's side ({side}), ahead of the rear axle, at most "
         return {"door": f"{needed}{LONGEST_DOOR_M:g} m long; not {names}"}
     foremost = max(doors, key=lambda name: sum(doors[name]))
-    along["door"], found["door"] = doors[foremost][0], f"rear edge of {foremost}"
+    along["door"], found["door"] = doors[foremost][0], {"code": "door", "parts": [foremost]}
     return {}

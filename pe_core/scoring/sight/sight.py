@@ -28,7 +28,7 @@ from .blind_squares import STEP_M, BlindSearch, fine_enough
 from .ground_cells import GroundCells, widened
 from .reach import AP, BEARINGS, Reach, Spokes, density_of, object_reach
 from .visibility import GroundSight, VisibleShares, ground_sight, visible_shares
-from .voxel_sets import VoxelsByCell, VoxelSetCache, by_prior, in_layer, layer_at
+from .voxel_sets import VoxelSetCache, by_prior, in_layer, layer_at
 
 ORIGIN = ((0.0, 0.0), (0.0, 0.0))
 SAMPLES = 65_536
@@ -109,7 +109,14 @@ class Sight:
         layer = None if height is None else layer_at(self.space, height)
         with self._lock:
             key = "ground", layer, cells.key
-            measured = self._voxel_sets.voxels(key, lambda: self._ground_voxels(layer, cells))
+            measured = self._voxel_sets.voxels(
+                key,
+                lambda: (
+                    by_prior(cells, self.space, self._tops, self._densities)
+                    if layer is None
+                    else in_layer(cells, self.space, self._tops, layer)
+                ),
+            )
             m, approximate = measured.measured(rig, preview)
             return ground_sight(measured.voxels, rig, m, self._fusion, height, approximate)
 
@@ -281,11 +288,6 @@ class Sight:
             without = self._fusion.entropies(fused_early(rig, m, rest))[0] if rest else H_BLIND
             rises[name] = without - whole
         return rises
-
-    def _ground_voxels(self, layer: int | None, cells: GroundCells) -> VoxelsByCell:
-        if layer is None:
-            return by_prior(cells, self.space, self._tops, self._densities)
-        return in_layer(cells, self.space, self._tops, layer)
 
     @cached_property
     def _lone(self) -> LoneObjects:

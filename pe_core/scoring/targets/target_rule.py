@@ -25,14 +25,6 @@ COUNT = Whole(8, 20_000, "scenes")
 class TargetRule:
     """The targets of a score, and how objects are placed.
 
-    Parameters
-    ----------
-    targets : {"voxels", "objects"}
-    traffic : bool
-        Whether the objects of a scene occlude each other.
-    scenes : int
-        Number of scenes with objects; the score is their mean.
-
     Raises
     ------
     InputError

@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 
@@ -40,73 +38,45 @@ START_M, START_TURN = 0.003, 0.002
 0.1 deg [m, rad]."""
 
 
-class Domain(Protocol):
-    """The poses that one sensor may take, by values of design variables."""
-
-    @property
-    def variables(self) -> tuple[DesignVariable, ...]:
-        """The design variables of the sensor."""
-
-    @property
-    def start(self) -> tuple[float, ...]:
-        """Values of the variables where the search starts."""
-
-    def placed(self, values: Sequence[float]) -> tuple[Pose, tuple[float, ...]]:
-        """Return the pose at values of the variables, and the values of that pose."""
-
-
-@dataclass(frozen=True)
 class BoxDomain:
     """Free coordinates of a sensor, each in its bounds."""
 
-    pose: Pose
-    bounds: Mapping[str, Bounds]
-    axes: tuple[str, ...] = field(init=False)
-    variables: tuple[DesignVariable, ...] = field(init=False)
-    start: tuple[float, ...] = field(init=False)
-
-    def __post_init__(self) -> None:
-        values, put = pose_values(self.pose), object.__setattr__
-        put(self, "axes", tuple(axis for axis in AXES if axis in self.bounds))
-        put(self, "variables", tuple(variable_of(axis, self.bounds[axis]) for axis in self.axes))
-        put(self, "start", tuple(values[axis] for axis in self.axes))
+    def __init__(self, pose: Pose, bounds: Mapping[str, Bounds]) -> None:
+        values, self._pose = pose_values(pose), pose
+        self._axes = tuple(axis for axis in AXES if axis in bounds)
+        self.variables = tuple(variable_of(axis, bounds[axis]) for axis in self._axes)
+        self.start = tuple(values[axis] for axis in self._axes)
 
     def placed(self, values: Sequence[float]) -> tuple[Pose, tuple[float, ...]]:
         """Return the pose at these coordinates, rounded."""
-        if not self.axes:
-            return self.pose, ()
-        moved = pose_values(self.pose) | dict(zip(self.axes, values, strict=True))
+        if not self._axes:
+            return self._pose, ()
+        moved = pose_values(self._pose) | dict(zip(self._axes, values, strict=True))
         pose = pose_from_values(moved)
         rounded_values = pose_values(pose)
-        return pose, tuple(rounded_values[axis] for axis in self.axes)
+        return pose, tuple(rounded_values[axis] for axis in self._axes)
 
 
-@dataclass(frozen=True)
 class SlotDomain:
     """One of a list of poses; its variable is a share from 0 to 1 of the list."""
 
-    who: str
-    mount: SlotMount
-    pose: Pose
-    variables: tuple[DesignVariable, ...] = (DesignVariable(0.0, 1.0, SHARE),)
-    start: tuple[float, ...] = field(init=False)
+    variables = (DesignVariable(0.0, 1.0, SHARE),)
 
-    def __post_init__(self) -> None:
-        slots = self.mount.slots
-        taken = [k for k, slot in enumerate(slots) if is_same_pose(slot.pose, self.pose)]
+    def __init__(self, who: str, mount: SlotMount, pose: Pose) -> None:
+        self._slots = mount.slots
+        taken = [k for k, slot in enumerate(self._slots) if is_same_pose(slot.pose, pose)]
         if not taken:
-            expected = f"a start in a slot: {', '.join(slot.name for slot in slots)}"
-            raise InputError(self.who, "position", expected, pose_text(self.pose))
-        object.__setattr__(self, "start", ((taken[0] + 0.5) / len(slots),))
+            expected = f"a start in a slot: {', '.join(slot.name for slot in self._slots)}"
+            raise InputError(who, "position", expected, pose_text(pose))
+        self.start = ((taken[0] + 0.5) / len(self._slots),)
 
     def placed(self, values: Sequence[float]) -> tuple[Pose, tuple[float, ...]]:
         """Return the pose of the slot at a share, and the middle of the slot's shares."""
-        slots = self.mount.slots
-        number = min(int(values[0] * len(slots)), len(slots) - 1)
-        return rounded(slots[number].pose), ((number + 0.5) / len(slots),)
+        count = len(self._slots)
+        number = min(int(values[0] * count), count - 1)
+        return rounded(self._slots[number].pose), ((number + 0.5) / count,)
 
 
-@dataclass(frozen=True)
 class SurfaceDomain:
     """A point of a surface, and the free angles of the sensor.
 
@@ -115,31 +85,33 @@ class SurfaceDomain:
     checked to be on the surface, unless it may be `anywhere`.
     """
 
-    who: str
-    mount: SurfaceMount
-    surface: MountSurface
-    pose: Pose
-    housing: Housing | None
-    bounds: Mapping[str, Bounds]
-    anywhere: bool = False
-    axes: tuple[str, ...] = field(init=False)
-    variables: tuple[DesignVariable, ...] = field(init=False)
-    start: tuple[float, ...] = field(init=False)
-    angles: Mapping[str, float] = field(init=False)
-
-    def __post_init__(self) -> None:
-        put = object.__setattr__
-        put(self, "axes", tuple(axis for axis in AXES[3:] if axis in self.bounds))
-        sides = zip(*(corner.tolist() for corner in self.surface.bounds), strict=True)
+    def __init__(
+        self,
+        who: str,
+        mount: SurfaceMount,
+        surface: MountSurface,
+        pose: Pose,
+        housing: Housing | None,
+        bounds: Mapping[str, Bounds],
+        anywhere: bool = False,
+    ) -> None:
+        self.mount, self.surface = mount, surface
+        self._standoff_point = standoff_point(mount, housing)
+        self._axes = tuple(axis for axis in AXES[3:] if axis in bounds)
+        sides = zip(*(corner.tolist() for corner in surface.bounds), strict=True)
         variables = [variable_of(axis, side) for axis, side in zip("xyz", sides, strict=True)]
-        variables += [variable_of(axis, self.bounds[axis]) for axis in self.axes]
-        put(self, "variables", tuple(variables))
-        foot, face = self.surface.closest(self.base(self.pose))
-        angles = self._angles(self.surface.outward(face))
-        put(self, "angles", angles)
-        put(self, "start", (*foot.tolist(), *(angles[axis] for axis in self.axes)))
-        if not self.anywhere:
-            self._check_start(foot, self.surface.outward(face))
+        variables += [variable_of(axis, bounds[axis]) for axis in self._axes]
+        self.variables = tuple(variables)
+        foot, face = surface.closest(self.base(pose))
+        normal = surface.outward(face)
+        rpy: Sequence[float] = pose.rpy
+        if mount.orientation != "upright":
+            frame = frame_of(mount.orientation, normal)
+            rpy = rpy_from_matrix(rotate(frame.T, pose.ground_from_sensor.T).T)
+        self._angles = dict(zip(AXES[3:], rpy, strict=True))
+        self.start = (*foot.tolist(), *(self._angles[axis] for axis in self._axes))
+        if not anywhere:
+            self._check_start(who, pose, bounds, foot, normal)
 
     def base(self, pose: Pose) -> Floats:
         """Return the point (3,) of a sensor at a pose from which the stand-off is measured [m]."""
@@ -149,41 +121,36 @@ class SurfaceDomain:
         """Return the pose at the closest point of the surface, and that point."""
         foot, face = self.surface.closest(np.array(values[:3]))
         normal = self.surface.outward(face)
-        angles = {**self.angles, **dict(zip(self.axes, values[3:], strict=True))}
-        rotation = rotate(frame_of(self.mount.orientation, normal), _rotation(angles).T).T
+        angles = {**self._angles, **dict(zip(self._axes, values[3:], strict=True))}
+        turn = rotation_matrix(*(angles[axis] for axis in AXES[3:]))
+        rotation = rotate(frame_of(self.mount.orientation, normal), turn.T).T
         position = foot + self.mount.standoff * normal - rotate(rotation, self._standoff_point)
         if self.mount.orientation != "upright":
             angles = dict(zip(AXES[3:], rpy_from_matrix(rotation), strict=True))
         pose = pose_from_values(dict(zip(POSITION_AXES, position.tolist(), strict=True)) | angles)
         return pose, (*foot.tolist(), *values[3:])
 
-    @property
-    def _standoff_point(self) -> Floats:
-        """Middle (3,) of the housing's base, or of its back, in the sensor frame [m]."""
-        return standoff_point(self.mount, self.housing)
-
-    def _angles(self, normal: Floats) -> dict[str, float]:
-        if self.mount.orientation == "upright":
-            return dict(zip(AXES[3:], self.pose.rpy, strict=True))
-        frame = frame_of(self.mount.orientation, normal)
-        mount_from_sensor = rotate(frame.T, self.pose.ground_from_sensor.T).T
-        return dict(zip(AXES[3:], rpy_from_matrix(mount_from_sensor), strict=True))
-
-    def _check_start(self, foot: Floats, normal: Floats) -> None:
+    def _check_start(
+        self, who: str, start: Pose, bounds: Mapping[str, Bounds], foot: Floats, normal: Floats
+    ) -> None:
         """Raise `InputError` for a start that is not on the surface, with a pose that would be."""
-        away = self.base(self.pose) - foot
+        away = self.base(start) - foot
         off = float(np.sqrt(dot(away, away))) - self.mount.standoff
         below = float(dot(away, normal)) < self.mount.standoff / 2.0 - START_M
         if abs(off) > START_M or below:
             pose, _ = self.placed(self.start)
             expected = f"a start on its mount, such as {pose_text(pose)}"
-            raise InputError(self.who, "position", expected, pose_text(self.pose))
-        for axis in self.axes:
-            low, high = self.bounds[axis]
-            if not low - START_TURN <= self.angles[axis] <= high + START_TURN:
-                expected = f"bounds around the start, {degrees_text(self.angles[axis])}"
+            raise InputError(who, "position", expected, pose_text(start))
+        for axis in self._axes:
+            low, high = bounds[axis]
+            if not low - START_TURN <= self._angles[axis] <= high + START_TURN:
+                expected = f"bounds around the start, {degrees_text(self._angles[axis])}"
                 found = f"{degrees_text(low)} to {degrees_text(high)}"
-                raise InputError(self.who, f"bounds of {axis}", expected, found)
+                raise InputError(who, f"bounds of {axis}", expected, found)
+
+
+Domain = BoxDomain | SlotDomain | SurfaceDomain
+"""The poses that one sensor may take, by values of design variables."""
 
 
 def standoff_point(mount: SurfaceMount, housing: Housing | None) -> Floats:
@@ -235,10 +202,6 @@ def pose_text(pose: Pose) -> str:
 def degrees_text(angle: float) -> str:
     """Return an angle [rad] as text for messages."""
     return f"{round(math.degrees(angle), 3) + 0.0:g} deg"
-
-
-def _rotation(angles: Mapping[str, float]) -> Floats:
-    return rotation_matrix(*(angles[axis] for axis in AXES[3:]))
 
 
 ANY_ANGLE = {axis: (-math.tau, math.tau) for axis in ("roll", "pitch", "yaw")}

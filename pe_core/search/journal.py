@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor
 from typing import NamedTuple
 
@@ -18,6 +18,8 @@ from ..scene.rig import Rig
 from ..scoring.protocol import Evaluation, Objective
 from .dispatch import evaluate_all
 
+Told = Callable[[Rig, int, Evaluation], None]
+"""Takes a rig, the level that it was evaluated on, and its value."""
 DIGEST_BYTES = 4
 """Length of the digest that identifies a placement."""
 
@@ -45,12 +47,13 @@ class Journal:
         """All entries so far; may be read while another thread searches."""
         return tuple(self._entries)
 
-    def wrap(self, objectives: Sequence[Objective]) -> list[Objective]:
+    def wrap(self, objectives: Sequence[Objective], told: Told | None = None) -> list[Objective]:
         """Return objectives, one for each level of a method, that replay and extend the journal.
 
-        Behind the end of the journal they evaluate with the given objectives.
+        Behind the end of the journal they evaluate with the given objectives. `told` is called with
+        every value, replayed or new, in the order of the questions.
         """
-        return [JournaledObjective(self, inner, level) for level, inner in enumerate(objectives)]
+        return [JournaledObjective(self, own, k, told) for k, own in enumerate(objectives)]
 
     def replay(self, rig: Rig, level: int) -> Evaluation | None:
         """Return the journaled value of the next placement; None behind the end of the journal.
@@ -77,23 +80,26 @@ class Journal:
 class JournaledObjective:
     """An objective that replays a journal, and records what it evaluates behind the end."""
 
-    def __init__(self, journal: Journal, objective: Objective, level: int = 0) -> None:
-        self._journal, self._objective, self._level = journal, objective, level
+    def __init__(
+        self, journal: Journal, objective: Objective, level: int = 0, told: Told | None = None
+    ) -> None:
+        self._journal, self._objective, self._level, self._told = journal, objective, level, told
 
     def entropy(self, rig: Rig) -> float:
         """Return the entropy of a rig, from the journal or from the objective [nats]."""
-        value = self._journal.replay(rig, self._level)
-        if value is None:
-            value = Evaluation(self._objective.entropy(rig), False)
-            self._journal.record(rig, self._level, value)
-        return value.entropy
+        return self._known(rig, lambda: Evaluation(self._objective.entropy(rig), False)).entropy
 
     def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
         """Return the value of a rig, from the journal or from the objective."""
+        return self._known(rig, lambda: self._objective.evaluate(rig, cutoff))
+
+    def _known(self, rig: Rig, evaluate: Callable[[], Evaluation]) -> Evaluation:
         value = self._journal.replay(rig, self._level)
         if value is None:
-            value = self._objective.evaluate(rig, cutoff)
+            value = evaluate()
             self._journal.record(rig, self._level, value)
+        if self._told is not None:
+            self._told(rig, self._level, value)
         return value
 
     def evaluate_all(
@@ -103,19 +109,21 @@ class JournaledObjective:
 
         Workers are sent the objective without the journal.
         """
-        values = list(self._replayed(rigs))
+        replayed = (self._journal.replay(rig, self._level) for rig in rigs)
+        values: list[Evaluation] = []
+        for value in replayed:
+            if value is None:
+                break
+            values.append(value)
         new_rigs = rigs[len(values) :]
         new_values = evaluate_all(self._objective, new_rigs, cutoff, executor)
         for rig, value in zip(new_rigs, new_values, strict=True):
             self._journal.record(rig, self._level, value)
-        return values + new_values
-
-    def _replayed(self, rigs: Sequence[Rig]) -> Iterator[Evaluation]:
-        for rig in rigs:
-            value = self._journal.replay(rig, self._level)
-            if value is None:
-                return
-            yield value
+        values += new_values
+        if self._told is not None:
+            for rig, value in zip(rigs, values, strict=True):
+                self._told(rig, self._level, value)
+        return values
 
 
 def _digest(rig: Rig, level: int) -> str:

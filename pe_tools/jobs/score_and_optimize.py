@@ -297,7 +297,7 @@ class OptimizeJob(Job):
 
     def _search(self) -> Iterator[Progress]:
         """Search from every start in turn; the best of what they end at is the result."""
-        objectives = self._archive.wrap(self.journal.wrap(self._objectives))
+        objectives = self.journal.wrap(self._objectives, self._archive.note)
         starts = self.study.search.goals.starts
         rigs = {"": self.study.rig, **{s.name: s.placed(self.study.rig) for s in starts}}
         ended: list[list[HistoryRow]] = []

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from concurrent.futures import Executor
+from collections.abc import Iterator
 
 from pe_core.scene.rig import Rig
-from pe_core.scoring.protocol import Evaluation, Objective
-from pe_core.search import evaluate_all
+from pe_core.scoring.protocol import Evaluation
 from pe_core.study.requirement_search import is_infeasible
 
 APART_M, APART_RAD = 0.15, math.radians(6.0)
@@ -39,10 +37,6 @@ class Archive:
     def __init__(self) -> None:
         self._levels: dict[int, list[tuple[float, Rig]]] = {}
 
-    def wrap(self, objectives: Sequence[Objective]) -> list[Objective]:
-        """Return the objectives of a search, one for each level, that note what they evaluate."""
-        return [NotedObjective(self, inner, level) for level, inner in enumerate(objectives)]
-
     def note(self, rig: Rig, level: int, value: Evaluation) -> None:
         """Keep a placement if it is the best of its neighbourhood."""
         if value.is_lower_bound or is_infeasible(value.entropy):
@@ -62,31 +56,3 @@ class Archive:
         """Yield the placements kept: the best first, one level after the other, finest first."""
         for level in sorted(self._levels, reverse=True):
             yield from (rig for _, rig in self._levels[level])
-
-
-class NotedObjective:
-    """An objective that notes in an archive what another one evaluates."""
-
-    def __init__(self, archive: Archive, objective: Objective, level: int) -> None:
-        self._archive, self._objective, self._level = archive, objective, level
-
-    def entropy(self, rig: Rig) -> float:
-        """Return the value of a rig [nats]."""
-        value = self._objective.entropy(rig)
-        self._archive.note(rig, self._level, Evaluation(value, False))
-        return value
-
-    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
-        """Return the value of a rig, or a lower bound that is not below `cutoff`."""
-        value = self._objective.evaluate(rig, cutoff)
-        self._archive.note(rig, self._level, value)
-        return value
-
-    def evaluate_all(
-        self, rigs: Sequence[Rig], cutoff: float, executor: Executor | None
-    ) -> list[Evaluation]:
-        """Evaluate several rigs."""
-        values = evaluate_all(self._objective, rigs, cutoff, executor)
-        for rig, value in zip(rigs, values, strict=True):
-            self._archive.note(rig, self._level, value)
-        return values

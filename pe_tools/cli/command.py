@@ -18,7 +18,7 @@ from pe_core.base.errors import InputError
 from pe_core.base.files import named_path, quoted, reason_of
 from pe_core.search import Schedule
 from pe_core.sensors import CURVE_MODELS, kind_of
-from pe_core.study import METHODS, OBJECTIVES, SCHEDULED_METHOD, Search, Study
+from pe_core.study import METHODS, OBJECTIVES, SCHEDULED_METHOD, Study
 
 from .goal_options import add_goal_options, with_goals
 from .interrupts import FATAL, signals_interrupt
@@ -137,21 +137,16 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
     for name in ("method", "objective", "seed", "samples", "evaluations"):
         if (value := getattr(args, name, None)) is not None:
             search = replace(search, **{name: value})
-    if not (search.method == SCHEDULED_METHOD or study.selection.choices):
-        _check_schedule(study.search, search.method, args)
-    elif getattr(args, "candidates", None) is not None:
-        schedule = replace(search.schedule, candidates=args.candidates)
-        search = replace(search, schedule=schedule)
+    own, has_schedule = study.search, search.method == SCHEDULED_METHOD or study.selection.choices
+    candidates = getattr(args, "candidates", None)
+    if candidates is not None:
+        if not has_schedule:
+            expected = f"--method {SCHEDULED_METHOD}, the only method with candidates"
+            raise InputError("command line", "--candidates", expected, search.method)
+        search = replace(search, schedule=replace(search.schedule, candidates=candidates))
+    elif not has_schedule and own.method == SCHEDULED_METHOD and own.schedule != Schedule():
+        tell(f"--method {search.method}: the study's schedule, of {SCHEDULED_METHOD}, is not used")
     return with_goals(replace(study, search=search), args)
-
-
-def _check_schedule(own: Search, method: str, args: argparse.Namespace) -> None:
-    """Refuse an option that the method does not have; tell where it leaves the study's schedule."""
-    if getattr(args, "candidates", None) is not None:
-        expected = f"--method {SCHEDULED_METHOD}, the only method with candidates"
-        raise InputError("command line", "--candidates", expected, method)
-    if own.method == SCHEDULED_METHOD and own.schedule != Schedule():
-        tell(f"--method {method}: the study's schedule, of {SCHEDULED_METHOD}, is not used")
 
 
 def add_sensors_verb(verbs: argparse._SubParsersAction[Any]) -> None:
@@ -162,18 +157,14 @@ def add_sensors_verb(verbs: argparse._SubParsersAction[Any]) -> None:
 
 
 def _show_sensors(args: argparse.Namespace) -> Answer:
-    if args.name:
-        return describe(args.name), DONE
-    return "\n".join(f"{e.kind:7} {e.name}" for e in catalog.entries().values()), DONE
-
-
-def describe(name: str) -> str:
-    """Return the figures of a sensor of the catalogue, their source, and a plot if there is one."""
-    model = catalog.load(name)
+    if not args.name:
+        return "\n".join(f"{e.kind:7} {e.name}" for e in catalog.entries().values()), DONE
+    model = catalog.load(args.name)
     kind = kind_of(model)
     plot = kind.plot(model)
-    source = f"source          {catalog.entries()[name].source}"
-    return "\n".join([name, *kind.data_sheet(model), source, *(["", *plot] if plot else [])])
+    lines = [args.name, *kind.data_sheet(model)]
+    lines.append(f"source          {catalog.entries()[args.name].source}")
+    return "\n".join([*lines, *(["", *plot] if plot else [])]), DONE
 
 
 def as_typed(prog: str, argv: Sequence[str]) -> str:

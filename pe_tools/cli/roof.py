@@ -92,16 +92,13 @@ def _columns(low: Floats, high: Floats) -> PerceptionSpace:
     """Return columns over a body; one of them is in the middle along each axis."""
     sides = (high - low)[:2]
     step = max(min(STEP_M, float(sides.max()) / COLUMNS), 1e-3)
-    x, y = (
-        _odd_range(float(a + b) / 2.0, float(b - a), step)
-        for a, b in zip(low[:2], high[:2], strict=True)
-    )
+    ranges = []
+    for a, b in zip(low[:2], high[:2], strict=True):
+        middle = float(a + b) / 2.0
+        half = (2 * math.ceil(float(b - a) / step / 2.0) + 1) * step / 2.0
+        ranges.append((middle - half, middle + half))
+    x, y = ranges
     return PerceptionSpace(x, y, (0.0, step), step)
-
-
-def _odd_range(middle: float, side: float, step: float) -> tuple[float, float]:
-    half = (2 * math.ceil(side / step / 2.0) + 1) * step / 2.0
-    return middle - half, middle + half
 
 
 def _best_first(roof: Floats, low: Floats, high: Floats) -> Floats:

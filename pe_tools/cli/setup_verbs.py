@@ -64,35 +64,26 @@ def installation() -> dict[str, Any]:
 
     Paths have ``~`` for the user's home folder.
     """
-    memory = available_bytes()
+    memory, processors = available_bytes(), os.cpu_count() or 1
+    if hasattr(os, "sched_getaffinity"):
+        processors = len(os.sched_getaffinity(0))
+    try:
+        with tempfile.NamedTemporaryFile() as file:
+            temporary = f"{_without_home(str(Path(file.name).parent))} (writable)"
+    except OSError as error:
+        temporary = f"not writable: {reason_of(error)}"
     return {
         "perception_entropy": __version__,
         "installed_in": _without_home(str(Path(__file__).parents[2])),
         "python": f"{platform.python_version()} ({_without_home(sys.executable)})",
         "numpy": np.__version__,
         "platform": platform.platform(),
-        "processors": usable_processors(),
+        "processors": processors,
         "memory_available": "not known" if memory is None else size_text(memory),
-        "temporary_folder": temporary_folder(),
+        "temporary_folder": temporary,
         "extras": {extra: extra_text(extra) for extra in PACKAGES},
         "blenders": dict(blenders()),
     }
-
-
-def usable_processors() -> int:
-    """Return the number of processors that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
-def temporary_folder() -> str:
-    """Return the folder for temporary files, and whether files can be written there."""
-    try:
-        with tempfile.NamedTemporaryFile() as file:
-            return f"{_without_home(str(Path(file.name).parent))} (writable)"
-    except OSError as error:
-        return f"not writable: {reason_of(error)}"
 
 
 def extra_text(extra: str) -> str:

@@ -13,9 +13,9 @@ import re
 import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from pe_core.base.errors import InputError, shown
 from pe_core.base.file_stem import is_reserved
@@ -39,20 +39,16 @@ def folder_names(runs: Sequence[tuple[str, Mapping[str, str]]]) -> list[str]:
     words = [(name, *(f"{key}={text}" for key, text in changes.items())) for name, changes in runs]
     plain = [",".join(UNSAFE.sub("-", word) for word in each) for each in words]
     alike = Counter(name.casefold() for name in plain)
-    return [
-        _name(name, each, alike[name.casefold()] > 1)
-        for name, each in zip(plain, words, strict=True)
-    ]
-
-
-def _name(plain: str, words: tuple[str, ...], alike: bool) -> str:
-    short = plain[:MAX_NAME_LENGTH].strip("-.") or "run"
-    if short == ",".join(words) and not alike and not is_reserved(short):
-        return short
-    content = "\0".join(words).encode("utf-8", "surrogatepass")
-    digest = hashlib.blake2b(content, digest_size=HASH_BYTES)
-    short = f"run-{short}" if is_reserved(short) else short  # as con.toml is, con.2-1f is one, too
-    return f"{short}-{digest.hexdigest()}"
+    names = []
+    for name, each in zip(plain, words, strict=True):
+        short = name[:MAX_NAME_LENGTH].strip("-.") or "run"
+        if short != ",".join(each) or alike[name.casefold()] > 1 or is_reserved(short):
+            content = "\0".join(each).encode("utf-8", "surrogatepass")
+            digest = hashlib.blake2b(content, digest_size=HASH_BYTES).hexdigest()
+            # As con.toml is reserved, con.2-1f is, too.
+            short = f"{'run-' if is_reserved(short) else ''}{short}-{digest}"
+        names.append(short)
+    return names
 
 
 PART = r"""(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')"""
@@ -63,18 +59,16 @@ SOURCE = "--set"
 OPENING, CLOSING, QUOTES = "[{", "]}", "\"'"
 
 
-@dataclass(frozen=True, slots=True)
-class TriedKey:
-    """A key of a study as the user wrote it, and the values that are tried.
+class TriedKey(NamedTuple):
+    """A key of a study as the user wrote it, and the values that are tried, by their texts.
 
     In its path, an element of an array of tables has its name, or its index from 0. Values are
-    those of TOML, a text that is none is a string; texts are as the user wrote them.
+    those of TOML, a text that is none is a string.
     """
 
     key: str
     path: tuple[str, ...]
-    values: tuple[Any, ...]
-    texts: tuple[str, ...]
+    values: dict[str, Any]
 
 
 def read_settings(texts: Sequence[str]) -> tuple[TriedKey, ...]:
@@ -100,13 +94,12 @@ def _setting(text: str) -> TriedKey:
     path = tuple(part.strip("\"'") for part in PARTS.findall(key))
     if len(path) > MAX_PARTS:
         raise InputError(SOURCE, "text", f"keys of at most {MAX_PARTS} parts", f"{len(path)}")
-    texts = tuple(part.strip() for part in _split(listed))
+    texts = Counter(part.strip() for part in _split(listed))
     if "" in texts:
         raise InputError(SOURCE, key, "values with commas between them", shown(listed))
-    if len(set(texts)) < len(texts):
-        twice = next(value_text for value_text, count in Counter(texts).items() if count > 1)
-        raise InputError(SOURCE, key, "each value once", f"{twice} twice")
-    return TriedKey(key, path, tuple(map(_value, texts)), texts)
+    if twice := [value for value, count in texts.items() if count > 1]:
+        raise InputError(SOURCE, key, "each value once", f"{twice[0]} twice")
+    return TriedKey(key, path, {value: _value(value) for value in texts})
 
 
 def _split(text: str) -> Iterator[str]:
@@ -168,51 +161,38 @@ def sweep_runs(
 
 def _changed_studies(path: Path, settings: Sequence[TriedKey]) -> Iterator[tuple[Made, Study]]:
     data, vehicles = load_study_data(path), dict[str, Vehicle | None]()
-    choices = [range(len(setting.values)) for setting in settings]
-    for numbers in itertools.product(*choices):
+    for texts in itertools.product(*(setting.values for setting in settings)):
         changed, changes = copy.deepcopy(data), Made()
-        for setting, number in zip(settings, numbers, strict=True):
-            _set(changed, setting, setting.values[number], str(path))
-            changes[setting.key] = setting.texts[number]
-        study = _study(changed, path, changes)
-        vehicle = vehicles.setdefault(
-            repr(changed.get("vehicle")), study.vehicle
-        )  # read each file once
+        for setting, text in zip(settings, texts, strict=True):
+            _set(changed, setting, setting.values[text], str(path))
+            changes[setting.key] = text
+        try:
+            study = study_from_dict(changed, str(path), path.parent)
+        except InputError as error:
+            if not changes or error.source != str(path):
+                raise
+            named = ", ".join(f"{key}={text}" for key, text in changes.items())
+            raise error.at(f"{path} with {named}") from None
+        vehicle = vehicles.setdefault(repr(changed.get("vehicle")), study.vehicle)  # read once
         yield changes, replace(study, vehicle=vehicle)
-
-
-def _study(data: dict[str, Any], path: Path, changes: Made) -> Study:
-    """Build a study; an error message names the changes."""
-    try:
-        return study_from_dict(data, str(path), path.parent)
-    except InputError as error:
-        if not changes or error.source != str(path):
-            raise
-        changes_text = ", ".join(f"{key}={text}" for key, text in changes.items())
-        raise error.at(f"{path} with {changes_text}") from None
 
 
 def _set(data: dict[str, Any], setting: TriedKey, value: Any, source: str) -> None:
     """Change a value in a study's plain data; missing tables on the path are created."""
-    *path, last = setting.path
     node: Any = data
-    for number, part in enumerate(path):
-        found = ".".join(setting.path[:number]) or "document"
-        node = _inside(node, part, setting, source, found)
-    if isinstance(node, list):
-        node[_index(node, last, setting, source)] = copy.deepcopy(value)
-    elif isinstance(node, dict):
-        node[last] = copy.deepcopy(value)
-    else:
-        raise InputError(source, setting.key, "a table before the last dot", shown(node))
-
-
-def _inside(here: Any, part: str, setting: TriedKey, source: str, found: str) -> Any:
-    if isinstance(here, list):
-        return here[_index(here, part, setting, source)]
-    if isinstance(here, dict):
-        return here.setdefault(part, {})
-    raise InputError(source, setting.key, f"a table at {found}", shown(here))
+    for number, part in enumerate(setting.path, 1):
+        is_last = number == len(setting.path)
+        if not isinstance(node, list | dict):
+            at = ".".join(setting.path[: number - 1])
+            place = "before the last dot" if is_last else f"at {at}"
+            raise InputError(source, setting.key, f"a table {place}", shown(node))
+        key: Any = _index(node, part, setting, source) if isinstance(node, list) else part
+        if is_last:
+            node[key] = copy.deepcopy(value)
+        elif isinstance(node, list):
+            node = node[key]
+        else:
+            node = node.setdefault(part, {})
 
 
 def _index(elements: list[Any], part: str, setting: TriedKey, source: str) -> int:

@@ -20,8 +20,6 @@ from tests.engine.test_docs import ROOT
 sys.path.insert(0, str(ROOT / "tools"))
 import release
 
-from tests.limits import HANG_S
-
 FOR_DEVELOPERS = {"test", "release", "dev", "docs", "bench"}
 
 
@@ -115,58 +113,6 @@ def test_bash_completes_verbs_options_and_files(tmp_path, capsys):
     )
     run = subprocess.run([bash, "-c", code], cwd=tmp_path, capture_output=True, text=True)
     assert run.stdout.split("\n")[:4] == ["optimize", "--grid-samples", "study.toml", "fish"], run
-
-
-def test_fish_completes_verbs_options_and_shells(tmp_path, capsys):
-    """In a real fish, with the script as it is printed."""
-    pytest.importorskip("shtab")
-    fish = shutil.which("fish")
-    if fish is None:
-        pytest.skip("there is no fish")
-    assert main(["completion", "fish"]) == 0
-    (tmp_path / "pe.fish").write_text(capsys.readouterr().out)
-    lines = ("pe opt", "pe score --grid", "pe completion f")
-    code = "; ".join(["source pe.fish", *(f"complete -C '{line}'" for line in lines)])
-    run = subprocess.run(
-        [fish, "-N", "-c", code],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        env={**os.environ, "HOME": str(tmp_path)},
-    )
-    found = [line.split("\t")[0] for line in run.stdout.splitlines()]
-    assert found == ["optimize", "--grid-samples", "fish"], run
-
-
-ZSH = r"""
-zmodload zsh/zpty
-zpty z zsh -f -i
-zpty -w z "fpath=($PWD \$fpath); autoload -Uz compinit; compinit -u -D"
-zpty -w z "pe() { : }; PS1=; print REA''DY"
-zpty -r -m z shown '*READY*'
-for line in 'pe opti' 'pe score --grid-s' 'pe completion fi'; do
-  zpty -w -n z "$line"$'\t; print DO\'\'NE\n'
-  zpty -r -m z shown '*DONE*'
-  print -r -- "$shown"
-done
-zpty -d z
-"""
-"""Types lines with Tab into an interactive zsh, and prints what it shows of them."""
-
-
-def test_zsh_completes_verbs_options_and_shells(tmp_path, capsys):
-    """In a real zsh, with the script as it is printed, found as ``_pe`` in its path."""
-    pytest.importorskip("shtab")
-    zsh = shutil.which("zsh")
-    if zsh is None:
-        pytest.skip("there is no zsh")
-    assert main(["completion", "zsh"]) == 0
-    (tmp_path / "_pe").write_text(capsys.readouterr().out)
-    run = subprocess.run(
-        [zsh, "-f", "-c", ZSH], cwd=tmp_path, capture_output=True, text=True, timeout=HANG_S
-    )
-    for whole in ("optimize", "--grid-samples", "fish"):
-        assert whole in run.stdout, run
 
 
 def test_without_the_library_a_line_says_what_to_install(monkeypatch, capsys):

@@ -66,9 +66,10 @@ def table(folder):
 def test_values_are_toml_or_else_texts():
     texts = ("a.b=1,2.5,true", "c=HDL-64E,Velodyne VLP-16 Puck", 'd."e f".0=[1, 2],[3,4],"x,y"')
     first, second, third = read_settings(texts)
-    assert (first.path, first.values) == (("a", "b"), (1, 2.5, True))
-    assert second.values == ("HDL-64E", "Velodyne VLP-16 Puck")
-    assert (third.path, third.values) == (("d", "e f", "0"), ([1, 2], [3, 4], "x,y"))
+    assert (first.path, second.path, third.path) == (("a", "b"), ("c",), ("d", "e f", "0"))
+    found = [list(each.values.values()) for each in (first, second, third)]
+    assert found[0] == [1, 2.5, True] and found[1] == ["HDL-64E", "Velodyne VLP-16 Puck"]
+    assert found[2] == [[1, 2], [3, 4], "x,y"]
 
 
 def test_several_settings_make_every_combination(study):

@@ -193,10 +193,7 @@ def measured_housing(model: str) -> bpy.types.Mesh | None:
 def housing_mesh(model: str) -> bpy.types.Mesh:
     """Return the mesh of a model's housing, of a typical one where no size of it is known.
 
-    Raises
-    ------
-    InputError
-        When there is no such model.
+    `InputError` when there is no such model.
     """
     for mesh in bpy.data.meshes:
         if mesh.get(KEY) == model and mesh.library is None:

@@ -35,10 +35,7 @@ def read_po(path: Path) -> dict[str, str]:
 
     Contexts and plural forms are not used.
 
-    Raises
-    ------
-    InputError
-        When a line is none of such a file, or the file is not in UTF-8.
+    `InputError` when a line is none of such a file, or the file is not in UTF-8.
     """
     try:
         lines = path.read_text("utf-8").splitlines()

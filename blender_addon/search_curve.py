@@ -7,7 +7,7 @@ score.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import bpy
 
@@ -105,19 +105,6 @@ def curve_of(progress: SearchProgress) -> SearchCurve:
     return SearchCurve(tuple(steps), low_text, high_text, placements, title, aside)
 
 
-class PlotAxes(NamedTuple):
-    """The rectangle of the axes in the region [px]: lower left corner and size."""
-
-    x: float
-    y: float
-    width: float
-    height: float
-
-    def at(self, across: float, up: float) -> tuple[float, float]:
-        """Return a point of the unit square in the region."""
-        return self.x + across * self.width, self.y + up * self.height
-
-
 _handlers = viewport.DrawHandlers()
 
 
@@ -150,36 +137,30 @@ def draw() -> None:
 def draw_curve(curve: SearchCurve, left: float, bottom: float, scale: float) -> None:
     """Draw a curve on a dark plate with that lower left corner [px]."""
     right, top = left + WIDTH * scale, bottom + HEIGHT * scale
-    pad = PAD * scale
-    axes = PlotAxes(
-        left + pad + LEFT * scale,
-        bottom + pad + BOTTOM * scale,
-        WIDTH * scale - 2.0 * pad - LEFT * scale,
-        HEIGHT * scale - 2.0 * pad - (TOP + BOTTOM) * scale,
-    )
+    pad, small, gap = PAD * scale, SMALL * scale, 5.0 * scale
+    x, y = left + pad + LEFT * scale, bottom + pad + BOTTOM * scale
+    width = WIDTH * scale - 2.0 * pad - LEFT * scale
+    height = HEIGHT * scale - 2.0 * pad - (TOP + BOTTOM) * scale
+
+    def at(across: float, up: float) -> tuple[float, float]:
+        return x + across * width, y + up * height
+
     viewport.fill_box((left, bottom, right, top), PLATE)
-    viewport.draw_line([axes.at(0, 1), axes.at(0, 0), axes.at(1, 0)], AXIS, AXIS_PX * scale)
-    viewport.draw_line([axes.at(*point) for point in curve.points], LINE, LINE_PX * scale)
-    x, y = axes.at(*curve.points[-1])
+    viewport.draw_line([at(0, 1), at(0, 0), at(1, 0)], AXIS, AXIS_PX * scale)
+    viewport.draw_line([at(*point) for point in curve.points], LINE, LINE_PX * scale)
+    end_x, end_y = at(*curve.points[-1])
     half = DOT_PX * scale / 2.0
-    viewport.fill_box((x - half, y - half, x + half, y + half), LINE)
-    _draw_labels(curve, axes, (left + pad, right - pad), top - pad, scale)
-
-
-def _draw_labels(
-    curve: SearchCurve, axes: PlotAxes, sides: tuple[float, float], top: float, scale: float
-) -> None:
-    """Draw the title and the ends of the axes."""
-    (left, right), title = sides, TITLE * scale
-    small, gap = SMALL * scale, 5.0 * scale
-    viewport.draw_text(curve.title, left, top - title, title, INK)
-    viewport.draw_text(curve.aside, right, top - title, small, FAINT, left_of_x=1.0)
-    x, high = axes.x - gap, axes.y + axes.height - 0.7 * small
-    viewport.draw_text(curve.high, x, high, small, FAINT, left_of_x=1.0)
-    viewport.draw_text(curve.low, x, axes.y, small, FAINT, left_of_x=1.0)
-    below = axes.y - small - gap
-    viewport.draw_text("1", axes.x, below, small, FAINT)
-    viewport.draw_text(curve.last, axes.x + axes.width, below, small, FAINT, left_of_x=1.0)
+    viewport.fill_box((end_x - half, end_y - half, end_x + half, end_y + half), LINE)
+    head = top - pad - TITLE * scale
+    viewport.draw_text(curve.title, left + pad, head, TITLE * scale, INK)
+    for text, text_x, text_y, ends in (
+        (curve.aside, right - pad, head, 1.0),
+        (curve.high, x - gap, y + height - 0.7 * small, 1.0),
+        (curve.low, x - gap, y, 1.0),
+        ("1", x, y - small - gap, 0.0),
+        (curve.last, x + width, y - small - gap, 1.0),
+    ):
+        viewport.draw_text(text, text_x, text_y, small, FAINT, left_of_x=ends)
 
 
 def _corner(context: bpy.types.Context) -> tuple[float, float]:

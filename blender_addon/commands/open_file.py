@@ -43,10 +43,7 @@ def from_file() -> Iterator[None]:
 def opened_scene() -> bpy.types.Scene:
     """Return the scene of the open file.
 
-    Raises
-    ------
-    InputError
-        When no file is open, or the scene has neither a vehicle nor sensors.
+    `InputError` when no file is open, or the scene has neither a vehicle nor sensors.
     """
     path, scene = bpy.data.filepath, bpy.context.scene
     if not path:

@@ -40,10 +40,7 @@ def read_request(
 ) -> ScoreRequest:
     """Read what the score needs of a scene; the vehicle only if it has changed.
 
-    Raises
-    ------
-    InputError
-        When something in the scene is wrong: one line.
+    `InputError` when something in the scene is wrong: one line.
     """
     bridge.check_scene(scene)
     rig = bridge.rig_from_objects(sensor_cache.sensors(scene), depsgraph)

@@ -274,10 +274,7 @@ def report(
 def chosen_sensor(context: bpy.types.Context, name: str) -> bpy.types.Object:
     """Return the sensor of that name; the active one when the name is empty.
 
-    Raises
-    ------
-    InputError
-        When there is no such sensor.
+    `InputError` when there is no such sensor.
     """
     obj = context.scene.objects.get(name) if name else context.active_object
     if obj is None or not obj.perception_entropy.is_sensor:
@@ -294,10 +291,7 @@ def begin_in_results_folder(operator: Any) -> None:
 def chosen_file(filepath: str) -> Path:
     """Return the chosen file.
 
-    Raises
-    ------
-    InputError
-        When no file was chosen, or its name cannot be one.
+    `InputError` when no file was chosen, or its name cannot be one.
     """
     path = text.named_path("export", "file", bpy.path.abspath(filepath))
     if not path.name:

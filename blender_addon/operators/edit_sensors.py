@@ -94,10 +94,7 @@ def unlink_mirror(context: bpy.types.Context, name: str) -> None:
 def mirrored_copy(context: bpy.types.Context, obj: bpy.types.Object) -> bpy.types.Object:
     """Return a copy of a sensor on the other side.
 
-    Raises
-    ------
-    InputError
-        When it is its own mirror image, or when its image is not on the vehicle.
+    `InputError` when it is its own mirror image, or when its image is not on the vehicle.
     """
     depsgraph = context.evaluated_depsgraph_get()
     sensor = bridge.sensor_from_object(obj, depsgraph)

@@ -104,10 +104,7 @@ def replace_sensors(
 ) -> Told:
     """Replace the sensors of the scene, as a variant; return what to report.
 
-    Raises
-    ------
-    InputError
-        When they cannot be put into the scene.
+    `InputError` when they cannot be put into the scene.
     """
     before = bridge.records_of_scene(scene)
     records = tuple(record_of(_known_sensor(scene, sensor)) for sensor in sensors)

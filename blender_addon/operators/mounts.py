@@ -126,10 +126,7 @@ def put_on_mount(
 ) -> None:
     """Put a sensor on a mount, at the nearest point to where it is.
 
-    Raises
-    ------
-    InputError
-        When the mount has no faces or slots, or its pose is fixed.
+    `InputError` when the mount has no faces or slots, or its pose is fixed.
     """
     row = scene.perception_entropy.mounts[name]
     mount = bridge.mount_of_row(scene, depsgraph, row)

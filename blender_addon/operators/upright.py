@@ -45,10 +45,7 @@ def stand_upright(context: bpy.types.Context, name: str) -> str:
 def upright_pose(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, middle: Vector) -> pe.Pose:
     """Return a sensor's pose with its z axis up, on a vehicle with that middle.
 
-    Raises
-    ------
-    InputError
-        When it is no valid sensor.
+    `InputError` when it is no valid sensor.
     """
     sensor = bridge.sensor_from_object(obj, depsgraph)
     position, ahead = sensor.pose.position, sensor.pose.ground_from_sensor[:, 0]

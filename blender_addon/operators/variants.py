@@ -182,10 +182,7 @@ def stand_as_variant(
 ) -> str:
     """Store the present sensors, and apply other sensors as a new variant; return its name.
 
-    Raises
-    ------
-    InputError
-        When they cannot stand here; there is no such variant then.
+    `InputError` when they cannot stand here; there is no such variant then.
     """
     keep_unsaved(scene, before)
     rows = scene.perception_entropy.variants

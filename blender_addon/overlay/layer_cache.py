@@ -72,7 +72,7 @@ class LayerCache:
     """Caches expensive results by plain keys; never used by two threads at once."""
 
     def __init__(self) -> None:
-        self._kept: dict[str, dict[Hashable, Any]] = {}
+        self._kept: dict[str, caches.RecentCache[Any]] = {}
         self._met: dict[Hashable, tuple[dict[str, bool], dict[str, bool]]] = {}
 
     def cast(self, request: ViewRequest, of: SceneSensor) -> graphics.Cast:
@@ -138,7 +138,7 @@ class LayerCache:
         if scored:
             return self._keep("scale", key, fit)
         if anew:
-            self._kept.get("fitted", {}).pop(key, None)
+            self._kept.pop("fitted", None)
         return self._keep("fitted", key, fit)
 
     def _sight(self, request: ViewRequest) -> Sight:
@@ -148,12 +148,9 @@ class LayerCache:
 
     def _keep(self, sort: str, key: Hashable, make: Callable[[], T]) -> T:
         """Return the cached value of a key, or make it; the least recently used one is dropped."""
-        kept = self._kept.setdefault(sort, {})
-        found = kept.pop(key, None)
-        kept[key] = make() if found is None else found
-        while len(kept) > MAX_KEPT.get(sort, 1):
-            del kept[next(iter(kept))]
-        return kept[key]
+        most = MAX_KEPT.get(sort, 1)
+        found: T = self._kept.setdefault(sort, caches.RecentCache(most)).made(key, make)
+        return found
 
 
 def _checker(request: ViewRequest) -> tuple[requirements.RequirementChecker, dict[str, str]]:

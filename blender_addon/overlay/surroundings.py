@@ -6,12 +6,12 @@ nothing of it is scored, exported or rendered.
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from typing import TYPE_CHECKING
 
 import gpu
 
 from .. import vehicle_cache
+from ..caches import RecentCache
 from ..engine import graphics, pe
 from ..viewport import DrawRegion
 from .batches import Batches
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 MAX_EYES = 4
 """Poses whose surroundings are kept on the graphics card."""
 LINE_PX = 1.0
-_kept: dict[Hashable, tuple[graphics.Surroundings, Batches, Batches]] = {}
+_kept: RecentCache[tuple[graphics.Surroundings, Batches, Batches]] = RecentCache(MAX_EYES)
 
 
 def clear() -> None:
@@ -63,13 +63,12 @@ def _around(
     scene: bpy.types.Scene, eye: pe.Pose, as_linear: bool = False
 ) -> tuple[graphics.Surroundings, Batches, Batches]:
     vehicle = vehicle_cache.shared.last_read(scene.name)
-    key = eye, id(vehicle), as_linear
-    if key not in _kept:
+
+    def make() -> tuple[graphics.Surroundings, Batches, Batches]:
         made = graphics.surroundings(eye, None if vehicle is None else vehicle.bounds)
-        while len(_kept) >= MAX_EYES:
-            del _kept[next(iter(_kept))]
         for shape in (made.ground, made.bodies) if as_linear else ():
             for part in (shape.faces, shape.thin):
                 part.colors[:] = graphics.linear(part.colors)
-        _kept[key] = made, Batches.of(made.ground), Batches.of(made.bodies)
-    return _kept[key]
+        return made, Batches.of(made.ground), Batches.of(made.bodies)
+
+    return _kept.made((eye, id(vehicle), as_linear), make)

@@ -97,7 +97,7 @@ ALLOWED = {
         "viewport",
         "worker",
     },
-    "overlay.surroundings": {"engine", "overlay", "vehicle_cache", "viewport"},
+    "overlay.surroundings": {"caches", "engine", "overlay", "vehicle_cache", "viewport"},
     "overlay.draw_handler": {
         "bridge",
         "engine",

@@ -244,15 +244,6 @@ def steps_above(found: Json) -> str:
     return f"rho is above 0 in {above} of {len(rows)} steps, its whole interval in {whole}"
 
 
-def all_round(found: Json) -> list[list[str]]:
-    """Return the lines of the table of the placements that see all round."""
-    rows = found["afterwards"]["all_round"]["scores"].items()
-    return [
-        [marked(name), with_interval(row), *map(rho_text, row["by_vehicle"].values())]
-        for name, row in rows
-    ]
-
-
 def rings(found: Json) -> list[list[str]]:
     """Return the lines of the table of rings."""
     return [

@@ -44,7 +44,6 @@ def page(study: Study, outside: Mapping[str, Json]) -> str:
         "alpha": rule.alpha,
         "tie": rule.tie_ap,
         "primary": PRIMARY,
-        "vehicles_alone": [f"{name} alone" for name in plan.vehicles],
         "changes": [row["after"] - row["before"] for row in replaced.values()],
         "alone": [sum(g[key] for g in groups) for key in ("plan_alone", "runs")],
         "trainings": findings.trainings(study.runs) if study.runs else "",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from ..pages import p_text, rho_text
 from ..ranks import min_significant_rho
@@ -57,8 +56,6 @@ def page_values(results: ValidityResults, own: str) -> Json:
         "body": " x ".join(f"{side:g}" for side in BODY_M),
         "treatments": list(TREATMENTS.values()),
         "tests": [_test_line(results, score) for score in results.scores],
-        "classes": [f"{p.short}: {name}" for p in papers() for name in p.classes.values()],
-        "by_class": _by_class(results),
         "conditions": [c.replace("_", " ") for c in _conditions()],
         "by_condition": _by_condition(results),
         "min_agreement": MIN_AGREEMENT,
@@ -103,21 +100,9 @@ def _test_line(results: ValidityResults, score: str) -> list[str]:
     return [score, *map(rho_text, results.test(score)["rho"]), *cells]
 
 
-def _cell(row: Json | None) -> str:
-    """Return a mean rho, in italics where the detectors do not agree; empty where there is none."""
-    if row is None:
-        return ""
+def _cell(row: Json) -> str:
+    """Return a mean rho, in italics where the detectors do not agree."""
     return f"*{rho_text(row['mean'])}*" if detectors_disagree(row) else rho_text(row["mean"])
-
-
-def _by_class(results: ValidityResults) -> list[list[str]]:
-    columns = [
-        {r["score"]: r for r in results.correlations_of(p, c)} for p in papers() for c in p.classes
-    ]
-    names = dict.fromkeys(name for column in columns for name in column)
-    lines = [[name, *(_cell(column.get(name)) for column in columns)] for name in names]
-    agreements = [next(iter(column.values()))["agreement"] for column in columns]
-    return [*lines, ["detectors with each other", *map(rho_text, agreements)]]
 
 
 def _conditions() -> list[str]:
@@ -127,9 +112,8 @@ def _conditions() -> list[str]:
 def _by_condition(results: ValidityResults) -> list[list[str]]:
     paper = papers()[0]
 
-    def rows(score: str) -> list[Any]:
-        found = [results.correlation_of(paper, MAIN_CLASS, score, c) for c in _conditions()]
-        return found
+    def rows(score: str) -> list[Json]:
+        return [results.correlation_of(paper, MAIN_CLASS, score, c) for c in _conditions()]
 
     names = [score.name for score in candidates_of(paper)]
     lines = [[name, *map(_cell, rows(name))] for name in names]

@@ -138,13 +138,7 @@ def detections(
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return the detections of a scene, by class: scores (N,), descending, and centres (N, 2) [m].
 
-    A detection is a cell whose probability is the highest of its neighbours.
-
-    Parameters
-    ----------
-    heat : (X, Y, C) float
-    offsets : (X, Y, 2) float
-    region : DetectionRegion
+    A detection is a cell whose probability, `heat` (X, Y, C), is the highest of its neighbours.
     """
     padded = np.pad(heat, ((1, 1), (1, 1), (0, 0)), constant_values=-1.0)
     nx, ny, classes = heat.shape

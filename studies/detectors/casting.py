@@ -36,14 +36,9 @@ NOISE = 7
 
 @dataclass(frozen=True, slots=True)
 class Points:
-    """Points of a scene in the ground frame.
+    """Points of a scene in the ground frame: positions (N, 3) with noise [m].
 
-    Attributes
-    ----------
-    positions : (N, 3) float
-        With noise [m].
-    beams : (K,) int
-        Beams that end on each object that is to be found, before points are dropped.
+    `beams` (K,) end on each object that is to be found, before points are dropped.
     """
 
     positions: Floats
@@ -52,17 +47,7 @@ class Points:
 
 @dataclass(frozen=True, slots=True)
 class RegionObjects:
-    """The objects of a scene in the region.
-
-    Attributes
-    ----------
-    centers : (K, 2) float32
-        Centres [m].
-    labels : (K,) uint8
-        Their classes.
-    beams : (K,) int32
-        Beams that end on each.
-    """
+    """The objects of a scene in the region: centres (K, 2) [m], classes, beams that end on each."""
 
     centers: NDArray[np.float32]
     labels: NDArray[np.uint8]
@@ -73,12 +58,7 @@ class RegionObjects:
 class RegionVoxels(RegionObjects):
     """Points of a scene counted in voxels: the input of the detector *grid*.
 
-    Attributes
-    ----------
-    cells : (N,) int32
-        Flat indices of voxels with points, over (x, y, layer).
-    counts : (N,) uint8
-        Points in each of them.
+    `cells` (N,) are flat indices of voxels with points, over (x, y, layer).
     """
 
     cells: NDArray[np.int32]
@@ -87,26 +67,14 @@ class RegionVoxels(RegionObjects):
 
 @dataclass(frozen=True, slots=True)
 class Cloud(RegionObjects):
-    """Points of a scene in the region: the input of the detector *points*.
-
-    Attributes
-    ----------
-    points : (N, 3) float32
-        At most `MAX_POINTS`, those above the ground first [m].
-    """
+    """The input of the detector *points*: (N, 3), those above the ground first."""
 
     points: NDArray[np.float32]
 
 
 @dataclass(frozen=True, slots=True)
 class RegionPictures(RegionObjects):
-    """Pictures of a scene: the input of the detector of cameras. Beams are pixels.
-
-    Attributes
-    ----------
-    pictures : (S, W, H, 3) uint8
-        Red, green and blue by camera, column and row.
-    """
+    """The input of the detector of cameras: pictures (S, W, H, 3). Beams are pixels."""
 
     pictures: NDArray[np.uint8]
 
@@ -149,14 +117,7 @@ def first_hits(
 
 
 class FreeBeams:
-    """The beams of one LiDAR that its vehicle's body does not block.
-
-    Attributes
-    ----------
-    origin : (3,) float
-    directions : (B, 3) float
-        Unit directions, ground frame.
-    """
+    """The beams of one LiDAR that its vehicle's body does not block: directions (B, 3)."""
 
     def __init__(self, placement: Placement, number: int) -> None:
         sensor = placement.rig().sensors[number]

@@ -73,13 +73,7 @@ def grid_network(layers: int, classes: int) -> Network:
 def points_network(features: int, region: tuple[int, int], classes: int) -> Network:
     """Return the network *points*: learned features of points, their maximum in each pillar.
 
-    Parameters
-    ----------
-    features : int
-        Of a point.
-    region : (X, Y) int
-        Pillars along x and y.
-    classes : int
+    `region` counts pillars along x and y, `features` are those of a point.
     """
     nx, ny = region
     entry = WIDTH * STRIDE * STRIDE
@@ -153,17 +147,10 @@ def conv(x: Tensor, w: Weights, name: str, stride: int = 1) -> Tensor:
 
 
 def loss(outputs: Tensor, heat: Tensor, offsets: Tensor, at: Tensor) -> Tensor:
-    """Return the loss of a batch.
+    """Return the loss of a batch of outputs (B, X, Y, C + 2).
 
-    Parameters
-    ----------
-    outputs : (B, X, Y, C + 2)
-    heat : (B, X, Y, C)
-        1 at centres, falling off round them.
-    offsets : (B, X, Y, 2)
-        From the middle of the cell to the centre [cells].
-    at : (B, X, Y)
-        1 in cells with a centre, else 0.
+    `heat` (B, X, Y, C) is 1 at centres, falling off round them; `offsets` (B, X, Y, 2) are from the
+    middle of the cell to the centre [cells]; `at` (B, X, Y) is 1 in cells with a centre, else 0.
     """
     p = tf.clip_by_value(tf.sigmoid(outputs[..., :-2]), NEAR_ZERO, 1.0 - NEAR_ZERO)
     centers = heat == 1.0
@@ -176,13 +163,7 @@ def loss(outputs: Tensor, heat: Tensor, offsets: Tensor, at: Tensor) -> Tensor:
 class Detector:
     """A network with its compiled training step, loss and outputs.
 
-    Parameters
-    ----------
-    network : Network
-    rate : float
-        Adam's.
-    average : float
-        Decay of the averaged weights a step.
+    `rate` is Adam's, `average` the decay of the averaged weights a step.
     """
 
     def __init__(self, network: Network, rate: float, average: float) -> None:

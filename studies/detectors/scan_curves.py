@@ -45,12 +45,8 @@ MIN_HALF = 4
 class BeamCounts:
     """How many beams end on the objects of a class at each of several placements, in traffic.
 
-    Attributes
-    ----------
-    m : (K,) float
-        Numbers of beams of all LiDARs together that occur.
-    shares : (P, K) float
-        Share of the class's objects with each number, by placement; each row sums to 1.
+    `m` (K,) are the numbers of beams of all LiDARs that occur, `shares` (P, K) the share of the
+    class's objects with each, by placement; each row sums to 1.
     """
 
     m: Floats

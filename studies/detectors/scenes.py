@@ -50,30 +50,20 @@ class Things:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """A scene, without the vehicle.
-
-    Attributes
-    ----------
-    triangles : (F, 3, 3) float
-        All that beams meet besides the vehicle and flat ground [m].
-    owners : (F,) int
-        The object that each triangle belongs to, or `NOBODY`.
-    solids : (F,) int
-        The object, distractor or house that each triangle belongs to, from 0 up.
-    centers : (N, 2) float
-        Centres of the objects that are to be found, seen from above [m].
-    labels : (N,) int
-        Their classes: indices into `CLASSES`.
-    flat : bool
-        Whether the ground is the plane z = 0; else it is among the triangles.
-    """
+    """A scene, without the vehicle."""
 
     triangles: Floats
+    """All that beams meet besides the vehicle and flat ground (F, 3, 3) [m]."""
     owners: Ints
+    """The object that each triangle belongs to, or `NOBODY`."""
     solids: Ints
+    """The object, distractor or house that each triangle belongs to, from 0 up."""
     centers: Floats
+    """Centres of the objects that are to be found, seen from above (N, 2) [m]."""
     labels: Ints
+    """Their classes: indices into `CLASSES`."""
     flat: bool
+    """Whether the ground is the plane z = 0; else it is among the triangles."""
 
 
 def scene(plan: StudyPlan, vehicle_name: str, split: str, world: str, number: int) -> Scene:

@@ -30,16 +30,9 @@ SQUARE = 4
 def solid(
     x: Sequence[float], y: Sequence[float], z: Sequence[float], top: float = 1.0, sides: int = 4
 ) -> Floats:
-    """Return the triangles (F, 3, 3) of a prism that fills a box, or of a frustum.
+    """Return the triangles (F, 3, 3) of a prism that fills a box (low, high), or of a frustum.
 
-    Parameters
-    ----------
-    x, y, z : (low, high) float
-        The box.
-    top : float
-        Size of the upper face relative to the lower one.
-    sides : int
-        Corners of the faces; 4: a box.
+    `top` is the size of the upper face relative to the lower one, `sides` are corners of the faces.
     """
     angles = 2.0 * np.pi * (np.arange(sides) + 0.5) / sides
     circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)

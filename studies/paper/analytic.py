@@ -35,15 +35,8 @@ def max_pixel_area(camera: Camera, distance: Floats, side: float) -> Floats:
     """Return an upper bound of the pixel area of cubes, (V,).
 
     The nearest point of a cube is nearer than its centre by up to half the diagonal. A pinhole
-    camera enlarges what is off its axis, most of all at the corner of the image.
-
-    Parameters
-    ----------
-    camera : Camera
-    distance : (V,) float
-        Distances of the centres of the cubes from the camera [m].
-    side : float
-        Side of the cubes [m].
+    camera enlarges what is off its axis, most of all at the corner of the image. `distance` is that
+    of the centres of the cubes (V,) and `side` their side [m].
     """
     nearest = np.maximum(distance - MAX_SHADOW / 2.0 * side, 1e-3)
     corner = math.hypot(camera.width, camera.height) / 2.0 / camera.focal_px
@@ -79,20 +72,9 @@ def max_unseen_share(entropy: float, camera: Camera, curve: ApCurve) -> float:
 
 
 def expected_beams(lidar: Lidar, offsets: Floats, side: float) -> Floats:
-    """Return the mean number of beams through cubes, which are taken for points.
+    """Return the mean number of beams of a level LiDAR through cubes, taken for points, (V,).
 
-    Parameters
-    ----------
-    lidar : Lidar
-        A level LiDAR.
-    offsets : (V, 3) float
-        Centres of the cubes, relative to the sensor [m].
-    side : float
-        Side of the cubes [m].
-
-    Returns
-    -------
-    (V,) float
+    `offsets` are the centres of the cubes, relative to the sensor (V, 3), `side` their side [m].
     """
     distance = np.sqrt((offsets**2).sum(axis=1))
     direction = offsets / distance[:, None]
@@ -113,17 +95,8 @@ def expected_entropy(
 ) -> float:
     """Return the mean entropy [nats] of voxels that were sampled from the prior.
 
-    Parameters
-    ----------
-    lidar : Lidar
-    position : tuple of float
-        Position of the level LiDAR, ground frame [m].
-    centers : (V, 3) float
-        Centres of the voxels, ground frame [m].
-    side : float
-        Side of the voxels [m].
-    curve : ApCurve
-        AP of a voxel by its number of beams.
+    `position` of the level LiDAR and `centers` of the voxels (V, 3) are in the ground frame [m];
+    `curve` is AP of a voxel by its number of beams.
     """
     m = expected_beams(lidar, centers - np.asarray(position), side)
     return float(np.mean(entropy_of(precision_of(m, curve))))

@@ -19,23 +19,10 @@ SMALL_DEG = 1.0
 
 @dataclass(frozen=True)
 class Claim:
-    """The claim that one rig scores lower than another.
+    """The claim, a key of `TEXTS`, that one rig scores lower than another, with our scores [nats].
 
-    Attributes
-    ----------
-    experiment : str
-        Key of the claim in `TEXTS`.
-    text : str
-        The claim in words.
-    where : str
-        "printed" for the paper's placements, "searched" for ours.
-    prior : str
-    better, worse : str
-        Names of the rig that the paper finds better, and of the other.
-    better_entropy, worse_entropy : float
-        Our scores of the two [nats].
-    by : float
-        How much lower the better one has to be [nats].
+    `where` is "printed" for the paper's placements, "searched" for ours. The better rig, which the
+    paper finds better, has to be lower by `by`.
     """
 
     experiment: str

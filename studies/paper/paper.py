@@ -23,19 +23,10 @@ Position = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Row:
-    """A row of Table II.
+    """A row of Table II: its study file, its name for people, and the entropy as printed [nats].
 
-    Attributes
-    ----------
-    name : str
-        Name of the row and of its study file.
-    label : str
-        Name for people.
-    entropy : float
-        The perception entropy that the paper prints [nats].
-    starts : dict of dict
-        Neutral placements that a search starts from, by name: each sensor's position [m]; the
-        pitch is 0.
+    `starts` has neutral placements that a search starts from, by name: each sensor's position [m];
+    the pitch is 0.
     """
 
     name: str

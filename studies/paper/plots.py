@@ -182,13 +182,7 @@ def bounds(path: Path, values: Mapping[str, Any]) -> None:
 def draw_placements(path: Path, row: Row, ends: Sequence[Mapping[str, Any]]) -> None:
     """Draw a row: the paper's sensors as hollow marks, those at the end of searches as filled ones.
 
-    Parameters
-    ----------
-    path : Path
-        The picture.
-    row : Row
-    ends : sequence of mapping
-        The placement at the end of each search: position and rotation by sensor.
+    `ends` has the placement at the end of each search: position and rotation by sensor.
     """
     study = study_of(row.name)
     assert study.vehicle is not None

@@ -24,26 +24,11 @@ CLEAN = "clean"
 
 @dataclass(frozen=True)
 class Paper:
-    """A paper's placements and results.
+    """A paper's placements and results, as the table of data has them.
 
-    Attributes
-    ----------
-    id, short, citation, repository : str
-        Names of the paper: in tasks, for people, in full; and of its repository.
-    read : str
-        Tables of the paper that the figures were read from.
-    notes : tuple of str
-        What is uncertain about the figures.
-    classes : mapping
-        The paper's names of the classes.
-    lidar : mapping
-        The LiDAR model; all LiDARs of a placement are equal.
-    placements : mapping
-        Sensors by the name of the placement.
-    ap : mapping
-        AP by condition, detector, class, placement.
-    surrogates : mapping
-        The authors' own scores by name, class, placement; higher is better.
+    `read` names the tables that figures were read from, `notes` what is uncertain about them;
+    `classes` has the paper's names of the classes. All LiDARs are equal. AP is by condition,
+    detector, class and placement; `surrogates` are the authors' own scores, higher for better.
     """
 
     id: str

@@ -133,19 +133,7 @@ def object_name(paper: str, placement: str, reading: str, traffic: str, choice: 
 
 @dataclass(frozen=True)
 class Rating:
-    """What a score is asked to rate.
-
-    Attributes
-    ----------
-    paper : Paper
-    placement : str
-        Name of the placement.
-    reading : str
-        How its printed rolls are read: one of `published.READINGS`.
-    cls : str
-        Class whose AP the score is compared with.
-    choice : ScoreChoice
-    """
+    """What a score is asked to rate: a placement, its rolls in a reading, for the AP of a class."""
 
     paper: Paper
     placement: str
@@ -165,16 +153,7 @@ ScoreFunction = Callable[[Rating, Values], float]
 
 @dataclass(frozen=True)
 class RankedScore:
-    """A score that is compared with AP.
-
-    Attributes
-    ----------
-    name : str
-    about : str
-        What it is, in a sentence.
-    value : callable
-        Its value for a placement; higher is better.
-    """
+    """A score that is compared with AP: what it is, and its value, higher for better."""
 
     name: str
     about: str

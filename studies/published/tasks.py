@@ -36,27 +36,17 @@ MIN_SAMPLED_SCENES = 8
 
 @dataclass(frozen=True)
 class ValidityEffort:
-    """How much is computed.
-
-    Attributes
-    ----------
-    samples : int
-        Voxels that a voxel score evaluates; 0: all.
-    variant_samples : int
-        The same, where the choices are varied.
-    traffic_samples, traffic_scenes : int
-        Voxels in a scene, and scenes, that a voxel score in traffic evaluates.
-    scenes : int
-        Scenes, of about 19 objects each, that an object score evaluates.
-    all_variants : bool
-        Whether the choices are varied.
-    """
+    """How much is computed."""
 
     samples: int
+    """Voxels that a voxel score evaluates; 0: all."""
     variant_samples: int
+    """The same, where the choices are varied."""
     traffic_samples: int
     traffic_scenes: int
+    """Voxels in a scene, and scenes, that a voxel score in traffic evaluates."""
     scenes: int
+    """Scenes, of about 19 objects each, that an object score evaluates."""
     all_variants: bool
 
 

@@ -38,24 +38,18 @@ NEAR_M = 4.0
 
 @dataclass(frozen=True, slots=True)
 class Lifting:
-    """Where the cells of the ground are in the pictures of a rig.
-
-    Attributes
-    ----------
-    pixels : (X * Y, heights, VIEWS) int32
-        Flat indices of coarse pixels over (camera, column, row); their total number for none.
-    shares : (X * Y, heights, VIEWS) float32
-        Weights of the views: 1 in all, or 0 where there is none.
-    cells : (X, Y, CELL_VALUES) float32
-        Geometry of the cells.
-    nearness : (S, W, H, 1) float32
-        Of coarse pixels: `NEAR_M` over the distance to the flat ground, at most 1; 0 in the sky.
-    """
+    """Where the cells of the ground are in the pictures of a rig."""
 
     pixels: NDArray[np.int32]
+    """Flat indices of coarse pixels over (camera, column, row); their total number for none.
+
+    (X * Y, heights, VIEWS), as the weights of the views: 1 in all, or 0 where there is none.
+    """
     shares: NDArray[np.float32]
     cells: NDArray[np.float32]
+    """Geometry of the cells, (X, Y, CELL_VALUES)."""
     nearness: NDArray[np.float32]
+    """Of coarse pixels (S, W, H, 1): `NEAR_M` over the distance to flat ground; 0 in the sky."""
 
     @classmethod
     def of(cls, plan: CameraPlan, placement: Placement) -> Lifting:

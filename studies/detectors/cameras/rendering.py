@@ -41,17 +41,9 @@ WHITE = 255.0
 
 @dataclass(frozen=True, slots=True)
 class SceneColors:
-    """What a scene looks like.
+    """What a scene looks like: colours of the triangles (F, 3) in its light, of ground and sky.
 
-    Attributes
-    ----------
-    triangles : (F, 3) float
-        Colours of the triangles in the scene's light.
-    ground, sky : (3,) float
-    waves : (K, 2) float
-        Wave vectors of the brightness of the ground [rad/m].
-    phases : (K,) float
-    contrast : float
+    `waves` (K, 2) are wave vectors of the brightness of the ground [rad/m], with their phases.
     """
 
     triangles: Floats
@@ -97,14 +89,9 @@ class SceneColors:
 
 
 class FreePixels:
-    """The pixels of one camera, and which of them the own body does not hide.
+    """The pixels of one camera, and which of them the own body does not hide: `free` (W, H).
 
-    Attributes
-    ----------
-    origin : (3,) float
-    directions : (N, 3) float
-        Of the free pixels: unit directions, ground frame.
-    free : (W, H) bool
+    `directions` (N, 3) are those of the free pixels, ground frame.
     """
 
     def __init__(self, plan: CameraPlan, placement: Placement, number: int) -> None:

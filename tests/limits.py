@@ -26,6 +26,12 @@ CLOCK_TICK_S = 0.05
 _phases = itertools.count()
 
 
+def patience(seconds: float) -> float:
+    """Return how long to wait for what takes a time on a quiet machine: longer on a busy one [s]."""
+    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0
+    return seconds * max(1.0, load / (os.cpu_count() or 1))
+
+
 @contextlib.contextmanager
 def limited_processor_time():
     """Fail when this process uses more than `PROCESSOR_LIMIT_S`; without POSIX timers, nothing."""

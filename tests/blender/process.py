@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from tests.limits import patience
+
 STOP_GRACE_S = 5
 
 
@@ -48,7 +50,7 @@ def run(
         start_new_session=True,
     )
     try:
-        stdout, stderr = process.communicate(timeout=timeout_s)
+        stdout, stderr = process.communicate(timeout=patience(timeout_s))
     except BaseException:
         stop(process)
         raise

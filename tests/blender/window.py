@@ -16,6 +16,7 @@ from pathlib import Path
 
 from tests.blender import process
 from tests.blender.runner import Installed
+from tests.limits import patience
 
 TOOLS = ("Xvfb", "xdotool", "import")
 WIDTH, HEIGHT = 1600, 900
@@ -79,10 +80,10 @@ class Window:
 
     def wait_for(self, condition: Callable[[], object], timeout_s: float, what: str) -> None:
         """Wait until the condition holds; fail after the time, or at once when Blender ended."""
-        deadline = time.monotonic() + timeout_s
+        begun = time.monotonic()
         while not condition():
             ended = [each.args[0] for each in self._processes if each.poll() is not None]
-            if ended or time.monotonic() > deadline:
+            if ended or time.monotonic() > begun + patience(timeout_s):
                 problem = f"{ended[0]} ended" if ended else f"{timeout_s:g} s passed"
                 raise AssertionError(f"{problem}, waiting for {what}\n{self._what_there_is()}")
             time.sleep(POLL_S)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from contextlib import contextmanager
 
+from tests.limits import patience
 from tests.needed import unavailable
 
 try:
@@ -73,7 +74,7 @@ def opened(browser: Browser, path, size=DESKTOP, script: str | None = None):
         viewport={"width": width, "height": height}, has_touch=phone, is_mobile=phone
     )
     try:
-        context.set_default_timeout(PATIENCE_MS)
+        context.set_default_timeout(patience(PATIENCE_MS))
         page = context.new_page()
         if script:
             page.add_init_script(script)

@@ -3,7 +3,6 @@
 import json
 import math
 import re
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,7 +12,6 @@ from studies.published import correlations, scores
 from studies.published.__main__ import own_answer, page, read_results
 from studies.published.correlations import (
     LAYOUTS,
-    LEVEL,
     RankComparison,
     ValidityResults,
     comparisons,
@@ -21,7 +19,7 @@ from studies.published.correlations import (
 from studies.published.findings import placements_for
 from studies.published.published import CLEAN, DEGREES, RADIANS, paper_of, papers
 from studies.published.scores import BASE, BODY_M, body_of, box_triangles, variants
-from studies.published.tasks import FULL, QUICK, names, plan
+from studies.published.tasks import QUICK, plan
 from tests.studies.conftest import ROOT, numbers, study
 
 
@@ -55,12 +53,6 @@ def test_rolls_are_read_both_ways():
     assert roll[RADIANS] == pytest.approx(-0.3)
 
 
-def test_lidars_have_their_channels_and_beams():
-    lidar = paper_of("icra2024").rig("wide+line", DEGREES)["lidar_0"].model
-    assert np.degrees(lidar.elevations[[0, -1]]).tolist() == pytest.approx([-25.0, 5.0])
-    assert lidar.beam_count == 16 * 250  # 80,000 points a second at 20 Hz
-
-
 def test_every_comparison_has_all_its_placements():
     place3d, icra = papers()
     found = comparisons(place3d)
@@ -90,12 +82,6 @@ def test_each_choice_is_varied_alone():
     assert len({choice.name for choice in variants(True)}) == len(list(variants(True)))
 
 
-def test_what_variants_share_is_computed_once():
-    base = replace(FULL, all_variants=False)
-    assert len(names(base)) == 4 * (8 + 3 + 8)
-    assert set(names(base)) < set(names(FULL))
-
-
 def test_the_quick_run_is_complete(quick):
     values = {name: entry["value"] for name, entry in quick.data["results"].items()}
     assert plan(QUICK, values) == []
@@ -121,14 +107,6 @@ def test_scores_are_turned_so_that_higher_is_better(quick):
     assert by_name["perception entropy, road prior"].value(rating, values) == -entropy
     ap = values["objects/alone/place3d/center/degrees/box/1/fitted"]["per_class"]["car"]["ap"]
     assert by_name["expected AP"].value(rating, values) == ap
-
-
-def test_without_the_rolled_placements_there_are_five():
-    paper = paper_of("place3d")
-    comparison = RankComparison(paper, CLEAN, "car", DEGREES, LEVEL)
-    level = ["center", "line", "pyramid", "square", "trapezoid"]
-    assert [name for (name,) in comparison.placements] == level
-    assert all(len(ap) == 5 for ap in comparison.ap.values())
 
 
 def test_layouts_average_what_differs_in_cameras_alone():

@@ -27,7 +27,7 @@ _phases = itertools.count()
 
 
 def patience(seconds: float) -> float:
-    """Return how long to wait for what takes a time on a quiet machine: longer on a busy one [s]."""
+    """Return how long to wait for what takes so long on a quiet machine: longer on a busy one."""
     load = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0
     return seconds * max(1.0, load / (os.cpu_count() or 1))
 

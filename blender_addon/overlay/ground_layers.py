@@ -31,7 +31,6 @@ def ground_map(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
     if shows_difference(request):
         return _difference(request, cache)
     scored, where = scored_map(request), None
-    seen: sight.GroundSight | graphics.AsScored
     if scored is not None and request.space is not None:
         seen, where = graphics.as_scored(scored, request.space, FINE_M), graphics.AS_SCORED
     else:
@@ -122,7 +121,7 @@ def _difference(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
 
 
 def _bounds(
-    request: ViewRequest, cache: LayerCache, seen: sight.GroundSight | graphics.AsScored
+    request: ViewRequest, cache: LayerCache, seen: sight.GroundSight
 ) -> tuple[float, float] | None:
     """Return the values at the ends of the colours: kept while a sensor moves, and once scored."""
     view = request.view

@@ -41,7 +41,6 @@ from .ground import ENTROPY as ENTROPY
 from .ground import QUANTITIES as QUANTITIES
 from .ground import SENSORS as SENSORS
 from .ground import SWATCHES as SWATCHES
-from .ground import AsScored as AsScored
 from .ground import as_scored as as_scored
 from .ground import difference_map as difference_map
 from .ground import fitted_bounds as fitted_bounds

@@ -37,6 +37,12 @@ FADE_M = 8.0
 """Width of the margin in which the sheet fades out, where its edge is no edge of anything."""
 
 
+def swatches_of(scale: Scale) -> tuple[Rgba, ...]:
+    """Return colours of a scale from its low end to its high one."""
+    row = on_scale(np.linspace(0.0, 1.0, SWATCHES), scale)
+    return tuple((float(r), float(g), float(b), 1.0) for r, g, b in row)
+
+
 @dataclass(frozen=True, slots=True)
 class Quantity:
     """A quantity of a ground map: its scale of colours from `low`, dark, to `high`, bright.
@@ -75,21 +81,7 @@ class Quantity:
     @property
     def swatches(self) -> tuple[Rgba, ...]:
         """Colours from the low end to the high one."""
-        row = on_scale(np.linspace(0.0, 1.0, SWATCHES), self.scale)
-        return tuple((float(r), float(g), float(b), 1.0) for r, g, b in row)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class AsScored:
-    """A score's ground map with the attributes of a `GroundSight`, without numbers of sensors."""
-
-    x: Floats
-    y: Floats
-    step: float
-    entropy: Floats
-    coverage: Floats
-    sensors: NDArray[np.int64]
-    height: float | None = None
+        return swatches_of(self.scale)
 
 
 QUANTITIES = {
@@ -99,7 +91,7 @@ QUANTITIES = {
 
 
 def ground_map(
-    seen: GroundSight | AsScored,
+    seen: GroundSight,
     quantity: str,
     opacity: float,
     *,
@@ -145,59 +137,35 @@ def ground_map(
 
 
 def difference_map(
-    seen: GroundSight,
-    before: GroundSight,
-    quantity: str,
-    opacity: float,
-    *,
-    name: str = "",
-    bound: float | None = None,
+    seen: GroundSight, before: GroundSight, quantity: str, opacity: float, *, name: str = ""
 ) -> LayerShape:
     """Return a map of where one rig is better than another (blue), and where it is worse (orange).
 
-    Locations without a difference are nearly transparent.
-
-    Parameters
-    ----------
-    seen, before : GroundSight
-        The rig that is shown, and the rig that it is compared with, at the same locations.
-    quantity : str
-        A key of `QUANTITIES`: differences are in nats, or in shares.
-    opacity : float
-    name : str
-        Name of the compared rig, for the legend.
-    bound : float, optional
-        Difference at both ends of the colours; by default `fitted_bound` of what is shown.
+    Differences are in nats, or in shares, by a key of `QUANTITIES`. Locations without a difference
+    are nearly transparent. `name` is that of the compared rig, for the legend.
     """
     kind = QUANTITIES[quantity]
-    better = difference(seen, before, quantity)
+    sign = -1.0 if quantity == ENTROPY else 1.0
+    better = sign * (values_of(seen, quantity) - values_of(before, quantity))
     is_known = np.isfinite(better)
-    end = fitted_bound(better, quantity) if bound is None else bound
+    end = fitted_bound(better, quantity)
     share = np.clip(np.where(is_known, better, 0.0) / end, -1.0, 1.0)
     rgb = on_scale(0.5 + 0.5 * share, DIFFERENCE_ON_DARK)
     strength = ALIKE_ALPHA + (1.0 - ALIKE_ALPHA) * np.abs(share)
-    row = on_scale(np.linspace(0.0, 1.0, SWATCHES), DIFFERENCE_ON_DARK)
-    swatches = tuple((float(r), float(g), float(b), 1.0) for r, g, b in row)
-    unit = " nats" if quantity == ENTROPY else ""
-    values = (f"{kind.text(end)}{unit}", f"{kind.text(end)}{unit}")
+    value = f"{kind.text(end)}{' nats' if quantity == ENTROPY else ''}"
     title = f"{kind.title} against {name or 'before'}, {_where(seen.height)}"
-    legend = ColorKey(title, swatches, ("worse", "better"), bounds=(-end, end), values=values)
+    swatches = swatches_of(DIFFERENCE_ON_DARK)
+    legend = ColorKey(title, swatches, ("worse", "better"), (), (-end, end), (value, value))
     alpha = np.where(is_known, np.minimum(1.0, DIFFERENCE_GAIN * opacity) * strength, 0.0)
     return _shape(seen, rgb, alpha, True, legend)
 
 
-def difference(seen: GroundSight, before: GroundSight, quantity: str) -> Floats:
-    """(NX, NY) improvement of each location: positive is better, NaN unknown."""
-    sign = -1.0 if quantity == ENTROPY else 1.0
-    return sign * (values_of(seen, quantity) - values_of(before, quantity))
-
-
-def values_of(seen: GroundSight | AsScored, quantity: str) -> Floats:
+def values_of(seen: GroundSight, quantity: str) -> Floats:
     """(NX, NY) values of a quantity (`QUANTITIES`)."""
     return seen.entropy if quantity == ENTROPY else seen.coverage
 
 
-def fitted_bounds(seen: GroundSight | AsScored, quantity: str) -> tuple[float, float]:
+def fitted_bounds(seen: GroundSight, quantity: str) -> tuple[float, float]:
     """Return values for the dark and the bright end of the colours that fit what is shown.
 
     Percentiles of the map's places, rounded outwards; never narrower than `NARROWEST`.
@@ -232,20 +200,27 @@ def fitted_bound(better: Floats, quantity: str) -> float:
 
 
 def _shape(
-    seen: GroundSight | AsScored,
+    seen: GroundSight,
     rgb: NDArray[np.float32],
     alpha: Floats,
     faded: bool,
     legend: ColorKey,
 ) -> LayerShape:
     """Return a sheet in these colours (NX, NY, 3), as opaque as `alpha` (NX, NY) says."""
-    alpha = alpha * (_fading(seen) if faded else 1.0)
+    half = seen.step / 2.0
+    if faded:
+        x, y = (np.minimum(v - v[0], v[-1] - v) + half for v in (seen.x, seen.y))
+        edge = np.clip(np.minimum(x[:, None], y[None]) / FADE_M, 0.0, 1.0)
+        alpha = alpha * (edge * edge * (3.0 - 2.0 * edge))
     image = np.concatenate([rgb, alpha[..., None].astype(np.float32)], axis=-1)
-    return LayerShape(sheet=_sheet(seen, image.transpose(1, 0, 2)), legend=legend)
+    low = (float(seen.x[0]) - half, float(seen.y[0]) - half)
+    high = (float(seen.x[-1]) + half, float(seen.y[-1]) + half)
+    image = np.ascontiguousarray(image.transpose(1, 0, 2), np.float32)
+    return LayerShape(sheet=GroundSheet(image, low, high).prepared(), legend=legend)
 
 
-def as_scored(found: GroundMap, space: PerceptionSpace, step: float) -> AsScored:
-    """Return the ground map of a score in squares of about `step` [m]."""
+def as_scored(found: GroundMap, space: PerceptionSpace, step: float) -> GroundSight:
+    """Return the ground map of a score in squares of about `step` [m], without any numbers."""
     columns = max(1, round(step / space.interval))
     coarse, side = found.coarser(columns), columns * space.interval
     x, y = (
@@ -253,21 +228,7 @@ def as_scored(found: GroundMap, space: PerceptionSpace, step: float) -> AsScored
         for (low, _), count in zip((space.x, space.y), coarse.mass.shape, strict=True)
     )
     nobody = np.where(np.isfinite(coarse.entropy), 0, -1)
-    return AsScored(x, y, side, coarse.entropy, coarse.coverage, nobody)
-
-
-def _sheet(seen: GroundSight | AsScored, image: NDArray[np.float32]) -> GroundSheet:
-    half = seen.step / 2.0
-    low = (float(seen.x[0]) - half, float(seen.y[0]) - half)
-    high = (float(seen.x[-1]) + half, float(seen.y[-1]) + half)
-    return GroundSheet(np.ascontiguousarray(image, np.float32), low, high).prepared()
-
-
-def _fading(seen: GroundSight | AsScored) -> Floats:
-    """(NX, NY) 0 at the edges, 1 from `FADE_M` on."""
-    x, y = (np.minimum(v - v[0], v[-1] - v) + seen.step / 2.0 for v in (seen.x, seen.y))
-    edge = np.clip(np.minimum(x[:, None], y[None]) / FADE_M, 0.0, 1.0)
-    return edge * edge * (3.0 - 2.0 * edge)
+    return GroundSight(x, y, side, None, coarse.entropy, coarse.coverage, nobody, nobody)
 
 
 def _where(height: float | None) -> str:

@@ -19,6 +19,8 @@ ARC_POINTS = 33
 """Azimuths of an arc; one of them is the middle."""
 FACE_ALPHA, EDGE_ALPHA = 0.10, 0.55
 """How strong a field's area, and the arcs above and below it, are beside its middle arc."""
+LEAST_M, MOST_M = 0.1, 30.0
+"""Detections at the ends of the colour scale, which is logarithmic."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,10 +109,6 @@ def field_footprint(sensor: Sensor, far_m: float) -> Floats:
     outline = np.vstack([place, _arcs(sensor, lobe, far_m)[1]])
     outline[:, 2] = 0.0
     return outline
-
-
-LEAST_M, MOST_M = 0.1, 30.0
-"""Detections at the ends of the colour scale, which is logarithmic."""
 
 
 def field_colors(picture: FieldPicture) -> NDArray[np.float32]:

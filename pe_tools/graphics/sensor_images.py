@@ -14,17 +14,6 @@ from pe_core.sensors import Camera, Lidar, RangePicture, kind_of
 from .colors import VIRIDIS, Scale, on_scale
 from .primitives import Primitives
 
-
-def lidar_of(sensor: Sensor) -> Lidar:
-    """Return the model of a sensor that is a LiDAR."""
-    return cast(Lidar, sensor.model)
-
-
-def camera_of(sensor: Sensor) -> Camera:
-    """Return the model of a sensor that is a camera."""
-    return cast(Camera, sensor.model)
-
-
 NEAREST_M = 0.5
 """All that is nearer has the brightest colour."""
 NO_ECHO = (0.16, 0.16, 0.17)
@@ -35,6 +24,18 @@ BODY_SILENT = (0.42, 0.17, 0.0)
 BODY_FAR_M = 5.0
 RANGES: Scale = VIRIDIS[::-2]
 """From near to far."""
+RAYS = 240
+"""Places of the picture that are looked along: enough to see where the body begins."""
+
+
+def lidar_of(sensor: Sensor) -> Lidar:
+    """Return the model of a sensor that is a LiDAR."""
+    return cast(Lidar, sensor.model)
+
+
+def camera_of(sensor: Sensor) -> Camera:
+    """Return the model of a sensor that is a camera."""
+    return cast(Camera, sensor.model)
 
 
 def range_colors(picture: RangePicture, far_m: float) -> NDArray[np.float32]:
@@ -64,10 +65,6 @@ def even_angles(angles: NDArray[np.float64], pixels_per_deg: float) -> NDArray[n
     places = high - (np.arange(count) + 0.5) * (high - low) / count
     between = (degrees[1:] + degrees[:-1]) / 2.0
     return np.searchsorted(-between, -places)
-
-
-RAYS = 240
-"""Places of the picture that are looked along: enough to see where the body begins."""
 
 
 def hidden_lines(

@@ -39,6 +39,16 @@ OTHER_TINTS = (
     *("#9c9e71", "#a5b878", "#d3d4ae", "#d3f58a", "#dccc94"),
 )
 """Yellow: tints of ultrasonic sensors and of kinds without a hue of their own."""
+FACE_SHARE = 0.6
+XYZ_OF_RGB = np.array(
+    [(0.4124, 0.3576, 0.1805), (0.2126, 0.7152, 0.0722), (0.0193, 0.1192, 0.9505)]
+)
+WHITE = np.array([0.9505, 1.0, 1.089])
+"""sRGB's primaries and white, D65 (IEC 61966-2-1)."""
+LIGHT, DARK = (54.5, 93.0), (16.0, 59.0)
+"""Range of the tints' lightness L* on a dark ground, and on a light one."""
+LESS, STEPS = 0.95, 60
+"""Chroma is reduced by this factor until the colour can be shown; at most so often."""
 
 
 def tints_of(kind: str) -> tuple[str, ...]:
@@ -87,9 +97,6 @@ def sensor_colors_on_paper(sensors: Iterable[Sensor]) -> dict[str, Rgb]:
     return {name: on_paper(color) for name, color in sensor_colors(sensors).items()}
 
 
-FACE_SHARE = 0.6
-
-
 def sensor_palette(color: Rgb, palette: Palette = VIEWPORT) -> Palette:
     """Return a palette in which all lines of one sensor have that sensor's colour.
 
@@ -101,17 +108,6 @@ def sensor_palette(color: Rgb, palette: Palette = VIEWPORT) -> Palette:
     }
     face = with_alpha(color, palette.camera_face[3] * FACE_SHARE)
     return replace(palette, **hues, camera_face=face)
-
-
-XYZ_OF_RGB = np.array(
-    [(0.4124, 0.3576, 0.1805), (0.2126, 0.7152, 0.0722), (0.0193, 0.1192, 0.9505)]
-)
-WHITE = np.array([0.9505, 1.0, 1.089])
-"""sRGB's primaries and white, D65 (IEC 61966-2-1)."""
-LIGHT, DARK = (54.5, 93.0), (16.0, 59.0)
-"""Range of the tints' lightness L* on a dark ground, and on a light one."""
-LESS, STEPS = 0.95, 60
-"""Chroma is reduced by this factor until the colour can be shown; at most so often."""
 
 
 def on_paper(color: Rgb) -> Rgb:

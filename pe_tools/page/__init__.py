@@ -79,9 +79,11 @@ def add_page() -> None:
 
 
 def _write_front_page(data: Mapping[str, Any], folder: Path) -> None:
-    from .front_page import write_front_page
+    from ..jobs import FRONT_PAGE, FileSet
+    from .front_page import front_page
 
-    write_front_page(data, folder)
+    with FileSet(folder) as files:
+        files.add(FRONT_PAGE, front_page(data))
 
 
 def _review(args: argparse.Namespace) -> Answer:

@@ -29,6 +29,7 @@ PAGE = studies.REVIEW_PAGE
 STYLES = Path(__file__).with_name("styles")
 STYLE_SHEETS = ("base", "parts", "print", "drawn", "scene3d")
 NO_INFO = About()
+STYLE_ATTRIBUTE = re.compile(r' style="([^"]*)"')
 
 
 class Part(NamedTuple):
@@ -161,9 +162,6 @@ def _print_margins(text: str) -> str:
         f"@page {{ @bottom-left {{ content: {css_string(text)}; {font} }} "
         f'@bottom-right {{ content: counter(page) " / " counter(pages); {font} }} }}'
     )
-
-
-STYLE_ATTRIBUTE = re.compile(r' style="([^"]*)"')
 
 
 def without_style_attributes(html: str) -> tuple[Markup, str]:

@@ -4,36 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import combinations
-from pathlib import Path
 from typing import Any
 
 from pe_core.search.goals import HIGHER_IS_BETTER, OBJECTIVES
 
-from .. import jobs
 from .document import html_file
 from .markup import capitalized, render
 from .pictures.charts import four_digits, pareto_plot
 
 DesignRow = Mapping[str, Any]
 BELOW = "; the figures are in the table below"
-
-
-def write_front_page(data: Mapping[str, Any], folder: Path) -> None:
-    """Write the page beside a front.
-
-    Parameters
-    ----------
-    data : mapping
-        Content of front.json.
-    folder : path
-
-    Raises
-    ------
-    InputError
-        When the folder has such a file that this program did not write.
-    """
-    with jobs.FileSet(folder) as files:
-        files.add(jobs.FRONT_PAGE, front_page(data))
 
 
 def front_page(data: Mapping[str, Any]) -> bytes:

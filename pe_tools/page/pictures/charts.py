@@ -13,6 +13,8 @@ from .svg import Canvas
 
 AxisMap = Callable[[float], float]
 """Maps a value to its position on the drawing."""
+LEAST_NATS, LEAST_AP = 0.004, 0.0004
+"""The axis of costs shows at least this, so that noise does not look like a slope [nats; AP]."""
 
 
 def round_steps() -> Iterator[float]:
@@ -71,10 +73,6 @@ def step_curve(
     canvas.text(right, height - 6.0, x, text_anchor="end")
     canvas.text(4.0, height - 6.0, y)
     return canvas.svg()
-
-
-LEAST_NATS, LEAST_AP = 0.004, 0.0004
-"""The axis of costs shows at least this, so that noise does not look like a slope [nats; AP]."""
 
 
 def cost_bars(found: sure.Sensitivity, status: dict[str, str], alt: str) -> Markup:

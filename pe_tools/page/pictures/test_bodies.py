@@ -25,18 +25,10 @@ POLE_M = 0.06
 
 @dataclass(frozen=True, eq=False)
 class WorstBody:
-    """The test body of a requirement, at the worst sample of its zone.
+    """The test body of a requirement, at the worst sample of its zone: at `foot` (3,) [m].
 
-    Attributes
-    ----------
-    number : int
-        Of the requirement in the table, from 1.
-    verdict : Verdict
-    body : Body
-    foot : (3,) float
-        Where it stands [m].
-    counts : mapping of str to float
-        Points or pixels on it by the name of the sensor, of the heading with the fewest.
+    `number` is that of the requirement in the table, from 1; `counts` are points or pixels on the
+    body by the name of the sensor, of the heading with the fewest.
     """
 
     number: int

@@ -34,6 +34,16 @@ TEXTS = {
     "from_middle": "From {name}, the middle of its view",
 }
 """Texts of the view's program; {name} is a sensor's name."""
+MAX_BEAMS = 60_000
+"""Beams that are cast of one sensor; a selection of them is drawn."""
+BEAMS_EACH, BEAM_M, VIEW_M, FOOT_M = 180, 7.0, 2.5, 20.0
+"""Beams drawn of a sensor and their length; length of a field of view; reach of its footprint."""
+MAX_RINGS = 10
+PALETTE = graphics.PAPER
+OCCLUDED = graphics.with_alpha(PALETTE.occluded, 0.9)
+BEAM, RING, EDGE, SIDE = 0.5, 0.8, 0.9, 0.12
+"""Opacity of a sensor's colour in beams, rings, and edges and sides of its field of view."""
+NOTHING = graphics.Primitives.empty()
 
 __all__ = ["scene_data", "scripts", "view"]
 
@@ -67,18 +77,6 @@ def scripts() -> tuple[str, ...]:
     program = "\n".join((HERE / f"{name}.js").read_text("utf-8") for name in SCRIPTS)
     own = f'(() => {{\n"use strict";\nconst T = PE_THREE;\n\n{program}\n}})();'
     return THREE.read_text("utf-8"), own
-
-
-MAX_BEAMS = 60_000
-"""Beams that are cast of one sensor; a selection of them is drawn."""
-BEAMS_EACH, BEAM_M, VIEW_M, FOOT_M = 180, 7.0, 2.5, 20.0
-"""Beams drawn of a sensor and their length; length of a field of view; reach of its footprint."""
-MAX_RINGS = 10
-PALETTE = graphics.PAPER
-OCCLUDED = graphics.with_alpha(PALETTE.occluded, 0.9)
-BEAM, RING, EDGE, SIDE = 0.5, 0.8, 0.9, 0.12
-"""Opacity of a sensor's colour in beams, rings, and edges and sides of its field of view."""
-NOTHING = graphics.Primitives.empty()
 
 
 def sensor_data(

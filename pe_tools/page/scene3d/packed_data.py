@@ -85,12 +85,8 @@ def vehicle_data(
 ) -> dict[str, Any] | None:
     """Return the vehicle's points, its triangles by part, and how much it was simplified.
 
-    Parameters
-    ----------
-    vehicle : Vehicle or None
-        With all its triangles.
-    simplified : (Vehicle or None, float)
-        The vehicle that all pictures of the page share, and how far its surface moved [m].
+    `simplified` is the vehicle that all pictures of the page share, and how far its surface moved
+    [m]; `vehicle` has all its triangles.
     """
     if vehicle is None or simplified[0] is None:
         return None

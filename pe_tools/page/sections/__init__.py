@@ -16,17 +16,14 @@ from .. import scene3d
 from ..markup import render
 from ..report_context import ReportContext
 from .bill_of_materials import bill_of_materials
-from .breakdown import by_class_and_zone, objects, sensor_loss
+from .breakdown import by_class_and_zone, conditions, objects, sensor_loss
 from .comparison import comparison
-from .conditions import conditions
 from .overview import overview, warnings_and_text
-from .redundancy import redundancy
 from .requirement_verdicts import requirement_verdicts
-from .search_history import search_history
-from .sensitivity import sensitivity
+from .search import search_history, sensitivity
 from .sensor_details import dimensions, sensor_details
 from .traceability import assumptions, copy_script, reproduction
-from .visibility import visibility
+from .visibility import redundancy, visibility
 
 
 @dataclass(frozen=True, slots=True)

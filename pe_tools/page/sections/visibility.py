@@ -1,11 +1,14 @@
-"""What the rig sees where: ground maps, blind ground near the vehicle, reach by direction."""
+"""What the rig sees where: maps, blind ground, reach, and what one lost sensor leaves."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from ..markup import capitalized
-from ..pictures.ground_plan import COVERAGE, ENTROPY, LAYERS, difference_map, ground_map
+from pe_core.base.errors import InputError
+from pe_core.scoring.requirements import Redundancy
+
+from ..markup import capitalized, percent
+from ..pictures.ground_plan import COVERAGE, ENTROPY, LAYERS, count_map, difference_map, ground_map
 from ..pictures.sight_plans import blind_plan, reach_plan, reach_text, side_text
 from ..pictures.vehicle_picture import sensor_key
 from ..report_context import MAP_STEP_M, ReportContext
@@ -17,6 +20,8 @@ PREFERRED_CLASSES = ("pedestrian", "car")
 """Classes whose reach is shown, if the prior has them."""
 BEARINGS_DEG = {"ahead": 0.0, "ahead left": 45.0, "left": 90.0, "behind": 180.0, "right": 270.0}
 BEARINGS_DEG["ahead right"] = 315.0
+HEIGHT_M, WITHIN_M, STEP_M = 0.8, 10.0, 0.25
+"""Height of the test body, ground round the vehicle, and distance of the places [m]."""
 
 
 def visibility(context: ReportContext) -> dict[str, Any]:
@@ -83,3 +88,45 @@ def _reach(context: ReportContext) -> dict[str, Any]:
             if each is not None:
                 rows.append((title, *(reach_text(each, deg) for deg in BEARINGS_DEG.values())))
     return {"reach_plans": plans, "reach_heads": ["class", *BEARINGS_DEG], "reach_rows": rows}
+
+
+def redundancy(context: ReportContext) -> dict[str, Any] | None:
+    """Return the redundancy maps of a study; None for a rig of one sensor."""
+    if len(context.rig) < 2:
+        return None
+    study = context.study
+    try:
+        seen = Redundancy(study.vehicle, study.space, HEIGHT_M, WITHIN_M, STEP_M).map(context.rig)
+    except InputError as error:  # a kind of sensor that measures voxels alone
+        return {"error": str(error)}
+    cells = seen.cells
+    bounds = (float(cells.x0[0]), float(cells.x1[-1])), (float(cells.y0[0]), float(cells.y1[-1]))
+    maps = {
+        "Sensors": ("that see the test body", seen.sensors),
+        "Sensors left": ("the fewest when any one sensor is lost", seen.sensors_left),
+        "Kinds": ("of sensors that see the test body", seen.kinds),
+        "Kinds left": ("the fewest when any one sensor is lost", seen.kinds_left),
+    }
+    counts = [(f"{n} or more", (n, 1)) for n in range(1, len(seen.by_sensor) + 1)]
+    counts += [(f"{n} kinds", (1, n)) for n in range(2, int(seen.kinds.max(initial=0)) + 1)]
+    return {
+        "error": "",
+        "height_m": HEIGHT_M,
+        "within_m": WITHIN_M,
+        "maps": [
+            (
+                name,
+                about,
+                count_map(values, bounds, study.vehicle, f"Map of {name.lower()}, {context.name}"),
+            )
+            for name, (about, values) in maps.items()
+        ],
+        "shares": [
+            (
+                text,
+                percent(seen.share(*least), 1),
+                percent(seen.share(*least, one_lost=True), 1),
+            )
+            for text, least in counts
+        ],
+    }

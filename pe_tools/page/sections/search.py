@@ -1,4 +1,4 @@
-"""The search: its convergence curve, the moves of each sensor, and robustness."""
+"""The search: its convergence curve, moves, robustness, and how sure its result is."""
 
 from __future__ import annotations
 
@@ -12,13 +12,22 @@ import pe_core as pe
 from pe_core import scene
 
 from ... import advice, jobs
+from ... import sensitivity as sure
 from ..markup import capitalized, number, triple
-from ..pictures.charts import step_curve
+from ..pictures.charts import cost_bars, step_curve
 from ..report_context import ReportContext
 
 MIN_MOVE_M, MIN_TURN_DEG = 5e-6, 5e-5
 """Smaller moves and turns are rounding errors."""
 ARROW = "\N{RIGHTWARDS ARROW}"
+STATUS = {
+    "free": "free",
+    "surface": "on its mount",
+    "slot": "in its slot",
+    "fixed": "held",
+    "linked": "linked",
+}
+"""What the search does with an axis, in the table."""
 
 
 def search_history(context: ReportContext) -> dict[str, Any] | None:
@@ -86,3 +95,20 @@ def _rotation_deg(old: pe.Pose, new: pe.Pose) -> float:
     first, last = (scene.rotation_matrix(*pose.rpy) for pose in (old, new))
     cosine = (float((first * last).sum()) - 1.0) / 2.0  # the sum is trace(first.T @ last)
     return math.degrees(math.acos(min(max(cosine, -1.0), 1.0)))
+
+
+def sensitivity(context: ReportContext) -> dict[str, Any] | None:
+    """Return how sure the search is; None without the analysis."""
+    found = context.outcome.sensitivity
+    if found is None:
+        return None
+    noted = {key: text for key, text in STATUS.items() if key not in ("free", "surface")}
+    alt = "What a step of each sensor along each axis costs; the figures are in the table below."
+    return {
+        "found": found,
+        "what": jobs.searched_on(context.start)[1],
+        "picture": cost_bars(found, noted, alt),
+        "status": STATUS,
+        "steps": sorted({step for row in found.axes for step in row.cost}),
+        "gain_text": sure.gain_text,
+    }

@@ -64,19 +64,27 @@ class Surroundings:
 
 
 def surroundings(eye: Pose, vehicle: CornerPair | None = None) -> Surroundings:
-    """Return what a camera at a pose has around it; no test body stands in the vehicle's bounds."""
+    """Return what a camera at a pose has around it; no test body stands in the vehicle's bounds.
+
+    Test bodies stand where the camera looks; if it looks straight down, where its top is.
+    """
     x, y = eye.position[:2]
-    ground = LayerShape(
-        faces=Primitives.joined([_ground(x, y), _sky(x, y), _lanes()]), thin=_grid(x, y)
-    )
+    circles = [(_circle(x, y, radius, BELOW_M), color) for radius, color in GROUND]
+    bands = [_band(a[0], b[0], (a[1], b[1])) for a, b in pairwise(circles)]
+    sky = _band(circles[-1][0], _circle(x, y, FAR_M, SKY_M), (HORIZON, ZENITH))
+    ground = LayerShape(faces=Primitives.joined([*bands, sky, _lanes()]), thin=_grid(x, y))
+    ahead, up = eye.ground_from_sensor[:, 0], eye.ground_from_sensor[:, 2]
+    along = ahead if math.hypot(ahead[0], ahead[1]) > 1e-3 else -ahead[2] * up
+    heading = math.atan2(along[1], along[0])
     faces, lines, labels = [], [], []
     for name, distance, bearing_deg, color in STANDING:
-        heading = _heading(eye)
         bearing = heading + math.radians(bearing_deg)
         foot = np.array([x + distance * math.cos(bearing), y + distance * math.sin(bearing)])
         body = BODIES[name]
-        if vehicle is not None and _stands_in(foot, body, vehicle):
-            continue
+        if vehicle is not None:
+            (low, high), half = (corner[:2] for corner in vehicle), body.largest / 2.0
+            if (foot + half > low).all() and (foot - half < high).all():
+                continue
         corners = _corners(body, foot, heading)
         faces.append(_sides(corners, color))
         edges = [(a, b) for a in range(8) for b in range(a + 1, 8) if (a ^ b) in (1, 2, 4)]
@@ -88,20 +96,6 @@ def surroundings(eye: Pose, vehicle: CornerPair | None = None) -> Surroundings:
         faces=Primitives.joined(faces), thin=Primitives.joined(lines), labels=tuple(labels)
     )
     return Surroundings(ground, bodies)
-
-
-def _heading(eye: Pose) -> float:
-    """Return the direction on the ground [rad] in which a camera looks; straight down: its top."""
-    ahead, up = eye.ground_from_sensor[:, 0], eye.ground_from_sensor[:, 2]
-    along = ahead if math.hypot(ahead[0], ahead[1]) > 1e-3 else -ahead[2] * up
-    return math.atan2(along[1], along[0])
-
-
-def _stands_in(foot: Floats, body: Body, vehicle: CornerPair) -> bool:
-    low, high = (corner[:2] for corner in vehicle)
-    return bool(
-        (foot + body.largest / 2.0 > low).all() and (foot - body.largest / 2.0 < high).all()
-    )
 
 
 def _corners(body: Body, foot: Floats, heading: float) -> Floats:
@@ -139,17 +133,6 @@ def _band(inner: Floats, outer: Floats, colors: tuple[Rgba, Rgba]) -> Primitives
     shades = np.array([colors[k] for k in (0, 1, 1, 0, 1, 0)])
     points = np.stack(quads, axis=1)
     return Primitives.of(points, np.broadcast_to(shades, (len(points), 6, 4)))
-
-
-def _ground(x: float, y: float) -> Primitives:
-    circles = [(_circle(x, y, radius, BELOW_M), color) for radius, color in GROUND]
-    rings = pairwise(circles)
-    return Primitives.joined([_band(a[0], b[0], (a[1], b[1])) for a, b in rings])
-
-
-def _sky(x: float, y: float) -> Primitives:
-    edge, top = (_circle(x, y, FAR_M, z) for z in (BELOW_M, SKY_M))
-    return _band(edge, top, (HORIZON, ZENITH))
 
 
 def _lanes() -> Primitives:

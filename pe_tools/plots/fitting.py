@@ -50,7 +50,9 @@ def fit(args: argparse.Namespace) -> Answer:
             raise InputError("fit", "kind", f"{kind}, the kind of {args.model}", args.kind)
         m_at_ranges = partial(m_by_range, model, class_name=args.object, height=args.height)
     curve_fit = fit_ap_curve(read_ap_table(args.table, m_at_ranges), args.saturation)
-    snippet = study_snippet(_with_safe_name(curve_fit, table), kind, args.object)
+    # A comment of the snippet names the file, in characters that a comment can hold.
+    named = replace(curve_fit.table, source=shortened(table.name, MAX_FILE_NAME))
+    snippet = study_snippet(replace(curve_fit, table=named), kind, args.object)
     data = fit_data(curve_fit)
     if args.output is not None:
         folder = prepare_folder(args.output, (SNIPPET, PLOT))
@@ -62,11 +64,6 @@ def fit(args: argparse.Namespace) -> Answer:
                 tell(f"{PLOT} is left out: it needs matplotlib; {EXTRA}")
     text = dump_json(data) if args.json else f"{_summary(curve_fit)}\n\n{snippet}"
     return text, DONE
-
-
-def _with_safe_name(fit: CurveFit, path: Path) -> CurveFit:
-    """Return the fit with a source that a comment of the snippet can hold: the file's name."""
-    return replace(fit, table=replace(fit.table, source=shortened(path.name, MAX_FILE_NAME)))
 
 
 def fit_data(fit: CurveFit) -> dict[str, Any]:

@@ -137,11 +137,11 @@ for page, (folder, lines) in pages.items():
 
 @pytest.fixture(scope="module")
 def bare_python(tmp_path_factory):
-    """A Python that has NumPy and this checkout, and no extra."""
+    """A Python that has this checkout and what it depends on, and no extra."""
     folder = tmp_path_factory.mktemp("bare")
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", folder], check=True)
     packages = next((folder / "lib").glob("python*/site-packages"))
-    for name in ("numpy", "numpy.libs"):
+    for name in ("numpy", "numpy.libs", "jinja2", "markupsafe", "ruamel"):
         if (installed := Path(np.__file__).parents[1] / name).exists():
             (packages / name).symlink_to(installed)
     (packages / "checkout.pth").write_text(f"{ROOT}\n")

@@ -59,7 +59,7 @@ def _environment() -> Environment:
 
 def printable(value: object) -> object:
     """Return a text with the characters that do not print spelled out; markup as it is."""
-    if not isinstance(value, str) or isinstance(value, Markup):
+    if not isinstance(value, str) or isinstance(value, Markup) or value.isprintable():
         return value
     text = "".join(c if c.isprintable() or c in ALLOWED_SPACES else ascii(c)[1:-1] for c in value)
     return text.encode("utf-8", "backslashreplace").decode()

@@ -28,7 +28,11 @@ def degrees_in_file(angle: float) -> float:
         rounded = round(degrees, decimals) + 0.0
         if math.radians(rounded) == angle:
             return rounded
-    return min(_neighbours(degrees), key=lambda near: abs(math.radians(near) - angle))
+    neighbours, low, high = [degrees], degrees, degrees
+    for _ in range(NEAR_ULPS):
+        low, high = math.nextafter(low, -math.inf), math.nextafter(high, math.inf)
+        neighbours += [low, high]
+    return min(neighbours, key=lambda near: abs(math.radians(near) - angle))
 
 
 def as_in_file(angle: float) -> float:
@@ -47,12 +51,3 @@ def all_as_in_file(angles: Floats) -> Floats:
     rounded = angles + 0.0
     rounded[~exact] = [as_in_file(a) for a in angles[~exact].tolist()]
     return rounded
-
-
-def _neighbours(degrees: float) -> list[float]:
-    """Return a float and its nearest neighbours, the float itself first."""
-    neighbours, low, high = [degrees], degrees, degrees
-    for _ in range(NEAR_ULPS):
-        low, high = math.nextafter(low, -math.inf), math.nextafter(high, math.inf)
-        neighbours += [low, high]
-    return neighbours

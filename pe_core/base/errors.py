@@ -68,11 +68,9 @@ def visible(text: str) -> str:
     """Return a text with unprintable characters escaped: controls, line ends, text direction."""
     if text.isprintable():
         return text
-    return "".join(c if c.isprintable() else _escaped(c) for c in text[: 10 * MAX_TEXT_LENGTH])
-
-
-def _escaped(character: str) -> str:
-    return character.encode("unicode_escape").decode("ascii")
+    shown_part = text[: 10 * MAX_TEXT_LENGTH]
+    escaped = (c if c.isprintable() else c.encode("unicode_escape").decode() for c in shown_part)
+    return "".join(escaped)
 
 
 class _Short(reprlib.Repr):

@@ -78,20 +78,14 @@ def _value(value: object) -> str:
     if isinstance(value, int):
         return str(value)
     if isinstance(value, float):
-        return _float(value)
+        words = {math.inf: "inf", -math.inf: "-inf"}
+        # The repr of a NumPy float names its type.
+        return "nan" if math.isnan(value) else words.get(value) or float.__repr__(value)
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_value(v) for v in value) + "]"
     raise TypeError(f"no TOML for {type(value).__name__}")
-
-
-def _float(value: float) -> str:
-    if math.isinf(value):
-        return "inf" if value > 0 else "-inf"
-    return (
-        "nan" if math.isnan(value) else float.__repr__(value)
-    )  # the repr of a NumPy float names its type
 
 
 def dump_json(data: Any) -> str:

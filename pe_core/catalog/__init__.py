@@ -7,7 +7,7 @@ are not products, but cameras for comparison.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cache
@@ -235,14 +235,11 @@ def from_table(name: str, table: Mapping[str, Any], folder: Path | None = None) 
     try:
         return kind.read(name, table, folder or Path())
     except InputError as error:
-        field = _key_of(error.field, kind.keys)
+        field = error.field
+        with_unit = [key for key in kind.keys if key.rpartition("_")[0] == field]
+        if field not in kind.keys and with_unit:  # the key of a model's field: `min_range_m`
+            field = with_unit[0]
         raise InputError(error.source, field, error.expected, error.found) from None
-
-
-def _key_of(field: str, keys: Collection[str]) -> str:
-    """Return the key of a model's field in its table, with its unit: ``min_range_m``."""
-    with_unit = [key for key in keys if key.rpartition("_")[0] == field]
-    return with_unit[0] if field not in keys and with_unit else field
 
 
 def to_table(model: SensorModel) -> dict[str, Any]:

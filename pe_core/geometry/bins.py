@@ -67,12 +67,6 @@ class Raster:
         inside &= (v[0] <= self.v[1]) & (v[1] >= self.v[0])
         return inside
 
-    def ends_of_rows(self, rows: NDArray) -> Spans:
-        """Minimum and maximum u of rows of bins, with a margin."""
-        step = (self.u[1] - self.u[0]) / self.count
-        low = self.u[0] + rows * step
-        return low - MARGIN, low + (step + MARGIN)
-
 
 def _bins(w: Floats, ends: tuple[float, float], count: int) -> NDArray[np.int32]:
     scale = count / max(ends[1] - ends[0], MARGIN)
@@ -171,7 +165,9 @@ def row_spans(
 
 def _crossed(raster: Raster, row: Ints, item: Ints, sides: list[Floats], reach: Floats) -> Spans:
     """Minimum and maximum v of shapes within rows."""
-    u0, u1 = raster.ends_of_rows(row)
+    step = (raster.u[1] - raster.u[0]) / raster.count
+    u0 = raster.u[0] + row * step
+    u0, u1 = u0 - MARGIN, u0 + (step + MARGIN)
     low, high = np.full(len(row), -2.0), np.full(len(row), 2.0)
     slack = (reach * SIDE_MARGIN)[item]
     for side in sides:

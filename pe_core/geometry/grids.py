@@ -66,7 +66,12 @@ class PerceptionSpace:
     def __post_init__(self) -> None:
         check_settings(self, "space", names=("interval", "x", "y", "z"))
         for name in "xyz":
-            _check_divides(name, getattr(self, name), self.interval)
+            bounds = getattr(self, name)
+            voxels = (bounds[1] - bounds[0]) / self.interval
+            whole = round(voxels)
+            if whole < 1 or abs(voxels - whole) > DIVIDES_TOLERANCE * max(1.0, voxels):
+                expected = f"a length that divides {name} = {list(bounds)}"
+                raise InputError("space", "interval", expected, self.interval)
         if self.size > MAX_VOXELS:
             raise InputError("space", "interval", f"at most {MAX_VOXELS} voxels", self.size)
         if (columns := self.shape[0] * self.shape[1]) > MAX_COLUMNS:
@@ -96,14 +101,6 @@ class PerceptionSpace:
     def center_of(self, index: NDArray[np.integer]) -> NDArray[np.float64]:
         """Return the centres (V, 3) [m] of voxels with indices (V, 3)."""
         return np.asarray(self.origin) + (np.asarray(index) + 0.5) * self.interval
-
-
-def _check_divides(name: str, bounds: tuple[float, float], interval: float) -> None:
-    voxels = (bounds[1] - bounds[0]) / interval
-    if round(voxels) < 1 or abs(voxels - round(voxels)) > DIVIDES_TOLERANCE * max(1.0, voxels):
-        raise InputError(
-            "space", "interval", f"a length that divides {name} = {list(bounds)}", interval
-        )
 
 
 @dataclass(frozen=True)
@@ -166,7 +163,14 @@ def top_heights(triangles: Floats, space: PerceptionSpace) -> Floats:
     face, column = _candidates(triangles, space)
     x = space.centers(0)[column // ny]
     y = space.centers(1)[column % ny]
-    inside, z = _height_at(triangles[face], x, y)
+    corners = triangles[face]
+    dx, dy = corners[..., 0] - x[:, None], corners[..., 1] - y[:, None]
+    areas = np.stack(
+        [dx[:, i] * dy[:, j] - dx[:, j] * dy[:, i] for i, j in ((1, 2), (2, 0), (0, 1))], axis=1
+    )
+    total = areas.sum(axis=1)
+    inside = ((areas >= 0).all(axis=1) | (areas <= 0).all(axis=1)) & (total != 0)
+    z = (areas * corners[..., 2]).sum(axis=1) / np.where(total == 0, 1.0, total)
     np.maximum.at(heights, column[inside], z[inside])
     return heights.reshape(nx, ny)
 
@@ -185,15 +189,3 @@ def _candidates(triangles: Floats, space: PerceptionSpace) -> tuple[NDArray, NDA
     i = np.repeat(first[0], n) + step // rows
     j = np.repeat(first[1], n) + step % rows
     return np.repeat(np.arange(len(triangles)), n), i * space.shape[1] + j
-
-
-def _height_at(triangles: Floats, x: Floats, y: Floats) -> tuple[NDArray[np.bool_], Floats]:
-    """Whether (x, y) lies in each triangle in plan view, and z of its plane at (x, y)."""
-    dx, dy = triangles[..., 0] - x[:, None], triangles[..., 1] - y[:, None]
-    areas = np.stack(
-        [dx[:, i] * dy[:, j] - dx[:, j] * dy[:, i] for i, j in ((1, 2), (2, 0), (0, 1))], axis=1
-    )
-    total = areas.sum(axis=1)
-    inside = ((areas >= 0).all(axis=1) | (areas <= 0).all(axis=1)) & (total != 0)
-    z = (areas * triangles[..., 2]).sum(axis=1) / np.where(total == 0, 1.0, total)
-    return inside, z

@@ -182,7 +182,10 @@ class VisibleTriangles:
 
     def _cast(self, d: Floats, hits: Hits) -> None:
         """Cast rays (3, B), face by face; the results go into `hits`."""
-        passed = _faces_passed(d)
+        x, y, z = np.abs(d)
+        backward = (d < 0.0).astype(np.int8)
+        side = np.where(y >= z, backward[1] + np.int8(2), backward[2] + np.int8(4))
+        passed = np.where((x >= y) & (x >= z), backward[0], side)  # index in `FACES`
         walk = RayWalk(self.tree, self.origin, d)
         for number, face in enumerate(FACES):
             ray = np.flatnonzero(passed == number)
@@ -191,14 +194,6 @@ class VisibleTriangles:
             rays = None if ends is None else BinnedRays.within(look, ends, d, ray)
             if rays is not None:
                 _cast(look, rays, walk, hits)
-
-
-def _faces_passed(d: Floats) -> NDArray[np.int8]:
-    """Return the index in `FACES` (B,) of the face that each of (3, B) directions passes."""
-    x, y, z = np.abs(d)
-    backward = (d < 0.0).astype(np.int8)
-    side = np.where(y >= z, backward[1] + np.int8(2), backward[2] + np.int8(4))
-    return np.where((x >= y) & (x >= z), backward[0], side)
 
 
 def _cast(look: FaceLook, rays: BinnedRays, walk: RayWalk, hits: Hits) -> None:
@@ -234,7 +229,9 @@ def _meet(targets: Targets, near: Floats, look: FaceLook, rays: BinnedRays, hits
     with_rays = np.flatnonzero(count)
     item, first, count = spans.item[with_rays], first[with_rays], count[with_rays]
     number = look.tree.number[targets.triangles.number]
-    for part in _portions(count):
+    portion = np.cumsum(count) // PAIRS_AT_ONCE  # to fit the CPU cache and memory
+    edges = [0, *(np.flatnonzero(np.diff(portion)) + 1).tolist(), len(count)]
+    for part in (slice(a, b) for a, b in pairwise(edges)):
         n = count[part]
         which, ray = np.repeat(item[part], n), np.repeat(first[part], n) + count_up(n)
         unfinished = np.flatnonzero(near[which] <= hits.distance[rays.ray[ray]])
@@ -254,10 +251,3 @@ def _keep(hits: Hits, ray: Ints, face: Ints, distance: Floats) -> None:
     hits.face[ray[distance < before]] = MANY
     first = distance == hits.distance[ray]
     np.minimum.at(hits.face, ray[first], face[first])
-
-
-def _portions(counts: Ints) -> list[slice]:
-    """Split counts into runs of about PAIRS_AT_ONCE in total, to fit the CPU cache and memory."""
-    portion = np.cumsum(counts) // PAIRS_AT_ONCE
-    edges = [0, *(np.flatnonzero(np.diff(portion)) + 1).tolist(), len(counts)]
-    return [slice(a, b) for a, b in pairwise(edges)]

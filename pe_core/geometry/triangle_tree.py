@@ -99,7 +99,9 @@ class TriangleTree:
         self.boxes: list[Floats] = []
         self.rows = [filled.reshape(-1, 9 * BRANCH)]
         if len(triangles):
-            low, high = _least(self.triangles), _greatest(self.triangles)
+            a, b, c = (self.triangles[:, k] for k in range(3))
+            low = np.minimum(np.minimum(a, b), c)
+            high = np.maximum(np.maximum(a, b), c)
             while not self.boxes or len(low) > BRANCH:
                 starts = np.arange(0, len(low), BRANCH)
                 low = np.minimum.reduceat(low, starts, axis=0)
@@ -164,11 +166,3 @@ def _spread(cells: NDArray[np.uint64]) -> NDArray[np.uint64]:
 def _filled(values: NDArray) -> NDArray:
     """Append copies of the last value until the number is a multiple of BRANCH."""
     return np.concatenate([values, np.repeat(values[-1:], -len(values) % BRANCH, axis=0)])
-
-
-def _least(triangles: Floats) -> Floats:
-    return np.minimum(np.minimum(triangles[:, 0], triangles[:, 1]), triangles[:, 2])
-
-
-def _greatest(triangles: Floats) -> Floats:
-    return np.maximum(np.maximum(triangles[:, 0], triangles[:, 1]), triangles[:, 2])

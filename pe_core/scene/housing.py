@@ -8,7 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base.arrays import Floats
 from ..base.values import A_TEXT, LENGTH, Number, choice, vector
@@ -86,29 +85,18 @@ def cuts_body(
     half = np.array(housing.size) / 2.0 - seat
     if half.min() <= 0.0:
         return ()
-    near, faces = _triangles_near(pose, housing, vehicle, half)
+    rotation = pose.ground_from_sensor
+    middle = np.array(pose.position) + rotate(rotation, housing.center)
+    reach = float(np.sqrt(dot(np.array(housing.size), np.array(housing.size)))) / 2.0
+    faces = vehicle.faces_near(middle, reach)
+    near = rotate(rotation.T, vehicle.triangles[faces] - middle)  # along the housing's axes
+    overlapping = ((near.min(axis=1) <= half) & (near.max(axis=1) >= -half)).all(axis=1)
+    near, faces = near[overlapping], faces[overlapping]
     if not len(faces):
         return ()
     inside = (meets_box if housing.shape == "box" else meets_cylinder)(near, half)
     part_indices = np.unique(np.asarray(vehicle.parts)[faces[inside]])
     return tuple(vehicle.part_names[part] for part in part_indices)
-
-
-def _triangles_near(
-    pose: Pose, housing: Housing, vehicle: Vehicle, half: Floats
-) -> tuple[Floats, NDArray[np.int64]]:
-    """Triangles (N, 3, 3) near a housing, relative to its middle and axes, and their indices (N,).
-
-    Near means: the bounds of a triangle intersect the box of half sizes (3,).
-    """
-    rotation = pose.ground_from_sensor
-    middle = np.array(pose.position) + rotate(rotation, housing.center)
-    reach = float(np.sqrt(dot(np.array(housing.size), np.array(housing.size)))) / 2.0
-    faces = vehicle.faces_near(middle, reach)
-    near = rotate(rotation.T, vehicle.triangles[faces] - middle)
-    low, high = near.min(axis=1), near.max(axis=1)
-    overlapping = ((low <= half) & (high >= -half)).all(axis=1)
-    return near[overlapping], faces[overlapping]
 
 
 def hull_of(pose: Pose, housing: Housing | None) -> Hull:

@@ -58,18 +58,13 @@ def _shaft_is_empty(vehicle: Vehicle, position: Floats, axis: int, sign: float) 
 
 def open_side(vehicle: Vehicle, point: Floats, normal: Floats) -> float:
     """Side of a surface where more rays miss the body: 1.0 along its unit normal (3,), or -1.0."""
-    towards = dot(spiral(SIDES, 90.0), normal)
-    return 1.0 if _free_difference(vehicle, point, normal, towards) >= 0.0 else -1.0
-
-
-def _free_difference(vehicle: Vehicle, point: Floats, normal: Floats, towards: Floats) -> float:
-    """Share of rays that miss the body on the normal's side, minus that on the other side."""
-    shares = []
+    rays = spiral(SIDES, 90.0)
+    towards, shares = dot(rays, normal), []
     for side in (1.0, -1.0):
-        rays = spiral(SIDES, 90.0)[side * towards > GRAZING]
-        hits = vehicle.first_hit_from(point + side * LIFT_M * normal, rays)
+        origin = point + side * LIFT_M * normal
+        hits = vehicle.first_hit_from(origin, rays[side * towards > GRAZING])
         shares.append(float(np.mean(np.isinf(hits.distance))))
-    return shares[0] - shares[1]
+    return 1.0 if shares[0] - shares[1] >= 0.0 else -1.0
 
 
 @cache

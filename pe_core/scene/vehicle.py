@@ -245,17 +245,12 @@ def _with_clearance(
     if length == 0.0:
         return position
     lift = clearance * normal / length
-    return points[nearest] + _open_side(points[nearest], lift, tree)
-
-
-def _open_side(point: Floats, lift: Floats, tree: TriangleTree) -> Floats:
-    """Return ``+lift`` or ``-lift``: the side on which a ray runs farther, which is outside."""
-    direction = lift / np.sqrt(dot(lift, lift))
-    hits = [
-        VisibleTriangles(tree, point + side * lift).first_hit(side * direction[None])
+    point, direction = points[nearest], lift / np.sqrt(dot(lift, lift))
+    ahead, back = (
+        VisibleTriangles(tree, point + side * lift).first_hit(side * direction[None]).distance[0]
         for side in (1.0, -1.0)
-    ]
-    return lift if hits[0].distance[0] >= hits[1].distance[0] else -lift
+    )
+    return point + (lift if ahead >= back else -lift)  # a ray runs farther outside
 
 
 def closest_points(point: Floats, triangles: Floats) -> Floats:
@@ -265,7 +260,13 @@ def closest_points(point: Floats, triangles: Floats) -> Floats:
     the plane if it lies inside the triangle, else the closest point on an edge.
     """
     a, b, c = (triangles[:, i] for i in range(3))
-    best = np.stack([_closest_on_edge(point, p, q) for p, q in ((a, b), (b, c), (c, a))])
+    nearest = []
+    for start, end in ((a, b), (b, c), (c, a)):
+        along = end - start
+        size = dot(along, along)
+        t = dot(point - start, along) / np.where(size == 0.0, 1.0, size)
+        nearest.append(start + np.clip(t, 0.0, 1.0)[:, None] * along)
+    best = np.stack(nearest)
     square = dot(best - point, best - point)
     result = best[np.argmin(square, axis=0), np.arange(len(triangles))]
     normal = cross(b - a, c - a)
@@ -276,10 +277,3 @@ def closest_points(point: Floats, triangles: Floats) -> Floats:
     sides = [dot(cross(q - p, foot - p), normal) for p, q in ((a, b), (b, c), (c, a))]
     inside = ~flat & (np.min(sides, axis=0) >= 0.0)
     return np.where(inside[:, None], foot, result)
-
-
-def _closest_on_edge(point: Floats, start: Floats, end: Floats) -> Floats:
-    along = end - start
-    size = dot(along, along)
-    t = dot(point - start, along) / np.where(size == 0.0, 1.0, size)
-    return start + np.clip(t, 0.0, 1.0)[:, None] * along

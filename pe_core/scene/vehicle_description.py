@@ -124,14 +124,10 @@ def vehicle_line(vehicle: Vehicle, faces: str = "") -> str:
     size = size_words(tuple((high - low).tolist()))
     triangles = plural(len(vehicle.triangles), "triangle")
     parts = plural(len(vehicle.part_names), "part")
-    texts = (size, faces or _facing(vehicle), triangles, parts)
-    return ", ".join(text for text in texts if text)
-
-
-def _facing(vehicle: Vehicle) -> str:
     shape = BodyShape(vehicle.triangles, vehicle.parts, tuple(vehicle.part_names))
-    forward = front_by_names(shape)
-    if forward is not None and forward[0] != UP:
-        return f"faces {'+' if forward[1] > 0 else '-'}{'xyz'[forward[0]]}"
-    axis = along(shape, UP)
-    return "" if axis is None else f"lies along {'xyz'[axis]}"
+    if not faces and (forward := front_by_names(shape)) is not None and forward[0] != UP:
+        faces = f"faces {'+' if forward[1] > 0 else '-'}{'xyz'[forward[0]]}"
+    if not faces and (axis := along(shape, UP)) is not None:
+        faces = f"lies along {'xyz'[axis]}"
+    texts = (size, faces, triangles, parts)
+    return ", ".join(text for text in texts if text)

@@ -26,12 +26,7 @@ from .kind import (
     unregister,
 )
 from .lidar import LIDAR, BeamField, Lidar, RangePicture, beam_field, range_picture
-from .measurement_cache import (
-    MeasurementCache,
-    ObjectMeasurementCache,
-    PartMeasurementCache,
-    VisibleGroundCache,
-)
+from .measurement_cache import MeasurementCache, ObjectMeasurementCache, VisibleGroundCache
 from .perception import BLIND_RULES, CURVE_MODELS, SCANS, PerceptionModel, scan_curves
 from .radar import RADAR, Radar, RadarMode
 from .ultrasonic import ULTRASONIC, Ultrasonic
@@ -41,7 +36,6 @@ __all__ = ["BLIND_RULES", "CURVE_MODELS", "KINDS", "SCANS", "BeamField", "BrownC
 __all__ += ["EgoMask", "FTheta", "FieldPicture", "GridKernel", "GroundKernel", "GroundView"]
 __all__ += ["KannalaBrandt", "Kind", "Lens", "Lidar", "Measured", "MeasurementCache"]
 __all__ += ["ObjectKernel", "ObjectMeasurementCache", "ObjectView", "Occlusion", "PerceptionModel"]
-__all__ += ["PartMeasurementCache"]
 __all__ += ["Pinhole", "Radar", "RadarMode", "RangePicture", "SampleKernel", "Ultrasonic"]
 __all__ += ["ViewPatch", "VisibleGround", "VisibleGroundCache", "Voxels", "Weather", "beam_field"]
 __all__ += ["derived_object_curves", "kind_named", "kind_of", "measure", "measure_objects"]

@@ -1,7 +1,7 @@
 """Caches of measurements by sensor: a sensor that has not moved is not measured again.
 
-Each cache keeps the sensors of the last rig, by name. There is one for voxels, one for objects, one
-for parts of bodies, and one for squares of the ground.
+Each cache keeps the sensors of the last rig, by name. There is one for voxels, one for objects and
+parts of bodies, and one for squares of the ground.
 
 m of a sensor whose range was `limited` is its m at whole range for all voxels within the shorter
 range, 0 beyond it, and counted again on the few voxels that the range cuts: a sensor is measured
@@ -37,7 +37,7 @@ from .kernels import (
     VisibleGround,
     Voxels,
 )
-from .kind import Kind, kind_of
+from .kind import kind_of
 
 K = TypeVar("K", bound=CachingKernel)
 
@@ -206,11 +206,12 @@ def _key(sensor: Sensor) -> Hashable:
 
 
 class ObjectMeasurementCache:
-    """Measures rigs on a fixed set of objects.
+    """Measures rigs on a fixed set of objects, or on the cells of bodies.
 
     Parameters
     ----------
-    objects : Objects
+    objects : Objects or BodyParts
+        Of parts of bodies the sensors have to show parts: `Kind.shows_parts`.
     vehicle : Vehicle, optional
     traffic : bool
         Whether the objects of a scene occlude each other.
@@ -220,12 +221,14 @@ class ObjectMeasurementCache:
 
     def __init__(
         self,
-        objects: Objects,
+        objects: Objects | BodyParts,
         vehicle: Vehicle | None = None,
         traffic: bool = False,
         kernel_caches: dict[str, Any] | None = None,
     ) -> None:
-        self._view = ObjectView(objects, vehicle, traffic)
+        self._parts = objects if isinstance(objects, BodyParts) else None
+        measured = objects.cells if isinstance(objects, BodyParts) else objects
+        self._view = ObjectView(measured, vehicle, traffic)
         self._kernels = _Kernels(self._new_kernel, kernel_caches)
         self._measured: dict[str, tuple[Sensor, Floats]] = {}
 
@@ -259,46 +262,16 @@ class ObjectMeasurementCache:
         cached = self.cached(sensor)
         if cached is not None:
             return cached
-        m = self._measure(self._kernels.of(sensor), sensor)
+        kernel, parts = self._kernels.of(sensor), self._parts
+        m = kernel.measure(sensor) if parts is None else kernel.measure_parts(sensor, parts)
         m.flags.writeable = False
         return m
 
-    def _measure(self, kernel: ObjectKernel, sensor: Sensor) -> Floats:
-        return kernel.measure(sensor)
-
-    def _view_for(self, kind: Kind) -> ObjectView:
-        return self._view
-
     def _new_kernel(self, sensor: Sensor) -> ObjectKernel:
-        kind = kind_of(sensor)
-        return kind.on_objects(self._view_for(kind))
-
-
-class PartMeasurementCache(ObjectMeasurementCache):
-    """Measures sensors that show parts of bodies on the cells of bodies.
-
-    Parameters
-    ----------
-    parts : BodyParts
-    vehicle : Vehicle, optional
-    kernel_caches : dict, optional
-        As of `ObjectMeasurementCache`.
-    """
-
-    def __init__(
-        self,
-        parts: BodyParts,
-        vehicle: Vehicle | None = None,
-        kernel_caches: dict[str, Any] | None = None,
-    ) -> None:
-        super().__init__(parts.cells, vehicle, kernel_caches=kernel_caches)
-        self._parts, self._whole = parts, ObjectView(parts.objects, vehicle)
-
-    def _measure(self, kernel: ObjectKernel, sensor: Sensor) -> Floats:
-        return kernel.measure_parts(sensor, self._parts)
-
-    def _view_for(self, kind: Kind) -> ObjectView:
-        return self._whole if kind.counts_points else self._view
+        kind, view = kind_of(sensor), self._view
+        if self._parts is not None and kind.counts_points:
+            view = ObjectView(self._parts.objects, view.vehicle)
+        return kind.on_objects(view)
 
 
 class VisibleGroundCache:

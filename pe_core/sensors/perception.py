@@ -63,13 +63,12 @@ def scan_curves() -> ScanCurves:
     """Return the curves of the file that is part of the engine."""
     table = Table(load_toml(FILE, "curves", decode_text(read_bytes(FILE))), FILE.name)
     kinds = table.table("curves")
-    curves = {kind: _of_kind(kinds.table(kind)) for kind in kinds.names}
+    curves = {}
+    for kind in kinds.names:
+        own = kinds.table(kind)
+        rows = {name: own.table(name) for name in own.names}
+        curves[kind] = {n: ApCurve(row.number("a"), row.number("b")) for n, row in rows.items()}
     return ScanCurves(curves, table.whole("runs"), table.whole("planned"))
-
-
-def _of_kind(table: Table) -> dict[str, ApCurve]:
-    own = {name: table.table(name) for name in table.names}
-    return {name: ApCurve(row.number("a"), row.number("b")) for name, row in own.items()}
 
 
 @dataclass(frozen=True, init=False, repr=False)

@@ -171,7 +171,11 @@ class FanGrid(GridKernel):
         """Measure plane by plane, only the columns that may be reached."""
         x, y, z = (self._space.centers(axis) for axis in range(3))
         columns = np.stack(np.meshgrid(x[planes], y, indexing="ij"), axis=-1)
-        reached = self._columns_reached(one.sensor, columns, z)
+        middle, half = (z[0] + z[-1]) / 2.0, (z[-1] - z[0]) / 2.0  # of balls round columns
+        across = columns.reshape(-1, 2)
+        centers = np.column_stack([across, np.full(len(across), middle)])
+        balls = np.full(len(centers), half + BALL_MARGIN_M)
+        reached = self._rules.reached(one.sensor, centers, balls).reshape(columns.shape[:2])
         rows = np.flatnonzero(reached.any(axis=0))
         n = planes.stop - planes.start
         if not len(rows):
@@ -184,14 +188,6 @@ class FanGrid(GridKernel):
             flat = columns[number, first:last][some]
             m[number, some] = self._rules.columns(one.sensor, flat, z, side, one.fan)
         return VisibleRows(slice(first, last), m)
-
-    def _columns_reached(self, sensor: Sensor, columns: Floats, z: Floats) -> Flags:
-        """Whether balls round columns (n, ny, 2) reach into the field of view."""
-        middle, half = (z[0] + z[-1]) / 2.0, (z[-1] - z[0]) / 2.0
-        shape = columns.shape[:2]
-        centers = np.concatenate([columns, np.full((*shape, 1), middle)], axis=-1).reshape(-1, 3)
-        balls = np.full(len(centers), half + BALL_MARGIN_M)
-        return self._rules.reached(sensor, centers, balls).reshape(shape)
 
 
 class FanSample(SampleKernel):

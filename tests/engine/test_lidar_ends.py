@@ -12,6 +12,7 @@ from pe_core.sensors.lidar.beams import FixedEnds, LazyEnds, RotatedBeams
 from pe_core.sensors.lidar.lattice import lattice_of
 from pe_core.sensors.lidar.occlusion import occlusion_candidates
 from pe_core.sensors.lidar.tie_rules import position_in_voxels
+from pe_core.sensors.lidar.upright import MAX_AZIMUTHS, SlopeCounts, Upright
 from pe_core.sensors.lidar.voxel_beams import (
     PlacedLidar,
     VoxelPoints,
@@ -136,3 +137,20 @@ def test_what_a_bound_took_is_not_counted_again(monkeypatch):
         SPACE, pe.Prior.uniform(), CAR, samples=2048
     ).entropy(moved)
     assert len(calls) == 3
+
+
+@pytest.mark.parametrize("place", [(-0.43, 0.0, 1.8), (0.0, 0.0, 2.0), (0.537, -0.281, 1.713)])
+def test_few_voxels_of_an_upright_lidar_are_left_to_the_exact_test(place):
+    """Ties as well: whole layers and rows of voxels touch a beam along a face at round numbers."""
+    rng, lidar = np.random.default_rng(4), pe.catalog.load("Pandar64")
+    space = pe.PerceptionSpace((-30, 30), (-15, 15), (0, 5), 0.1)
+    index = rng.integers(0, space.shape, (50_000, 3))
+    position = position_in_voxels(place, space.origin, space.interval)
+    table = SlopeCounts.of(lidar.elevations, lidar.azimuth_count)
+    stopped = np.zeros((64, lidar.azimuth_count), bool)
+    upright = Upright.of(table, np.eye(3), stopped, 0.0)
+    counts, unsure = upright.count([c.astype(np.float32) for c in index.T], position)
+    offset = (index + 0.5 - position) * space.interval
+    near = np.hypot(offset[:, 0], offset[:, 1]) < 0.15 / math.radians(0.2) / MAX_AZIMUTHS
+    assert unsure[~near].mean() < 0.02
+    assert counts[~unsure].max() > 10

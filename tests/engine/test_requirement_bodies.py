@@ -17,7 +17,7 @@ from pe_core.scoring.requirements import (
     sees,
 )
 from pe_core.scoring.requirements.definition import largest_solid_angle, parts_of, visible_share
-from pe_core.sensors import PartMeasurementCache, kind_of
+from pe_core.sensors import ObjectMeasurementCache, kind_of
 from tests.engine import oracle, shapes
 from tests.engine.requirement_scene import AHEAD, check, rig, van
 from tests.thorough import tries
@@ -212,7 +212,7 @@ def test_beams_are_shared_out_among_bands_by_where_they_end(lidar):
         places = [tuple(np.add(foot, away)) for foot in feet]
         parts, headings = parts_of(body, places, (0.0, 0.6)), (0.0, 0.6)
         found = kind_of(lidar).measure_parts(lidar, parts, vehicle)
-        kernel = PartMeasurementCache(parts, vehicle).measure([lidar])["l"]
+        kernel = ObjectMeasurementCache(parts, vehicle).measure([lidar])["l"]
         assert kernel.tolist() == found.tolist()
         (bands, posts), (centers, sizes) = body.cell_bands(), body.boxes(True)
         found = found.reshape(len(places), 2, -1)

@@ -8,7 +8,7 @@ to another vehicle.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
@@ -70,7 +70,16 @@ class KnownRig:
         length, width, height = self.size
         old = ((-length / 2.0, length / 2.0), (-width / 2.0, width / 2.0), (0.0, height))
         new = tuple(zip(low, high, strict=True))
-        return tuple(replace(s, pose=_scaled_pose(s.pose, old, new)) for s in self.sensors)
+        sensors = []
+        for sensor in self.sensors:
+            position = []
+            for value, (a, b), (c, d) in zip(sensor.pose.position, old, new, strict=True):
+                inside = min(max(value, a), b)
+                share = (inside - a) / (b - a)
+                position.append(round(c + share * (d - c) + (value - inside), 5))
+            x, y, z = position
+            sensors.append(replace(sensor, pose=Pose((x, y, z), sensor.pose.rpy)))
+        return tuple(sensors)
 
 
 def known_rigs() -> Mapping[str, KnownRig]:
@@ -131,18 +140,3 @@ def _sensor(row: Mapping[str, Any], center_x: float, is_base: bool) -> KnownSens
         x, y, z = (round(v + height * u, 5) for v, u in zip(pose.position, up, strict=True))
         pose = Pose((x, y, z), pose.rpy)
     return KnownSensor(row["name"], row["model"], pose)
-
-
-def _scaled_pose(
-    pose: Pose, old: Sequence[tuple[float, float]], new: Sequence[tuple[float, float]]
-) -> Pose:
-    """Return a pose with its position scaled from old to new bounds."""
-    bounds = zip(pose.position, old, new, strict=True)
-    x, y, z = (round(_scaled(v, before, after), 5) for v, before, after in bounds)
-    return Pose((x, y, z), pose.rpy)
-
-
-def _scaled(value: float, old: tuple[float, float], new: tuple[float, float]) -> float:
-    inside = min(max(value, old[0]), old[1])
-    share = (inside - old[0]) / (old[1] - old[0])
-    return new[0] + share * (new[1] - new[0]) + (value - inside)

@@ -18,7 +18,7 @@ from ...metric.entropy import ap_of_entropy
 from ...scene.objects import Objects
 from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
-from ...sensors import ObjectMeasurementCache, PartMeasurementCache, PerceptionModel
+from ...sensors import ObjectMeasurementCache, PerceptionModel
 from ...sensors.boxes import BodyParts
 from ..targets.object_metric import FusedObjects
 from .bodies import Body
@@ -87,7 +87,7 @@ class BodyChecks:
         self._joined = _joined([body.objects for own in self._bodies for body in own])
         self._parts = _joined_parts(all_parts)
         self._measurers: dict[int, ObjectMeasurementCache] = {}
-        self._part_measurers: dict[int, PartMeasurementCache] = {}
+        self._part_measurers: dict[int, ObjectMeasurementCache] = {}
         weights = np.zeros(count)  # of the objects whose AP is asked for
         for own, (requirement, _) in zip(self._bodies, wanted, strict=True):
             for body_set in own if requirement.criterion.ap is not None else ():
@@ -161,7 +161,9 @@ class BodyChecks:
                 self._joined, vehicle, kernel_caches=caches
             )
             if self._parts is not None:
-                self._part_measurers[number] = PartMeasurementCache(self._parts, vehicle, caches)
+                self._part_measurers[number] = ObjectMeasurementCache(
+                    self._parts, vehicle, kernel_caches=caches
+                )
         return self._measurers[number]
 
     def _measurers_of(self, number: int, sensor: Sensor) -> list[ObjectMeasurementCache]:

@@ -52,9 +52,11 @@ def _beyond(camera: Camera, square: Floats) -> Mask:
 
 
 def count_pixels(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None) -> Floats:
+    """Return the pixels (V,) that cubes with centres (V, 3) and a side [m] cover: m of voxels."""
     camera, position = cast(Camera, sensor.model), sensor.pose.position
     offsets = offsets_of(centers, position, side)
-    area = image_area(camera, axes_of(sensor.pose), offsets, side)
+    exact = clipped_pixel_area if camera.projection.is_straight else bent_pixel_area
+    area = exact(camera, axes_of(sensor.pose), offsets, side)
     if is_ranged(camera):
         area[out_of_range(camera, offsets)] = 0.0
     in_view = np.flatnonzero(area)
@@ -62,12 +64,6 @@ def count_pixels(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle 
         seen = vehicle.seen_from(position, camera.sees_through_glass)
         area[in_view[hidden(seen, aims_at(offsets[in_view], side))]] = 0.0
     return area
-
-
-def image_area(camera: Camera, axes: Floats, offsets: Floats, side: float) -> Floats:
-    """(V,) pixels covered by cubes with centres at offsets, through the camera's own lens."""
-    exact = clipped_pixel_area if camera.projection.is_straight else bent_pixel_area
-    return exact(camera, axes, offsets, side)
 
 
 def hidden(seen: VisibleMesh, aims: Floats) -> NDArray[np.bool_]:

@@ -261,7 +261,10 @@ class CameraObjects(ObjectKernel):
         if view.vehicle is not None:
             seen = view.vehicle.seen_from(sensor.pose.position, camera.sees_through_glass)
         image = images.some(shown := np.flatnonzero(images.area > 0.0))
-        by_vehicle = _may_be_hidden(camera, axes, image, seen)
+        by_vehicle = np.full(len(image.area), seen is not None)
+        if seen is not None and camera.projection.is_straight:
+            bins = PictureBins(camera, axes, seen.seen.triangles)
+            by_vehicle = bins.may_hide_in(image.low, image.high)
         rivals, asked = None, by_vehicle
         if view.traffic:
             rivals = Rivals.near(boxes, view.objects.scenes, self._balls, which[shown])
@@ -296,12 +299,3 @@ def _may_be_visible(
     theta = np.arctan2(np.hypot(left, up), depth)
     within = theta - np.arcsin(balls / safe) < camera.projection.edge
     return np.asarray(within | (distance <= balls))
-
-
-def _may_be_hidden(
-    camera: Camera, axes: Floats, images: BoxImages, seen: VisibleMesh | None
-) -> NDArray[np.bool_]:
-    """Whether the vehicle may hide images; always true for a lens with distortion."""
-    if seen is None or not camera.projection.is_straight:
-        return np.full(len(images.area), seen is not None)
-    return PictureBins(camera, axes, seen.seen.triangles).may_hide_in(images.low, images.high)

@@ -16,12 +16,11 @@ from ...base.values import Number, choice, listed
 from ...metric.entropy import RTM3D
 from ...scene.objects import Objects
 from ...scene.rig import Sensor
-from ...scene.vehicle import Vehicle
-from ..boxes import BodyParts, PlacedBoxes
+from ..boxes import PlacedBoxes
 from ..field_of_view import NEAREST, limited
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, Kind, derived_object_curves
 from ..weather import camera_range
-from .definition import count_pixels, out_of_range
+from .definition import count_pixels, is_ranged, out_of_range
 from .kernels import CameraGrid, CameraGround, CameraObjects, CameraSample
 from .lens import COEFFICIENT, FOCAL, PLACE, Lens
 from .lens import FOV as LENS_FOV
@@ -80,7 +79,8 @@ def read_lens(name: str, table: Mapping[str, Any]) -> Lens:
         raise InputError(name, "distortion", "a table", shown(own))
     model = choice(name, "distortion.model", own.get("model", Pinhole.model), LENSES)
     lens = LENSES[model]
-    fx, fy = _focal_lengths(name, table, lens)
+    fx = table.get("fx", 1.0 if lens is FTheta else None)  # `fy` defaults to it
+    fx, fy = (FOCAL.checked(name, k, table.get(k, fx)) for k in ("fx", "fy"))
     cx, cy = (PLACE.checked(name, key, table.get(key)) for key in ("cx", "cy"))
     values = _coefficients(name, own, lens)
     if lens is FTheta and not values.get("k1"):
@@ -100,12 +100,6 @@ def lens_table(lens: Lens) -> dict[str, Any]:
         values = {key: value for key in lens.coefficients if (value := getattr(lens, key))}
         table["distortion"] = {"model": lens.model, **values}
     return table
-
-
-def _focal_lengths(name: str, table: Mapping[str, Any], lens: type[Lens]) -> tuple[float, float]:
-    """Focal lengths: `fy` defaults to `fx`; both default to 1 for an f-theta lens."""
-    fx = table.get("fx", 1.0 if lens is FTheta else None)
-    return FOCAL.checked(name, "fx", fx), FOCAL.checked(name, "fy", table.get("fy", fx))
 
 
 def _coefficients(name: str, own: Mapping[str, Any], lens: type[Lens]) -> dict[str, float]:
@@ -143,36 +137,19 @@ def figures(camera: Camera) -> list[str]:
     """Picture, field of view, focal length."""
     across, up = math.degrees(camera.hfov), math.degrees(camera.vfov)
     wide = f"{across:g}" if camera.lens is None else f"{across:.4g}"
-    return [
+    lines = [
         f"image           {camera.width} x {camera.height} px",
         f"field of view   {wide} x {up:.4g} deg",
         f"focal length    {camera.focal_px:.2f} px",
-        *_lens(camera),
-        *_ranges(camera),
     ]
-
-
-def _lens(camera: Camera) -> list[str]:
-    lens = camera.lens
-    if lens is None:
-        return []
-    shown = ", ".join(f"{key} {v:g}" for key in lens.coefficients if (v := getattr(lens, key)))
-    return [
-        f"principal point {lens.cx:g}, {lens.cy:g} px",
-        f"lens            {lens.model}{': ' if shown else ''}{shown}",
-    ]
-
-
-def _ranges(camera: Camera) -> list[str]:
-    if not (camera.min_range > 0.0 or camera.max_range < math.inf):
-        return []
-    most = f"{camera.max_range:g} m" if camera.max_range < math.inf else "any distance"
-    return [f"range           {camera.min_range:g} m to {most}"]
-
-
-def parts_in_picture(sensor: Sensor, parts: BodyParts, vehicle: Vehicle | None) -> Floats:
-    """Measure what is seen of each cell's image (N,), of each alone [px]."""
-    return count_object_pixels(sensor, parts.cells, vehicle, False)
+    if (lens := camera.lens) is not None:
+        own = ", ".join(f"{key} {v:g}" for key in lens.coefficients if (v := getattr(lens, key)))
+        lines.append(f"principal point {lens.cx:g}, {lens.cy:g} px")
+        lines.append(f"lens            {lens.model}{': ' if own else ''}{own}")
+    if is_ranged(camera):
+        most = f"{camera.max_range:g} m" if camera.max_range < math.inf else "any distance"
+        lines.append(f"range           {camera.min_range:g} m to {most}")
+    return lines
 
 
 def image_widths(sensor: Sensor, objects: Objects) -> Floats:
@@ -203,7 +180,9 @@ CAMERA = Kind(
     occlusion_text="picture occluded",
     measure=count_pixels,
     measure_objects=count_object_pixels,
-    measure_parts=parts_in_picture,
+    measure_parts=lambda sensor, parts, vehicle: count_object_pixels(
+        sensor, parts.cells, vehicle, False
+    ),
     image_widths=image_widths,
     read=read,
     write=write,

@@ -191,7 +191,9 @@ def reaching(lens: Own, name: str, width: int, height: int) -> Own:
     inner = lens.within(folds)
     if lens.fov is None and _holds(inner, width, height):
         return inner
-    found = f"it folds {math.degrees(folds):.2f} deg from the axis, {_radius_px(inner):.0f} px"
+    right, down = edge_circle(inner)
+    radius_px = float(np.min(np.hypot(right - inner.cx, down - inner.cy)))
+    found = f"it folds {math.degrees(folds):.2f} deg from the axis, {radius_px:.0f} px"
     most = f"or fov_deg of at most {math.floor(math.degrees(2.0 * folds) * 10.0) / 10.0:g}"
     what = "a lens that can be inverted in all of the picture"
     raise InputError(name, "distortion", f"{what}, {most}", f"{found} from the centre")
@@ -253,19 +255,10 @@ def _holds(lens: Lens, width: int, height: int) -> bool:
     right, down = edge_circle(lens, 720)
     turn = np.arctan2(down - lens.cy, right - lens.cx)
     away = np.hypot(down - lens.cy, right - lens.cx)
+    order = np.argsort(turn)
     for x, y in ((0, 0), (width, 0), (width, height), (0, height)):
         corner = math.atan2(y - lens.cy, x - lens.cx)
-        reach = np.interp(corner, *_by_turn(turn, away), period=2.0 * math.pi)
+        reach = np.interp(corner, turn[order], away[order], period=2.0 * math.pi)
         if math.hypot(y - lens.cy, x - lens.cx) > reach + ROOM_PX:
             return False
     return True
-
-
-def _by_turn(turn: Floats, away: Floats) -> tuple[Floats, Floats]:
-    order = np.argsort(turn)
-    return turn[order], away[order]
-
-
-def _radius_px(lens: Lens) -> float:
-    right, down = edge_circle(lens)
-    return float(np.min(np.hypot(right - lens.cx, down - lens.cy)))

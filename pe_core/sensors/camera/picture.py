@@ -22,7 +22,9 @@ from .model import Camera
 def picture_rays(sensor: Sensor, most: int) -> Floats:
     """(R, 3) unit directions, ground frame, through a regular raster of at most `most` pixels."""
     camera = cast(Camera, sensor.model)
-    across, down = _raster(camera, most)
+    size = max(1.0, math.sqrt(camera.width * camera.height / most))
+    across = min(max(1, math.floor(camera.width / size)), most)
+    down = max(1, min(math.floor(camera.height / size), most // across))
     u = (np.arange(across) + 0.5) / across - 0.5
     v = (np.arange(down) + 0.5) / down - 0.5
     if camera.lens is not None:
@@ -32,13 +34,6 @@ def picture_rays(sensor: Sensor, most: int) -> Floats:
     left, up = np.meshgrid(-u * camera.width, -v * camera.height, indexing="ij")
     rays = np.stack([np.full(left.size, camera.focal_px), left.ravel(), up.ravel()], axis=1)
     return rotate(sensor.pose.ground_from_sensor, rays / np.sqrt(dot(rays, rays))[:, None])
-
-
-def _raster(camera: Camera, most: int) -> tuple[int, int]:
-    """Columns and rows of a raster of squares: at most `most` squares, no more than pixels."""
-    size = max(1.0, math.sqrt(camera.width * camera.height / most))
-    across = min(max(1, math.floor(camera.width / size)), most)
-    return across, max(1, min(math.floor(camera.height / size), most // across))
 
 
 def picture_patch(camera: Camera, step: float) -> ViewPatch:
@@ -113,13 +108,8 @@ BORDER = 1.05
 class PictureBins:
     """Bins of a picture, CELLS by CELLS, with a flag where a triangle of the vehicle may be.
 
-    Parameters
-    ----------
-    camera : Camera
-    axes : (3, 3) float
-        Rotation from the camera's frame to the ground frame (`tie_rules.axes_of`).
-    triangles : (F, 3, 3) float
-        Corners relative to the camera, ground axes [m].
+    `axes` (3, 3) rotate from the camera's frame to the ground frame (`tie_rules.axes_of`);
+    `triangles` (F, 3, 3) are corners relative to the camera, ground axes [m].
     """
 
     def __init__(self, camera: Camera, axes: Floats, triangles: Floats) -> None:

@@ -122,8 +122,12 @@ class QuickLens:
         if self._tilt is not None and isinstance(lens, BrownConrady):
             tilt = np.take(self._tilt, entry, mode="clip")
             density -= tilt * per * (np.float32(lens.p1) * up + np.float32(lens.p2) * left)
-            dx, dy = _shifts(lens, depth, left, up)
-            x, y = x + dx, y + dy
+            safe = np.maximum(depth, np.float32(1e-3))
+            e, n = -left / safe, -up / safe
+            square, both = e * e + n * n, np.float32(2.0) * e * n
+            p1, p2 = np.float32(lens.p1), np.float32(lens.p2)
+            x = x + (p1 * both + p2 * (square + 2 * e * e))
+            y = y + (p1 * (square + 2 * n * n) + p2 * both)
         focal = np.float32(lens.fx), np.float32(lens.fy)
         right, down = np.float32(lens.cx) + focal[0] * x, np.float32(lens.cy) + focal[1] * y
         tables = (self._stretch, self._uneven)
@@ -147,14 +151,6 @@ def _unevenness(lens: Lens, last: float) -> tuple[Floats, Floats]:
     padded = np.concatenate([rate, np.full(reach, rate[-1])])
     most = np.lib.stride_tricks.sliding_window_view(padded, reach + 1).max(axis=1)
     return theta, most
-
-
-def _shifts(lens: BrownConrady, depth: Array, left: Array, up: Array) -> tuple[Array, Array]:
-    safe = np.maximum(depth, np.float32(1e-3))
-    x, y = -left / safe, -up / safe
-    square, both = x * x + y * y, np.float32(2.0) * x * y
-    p1, p2 = np.float32(lens.p1), np.float32(lens.p2)
-    return p1 * both + p2 * (square + 2 * x * x), p1 * (square + 2 * y * y) + p2 * both
 
 
 def _widest_in(camera: Camera) -> float:

@@ -76,14 +76,8 @@ class OcclusionFlags:
 class VoxelOcclusion:
     """Classifies the voxels of a space: hidden by the vehicle, visible, or unsure.
 
-    Parameters
-    ----------
-    offsets : three (n,) float
-        Coordinates of the voxels' centres along each axis, from the camera, ascending [m].
-    seen : VisibleMesh
-        The vehicle from the camera's position.
-    corners : (4, 3) float
-        Directions to the corners of the picture, or of a larger one, ground axes.
+    `offsets` are the coordinates (n,) of the voxels' centres along each axis, from the camera,
+    ascending [m]; `corners` (4, 3) directions to the corners of the picture, or of a larger one.
     """
 
     def __init__(self, offsets: list[Floats], seen: VisibleMesh, corners: Floats) -> None:

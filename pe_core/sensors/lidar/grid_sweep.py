@@ -79,62 +79,37 @@ class BeamGrid:
     def add(
         self, origin: Sequence[float], directions: Floats, ends: Floats, min_range: float = 0.0
     ) -> None:
-        """Add the beams of one sensor to the counts.
+        """Add the beams of one sensor at `origin` (3,) [m] to the counts.
 
-        Parameters
-        ----------
-        origin : (3,) float
-            Where the beams start, ground frame [m].
-        directions : (B, 3) float
-            Unit directions, ground frame.
-        ends : (B,) float
-            A beam does not count in voxels that it enters farther than this [m].
-        min_range : float
-            A beam does not count in voxels that it leaves nearer than this [m].
+        `directions` (B, 3) are unit vectors, ground frame. A beam does not count in voxels that it
+        enters farther away than its end (B,), or leaves nearer than the minimum range [m].
         """
         paths = _clip(origin, directions, ends, self.space, min_range)
         self._saturable.append(_around(paths.origin, self._padded.shape))
-        if min_range > 0.0:
-            self._add_at_min_range(paths)
-        else:
-            self._add_at_origin(paths)
+        if min_range > 0.0:  # beams that are inside the space at their minimum range count there
+            inside = paths.start == paths.min_range
+            points = paths.origin + paths.directions[inside] * paths.min_range
+            voxels = np.floor(points).astype(np.int64) + 1
+            flat = self._padded.reshape(-1)
+            cells, added = np.unique(voxels @ np.array(self._strides), return_counts=True)
+            flat[cells] = np.minimum(flat[cells] + added, MAX_COUNT)
+        elif inside_count := int((paths.start == 0.0).sum()):  # in the voxel that holds the sensor
+            voxel = tuple(np.floor(paths.origin).astype(int))
+            self.counts[voxel] = min(int(self.counts[voxel]) + inside_count, MAX_COUNT)
         for axis in range(3):
             for sign in (1, -1):
                 sweep = _Sweep.of(paths, self.space.shape, axis, sign)
                 for part in sweep.split(MAX_COUNT):
                     self._add_saturating(part, axis, sign)
 
-    def _add_at_origin(self, paths: Paths) -> None:
-        """Add the beams that start in the space to the voxel that holds the sensor."""
-        inside = int((paths.start == 0.0).sum())
-        if inside:
-            voxel = tuple(np.floor(paths.origin).astype(int))
-            self.counts[voxel] = min(int(self.counts[voxel]) + inside, MAX_COUNT)
-
-    def _add_at_min_range(self, paths: Paths) -> None:
-        """Add the beams that are inside the space at their minimum range to the voxels there."""
-        inside = paths.start == paths.min_range
-        points = paths.origin + paths.directions[inside] * paths.min_range
-        voxels = np.floor(points).astype(np.int64) + 1
-        flat = self._padded.reshape(-1)
-        cells, added = np.unique(voxels @ np.array(self._strides), return_counts=True)
-        flat[cells] = np.minimum(flat[cells] + added, MAX_COUNT)
-
     def _add_saturating(self, sweep: _Sweep, axis: int, sign: int) -> None:
-        """Add the entries of at most MAX_COUNT beams, so no count overflows, and clip the sums."""
+        """Add the entries through planes across `axis`, of at most MAX_COUNT beams along `sign`.
+
+        So no count overflows; the sums are clipped.
+        """
         before = [self._padded[box].copy() for box in self._saturable]
         for box in self._saturable:
             self._padded[box] = 0
-        self._count_entries(sweep, axis, sign)
-        added = [self._padded[box].copy() for box in self._saturable]
-        for box, old, new in zip(self._saturable, before, added, strict=True):
-            self._padded[box] = np.minimum(old, MAX_COUNT - new) + new
-
-    def _count_entries(self, sweep: _Sweep, axis: int, sign: int) -> None:
-        """Count entries through the planes across `axis`, of beams in the direction of `sign`.
-
-        `np.add.at` counts an index as often as it occurs.
-        """
         stride, stride_b, stride_c = (self._strides[a] for a in (axis, *_other_axes(axis)))
         flat = self._padded.reshape(-1)
         for plane, (b, c) in sweep:
@@ -143,7 +118,10 @@ class BeamGrid:
             if stride_c != 1:
                 c *= stride_c
             b += c
-            np.add.at(flat[cell * stride :], b, ONE)
+            np.add.at(flat[cell * stride :], b, ONE)  # counts an index as often as it occurs
+        added = [self._padded[box].copy() for box in self._saturable]
+        for box, old, new in zip(self._saturable, before, added, strict=True):
+            self._padded[box] = np.minimum(old, MAX_COUNT - new) + new
 
     @property
     def _strides(self) -> tuple[int, ...]:

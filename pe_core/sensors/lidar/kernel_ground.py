@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...base.arrays import Flags, Floats, Ints
+from ...base.arrays import Floats, Ints
 from ...geometry.grids import GroundGrid
 from ...geometry.indexing import count_up
 from ...scene.rig import Sensor
@@ -51,7 +51,12 @@ class LidarGround(GroundKernel):
         low = low[first[low] <= last[low]]
         x, y, first, last = merged(*(w[low] for w in (*components[:2], first, last)))
         segments = GroundSegments.of(self._view.grid, sensor.pose.position, (x, y), first, last)
-        marked = _squares_of(self._view.grid, segments)
+        grid = self._view.grid
+        marked = np.zeros(grid.shape, bool)
+        flat, finest = marked.reshape(-1), SPACING_M / grid.step
+        spacing = np.clip(segments.length / MAX_POINTS, finest, MAX_SPACING_M / grid.step)
+        flat[segments.subdivided(float(spacing)).squares(0.0, grid.shape)] = True
+        flat[segments.squares(1.0, grid.shape)] = True
         return VisibleGround(sensor, marked, beams.approximate)
 
     def _low_parts(self, sensor: Sensor, components: list[Floats]) -> tuple[Floats, Floats]:
@@ -141,15 +146,3 @@ class GroundSegments:
             for w, dw, n in ((self.x, self.dx, shape[0]), (self.y, self.dy, shape[1]))
         )
         return np.asarray(i * shape[1] + j)
-
-
-def _squares_of(grid: GroundGrid, segments: GroundSegments) -> Flags:
-    """Mark the squares (NX, NY) that hold points of segments."""
-    marked = np.zeros(grid.shape, bool)
-    flat = marked.reshape(-1)
-    spacing = np.clip(
-        segments.length / MAX_POINTS, SPACING_M / grid.step, MAX_SPACING_M / grid.step
-    )
-    flat[segments.subdivided(float(spacing)).squares(0.0, grid.shape)] = True
-    flat[segments.squares(1.0, grid.shape)] = True
-    return marked

@@ -53,12 +53,17 @@ STEP_DEG = Number(0.001, 360.0, unit="degrees", noun="angle")
 def read(name: str, table: Mapping[str, Any], folder: Path) -> Lidar:
     """Build a LiDAR from its table; the path of a file of `angles` is relative to `folder`."""
     elevations, offsets = _channels(name, table, folder)
+    if "azimuth_count" in table:
+        azimuths = STEPS.checked(name, "azimuth_count", table["azimuth_count"])
+    else:  # 360 degrees over the nominal step, rounded
+        step = STEP_DEG.checked(name, "azimuth_step_deg", table.get("azimuth_step_deg"))
+        azimuths = round(360.0 / step)
     fov = table.get("horizontal_fov_deg", (-180.0, 180.0))
     low, high = map(math.radians, vector(name, "horizontal_fov_deg", fov, 2, DEGREES))
     return Lidar(
         name,
         elevations,
-        _azimuth_count(name, table),
+        azimuths,
         RANGE.checked(name, "max_range_m", table.get("max_range_m")),
         offsets,  # type: ignore[arg-type]
         (low, high),
@@ -109,14 +114,6 @@ def _channels_of_file(
         np.array([math.radians(c.elevation_deg) for c in channels]),
         np.array([math.radians(c.azimuth_offset_deg) for c in channels]),
     )
-
-
-def _azimuth_count(name: str, table: Mapping[str, Any]) -> int:
-    """Azimuth steps in a circle: given, or 360 degrees over the nominal step, rounded."""
-    if "azimuth_count" in table:
-        return STEPS.checked(name, "azimuth_count", table["azimuth_count"])
-    step = STEP_DEG.checked(name, "azimuth_step_deg", table.get("azimuth_step_deg"))
-    return round(360.0 / step)
 
 
 def _radians(name: str, table: Mapping[str, Any], key: str) -> np.ndarray:

@@ -29,6 +29,10 @@ from .fan_runs import RotatedFan, RunBlock
 
 SideLines = tuple[Floats, Floats]
 """(a, b), (N,) each: along a ray (x, y) the inverse distance of a side is ``a x + b y`` [1/m]."""
+PairBound = tuple[Floats, Floats, Floats, Floats]
+"""Bounds (N,) of slopes through boxes by a pair of sides: a, b, lower, upper. The bound at azimuth
+(x, y) is ``a x + b y``, plus 0 where it is a lower one, else minus infinity; or plus 0 where it is
+an upper one, else infinity."""
 MIN_BESIDE_M = 1e-3
 """A box has all beams tested if the sensor, seen from above, is nearer to it than this."""
 IN_LINE_M = 1e-5
@@ -153,20 +157,6 @@ def _inverse(side: SideLines, box: Ints, x: Floats, y: Floats, buffer: Floats) -
 
 
 @dataclass(frozen=True, slots=True)
-class PairBound:
-    """Bounds (N,) of slopes through boxes by a pair of sides: ``a x + b y`` at azimuth (x, y).
-
-    `lower` is 0 where this is a lower bound and minus infinity where it is an upper one; `upper` is
-    0 where it is an upper bound and infinity elsewhere. Both are added to the bound.
-    """
-
-    a: Floats
-    b: Floats
-    lower: Floats
-    upper: Floats
-
-
-@dataclass(frozen=True, slots=True)
 class TiltedBoxes:
     """Boxes seen along a tilted LiDAR's own axes; (N,) each.
 
@@ -194,7 +184,7 @@ class TiltedBoxes:
             rise = np.where(np.abs(rise) > ZERO_RISE, rise, TINY_RISE)
             lower = rise > 0.0
             limits = np.where(lower, 0.0, -np.inf), np.where(lower, np.inf, 0.0)
-            bounds.append(PairBound(-x / rise, -y / rise, *limits))
+            bounds.append((-x / rise, -y / rise, *limits))
         beyond = np.maximum(out, 0.0)
         distance = np.maximum(np.sqrt(dot(beyond, beyond)) - DISTANCE_MARGIN_M, DISTANCE_MARGIN_M)
         corner = np.abs(boxes.offsets) + boxes.halves
@@ -248,10 +238,11 @@ def tilted_runs(
         x, y = (np.take(w, column) for w in fan.rays)
         low, high = np.full(column.shape, -np.inf), np.full(column.shape, np.inf)
         for bound in boxes.bounds:
-            value = bound.a[box] * x
-            value += bound.b[box] * y
-            np.maximum(low, value + bound.lower[box], out=low)
-            np.minimum(high, value + bound.upper[box], out=high)
+            a, b, lower, upper = (w[box] for w in bound)
+            value = a * x
+            value += b * y
+            np.maximum(low, value + lower, out=low)
+            np.minimum(high, value + upper, out=high)
         first, first_unsure = fan.slopes.below(low * scale)
         last, last_unsure = fan.slopes.below(high * scale)
         last[low >= high] = 0

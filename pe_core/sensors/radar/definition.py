@@ -97,11 +97,16 @@ def measure_voxels(sensor: Sensor, centers: Floats, side: float, fan: RayFan) ->
     """Return m (V,) of cubes with centres (V, 3) and a side [m]."""
     offsets = centers - (np.asarray(sensor.pose.position) + NUDGE_M)
     distance = np.maximum(np.sqrt(dot(offsets, offsets)), NEAR_M)
-    m = np.zeros(len(centers))
-    which = np.flatnonzero(_may_be_reached(sensor, offsets, distance))
+    m, radar = np.zeros(len(centers)), radar_of(sensor)
+    reached = (distance <= radar.max_range) & (distance >= radar.min_range)
+    cosine = math.cos(min(radar.cone, math.pi))
+    if cosine > -1.0:  # cheap, and never too few
+        ahead = sensor.pose.ground_from_sensor[:, 0]
+        reached &= dot(offsets, ahead) >= (cosine - CONE_MARGIN) * distance
+    which = np.flatnonzero(reached)
     if len(which):
         angles = angles_of(sensor, offsets[which])
-        m[which] = measure_directions(radar_of(sensor), angles, distance[which], side, fan)
+        m[which] = measure_directions(radar, angles, distance[which], side, fan)
     return m
 
 
@@ -132,17 +137,6 @@ def target_detections(
         cells, loss = cells_of(mode, sizes, far), None if loss_db is None else loss_db[some]
         m[some] += cells * mode_signal(radar, mode, part, far, rcs / cells, loss)
     return m if radar.list_length is None else np.minimum(m, radar.list_length)
-
-
-def _may_be_reached(sensor: Sensor, offsets: Floats, distance: Floats) -> Flags:
-    """Whether directions may be in the field of view and in range: cheap, and never too few."""
-    radar = radar_of(sensor)
-    reached = (distance <= radar.max_range) & (distance >= radar.min_range)
-    cosine = math.cos(min(radar.cone, math.pi))
-    if cosine > -1.0:
-        ahead = sensor.pose.ground_from_sensor[:, 0]
-        reached &= dot(offsets, ahead) >= (cosine - CONE_MARGIN) * distance
-    return np.asarray(reached)
 
 
 def reached_by_balls(sensor: Sensor, centers: Floats, balls: Floats) -> Flags:
@@ -195,7 +189,11 @@ def _block(
     radar = radar_of(sensor)
     own_boxes = boxes.take(own)
     sizes, far, aspect = seen_sizes(own_boxes)
-    rcs = _rcs(radar, objects, own, aspect)
+    rcs, labels = np.zeros(len(own)), objects.labels[own]
+    for number in np.unique(labels).tolist():
+        some = labels == number
+        reflectivity = radar.reflectivity(objects.class_names[number])
+        rcs[some] = reflectivity.square_metres(aspect[some])
     sides, solid = own_boxes.side_points(*SIDE_POINTS)
     angles = angles_of(sensor, sides.directions)
     free, loss = seen_through(fan, angles, sides.distance)
@@ -224,14 +222,3 @@ def seen_sizes(boxes: PlacedBoxes) -> tuple[tuple[Floats, Floats, Floats], Float
     across = (length * np.abs(y) + width * np.abs(x)) / flat
     far = np.maximum(np.sqrt(dot(boxes.offsets, boxes.offsets)), NEAR_M)
     return (length * width / across, across, height), far, np.arctan2(np.abs(y), -x)
-
-
-def _rcs(radar: Radar, objects: Objects, own: Ints, aspect: Floats) -> Floats:
-    """Return the RCS (P,) of objects [m2]."""
-    rcs = np.zeros(len(own))
-    labels = objects.labels[own]
-    for number in np.unique(labels).tolist():
-        some = labels == number
-        reflectivity = radar.reflectivity(objects.class_names[number])
-        rcs[some] = reflectivity.square_metres(aspect[some])
-    return rcs

@@ -42,6 +42,10 @@ OBJECT_CURVES = {
         "cone": "pedestrian",
     }.items()
 }
+VOXELS_A_CAR = (SIZES[TARGET][0] + SIZES[TARGET][1]) * SIZES[TARGET][2] / (2.0 * PAPER_VOXEL_M**2)
+CAR_CURVE = OBJECT_CURVES[TARGET]
+VOXEL_CURVE = ApCurve(CAR_CURVE.a, CAR_CURVE.b + CAR_CURVE.a * math.log(VOXELS_A_CAR))
+"""The curve of voxels whose AP is that of the reference car they are part of."""
 OWN = (
     *("reference_rcs_dbsm", "detection_probability", "false_alarm", "list_length"),
     *("cover_loss_db", "attenuation_db_km"),
@@ -56,13 +60,6 @@ MODE_KEYS = frozenset(
 )
 KEYS = frozenset({"mode", "rcs_dbsm", *OWN})
 DEGREES = Number(cap=1e6, unit="degrees", noun="angle")
-
-
-def _voxel_curve(of_target: ApCurve) -> ApCurve:
-    """Return the curve of voxels whose AP is that of the reference car they are part of."""
-    length, width, height = SIZES[TARGET]
-    times = (length + width) * height / (2.0 * PAPER_VOXEL_M**2)
-    return ApCurve(of_target.a, of_target.b + of_target.a * math.log(times))
 
 
 def read(name: str, table: Mapping[str, Any], folder: Path) -> Radar:
@@ -234,7 +231,7 @@ RADAR = Kind(
     plural="Radars",
     unit="detections",
     model=Radar,
-    curve=_voxel_curve(OBJECT_CURVES[TARGET]),
+    curve=VOXEL_CURVE,
     object_curves=OBJECT_CURVES,
     counts_points=True,
     point=SURE,

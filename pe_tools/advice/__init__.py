@@ -3,93 +3,55 @@
 Nothing here computes a score; results of `pe_core` are checked, compared and described.
 """
 
-from pe_core.scoring.sight import BLIND_TO_M
-from pe_tools.advice.advice import joined, percent
+from pe_core.scoring.sight import BLIND_TO_M as BLIND_TO_M
+from pe_tools.advice.advice import joined as joined
+from pe_tools.advice.advice import percent as percent
 
-from .advice import FRAGILE, PROVISIONAL, UNMET, Advice, fragile, off_by, unmet
-from .condition_checks import condition_warnings
-from .curve_checks import curve_note, curve_warnings
-from .hardware import OTHER_HARDWARE, hardware_note
-from .key_figures import (
-    SENSOR_COLUMNS,
-    SHORT_ZONES,
-    KeyFigures,
-    SensorRow,
-    key_figures,
-    loss_text,
-    sensor_rows,
-    sensor_table,
-)
-from .location import AskedPlace, SensorAtPlace, ask_place
-from .mount_checks import check_mirror_image, occluded_shares
-from .mounting_places import place_name, plain_name, sensor_labels
-from .ranking import Notation, ranking, win_words
-from .score_comparison import ComparedRow, compare, compare_figures
-from .search_cost import costs_nothing, search_cost
-from .summary import (
-    Outlook,
-    class_of,
-    lone_reach,
-    object_words,
-    objects_looked_at,
-    outlook,
-)
-from .summary_text import WHERE, occluded_words, rig_words, sensor_words, words
-from .warnings import HiddenSensor, hidden_sensors, hidden_words, warnings
-
-__all__ = [
-    "BLIND_TO_M",
-    "FRAGILE",
-    "OTHER_HARDWARE",
-    "PROVISIONAL",
-    "SENSOR_COLUMNS",
-    "SHORT_ZONES",
-    "UNMET",
-    "WHERE",
-    "Advice",
-    "AskedPlace",
-    "ComparedRow",
-    "HiddenSensor",
-    "KeyFigures",
-    "Notation",
-    "Outlook",
-    "SensorAtPlace",
-    "SensorRow",
-    "ask_place",
-    "check_mirror_image",
-    "class_of",
-    "compare",
-    "compare_figures",
-    "condition_warnings",
-    "costs_nothing",
-    "curve_note",
-    "curve_warnings",
-    "fragile",
-    "hardware_note",
-    "hidden_sensors",
-    "hidden_words",
-    "joined",
-    "key_figures",
-    "lone_reach",
-    "loss_text",
-    "object_words",
-    "objects_looked_at",
-    "occluded_shares",
-    "occluded_words",
-    "off_by",
-    "outlook",
-    "percent",
-    "place_name",
-    "plain_name",
-    "ranking",
-    "rig_words",
-    "search_cost",
-    "sensor_labels",
-    "sensor_rows",
-    "sensor_table",
-    "sensor_words",
-    "unmet",
-    "warnings",
-    "win_words",
-    "words",
-]
+from .advice import FRAGILE as FRAGILE
+from .advice import PROVISIONAL as PROVISIONAL
+from .advice import UNMET as UNMET
+from .advice import Advice as Advice
+from .advice import fragile as fragile
+from .advice import off_by as off_by
+from .advice import unmet as unmet
+from .key_figures import KeyFigures as KeyFigures
+from .key_figures import SensorRow as SensorRow
+from .key_figures import key_figures as key_figures
+from .key_figures import loss_text as loss_text
+from .key_figures import sensor_rows as sensor_rows
+from .key_figures import sensor_table as sensor_table
+from .location import AskedPlace as AskedPlace
+from .location import SensorAtPlace as SensorAtPlace
+from .location import ask_place as ask_place
+from .mount_checks import check_mirror_image as check_mirror_image
+from .mount_checks import occluded_shares as occluded_shares
+from .mounting_places import place_name as place_name
+from .mounting_places import plain_name as plain_name
+from .mounting_places import sensor_labels as sensor_labels
+from .ranking import Notation as Notation
+from .ranking import ranking as ranking
+from .ranking import win_words as win_words
+from .score_comparison import OTHER_HARDWARE as OTHER_HARDWARE
+from .score_comparison import ComparedRow as ComparedRow
+from .score_comparison import compare as compare
+from .score_comparison import compare_figures as compare_figures
+from .score_comparison import hardware_note as hardware_note
+from .search_cost import costs_nothing as costs_nothing
+from .search_cost import search_cost as search_cost
+from .summary import Outlook as Outlook
+from .summary import class_of as class_of
+from .summary import lone_reach as lone_reach
+from .summary import object_words as object_words
+from .summary import objects_looked_at as objects_looked_at
+from .summary import outlook as outlook
+from .summary_text import WHERE as WHERE
+from .summary_text import occluded_words as occluded_words
+from .summary_text import rig_words as rig_words
+from .summary_text import sensor_words as sensor_words
+from .summary_text import words as words
+from .warnings import condition_warnings as condition_warnings
+from .warnings import curve_note as curve_note
+from .warnings import curve_warnings as curve_warnings
+from .warnings import hidden_sensors as hidden_sensors
+from .warnings import hidden_words as hidden_words
+from .warnings import warnings as warnings

@@ -101,7 +101,7 @@ SURE = 2.0
 def fragile(
     rise: float, stderr: float, position: float, angle: float, tolerant: bool
 ) -> tuple[Advice, ...]:
-    """Return a warning if the entropy of a placement rises much under mounting errors.
+    """Return a warning if the entropy of a placement rises much under mounting errors, or none.
 
     Parameters
     ----------
@@ -111,11 +111,6 @@ def fragile(
         Standard deviations (1 sigma) of the errors [m, rad].
     tolerant : bool
         Whether the search already took such errors into account.
-
-    Returns
-    -------
-    tuple of Advice
-        One warning, or none.
     """
     if rise <= max(FRAGILE_NATS, SURE * stderr):
         return ()
@@ -129,16 +124,17 @@ def unmet(conflicts: Mapping[str, tuple[str, ...] | None]) -> tuple[Advice, ...]
 
     `conflicts` has the requirements that stand against each; None: it was met nowhere.
     """
-    return tuple(Advice(None, UNMET, _unmet_text(*each)) for each in conflicts.items())
-
-
-def _unmet_text(name: str, against: tuple[str, ...] | None) -> str:
-    text = f"{name} is not met; no placement was found that keeps all requirements"
-    if against is None:
-        return f"{text}, and a short search found none that meets this one alone"
-    if not against:
-        return f"{text}, though none stands against it: a longer search may"
-    return f"{text}: a short search met it only by breaking {', '.join(against)}"
+    found = []
+    for name, against in conflicts.items():
+        text = f"{name} is not met; no placement was found that keeps all requirements"
+        if against is None:
+            text += ", and a short search found none that meets this one alone"
+        elif against:
+            text += f": a short search met it only by breaking {', '.join(against)}"
+        else:
+            text += ", though none stands against it: a longer search may"
+        found.append(Advice(None, UNMET, text))
+    return tuple(found)
 
 
 def off_by(position: float, angle: float) -> str:

@@ -9,18 +9,15 @@ from typing import Any
 from pe_core.scene.rig import Rig
 from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.score import FAR_M, NEAR_M, Score
-from pe_core.scoring.sight import BLIND_TO_M, Reach, Sight, ends_with_space
+from pe_core.scoring.sight import BLIND_TO_M, Sight, ends_with_space
 from pe_tools.advice.advice import percent
 
 from .mount_checks import occluded_shares
-from .summary import Outlook, class_of
+from .summary import SIDES, Outlook, class_of
 
 SENSOR_COLUMNS = ("sensor", "loss [nats]", "costs most", "occluded by")
 SHORT_ZONES = {
-    "front": "ahead",
-    "rear": "behind",
-    "left": "left",
-    "right": "right",
+    **SIDES,
     "near": f"0-{NEAR_M:g} m",
     "mid": f"{NEAR_M:g}-{FAR_M:g} m",
     "far": f"> {FAR_M:g} m",
@@ -38,17 +35,10 @@ NO_FIGURE = "-"
 class SensorRow:
     """What one sensor contributes to its rig.
 
-    Attributes
-    ----------
-    name : str
-    loss : float or None
-        How much the rig's entropy rises when the sensor fails [nats]; None for the only sensor.
-    zone : str
-        Zone (`scoring.zones.ZONES`) whose entropy rises most; empty where none rises, or unknown.
-    zone_loss : float
-        Rise of the entropy in that zone [nats], on a sample of the prior.
-    occluded_by : dict of float
-        Share of the sensor's beams or pixels that each part of the vehicle occludes, highest first.
+    `loss` is how much the rig's entropy rises when the sensor fails [nats]; None for the only one.
+    `zone` (`scoring.zones.ZONES`) is that whose entropy rises most, by `zone_loss` [nats] on a
+    sample of the prior; empty where none rises, or unknown. `occluded_by` is the share of the
+    sensor's beams or pixels that each part of the vehicle occludes, highest first.
     """
 
     name: str
@@ -60,7 +50,11 @@ class SensorRow:
     @property
     def cells(self) -> tuple[str, str, str, str]:
         """Texts of the columns `SENSOR_COLUMNS`."""
-        return self.name, loss_text(self.loss), where_text(self), hidden_text(self.occluded_by)
+        where = f"{SHORT_ZONES[self.zone]} +{self.zone_loss:.2f}" if self.zone else NO_FIGURE
+        named = [f"{part} {percent(share)}" for part, share in self.occluded_by.items()]
+        more = ["..."] if len(named) > OCCLUDERS_NAMED else []
+        hidden = ", ".join(named[:OCCLUDERS_NAMED] + more) or NO_FIGURE
+        return self.name, loss_text(self.loss), where, hidden
 
     def to_dict(self) -> dict[str, Any]:
         """Return the row as plain JSON data."""
@@ -81,27 +75,16 @@ def sensor_rows(
 ) -> tuple[SensorRow, ...]:
     """Return a row for every sensor of a score, in the rig's order.
 
-    Parameters
-    ----------
-    score : Score
-    rig, vehicle : Rig, Vehicle, optional
-        The rig and the vehicle that were scored. With both, the parts that hide pixels of a camera
-        are listed, too.
-    seen : Outlook, optional
-        Outlook of the same rig. It has the zone in which the loss of a sensor costs most; for a
-        score on objects this zone is unknown.
-
-    Returns
-    -------
-    tuple of SensorRow
+    With the rig and the vehicle that were scored, the parts that hide pixels of a camera are
+    listed, too. `seen`, the outlook of the same rig, has the zone in which the loss of a sensor
+    costs most; for a score on objects this zone is unknown.
     """
     only = len(score.per_sensor) == 1
     rows = []
     for name, sensor_score in score.per_sensor.items():
         by_zone = {} if seen is None or score.objects else seen.shares.losses[name]
-        zone = max(by_zone, key=lambda zone_name: by_zone[zone_name], default="")
-        if not zone or by_zone[zone] < MIN_RISE:
-            zone = ""
+        zone = max(by_zone, key=by_zone.__getitem__, default="")
+        zone = zone if zone and by_zone[zone] >= MIN_RISE else ""
         parts = occluded_shares(None if rig is None else rig[name], sensor_score, vehicle)
         shown = {part: share for part, share in parts.items() if share >= MIN_SHARE}
         loss = None if only else sensor_score.lost
@@ -129,18 +112,6 @@ def loss_text(loss: float | None) -> str:
     if abs(loss) < MIN_LOSS:
         return "none"
     return f"{max(loss, 0.0) if abs(loss) < MIN_RISE else loss:.2f}"
-
-
-def where_text(row: SensorRow) -> str:
-    """Return the zone in which the loss of a sensor costs most, with the rise: "> 40 m +2.10"."""
-    return f"{SHORT_ZONES[row.zone]} +{row.zone_loss:.2f}" if row.zone else NO_FIGURE
-
-
-def hidden_text(parts: Mapping[str, float]) -> str:
-    """Return the parts that hide a sensor's view with their shares: "roof 6.0%, hood 1.5%"."""
-    named = [f"{part} {percent(share)}" for part, share in parts.items()]
-    more = ["..."] if len(named) > OCCLUDERS_NAMED else []
-    return ", ".join(named[:OCCLUDERS_NAMED] + more) or NO_FIGURE
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,36 +162,21 @@ def key_figures(
 
     Parameters
     ----------
-    sight : Sight
-    rig : Rig
+    sight, rig
     height : float
         Height of the object for which blind ground is computed [m]; the lowest height of the space
-        if that is greater.
+        if that is greater. One that is not in the space raises `InputError`.
     class_name : str, optional
-        Class of the reach and the AP. By default pedestrians, or the first class of a prior without
-        them.
+        Class of the reach and the AP: see `class_of`.
     of_voxels : bool
         False where objects are scored: the score then has reach and AP, and they are left out.
-
-    Returns
-    -------
-    KeyFigures
-
-    Raises
-    ------
-    InputError
-        When the prior has no such class, or the height is not in the space.
     """
     name = class_of(sight.prior, class_name)
     blind = sight.blind(rig, max(height, sight.space.z[0]))
     of_ground = blind.area, blind.height, blind.within
     if not of_voxels:
         return KeyFigures(*of_ground)
-    reach_m, at_least = ahead(sight.reach(rig, name))
-    return KeyFigures(*of_ground, name, reach_m, at_least, sight.expected_ap(rig).get(name))
-
-
-def ahead(reach: Reach) -> tuple[float, bool]:
-    """Return the reach straight ahead [m], and whether the space ends there."""
-    distance = float(reach.distance[0])  # the first bearing is straight ahead
-    return distance, distance > 0.0 and bool(ends_with_space(reach, reach.distance)[0])
+    reach = sight.reach(rig, name)
+    ahead = float(reach.distance[0])  # the first bearing is straight ahead
+    at_least = ahead > 0.0 and bool(ends_with_space(reach, reach.distance)[0])
+    return KeyFigures(*of_ground, name, ahead, at_least, sight.expected_ap(rig).get(name))

@@ -35,19 +35,10 @@ WAYS = (("ahead", "behind"), ("left", "right"), ("up", "down"))
 class SensorAtPlace:
     """Measurement of one location by one sensor.
 
-    Attributes
-    ----------
-    name, kind : str
-    m : float
-        Number of beams or pixels on the voxel (`sensors.measure`).
-    unhidden : float
-        The same number if the vehicle hid nothing.
-    ap : float
-        Average precision of m by the curve of its kind (eq. 4).
-    occluded_by : str or None
-        Part of the vehicle that blocks most of the rays, if the vehicle hides the location.
-    reason : {"sees", "occluded", "out of view", "out of range", "between beams"}
-        Kinds other than LiDAR and camera may have further reasons.
+    `m` is the number of beams or pixels on the voxel (`sensors.measure`), `unhidden` that number if
+    the vehicle hid nothing, `ap` the average precision of m (eq. 4). `occluded_by` is the part of
+    the vehicle that blocks most of the rays, if it hides the location. `reason` is "sees",
+    "occluded", or one of the kind: "out of view", "out of range", "between beams", ...
     """
 
     name: str
@@ -63,22 +54,10 @@ class SensorAtPlace:
 class AskedPlace:
     """Result of a location query: one voxel, and what each sensor measures there.
 
-    Attributes
-    ----------
-    center : (3,) float
-        Its centre [m].
-    entropy : float
-        H, eq. 8 [nats].
-    ap : float
-        Average precision of all sensors fused, 0 to 1.
-    seen : bool
-        Whether any sensor sees the voxel.
-    density : float
-        Prior density of objects, relative to the mean over the space; 0 in the vehicle.
-    in_vehicle : bool
-        Whether the voxel is in the vehicle's own volume, which is not scored.
-    sensors : tuple of SensorAtPlace
-        In the rig's order.
+    `center` is its centre [m], `entropy` H (eq. 8) [nats], `ap` the average precision of all
+    sensors fused, 0 to 1; `seen` is whether any sensor sees it. `density` is the prior density of
+    objects, relative to the mean over the space; 0 in the vehicle. `in_vehicle` is whether it is in
+    the vehicle's own volume, which is not scored. `sensors` are in the rig's order.
     """
 
     center: tuple[float, float, float]
@@ -94,7 +73,10 @@ class AskedPlace:
         """Lines of text: the location, the expected objects, then one line for each sensor."""
         if self.in_vehicle:
             return (_headline(self),)
-        return (_headline(self), _expectation(self), *(_sensor_line(s) for s in self.sensors))
+        how = "" if times(self.density) == times(1.0) else f"{times(self.density)} "
+        expected = f"objects are {how}as likely here as on average"
+        expected = expected if self.density else "nothing is expected here"
+        return (_headline(self), expected, *map(_sensor_line, self.sensors))
 
     def to_dict(self) -> dict[str, Any]:
         """Return the result as plain JSON data, with its text."""
@@ -115,55 +97,42 @@ def ask_place(
 
     Parameters
     ----------
-    rig : Rig
-    space : PerceptionSpace
-    prior : Prior
-    vehicle : Vehicle, optional
+    rig, space, prior, vehicle
     point : (2,) or (3,) float
-        x, y and optionally z in the ground frame [m]; z is 0 if it is missing or None.
+        x, y and optionally z in the ground frame [m]; z is 0 if it is missing or None. A point
+        outside the space raises `InputError`.
     model : PerceptionModel, optional
         AP curves and fusion rule; the paper's by default.
     densities : sequence of ClassDensity, optional
         ``prior.densities(space)`` if the caller has it already: computing it takes longer than the
         rest of the query.
-
-    Returns
-    -------
-    AskedPlace
-
-    Raises
-    ------
-    InputError
-        The point is not two or three numbers, or is outside the space.
     """
     model, side = model or PerceptionModel(), space.interval
-    index = _voxel(space, _checked(point))
+    values = listed(point, 3) or []
+    if len(values) == 2 or values[2:] == [None]:
+        values = [*values[:2], 0.0]
+    index = _voxel(space, vector("place", "point", values, 3, METRES))
     center = space.center_of(np.array([index]))
     sensors = tuple(_at_place(s, center, side, vehicle, model) for s in rig)
     measured = {s.name: np.array([s.m]) for s in sensors}
     entropies, seen = Fusion(model).entropies(fused_early(rig, measured, list(measured)))
-    inside = vehicle is not None and bool(center[0, 2] < _top(vehicle, space, center[0]))
     x, y, z = (float(v) for v in center[0])
+    inside = vehicle is not None and z < _top(vehicle, space, x, y)
+    densities = () if inside else densities or prior.densities(space)
+    i, j, k = index
+    density = sum((float(d.ground[i, j] * d.profile[k]) for d in densities), 0.0) * space.size
     return AskedPlace(
         center=(x, y, z),
         entropy=rounded(entropies[0]),
         ap=float(ap_of_entropy(entropies[0])),
         seen=bool(seen[0]),
-        density=0.0 if inside else _density(densities or prior.densities(space), space, index),
+        density=density,
         in_vehicle=inside,
         sensors=sensors,
     )
 
 
-def _checked(point: Sequence[float]) -> tuple[float, float, float]:
-    values = listed(point, 3) or []
-    if len(values) == 2 or values[2:] == [None]:
-        values = [*values[:2], 0.0]
-    x, y, z = vector("place", "point", values, 3, METRES)
-    return x, y, z
-
-
-def _voxel(space: PerceptionSpace, point: tuple[float, float, float]) -> tuple[int, int, int]:
+def _voxel(space: PerceptionSpace, point: Sequence[float]) -> tuple[int, int, int]:
     """Return the indices of the voxel that contains a point.
 
     A point on an upper face of the space belongs to the last voxel.
@@ -204,29 +173,16 @@ def _part_in_the_way(sensor: Sensor, center: Floats, side: float, vehicle: Vehic
     return str(vehicle.part_names[int(np.argmax(counts))])
 
 
-def _top(vehicle: Vehicle, space: PerceptionSpace, center: Floats) -> float:
-    """Return the height of the vehicle's top over one column of a space [m]."""
+def _top(vehicle: Vehicle, space: PerceptionSpace, x: float, y: float) -> float:
+    """Return the height of the vehicle's top over the column of a space around x, y [m]."""
     half = space.interval / 2.0
-    x, y = ((w - half, w + half) for w in center[:2].tolist())
-    return float(vehicle.top(PerceptionSpace(x, y, space.z, space.interval))[0, 0])
-
-
-def _density(
-    densities: Sequence[ClassDensity], space: PerceptionSpace, index: tuple[int, int, int]
-) -> float:
-    """Return the prior of a voxel, relative to the mean over the space."""
-    i, j, k = index
-    density = sum(float(d.ground[i, j] * d.profile[k]) for d in densities)
-    return density * space.size
-
-
-def _way(distance: float, ways: tuple[str, str]) -> str:
-    """Return a coordinate with its direction: "7.95 m behind"."""
-    return f"{abs(distance):.2f} m {ways[distance < 0.0]}"
+    ends = (x - half, x + half), (y - half, y + half)
+    return float(vehicle.top(PerceptionSpace(*ends, space.z, space.interval))[0, 0])
 
 
 def _headline(place: AskedPlace) -> str:
-    where = ", ".join(map(_way, place.center, WAYS))
+    pairs = zip(place.center, WAYS, strict=True)
+    where = ", ".join(f"{abs(value):.2f} m {ways[value < 0.0]}" for value, ways in pairs)
     if place.in_vehicle:
         return f"{where}: inside the vehicle, which does not count"
     if not place.seen:
@@ -234,13 +190,6 @@ def _headline(place: AskedPlace) -> str:
     seeing = sum(s.m > 0.0 for s in place.sensors)
     who = f"{seeing} of {plural(len(place.sensors), 'sensor')}"
     return f"{where}: seen by {who}; together AP {place.ap:.2f}, H {place.entropy:.2f} nats"
-
-
-def _expectation(place: AskedPlace) -> str:
-    if not place.density:
-        return "nothing is expected here"
-    how = times(place.density)
-    return f"objects are {'' if how == times(1.0) else how + ' '}as likely here as on average"
 
 
 def _sensor_line(sensor: SensorAtPlace) -> str:

@@ -48,25 +48,15 @@ def occluded_shares(
 ) -> dict[str, float]:
     """Return the share of a sensor's rays that each part of the vehicle blocks, highest first.
 
-    Parameters
-    ----------
-    sensor : Sensor or None
-        With None, only the beams that the score has counted are used.
-    own : SensorScore, optional
-        The sensor's part of a score. Without it, or where it counts no beams (cameras), an even
-        sample of the sensor's rays is cast.
-    vehicle : Vehicle, optional
-
-    Returns
-    -------
-    dict of str to float
-        Shares, 0 to 1, by name of the part; parts that block nothing are left out.
+    Without `own`, the sensor's part of a score, or where it counts no beams (cameras), an even
+    sample of the sensor's rays is cast; without the sensor, only counted beams are used. Shares, 0
+    to 1, are by name of the part; parts that block nothing are left out.
     """
     if own is not None and own.beams:
         return _shares(own.beams, own.occluded_by)
     if sensor is None or vehicle is None:
         return {}
-    return _cast_shares(sensor, vehicle, _rays_met(sensor, vehicle))
+    return _cast_shares(sensor, vehicle, _first_hits(sensor, vehicle))
 
 
 def _cast_shares(sensor: Sensor, vehicle: Vehicle, hits: Hits) -> dict[str, float]:
@@ -81,9 +71,10 @@ def _shares(rays: int, by_part: Mapping[str, int]) -> dict[str, float]:
     return dict(sorted(shares.items(), key=lambda item: (-item[1], item[0])))
 
 
-def _rays_met(sensor: Sensor, vehicle: Vehicle) -> Hits:
+def _first_hits(sensor: Sensor, vehicle: Vehicle) -> Hits:
     """Return the first hits of a sample of a sensor's rays."""
-    return _first_hits(sensor, vehicle, kind_of(sensor).rays(sensor, MAX_RAYS))
+    rays = kind_of(sensor).rays(sensor, MAX_RAYS)
+    return vehicle.first_hit(sensor.pose.position, rays, sensor.model.sees_through_glass)
 
 
 @dataclass(frozen=True)
@@ -97,7 +88,7 @@ class SensorAtBody:
     @cached_property
     def hits(self) -> Hits:
         """First hits of a sample of the sensor's rays on the body."""
-        return _rays_met(self.sensor, self.body.vehicle)
+        return _first_hits(self.sensor, self.body.vehicle)
 
     @cached_property
     def occluded_by(self) -> dict[str, float]:
@@ -183,10 +174,7 @@ IMAGE_GAP_M = 0.1
 def check_mirror_image(vehicle: Vehicle, sensor: Sensor, image: Pose) -> None:
     """Check that a sensor's mirror image is on the vehicle where the sensor is.
 
-    Raises
-    ------
-    InputError
-        When the vehicle is not centred, or when the image is in the air beside it.
+    A vehicle that is not centred, or an image in the air beside it, raises `InputError`.
     """
     field, body = f"sensor {sensor.name!r}: mirror image", Bodywork(vehicle)
     off_m = body.shape.middle[1]
@@ -231,7 +219,3 @@ def _in_the_way(mounted: SensorAtBody) -> Iterator[Advice]:
     if share - part_share > 0.005:
         text = f"{percent(share)} of its {unit} are occluded, {percent(part_share)} by {part}"
     yield Advice(name, "occluded", text, part=part)
-
-
-def _first_hits(sensor: Sensor, vehicle: Vehicle, rays: Floats) -> Hits:
-    return vehicle.first_hit(sensor.pose.position, rays, sensor.model.sees_through_glass)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import combinations
+from typing import NamedTuple
 
 from pe_tools.advice.advice import joined
 
@@ -12,21 +14,31 @@ from .summary_text import WHERE
 
 MAX_PAIRS = 3
 """Up to this number, pairs that are alike behind the best are named; of more, only the number."""
-RANKED = (ENTROPY, COVERAGE, AP)
+
+
+class _Measure(NamedTuple):
+    """How a measure is called, its units after a value and after a difference, its decimals."""
+
+    noun: str
+    unit: str
+    unit_of_gap: str
+    digits: int
+    wins: str
+
+
+RANKED = {
+    ENTROPY: _Measure("entropy", " nats", " nats", 2, "is better by entropy"),
+    COVERAGE: _Measure("coverage", "", " points", 1, "sees more"),
+    AP: _Measure("expected AP", "", "", 3, "has the highest expected AP"),
+}
 
 
 @dataclass(frozen=True, slots=True)
 class Notation:
     """How the sentences write figures.
 
-    Attributes
-    ----------
-    number : callable
-        Formats a number with a number of decimals.
-    share : callable
-        Formats a share, 0 to 1, in percent.
-    plus_minus : str
-        Sign before a standard error.
+    `number` formats a number with a number of decimals, `share` a share, 0 to 1, in percent;
+    `plus_minus` is the sign before a standard error.
     """
 
     number: Callable[[float, int], str] = lambda value, digits: f"{value:.{digits}f}"
@@ -42,24 +54,17 @@ def ranking(
 ) -> tuple[str, ...]:
     """Describe which of several rigs is better overall: by entropy, by coverage, by AP.
 
-    Parameters
-    ----------
-    names : sequence of str
-        Names of the rigs, in the order of the rows' values.
-    rows : sequence of ComparedRow
-        Result of `compare`.
-    notation : Notation
-
-    Returns
-    -------
-    tuple of str
-        One paragraph for each measure; none for fewer than two rigs.
+    `names` are those of the rigs in the order of the values of `rows`, the result of `compare`. The
+    result is a paragraph for each measure; none for fewer than two rigs.
     """
     whole = {row.measure: row for row in rows if row.group == "rig"}
     if len(names) < 2:
         return ()
-    by_measure = (_RankingSentences(names, whole[m], notation) for m in RANKED if m in whole)
-    return tuple(" ".join(measure_sentences.sentences()) for measure_sentences in by_measure)
+    return tuple(
+        " ".join(_RankingSentences(names, whole[m], notation).sentences())
+        for m in RANKED
+        if m in whole
+    )
 
 
 def win_words(names: Sequence[str], rows: Sequence[ComparedRow]) -> tuple[str, ...]:
@@ -70,9 +75,9 @@ def win_words(names: Sequence[str], rows: Sequence[ComparedRow]) -> tuple[str, .
     if len(names) < 2:
         return ()
     return tuple(
-        f"{name} {_HOW[measure]} {where}."
+        f"{name} {words.wins} {where}."
         for k, name in enumerate(names)
-        for measure in RANKED
+        for measure, words in RANKED.items()
         if (where := _where(rows, measure, k))
     )
 
@@ -95,95 +100,60 @@ class _RankingSentences:
 
     def __init__(self, names: Sequence[str], row: ComparedRow, notation: Notation) -> None:
         self._names, self._row, self._notation = names, row, notation
-        self._order = row.order
-        first = self._order[0] if self._order else 0
-        self._best = [k for k in self._order if not row.differ(first, k)]
-        self._rest = [k for k in self._order if k not in self._best]
+        self._words, self._in_percent = RANKED[row.measure], row.measure == COVERAGE
 
     def sentences(self) -> Iterator[str]:
         """Yield the best rigs, how much worse the others are, and the pairs that are alike."""
-        if len(self._order) < 2:
+        names, row, order = self._names, self._row, self._row.order
+        if len(order) < 2:
             return
-        yield f"Overall {self._leaders()}."
-        first = self._best[0]
-        yield from (
-            f"{self._names[j]} is worse than {self._names[i]}, by {self._gap(i, j)}."
-            for i, j in self._pairs(self._best)
-            if self._row.differ(i, j)
-        )
-        if self._rest:
-            gaps = [f"{self._names[k]} by {self._gap(first, k)}" for k in self._rest]
-            than = f" than {self._names[first]}" if len(self._best) > 1 else ""
+        best = [k for k in order if not row.differ(order[0], k)]
+        rest = [k for k in order if k not in best]
+        yield f"Overall {self._leaders(best, bool(rest))}."
+        for i, j in combinations(best, 2):
+            if row.differ(i, j):
+                yield f"{names[j]} is worse than {names[i]}, by {self._gap(i, j)}."
+        if rest:
+            gaps = [f"{names[k]} by {self._gap(best[0], k)}" for k in rest]
+            than = f" than {names[best[0]]}" if len(best) > 1 else ""
             yield f"Worse{than}: {joined(gaps)}."
-        yield from self._alike_behind()
+        alike = [(i, j) for i, j in combinations(order, 2) if j in rest and not row.differ(i, j)]
+        if len(alike) > MAX_PAIRS:
+            yield f"{len(alike)} other pairs are alike."
+        elif alike:
+            pairs = "; ".join(f"{names[i]} and {names[j]}" for i, j in alike)
+            yield f"Alike are also {pairs}."
 
-    def _leaders(self) -> str:
-        row, leaders = self._row, [self._names[k] for k in self._best]
-        values = joined([self._figure(row.values[k]) for k in self._best])
-        figures = f"{values}{_UNITS[row.measure]}"
-        better = "lower" if row.lower_is_better else "higher"
-        by = _BY[row.measure]
+    def _leaders(self, best: Sequence[int], has_rest: bool) -> str:
+        row, leaders, words = self._row, [self._names[k] for k in best], self._words
+        figures = f"{joined([self._figure(row.values[k]) for k in best])}{words.unit}"
+        better = f"{'lower' if row.lower_is_better else 'higher'} is better"
         if len(leaders) == 1:
-            return f"{leaders[0]} is best by {by}: {figures}, {better} is better"
-        also = ", and better than the others" if self._rest else ""
-        error = self._most_error(self._best)
-        return f"{joined(leaders)} are alike by {by}{also}: {figures}, {better} is better{error}"
-
-    def _alike_behind(self) -> Iterator[str]:
-        """Yield the other pairs without a significant difference."""
-        pairs = [
-            (i, j)
-            for i, j in self._pairs(self._order)
-            if j in self._rest and not self._row.differ(i, j)
-        ]
-        if len(pairs) > MAX_PAIRS:
-            yield f"{len(pairs)} other pairs are alike."
-        elif pairs:
-            pair_names = [f"{self._names[i]} and {self._names[j]}" for i, j in pairs]
-            yield f"Alike are also {'; '.join(pair_names)}."
-
-    @staticmethod
-    def _pairs(order: Sequence[int]) -> list[tuple[int, int]]:
-        return [(i, j) for a, i in enumerate(order) for j in order[a + 1 :]]
+            return f"{leaders[0]} is best by {words.noun}: {figures}, {better}"
+        also = ", and better than the others" if has_rest else ""
+        if error := max(row.errors[i][j] for i in best for j in best):
+            subject = "the difference" if len(best) == 2 else "a difference at most"
+            shown = f"{self._difference(error)}{words.unit_of_gap}"
+            better = f"{better}; standard error of {subject} {shown}"
+        return f"{joined(leaders)} are alike by {words.noun}{also}: {figures}, {better}"
 
     def _figure(self, value: float | None) -> str:
         assert value is not None  # a rig with a rank has a value
-        if self._row.measure == COVERAGE:
-            return self._notation.share(value)
-        return self._notation.number(value, _DIGITS[self._row.measure])
+        share, number = self._notation.share, self._notation.number
+        return share(value) if self._in_percent else number(value, self._words.digits)
 
     def _gap(self, one: int, other: int) -> str:
         a, b = self._row.values[one], self._row.values[other]
         assert a is not None and b is not None
         error = self._row.errors[one][other]
         error_text = f" {self._notation.plus_minus} {self._difference(error)}" if error else ""
-        return f"{self._difference(abs(a - b))}{error_text}{_GAPS[self._row.measure]}"
+        return f"{self._difference(abs(a - b))}{error_text}{self._words.unit_of_gap}"
 
     def _difference(self, value: float) -> str:
         """Format a difference or an error, of shares in percentage points.
 
         A value that would be shown as 0 is rounded up to the last digit.
         """
-        digits = _DIGITS[self._row.measure]
-        shown = 100.0 * value if self._row.measure == COVERAGE else value
+        digits = self._words.digits
+        shown = 100.0 * value if self._in_percent else value
         return self._notation.number(max(shown, 10.0**-digits) if shown else 0.0, digits)
-
-    def _most_error(self, which: Sequence[int]) -> str:
-        largest = max(self._row.errors[i][j] for i in which for j in which)
-        if not largest:
-            return ""
-        subject = "the difference" if len(which) == 2 else "a difference at most"
-        return (
-            f"; standard error of {subject} {self._difference(largest)}{_GAPS[self._row.measure]}"
-        )
-
-
-_BY = {ENTROPY: "entropy", COVERAGE: "coverage", AP: "expected AP"}
-_UNITS = {ENTROPY: " nats", COVERAGE: "", AP: ""}
-_GAPS = {ENTROPY: " nats", COVERAGE: " points", AP: ""}
-_DIGITS = {ENTROPY: 2, COVERAGE: 1, AP: 3}
-_HOW = {
-    ENTROPY: "is better by entropy",
-    COVERAGE: "sees more",
-    AP: "has the highest expected AP",
-}

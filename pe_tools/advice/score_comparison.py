@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from statistics import NormalDist
 from typing import Any
 
+from pe_core.scene.rig import SensorModel
 from pe_core.scoring.sampling import BLOCKS
 from pe_core.scoring.scatter import FigureKey, paired_error
 from pe_core.scoring.score import PartScore, Score
+from pe_core.study.catalog_lookup import same_model
 
 from .key_figures import KeyFigures
 
@@ -22,18 +24,9 @@ MIN_CHANGE = {"entropy": 0.005, "coverage": 0.0005, "ap": 0.0005, "reach": 0.05,
 def sure_factor(studies: int, degrees: int = BLOCKS - 1) -> float:
     """Return how many standard errors a difference must exceed to be significant.
 
-    Parameters
-    ----------
-    studies : int
-        Number of studies. All their pairs are compared; the Bonferroni correction divides the 5 %
-        error probability among the pairs.
-    degrees : int
-        Degrees of freedom of the standard errors: number of batches of the estimate, minus one.
-
-    Returns
-    -------
-    float
-        Two-sided quantile of Student's t distribution.
+    It is a two-sided quantile of Student's t distribution. All pairs of the studies are compared:
+    the Bonferroni correction divides the 5 % error probability among them. The standard errors have
+    `degrees` of freedom, the number of batches of the estimate minus one.
     """
     pairs = max(studies * (studies - 1) // 2, 1)
     z = NormalDist().inv_cdf(1.0 - (1.0 - CERTAINTY) / (2.0 * pairs))
@@ -59,31 +52,18 @@ def difference_errors(scores: Sequence[Score], figure: FigureKey) -> tuple[tuple
 
     Errors of scores on the same sample are paired (`scoring.scatter`). Errors of scores on
     different samples are independent: their squares add up. The error is 0 for scores of the whole
-    grid, and for reach, which is not sampled.
-
-    Parameters
-    ----------
-    scores : sequence of Score
-        N scores.
-    figure : FigureKey
-        Group, name and measure of the figure.
-
-    Returns
-    -------
-    tuple of tuple of float
-        (N, N) symmetric, in the unit of the figure.
+    grid, and for reach, which is not sampled. The result (N, N) has the unit of the figure.
     """
     errors = [_error(score, figure) for score in scores]
-    rows = []
-    for i, one in enumerate(scores):
-        row = []
-        for j, other in enumerate(scores):
-            paired = paired_error(one.scatter, other.scatter, figure)
-            row.append(
-                0.0 if i == j else math.hypot(errors[i], errors[j]) if paired is None else paired
-            )
-        rows.append(tuple(row))
-    return tuple(rows)
+
+    def of_pair(i: int, j: int) -> float:
+        if i == j:
+            return 0.0
+        paired = paired_error(scores[i].scatter, scores[j].scatter, figure)
+        return math.hypot(errors[i], errors[j]) if paired is None else paired
+
+    numbers = range(len(scores))
+    return tuple(tuple(of_pair(i, j) for j in numbers) for i in numbers)
 
 
 def _error(score: Score, figure: FigureKey) -> float:
@@ -114,6 +94,13 @@ def _bound(score: Score, figure: FigureKey) -> float:
 
 
 ENTROPY, COVERAGE, AP, REACH, BLIND = "entropy", "coverage", "ap", "reach", "blind"
+OTHER_HARDWARE = (
+    "The rigs differ in models or numbers of sensors. On simulated rigs of LiDARs entropy was not "
+    "shown to rank better than the number of beams, and it can prefer a rig with a blind sector; "
+    "cameras and radars were not tested. Look at blind ground, and at the expected AP in traffic, "
+    "beside it (docs/validity/own)."
+)
+"""Note beside scores of rigs that differ in their sensors, not in their placement alone."""
 LOWER_IS_BETTER = frozenset({ENTROPY, BLIND})
 AHEAD = "front"
 """Direction whose reach is compared."""
@@ -133,26 +120,35 @@ class ComparedRow:
         reach ahead [m]: higher is better.
     values : tuple of float or None
         One value for each score, in their order; None for a score without this zone or class.
-    differences : tuple of float or None
-        Value minus the value of the first score; None where one of the two is missing.
-    best : tuple of bool
-        Marks the best value and all values that are not significantly worse. All False where no
-        value is significantly worse than the best one.
     errors : tuple of tuple of float
         (N, N) standard errors of the differences between each two values; 0 where nothing is
         sampled.
     factor : float
         Number of standard errors beyond which a difference is significant (`sure_factor`).
+    is_ranked : bool
+        Whether a value may be the best; not where the error of a difference is unknown.
     """
 
     group: str
     name: str
     measure: str
     values: tuple[float | None, ...]
-    differences: tuple[float | None, ...]
-    best: tuple[bool, ...]
     errors: tuple[tuple[float, ...], ...]
-    factor: float
+    factor: float = 0.0
+    is_ranked: bool = True
+
+    @property
+    def differences(self) -> tuple[float | None, ...]:
+        """Each value minus the first one; None where one of the two is missing."""
+        first = self.values[0] if self.values else None
+        return tuple(None if v is None or first is None else v - first for v in self.values)
+
+    @property
+    def best(self) -> tuple[bool, ...]:
+        """Marks of the best value and those not significantly worse; of none if these are all."""
+        order = self.order if self.is_ranked else ()
+        best = {k for k in order if not self.differ(order[0], k)}
+        return tuple(k in best and len(best) < len(order) for k in range(len(self.values)))
 
     @property
     def lower_is_better(self) -> bool:
@@ -185,26 +181,20 @@ class ComparedRow:
 
     def differ(self, one: int, other: int) -> bool:
         """Whether two values, given by index, differ significantly; False where one is missing."""
-        return _differ(self.measure, self.values, self.errors, self.factor, one, other)
+        a, b = self.values[one], self.values[other]
+        threshold = max(MIN_CHANGE[self.measure], self.factor * self.errors[one][other])
+        return a is not None and b is not None and abs(a - b) > threshold
 
     def to_dict(self) -> dict[str, Any]:
         """Return the row as plain JSON data."""
-        return asdict(self)
+        keys = ("group", "name", "measure", "values", "differences", "best", "errors", "factor")
+        return {key: getattr(self, key) for key in keys}
 
 
 def compare(scores: Mapping[str, Score]) -> tuple[ComparedRow, ...]:
-    """Compare scores: entropy and coverage of the rigs, of every zone and of every class.
+    """Compare scores by name: entropy and coverage of the rigs, of every zone and of every class.
 
-    For scores on objects, expected AP and reach ahead follow.
-
-    Parameters
-    ----------
-    scores : mapping of name to Score
-        In the order of the columns; differences refer to the first score.
-
-    Returns
-    -------
-    tuple of ComparedRow
+    For scores on objects, expected AP and reach ahead follow. Differences refer to the first score.
     """
     return tuple(_rows(list(scores.values())))
 
@@ -212,54 +202,32 @@ def compare(scores: Mapping[str, Score]) -> tuple[ComparedRow, ...]:
 def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...]:
     """Compare key figures: blind ground, and reach ahead and expected AP of one class.
 
-    No AP is marked as the best: it comes from a sample, and the error of a difference is unknown.
-
-    Parameters
-    ----------
-    figures : mapping of name to KeyFigures
-        In the order of the columns, all of the same height and class; differences refer to the
-        first.
-
-    Returns
-    -------
-    tuple of ComparedRow
+    All are of the same height and class; differences refer to the first. No AP is marked as the
+    best: it comes from a sample, and the error of a difference is unknown.
     """
     columns = list(figures.values())
     if not columns:
         return ()
     height_text = f"{columns[0].height:g} m tall, within {columns[0].within:g} m"
-    rows = [_exact_row("rig", height_text, BLIND, [f.blind_m2 for f in columns])]
+    none = ((0.0,) * len(columns),) * len(columns)
+    rows = [ComparedRow("rig", height_text, BLIND, tuple(f.blind_m2 for f in columns), none)]
     if (name := columns[0].class_name) is not None:
-        rows.append(_exact_row("class", name, REACH, [f.reach_m for f in columns]))
-        ap = _exact_row("class", name, AP, [f.expected_ap for f in columns])
-        rows.append(replace(ap, best=(False,) * len(columns)))
+        reaches, aps = (tuple(f.reach_m for f in columns), tuple(f.expected_ap for f in columns))
+        rows.append(ComparedRow("class", name, REACH, reaches, none))
+        rows.append(ComparedRow("class", name, AP, aps, none, is_ranked=False))
     return tuple(rows)
-
-
-def _exact_row(group: str, name: str, measure: str, values: Sequence[float | None]) -> ComparedRow:
-    """Return a row of figures without an error."""
-    errors = ((0.0,) * len(values),) * len(values)
-    best = _best(measure, values, errors, 0.0)
-    return ComparedRow(group, name, measure, tuple(values), _less(values), best, errors, 0.0)
-
-
-def _less(values: Sequence[float | None]) -> tuple[float | None, ...]:
-    """Return each value minus the first one; None where one of the two is missing."""
-    first = values[0] if values else None
-    return tuple(None if v is None or first is None else v - first for v in values)
 
 
 def _rows(scores: list[Score]) -> Iterator[ComparedRow]:
     for measure in (ENTROPY, COVERAGE):
         values = [getattr(score, measure) for score in scores]
         yield _row(scores, "rig", "", measure, values)
-    yield from _parts("zone", scores, lambda score: score.per_zone)
-    yield from _parts("class", scores, lambda score: score.per_class)
-    yield from _found(scores)
-
-
-def _found(scores: list[Score]) -> Iterator[ComparedRow]:
-    """Yield rows of expected AP (all classes, each class) and reach ahead of scores on objects."""
+    parts = {"zone": [s.per_zone for s in scores], "class": [s.per_class for s in scores]}
+    for group, by_name in parts.items():
+        for name in dict.fromkeys(name for part in by_name for name in part):
+            for measure in (ENTROPY, COVERAGE):
+                values = [getattr(p[name], measure) if name in p else None for p in by_name]
+                yield _row(scores, group, name, measure, values)
     objects = [score.objects for score in scores]
     by_class = [{} if scored is None else scored.per_class for scored in objects]
     names = dict.fromkeys(name for classes in by_class for name in classes)
@@ -274,49 +242,23 @@ def _found(scores: list[Score]) -> Iterator[ComparedRow]:
         yield _row(scores, "class", name, REACH, ahead)
 
 
-def _parts(
-    group: str, scores: list[Score], parts_of: Callable[[Score], dict[str, PartScore]]
-) -> Iterator[ComparedRow]:
-    parts = [parts_of(score) for score in scores]
-    for name in dict.fromkeys(name for by_name in parts for name in by_name):
-        for measure in (ENTROPY, COVERAGE):
-            values = [getattr(p[name], measure) if name in p else None for p in parts]
-            yield _row(scores, group, name, measure, values)
-
-
 def _row(
     scores: list[Score], group: str, name: str, measure: str, values: list[float | None]
 ) -> ComparedRow:
     errors = difference_errors(scores, (group, name, measure))
     factor = sure_factor(len(scores), degrees_of(scores))
-    best = _best(measure, values, errors, factor)
-    return ComparedRow(group, name, measure, tuple(values), _less(values), best, errors, factor)
+    return ComparedRow(group, name, measure, tuple(values), errors, factor)
 
 
-def _best(
-    measure: str,
-    values: Sequence[float | None],
-    errors: Sequence[Sequence[float]],
-    factor: float,
-) -> tuple[bool, ...]:
-    """Mark the best value and the values not significantly worse; none if these are all values."""
-    sign = 1.0 if measure in LOWER_IS_BETTER else -1.0
-    present = [(sign * v, k) for k, v in enumerate(values) if v is not None]
-    if not present:
-        return (False,) * len(values)
-    first = min(present)[1]
-    best = {k for _, k in present if not _differ(measure, values, errors, factor, first, k)}
-    return tuple(k in best and len(best) < len(present) for k in range(len(values)))
-
-
-def _differ(
-    measure: str,
-    values: Sequence[float | None],
-    errors: Sequence[Sequence[float]],
-    factor: float,
-    one: int,
-    other: int,
-) -> bool:
-    a, b = values[one], values[other]
-    threshold = max(MIN_CHANGE[measure], factor * errors[one][other])
-    return a is not None and b is not None and abs(a - b) > threshold
+def hardware_note(rigs: Iterable[Sequence[SensorModel]]) -> str:
+    """Return `OTHER_HARDWARE` where rigs, by their models in any order, differ; else nothing."""
+    first, *others = [list(models) for models in rigs] or [[]]
+    for left in others:
+        for model in first:
+            match = next((k for k, each in enumerate(left) if same_model(model, each)), None)
+            if match is None:
+                return OTHER_HARDWARE
+            del left[match]
+        if left:
+            return OTHER_HARDWARE
+    return ""

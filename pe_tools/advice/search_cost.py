@@ -8,10 +8,8 @@ from collections.abc import Iterator
 from pe_core.scoring.score import Score
 
 from .advice import joined
+from .score_comparison import AP, BLIND, COVERAGE, ENTROPY, MIN_CHANGE
 from .summary_text import WHERE
-
-MIN_AREA_M2, MIN_COVERAGE, MIN_NATS = 0.05, 0.0005, 0.005
-"""Smaller differences are not named: what the shown digits would not tell apart."""
 
 ZONES_NAMED = 2
 NOTHING = "It cost nothing"
@@ -40,19 +38,20 @@ def costs_nothing(cost: str) -> bool:
 
 
 def _losses(before: Score, after: Score, blind_m2: tuple[float, float]) -> Iterator[str]:
-    if blind_m2[1] > blind_m2[0] + MIN_AREA_M2:
+    if blind_m2[1] > blind_m2[0] + MIN_CHANGE[BLIND]:
         yield f"blind ground ({_areas(blind_m2)})"
-    if before.coverage - after.coverage >= MIN_COVERAGE:
+    if before.coverage - after.coverage >= MIN_CHANGE[COVERAGE]:
         yield f"coverage ({before.coverage:.1%} to {after.coverage:.1%})"
     if before.objects is not None and after.objects is not None:
-        if before.objects.ap - after.objects.ap >= MIN_COVERAGE:
+        if before.objects.ap - after.objects.ap >= MIN_CHANGE[AP]:
             yield f"expected AP ({before.objects.ap:.3f} to {after.objects.ap:.3f})"
-    elif after.entropy - before.entropy >= MIN_NATS:
+    elif after.entropy - before.entropy >= MIN_CHANGE[ENTROPY]:
         yield f"entropy ({before.entropy:.3f} to {after.entropy:.3f} nats)"
     worse = {
-        name: (zone.entropy, now.entropy)
+        name: (zone.entropy, after.per_zone[name].entropy)
         for name, zone in before.per_zone.items()
-        if (now := after.per_zone.get(name)) is not None and now.entropy - zone.entropy >= MIN_NATS
+        if name in after.per_zone
+        and after.per_zone[name].entropy - zone.entropy >= MIN_CHANGE[ENTROPY]
     }
     most = sorted(worse, key=lambda name: worse[name][0] - worse[name][1])[:ZONES_NAMED]
     for name in most:

@@ -20,7 +20,14 @@ NEAREST_M = 0.5
 
 def object_words(found: ObjectScore) -> tuple[str, ...]:
     """Describe a score on objects in lines: expected AP, LiDAR points, and reach by class."""
-    return tuple(_lines(found))
+    ap = f"expected AP {found.ap:.2f} +- {max(found.ap_stderr, 0.001):.3f}"
+    lines = [f"{ap}: {', '.join(f'{name} {c.ap:.2f}' for name, c in found.per_class.items())}"]
+    for name, own in found.per_class.items():
+        shares = ", ".join(map(percent, own.points.values()))
+        points = f"{shares} get {', '.join(map(str, own.points))} points or more; "
+        points = points if own.points else ""  # without LiDARs
+        lines.append(f"{name}: {points}found alone (AP 0.5) {reach_words(own)}")
+    return tuple(lines)
 
 
 def objects_looked_at(found: ObjectScore) -> str:
@@ -28,25 +35,6 @@ def objects_looked_at(found: ObjectScore) -> str:
     if found.traffic:
         return f"{found.objects:,} objects in {found.scenes:,} scenes, in traffic"
     return f"{found.objects:,} objects, none occludes another"
-
-
-def _lines(found: ObjectScore) -> Iterator[str]:
-    by_class = found.per_class
-    all_classes = f"expected AP {found.ap:.2f} +- {max(found.ap_stderr, 0.001):.3f}"
-    yield f"{all_classes}: {', '.join(f'{name} {c.ap:.2f}' for name, c in by_class.items())}"
-    for name, found_class in by_class.items():
-        yield f"{name}: {_points(found_class)}found alone (AP 0.5) {reach_words(found_class)}"
-
-
-def _points(own: FoundClass) -> str:
-    """Describe the shares of objects with a number of LiDAR points or more; empty without LiDARs.
-
-    The text ends in a space.
-    """
-    if not own.points:
-        return ""
-    shares = ", ".join(map(percent, own.points.values()))
-    return f"{shares} get {', '.join(map(str, own.points))} points or more; "
 
 
 def lone_reach(metres: float) -> str:
@@ -84,17 +72,9 @@ CLASSES_NAMED = 8
 class Outlook:
     """Results of `Sight` for a rig.
 
-    Attributes
-    ----------
-    expected_ap : dict of float
-        Expected AP by class, 0 to 1.
-    shares : VisibleShares
-        Visible shares by number of sensors, by sensor and zone.
-    reach : Reach
-        Reach for one class.
-    blind : BlindGround
-        Ground on which an object of height `BLIND_TO_M` is invisible; of the lowest height of the
-        space if that is greater.
+    `expected_ap` is by class, 0 to 1; `shares` are the visible shares by number of sensors, by
+    sensor and zone; `reach` is that for one class; `blind` is the ground on which an object of
+    height `BLIND_TO_M` is invisible, or of the lowest height of the space if that is greater.
     """
 
     expected_ap: Mapping[str, float]
@@ -114,24 +94,7 @@ class Outlook:
 
 
 def outlook(sight: Sight, rig: Rig, class_name: str | None = None) -> Outlook:
-    """Compute the outlook of a rig.
-
-    Parameters
-    ----------
-    sight : Sight
-    rig : Rig
-    class_name : str, optional
-        Class of the reach. By default pedestrians, or the first class of a prior without them.
-
-    Returns
-    -------
-    Outlook
-
-    Raises
-    ------
-    InputError
-        The prior has no class of that name.
-    """
+    """Compute the outlook of a rig; for the class of the reach see `class_of`."""
     name = class_of(sight.prior, class_name)
     height = max(BLIND_TO_M, sight.space.z[0])
     return Outlook(
@@ -143,12 +106,9 @@ def outlook(sight: Sight, rig: Rig, class_name: str | None = None) -> Outlook:
 
 
 def class_of(prior: Prior, name: str | None) -> str:
-    """Return the name of the class for the reach: `name`, or the default for None.
+    """Return the name of the class for the reach, which has to be one of the prior.
 
-    Raises
-    ------
-    InputError
-        The prior has no class of that name.
+    For None it is pedestrians, or the first class of a prior without them.
     """
     names = prior.class_names
     if name is None:

@@ -11,6 +11,7 @@ from pe_core.sensors import kind_of
 from pe_tools.advice.advice import percent
 
 from .advice import Advice
+from .key_figures import MIN_LOSS, MIN_RISE
 from .mount_checks import occluded_shares
 from .summary import Outlook, object_words, objects_looked_at, outlook_words
 from .warnings import hidden_sensors, hidden_words
@@ -28,8 +29,6 @@ WHERE = {
 PARTS_NAMED = 3
 LITTLE = 0.05
 """A part of the vehicle that blocks less than this share of all blocked beams is not named."""
-WORTH_NATS = 0.00005
-"""A smaller contribution of a sensor [nats] is described as none: four digits are shown."""
 
 
 def words(
@@ -54,13 +53,15 @@ def words(
         ground, and the zones that each sensor sees best.
     warnings : sequence of Advice
         Warnings about the same rig. They explain why a sensor sees nothing.
-
-    Returns
-    -------
-    tuple of str
     """
-    of_rig = rig_words(score, seen, rig, warnings)
-    return *of_rig, *_sensor_lines(score, rig, vehicle, seen)
+    lines = [*rig_words(score, seen, rig, warnings)]
+    alone = len(score.per_sensor) == 1
+    for name, sensor_score in score.per_sensor.items():
+        sensor = None if rig is None else rig[name]
+        zones = None if seen is None or score.objects else seen.shares.zones[name]
+        first, *more = sensor_words(sensor_score, sensor, vehicle, zones, alone=alone)
+        lines += [f"{name}: {first}", *(f"  {phrase}" for phrase in more)]
+    return tuple(lines)
 
 
 def rig_words(
@@ -71,28 +72,12 @@ def rig_words(
 ) -> tuple[str, ...]:
     """Return the lines of `words` that describe the whole rig; parameters as there."""
     hidden = () if rig is None else hidden_words(hidden_sensors(rig, score, warnings))
-    return *hidden, *_rig_lines(score, seen)
-
-
-def _rig_lines(score: Score, seen: Outlook | None) -> Iterator[str]:
-    yield _coverage(score, seen)
-    yield from _zones(score.per_zone)
+    lines = [*hidden, _coverage(score, seen), *_zones(score.per_zone)]
     if score.objects is not None:
-        yield from object_words(score.objects)
+        lines += object_words(score.objects)
     if seen is not None:
-        yield from outlook_words(seen, of_voxels=score.objects is None)
-
-
-def _sensor_lines(
-    score: Score, rig: Rig | None, vehicle: Vehicle | None, seen: Outlook | None
-) -> Iterator[str]:
-    for name, sensor_score in score.per_sensor.items():
-        sensor = None if rig is None else rig[name]
-        zones = None if seen is None or score.objects else seen.shares.zones[name]
-        alone = len(score.per_sensor) == 1
-        first, *more = sensor_words(sensor_score, sensor, vehicle, zones, alone=alone)
-        yield f"{name}: {first}"
-        yield from (f"  {phrase}" for phrase in more)
+        lines += outlook_words(seen, of_voxels=score.objects is None)
+    return tuple(lines)
 
 
 def sensor_words(
@@ -105,27 +90,19 @@ def sensor_words(
 ) -> tuple[str, ...]:
     """Describe one sensor in phrases: its contribution, its best and worst zone, its occlusion.
 
-    Parameters
-    ----------
-    own : SensorScore
-        The sensor's part of the score.
-    sensor, vehicle : Sensor, Vehicle, optional
-        The sensor and the vehicle that were scored.
-    zones : mapping of str to float, optional
-        Share of each zone that the sensor sees, 0 to 1 (`sight.VisibleShares`).
-    alone : bool
-        Whether the rig has no other sensor.
-
-    Returns
-    -------
-    tuple of str
-        Phrases that apply; there may be none.
+    `own` is the sensor's part of the score; `zones` has the share of each zone that the sensor
+    sees, 0 to 1 (`sight.VisibleShares`); `alone` is whether the rig has no other sensor.
     """
-    phrases = (
-        "the only sensor" if alone else _adds(own),
-        "" if zones is None else _extreme_zones(zones),
-        occluded_words(sensor, own, vehicle),
-    )
+    digits = 2 if own.lost >= MIN_RISE else 4
+    adds = f"without it {own.lost:.{digits}f} nats worse"
+    adds = adds if own.lost >= MIN_LOSS else "without it no worse"
+    phrases = ["the only sensor" if alone else adds]
+    seen = zones or {}
+    order = sorted(seen, key=seen.__getitem__, reverse=True)
+    if order and seen[order[0]] != seen[order[-1]]:
+        best, worst = (f"{WHERE[z]} ({percent(seen[z])})" for z in (order[0], order[-1]))
+        phrases.append(f"sees most {best}, least {worst}")
+    phrases.append(occluded_words(sensor, own, vehicle))
     return tuple(filter(None, phrases))
 
 
@@ -151,38 +128,12 @@ def _zones(zones: Mapping[str, PartScore]) -> Iterator[str]:
         yield f"best {best}, worst {worst}"
 
 
-def _adds(sensor_score: SensorScore) -> str:
-    """Describe how much worse the rig is without the sensor."""
-    if sensor_score.lost < WORTH_NATS:
-        return "without it no worse"
-    return (
-        f"without it {sensor_score.lost:.2f} nats worse"
-        if sensor_score.lost >= 0.005
-        else (f"without it {sensor_score.lost:.4f} nats worse")
-    )
-
-
-def _extreme_zones(zones: Mapping[str, float]) -> str:
-    """Name the zones with the highest and the lowest visible share of one sensor."""
-    order = sorted(zones, key=lambda zone: -zones[zone])
-    if not order or zones[order[0]] == zones[order[-1]]:
-        return ""
-    best, worst = (f"{WHERE[z]} ({percent(zones[z])})" for z in (order[0], order[-1]))
-    return f"sees most {best}, least {worst}"
-
-
 def occluded_words(
     sensor: Sensor | None, own: SensorScore | None = None, vehicle: Vehicle | None = None
 ) -> str:
     """Describe which parts block a sensor's view, as in "7.5% of its beams occluded by roof".
 
-    The beams counted by the score are used where it has them, otherwise a sample of the sensor's
-    rays (`occluded_shares`, which also explains the parameters).
-
-    Returns
-    -------
-    str
-        Empty where nothing blocks the view.
+    It is empty where nothing blocks the view. For the parameters see `occluded_shares`.
     """
     shares = occluded_shares(sensor, own, vehicle)
     total = sum(shares.values())

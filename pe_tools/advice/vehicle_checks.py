@@ -8,7 +8,6 @@ from functools import cached_property
 
 import numpy as np
 
-from pe_core.base.arrays import Floats
 from pe_core.scene.body_shape import USUAL_SECOND_M, BodyShape, car_factor, fitting_units, is_usual
 from pe_core.scene.orientation import LONGER, ON_GROUND, across, front_by_names, wheel_center
 from pe_core.scene.vehicle import Vehicle
@@ -29,11 +28,6 @@ class Bodywork:
         vehicle = self.vehicle
         return BodyShape(vehicle.triangles, vehicle.parts, tuple(vehicle.part_names))
 
-    @property
-    def rooms(self) -> tuple[str, ...]:
-        """Names of parts as large as a room, such as the floor of a studio."""
-        return self.shape.rooms
-
     @cached_property
     def itself(self) -> Vehicle:
         """The vehicle without parts as large as a room."""
@@ -44,21 +38,6 @@ class Bodywork:
         parts, names = np.asarray(vehicle.parts)[own_triangles], vehicle.part_names
         glass = tuple(vehicle.glass)
         return Vehicle(vehicle.triangles[own_triangles], parts, names, glass, vehicle.clearance)
-
-    @property
-    def low(self) -> Floats:
-        """Lowest corner (3,) [m]."""
-        return self.shape.bounds[0]
-
-    @property
-    def high(self) -> Floats:
-        """Highest corner (3,) [m]."""
-        return self.shape.bounds[1]
-
-    @property
-    def size(self) -> tuple[float, float, float]:
-        """Extent along x, y, z [m]."""
-        return self.shape.size
 
 
 SUNK_M, FLOATS_M = 0.15, 0.3
@@ -82,7 +61,9 @@ def odd_vehicle(body: Bodywork) -> Iterator[Advice]:
 
     After a warning about its size no other check in metres is made.
     """
-    yield from map(_room, body.rooms)
+    for name in body.shape.rooms:  # such as the floor of a studio
+        text = f"{name} is as large as a room: a floor or a studio that belongs to no vehicle?"
+        yield Advice(None, "room", text, part=name)
     wrong_size = list(_size(body))
     yield from wrong_size
     if wrong_size:
@@ -91,16 +72,11 @@ def odd_vehicle(body: Bodywork) -> Iterator[Advice]:
         yield from check(body)
 
 
-def _room(name: str) -> Advice:
-    text = f"{name} is as large as a room: a floor or a studio that belongs to no vehicle?"
-    return Advice(None, "room", text, part=name)
-
-
 def _size(body: Bodywork) -> Iterator[Advice]:
-    longest, second, _ = sorted(body.size, reverse=True)
+    longest, second, _ = sorted(body.shape.size, reverse=True)
     if is_usual(longest, second):
         return
-    x, y, z = body.size
+    x, y, z = body.shape.size
     found_text = f"{metres(x)} long, {metres(y)} wide and {metres(z)} high is no vehicle"
     if not longest:
         yield Advice(None, "size", "all of it is one point")
@@ -122,7 +98,7 @@ def _wide(body: Bodywork) -> Iterator[Advice]:
 
     On its side, a bus is as wide as it is high.
     """
-    x, y, z = body.size
+    x, y, z = body.shape.size
     if WIDE_M < y < x and z < y and across(body.shape) != 2:
         factor = car_factor(x)
         text = (
@@ -134,17 +110,13 @@ def _wide(body: Bodywork) -> Iterator[Advice]:
 
 def _stands(body: Bodywork) -> Iterator[Advice]:
     """Check for a vehicle that stands on its tail or lies on its side."""
-    x, y, z = body.size
+    x, y, z = body.shape.size
     if z > LONGER * max(x, y):
         text = f"taller ({metres(z)}) than long ({metres(max(x, y))}): does it stand on its tail?"
-        yield _stand(text, "on_tail", _quarter_turn(body))
+        yield Advice(None, "on_tail", text, fix="stand_vehicle", amount=_quarter_turn(body))
     elif across(body.shape) == 2:
         text = "its left half mirrors its right one from top to bottom: does it lie on its side?"
-        yield _stand(text, "on_side", _quarter_turn(body))
-
-
-def _stand(text: str, code: str, turn: tuple[float, float, float]) -> Advice:
-    return Advice(None, code, text, fix="stand_vehicle", amount=turn)
+        yield Advice(None, "on_side", text, fix="stand_vehicle", amount=_quarter_turn(body))
 
 
 def _quarter_turn(body: Bodywork) -> tuple[float, float, float]:
@@ -153,21 +125,23 @@ def _quarter_turn(body: Bodywork) -> tuple[float, float, float]:
     Without names of wheels the side that is at coordinate 0 is taken for them; without either the
     vehicle may then be on its roof.
     """
-    middle = (body.low + body.high)[:2] / 2.0
+    (low, high), size = body.shape.bounds, body.shape.size
     wheels, mirrored = wheel_center(body.shape), across(body.shape)
-    offset = np.zeros(2) if wheels is None else (wheels[:2] - middle) / np.maximum(body.size[:2], 1)
+    offset = np.zeros(2)
+    if wheels is not None:
+        offset = (wheels[:2] - (low + high)[:2] / 2.0) / np.maximum(size[:2], 1)
     if np.abs(offset).max() > WHEELS_BELOW:
         up = int(np.argmax(np.abs(offset)))
     else:
-        up = 1 - mirrored if mirrored in (0, 1) else int(np.argmin(body.size[:2]))
-        offset[up] = -1.0 if abs(body.low[up]) <= ON_GROUND * body.size[up] else 1.0
+        up = 1 - mirrored if mirrored in (0, 1) else int(np.argmin(size[:2]))
+        offset[up] = -1.0 if abs(low[up]) <= ON_GROUND * size[up] else 1.0
     turn = -90.0 if offset[up] < 0.0 else 90.0
     return (0.0, turn, 0.0) if up == 0 else (-turn, 0.0, 0.0)
 
 
 def _faces(body: Bodywork) -> Iterator[Advice]:
     """Check that forward is +x, by the names of parts, otherwise by the longest side."""
-    x, y, z = body.size
+    x, y, z = body.shape.size
     if z > LONGER * max(x, y):
         return
     direction = front_by_names(body.shape)
@@ -189,15 +163,16 @@ def _faces(body: Bodywork) -> Iterator[Advice]:
 def _on_its_roof(body: Bodywork) -> Iterator[Advice]:
     """Check for wheels, found by their names, above the middle of the vehicle."""
     wheels = wheel_center(body.shape)
-    middle = float(body.low[2] + body.high[2]) / 2.0
-    if wheels is not None and float(wheels[2]) > middle + 0.1 * body.size[2]:
+    middle = float(body.shape.bounds[0][2] + body.shape.bounds[1][2]) / 2.0
+    if wheels is not None and float(wheels[2]) > middle + 0.1 * body.shape.size[2]:
         text = "its wheels are on top: does it lie on its roof?"
-        yield _stand(text, "on_roof", (180.0, 0.0, 0.0))
+        turn = (180.0, 0.0, 0.0)
+        yield Advice(None, "on_roof", text, fix="stand_vehicle", amount=turn)
 
 
 def _height(body: Bodywork) -> Iterator[Advice]:
     """Check for a vehicle that is sunk into the ground or floats above it."""
-    bottom = float(body.low[2])
+    bottom = float(body.shape.bounds[0][2])
     if bottom < -SUNK_M:
         text = f"it stands {metres(-bottom)} deep in the ground, z = 0"
     elif bottom > FLOATS_M:

@@ -1,8 +1,8 @@
-"""Collect all warnings about a rig and its vehicle from the checks of this package."""
+"""Warnings about a rig, its vehicle, its conditions and its AP curves; sensors that see nothing."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from pe_core.geometry.grids import PerceptionSpace
@@ -10,10 +10,11 @@ from pe_core.prior.prior import Prior
 from pe_core.scene.rig import Rig, Sensor
 from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.score import Score
-from pe_core.sensors import kind_of
+from pe_core.sensors import SCANS, PerceptionModel, kind_of, scan_curves
+from pe_core.study.condition_table import ConditionTable
 from pe_tools.advice.advice import joined, percent
 
-from .advice import Advice
+from .advice import PROVISIONAL, Advice
 from .mount_checks import SensorAtBody, odd_mounting, odd_place
 from .vehicle_checks import Bodywork, odd_vehicle
 
@@ -25,7 +26,7 @@ def warnings(
     prior: Prior,
     score: Score | None = None,
 ) -> tuple[Advice, ...]:
-    """Return warnings about probable mistakes, each with the sensor or part that causes it.
+    """Return warnings about probable mistakes: of the vehicle, then of the sensors in their order.
 
     Parameters
     ----------
@@ -35,26 +36,52 @@ def warnings(
     prior : Prior
     score : Score, optional
         Score of this rig. Beams that the score has counted as stopped are not cast again.
-
-    Returns
-    -------
-    tuple of Advice
-        Warnings about the vehicle, then about the sensors in the rig's order.
     """
-    return tuple(_warnings(rig, vehicle, space, score))
-
-
-def _warnings(
-    rig: Iterable[Sensor], vehicle: Vehicle | None, space: PerceptionSpace, score: Score | None
-) -> Iterator[Advice]:
     body = None if vehicle is None else Bodywork(vehicle)
-    if body is not None:
-        yield from odd_vehicle(body)
+    found = [] if body is None else [*odd_vehicle(body)]
     for sensor in rig:
-        yield from odd_place(sensor, space)
+        found += odd_place(sensor, space)
         if body is not None:
             sensor_score = None if score is None else score.per_sensor.get(sensor.name)
-            yield from odd_mounting(SensorAtBody(sensor, body, sensor_score))
+            found += odd_mounting(SensorAtBody(sensor, body, sensor_score))
+    return tuple(found)
+
+
+def condition_warnings(table: ConditionTable | None) -> tuple[Advice, ...]:
+    """Return the warnings about a table of conditions; none without a table."""
+    if table is None:
+        return ()
+    found = []
+    for state, depths in table.below_ground.items():
+        part, depth = next(iter(depths.items()))
+        more = f" and {len(depths) - 1} more parts" if len(depths) > 1 else ""
+        text = f"state {state!r} drives {part!r}{more} through the ground, {depth:.2f} m deep"
+        found.append(Advice(None, "below_ground", text, part))
+    told = set()
+    for row in table.rows:
+        for sensor, parts in (row.covered or {}).items():
+            part, share = max(parts.items(), key=lambda each: each[1])
+            if (key := (row.state, sensor)) not in told:
+                told.add(key)
+                text = f"in state {row.state!r}, {part!r} covers {share:.0%} of what it sees"
+                found.append(Advice(sensor, "covered", f"{text}, beyond that as drawn", part))
+    return tuple(found)
+
+
+def curve_warnings(model: PerceptionModel) -> tuple[Advice, ...]:
+    """Return a warning where curves of objects are those from scans and provisional."""
+    if model.model != SCANS or (fitted := scan_curves()).complete:
+        return ()
+    text = (
+        f"the curves from scans are provisional: {fitted.runs} of {fitted.planned} runs of their "
+        "study are done"
+    )
+    return (Advice(None, PROVISIONAL, text),)
+
+
+def curve_note(models: Iterable[PerceptionModel]) -> str:
+    """Return that warning as a line, once for several models; empty where none has it."""
+    return next((each.line for model in models for each in curve_warnings(model)), "")
 
 
 MOSTLY = 0.5
@@ -66,18 +93,10 @@ NOTHING_THERE = "no object is expected where it looks"
 class HiddenSensor:
     """A sensor that sees no place where objects are expected, or is mostly hidden by the vehicle.
 
-    Attributes
-    ----------
-    name : str
-    dead : bool
-        Whether it sees none of the evaluated voxels or objects.
-    exact : bool
-        Whether all voxels were evaluated, not a sample.
-    lost : float
-        Share of its beams, or of its picture, that the vehicle blocks, 0 to 1; 0 for kinds that do
-        not count beams.
-    why : str
-        The reason as a phrase: "inside the body", "86% of its picture occluded".
+    `dead` is whether it sees none of the evaluated voxels or objects, `exact` whether all voxels
+    were evaluated, not a sample. `lost` is the share of its beams, or of its picture, that the
+    vehicle blocks, 0 to 1; 0 for kinds that do not count beams. `why` is the reason as a phrase:
+    "inside the body", "86% of its picture occluded".
     """
 
     name: str
@@ -90,19 +109,9 @@ class HiddenSensor:
 def hidden_sensors(
     rig: Rig, score: Score, warnings: Iterable[Advice] = ()
 ) -> tuple[HiddenSensor, ...]:
-    """Return the sensors of a rig that are dead or mostly hidden, the dead ones first.
+    """Return the sensors of a scored rig that are dead or mostly hidden, the dead ones first.
 
-    Parameters
-    ----------
-    rig : Rig
-    score : Score
-        Score of this rig.
-    warnings : iterable of Advice
-        Warnings about this rig: they tell which sensors are inside the body.
-
-    Returns
-    -------
-    tuple of HiddenSensor
+    `warnings` about this rig tell which sensors are inside the body.
     """
     inside = {warning.subject for warning in warnings if warning.code == "inside"}
     hidden = []

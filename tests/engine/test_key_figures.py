@@ -8,7 +8,6 @@ import pytest
 
 import pe_core as pe
 from pe_tools import advice
-from pe_tools.advice.key_figures import ahead
 from tests.engine import shapes
 
 
@@ -54,10 +53,19 @@ def test_a_class_that_there_is_not(study):
     ("distance", "limit", "found"),
     [(43.2, 80.0, (43.2, False)), (79.6, 80.0, (79.6, True)), (0.0, 0.0, (0.0, False))],
 )
-def test_straight_ahead(distance, limit, found):
+def test_straight_ahead(study, distance, limit, found):
     reach = SimpleNamespace(
         bearings=np.radians([0.0, 180.0]),
         distance=np.array([distance, 9.0]),
         limit=np.array([limit, math.inf]),
     )
-    assert ahead(reach) == found
+    look = study.sight()
+    sight = SimpleNamespace(
+        prior=look.prior,
+        space=look.space,
+        blind=look.blind,
+        reach=lambda *_: reach,
+        expected_ap=look.expected_ap,
+    )
+    figures = advice.key_figures(sight, study.rig)
+    assert (figures.reach_m, figures.at_least) == found

@@ -1,40 +1,19 @@
 """Export of the scene: solids, footprints, glTF, recordings and ego masks (no import)."""
 
-from .blind_volume import blind_volume
-from .footprints import GroundFootprint, GroundPlan, ground_plan
-from .glb import view_wires
-from .output_formats import (
-    OF_EXAMPLE,
-    SceneOutput,
-    export_scene,
-    output_files,
-    scene_files,
-    scene_output,
-    scene_outputs,
-)
-from .request import BLIND, BODY, GLASS, OutputRequest, Rgb, hex_color, plain_names
-from .solid import Solid, mounted_view
-
-__all__ = [
-    "BLIND",
-    "BODY",
-    "GLASS",
-    "OF_EXAMPLE",
-    "GroundFootprint",
-    "GroundPlan",
-    "OutputRequest",
-    "Rgb",
-    "SceneOutput",
-    "Solid",
-    "blind_volume",
-    "export_scene",
-    "ground_plan",
-    "hex_color",
-    "mounted_view",
-    "output_files",
-    "plain_names",
-    "scene_files",
-    "scene_output",
-    "scene_outputs",
-    "view_wires",
-]
+from ..graphics import color_text as color_text
+from .blind_volume import blind_volume as blind_volume
+from .footprints import GroundFootprint as GroundFootprint
+from .footprints import GroundPlan as GroundPlan
+from .footprints import ground_plan as ground_plan
+from .output_formats import OF_EXAMPLE as OF_EXAMPLE
+from .output_formats import SceneOutput as SceneOutput
+from .output_formats import export_scene as export_scene
+from .output_formats import output_files as output_files
+from .output_formats import scene_files as scene_files
+from .output_formats import scene_output as scene_output
+from .output_formats import scene_outputs as scene_outputs
+from .request import BLIND as BLIND
+from .request import BODY as BODY
+from .request import OutputRequest as OutputRequest
+from .solid import Solid as Solid
+from .solid import mounted_view as mounted_view

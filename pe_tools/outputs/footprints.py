@@ -17,9 +17,9 @@ from pe_core.scene import PerceptionSpace, Pose, Sensor, Vehicle
 from pe_core.scoring.sight.grid_regions import outlines
 from pe_core.sensors import kind_of
 
-from ..graphics import sensor_colors_on_paper
+from ..graphics import Rgb, sensor_colors_on_paper
 from .blind_volume import level_outlines
-from .request import OutputRequest, Rgb, plain_names
+from .request import OutputRequest, plain_names
 from .solid import free_solid, mounted_view
 
 STEP = math.radians(0.5)
@@ -74,10 +74,12 @@ def ground_plan(request: OutputRequest) -> tuple[GroundPlan, list[str]]:
     if study.vehicle is None:
         lines.append("no vehicle: nothing is occluded, and there is no blind ground round it")
         return GroundPlan(tuple(footprints), (), ()), lines
-    blind, blind_lines = _blind(request)
-    return GroundPlan(
-        tuple(footprints), outline_from_above(study.vehicle), blind
-    ), lines + blind_lines
+    blind: ClosedLines = ()
+    try:
+        blind = study.sight().blind(study.rig, 0.0).outlines
+    except InputError as error:
+        lines.append(f"no blind ground: {error}")
+    return GroundPlan(tuple(footprints), outline_from_above(study.vehicle), blind), lines
 
 
 def _footprint(request: OutputRequest, sensor: Sensor, plain: str, color: Rgb) -> GroundFootprint:
@@ -86,14 +88,6 @@ def _footprint(request: OutputRequest, sensor: Sensor, plain: str, color: Rgb) -
     loops = () if view is None else level_outlines(free_solid(plain, view), 0.0)
     model = f"{sensor.model.name}, {kind_of(sensor).label}"
     return GroundFootprint(sensor.name, plain, model, color, sensor.pose, reach, loops)
-
-
-def _blind(request: OutputRequest) -> tuple[ClosedLines, list[str]]:
-    """Return outlines of the blind ground near the vehicle, or a message why there are none."""
-    try:
-        return request.study.sight().blind(request.study.rig, 0.0).outlines, []
-    except InputError as error:
-        return (), [f"no blind ground: {error}"]
 
 
 def outline_from_above(vehicle: Vehicle) -> ClosedLines:

@@ -15,7 +15,8 @@ from pe_core.scene import Reference, Vehicle
 from pe_core.scoring.sight.grid_regions import chained
 from pe_core.version import __version__
 
-from .request import BODY, GLASS, Rgb, linear
+from ..graphics import Rgb
+from .request import BODY, GLASS, linear
 from .solid import MountedView, border
 
 Entries = list[dict[str, Any]]
@@ -45,12 +46,9 @@ class GlbScene:
 
     def add_material(self, name: str, color: Rgb, alpha: float = 1.0, **more: Any) -> int:
         """Add a rough, double-sided material."""
-        surface: dict[str, Any] = {
-            "baseColorFactor": [*linear(color), alpha],
-            "metallicFactor": 0.0,
-        }
+        surface = {"baseColorFactor": [*linear(color), alpha], "metallicFactor": 0.0}
+        surface |= {"roughnessFactor": 0.9}
         row = {"doubleSided": True, "alphaMode": "BLEND" if alpha < 1.0 else "OPAQUE"}
-        surface["roughnessFactor"] = 0.9
         self.materials.append({"name": name, "pbrMetallicRoughness": surface, **row, **more})
         return len(self.materials) - 1
 
@@ -60,9 +58,11 @@ class GlbScene:
         """Add a mesh of (N, 3) points, ground frame [m], and (F, 3) triangles or (L, 2) lines."""
         positions = y_up(points).astype("<f4")
         bounds = {"min": positions.min(axis=0).tolist(), "max": positions.max(axis=0).tolist()}
-        position = self._accessor(positions, FLOAT, "VEC3", ARRAY, len(positions), bounds)
+        size = {"componentType": FLOAT, "count": len(positions), "type": "VEC3"}
+        position = self._accessor(positions, ARRAY, **size, **bounds)
         flat = corners.astype("<u4").ravel()
-        index = self._accessor(flat, UNSIGNED, "SCALAR", ELEMENTS, len(flat), {})
+        size = {"componentType": UNSIGNED, "count": len(flat), "type": "SCALAR"}
+        index = self._accessor(flat, ELEMENTS, **size)
         drawn = {"attributes": {"POSITION": position}, "indices": index, "mode": mode}
         self.meshes.append({"name": name, "primitives": [{**drawn, "material": material}]})
         return len(self.meshes) - 1
@@ -93,20 +93,11 @@ class GlbScene:
         size = 12 + sum(map(len, chunks))
         return struct.pack("<III", MAGIC, 2, size) + b"".join(chunks)
 
-    def _accessor(
-        self,
-        values: NDArray,
-        component_type: int,
-        shape: str,
-        target: int,
-        count: int,
-        bounds: dict[str, Any],
-    ) -> int:
+    def _accessor(self, values: NDArray, target: int, **row: Any) -> int:
         view = {"buffer": 0, "byteOffset": len(self.data), "byteLength": values.nbytes}
         self.views.append({**view, "target": target})
         self.data += values.tobytes()  # of four bytes each: the next one is aligned
-        row = {"bufferView": len(self.views) - 1, "componentType": component_type, "count": count}
-        self.accessors.append({**row, "type": shape, **bounds})
+        self.accessors.append({"bufferView": len(self.views) - 1, **row})
         return len(self.accessors) - 1
 
 

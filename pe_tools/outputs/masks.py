@@ -45,11 +45,12 @@ def write(request: OutputRequest) -> tuple[Written, list[str]]:
         if mask.azimuths is not None:
             files[f"{file}.csv"] = _table(mask)
         summaries.append(_shares(sensor, mask, vehicle, f"{file}.png"))
-    return {
-        SUMMARY: dump_json({"masks": summaries}).encode(),
-        BY_PART: _by_part(summaries),
-        **files,
-    }, lines
+    rows: list[list[object]] = [["sensor", "part", "rays", "share"]]
+    for summary in summaries:
+        for part, rays in summary["rays_by_part"].items():
+            rows.append([summary["sensor"], part, rays, f"{summary['by_part'][part]:.6f}"])
+    summary_text = dump_json({"masks": summaries})
+    return {SUMMARY: summary_text.encode(), BY_PART: csv_text(rows).encode(), **files}, lines
 
 
 def _shares(sensor: Sensor, mask: EgoMask, vehicle: Vehicle | None, file: str) -> dict[str, Any]:
@@ -70,15 +71,6 @@ def _shares(sensor: Sensor, mask: EgoMask, vehicle: Vehicle | None, file: str) -
         "by_part": {name: round(rays / count, DECIMALS) for name, rays in by_part.items()},
         "rays_by_part": by_part,
     }
-
-
-def _by_part(summaries: list[dict[str, Any]]) -> bytes:
-    """All sensors' shares by part as one table."""
-    rows: list[list[object]] = [["sensor", "part", "rays", "share"]]
-    for summary in summaries:
-        for part, rays in summary["rays_by_part"].items():
-            rows.append([summary["sensor"], part, rays, f"{summary['by_part'][part]:.6f}"])
-    return csv_text(rows).encode()
 
 
 def _table(mask: EgoMask) -> bytes:

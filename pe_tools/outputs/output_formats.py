@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
 from pe_core.base.errors import InputError, shown
 from pe_core.base.plugins import (
@@ -25,25 +24,13 @@ from ..exchange import Written, write_files
 from . import masks, scene_gltf, solids, svg
 from .request import OutputRequest
 
-PICTURE, RECORDING = "picture.png", "scene.rrd"
 
-
-def write_recording(request: OutputRequest) -> tuple[Written, list[str]]:
-    """Return the scene as a recording of Rerun's, and lines on what is not in it."""
-    data, lines = _function("rerun", "Rerun")(request)
-    return {RECORDING: data}, lines
-
-
-def write_picture(request: OutputRequest) -> tuple[Written, list[str]]:
-    """Return the picture of the rig on its vehicle, with numbered sensors and their key."""
-    written: tuple[Written, list[str]] = _function("picture", "picture")(request)
-    return written
-
-
-def _function(name: str, title: str) -> Callable[..., Any]:
-    """Return a plugin's function; `InputError` without its library, or for what it raises."""
+def _with_library(name: str, title: str, request: OutputRequest) -> tuple[Written, list[str]]:
+    """Write by a function of a library's module; `InputError` without it, or for what it raises."""
     expected = install_hint("library", name)
-    return partial(call_plugin, *required_plugin("library", name, title, "library", expected))
+    point, function = required_plugin("library", name, title, "library", expected)
+    written: tuple[Written, list[str]] = call_plugin(point, function, request)
+    return written
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,9 +63,15 @@ _ROWS = (
     SceneOutput("solids", "Fields of View as Solids (glTF, STL)", "solids", solids.write, True),
     SceneOutput("footprints", "Footprints on the Ground (SVG)", svg.FILE, svg.write),
     SceneOutput("gltf", "Whole Scene (glTF)", scene_gltf.FILE, scene_gltf.write),
-    SceneOutput("rerun", "Rerun Recording", RECORDING, write_recording),
+    SceneOutput("rerun", "Rerun Recording", "scene.rrd", partial(_with_library, "rerun", "Rerun")),
     SceneOutput("masks", "Ego Masks (PNG, CSV)", "masks", masks.write, True, has_range=False),
-    SceneOutput("picture", "Picture (PNG)", PICTURE, write_picture, has_range=False),
+    SceneOutput(
+        "picture",
+        "Picture (PNG)",
+        "picture.png",
+        partial(_with_library, "picture", "picture"),
+        has_range=False,
+    ),
 )
 OF_EXAMPLE = ("footprints-dxf", "nebula")
 """Outputs of the plugin that is shipped as an example."""
@@ -123,25 +116,11 @@ def scene_output(name: str) -> SceneOutput:
 
 
 def scene_files(study: Study, name: str, range_m: float | None = None) -> tuple[Written, list[str]]:
-    """Return an output of a study's scene.
+    """Return the files of an output of a study's scene by name, and lines on what to know of them.
 
-    Parameters
-    ----------
-    study : Study
-    name : str
-        Of the output: one of `scene_outputs`.
-    range_m : float, optional
-        How far fields of view are drawn [m]; by default to each sensor's own range.
-
-    Returns
-    -------
-    dict of str to bytes, list of str
-        Files by name; a line for each thing to know of them.
-
-    Raises
-    ------
-    InputError
-        When there is no such output, the range is not positive, or a library is missing.
+    Fields of view are drawn up to `range_m` [m], by default to each sensor's own range. An output
+    that is none of `scene_outputs`, a range that is not positive, or a missing library raises
+    `InputError`.
     """
     return scene_output(name).write(OutputRequest(study, range_m))
 
@@ -156,13 +135,9 @@ def export_scene(
 ) -> tuple[list[Path], list[str]]:
     """Write an output of a study's scene; return the files, and lines on what to know of them.
 
-    `output` is the file, or the folder where an output has several; what is there stays unless
-    `replace` says otherwise.
-
-    Raises
-    ------
-    InputError
-        As `scene_files`, and when a file is there already or cannot be written.
+    `output` is the file, or the folder where an output has several. Besides what `scene_files`
+    raises, a file that is there already, unless `replace`, or cannot be written raises
+    `InputError`.
     """
     files, lines = scene_files(study, name, range_m)
     inside = scene_output(name).has_several

@@ -19,26 +19,19 @@ from pe_core.sensors import kind_of
 
 from ..exchange import (
     MAX_BEAMS,
-    Picture,
+    Written,
     portable_sensors,
     require_at_most,
     straight,
     with_pictures,
 )
-from ..graphics import COVERAGE, ENTROPY, drawing_of, ground_map, sensor_colors
-from . import (
-    BLIND,
-    BODY,
-    GLASS,
-    OutputRequest,
-    Rgb,
-    blind_volume,
-    mounted_view,
-    plain_names,
-    view_wires,
-)
+from ..graphics import COVERAGE, ENTROPY, Rgb, drawing_of, ground_map, sensor_colors
+from .blind_volume import blind_volume
+from .glb import view_wires
+from .request import BLIND, BODY, GLASS, OutputRequest, plain_names
+from .solid import mounted_view
 
-APPLICATION = "perception_entropy"
+FILE, APPLICATION = "scene.rrd", "perception_entropy"
 WORLD, VEHICLE, SENSORS, BEAMS, GROUND = "world", "vehicle", "sensors", "beams", "ground"
 BLIND_VOLUME = "blind_volume"
 STEP = math.radians(1.0)
@@ -54,21 +47,14 @@ PICTURE_M = 0.6
 MAPS = {"coverage": COVERAGE, "entropy": ENTROPY}
 
 
-def recording_bytes(request: OutputRequest) -> tuple[bytes, list[str]]:
+def write(request: OutputRequest) -> tuple[Written, list[str]]:
     """Return a recording, and lines on what is not in it.
 
-    Raises
-    ------
-    InputError
-        When LiDARs have more than `MAX_BEAMS` beams: maps of the ground measure all of them.
+    More beams of LiDARs than `MAX_BEAMS` raise `InputError`: maps of the ground measure all.
     """
     study = request.study
     portable, left_out = with_pictures(portable_sensors(study.rig), straight, "Rerun")
-    beams = sum(
-        portable_sensor.scan.beam_count
-        for portable_sensor in portable
-        if portable_sensor.scan is not None
-    )
+    beams = sum(each.scan.beam_count for each in portable if each.scan is not None)
     require_at_most("rerun", "sensors", beams, MAX_BEAMS, "beams, which its maps of the ground ask")
     stream = rr.RecordingStream(APPLICATION)
     none = "no vehicle: nothing is occluded or blind near it"
@@ -82,28 +68,33 @@ def recording_bytes(request: OutputRequest) -> tuple[bytes, list[str]]:
     for sensor, portable_sensor in zip(study.rig, portable, strict=True):
         entity = [SENSORS, names[sensor.name]]
         _log_sensor(stream, request, sensor, entity, colors[sensor.name])
-        if portable_sensor.picture is not None:
-            _log(stream, [*entity, "picture"], _pinhole(portable_sensor.picture))
+        if (picture := portable_sensor.picture) is not None:
+            pinhole = rr.Pinhole(
+                image_from_camera=picture.matrix,
+                resolution=picture.size,
+                camera_xyz=rr.ViewCoordinates.FLU,
+                image_plane_distance=PICTURE_M,
+            )
+            _log(stream, [*entity, "picture"], pinhole)
         if drawing_of(sensor.kind).beams:
             _log(stream, [BEAMS, names[sensor.name]], _beams(request, sensor))
     _log_ground(stream, request)
     recording: bytes = memory.drain_as_bytes()
     stream.disconnect()
-    return recording, lines + left_out
+    return {FILE: recording}, lines + left_out
 
 
 def _blueprint() -> Any:
     """Return views of the scene to choose from: what would hide the rest has its own."""
-    blind, entropy, coverage = BLIND_VOLUME, f"{GROUND}/entropy", f"{GROUND}/coverage"
-    hidden_by_view = {
-        "Coverage": (blind, entropy),
-        "Entropy": (blind, coverage),
-        "Blind volume": (coverage, entropy),
+    own = {
+        "Coverage": f"{GROUND}/coverage",
+        "Entropy": f"{GROUND}/entropy",
+        "Blind volume": BLIND_VOLUME,
     }
-    views = [
-        rrb.Spatial3DView(name=name, contents=["$origin/**", *(f"- /{WORLD}/{e}" for e in hidden)])
-        for name, hidden in hidden_by_view.items()
-    ]
+    views = []
+    for name, shown in own.items():
+        hidden = [f"- /{WORLD}/{entity}" for entity in own.values() if entity != shown]
+        views.append(rrb.Spatial3DView(name=name, contents=["$origin/**", *hidden]))
     return rrb.Blueprint(rrb.Tabs(*views), collapse_panels=True)
 
 
@@ -132,9 +123,8 @@ def _log_sensor(
 ) -> None:
     """Log a sensor's pose, what it is, and its field of view in its own axes."""
     pose, rotation = sensor.pose, sensor.pose.ground_from_sensor
-    _log(
-        stream, entity, rr.Transform3D(translation=pose.position, mat3x3=rotation, axis_length=0.3)
-    )
+    placed = rr.Transform3D(translation=pose.position, mat3x3=rotation, axis_length=0.3)
+    _log(stream, entity, placed)
     properties = {"name": sensor.name, "kind": sensor.kind, "model": sensor.model.name}
     _log(stream, entity, rr.AnyValues(**properties))
     view = mounted_view(sensor, request.study.vehicle, request.reach(sensor, REACH_M), STEP)
@@ -142,15 +132,6 @@ def _log_sensor(
         lines = [rotate(rotation.T, line - view.origin) for line in view_wires(view)]
         strips = rr.LineStrips3D(lines, colors=_rgba(color), radii=WIRE_RADIUS_M)
         _log(stream, [*entity, "view"], strips)
-
-
-def _pinhole(picture: Picture) -> Any:
-    return rr.Pinhole(
-        image_from_camera=picture.matrix,
-        resolution=picture.size,
-        camera_xyz=rr.ViewCoordinates.FLU,
-        image_plane_distance=PICTURE_M,
-    )
 
 
 def _beams(request: OutputRequest, sensor: Sensor) -> Any:
@@ -183,24 +164,19 @@ def _log_ground(stream: Any, request: OutputRequest) -> None:
 
 
 def _mesh(points: Any, faces: Any, color: list[int]) -> Any:
-    normals = _normals(points, faces)
-    return rr.Mesh3D(
-        vertex_positions=points,
-        triangle_indices=faces,
-        vertex_normals=normals,
-        albedo_factor=color,
-    )
-
-
-def _normals(points: Any, faces: Any) -> Any:
-    """Return the mean normal of the triangles at each point, weighted by their areas."""
+    """Return a mesh whose normals are the mean of those of the triangles, weighted by area."""
     corners = points[faces]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     total = np.zeros_like(points)
     for k in range(3):
         np.add.at(total, faces[:, k], across)
     length = np.sqrt((total**2).sum(axis=1, keepdims=True))
-    return total / np.where(length > 0.0, length, 1.0)
+    return rr.Mesh3D(
+        vertex_positions=points,
+        triangle_indices=faces,
+        vertex_normals=total / np.where(length > 0.0, length, 1.0),
+        albedo_factor=color,
+    )
 
 
 def _rgba(color: Rgb) -> list[int]:

@@ -11,6 +11,8 @@ from pe_core.base.values import LENGTH
 from pe_core.scene.rig import Sensor
 from pe_core.study import Study
 
+from ..graphics import Rgb
+
 
 def plain_names(names: Sequence[str]) -> tuple[dict[str, str], list[str]]:
     """Return a name of files for each name, and a message for each name that changed.
@@ -20,17 +22,14 @@ def plain_names(names: Sequence[str]) -> tuple[dict[str, str], list[str]]:
     plain_by_name: dict[str, str] = {}
     for name in names:
         taken = {used.lower() for used in plain_by_name.values()}
-        plain_by_name[name] = _apart(file_stem(name, "sensor"), taken)
+        unique = stem = file_stem(name, "sensor")
+        number = 2
+        while unique.lower() in taken:
+            unique, number = f"{stem}_{number}", number + 1
+        plain_by_name[name] = unique
     return plain_by_name, [
         f"{a}: called {b} in names of files" for a, b in plain_by_name.items() if a != b
     ]
-
-
-def _apart(name: str, taken: set[str]) -> str:
-    number, unique = 2, name
-    while unique.lower() in taken:
-        unique, number = f"{name}_{number}", number + 1
-    return unique
 
 
 NO_RANGE_M = 80.0
@@ -41,16 +40,7 @@ NO_RANGE_M = 80.0
 class OutputRequest:
     """A study, and the length to which fields of view are drawn.
 
-    Parameters
-    ----------
-    study : Study
-    range_m : float, optional
-        Fields of view end here, or at a sensor's own range where that is nearer [m].
-
-    Raises
-    ------
-    InputError
-        When the range is not positive.
+    They end at `range_m` [m], which is positive, or at a sensor's own range where that is nearer.
     """
 
     study: Study
@@ -74,17 +64,10 @@ class OutputRequest:
         return min(sensor_range, limit)
 
 
-Rgb = tuple[float, float, float]
-
 BLIND: Rgb = (0.75, 0.12, 0.12)
 HIDDEN: Rgb = (0.30, 0.30, 0.30)
 BODY: Rgb = (0.72, 0.74, 0.76)
 GLASS: Rgb = (0.35, 0.42, 0.48)
-
-
-def hex_color(color: Rgb) -> str:
-    """Return a colour as ``#rrggbb``."""
-    return "#" + "".join(f"{round(255 * value):02x}" for value in color)
 
 
 def linear(color: Rgb) -> list[float]:

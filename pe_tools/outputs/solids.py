@@ -10,10 +10,10 @@ import numpy as np
 from pe_core.sensors import kind_of
 
 from ..exchange import Written
-from ..graphics import sensor_colors_on_paper
+from ..graphics import Rgb, sensor_colors_on_paper
 from .blind_volume import blind_volume
 from .glb import GlbScene, add_vehicle
-from .request import BLIND, HIDDEN, NO_RANGE_M, OutputRequest, Rgb, plain_names
+from .request import BLIND, HIDDEN, NO_RANGE_M, OutputRequest, plain_names
 from .solid import Solid, free_solid, hidden_solid, mounted_view, whole_solid
 
 FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -56,31 +56,22 @@ def write(request: OutputRequest) -> tuple[Written, list[str]]:
         if view is None:
             lines.append(f"{sensor.name}: no field of view of a {kind_of(sensor).label} is known")
             continue
-        lines += _end(request, sensor.name, sensor.model)
+        if request.range_m is None and math.isinf(getattr(sensor.model, "max_range", math.inf)):
+            ends = f"its solids end at {NO_RANGE_M:g} m (--range)"
+            lines.append(f"{sensor.name}: has no range of its own; {ends}")
         files[f"{plain}_field.stl"] = stl_bytes(whole_solid(f"{plain}_field", view))
         free, hidden = free_solid(f"{plain}_free", view), hidden_solid(f"{plain}_hidden", view)
         shown.append((free, colors[sensor.name], FREE_ALPHA))
         shown += [(hidden, HIDDEN, HIDDEN_ALPHA)] if hidden is not None else []
-    blind, blind_lines = _near(request)
-    shown += [(blind, BLIND, BLIND_ALPHA)] if blind is not None else []
-    files |= {f"{solid.name}.stl": stl_bytes(solid) for solid, _, _ in shown}
-    return {FILE: _together(request, shown), **files}, lines + blind_lines
-
-
-def _end(request: OutputRequest, name: str, model: object) -> list[str]:
-    """Return a message on where the solid ends, for a sensor with infinite range."""
-    endless = math.isinf(getattr(model, "max_range", math.inf))
-    if request.range_m is not None or not endless:
-        return []
-    return [f"{name}: has no range of its own; its solids end at {NO_RANGE_M:g} m (--range)"]
-
-
-def _near(request: OutputRequest) -> tuple[Solid | None, list[str]]:
     vehicle = request.study.vehicle
     if vehicle is None:
-        return None, ["no vehicle: nothing is occluded, and there is no blind volume near it"]
-    solid = blind_volume(BLIND_NAME, request.study.rig, vehicle)
-    return solid, [] if solid is not None else ["no blind volume: all of it is seen"]
+        lines.append("no vehicle: nothing is occluded, and there is no blind volume near it")
+    elif (blind := blind_volume(BLIND_NAME, request.study.rig, vehicle)) is None:
+        lines.append("no blind volume: all of it is seen")
+    else:
+        shown.append((blind, BLIND, BLIND_ALPHA))
+    files |= {f"{solid.name}.stl": stl_bytes(solid) for solid, _, _ in shown}
+    return {FILE: _together(request, shown), **files}, lines
 
 
 def _together(request: OutputRequest, solids: Iterable[Coloured]) -> bytes:

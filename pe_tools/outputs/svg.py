@@ -9,8 +9,9 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 
 from ..exchange import Written
+from ..graphics import color_text
 from .footprints import ClosedLines, GroundFootprint, GroundPlan, ground_plan
-from .request import BLIND, BODY, OutputRequest, hex_color
+from .request import BLIND, BODY, OutputRequest
 
 FILE = "footprints.svg"
 SCALE = 100
@@ -56,9 +57,15 @@ def svg_text(plan: GroundPlan) -> str:
         f"<style>{STYLE}</style>",
         f'<rect {sheet} fill="#ffffff"/>',
         *_layer("grid", "Grid", _grid(box)),
-        *(line for footprint in plan.footprints for line in _layer(*_footprint(footprint))),
-        *_layer("blind-ground", "Blind ground", _path(plan.blind, "blind", hex_color(BLIND))),
-        *_layer("vehicle", "Vehicle", _path(plan.vehicle, "body", hex_color(BODY))),
+        *(
+            line
+            for f in plan.footprints
+            for line in _layer(
+                f"sensor-{f.plain}", f.name, _path(f.outlines, "seen", color_text(f.color))
+            )
+        ),
+        *_layer("blind-ground", "Blind ground", _path(plan.blind, "blind", color_text(BLIND))),
+        *_layer("vehicle", "Vehicle", _path(plan.vehicle, "body", color_text(BODY))),
         *_layer("sensors", "Sensors", [line for f in plan.footprints for line in _mark(f)]),
         *_layer("legend", "Legend", _legend(plan, x0 + MARGIN_M / 2.0, top)),
         *_layer("scale", "Scale", _scale_bar(x0 + MARGIN_M / 2.0, -y0 - MARGIN_M / 2.0)),
@@ -83,11 +90,6 @@ def _layer(key: str, label: str, parts: Iterable[str]) -> list[str]:
     return [f'<g {name} inkscape:groupmode="layer">', *parts, "</g>"]
 
 
-def _footprint(footprint: GroundFootprint) -> tuple[str, str, list[str]]:
-    path = _path(footprint.outlines, "seen", hex_color(footprint.color))
-    return f"sensor-{footprint.plain}", footprint.name, path
-
-
 def _path(loops: ClosedLines, kind: str, color: str) -> list[str]:
     """Return closed outlines as one shape, in which one inside another is a hole."""
     steps = ("M" + "L".join(f"{x:.3f},{-y:.3f}" for x, y in loop[:-1].tolist()) for loop in loops)
@@ -100,7 +102,7 @@ def _mark(footprint: GroundFootprint) -> list[str]:
     """Return a disc at a sensor's position, and a line in its viewing direction."""
     x, y, _ = footprint.pose.position
     ahead = footprint.pose.ground_from_sensor[:2, 0] * MARK_M
-    color = hex_color(footprint.color)
+    color = color_text(footprint.color)
     ends = f'x1="{x:.3f}" y1="{-y:.3f}" x2="{x + ahead[0]:.3f}" y2="{-y - ahead[1]:.3f}"'
     return [
         f'<line {ends} stroke="{INK}" stroke-width="0.05"/>',
@@ -118,8 +120,8 @@ def _grid(box: OnPaper) -> list[str]:
 
 
 def _legend(plan: GroundPlan, x: float, top: float) -> list[str]:
-    rows = [(hex_color(f.color), _legend_text(f)) for f in plan.footprints]
-    rows += [(hex_color(BLIND), BLIND_TEXT)] if plan.blind else []
+    rows = [(color_text(f.color), _legend_text(f)) for f in plan.footprints]
+    rows += [(color_text(BLIND), BLIND_TEXT)] if plan.blind else []
     parts = []
     for number, (color, text) in enumerate(rows, 1):
         y = top + LINE * number + MARGIN_M / 4.0

@@ -15,8 +15,8 @@ from pe_tools.outputs import (
     GroundFootprint,
     OutputRequest,
     SceneOutput,
+    color_text,
     ground_plan,
-    hex_color,
 )
 
 FILE = "footprints.dxf"
@@ -39,13 +39,13 @@ def dxf_bytes(plan: Any) -> bytes:
         drawing = ezdxf.new("R2010", units=units.MM)
         space = drawing.modelspace()
         _layer(drawing, VEHICLE, GREY)
-        _layer(drawing, BLIND_GROUND, _rgb(hex_color(BLIND)))
+        _layer(drawing, BLIND_GROUND, _rgb(color_text(BLIND)))
         _layer(drawing, LABELS, GREY)
         _outlines(space, VEHICLE, plan.vehicle)
         _outlines(space, BLIND_GROUND, plan.blind)
         for footprint in plan.footprints:
             layer = f"SENSOR_{footprint.plain}"
-            _layer(drawing, layer, _rgb(hex_color(footprint.color)))
+            _layer(drawing, layer, _rgb(color_text(footprint.color)))
             _outlines(space, layer, footprint.outlines)
             _mark(space, layer, footprint)
         text = io.StringIO()

@@ -75,12 +75,8 @@ def fit_ap_curve(table: ApTable, saturation: float = SATURATION) -> CurveFit:
 
     Left out are points without a measurement (m = 0), clipped ones (AP <= 0.001 or >= 0.999), and
     saturated ones: if the AP of more than one point is within `saturation` of the largest, these
-    points and all with a larger m.
-
-    Raises
-    ------
-    InputError
-        With fewer than three usable points, a single value of m, or an AP that falls with m.
+    points and all with a larger m. Fewer than three usable points, a single value of m, or an AP
+    that falls with m raise `InputError`.
     """
     why = _reasons(table, saturation)
     used = np.array([not reason for reason in why], dtype=bool)
@@ -100,7 +96,9 @@ def fit_ap_curve(table: ApTable, saturation: float = SATURATION) -> CurveFit:
 
 def study_snippet(fit: CurveFit, kind: str, name: str | None = None) -> str:
     """Return TOML for a study: ``[ap.lidar]``, or the curve of whole objects of a class `name`."""
-    where = f"ap.{kind}" if name is None else f"ap.{kind}.objects.{_key(name)}"
+    plain = name is None or (name.isascii() and name.isidentifier())
+    key = name if plain else json.dumps(name, ensure_ascii=False)
+    where = f"ap.{kind}" if name is None else f"ap.{kind}.objects.{key}"
     used, total = int(fit.used.sum()), len(fit.why)
     return (
         f"# AP = a ln m + b, fitted to {used} of {total} points of {Path(fit.table.source).name}\n"
@@ -108,12 +106,6 @@ def study_snippet(fit: CurveFit, kind: str, name: str | None = None) -> str:
         f"a = {fit.curve.a:.6g} # +- {fit.a_error:.2g}\n"
         f"b = {fit.curve.b:.6g} # +- {fit.b_error:.2g}\n"
     )
-
-
-def _key(name: str) -> str:
-    """Return a name as a TOML key, quoted if needed."""
-    plain = name.isascii() and name.isidentifier()
-    return name if plain else json.dumps(name, ensure_ascii=False)
 
 
 def _reasons(table: ApTable, saturation: float) -> list[str]:
@@ -155,11 +147,6 @@ def read_ap_table(
 
     Lines that begin with ``#`` are comments. Other columns are ignored. With `m_at_ranges` the
     table has a column range_m [m] in place of m, and the function returns m (N,) of ranges (N,).
-
-    Raises
-    ------
-    InputError
-        One line with the file, the line's number, what was expected and what was found.
     """
     source = str(path)
     data = read_bytes(Path(path))
@@ -173,10 +160,8 @@ def read_ap_table(
     names = [name.lower() for name in _cells(source, *rows[0])]
     for name in columns[:2]:
         if names.count(name) != 1:
-            found = ", ".join(names)
-            raise InputError(
-                source, f"line {rows[0][0]}", f"one column named {name}", quoted(found)
-            )
+            where, found = f"line {rows[0][0]}", quoted(", ".join(names))
+            raise InputError(source, where, f"one column named {name}", found)
     values = [_values(source, k, names, _cells(source, k, row), columns) for k, row in rows[1:]]
     m, ap, n = np.array(values, dtype=float).reshape(-1, 3).T
     return ApTable(m if m_at_ranges is None else m_at_ranges(m), ap, n, source)

@@ -6,10 +6,12 @@ file is read, not with this module.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pe_core.base.errors import InputError, shown
+from pe_core.base.files import NUMBER
 
 KeyPath = tuple[str, ...]
 """Keys of nested mappings, the outermost first; items of a list have their number as key."""
@@ -22,12 +24,8 @@ TAG = "tag:yaml.org,2002:"
 class YamlText:
     """A YAML text with its plain `data`; an edited copy keeps every byte that is not edited.
 
-    `data` are nested dicts and lists of texts, numbers (float), booleans and None.
-
-    Raises
-    ------
-    InputError
-        When it is no YAML, no mapping, too long or too deep, a key is there twice, or has aliases.
+    `data` are nested dicts and lists of texts, numbers (float), booleans and None. A text that is
+    no YAML, no mapping, too long or too deep, has a key twice or aliases raises `InputError`.
     """
 
     def __init__(self, source: str, text: str) -> None:
@@ -53,14 +51,16 @@ class YamlText:
         if text.startswith("%YAML"):  # OpenCV writes it without a blank before the version
             text = "#" + text[1:]
         try:
-            return YAML(typ="safe", pure=True).compose(text)
+            with warnings.catch_warnings():  # of an anchor that stands twice
+                warnings.simplefilter("ignore")
+                return YAML(typ="safe", pure=True).compose(text)
         except MarkedYAMLError as error:
             mark = error.problem_mark
             field = "file" if mark is None else f"line {mark.line + 1}"
             found = str(error.problem or error).removeprefix("found ")
-            raise InputError(self.source, field, "YAML", found) from None
+            raise InputError(self.source, field, "well-formed YAML", found) from None
         except (YAMLError, ValueError) as error:
-            raise InputError(self.source, "file", "YAML", error) from None
+            raise InputError(self.source, "file", "well-formed YAML", error) from None
 
     def _plain(self, node: Any, path: KeyPath) -> Any:
         """Return the data of a node, and note where the keys and values below it are."""
@@ -70,14 +70,15 @@ class YamlText:
         self._seen.add(id(node))
         if isinstance(node.value, str):
             return _scalar(node)
-        is_table = node.tag.rpartition(":")[2] != "seq"
+        is_table = node.id == "mapping"
         pairs = node.value if is_table else [(None, item) for item in node.value]
         data: dict[str, Any] = {}
         for number, (key, value) in enumerate(pairs):
             name = str(number) if key is None else key.value
             if not isinstance(name, str) or name in data:
                 line = f"line {key.start_mark.line + 1}"
-                raise InputError(self.source, line, "a key used once", shown(name))
+                found = shown(name) if isinstance(name, str) else "a list or a mapping"
+                raise InputError(self.source, line, "a key used once", found)
             self._nodes[(*path, name)] = key, value
             data[name] = self._plain(value, (*path, name))
         return data if is_table else list(data.values())
@@ -136,6 +137,9 @@ class YamlText:
                 edits.append((start, end, new))
         if added is not None and added[1]:
             path, lines = added
+            if self._nodes[path][1].flow_style:
+                expected = "a mapping with a line for each key, to add some"
+                raise InputError(self.source, ".".join(path), expected, "one in braces")
             inside = [(key, value) for p, (key, value) in self._nodes.items() if p[:-1] == path]
             leaves = [v for p, (_, v) in self._nodes.items() if p[: len(path)] == path]
             last = max(v.end_mark.index for v in leaves if isinstance(v.value, str))
@@ -156,9 +160,4 @@ def _scalar(node: Any) -> Any:
     sort, text = str(node.tag).removeprefix(TAG), node.value
     if sort in WORDS:
         return WORDS[sort].get(text.lower())
-    if sort in ("int", "float"):
-        try:
-            return float(text)
-        except ValueError:  # of another base, or .inf and .nan
-            return text
-    return text
+    return float(text) if not node.style and NUMBER.fullmatch(text) else text

@@ -1,25 +1,37 @@
-"""Mesh files: a box made by hand comes out the same of every format."""
+"""Mesh files: every format reads the same box, writes what it reads, and refuses in one line."""
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from pe_core.base.errors import InputError
+from pe_tools.formats.meshes import Mesh, read_mesh, write_mesh
 from tests.engine.mesh_files import (
     BOX,
+    FACES,
+    NAN,
     QUADS,
+    TRIANGLE,
+    ZEROS,
+    cut,
     glb_file,
     gltf,
     npz_bytes,
     obj_bytes,
+    one_line_test,
     ply_ascii,
     ply_binary,
     read,
     stl_ascii,
     stl_binary,
 )
+from tests.thorough import tries
 
 BOXES = {
     "npz": ("box.npz", npz_bytes(triangles=BOX)),
@@ -67,3 +79,220 @@ def test_triangles_without_area_are_kept(tmp_path: Path, name: str) -> None:
         "x.glb": glb_file(*gltf(points=flat[0, :1], indices=[0, 0, 0])),
     }[name]
     assert read(tmp_path, name, data).triangles.tolist() == flat.tolist()
+
+
+def test_npz_parts_are_merged_and_dropped(tmp_path: Path) -> None:
+    """Of four names one is repeated and one has no triangles: two are left."""
+    names = np.array(["a", "unused", "b", "a"])
+    data = npz_bytes(triangles=BOX[:3], parts=np.array([3, 2, 0]), part_names=names)
+    mesh = read(tmp_path, "car.npz", data)
+    assert mesh.part_names == ("a", "b")
+    assert mesh.parts.tolist() == [0, 1, 0]
+
+
+def test_npz_without_parts_may_have_a_name(tmp_path: Path) -> None:
+    """A lone part name is used for all triangles."""
+    data = npz_bytes(triangles=BOX, part_names=np.array(["body"]))
+    assert read(tmp_path, "car.npz", data).part_names == ("body",)
+
+
+SOLID = stl_ascii("{}", TRIANGLE).decode()
+
+
+def test_stl_solids_are_parts(tmp_path: Path) -> None:
+    """Each solid is a part, one of a repeated name is the same part, a nameless is the stem."""
+    text = "".join("  " + SOLID.format(name, name) for name in ("a b", "", "c", "a b"))
+    mesh = read(tmp_path, "car.stl", text.encode())
+    assert mesh.part_names == ("a b", "car", "c")
+    assert mesh.parts.tolist() == [0, 1, 2, 0]
+
+
+@pytest.mark.parametrize("suffix", [".npz", ".obj"])
+@pytest.mark.parametrize("labels", [[0, 0, 1, 2], [2, 0, 1, 0]], ids=["in order", "mixed"])
+def test_written_meshes_read_back_exactly(tmp_path: Path, suffix: str, labels: list[int]) -> None:
+    """Every bit of every coordinate (-0.0 and tiny ones too), every part and its place."""
+    triangles = (
+        np.random.default_rng(1).normal(size=(4, 3, 3))
+        * 10.0 ** np.arange(-150, 150, 75)[:, None, None]
+    )
+    triangles[0, 0] = (0.0, -0.0, 5e-324)
+    triangles[1, 0] = (-0.0, 0.0, 5e-324)
+    mesh = Mesh(triangles, np.array(labels, np.int32), ("Rad #1 – links", "g", "o"))
+    path = tmp_path / f"mesh{suffix}"
+    write_mesh(str(path), mesh)
+    back = read_mesh(str(path))
+    assert back.triangles.tobytes() == triangles.tobytes()
+    assert back.parts.tolist() == labels
+    assert back.part_names == mesh.part_names
+
+
+def test_failed_write_leaves_the_old_file(tmp_path: Path, monkeypatch: Any) -> None:
+    """When the last step fails, the old file is whole and nothing else is left behind."""
+    path = tmp_path / "box.npz"
+    path.write_text("old")
+
+    def full(*_: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "replace", full)
+    with pytest.raises(InputError, match="no space left"):
+        write_mesh(path, Mesh(BOX, np.zeros(12, np.int32), ("box",)))
+    assert [item.name for item in tmp_path.iterdir()] == ["box.npz"]
+    assert path.read_text() == "old"
+
+
+def test_written_file_replaces_the_old_one(tmp_path: Path) -> None:
+    """The new file takes the old one's place with the mode any new file gets, alone."""
+    path, other = tmp_path / "box.obj", tmp_path / "other"
+    path.write_text("old")
+    other.touch()
+    write_mesh(path, Mesh(BOX, np.zeros(12, np.int32), ("box",)))
+    assert read_mesh(path).triangles.tolist() == BOX.tolist()
+    assert path.stat().st_mode == other.stat().st_mode
+    assert {item.name for item in tmp_path.iterdir()} == {"box.obj", "other"}
+
+
+UNWRITABLE = {
+    "suffix": ("box.stl", Mesh(BOX, ZEROS, ("box",)), "suffix"),
+    "folder": ("none/box.npz", Mesh(BOX, ZEROS, ("box",)), "file"),
+    "nan": ("box.obj", Mesh(BOX * np.nan, ZEROS, ("box",)), "triangles[0]"),
+    "empty": ("box.obj", Mesh(BOX[:0], ZEROS[:0], ("box",)), "triangles"),
+    "flat": ("box.obj", Mesh(BOX[0], ZEROS[:3], ("box",)), "triangles"),
+    "parts too few": ("box.npz", Mesh(BOX, ZEROS[1:], ("box",)), "parts"),
+    "part without a name": ("box.npz", Mesh(BOX, ZEROS + 1, ("box",)), "parts[0]"),
+    "two lines": ("box.obj", Mesh(BOX, ZEROS, ("a\nb",)), "part_names"),
+    "no name": ("box.obj", Mesh(BOX, ZEROS, ("",)), "part_names"),
+    "space in front": ("box.obj", Mesh(BOX, ZEROS, (" a",)), "part_names"),
+    "continued": ("box.obj", Mesh(BOX, ZEROS, ("a\\",)), "part_names"),
+    "no unicode": ("box.obj", Mesh(BOX, ZEROS, ("\udc80",)), "part_names"),
+}
+
+
+@pytest.mark.parametrize(("name", "mesh", "field"), UNWRITABLE.values(), ids=UNWRITABLE.keys())
+def test_what_could_not_be_read_back_is_not_written(
+    tmp_path: Path, name: str, mesh: Mesh, field: str
+) -> None:
+    """The error names file and field, and no file appears."""
+    with pytest.raises(InputError) as caught:
+        write_mesh(tmp_path / name, mesh)
+    assert str(caught.value).startswith(f"{tmp_path / name}: {field}: expected ")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["a.npz", "a.obj", "a.stl", "a.ply", "a.glb"])
+@pytest.mark.parametrize("folder", [False, True], ids=["missing", "a folder"])
+def test_files_that_cannot_be_read(tmp_path: Path, name: str, folder: bool) -> None:
+    """A missing file and a folder in its place are told of like any other bad input."""
+    if folder:
+        (tmp_path / name).mkdir()
+    with pytest.raises(InputError) as caught:
+        read_mesh(tmp_path / name)
+    expected = "a readable file" if folder else "an existing file"
+    assert str(caught.value).startswith(f"{tmp_path / name}: file: expected {expected}")
+
+
+def test_a_path_no_file_can_have() -> None:
+    """A NUL in the path is told of like a missing file."""
+    with pytest.raises(InputError, match="file: expected a readable file, found embedded null"):
+        read_mesh("a\0.obj")
+
+
+BINARY: dict[str, Callable[[], bytes]] = {
+    "box.npz": lambda: npz_bytes(triangles=BOX),
+    "box.stl": stl_binary,
+    "box.ply": lambda: ply_binary("<"),
+    "x.glb": lambda: glb_file(*gltf()),
+}
+
+
+@pytest.mark.parametrize(("name", "make"), BINARY.items(), ids=BINARY.keys())
+def test_a_binary_file_cut_anywhere_is_an_error(
+    tmp_path: Path, name: str, make: Callable[[], bytes]
+) -> None:
+    """No cut, wherever it falls, gives a mesh or any other exception; by default every fifth."""
+    data = make()
+    for end in [*range(0, len(data), tries(5, 1)), len(data) - 1]:
+        with pytest.raises(InputError):
+            read(tmp_path, name, data[:end])
+
+
+BAD = {
+    "unknown suffix": ("a.fbx", b"", "suffix", ".obj"),
+    "no suffix": ("a", b"", "suffix", "none"),
+    "npz of text": ("a.npz", b"hello", "file", ".npz"),
+    "npz that is npy": ("a.npz", b"\x93NUMPY\x01\x00", "file", ".npz"),
+    "npz cut": ("a.npz", cut(npz_bytes(triangles=BOX)), "file", "complete"),
+    "npz of objects": ("a.npz", npz_bytes(triangles=np.array([{}])), "file", "pickle"),
+    "npz without triangles": ("a.npz", npz_bytes(parts=[0]), "triangles", "parts"),
+    "npz of empty": ("a.npz", npz_bytes(triangles=BOX[:0]), "triangles", "at least one"),
+    "npz of two axes": ("a.npz", npz_bytes(triangles=BOX[0]), "triangles", "(3, 3)"),
+    "npz of words": ("a.npz", npz_bytes(triangles=BOX.astype(str)), "triangles", "real"),
+    "npz of NaN": ("a.npz", npz_bytes(triangles=NAN[FACES]), "triangles[0]", "nan"),
+    "npz parts too short": (
+        "a.npz",
+        npz_bytes(triangles=BOX, parts=[0], part_names=["a"]),
+        "parts",
+        "(12,)",
+    ),
+    "npz parts not whole": (
+        "a.npz",
+        npz_bytes(triangles=BOX, parts=np.zeros(12), part_names=["a"]),
+        "parts",
+        "float64",
+    ),
+    "npz part out of range": (
+        "a.npz",
+        npz_bytes(triangles=BOX, parts=[0] * 11 + [-1], part_names=["a"]),
+        "parts[11]",
+        "-1",
+    ),
+    "npz parts without names": ("a.npz", npz_bytes(triangles=BOX, parts=ZEROS), "part_names", "no"),
+    "npz names without parts": (
+        "a.npz",
+        npz_bytes(triangles=BOX, part_names=["a", "b"]),
+        "parts",
+        "2 part names",
+    ),
+    "npz names of numbers": (
+        "a.npz",
+        npz_bytes(triangles=BOX, parts=ZEROS, part_names=[1]),
+        "part_names",
+        "unicode",
+    ),
+    "stl empty": ("a.stl", b"", "header", "0 bytes"),
+    "stl of text": ("a.stl", b"hello" * 99, "length", "495"),
+    "stl cut": ("a.stl", cut(stl_binary()), "length", "12 triangles"),
+    "stl cut, solid": ("a.stl", cut(stl_binary(b"solid")), "length", "12 triangles"),
+    "stl with a tail": ("a.stl", stl_binary() + b"\0", "length", "12 triangles"),
+    "stl of no triangles": ("a.stl", stl_binary(triangles=BOX[:0]), "triangles", "none"),
+    "stl of NaN": ("a.stl", stl_binary(triangles=NAN[FACES]), "triangles[0]", "nan"),
+    "stl of signalling NaN": (
+        "a.stl",
+        stl_binary()[:96] + b"\x01\0\x80\x7f" + stl_binary()[100:],
+        "triangles[0]",
+        "nan",
+    ),
+    "stl ascii, empty": ("a.stl", b"solid a\nendsolid a", "triangles", "none"),
+    "stl ascii, cut": ("a.stl", stl_ascii()[:-14], "line 85", "endsolid"),
+    "stl ascii, NaN": ("a.stl", stl_ascii(triangles=NAN[FACES]), "triangles[0]", "nan"),
+    "stl ascii, a word": ("a.stl", b"solid\nvertex 0 0 zero", "line 2", "zero"),
+    "stl ascii, two numbers": ("a.stl", b"solid\nvertex 0 0", "line 2", "vertex 0 0"),
+    "stl ascii, two corners": (
+        "a.stl",
+        b"solid\n" + b"vertex 0 0 0\n" * 2 + b"endfacet\nendsolid",
+        "line 4",
+        "found 2",
+    ),
+    "stl ascii, facet open": (
+        "a.stl",
+        b"solid\n" + b"vertex 0 0 0\n" * 3 + b"endsolid",
+        "line 5",
+        "found 6",
+    ),
+    "stl ascii, outside": ("a.stl", b"solid\nendsolid\nvertex 0 0 0", "line 3", "inside"),
+    "stl ascii, nested": ("a.stl", b"solid a\nsolid b\n", "line 2", "endsolid"),
+    "stl ascii, other text": ("a.stl", b"solid ground\nis good", "line 2", "'is'"),
+}
+
+
+test_bad_input_is_reported_in_one_line = one_line_test(BAD)

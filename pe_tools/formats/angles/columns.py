@@ -89,7 +89,7 @@ def sorted_by_id(source: str, channels: Sequence[Channel], first: int) -> list[C
     return [channel_by_id[number] for number in ids]
 
 
-Row = tuple[str, tuple[str, ...]]
+Line = tuple[str, tuple[str, ...]]
 """A line's location, for messages, and its cells."""
 
 
@@ -153,7 +153,7 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def _without_header(source: str, rows: Sequence[Row]) -> Layout:
+def _without_header(source: str, rows: Sequence[Line]) -> Layout:
     """Return the layout of one or two columns: elevation, azimuth offset."""
     first, width = rows[0][0], len(rows[0][1])
     if width > 2:
@@ -166,7 +166,7 @@ def _without_header(source: str, rows: Sequence[Row]) -> Layout:
     return Layout(width, 0, 1 if width == 2 else None)
 
 
-def _from_header(source: str, header: Row) -> Layout:
+def _from_header(source: str, header: Line) -> Layout:
     where, cells = header
     names = [_normalized(cell) for cell in cells]
     columns: list[int | None] = []
@@ -197,7 +197,7 @@ def _normalized(name: str) -> str:
     return UNIT.sub("", name) if len(name) <= MAX_QUOTE else name
 
 
-def _channel(source: str, layout: Layout, row: Row) -> Channel:
+def _channel(source: str, layout: Layout, row: Line) -> Channel:
     where, cells = row
     if len(cells) > layout.width:
         expected = f"no more columns than the header, {layout.width}"

@@ -36,11 +36,6 @@ def read_boxes(path: str | Path, origin: tuple[float, float, float] | None = Non
     origin : (x, y, z) float, optional
         The origin of the labels in the ground frame [m]. By default KITTI's camera is at
         `kitti.CAMERA`, and other labels are in the ground frame.
-
-    Raises
-    ------
-    InputError
-        One line with the file, the line, what was expected and what was found.
     """
     path = Path(path)
     with report_memory_errors(path):
@@ -83,7 +78,14 @@ def _read_file(path: Path, may_be_empty: bool = False) -> Labels:
     is_json = text.lstrip()[0] in "[{"
     require_memory(source, "size", len(data) * (JSON_UNFOLDS if is_json else ROWS_UNFOLD))
     if is_json:
-        return read_nuscenes(source, _parsed(source, text))
+        try:
+            data_of_json = json.loads(text)
+        except json.JSONDecodeError as error:
+            found = f"{error.msg.lower()} in column {error.colno}"
+            raise InputError(source, f"line {error.lineno}", "JSON", found) from None
+        except (RecursionError, ValueError) as error:  # ValueError: a number of too many digits
+            raise InputError(source, "file", "JSON of boxes", str(error).lower()) from None
+        return read_nuscenes(source, data_of_json)
     numbered = enumerate(text.split("\n"), 1)
     lines = [(n, line) for n, line in numbered if line.strip() and line.lstrip()[0] != "#"]
     if not lines:
@@ -94,13 +96,3 @@ def _read_file(path: Path, may_be_empty: bool = False) -> Labels:
     if looks_like_kitti(first):
         return read_kitti(source, lines)
     raise InputError(source, f"line {lines[0][0]}", LAYOUTS, quoted(first.strip()))
-
-
-def _parsed(source: str, text: str) -> object:
-    try:
-        return json.loads(text)
-    except json.JSONDecodeError as error:
-        found = f"{error.msg.lower()} in column {error.colno}"
-        raise InputError(source, f"line {error.lineno}", "JSON", found) from None
-    except (RecursionError, ValueError) as error:  # ValueError: a number of too many digits
-        raise InputError(source, "file", "JSON of boxes", str(error).lower()) from None

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pe_core.base.errors import InputError
 from pe_core.base.files import NUMBER, parse_number, quoted
 
-from .labels import BoxNumbers, Labels
+from .labels import Labels
 
 CAMERA = (-0.33, 0.0, 1.65)
 """The camera in the ground frame under the middle of the wheelbase [m]. KITTI's set-up: 1.65 m
@@ -60,22 +60,19 @@ def read_kitti(source: str, lines: Sequence[tuple[int, str]]) -> Labels:
             continue
         if _is_number(name):
             raise InputError(source, where, "a class before the numbers", quoted(name))
-        row = _in_ground_axes(source, where, cells)
+        texts = cells[FIRST_NUMBER : FIRST_NUMBER + len(NUMBERS)]
+        height, width, length, right, down, forward, turn = (
+            parse_number(source, where, what, text)
+            for what, text in zip(NUMBERS, texts, strict=True)
+        )
+        yaw = -turn - math.pi / 2.0
+        # along the axes of the ground frame, relative to the camera
+        row = forward, -right, -down + height / 2.0, length, width, height, yaw
         if name in CLASSES:
             labels.add(where, CLASSES[name], row, CAMERA)
         else:
             labels.leave_unknown(cells[0])
     return labels
-
-
-def _in_ground_axes(source: str, where: str, cells: Sequence[str]) -> BoxNumbers:
-    """Return a box along the axes of the ground frame, relative to the camera."""
-    texts = cells[FIRST_NUMBER : FIRST_NUMBER + len(NUMBERS)]
-    height, width, length, right, down, forward, turn = (
-        parse_number(source, where, what, text) for what, text in zip(NUMBERS, texts, strict=True)
-    )
-    yaw = -turn - math.pi / 2.0
-    return forward, -right, -down + height / 2.0, length, width, height, yaw
 
 
 def _is_number(text: str) -> bool:

@@ -73,10 +73,8 @@ def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
     Raises
     ------
     InputError
-        The file is missing, its suffix is unknown, or the reader for it is not installed. The
-        content does not match the suffix or is incomplete. An index is out of range, a coordinate
-        is not finite, or there are no triangles. The mesh is too large (`MESH_BYTES`,
-        `MAX_TRIANGLES`), or does not fit in memory.
+        The suffix is unknown, the reader for it is not installed, the content is wrong or has no
+        triangles, or the mesh is too large (`MESH_BYTES`, `MAX_TRIANGLES`, memory).
     """
     path = Path(path)
     suffix = path.suffix.lower()
@@ -86,7 +84,8 @@ def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
     # Overflow and NaN are refused later, with their location; NumPy need not warn first.
     with np.errstate(all="ignore"), report_memory_errors(path):
         if suffix in _READERS:
-            mesh, said = _READERS[suffix](path, data), _SAYS.get(suffix, _unsaid)(data)
+            mesh = _READERS[suffix](path, data)
+            said = _SAYS[suffix](data) if suffix in _SAYS else UNSAID
         else:
             mesh, said = read_with_plugin(path, data)
         fit = replace(mesh, part_names=fit_names(mesh.part_names))
@@ -96,30 +95,14 @@ def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
 def write_mesh(path: str | Path, mesh: Mesh) -> None:
     """Write a mesh to a .npz or .obj file; reading it gives the same mesh exactly.
 
-    The file is written atomically.
-
-    Parameters
-    ----------
-    path : str or Path
-        The suffix decides the format; the folder must exist.
-    mesh : Mesh
-        Triangles (F, 3, 3) [m], parts (F,) and their names. Parts without triangles are
-        not written; parts with the same name are merged.
-
-    Raises
-    ------
-    InputError
-        The suffix is another one, the mesh could not be read again, or the file cannot be
-        written.
+    The suffix decides the format. The file is written atomically; parts without triangles are not,
+    and parts with the same name are merged. Another suffix, a mesh that could not be read again, or
+    a file that cannot be written raises `InputError`.
     """
     path = Path(path)
     writer = _of_suffix(path, _WRITERS)
     sound = make_mesh(str(path), mesh.triangles, mesh.parts, mesh.part_names)
     write_bytes(path, writer(path, sound))
-
-
-def _unsaid(_data: bytes) -> SaidAxes:
-    return UNSAID
 
 
 def _of_suffix(path: Path, table: dict[str, _F]) -> _F:

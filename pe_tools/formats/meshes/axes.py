@@ -59,7 +59,10 @@ def said_in_comments(data: bytes) -> SaidAxes:
 
 
 def oriented(source: str, mesh: Mesh, said: SaidAxes, axes: MeshAxes) -> Mesh:
-    """Return a mesh in the ground frame, with a text on how its axes were determined."""
+    """Return a mesh in the ground frame, with a text on how its axes were determined.
+
+    The text is empty if the file is in the ground frame.
+    """
     chosen = _chosen(mesh, said, axes)
     triangles = _turned(mesh.triangles, chosen.up, chosen.forward)
     if axes.scale != 1.0:
@@ -69,7 +72,9 @@ def oriented(source: str, mesh: Mesh, said: SaidAxes, axes: MeshAxes) -> Mesh:
     if any(axes.rotation_deg or ()):
         turn = Pose.from_degrees((0, 0, 0), axes.rotation_deg or ())
         triangles = rotate(turn.ground_from_sensor, triangles)
-    return Mesh(triangles, mesh.parts, mesh.part_names, _text(chosen))
+    up_by, forward_by = chosen.up_by or "assumed", chosen.forward_by or "assumed"
+    text = f"faces {chosen.forward} ({forward_by}), up is {chosen.up} ({up_by})"
+    return Mesh(triangles, mesh.parts, mesh.part_names, "" if chosen == OURS else text)
 
 
 def _chosen(mesh: Mesh, said: SaidAxes, axes: MeshAxes) -> SaidAxes:
@@ -139,14 +144,6 @@ def _unit(name: str) -> NDArray[np.int64]:
     axis = np.zeros(3, np.int64)
     axis["xyz".index(name[1])] = 1 if name[0] == "+" else -1
     return axis
-
-
-def _text(chosen: SaidAxes) -> str:
-    """Text on how the axes were determined; empty if the file is in the ground frame."""
-    if chosen == OURS:
-        return ""
-    up_by, forward_by = chosen.up_by or "assumed", chosen.forward_by or "assumed"
-    return f"faces {chosen.forward} ({forward_by}), up is {chosen.up} ({up_by})"
 
 
 _TEXT = re.compile(r"faces ([+-][xyz]) \((.*?)\), up is ([+-][xyz]) \((.*?)\)")

@@ -14,8 +14,7 @@ import numpy as np
 
 from pe_core.base.errors import InputError, shown
 
-from .. import FoundMesh
-from .mesh import Piece, fan, found, placed
+from .mesh import FoundMesh, Piece, fan, found, placed
 
 UP = {"X_UP": "+x", "Y_UP": "+y", "Z_UP": "+z"}
 MAX_NODES = 200_000

@@ -28,7 +28,7 @@ MEMBER = b"PK\x01\x02"
 VERSIONS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
 
 
-class Member(NamedTuple):
+class StoredArray(NamedTuple):
     """An array in an archive, with the shape and data type of its header."""
 
     info: zipfile.ZipInfo
@@ -87,9 +87,9 @@ def dump_npz(_path: Path, mesh: Mesh) -> bytes:
     return buffer.getvalue()
 
 
-def _members(source: str, archive: zipfile.ZipFile) -> dict[str, Member]:
+def _members(source: str, archive: zipfile.ZipFile) -> dict[str, StoredArray]:
     """Return the arrays of a mesh by name, with their headers."""
-    members: dict[str, Member] = {}
+    members: dict[str, StoredArray] = {}
     for info in archive.infolist():
         name = info.filename.removesuffix(".npy")
         if name in members:
@@ -103,11 +103,11 @@ def _members(source: str, archive: zipfile.ZipFile) -> dict[str, Member]:
             shape, _, dtype = VERSIONS[version](file)  # type: ignore[no-untyped-call]
         if dtype.hasobject:
             raise InputError(source, "file", "arrays without pickled objects", name)
-        members[name] = Member(info, shape, dtype)
+        members[name] = StoredArray(info, shape, dtype)
     return members
 
 
-def _check(source: str, members: Mapping[str, Member]) -> int:
+def _check(source: str, members: Mapping[str, StoredArray]) -> int:
     """Refuse wrong shapes or types and too large arrays; return the number of triangles."""
     if "triangles" not in members:
         found = ", ".join(sorted(members)) or "none of ours"
@@ -127,7 +127,7 @@ def _check(source: str, members: Mapping[str, Member]) -> int:
     return shape[0]
 
 
-def _check_names(source: str, names: Member, has_parts: bool) -> None:
+def _check_names(source: str, names: StoredArray, has_parts: bool) -> None:
     if len(names.shape) != 1 or names.dtype.kind != "U":
         found = f"dtype {names.dtype} of shape {names.shape}"
         raise InputError(source, "part_names", "a one-dimensional unicode array", found)

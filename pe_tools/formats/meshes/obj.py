@@ -34,13 +34,7 @@ def read_obj(path: Path, data: bytes) -> Mesh:
 
     Parts are the `o` names, or the `g` names of a file without `o`. Faces before the first name
     belong to a part with the file's stem as its name. A name is all of the rest of its line.
-    Polygons are cut into fans; faces of two vertices are ignored.
-
-    Raises
-    ------
-    InputError
-        The file is not text, or has no triangles. A `v` or `f` line is malformed, an index is out
-        of range, or a coordinate is not finite; the message has the line number.
+    Polygons are cut into fans; faces of two vertices are ignored. Errors name the line.
     """
     source = str(path)
     if b"\0" in data:
@@ -52,7 +46,9 @@ def read_obj(path: Path, data: bytes) -> Mesh:
 def _read_blocks(path: Path, data: bytes) -> Mesh | None:
     """Read a regular file in blocks; None if it has to be read line by line."""
     content = regular_statements(data)
-    if content is None or not _is_within(content.corners, len(content.points)):
+    if content is None or not content.corners.size:
+        return None
+    if not 0 <= int(content.corners.min()) <= int(content.corners.max()) < len(content.points):
         return None
     source = str(path)
     require_room(source, fan_size(content.counts))
@@ -64,10 +60,6 @@ def _read_blocks(path: Path, data: bytes) -> Mesh | None:
         positions, faces = fan(content.counts)
         corners, labels = content.corners[positions], labels[faces]
     return make_mesh(source, gathered(content.points, corners), labels, list(names))
-
-
-def _is_within(corners: NDArray[np.int64], points: int) -> bool:
-    return corners.size > 0 and 0 <= int(corners.min()) <= int(corners.max()) < points
 
 
 def _labels(content: ObjContent, names: dict[str, int]) -> NDArray[np.int32]:
@@ -102,13 +94,12 @@ def _read_lines(path: Path, data: bytes) -> Mesh:
 def dump_obj(path: Path, mesh: Mesh) -> bytes:
     """Return the OBJ text: shared vertices, shortest exact floats, triangles in their order.
 
-    Raises
-    ------
-    InputError
-        An `o` line cannot hold a part name.
+    A part name that an `o` line cannot hold raises `InputError`.
     """
     for name in mesh.part_names:
-        if not _fits_a_line(name):
+        whole = name.encode("utf-8", "ignore").decode() == name  # no lone surrogates
+        plain = not set(name) & set("\0\r\n") and not name.endswith("\\")
+        if not (whole and plain and name and name == name.strip()):
             raise InputError(str(path), "part_names", "names that fit on one line", repr(name))
     # Vertices are compared by bits: as floats, 0.0 and -0.0 would be equal.
     index: dict[tuple[int, ...], int] = {}
@@ -202,9 +193,3 @@ def _check(source: str, lines: list[str], scan: _Statements) -> None:
 def _quote(line: str) -> str:
     text = " ".join(line.split())
     return repr(text if len(text) <= 60 else text[:57] + "...")
-
-
-def _fits_a_line(name: str) -> bool:
-    whole = name.encode("utf-8", "ignore").decode() == name  # no lone surrogates
-    plain = not set(name) & set("\0\r\n") and not name.endswith("\\")
-    return whole and plain and name != "" and name == name.strip()

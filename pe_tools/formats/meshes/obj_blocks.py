@@ -65,14 +65,10 @@ def regular_statements(data: bytes) -> ObjContent | None:
     is_other = ~(is_point | is_face | skipped)
     lines = zip(starts[is_other], ends[is_other], strict=True)
     others = [text[a : b + 1].tobytes() for a, b in lines]
-    if any(_is_hidden_statement(line) for line in others):
+    # A vertex or a face with an unusual beginning is for the reader of lines.
+    if any(line.split(None, 1)[:1] in ([b"v"], [b"f"]) for line in others):
         return None
     return ObjContent(points, *faces, others, np.cumsum(is_face)[is_other])
-
-
-def _is_hidden_statement(line: bytes) -> bool:
-    """Whether a line is a vertex or a face with an unusual beginning."""
-    return line.split(None, 1)[:1] in ([b"v"], [b"f"])
 
 
 def _block(text: Bytes, starts: Offsets, ends: Offsets, is_member: NDArray[np.bool_]) -> _Block:

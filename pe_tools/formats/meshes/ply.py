@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,6 @@ from pe_core.base.memory import require_memory
 from pe_core.scene.mesh import Mesh
 
 from .mesh import TEXT_UNFOLDS, fan, fan_size, gathered, make_mesh, require_room
-from .ply_elements import Column, Element, Property, read_element
 
 _ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 _TYPES = {
@@ -27,8 +27,42 @@ _TYPES = {
     "f4": ("float", "float32"),
     "f8": ("double", "float64"),
 }
-MAX_HEADER_BYTES = 1 << 20
 _CODES = {word: code for code, words in _TYPES.items() for word in words}
+MAX_HEADER_BYTES = 1 << 20
+MAX_ROW_BYTES = 2**31 - 1
+"""Maximum bytes of a row that NumPy can read at once."""
+WALKED_BYTES = 200
+"""Memory of a value or list that is read individually (measured)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Property:
+    """One value in each row; with a `count_type`, a list after its length."""
+
+    name: str
+    type: str
+    count_type: str | None = None
+
+    def bytes_of(self, length: int) -> int:
+        """Return the bytes of a value, or of a list with `length` values."""
+        count = np.dtype(self.count_type).itemsize if self.count_type else 0
+        return np.dtype(self.type).itemsize * length + count
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """An element: `count` rows with the same properties."""
+
+    name: str
+    count: int
+    properties: list[Property] = field(default_factory=list)
+
+
+class Column(NamedTuple):
+    """One property of all rows: the number of values of each row, and all values in one list."""
+
+    counts: NDArray[np.int64]
+    values: NDArray[Any]
 
 
 def read_ply(path: Path, data: bytes) -> Mesh:
@@ -36,12 +70,6 @@ def read_ply(path: Path, data: bytes) -> Mesh:
 
     Coordinates are metres in the ground frame. Polygons are cut into fans. Other elements and
     properties are ignored.
-
-    Raises
-    ------
-    InputError
-        The file is not PLY, or its header is malformed. Positions, faces or triangles are missing.
-        A vertex index is out of range, a coordinate is not finite, or the data end too early.
     """
     source = str(path)
     header, body = _split(source, data)
@@ -52,20 +80,15 @@ def read_ply(path: Path, data: bytes) -> Mesh:
     columns: dict[str, dict[str, Column]] = {}
     offset = 0
     for element in elements:
-        columns[element.name], offset = read_element(source, element, body, offset)
+        columns[element.name], offset = _read_element(source, element, body, offset)
     points = _points(source, columns.get("vertex", {}))
     faces = _faces(source, columns.get("face", {}), len(points))
     require_room(source, fan_size(faces.counts))
-    triangles = gathered(points, _corners(faces))
+    corners = faces.values.astype(np.int64)
+    is_triangles = (faces.counts == 3).all()
+    corners = corners.reshape(-1, 3) if is_triangles else corners[fan(faces.counts)[0]]
+    triangles = gathered(points, corners)
     return make_mesh(source, triangles, np.zeros(len(triangles), np.int32), [path.stem])
-
-
-def _corners(faces: Column) -> NDArray[np.int64]:
-    """Indices (T, 3) of the triangles of faces cut into fans."""
-    indices = faces.values.astype(np.int64)
-    if (faces.counts == 3).all():
-        return indices.reshape(-1, 3)
-    return indices[fan(faces.counts)[0]]
 
 
 def _split(source: str, data: bytes) -> tuple[list[str], bytes]:
@@ -150,7 +173,8 @@ def _faces(source: str, face: dict[str, Column], points: int) -> Column:
         found = ", ".join(face) or "none"
         raise InputError(source, "element face", "a list called vertex_indices", found)
     values = faces.values
-    if _all_within(values, points):
+    whole = values.dtype.kind in "iu" and values.size > 0
+    if whole and 0 <= int(values.min()) <= int(values.max()) < points:  # the usual case
         return faces
     # In this form of the condition NaN is refused, too.
     bad = np.flatnonzero(~((values >= 0) & (values < points) & (values == np.floor(values))))
@@ -161,7 +185,84 @@ def _faces(source: str, face: dict[str, Column], points: int) -> Column:
     return faces
 
 
-def _all_within(values: NDArray[Any], points: int) -> bool:
-    """Whether all values are surely valid indices; may be False for some that are valid."""
-    whole = values.dtype.kind in "iu" and values.size > 0
-    return whole and 0 <= int(values.min()) <= int(values.max()) < points
+def _read_element(
+    source: str, element: Element, data: bytes, offset: int
+) -> tuple[dict[str, Column], int]:
+    """Read the element's rows from `offset` on; return its columns and where the next one begins.
+
+    Data that end too early, or a list's length that is no integer of at least 0, raise
+    `InputError`.
+    """
+    properties = element.properties
+    if not element.count or not properties:
+        nothing = Column(np.zeros(0, np.int64), np.zeros(0))
+        return {item.name: nothing for item in properties}, offset
+    # The rows have to fit even if all lists are empty.
+    least, left = sum(i.bytes_of(0 if i.count_type else 1) for i in properties), len(data) - offset
+    if element.count * least > left:
+        found = f"data for at most {left // least:,}"
+        raise InputError(source, f"element {element.name}", f"{element.count} rows", found)
+    # Nearly all files have lists of equal length (triangles), which NumPy reads at once.
+    first, _ = _walk(source, replace(element, count=1), data, offset)
+    rows = _even_rows(element, data, offset, [int(c.counts[0]) for c in first.values()])
+    if rows is None:
+        return _walk(source, element, data, offset)
+    columns = {}
+    for i, item in enumerate(properties):
+        values = rows[f"values{i}"]
+        counts = np.full(len(rows), values.shape[1], dtype=np.int64)
+        columns[item.name] = Column(counts, values.ravel())
+    return columns, offset + rows.nbytes
+
+
+def _even_rows(
+    element: Element, data: bytes, offset: int, lengths: list[int]
+) -> NDArray[np.void] | None:
+    """Read all rows as one structured array; None if lists differ in length."""
+    pairs = list(zip(element.properties, lengths, strict=True))
+    row = sum(item.bytes_of(length) for item, length in pairs)
+    if row > MAX_ROW_BYTES or offset + element.count * row > len(data):
+        return None
+    fields: list[tuple[str, str] | tuple[str, str, tuple[int]]] = []
+    for i, (item, length) in enumerate(pairs):
+        if item.count_type:
+            fields.append((f"count{i}", item.count_type))
+        fields.append((f"values{i}", item.type, (length,)))
+    rows = np.frombuffer(data, np.dtype(fields), element.count, offset)
+    for i, (item, length) in enumerate(pairs):
+        if item.count_type and (rows[f"count{i}"] != length).any():
+            return None
+    return rows
+
+
+def _walk(source: str, element: Element, data: bytes, offset: int) -> tuple[dict[str, Column], int]:
+    """Read row by row: for lists of different lengths, and to find the row where data end."""
+    needed = element.count * len(element.properties) * WALKED_BYTES
+    require_memory(source, f"element {element.name}", needed)
+    counts: list[list[int]] = [[] for _ in element.properties]
+    values: list[list[NDArray[Any]]] = [[] for _ in element.properties]
+
+    def take(code: str, count: int) -> NDArray[Any]:
+        nonlocal offset
+        start, offset = offset, offset + count * np.dtype(code).itemsize
+        if offset > len(data):
+            found = f"the end of the file in row {row}"
+            raise InputError(source, f"element {element.name}", f"{element.count} rows", found)
+        return np.frombuffer(data[start:offset], code)
+
+    for row in range(element.count):
+        for i, item in enumerate(element.properties):
+            length = 1
+            if item.count_type:
+                (size,) = take(item.count_type, 1)
+                if size < 0 or not float(size).is_integer():
+                    field_name = f"{element.name}[{row}]"
+                    raise InputError(source, field_name, "a list length from 0 up", str(size))
+                length = int(size)
+            counts[i].append(length)
+            values[i].append(take(item.type, length))
+    columns = {
+        item.name: Column(np.array(counts[i], dtype=np.int64), np.concatenate(values[i]))
+        for i, item in enumerate(element.properties)
+    }
+    return columns, offset

@@ -23,50 +23,29 @@ def read_stl(path: Path, data: bytes) -> Mesh:
 
     In ASCII, parts have the solids' names, or the file's stem for a solid without a name. A
     binary file is one part with the stem as its name. Stored normals are ignored.
-
-    Raises
-    ------
-    InputError
-        The file is not STL, its length does not match its number of triangles, a line is
-        malformed, a coordinate is not finite, or there are no triangles.
     """
+    source, count = str(path), int.from_bytes(data[80:_HEADER], "little")
+    length = _HEADER + _FACET.itemsize * count
     # Many binary files begin with "solid", too, so the length is tested first.
-    if len(data) != _binary_length(data) and _looks_ascii(data):
+    is_text = data[:512].lstrip()[:5].lower() == b"solid" and b"\0" not in data
+    if len(data) != length and is_text:
         require_memory(path, "file", len(data) * TEXT_UNFOLDS)
-        return _read_ascii(path, decode_text(data).split("\n"))
-    return _read_binary(path, data)
-
-
-def _binary_length(data: bytes) -> int:
-    return _HEADER + _FACET.itemsize * int.from_bytes(data[80:_HEADER], "little")
-
-
-def _looks_ascii(data: bytes) -> bool:
-    return data[:512].lstrip()[:5].lower() == b"solid" and b"\0" not in data
-
-
-def _read_binary(path: Path, data: bytes) -> Mesh:
-    source = str(path)
+        scan = _SolidLines(source, path.stem)
+        lines = decode_text(data).split("\n")
+        for number, line in enumerate(lines, 1):
+            scan.take(number, line)
+        scan.require(not scan.inside, len(lines), "endsolid", "the end of the file")
+        require_room(source, len(scan.parts))
+        return make_mesh(source, np.reshape(scan.points, (-1, 3, 3)), scan.parts, scan.names)
     if len(data) < _HEADER:
         found = f"{len(data)} bytes"
         raise InputError(source, "header", "'solid' or 84 bytes of binary STL header", found)
-    expected_bytes = _binary_length(data)
-    if len(data) != expected_bytes:
-        count = (expected_bytes - _HEADER) // _FACET.itemsize
-        expected = f"{expected_bytes} bytes for the {count} triangles declared"
+    if len(data) != length:
+        expected = f"{length} bytes for the {count} triangles declared"
         raise InputError(source, "length", expected, f"{len(data)} bytes")
-    require_room(source, (expected_bytes - _HEADER) // _FACET.itemsize)
+    require_room(source, count)
     facets = np.frombuffer(data, dtype=_FACET, offset=_HEADER)
-    return make_mesh(source, facets["corners"], np.zeros(len(facets), np.int32), [path.stem])
-
-
-def _read_ascii(path: Path, lines: list[str]) -> Mesh:
-    scan = _SolidLines(str(path), path.stem)
-    for number, line in enumerate(lines, 1):
-        scan.take(number, line)
-    scan.require(not scan.inside, len(lines), "endsolid", "the end of the file")
-    require_room(scan.source, len(scan.parts))
-    return make_mesh(scan.source, np.reshape(scan.points, (-1, 3, 3)), scan.parts, scan.names)
+    return make_mesh(source, facets["corners"], np.zeros(count, np.int32), [path.stem])
 
 
 @dataclass(slots=True)

@@ -11,9 +11,9 @@ import numpy as np
 from pxr import Ar, Sdf, Tf, Usd, UsdGeom, UsdUtils
 
 from pe_core.base.errors import InputError
+from pe_core.base.files import MESH_BYTES
 
-from .. import MESH_BYTES, FoundMesh
-from .mesh import Piece, fan, found, placed
+from .mesh import FoundMesh, Piece, fan, found, placed
 
 MAX_LAYERS = 1_000
 MAX_PRIMS = 200_000

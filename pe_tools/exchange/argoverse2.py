@@ -19,10 +19,10 @@ from pe_core.base.table_reader import Table
 from pe_core.base.values import vector
 from pe_core.geometry.poses import METRES
 
-from .foreign_values import COEFFICIENT, FOCAL, PIXELS, PRINCIPAL_POINT, Written
+from .foreign_values import COEFFICIENT, FOCAL, PIXELS, PRINCIPAL_POINT, Export, Texts
 from .frames import BODY_FROM_OPTICAL, from_quaternion, pose_of, product, quaternion
 from .lens_pictures import pinhole_picture
-from .portable import PortableSensor
+from .portable import PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
 MAX_TABLE_BYTES = 64_000_000
@@ -41,9 +41,7 @@ CONVENTIONS = {
 NO_BEND = "the file's k1, k2, k3 are not applied: Argoverse's own reader projects without them"
 
 
-def write(
-    sensors: tuple[PortableSensor, ...], _texts: Mapping[str, str]
-) -> tuple[Written, list[str]]:
+def write(sensors: PortableRig, _texts: Texts) -> Export:
     """Return the tables of poses and of intrinsics, and no messages."""
     feather, poses, intrinsics = _feather(), [], []
     for sensor in sensors:
@@ -61,7 +59,7 @@ def write(
     }, []
 
 
-def read(path: Path) -> tuple[PortableSensor, ...]:
+def read(path: Path) -> PortableRig:
     """Read the sensors from the table of poses, or its folder, and the intrinsics beside it."""
     path = path / POSES if path.is_dir() else path
     beside = path.with_name(INTRINSICS)

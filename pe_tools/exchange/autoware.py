@@ -24,12 +24,12 @@ from pe_core.scene.vehicle_description import Reference
 from pe_tools.formats.yaml_text import KeyPath, YamlText, parse_yaml
 
 from .camera_info import info_files, info_name, picture_of_info, with_info
-from .foreign_values import Written, named_numbers, plain_number, pose_from, text_of
+from .foreign_values import Export, Texts, named_numbers, plain_number, pose_from, text_of
 from .frame_tree import with_legal_frames
 from .frames import composed, seen_from
 from .lens_pictures import alike
 from .passthrough import is_there, is_turned_so
-from .portable import PortableSensor, merged_lines
+from .portable import PortableRig, PortableSensor, merged_lines
 from .portable_kinds import CAMERA, LIDAR, RADAR
 
 BASE, KIT = "base_link", "sensor_kit_base_link"
@@ -97,7 +97,7 @@ def _models(unit: Unit) -> dict[str, str]:
     return {path[-1]: text for path, text in unit.text.comments().items() if text in catalogued}
 
 
-def read(path: Path) -> tuple[PortableSensor, ...]:
+def read(path: Path) -> PortableRig:
     """Read the sensors of a kit: `path` is its folder, or one of its files.
 
     LiDAR poses are those of the frames in the files. `lifted` moves a pose from the base of the
@@ -183,9 +183,7 @@ def _pose_texts(pose: Pose) -> dict[str, str]:
     return {key: plain_number(value) for key, value in numbers}
 
 
-def write(
-    sensors: tuple[PortableSensor, ...], texts: Mapping[str, str]
-) -> tuple[Written, list[str]]:
+def write(sensors: PortableRig, texts: Texts) -> Export:
     """Return the files of a new kit, or of the kit of these texts with its sensors updated.
 
     A new kit has a camera_info file per camera; messages say where the LiDARs' frames are.

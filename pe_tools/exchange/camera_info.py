@@ -20,7 +20,7 @@ from pe_tools.formats.yaml_text import parse_yaml
 
 from .foreign_values import PIXELS, plain_number, text_of
 from .lens_pictures import Picture
-from .portable import PortableSensor
+from .portable import PortableRig, PortableSensor
 from .portable_kinds import CAMERA
 
 FOLDER = "camera_info"
@@ -71,7 +71,7 @@ def _matrix(key: str, rows: int, values: Sequence[float]) -> list[str]:
     return [f"{key}:", f"  rows: {rows}", f"  cols: {len(values) // rows}", f"  data: [{data}]"]
 
 
-def with_info(folder: Path, sensors: Iterable[PortableSensor]) -> tuple[PortableSensor, ...]:
+def with_info(folder: Path, sensors: Iterable[PortableSensor]) -> PortableRig:
     """Return sensors with the intrinsics in `folder`; a sensor with intrinsics is a camera."""
     result = []
     for sensor in sensors:

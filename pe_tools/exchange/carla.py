@@ -6,7 +6,6 @@ Coordinates are right-handed, angles are in degrees.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -21,7 +20,8 @@ from .foreign_values import (
     CHANNELS,
     PIXELS,
     RANGE,
-    Written,
+    Export,
+    Texts,
     json_bytes,
     json_of,
     json_rows,
@@ -31,7 +31,7 @@ from .foreign_values import (
 from .frame_tree import with_legal_frames
 from .lens_pictures import picture_of_fov
 from .passthrough import ORIGIN, entry_row
-from .portable import FieldOfView, PortableSensor, Scan, uneven
+from .portable import FieldOfView, PortableRig, PortableSensor, Scan, uneven
 from .portable_kinds import CAMERA, LIDAR, RADAR
 
 FILE = "objects.json"
@@ -59,9 +59,7 @@ FIGURES = ("image_size_x", "image_size_y", "fov", *SCAN_KEYS, ACROSS, UPWARDS)
 POSITION_KEYS, ROTATION_KEYS = ("x", "y", "z"), ("roll", "pitch", "yaw")
 
 
-def write(
-    sensors: tuple[PortableSensor, ...], texts: Mapping[str, str]
-) -> tuple[Written, list[str]]:
+def write(sensors: PortableRig, texts: Texts) -> Export:
     """Return a document whose first vehicle carries the rig, and messages on losses."""
     document: Any = {"objects": [{"type": "vehicle.*", "id": "ego_vehicle"}]}
     if texts:
@@ -134,7 +132,7 @@ def source(path: Path) -> dict[str, str]:
     return {FILE: json_entry(document)}
 
 
-def read(path: Path) -> tuple[PortableSensor, ...]:
+def read(path: Path) -> PortableRig:
     """Read the sensors of the first vehicle that has a list of sensors, one with a spawn point."""
     document = json_of(path)
     vehicle, key = _place_of_sensors(path, document)

@@ -21,7 +21,8 @@ from .foreign_values import (
     MAX_FRAMES,
     MIN_RANGE,
     PIXELS,
-    Written,
+    Export,
+    Texts,
     figure,
     plain_number,
     pose_from,
@@ -32,7 +33,7 @@ from .foreign_values import (
 )
 from .lens_pictures import Picture
 from .passthrough import entry_row
-from .portable import PortableSensor
+from .portable import PortableRig, PortableSensor
 from .portable_kinds import has_model
 
 FILE = "rig.csv"
@@ -52,9 +53,7 @@ HEAD = """\
 """
 
 
-def write(
-    sensors: tuple[PortableSensor, ...], _texts: Mapping[str, str]
-) -> tuple[Written, list[str]]:
+def write(sensors: PortableRig, _texts: Texts) -> Export:
     """Return the table of a rig, and no messages."""
     rows = [
         entry_row(sensor, lambda _: {}, (), ()) if sensor.is_left_out else _row(sensor)
@@ -89,7 +88,7 @@ def _row(sensor: PortableSensor) -> dict[str, str]:
     return dict(zip((*COLUMNS, PARAMETERS), cells, strict=True))
 
 
-def read(path: Path) -> tuple[PortableSensor, ...]:
+def read(path: Path) -> PortableRig:
     """Read a table of sensors. Only the columns of name, position and angles are required."""
     lines = [line for line in text_of(path).splitlines() if line and not line.startswith("#")]
     require_at_most(path, "file", len(lines), MAX_FRAMES, "rows")
@@ -99,12 +98,12 @@ def read(path: Path) -> tuple[PortableSensor, ...]:
             if key not in (rows.fieldnames or ()):
                 expected = f"the columns {', '.join(COLUMNS)}"
                 raise InputError(path, key, expected, "none of that name")
-        return tuple(_Row(path, f"row {k}", row).sensor() for k, row in enumerate(rows, 1))
+        return tuple(_SensorCells(path, f"row {k}", row).sensor() for k, row in enumerate(rows, 1))
     except csv.Error as error:
         raise InputError(path, "file", "a table (CSV)", error) from None
 
 
-class _Row:
+class _SensorCells:
     """The cells of a row by column; `place` is its name in messages."""
 
     def __init__(self, path: Path, place: str, cells: Mapping[str, Any]) -> None:

@@ -6,7 +6,6 @@ Angles are in degrees. The origin is the middle of the rear axle, projected to t
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +24,8 @@ from .foreign_values import (
     FOCAL,
     PIXELS,
     PRINCIPAL_POINT,
-    Written,
+    Export,
+    Texts,
     figure,
     figures,
     json_bytes,
@@ -39,7 +39,7 @@ from .foreign_values import (
 from .frames import composed, shifted
 from .lens_pictures import Picture, pinhole_picture
 from .passthrough import ORIGIN, entry_row
-from .portable import PortableSensor
+from .portable import PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
 FILE = "rig.json"
@@ -53,9 +53,7 @@ UNKNOWN = ("", "virtual")
 FIGURES, CORRECTION = ("properties", "parameter"), "correction_"
 
 
-def write(
-    sensors: tuple[PortableSensor, ...], texts: Mapping[str, str]
-) -> tuple[Written, list[str]]:
+def write(sensors: PortableRig, texts: Texts) -> Export:
     """Return the rig file, and messages on sensor kinds that DriveWorks does not have."""
     document: Any = {"rig": {}, "version": 2}
     if texts:
@@ -63,7 +61,12 @@ def write(
     rig = document.get("rig") if isinstance(document, dict) else None
     if not isinstance(rig, dict):
         raise InputError("passthrough", FILE, "a rig", "none")
-    rig["sensors"] = [_row_over(sensor) for sensor in sensors]
+    rig["sensors"] = rows = []
+    for sensor in sensors:
+        row = entry_row(sensor, _row, (POSE_KEY,), FIGURES)
+        if not sensor.is_unmoved and not sensor.is_left_out:  # its pose includes the corrections
+            row = {key: value for key, value in row.items() if not key.startswith(CORRECTION)}
+        rows.append(row)
     lines = [f"{s.name}: DriveWorks has no {s.kind}" for s in sensors
              if s.kind not in PROTOCOLS and not s.is_left_out]  # fmt: skip
     return {FILE: json_bytes(document)}, lines
@@ -74,17 +77,6 @@ def source(path: Path) -> dict[str, str]:
     document = json_of(path)
     document["rig"]["sensors"] = []
     return {FILE: json_entry(document)}
-
-
-def _row_over(sensor: PortableSensor) -> dict[str, Any]:
-    """Return the JSON object of a sensor.
-
-    The pose of a sensor that moved includes the corrections, so their keys are removed.
-    """
-    row = entry_row(sensor, _row, (POSE_KEY,), FIGURES)
-    if not sensor.is_unmoved and not sensor.is_left_out:
-        row = {key: value for key, value in row.items() if not key.startswith(CORRECTION)}
-    return row
 
 
 def _row(sensor: PortableSensor) -> dict[str, Any]:
@@ -101,7 +93,7 @@ def _row(sensor: PortableSensor) -> dict[str, Any]:
     }
 
 
-def read(path: Path) -> tuple[PortableSensor, ...]:
+def read(path: Path) -> PortableRig:
     """Read the sensors of a rig, one of which has a pose.
 
     A sensor without a pose (CAN, GPS) takes its kind from its protocol.
@@ -193,7 +185,10 @@ def read_properties(properties: Table) -> tuple[Picture | None, str]:
     if key is not None:
         coefficients = _rising(properties, key)
         max_radius = math.hypot(max(cx, width - cx), max(cy, height - cy))
-        _check_square(properties)
+        for name, default in (("linear-c", 1.0), ("linear-d", 0.0), ("linear-e", 0.0)):
+            number = _number(properties, name) if name in properties else default
+            if abs(number - default) > 0.01:  # one polynomial serves both axes
+                raise properties.error(name, f"{default:g}, within 0.01", f"{number:g}")
         note, forward = "", coefficients
         direction = properties.text("polynomial-type", "", choices=("", FORWARD, BACKWARD))
         if not direction and key == POLYNOMIALS[0] and coefficients[1] >= GENTLE:
@@ -218,14 +213,6 @@ def _rising(properties: Table, key: str) -> list[float]:
     if coefficients[0] != 0.0 or coefficients[1] < GENTLEST:
         raise properties.error(key, expected, shown(value))
     return coefficients
-
-
-def _check_square(properties: Table) -> None:
-    """Raise `InputError` for sheared or stretched pixels: one polynomial serves both axes."""
-    for key, default in (("linear-c", 1.0), ("linear-d", 0.0), ("linear-e", 0.0)):
-        number = _number(properties, key) if key in properties else default
-        if abs(number - default) > 0.01:
-            raise properties.error(key, f"{default:g}, within 0.01", f"{number:g}")
 
 
 def _turned_round(coefficients: list[float], max_radius: float) -> tuple[list[float], float]:

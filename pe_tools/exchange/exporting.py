@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping
-from dataclasses import replace as with_
 from pathlib import Path
 
 from pe_core.base.errors import InputError
@@ -62,11 +62,11 @@ def _written(
 ) -> tuple[Mapping[str, bytes], list[str]]:
     """Return the files of a rig and messages; existing `texts` are updated if there are any."""
     back = [-value for value in origin_in_ground(row.origin, reference, row.title)]
-    moved = tuple(with_(s, pose=shifted(s.pose, back)) for s in portable_sensors(rig))
+    moved = tuple(dataclasses.replace(s, pose=shifted(s.pose, back)) for s in portable_sensors(rig))
     left_out_lines = []
     if passthrough is not None:
         if (placed := passthrough.placed) is not None:
-            moved = tuple(with_(s, pose=seen_from(placed, s.pose)) for s in moved)
+            moved = tuple(dataclasses.replace(s, pose=seen_from(placed, s.pose)) for s in moved)
         models = {sensor.name: model_text(sensor.model) for sensor in rig}
         moved = restored(passthrough, moved, models)
         if left_out := listed_kinds((each.kind, each.name) for each in passthrough.left_out):
@@ -85,22 +85,14 @@ def export_rig(
     passthrough: Passthrough | None = None,
     replace: bool = False,
 ) -> tuple[list[Path], list[str]]:
-    """Write a rig in another program's format.
+    """Write a rig in another program's format; parameters not listed are those of `rig_files`.
 
     When an existing Autoware kit is replaced, everything in it but the sensors is kept.
 
     Parameters
     ----------
-    rig : Rig
-    name : str
-        Name of the format, a key of `RIG_FORMATS`.
     output : str or Path
         File to write, or the folder if the format has several files.
-    reference : Reference, optional
-        Position of the rear axle, which is the origin of some formats.
-    passthrough : Passthrough, optional
-        Content of an imported file besides the rig. It is written again if the file had this
-        format.
     replace : bool
         Whether existing files may be overwritten.
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -93,16 +92,10 @@ def import_rig(
         raise InputError(path, "file", "an existing file or folder", found)
     row = detect_format(path) if name is None else rig_format(name)
     origin = origin_in_ground(row.origin, reference, row.title, path)
-    with _in_file(path), report_memory_errors(path):
-        return _imported(path, row, origin, placed, models or {})
-
-
-@contextmanager
-def _in_file(path: Path) -> Iterator[None]:
-    """Re-raise errors about a lens, a pose or a model with the imported file as the source."""
     try:
-        yield
-    except InputError as error:
+        with report_memory_errors(path):
+            return _imported(path, row, origin, placed, models or {})
+    except InputError as error:  # about a lens, a pose or a model: of the imported file
         if Path(error.source).is_relative_to(path if path.is_dir() else path.parent):
             raise
         field = f"{error.source}: {error.field}"

@@ -7,7 +7,7 @@ orientation.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -17,11 +17,11 @@ from pe_core.base.errors import InputError
 from pe_core.base.values import Number
 from pe_core.geometry.poses import Pose
 
-from .foreign_values import Written, figures, spaced, text_of
+from .foreign_values import Export, Texts, figures, spaced, text_of
 from .frames import BODY_FROM_OPTICAL, checked_rotation, pose_of, product, turned
 from .lens_pictures import pinhole_picture
-from .portable import PortableSensor
-from .portable_kinds import CAMERA, LIDAR, cameras, lidars
+from .portable import PortableRig, PortableSensor
+from .portable_kinds import CAMERA, LIDAR
 
 FILE, MAX_CAMERAS = "calib.txt", 4
 FILES = (FILE,)
@@ -35,14 +35,12 @@ ENTRY = Number(cap=1e9)
 """An entry of a matrix."""
 
 
-def write(
-    sensors: tuple[PortableSensor, ...], _texts: Mapping[str, str]
-) -> tuple[Written, list[str]]:
+def write(sensors: PortableRig, _texts: Texts) -> Export:
     """Return the calibration of one LiDAR and up to four cameras, and a message.
 
     Another number of LiDARs or cameras, or orientations that differ, raise `InputError`.
     """
-    rig_cameras, rig_lidars = cameras(sensors), lidars(sensors)
+    rig_cameras, rig_lidars = ([s for s in sensors if s.kind == kind] for kind in (CAMERA, LIDAR))
     if len(rig_lidars) != 1 or not 1 <= len(rig_cameras) <= MAX_CAMERAS:
         found = f"{len(rig_lidars)} LiDARs and {len(rig_cameras)} cameras"
         expected = f"one LiDAR and 1 to {MAX_CAMERAS} cameras: KITTI's file has no room for others"
@@ -86,7 +84,7 @@ def _projection(sensor: PortableSensor, origin: Sequence[float], axes: Floats) -
     )
 
 
-def read(path: Path) -> tuple[PortableSensor, ...]:
+def read(path: Path) -> PortableRig:
     """Read the LiDAR, which is the origin, and the cameras."""
     rows = _rows(path)
     is_odometry = ODOMETRY in rows and not any(key in rows for key in RECTIFIED)

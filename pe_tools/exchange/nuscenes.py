@@ -8,7 +8,6 @@ nuImages, camera_distortion: k1, k2, p1, p2, k3, and k4 for fisheyes.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +18,7 @@ from pe_core.geometry.poses import METRES
 from pe_core.sensors.camera import BrownConrady
 from pe_core.study.passthrough import json_entry
 
-from .foreign_values import Written, json_bytes, json_of, json_rows
+from .foreign_values import Export, Texts, json_bytes, json_of, json_rows
 from .frames import (
     BODY_FROM_OPTICAL,
     BODY_FROM_RIGHT_FORWARD,
@@ -30,7 +29,7 @@ from .frames import (
 )
 from .lens_pictures import Picture, pinhole_picture, with_fourth
 from .passthrough import entry_row
-from .portable import PortableSensor
+from .portable import PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
 FILES = CALIBRATED, SENSORS = "calibrated_sensor.json", "sensor.json"
@@ -40,9 +39,7 @@ AXES = {CAMERA: BODY_FROM_OPTICAL, LIDAR: BODY_FROM_RIGHT_FORWARD}
 """Rotation from nuScenes' sensor axes to those of this project, by kind; others have the same."""
 
 
-def write(
-    sensors: tuple[PortableSensor, ...], _texts: Mapping[str, str]
-) -> tuple[Written, list[str]]:
+def write(sensors: PortableRig, _texts: Texts) -> Export:
     """Return the two tables, and messages on image sizes, which the tables cannot hold."""
     calibrated = [entry_row(sensor, _calibrated, POSE, FIGURES, CALIBRATED) for sensor in sensors]
     sensor_rows = [entry_row(sensor, _known, (), (), SENSORS) for sensor in sensors]
@@ -81,7 +78,7 @@ def _token(table: str, name: str) -> str:
     return hashlib.sha256(f"{table} {name}".encode()).hexdigest()[:32]
 
 
-def read(path: Path) -> tuple[PortableSensor, ...]:
+def read(path: Path) -> PortableRig:
     """Read the sensors from calibrated_sensor.json, or its folder, and the sensor.json beside it.
 
     The last calibration of a sensor is used.

@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Mapping
 from dataclasses import replace
 from itertools import count
 from pathlib import Path
@@ -30,7 +29,8 @@ from .foreign_values import (
     PIXELS,
     PLAIN,
     RANGE,
-    Written,
+    Export,
+    Texts,
     figure,
     json_of,
     pose_from,
@@ -39,7 +39,7 @@ from .foreign_values import (
 )
 from .lens_pictures import picture_of_fov
 from .passthrough import entry_row
-from .portable import FieldOfView, PortableSensor, Scan
+from .portable import FieldOfView, PortableRig, PortableSensor, Scan
 from .portable_kinds import CAMERA, LIDAR, RADAR, ULTRASONIC
 
 FILE = "sensor_view_configuration.json"
@@ -63,9 +63,7 @@ STAND_IN_RANGE_M = 100.0
 """Range of a LiDAR if the file states none; it is that of the stand-in model."""
 
 
-def write(
-    sensors: tuple[PortableSensor, ...], _texts: Mapping[str, str]
-) -> tuple[Written, list[str]]:
+def write(sensors: PortableRig, _texts: Texts) -> Export:
     """Return a configuration with all sensors, and messages on names and ranges it cannot hold.
 
     Ids count from 0 in rig order, around those of imported entries. Every beam is written, so more
@@ -141,7 +139,7 @@ def _figures(sensor: PortableSensor) -> dict[str, Any]:
     }
 
 
-def read(path: Path) -> tuple[PortableSensor, ...]:
+def read(path: Path) -> PortableRig:
     """Read the sensors of a configuration; a sensor's name is its kind and id.
 
     Fields may have the names of the schema (snake case) or of protobuf's JSON (camel case).

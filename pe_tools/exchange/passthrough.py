@@ -24,7 +24,7 @@ from pe_core.sensors import KINDS
 from pe_core.study.passthrough import Passthrough, json_entry
 
 from .foreign_values import pose_from
-from .portable import PortableSensor
+from .portable import PortableRig, PortableSensor
 from .portable_kinds import has_model
 
 ORIGIN = Pose((0.0, 0.0, 0.0))
@@ -39,7 +39,7 @@ MAX_MODEL_LENGTH = 50_000
 
 def restored(
     passthrough: Passthrough, sensors: Iterable[PortableSensor], models: Mapping[str, str]
-) -> tuple[PortableSensor, ...]:
+) -> PortableRig:
     """Return a rig's sensors with their imported entries, and the sensors left out at import.
 
     Sensors are in the order of the file; sensors added since follow. `models` are the `model_text`

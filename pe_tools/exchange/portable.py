@@ -121,6 +121,9 @@ class PortableSensor:
         return None if self.is_stand_in else self.model
 
 
+PortableRig = tuple[PortableSensor, ...]
+
+
 def uneven(sensors: Iterable[PortableSensor], title: str) -> list[str]:
     """Return messages on LiDARs whose channels a format with even channels cannot express."""
     lines = []

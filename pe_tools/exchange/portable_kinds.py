@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -26,7 +26,7 @@ from pe_core.sensors.ultrasonic import Ultrasonic
 from pe_core.study.passthrough import json_entry
 
 from .lens_pictures import ALIKE_PX, Picture, Size
-from .portable import EVEN_RAD, FieldOfView, PortableSensor, Scan
+from .portable import EVEN_RAD, FieldOfView, PortableRig, PortableSensor, Scan
 
 CAMERA, LIDAR, RADAR, ULTRASONIC = Camera.kind, Lidar.kind, Radar.kind, Ultrasonic.kind
 NO_EXTENT_RAD = 1e-9
@@ -91,7 +91,7 @@ def kind_by_name(name: str) -> str:
     return next((k for k, row in rows if any(p in lowered for p in row.name_parts)), LIDAR)
 
 
-def portable_sensors(rig: Rig) -> tuple[PortableSensor, ...]:
+def portable_sensors(rig: Rig) -> PortableRig:
     """Return the sensors of a rig, in the ground frame."""
     sensors = []
     for sensor in rig:
@@ -102,16 +102,6 @@ def portable_sensors(rig: Rig) -> tuple[PortableSensor, ...]:
         identity = sensor.name, sensor.pose, sensor.kind, sensor.model.name
         sensors.append(PortableSensor(*identity, fusion=sensor.fusion, **figures))
     return tuple(sensors)
-
-
-def cameras(sensors: Iterable[PortableSensor]) -> list[PortableSensor]:
-    """Return the cameras among the sensors."""
-    return [sensor for sensor in sensors if sensor.kind == CAMERA]
-
-
-def lidars(sensors: Iterable[PortableSensor]) -> list[PortableSensor]:
-    """Return the LiDARs among the sensors."""
-    return [sensor for sensor in sensors if sensor.kind == LIDAR]
 
 
 def with_ranges(model: SensorModel, sensor: PortableSensor) -> SensorModel:
@@ -214,23 +204,20 @@ def _model_by_table(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
     return catalog.from_table(sensor.model or sensor.name, table), ""
 
 
-def _radar_model(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
-    """Return the radar of its table, or one with a single mode of the file's field of view."""
-    if sensor.parameters or sensor.field is None:
+def _model_by_field(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
+    """Return the model of a sensor's table, or one with the file's field of view.
+
+    It is a radar with a single mode, or an ultrasonic sensor with that cone.
+    """
+    if sensor.parameters or (seen := sensor.field) is None:
         return _model_by_table(sensor, None)
-    seen, name = sensor.field, sensor.model or sensor.name
+    name = sensor.model or sensor.name
+    if sensor.kind == ULTRASONIC:
+        cone = seen.across[1] - seen.across[0], seen.up[1] - seen.up[0]
+        return Ultrasonic(name, seen.max_range, *cone, min_range=seen.min_range), ""
     ends = np.array(seen.across), np.array([seen.max_range] * 2), np.array(seen.up), np.ones(2)
     model = Radar(name, [RadarMode("scan", *ends, min_range=seen.min_range)])
     return model, f"{sensor.name}: the file has no resolution and no RCS; 10 dBsm, one cell"
-
-
-def _ultrasonic_model(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
-    """Return the ultrasonic sensor of its table, or one with the file's cone."""
-    if sensor.parameters or sensor.field is None:
-        return _model_by_table(sensor, None)
-    seen, name = sensor.field, sensor.model or sensor.name
-    cone = seen.across[1] - seen.across[0], seen.up[1] - seen.up[0]
-    return Ultrasonic(name, seen.max_range, *cone, min_range=seen.min_range), ""
 
 
 def _with_field(model: Radar | Ultrasonic) -> dict[str, Any]:
@@ -250,9 +237,9 @@ PORTABLE_KINDS: dict[str, PortableKind] = {
         "nuScenes front",
         ("cam", "fisheye", "rgb", "image"),
     ),
-    RADAR: PortableKind(_with_field, _radar_model, "Continental ARS408-21", ("radar",)),
+    RADAR: PortableKind(_with_field, _model_by_field, "Continental ARS408-21", ("radar",)),
     ULTRASONIC: PortableKind(
-        _with_field, _ultrasonic_model, "Bosch Ultrasonic 3.1", ("ultrasonic", "uss")
+        _with_field, _model_by_field, "Bosch Ultrasonic 3.1", ("ultrasonic", "uss")
     ),
 }
 """Rows by kind; other kinds are expressed by `OTHER`."""

@@ -22,7 +22,7 @@ from . import (
     ros_transforms,
     urdf,
 )
-from .foreign_values import Written
+from .foreign_values import Export, Texts
 from .frames import GROUND, REAR_AXLE, REAR_AXLE_GROUND
 from .lens_pictures import (
     KeptPicture,
@@ -35,10 +35,7 @@ from .lens_pictures import (
     straight,
 )
 from .losses import BEAMS, FUSION, MAX_RANGE, MIN_RANGE, MODEL, PARAMETERS
-from .portable import PortableSensor
-
-Carried = tuple[PortableSensor, ...]
-FileTexts = Mapping[str, str]
+from .portable import PortableRig, PortableSensor
 
 
 class Codec(Protocol):
@@ -53,10 +50,10 @@ class Codec(Protocol):
     def FILES(self) -> tuple[str, ...]:
         """Names of the written files."""
 
-    def read(self, path: Path, /) -> Carried:
+    def read(self, path: Path, /) -> PortableRig:
         """Return the sensors of a file or folder."""
 
-    def write(self, sensors: Carried, texts: FileTexts, /) -> tuple[Written, list[str]]:
+    def write(self, sensors: PortableRig, texts: Texts, /) -> Export:
         """Return the files of sensors, and messages."""
 
 
@@ -95,7 +92,7 @@ class RigFormat:
     holds: frozenset[str] = frozenset()
     keeps: KeptPicture = lambda picture: picture
     settled: Callable[[PortableSensor], PortableSensor] = lambda sensor: sensor
-    source: Callable[[Path], FileTexts] = lambda path: {}
+    source: Callable[[Path], Texts] = lambda path: {}
     usual_size: Size | None = None
     beside: bool = False
     passes_through: bool = True

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
@@ -20,7 +20,8 @@ from .camera_info import info_files, with_info
 from .foreign_values import (
     MAX_FRAMES,
     MAX_LINE_LENGTH,
-    Written,
+    Export,
+    Texts,
     figure,
     plain_number,
     pose_from,
@@ -30,7 +31,7 @@ from .foreign_values import (
 from .frame_tree import OPTICAL, poses_from_root, with_optical_frames
 from .frames import OPTICAL_RPY, from_quaternion, pose_of
 from .passthrough import pose_of_entry
-from .portable import PortableSensor
+from .portable import PortableRig, PortableSensor
 from .portable_kinds import CAMERA
 
 FILE, ROOT = "rig.launch.xml", "base_link"
@@ -49,9 +50,7 @@ EQUALS = re.compile(r"(--[a-z-]+)=")
 ARGS = re.compile(rf"{PUBLISHER}[\"']?(?:\s+args=[\"'])?([^<\"'\n]*)")
 
 
-def write(
-    sensors: tuple[PortableSensor, ...], texts: Mapping[str, str]
-) -> tuple[Written, list[str]]:
+def write(sensors: PortableRig, texts: Texts) -> Export:
     """Return a launch file with a publisher for each sensor, with the root of an imported one."""
     root, origin_text = ROOT, OURS
     if texts:
@@ -88,7 +87,7 @@ def _publisher(launch: Element, parent: str, child: str, pose: Pose) -> None:
     SubElement(launch, "node", {"pkg": "tf2_ros", "exec": PUBLISHER, "args": args})
 
 
-def read(path: Path) -> tuple[PortableSensor, ...]:
+def read(path: Path) -> PortableRig:
     """Read the transforms of all calls of the publisher in a file, in the frame of their root.
 
     A frame with an optical frame below it is a camera; the kind of others is unknown.

@@ -6,7 +6,7 @@ an element beside them, which other readers of URDF ignore.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,8 @@ from .foreign_values import (
     FARTHEST,
     MAX_FRAMES,
     MIN_RANGE,
-    Written,
+    Export,
+    Texts,
     figure,
     figures,
     plain_number,
@@ -33,7 +34,7 @@ from .frame_tree import OPTICAL, poses_from_root, with_optical_frames
 from .frames import OPTICAL_RPY, seen_from
 from .gazebo import SensorElement, picture_in, scan_in, write_clip, write_picture, write_scan
 from .passthrough import entry_row, pose_entry, pose_of_entry
-from .portable import PortableSensor, uneven
+from .portable import PortableRig, PortableSensor, uneven
 from .portable_kinds import CAMERA, LIDAR, has_model
 
 RANGES = ("min_range", "max_range")
@@ -55,9 +56,7 @@ MASS_KG, INERTIA = 0.01, 1e-5
 """Of every link [kg, kg m2]: Gazebo has none without (sdformat's issue 199), nor below 1e-5 kg."""
 
 
-def write(
-    sensors: tuple[PortableSensor, ...], texts: Mapping[str, str]
-) -> tuple[Written, list[str]]:
+def write(sensors: PortableRig, texts: Texts) -> Export:
     """Return a robot that consists of the rig alone, and messages on losses.
 
     Its name and its root link are those of an imported one, if there is one.
@@ -141,7 +140,7 @@ def _gazebo(robot: Element, sensor: PortableSensor) -> None:
         write_scan(SubElement(element, LIDAR), sensor.scan)
 
 
-def read(path: Path) -> tuple[PortableSensor, ...]:
+def read(path: Path) -> PortableRig:
     """Read the sensors of a robot, in the frame of its root.
 
     Sensors are the links with a Gazebo sensor. If there are none, they are the links with an
@@ -150,7 +149,9 @@ def read(path: Path) -> tuple[PortableSensor, ...]:
     robot = _robot(path)
     in_root = _poses(path, robot)
     blocks = {
-        block.get("reference", ""): block for block in robot.iter("gazebo") if _is_sensor(block)
+        block.get("reference", ""): block
+        for block in robot.iter("gazebo")
+        if any(block.find(tag) is not None for tag in ("sensor", "perception_entropy"))
     }
     names = [name for name in in_root if name in blocks] or list(_bodiless(robot, in_root))
     if not names:
@@ -159,8 +160,20 @@ def read(path: Path) -> tuple[PortableSensor, ...]:
     poses = {name: seen_from(in_root[origin], pose) for name, pose in in_root.items()}
     sensors = [_sensor(path, name, poses, blocks.get(name)) for name in names]
     is_ours = next(robot.iter("perception_entropy"), None) is not None
-    line = "" if is_ours else _origin_line(origin, in_root)
-    return tuple(_with_entry(replace(block, told=line), robot) for block in sensors)
+    result = []
+    place, under = f"the robot's root, {next(iter(in_root))}", "on the ground under"
+    if origin == ON_GROUND:
+        place, under = f"{ON_GROUND}, which is on the ground", "under"
+    middle = "the middle of the vehicle, --at says where it is"
+    line = "" if is_ours else f"taken in {place}; if that is not {under} {middle}"
+    for sensor in sensors:
+        entry = ""
+        if sensor.kind is not None and not has_model(sensor):  # of unknown kind
+            own = [b for b in robot.iter("gazebo") if b.get("reference") == sensor.name]
+            texts = [tostring(block, "unicode").strip() for block in own]
+            entry = pose_entry(sensor, gazebo=texts)
+        result.append(replace(sensor, told=line, entry=entry))
+    return tuple(result)
 
 
 def _robot(path: Path) -> Element:
@@ -175,38 +188,21 @@ def _origin_of(poses: dict[str, Pose]) -> str:
     return ON_GROUND if ON_GROUND in poses else next(iter(poses))
 
 
-def _origin_line(origin: str, poses: dict[str, Pose]) -> str:
-    """Return where poses of a robot of another program are taken."""
-    place, under = f"the robot's root, {next(iter(poses))}", "on the ground under"
-    if origin == ON_GROUND:
-        place, under = f"{ON_GROUND}, which is on the ground", "under"
-    middle = "the middle of the vehicle, --at says where it is"
-    return f"taken in {place}; if that is not {under} {middle}"
-
-
-def _with_entry(sensor: PortableSensor, robot: Element) -> PortableSensor:
-    """Return a sensor; one of unknown kind gets the Gazebo elements of its link as entry."""
-    if sensor.kind is None or has_model(sensor):
-        return sensor
-    blocks = [b for b in robot.iter("gazebo") if b.get("reference") == sensor.name]
-    texts = [tostring(block, "unicode").strip() for block in blocks]
-    return replace(sensor, entry=pose_entry(sensor, gazebo=texts))
-
-
-def _is_sensor(block: Element) -> bool:
-    return block.find("sensor") is not None or block.find("perception_entropy") is not None
-
-
 def _poses(path: Path, robot: Element) -> dict[str, Pose]:
     """Return the poses of links in the root frame, by name, ordered by depth."""
     links = dict.fromkeys(link.get("name", "") for link in robot.iter("link"))
     require_at_most(path, "link", len(links), MAX_FRAMES, "links")
     joints = {}
-    for joint in robot.findall("joint"):
+    for joint in robot.findall("joint"):  # movable joints are at zero
         child, parent = (_end(path, joint, end, links) for end in ("child", "parent"))
         if child in joints:
             raise InputError(path, f"link {child}", "one parent", "two")
-        joints[child] = parent, _origin(path, joint)
+        origin, field = joint.find("origin"), f"joint {joint.get('name', '')!r}"
+        texts = {} if origin is None else origin.attrib
+        numbers = [
+            figures(path, f"{field}, {key}", texts.get(key, "0 0 0"), 3) for key in ("xyz", "rpy")
+        ]
+        joints[child] = parent, pose_from(path, field, *numbers)
     return poses_from_root(path, joints, links, "link")
 
 
@@ -217,15 +213,6 @@ def _end(path: Path, joint: Element, end: str, links: Collection[str]) -> str:
         field = f"joint {joint.get('name', '')!r}, {end}"
         raise InputError(path, field, "the name of a link", shown(name))
     return name
-
-
-def _origin(path: Path, joint: Element) -> Pose:
-    """Return the pose of a joint's child in its parent; movable joints are at zero."""
-    element, field = joint.find("origin"), f"joint {joint.get('name', '')!r}"
-    values = {} if element is None else element.attrib
-    keys = ("xyz", "rpy")
-    numbers = [figures(path, f"{field}, {k}", values.get(k, "0 0 0"), 3) for k in keys]
-    return pose_from(path, field, *numbers)
 
 
 def _bodiless(robot: Element, poses: dict[str, Pose]) -> Iterator[str]:

@@ -274,7 +274,7 @@ def test_the_file_is_beside_the_study(write):
         ("lasers:\n", "lasers: expected at least one laser, found none"),
         ("lasers: [1]\n", "line 1: expected a value of laser_id, found none"),
         ("lasers:\n  x: 1\n", "lasers: expected at least one laser, found none"),
-        (FLOW.replace(".0}\n- ", ".0\n- "), r"line \d: expected YAML, found"),
+        (FLOW.replace(".0}\n- ", ".0\n- "), r"line \d: expected well-formed YAML"),
         (FLOW.replace("laser_id: 0,", ""), "line 2: expected a value of laser_id, found none"),
         (FLOW.replace("-0.25", ""), "line 2: expected a value of vert_correction, found none"),
         (FLOW.replace("-0.25", ".nan"), "line 2: expected a finite number.*vert_corr.*'.nan'"),
@@ -283,7 +283,7 @@ def test_the_file_is_beside_the_study(write):
         (FLOW.replace("laser_id: 1", "laser_id: 2"), "channel 1: expected angles for it"),
         (FLOW.replace("laser_id: 1", "laser_id: 1.5"), "line 5: expected a whole number.*'1.5'"),
         (FLOW.replace("lasers: 2", "lasers: 3"), "lasers: expected 3 of them, .*found 2"),
-        (BLOCK.replace("laser_id: 1", "laser_id"), r"line \d+: expected YAML, found"),
+        (BLOCK.replace("laser_id: 1", "laser_id"), r"line \d+: expected well-formed YAML"),
         (
             BLOCK.replace("laser_id: 1", "laser_id: 1\n  laser_id: 1"),
             "line 10: expected a key used once",

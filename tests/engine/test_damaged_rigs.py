@@ -9,7 +9,7 @@ import pytest
 
 import pe_core as pe
 from pe_tools.exchange import RIG_FORMATS
-from pe_tools.formats.yaml_text import parse_yaml
+from pe_tools.formats.yaml_text import YamlText, parse_yaml
 from tests.engine.test_damaged_files import damaged
 from tests.thorough import tries
 
@@ -166,8 +166,8 @@ GREAT = {
         ("a: " + "[" * 100_000, "YAML, found too many levels"),
         ("a: &x [1, 2]\nb: [*x, *x]", "line 1: expected YAML without aliases"),
         ("a: 1\na: 2", "line 2: expected a key used once, found 'a'"),
-        ("a: [1, 2", "line 1: expected YAML"),
-        ("a: *x", "expected YAML, found undefined alias"),
+        ("a: [1, 2", "line 1: expected well-formed YAML"),
+        ("a: *x", "expected well-formed YAML, found undefined alias"),
         ("- 1", "a mapping"),
         ("a: \x00", "YAML"),
     ],
@@ -177,6 +177,16 @@ def test_yaml_that_is_out_to_do_harm_is_refused_in_one_line(text, words):
         parse_yaml("kit.yaml", text)
     line = str(caught.value)
     assert words in line and line.isprintable() and len(line) < 600
+
+
+def test_yaml_with_tags_anchors_and_braces_is_read_and_edited_where_it_can_be():
+    text = "%YAML:1.0\n---\na: !x [1, b, -.5e1]\nc: {d: &y 2, e: &y 'no'}  # kept\n"
+    yaml = YamlText("kit.yaml", text)
+    assert yaml.data == {"a": [1.0, "b", -5.0], "c": {"d": 2.0, "e": "no"}}
+    edited = yaml.edited({("c", "d"): "7.25"}, {})
+    assert edited == text.replace("&y 2", "7.25")
+    with pytest.raises(pe.InputError, match="c: expected a mapping with a line for each key"):
+        yaml.edited({}, {}, (("c",), ["f: 1"]))
 
 
 @pytest.mark.parametrize("case", GREAT)

@@ -2,6 +2,7 @@
 
 import json
 import math
+from pathlib import Path
 
 import pytest
 
@@ -13,196 +14,17 @@ from pe_tools.exchange import RIG_FORMATS, import_rig
 AXLE = pe.Reference(-1.38, 0.3)
 OPTION = ["--rear-axle", "-1.38", "0.3"]
 
-# --- files of the form that their programs write ------------------------------------------------
-
-CARLA = {
-    "objects": [
-        {"type": "sensor.pseudo.traffic_lights", "id": "traffic_lights"},
-        {
-            "type": "vehicle.tesla.model3",
-            "id": "ego_vehicle",
-            "sensors": [
-                {
-                    "type": "sensor.camera.rgb",
-                    "id": "rgb_front",
-                    "spawn_point": {
-                        "x": 2.0,
-                        "y": 0.1,
-                        "z": 2.0,
-                        "roll": 0.0,
-                        "pitch": 0.3,
-                        "yaw": 0.0,
-                    },
-                    "image_size_x": 800,
-                    "image_size_y": 600,
-                    "fov": 90.0,
-                    "sensor_tick": 0.05,
-                },
-                {
-                    "type": "sensor.other.radar",
-                    "id": "radar_front",
-                    "spawn_point": {"x": 2.0, "y": 0.0, "z": 1.5},
-                    "horizontal_fov": 30.0,
-                    "range": 100.0,
-                },
-                {
-                    "type": "sensor.lidar.ray_cast",
-                    "id": "lidar",
-                    "spawn_point": {"x": 0.0, "y": 0.0, "z": 2.4, "yaw": 30.0},
-                    "range": 50,
-                    "channels": 32,
-                    "points_per_second": 320000,
-                    "upper_fov": 2.0,
-                    "lower_fov": -26.8,
-                    "rotation_frequency": 20,
-                    "horizontal_fov": 120.0,
-                    "noise_stddev": 0.0,
-                },
-                {
-                    "type": "sensor.other.collision",
-                    "id": "collision",
-                    "spawn_point": {"x": 0.0, "y": 0.0, "z": 0.0},
-                },
-                {
-                    "type": "sensor.other.lane_invasion",
-                    "id": "lane_invasion",
-                    "spawn_point": {"x": 0.0, "y": 0.0, "z": 0.0},
-                },
-                {"type": "sensor.pseudo.tf", "id": "tf"},
-            ],
-        },
-    ]
-}
-"""As the ROS bridge's carla_spawn_objects has it (carla-simulator/ros-bridge)."""
-RIG_JSON = {
-    "rig": {
-        "sensors": [
-            {
-                "name": "radar:front",
-                "protocol": "radar.socket",
-                "parameter": "ip=1.2.3.4",
-                "nominalSensor2Rig_FLU": {"roll-pitch-yaw": [0.0, 0.0, 0.1], "t": [3.7, 0.0, 0.4]},
-                "properties": {"fov": "60"},
-            },
-            {
-                "name": "lidar:top",
-                "protocol": "lidar.socket",
-                "parameter": "device=LUMINAR,port=2368",
-                "nominalSensor2Rig_FLU": {"roll-pitch-yaw": [0.3, -0.1, 0.7], "t": [1.1, 0.0, 1.9]},
-                "properties": None,
-            },
-            {
-                "name": "ultrasonic:left",
-                "protocol": "ultrasonic.can",
-                "nominalSensor2Rig_FLU": {"roll-pitch-yaw": [0.0, 0.0, 90.0], "t": [0.0, 1.0, 0.5]},
-            },
-            {
-                "name": "camera:front",
-                "protocol": "camera.gmsl",
-                "parameter": "camera-name=AR0820,interface=csi-a",
-                "nominalSensor2Rig_FLU": {"roll-pitch-yaw": [0.0, 1.7, 0.0], "t": [1.8, 0.0, 1.4]},
-                "properties": {
-                    "Model": "ftheta",
-                    "cx": "1920.5",
-                    "cy": "1083.1",
-                    "width": "3840",
-                    "height": "2168",
-                    "bw-poly": "0.0 0.000534 -1.1e-9 0.0 0.0",
-                    "car-mask": "rle16 0 0 3840",
-                },
-            },
-            {"name": "vehicle:can", "protocol": "can.socket", "parameter": "device=can0"},
-        ],
-        "vehicle": {"valid": True, "value": {"body": {"length": 4.87}}},
-    },
-    "version": 7,
-}
-SCENE = {
-    "sensor.json": [
-        {"token": f"s{k}", "channel": name, "modality": kind}
-        for k, (name, kind) in enumerate(
-            [("RADAR_FRONT", "radar"), ("LIDAR_TOP", "lidar"), ("RADAR_BACK", "radar")]
-        )
-    ],
-    "calibrated_sensor.json": [
-        {
-            "token": f"c{k}",
-            "sensor_token": f"s{k}",
-            "translation": [3.412 - k, 0.01, 0.5 + k],
-            "rotation": [0.9999984769132877, 0.0, 0.0, 0.0017453283658983088],
-            "camera_intrinsic": [],
-        }
-        for k in range(3)
-    ],
-}
-CSV = (
-    "name,kind,model,x_m,y_m,z_m,roll_deg,pitch_deg,yaw_deg\n"
-    "roof,lidar,Velodyne VLP-16 Puck,0.1,0,1.9,0,0,0\n"
-    "corner,radar,Continental ARS408-21,2.1,0.7,0.5,0,0,45\n"
-    "beam,sonar,S1,2.1,0.7,0.4,0,0,45\n"
-)
-KIT = """# A kit, as tier4's aip_xx1_gen2 has it.
-sensor_kit_base_link:
-  camera0/camera_link:
-    x: 0.372 # Design Value
-    y: 0.0 # Design Value
-    z: -0.207
-    roll: -0.00
-    pitch: 0.0
-    yaw: 0.0
-
-  hesai_top_base_link:   # the one on the roof
-    x: 0.0
-    y: 0.0
-    z: 0.0
-    roll: 0.0
-    pitch: 0.0
-    yaw: 4.36332298038 # Design Value
-  hesai_left_base_link:
-    x: 0.0
-    y: 0.564
-    z: -0.300
-    roll: 0.872665
-    pitch: 0.0
-    yaw: 3.14159265359
-  gnss_link: # behind
-    x: -0.279
-    y: 0.0
-    z: -0.160
-    roll: 0.0
-    pitch: 0.0
-    yaw: 0.0
-"""
-ON_BASE = """base_link:
-  sensor_kit_base_link:
-    x: 0.9 # Design Value
-    y: 0.0
-    z: 2.0
-    roll: -0.001
-    pitch: 0.015
-    yaw: -0.0364
-  front_center/radar_link:
-    x: 3.7
-    y: 0.0
-    z: 0.5
-    roll: 0.0
-    pitch: 0.0
-    yaw: 0.0
-  rear_left/radar_link:
-    x: -1.0
-    y: 0.7
-    z: 0.5
-    roll: 0.0
-    pitch: 0.0
-    yaw: 2.4
-"""
+FOREIGN = Path(__file__).parent / "foreign"
+"""Files as their programs write them, a folder a format: carla_spawn_objects of CARLA's ROS bridge,
+a rig.json of DriveWorks, tables of nuScenes, a CSV, a kit of the form of tier4's aip_xx1_gen2."""
 FILES = {
-    "carla": {"objects.json": json.dumps(CARLA)},
-    "driveworks": {"rig.json": json.dumps(RIG_JSON)},
-    "nuscenes": {name: json.dumps(rows) for name, rows in SCENE.items()},
-    "csv": {"rig.csv": CSV},
-    "autoware": {"sensors_calibration.yaml": ON_BASE, "sensor_kit_calibration.yaml": KIT},
+    folder.name: {file.name: file.read_text("utf-8") for file in sorted(folder.iterdir())}
+    for folder in sorted(FOREIGN.iterdir())
 }
+CARLA = json.loads(FILES["carla"]["objects.json"])
+KIT = FILES["autoware"]["sensor_kit_calibration.yaml"]
+
+
 LEFT_OUT = {
     "carla": "1 collision sensor (collision), "
     "1 lane_invasion sensor (lane_invasion), 1 pseudo sensor (tf)",

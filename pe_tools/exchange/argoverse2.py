@@ -19,7 +19,7 @@ from pe_core.base.table_reader import Table
 from pe_core.base.values import vector
 from pe_core.geometry.poses import METRES
 
-from .foreign_values import COEFFICIENT, FOCAL, PIXELS, PRINCIPAL_POINT, Export, Texts
+from .foreign_values import COEFFICIENT, FOCAL, PIXELS, PRINCIPAL_POINT, Export, FileTexts
 from .frames import BODY_FROM_OPTICAL, from_quaternion, pose_of, product, quaternion
 from .lens_pictures import pinhole_picture
 from .portable import PortableRig, PortableSensor
@@ -41,7 +41,7 @@ CONVENTIONS = {
 NO_BEND = "the file's k1, k2, k3 are not applied: Argoverse's own reader projects without them"
 
 
-def write(sensors: PortableRig, _texts: Texts) -> Export:
+def write(sensors: PortableRig, _texts: FileTexts) -> Export:
     """Return the tables of poses and of intrinsics, and no messages."""
     feather, poses, intrinsics = _feather(), [], []
     for sensor in sensors:

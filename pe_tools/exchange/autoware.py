@@ -24,7 +24,7 @@ from pe_core.scene.vehicle_description import Reference
 from pe_tools.formats.yaml_text import KeyPath, YamlText, parse_yaml
 
 from .camera_info import info_files, info_name, picture_of_info, with_info
-from .foreign_values import Export, Texts, named_numbers, plain_number, pose_from, text_of
+from .foreign_values import Export, FileTexts, named_numbers, plain_number, pose_from, text_of
 from .frame_tree import with_legal_frames
 from .frames import composed, seen_from
 from .lens_pictures import alike
@@ -183,7 +183,7 @@ def _pose_texts(pose: Pose) -> dict[str, str]:
     return {key: plain_number(value) for key, value in numbers}
 
 
-def write(sensors: PortableRig, texts: Texts) -> Export:
+def write(sensors: PortableRig, texts: FileTexts) -> Export:
     """Return the files of a new kit, or of the kit of these texts with its sensors updated.
 
     A new kit has a camera_info file per camera; messages say where the LiDARs' frames are.

@@ -21,7 +21,7 @@ from .foreign_values import (
     PIXELS,
     RANGE,
     Export,
-    Texts,
+    FileTexts,
     json_bytes,
     json_of,
     json_rows,
@@ -59,7 +59,7 @@ FIGURES = ("image_size_x", "image_size_y", "fov", *SCAN_KEYS, ACROSS, UPWARDS)
 POSITION_KEYS, ROTATION_KEYS = ("x", "y", "z"), ("roll", "pitch", "yaw")
 
 
-def write(sensors: PortableRig, texts: Texts) -> Export:
+def write(sensors: PortableRig, texts: FileTexts) -> Export:
     """Return a document whose first vehicle carries the rig, and messages on losses."""
     document: Any = {"objects": [{"type": "vehicle.*", "id": "ego_vehicle"}]}
     if texts:

@@ -22,7 +22,7 @@ from .foreign_values import (
     MIN_RANGE,
     PIXELS,
     Export,
-    Texts,
+    FileTexts,
     figure,
     plain_number,
     pose_from,
@@ -53,7 +53,7 @@ HEAD = """\
 """
 
 
-def write(sensors: PortableRig, _texts: Texts) -> Export:
+def write(sensors: PortableRig, _texts: FileTexts) -> Export:
     """Return the table of a rig, and no messages."""
     rows = [
         entry_row(sensor, lambda _: {}, (), ()) if sensor.is_left_out else _row(sensor)

@@ -25,7 +25,7 @@ from .foreign_values import (
     PIXELS,
     PRINCIPAL_POINT,
     Export,
-    Texts,
+    FileTexts,
     figure,
     figures,
     json_bytes,
@@ -53,7 +53,7 @@ UNKNOWN = ("", "virtual")
 FIGURES, CORRECTION = ("properties", "parameter"), "correction_"
 
 
-def write(sensors: PortableRig, texts: Texts) -> Export:
+def write(sensors: PortableRig, texts: FileTexts) -> Export:
     """Return the rig file, and messages on sensor kinds that DriveWorks does not have."""
     document: Any = {"rig": {}, "version": 2}
     if texts:

@@ -27,8 +27,8 @@ Written = Mapping[str, bytes]
 """Bytes by file name."""
 Export = tuple[Written, list[str]]
 """Files, and messages on what they cannot hold."""
-Texts = Mapping[str, str]
-"""Texts of imported or existing files by their names."""
+FileTexts = Mapping[str, str]
+"""FileTexts of imported or existing files by their names."""
 
 
 def text_of(path: Path, max_bytes: int = TEXT_BYTES) -> str:

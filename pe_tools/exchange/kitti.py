@@ -17,7 +17,7 @@ from pe_core.base.errors import InputError
 from pe_core.base.values import Number
 from pe_core.geometry.poses import Pose
 
-from .foreign_values import Export, Texts, figures, spaced, text_of
+from .foreign_values import Export, FileTexts, figures, spaced, text_of
 from .frames import BODY_FROM_OPTICAL, checked_rotation, pose_of, product, turned
 from .lens_pictures import pinhole_picture
 from .portable import PortableRig, PortableSensor
@@ -35,7 +35,7 @@ ENTRY = Number(cap=1e9)
 """An entry of a matrix."""
 
 
-def write(sensors: PortableRig, _texts: Texts) -> Export:
+def write(sensors: PortableRig, _texts: FileTexts) -> Export:
     """Return the calibration of one LiDAR and up to four cameras, and a message.
 
     Another number of LiDARs or cameras, or orientations that differ, raise `InputError`.

@@ -18,7 +18,7 @@ from pe_core.geometry.poses import METRES
 from pe_core.sensors.camera import BrownConrady
 from pe_core.study.passthrough import json_entry
 
-from .foreign_values import Export, Texts, json_bytes, json_of, json_rows
+from .foreign_values import Export, FileTexts, json_bytes, json_of, json_rows
 from .frames import (
     BODY_FROM_OPTICAL,
     BODY_FROM_RIGHT_FORWARD,
@@ -39,7 +39,7 @@ AXES = {CAMERA: BODY_FROM_OPTICAL, LIDAR: BODY_FROM_RIGHT_FORWARD}
 """Rotation from nuScenes' sensor axes to those of this project, by kind; others have the same."""
 
 
-def write(sensors: PortableRig, _texts: Texts) -> Export:
+def write(sensors: PortableRig, _texts: FileTexts) -> Export:
     """Return the two tables, and messages on image sizes, which the tables cannot hold."""
     calibrated = [entry_row(sensor, _calibrated, POSE, FIGURES, CALIBRATED) for sensor in sensors]
     sensor_rows = [entry_row(sensor, _known, (), (), SENSORS) for sensor in sensors]

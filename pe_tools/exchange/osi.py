@@ -30,7 +30,7 @@ from .foreign_values import (
     PLAIN,
     RANGE,
     Export,
-    Texts,
+    FileTexts,
     figure,
     json_of,
     pose_from,
@@ -63,7 +63,7 @@ STAND_IN_RANGE_M = 100.0
 """Range of a LiDAR if the file states none; it is that of the stand-in model."""
 
 
-def write(sensors: PortableRig, _texts: Texts) -> Export:
+def write(sensors: PortableRig, _texts: FileTexts) -> Export:
     """Return a configuration with all sensors, and messages on names and ranges it cannot hold.
 
     Ids count from 0 in rig order, around those of imported entries. Every beam is written, so more

@@ -22,7 +22,7 @@ from . import (
     ros_transforms,
     urdf,
 )
-from .foreign_values import Export, Texts
+from .foreign_values import Export, FileTexts
 from .frames import GROUND, REAR_AXLE, REAR_AXLE_GROUND
 from .lens_pictures import (
     KeptPicture,
@@ -53,7 +53,7 @@ class Codec(Protocol):
     def read(self, path: Path, /) -> PortableRig:
         """Return the sensors of a file or folder."""
 
-    def write(self, sensors: PortableRig, texts: Texts, /) -> Export:
+    def write(self, sensors: PortableRig, texts: FileTexts, /) -> Export:
         """Return the files of sensors, and messages."""
 
 
@@ -92,7 +92,7 @@ class RigFormat:
     holds: frozenset[str] = frozenset()
     keeps: KeptPicture = lambda picture: picture
     settled: Callable[[PortableSensor], PortableSensor] = lambda sensor: sensor
-    source: Callable[[Path], Texts] = lambda path: {}
+    source: Callable[[Path], FileTexts] = lambda path: {}
     usual_size: Size | None = None
     beside: bool = False
     passes_through: bool = True

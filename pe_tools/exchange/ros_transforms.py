@@ -21,7 +21,7 @@ from .foreign_values import (
     MAX_FRAMES,
     MAX_LINE_LENGTH,
     Export,
-    Texts,
+    FileTexts,
     figure,
     plain_number,
     pose_from,
@@ -50,7 +50,7 @@ EQUALS = re.compile(r"(--[a-z-]+)=")
 ARGS = re.compile(rf"{PUBLISHER}[\"']?(?:\s+args=[\"'])?([^<\"'\n]*)")
 
 
-def write(sensors: PortableRig, texts: Texts) -> Export:
+def write(sensors: PortableRig, texts: FileTexts) -> Export:
     """Return a launch file with a publisher for each sensor, with the root of an imported one."""
     root, origin_text = ROOT, OURS
     if texts:

@@ -22,7 +22,7 @@ from .foreign_values import (
     MAX_FRAMES,
     MIN_RANGE,
     Export,
-    Texts,
+    FileTexts,
     figure,
     figures,
     plain_number,
@@ -56,7 +56,7 @@ MASS_KG, INERTIA = 0.01, 1e-5
 """Of every link [kg, kg m2]: Gazebo has none without (sdformat's issue 199), nor below 1e-5 kg."""
 
 
-def write(sensors: PortableRig, texts: Texts) -> Export:
+def write(sensors: PortableRig, texts: FileTexts) -> Export:
     """Return a robot that consists of the rig alone, and messages on losses.
 
     Its name and its root link are those of an imported one, if there is one.

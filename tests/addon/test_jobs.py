@@ -35,13 +35,6 @@ def data_of(outcome) -> dict:
     return data
 
 
-def test_score_of_the_whole_grid_is_the_engines(car):
-    car.perception_entropy.score_samples = 0
-    study = scenes.study()
-    assert bpy.ops.pe.score() == {"FINISHED"}
-    assert stored(car)["entropy"] == study.evaluator().score(study.rig).entropy
-
-
 def test_result_is_shown(car):
     scenes.add_sensor("front", model="Camera 60 deg")
     bpy.ops.pe.score()
@@ -235,13 +228,6 @@ def test_the_start_of_a_search_is_not_scored_again_when_it_is_known(car, monkeyp
     bpy.context.view_layer.update()
     jobs.OPTIMIZE.read(Window(car))
     assert made == [known, None]
-
-
-def test_a_search_from_a_known_score_finds_the_same(car):
-    study = scenes.study()
-    plain = finished(pe.OptimizeJob(study))
-    known = finished(pe.OptimizeJob(study, before=plain.before))
-    assert data_of(known) == data_of(plain)
 
 
 def test_before_is_where_the_first_of_several_searches_began(car):

@@ -367,16 +367,6 @@ def test_a_vehicle_that_moves_is_read_once_it_rests(live, monkeypatch):
     assert told(reading(live).summary) == told(exact())
 
 
-def test_points_that_move_count(live):
-    before = reading(live).summary
-    live.objects["cabin"].data.vertices[6].co.z += 1.0
-    live.objects["cabin"].data.update()
-    bpy.context.view_layer.update()
-    assert not is_exact(live)
-    rest()
-    assert told(reading(live).summary) == told(exact()) != told(before)
-
-
 def test_what_is_wrong_is_said_in_a_line_until_it_is_mended(live):
     roof = live.objects["roof"]
     roof.scale = (2.0, 2.0, 2.0)
@@ -388,14 +378,6 @@ def test_what_is_wrong_is_said_in_a_line_until_it_is_mended(live):
     bpy.context.view_layer.update()
     rest()
     assert state.live_state(live.name).note == "" and told(reading(live).summary) == told(exact())
-
-
-def test_another_prior_is_no_change_of_the_sensors(live):
-    drag(live.objects["roof"])
-    rest()
-    live.perception_entropy.prior = "uniform"
-    rest()
-    assert reading(live).before is None and told(reading(live).summary) == told(exact())
 
 
 def test_a_sensor_deleted_in_the_middle_of_a_drag(live):

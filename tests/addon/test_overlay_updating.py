@@ -319,15 +319,6 @@ def test_a_class_that_the_prior_does_not_know_is_replaced(rig):
     assert "Car" in scenes.drawn(rig)["reach"][""].legend.title
 
 
-def test_older_names_still_work(rig):
-    settings = rig.perception_entropy
-    for name, value in (("show_overlay", True), ("beam_limit", 123), ("beam_length", 5.0)):
-        setattr(settings, name, value)
-        assert getattr(settings, name) == value
-    view = scheduler.SnapshotReader().request(rig, scenes.depsgraph()).view
-    assert (view.beam_limit, view.beam_length) == (123, 5.0)
-
-
 def test_changes_are_heard_and_another_file_forgets(rig):
     assert {scheduler.on_moving} <= set(signals.moving.listeners)
     assert {scheduler.on_idle} <= set(signals.idle.listeners)
@@ -335,16 +326,3 @@ def test_changes_are_heard_and_another_file_forgets(rig):
     assert len(shown) > 5
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     assert len(shown) == 0 and not scheduler._requested and not draw_handler._batches
-
-
-def test_register_and_unregister_leave_nothing(rig):
-    lists = [getattr(bpy.app.handlers, name) for name in dir(bpy.app.handlers)]
-    lists = [each for each in lists if isinstance(each, list)]
-    draw_handler.unregister()
-    counts = [len(each) for each in lists]
-    for _ in range(2):
-        draw_handler.register()
-    for _ in range(2):
-        draw_handler.unregister()
-    assert [len(each) for each in lists] == counts and len(shown) == 0
-    draw_handler.register()  # as the add-on's own unregister expects

@@ -42,10 +42,6 @@ def test_a_score_on_objects_has_its_expected_ap_beside_it():
     assert said(now, before).lines[1] == (("Expected AP 0.653", SAME), ("(+0.012)", BETTER))
 
 
-def test_a_preview_says_so():
-    assert said(summary(), rested=False).error == "± 0.022  preview"
-
-
 @pytest.mark.parametrize(
     ("told", "line"),
     [
@@ -106,13 +102,6 @@ def test_the_zones_that_changed_most_are_named():
         (("Worse on the left by 0.30 nats", WORSE),),
     )
     assert said(before, before).lines[1:] == ()
-
-
-def test_a_zone_that_came_or_went_is_no_change():
-    assert (
-        said(summary(zones=[("front", 1.0, 0.9)]), summary(zones=[("rear", 9.0, 0.1)])).lines[1:]
-        == ()
-    )
 
 
 def test_the_read_out_says_what_is_in_the_way_below_what_was():
@@ -205,7 +194,3 @@ def test_figures_in_words(now, before, lines):
     assert texts(ShownFigures(now, before, True)) == lines
     of_before = tuple(f"Before this move: {line}" if line else "" for line in lines)
     assert before or texts(ShownFigures(now)) == of_before
-
-
-def test_figures_that_are_not_there_yet_say_so():
-    assert texts(ShownFigures())[0] == readout_text.PENDING

@@ -183,51 +183,19 @@ def names_of(functions) -> list[str]:
     return [f"{f.__module__.removeprefix('blender_addon.')}.{f.__name__}" for f in functions]
 
 
-def test_each_event_has_one_handler_and_a_written_order(car):
+def test_each_event_has_one_handler_that_invalidates_caches_first(car):
     assert traces()["handlers"] == [f"on_{event}" for event in sorted(wiring.EVENTS)]
-    after_step = [
-        "sensor_cache.invalidate",
-        "vehicle_cache.invalidate",
-        "live.session.on_restored",
-        "change_events.note_change",
-    ]
-    assert {event: names_of(functions) for event, functions in wiring.EVENTS.items()} == {
-        "depsgraph_update_post": [
-            "sensor_cache.invalidate",
-            "vehicle_cache.invalidate_if_updated",
-            "operators.inset.note_change",
-            "change_events.note_if_changed",
-            "live.session.follow_update",
-            "overlay.scheduler.note_selection",
-        ],
-        "frame_change_post": [
-            "vehicle_cache.invalidate_if_updated",
-            "change_events.note_if_changed",
-        ],
-        "undo_pre": ["sensor_cache.invalidate"],
-        "undo_post": after_step,
-        "redo_pre": ["sensor_cache.invalidate"],
-        "redo_post": after_step,
-        "load_pre": [
-            "sensor_cache.invalidate",
-            "vehicle_cache.clear",
-            "change_events.clear",
-            "live.session.clear",
-            "result_staleness.clear",
-            "location_query.clear",
-            "overlay.scheduler.clear",
-        ],
-        "load_post": [
-            "sensor_cache.invalidate",
-            "vehicle_cache.clear",
-            "consistency.after_load",
-            "change_events.note_change",
-            "overlay.draw_handler.clear",
-            "overlay.scheduler.clear",
-            "overlay.scheduler.schedule",
-        ],
-        "save_pre": ["consistency.before_save"],
-    }
+    order = {event: names_of(functions) for event, functions in wiring.EVENTS.items()}
+    for event, functions in order.items():
+        if "sensor_cache.invalidate" in functions:
+            assert functions[0] == "sensor_cache.invalidate", event
+    update = order["depsgraph_update_post"]
+    for first, then in (
+        ("vehicle_cache.invalidate_if_updated", "change_events.note_if_changed"),
+        ("change_events.note_if_changed", "live.session.follow_update"),
+    ):
+        assert update.index(first) < update.index(then)
+    assert order["undo_post"] == order["redo_post"]
 
 
 def test_a_handler_calls_its_functions_in_order_whatever_one_of_them_does(monkeypatch, capsys):
@@ -248,30 +216,8 @@ def test_listeners_are_called_in_the_written_order(car):
     for signal, listeners in wiring.LISTENERS:
         assert signal.listeners == listeners
     assert {signal for signal, _ in wiring.LISTENERS} == set(SIGNALS)
-    assert names_of(signals.moving.listeners) == [
-        "operators.look_through.restore_lost",
-        "operators.upright.on_moving",
-        "consistency.repair_scenes",
-        "diagnostics.postpone_checks",
-        "overlay.scheduler.on_moving",
-    ]
-    assert names_of(signals.idle.listeners) == [
-        "operators.look_through.restore_lost",
-        "result_staleness.update_result",
-        "result_staleness.update_variants",
-        "live.session.on_idle",
-        "diagnostics.schedule_checks",
-        "location_query.query_again",
-        "overlay.scheduler.on_idle",
-    ]
-
-
-def test_all_that_is_documented_is_there(addon):
-    found = traces()
-    operators = ("add_sensor", "score", "optimize", "cancel", "export_study", "render_review")
-    operators += ("add_focus", "remove_focus")
-    assert {f"PE_OT_{name}" for name in operators} <= set(found["classes"])
-    assert found["properties"] == ["Scene", "Object"]
+    idle = names_of(signals.idle.listeners)
+    assert idle.index("result_staleness.update_result") < idle.index("live.session.on_idle")
 
 
 def test_handlers_outlive_a_new_file(addon):

@@ -126,5 +126,5 @@ def test_a_check_of_all_presets_leaves_the_window_free_and_esc_keeps_what_it_fou
     found = stage.do(ROWS)
     met = found["met"]
     assert found["longest"] < 5.0, "the window stood still"
-    assert 0 < sum(each >= 0 for each in met) < len(met)
+    assert 0 < sum(met) < len(met)
     assert "Traceback" not in stage.log.read_text()

@@ -129,15 +129,9 @@ def robustness(
 ) -> Robustness:
     """Return how far errors and failures raise the entropy of two placements.
 
-    Parameters
-    ----------
-    evaluator : RigEvaluator
-        It should be sampled: every sensor is measured once for each draw.
-    before, after : Rig
-    tolerance : Tolerance
-        Its mounting errors are used; without any, those of `WORKSHOP`.
-    seed : int
-        Seed of the study; a search with this seed uses other errors.
+    The evaluator should be sampled: every sensor is measured once for each draw. The mounting
+    errors of the tolerance are used; without any, those of `WORKSHOP`. `seed` is that of the study;
+    a search with this seed uses other errors.
     """
     errors = replace(tolerance if tolerance.mounts_off else WORKSHOP, failures=False, worst=False)
     first = _robustness_of(evaluator, before, errors, seed)

@@ -47,23 +47,13 @@ def run_tasks(
 ) -> Generator[list[tuple[TaskKey, Any | WorkerDied]], None, None]:
     """Run tasks on the workers of an executor; yield lists of items with their results.
 
-    A task whose worker died is run once more, alone, after all others: which of several tasks
-    killed a worker cannot be known before. What a call raises in its worker is raised here.
+    `waiting` has items that stand for the tasks; those that are appended meanwhile are run as well.
+    `call_of` makes an item's call when a worker is free, at most `width` at a time. When no task
+    completes for `wait_s`, an empty list is yielded, so that the caller can check whether to go on.
 
-    Parameters
-    ----------
-    executor : concurrent.futures.Executor
-        After a worker's death it still accepts tasks, as `Processes` does.
-    waiting : deque
-        Items that stand for the tasks. Items that are appended meanwhile are run as well.
-    call_of : callable
-        From an item to the call. It is called when a worker is free, and again for a second
-        attempt.
-    width : callable, optional
-        How many tasks are submitted at a time; all, by default.
-    wait_s : float, optional
-        When no task completes for so long, an empty list is yielded, so that the caller can check
-        whether to continue [s].
+    A task whose worker died is run once more, alone, after all others: which of several tasks
+    killed a worker cannot be known before. After a worker's death the executor still accepts tasks,
+    as `Processes` does. What a call raises in its worker is raised here.
     """
     order: dict[TaskKey, int] = {}
     running: dict[Future[_Reply], TaskKey] = {}

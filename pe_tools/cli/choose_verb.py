@@ -16,18 +16,7 @@ from pe_core.base.errors import InputError
 from pe_core.search.goals import OBJECTIVES
 from pe_core.study import mounts_table
 
-from ..jobs import (
-    FRONT_NAMES,
-    SAVE_EVERY_S,
-    Design,
-    FrontCheckpoint,
-    FrontJob,
-    TradeOff,
-    front_dict,
-    prepare_folder,
-    read_front_search,
-    write_front,
-)
+from .. import jobs
 from .executors import evaluated_by
 from .interrupts import Interrupted, stop_at_first
 from .progress_line import Reporter
@@ -35,7 +24,7 @@ from .run_job import write_somewhere
 from .terminal import BAD_INPUT, DONE, Answer, tell
 
 
-def front_summary(chosen: TradeOff) -> str:
+def front_summary(chosen: jobs.TradeOff) -> str:
     """Return the front as a table, with the pose of each sensor: price, entropy, coverage; or the
     figures of several objectives."""
     if not chosen.objectives:
@@ -56,7 +45,7 @@ def front_summary(chosen: TradeOff) -> str:
 
 
 def _table(
-    chosen: TradeOff, heads: Sequence[str], rows: Sequence[Sequence[str]], margin: int
+    chosen: jobs.TradeOff, heads: Sequence[str], rows: Sequence[Sequence[str]], margin: int
 ) -> list[str]:
     """Return figures of the front right-aligned, each before its design and its sensors' poses."""
     widths = [max(map(len, column)) for column in zip(heads, *rows, strict=True)]
@@ -72,7 +61,7 @@ def _table(
     return lines
 
 
-def search_notes(chosen: TradeOff) -> Iterator[str]:
+def search_notes(chosen: jobs.TradeOff) -> Iterator[str]:
     """Yield sentences about the search: numbers of designs, early stop, infeasible designs."""
     count, searched = len(chosen.designs) + len(chosen.refused), chosen.searched
     more = "of more" if chosen.stopped else "of more, by local search"
@@ -84,7 +73,7 @@ def search_notes(chosen: TradeOff) -> Iterator[str]:
     yield from _more_notes(chosen)
 
 
-def _more_notes(chosen: TradeOff) -> Iterator[str]:
+def _more_notes(chosen: jobs.TradeOff) -> Iterator[str]:
     """Yield what the designs make of requirements, an early stop, and infeasible designs."""
     if chosen.requirements_note:
         yield chosen.requirements_note
@@ -95,13 +84,13 @@ def _more_notes(chosen: TradeOff) -> Iterator[str]:
         yield f"no place for {name}: {why}"
 
 
-def _figures(design: Design) -> list[str]:
+def _figures(design: jobs.Design) -> list[str]:
     coverage = "-" if design.score is None else f"{design.score.coverage:.1%}"
     entropy = "infeasible" if design.is_led_in else f"{design.entropy:.4f}"
     return [f"{design.price:,.10g}", entropy, coverage]
 
 
-def _placed(design: Design, margin: str) -> Iterator[str]:
+def _placed(design: jobs.Design, margin: str) -> Iterator[str]:
     """Yield a line for each sensor: its slot, or its position and the nonzero angles."""
     mounts = mounts_table(design.study.rig, design.study.search.mounting)
     for sensor in design.study.rig:
@@ -125,7 +114,7 @@ plots: list[Draw] = []
 """
 
 
-def resumed(job: FrontJob, args: argparse.Namespace) -> str | None:
+def resumed(job: jobs.FrontJob, args: argparse.Namespace) -> str | None:
     """Let a job go on where that of ``--resume`` ended; return the folder of its results.
 
     Raises `InputError` where the folder has no checkpoint of this study's front.
@@ -133,37 +122,32 @@ def resumed(job: FrontJob, args: argparse.Namespace) -> str | None:
     folder: str | None = getattr(args, "resume", None)
     if folder is None:
         return args.output  # type: ignore[no-any-return]
-    job.journals = read_front_search(job.study, Path(folder))
+    job.journals = jobs.read_front_search(job.study, Path(folder))
     tell(f"going on after {job.journals.count:,} placements")
     return folder
 
 
 def choose(
-    job: FrontJob,
+    job: jobs.FrontJob,
     output: Path | None,
     *,
     as_json: bool,
     host: Mapping[str, str] | None = None,
-    more: Callable[[TradeOff, Path], None] | None = None,
+    more: Callable[[jobs.TradeOff, Path], None] | None = None,
     scheduler: str | None = None,
 ) -> Answer:
     """Compute the front of a study, write it, and return the text to print.
 
     The first Ctrl-C, SIGTERM or SIGHUP stops the job: the front so far is written. The second one
-    ends at once; the front that was last saved stays. It is saved every few seconds.
-
-    Parameters
-    ----------
-    more : callable, optional
-        Writes further files to the folder (Blender's).
-    scheduler : str, optional
-        Address of a Dask scheduler whose workers evaluate placements; by default processes do.
+    ends at once; the front that was last saved stays. It is saved every few seconds. `more` writes
+    further files to the folder (Blender's). `scheduler` is the address of a Dask scheduler whose
+    workers evaluate placements; by default processes do.
     """
     if output is not None:
-        prepare_folder(output, FRONT_NAMES)
+        jobs.prepare_folder(output, jobs.FRONT_NAMES)
 
     def write(folder: Path) -> None:
-        data = write_front(chosen, folder, host)
+        data = jobs.write_front(chosen, folder, host)
         if more is not None:
             more(chosen, folder)
         for draw in plots:
@@ -175,7 +159,7 @@ def choose(
         if found is None:
             note = "no design was complete, so nothing was written"
             raise Interrupted(received.signum or signal.SIGINT, note)
-        chosen, status, data = found, DONE, front_dict(found, host)
+        chosen, status, data = found, DONE, jobs.front_dict(found, host)
         if output is not None:
             folder = write_somewhere(output, write)
             told = "not in any file" if folder is None else f"in {folder}"
@@ -186,10 +170,10 @@ def choose(
         return text, status or received.status(DONE)
 
 
-def _drive(job: FrontJob, output: Path | None, host: Mapping[str, str] | None) -> None:
+def _drive(job: jobs.FrontJob, output: Path | None, host: Mapping[str, str] | None) -> None:
     """Run a job to its end with progress; save the front so far every few seconds."""
     reporter, saved, kept = Reporter(sys.stderr), time.monotonic(), 0
-    checkpoint = FrontCheckpoint(job.study)
+    checkpoint = jobs.FrontCheckpoint(job.study)
 
     def attempt(save: Callable[[], object]) -> None:
         try:
@@ -200,13 +184,13 @@ def _drive(job: FrontJob, output: Path | None, host: Mapping[str, str] | None) -
     try:
         for progress in job:
             reporter.report(progress)
-            if output is None or time.monotonic() - saved < SAVE_EVERY_S:
+            if output is None or time.monotonic() - saved < jobs.SAVE_EVERY_S:
                 continue
             attempt(partial(checkpoint.save, job.journals, output))
             saved, chosen = time.monotonic(), job.trade_off
             if chosen is not None and chosen.searched > kept:
                 kept = chosen.searched
-                attempt(partial(write_front, chosen, output, host))
+                attempt(partial(jobs.write_front, chosen, output, host))
     finally:
         reporter.clear()
         if output is not None and job.journals.count:

@@ -30,11 +30,7 @@ from .terminal import tell
 class PostedCheckpoints:
     """Checkpoints that a worker posts to a topic of the scheduler.
 
-    Attributes
-    ----------
-    topic, run : str
-    known : tuple of EvaluatedRig
-        Journal of an earlier part of the search.
+    `known` is the journal of an earlier part of the search.
     """
 
     topic: str

@@ -16,20 +16,7 @@ from pe_core.base import dump_json
 from pe_core.base.errors import InputError
 from pe_core.study import STUDY, Study
 
-from ..jobs import (
-    BegunSearch,
-    Checkpoint,
-    Job,
-    OptimizeJob,
-    Outcome,
-    ScoreJob,
-    files_of_other_runs,
-    prepare_folder,
-    read_search,
-    result_dict,
-    set_aside_files_of_other_runs,
-    write_outcome,
-)
+from .. import jobs
 from .executors import evaluated_by
 from .interrupts import Interrupted, stop_at_first
 from .progress_line import Reporter
@@ -43,10 +30,7 @@ PREFIX = "perception-entropy-"
 def fallback_folder() -> Iterator[Path]:
     """Make a folder among the system's temporary files; it is removed again if it stays empty.
 
-    Raises
-    ------
-    InputError
-        No folder can be made there.
+    `InputError` where no folder can be made there.
     """
     try:
         folder = Path(tempfile.mkdtemp(prefix=PREFIX))
@@ -116,11 +100,11 @@ class More(NamedTuple):
     """
 
     names: Sequence[str]
-    write: Callable[[Outcome, Data, Path], None]
+    write: Callable[[jobs.Outcome, Data, Path], None]
 
 
 def carry_out(
-    job: Job,
+    job: jobs.Job,
     output: Path | None,
     *,
     as_json: bool,
@@ -141,7 +125,7 @@ def carry_out(
         if outcome is None:
             note = "no score was complete, so nothing was written"
             raise Interrupted(received.signum or signal.SIGINT, note)
-        status, data = DONE, result_dict(outcome, host)
+        status, data = DONE, jobs.result_dict(outcome, host)
         if output is not None:
             status, data = keep(outcome, output, host, more)
         text = dump_json(data) if as_json else summary(outcome)
@@ -154,7 +138,9 @@ def print_vehicle(study: Study) -> None:
         show(f"{one_line(study.vehicle_line)}\n", sys.stderr)
 
 
-def drive(job: Job, output: Path | None = None, stream: TextIO | None = None) -> Outcome | None:
+def drive(
+    job: jobs.Job, output: Path | None = None, stream: TextIO | None = None
+) -> jobs.Outcome | None:
     """Run a job to its end, with progress on `stream` (default: stderr); return its outcome.
 
     The outcome is None if the job was stopped before its first score. During a search, checkpoints
@@ -162,8 +148,8 @@ def drive(job: Job, output: Path | None = None, stream: TextIO | None = None) ->
     """
     reporter, failed = Reporter(stream or sys.stderr), False
     saved = None
-    if isinstance(job, OptimizeJob) and output is not None:
-        saved = job, Checkpoint(job), output
+    if isinstance(job, jobs.OptimizeJob) and output is not None:
+        saved = job, jobs.Checkpoint(job), output
     try:
         for progress in job:
             reporter.report(progress)
@@ -187,32 +173,32 @@ def drive(job: Job, output: Path | None = None, stream: TextIO | None = None) ->
 
 
 def keep(
-    outcome: Outcome, output: Path, host: dict[str, str] | None, more: More | None
+    outcome: jobs.Outcome, output: Path, host: dict[str, str] | None, more: More | None
 ) -> tuple[int, Data]:
     """Write the results to a folder; if that fails, to a fallback folder whose path is printed.
 
     Returns the exit status and the content of result.json.
     """
-    data, kept = result_dict(outcome, host), list[Path]()
+    data, kept = jobs.result_dict(outcome, host), list[Path]()
     names = more.names if more else ()
 
     def write(folder: Path) -> None:
         nonlocal data
-        prepare_folder(folder, names)  # the user may have added a file meanwhile
-        data = write_outcome(outcome, folder, host, names)
+        jobs.prepare_folder(folder, names)  # the user may have added a file meanwhile
+        data = jobs.write_outcome(outcome, folder, host, names)
         kept.append(folder)
         if more is not None:
             more.write(outcome, data, folder)
 
     def failed(folder: Path) -> None:
         if folder in kept:
-            for name, aside in set_aside_files_of_other_runs(folder).items():
+            for name, aside in jobs.set_aside_files_of_other_runs(folder).items():
                 tell(f"{folder / name}: of an earlier run; it is {aside} now")
 
     folder = write_somewhere(output, write, failed)
     if folder is None:
         tell(f"all else is in {kept[0]}" if kept else "the results are not in any file")
-    for name in files_of_other_runs(output):  # checkpoints may lie beside an older result
+    for name in jobs.files_of_other_runs(output):  # checkpoints may lie beside an older result
         tell(f"{output / name}: not of this run")
     if folder not in (None, output):
         tell(f"the results are in {folder}")
@@ -230,22 +216,22 @@ def print_answer(text: str, status: int, out: TextIO | None) -> int:
     return status or BAD_INPUT
 
 
-def begun_search(args: argparse.Namespace) -> BegunSearch | None:
+def begun_search(args: argparse.Namespace) -> jobs.BegunSearch | None:
     """Return the search to resume; None without the option ``--resume``."""
     folder = getattr(args, "resume", None)
-    return None if folder is None else read_search(folder)
+    return None if folder is None else jobs.read_search(folder)
 
 
 def job_and_folder(
-    study: Study, args: argparse.Namespace, begun: BegunSearch | None
-) -> tuple[ScoreJob | OptimizeJob, str | None]:
+    study: Study, args: argparse.Namespace, begun: jobs.BegunSearch | None
+) -> tuple[jobs.ScoreJob | jobs.OptimizeJob, str | None]:
     """Return the job of a study that `args.kind` names, and the folder for its results.
 
     Raises `InputError` where the search to resume belongs to another study.
     """
     if args.kind == "score":
-        return ScoreJob(study, args.workers), args.output
-    job = OptimizeJob(study, args.workers)
+        return jobs.ScoreJob(study, args.workers), args.output
+    job = jobs.OptimizeJob(study, args.workers)
     if begun is None:
         return job, args.output
     job.journal, job.inputs = begun.journal_of(study), begun.inputs
@@ -272,7 +258,7 @@ def with_pages(args: argparse.Namespace, more: More | None = None) -> More | Non
     if not each:
         return None
 
-    def write(outcome: Outcome, data: Data, folder: Path) -> None:
+    def write(outcome: jobs.Outcome, data: Data, folder: Path) -> None:
         # Pages show the command that repeats the run.
         data["run"] = {**data["run"], "command": args.command_line}
         for one in each:

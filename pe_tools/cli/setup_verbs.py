@@ -151,10 +151,7 @@ def _lines(found: Mapping[str, Any]) -> Iterator[str]:
 def completion(top: argparse.ArgumentParser, shell: str) -> str:
     """Return the script that completes the command `pe` in a shell.
 
-    Raises
-    ------
-    InputError
-        The library that makes the script is not installed.
+    `InputError` where the library that makes the script is not installed.
     """
     shtab = optional_package("shtab")
     if shtab is None:

@@ -14,16 +14,8 @@ from pe_core.base import dump_json
 from pe_core.base.errors import InputError
 from pe_core.study import SEARCH, STUDY
 
+from .. import jobs
 from ..advice import curve_note, hardware_note
-from ..jobs import (
-    Outcome,
-    Progress,
-    check_files,
-    files_of_other_runs,
-    prepare_folder,
-    result_names,
-    write_outcome,
-)
 from ..sweep import (
     BEGUN,
     DONE,
@@ -74,7 +66,7 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
     kind = "optimize" if args.optimize else "score"
     settings = read_settings(args.set)
     runs = sweep_runs(files, settings, lambda study: with_options(study, args))
-    folder = prepare_folder(args.output, [SWEEP_CSV, SWEEP_JSON])
+    folder = jobs.prepare_folder(args.output, [SWEEP_CSV, SWEEP_JSON])
     _refuse_folders(runs, files, folder, kind)
     with ExitStack() as places:
         work = _SweepVerb(runs, kind, folder, places)
@@ -105,7 +97,7 @@ def _refuse_folders(
         if (at / STUDY).exists() and (at / STUDY).samefile(study):
             expected, found = "another folder than the study's folder", "the study's folder"
             raise InputError(study, "output", expected, found)
-        check_files(at, result_names(run.study, kind))
+        jobs.check_files(at, jobs.result_names(run.study, kind))
 
 
 class _SweepVerb:
@@ -167,15 +159,17 @@ class _SweepVerb:
                     checkpoints = place.checkpoints(run, self._folder / name) if searches else None
                     return RunTask(run.study, searches, place.threads, checkpoints)
 
-                def take(name: str, found: Outcome | InputError) -> None:
-                    if isinstance(found, Outcome):
+                def take(name: str, found: jobs.Outcome | InputError) -> None:
+                    if isinstance(found, jobs.Outcome):
                         place.finish(name)
                     self._take(name, found)
 
                 def goes_on() -> bool:
                     if self._on_terminal:
                         left = self.count(WAITING) + self.count(BEGUN)
-                        self._reporter.report(Progress("sweeping", 1.0 - left / len(self.rows)))
+                        self._reporter.report(
+                            jobs.Progress("sweeping", 1.0 - left / len(self.rows))
+                        )
                     return received.signum is None
 
                 run_all(left, make_task, place, take, goes_on)
@@ -187,9 +181,9 @@ class _SweepVerb:
                     self.rows[name] = replace(row, status=self._unfinished(row.run))
             self._write_table()
 
-    def _take(self, name: str, found: Outcome | InputError) -> None:
+    def _take(self, name: str, found: jobs.Outcome | InputError) -> None:
         """Store the result of a run, update the table, and report the run."""
-        kept = self._keep(name, found) if isinstance(found, Outcome) else ()
+        kept = self._keep(name, found) if isinstance(found, jobs.Outcome) else ()
         row = self.rows[name] = row_of(self.rows[name].run, found, *kept)
         self._write_table()
         if isinstance(found, InputError):
@@ -199,21 +193,21 @@ class _SweepVerb:
             line = f"[{self.count(DONE)}/{len(self.rows)}] {name}  {figures}"
             show(f"{one_line(line)}\n", sys.stderr)
 
-    def _keep(self, name: str, found: Outcome) -> tuple[str, str]:
+    def _keep(self, name: str, found: jobs.Outcome) -> tuple[str, str]:
         """Write a run's results; if that fails, to the fallback folder.
 
         Return status and message of the row of the run.
         """
         try:
-            write_outcome(found, self._folder / name)
+            jobs.write_outcome(found, self._folder / name)
             return DONE, ""
         except InputError as error:
             self.failed_to_write = True
             self._print_failure(name, error)
-        for other in files_of_other_runs(self._folder / name):
+        for other in jobs.files_of_other_runs(self._folder / name):
             self._print_failure(name, f"{other} there is not of this run")
         try:
-            write_outcome(found, self._fall_back() / name)
+            jobs.write_outcome(found, self._fall_back() / name)
             return ELSEWHERE, f"its results are in {self._fall_back() / name}"
         except InputError as error:
             self._print_failure(name, error)

@@ -14,14 +14,8 @@ from .job import Job, Progress, begun
 class CheckJob(Job):
     """Holds the rig of a study to its requirements, with mounting errors and margins.
 
-    A job that is stopped keeps the verdicts that it has found.
-
-    Parameters
-    ----------
-    study : Study
-    fitting : bool
-        Leave out requirements that the rig cannot be held to, with the reason, instead of raising
-        `InputError`.
+    A job that is stopped keeps the verdicts that it has found. With `fitting`, requirements that
+    the rig cannot be held to are left out instead of raising `InputError`.
 
     Attributes
     ----------

@@ -42,14 +42,10 @@ class HistoryRow:
 def best_so_far(*starts: Sequence[HistoryRow]) -> tuple[tuple[int, float], ...]:
     """Return the curve of a search: (evaluation, value) of each best so far, which never rises.
 
-    A search that goes on with more samples evaluates its best placement again. Values before that
-    are shifted by as much as that placement's own changed: they are of the same samples then.
-    Placements that break requirements are left out once one keeps them.
-
-    Parameters
-    ----------
-    *starts : sequence of HistoryRow
-        The history from each start of the search, in their order.
+    The history from each start is given, in their order. A search that goes on with more samples
+    evaluates its best placement again. Values before that are shifted by as much as that
+    placement's own changed: they are of the same samples then. Placements that break requirements
+    are left out once one keeps them.
     """
     best: list[tuple[int, float]] = []
     for rows in starts:

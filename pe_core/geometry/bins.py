@@ -133,17 +133,10 @@ def row_spans(
 ) -> RowSpans:
     """Return the bins of a raster that convex shapes may cover.
 
-    Parameters
-    ----------
-    raster : Raster
-    within : (u, v) spans
-        Bounding rectangles (G,) of the shapes.
-    sides : list of (3, G) float
-        A shape is the set ``side . (1, u, v) >= 0`` for all its sides; zeros are no condition.
-    reach : (G,) float
-        Square of the farthest corner's distance [m^2]: scale of the sides' rounding errors.
-    cut : (G,) bool
-        Shapes that are cut along their sides; the others get their whole rectangles.
+    `within` are bounding rectangles (G,) along u and v. A shape is the set ``side . (1, u, v) >=
+    0`` for all its `sides` (3, G); zeros are no condition. `reach` (G,) is the square of the
+    farthest corner's distance [m^2]: scale of the sides' rounding errors. Shapes in `cut` (G,) are
+    cut along their sides; the others get their whole rectangles.
     """
     u, v = within
     top, bottom = raster.rows(u[0]).astype(np.int64), raster.rows(u[1]).astype(np.int64)

@@ -60,13 +60,8 @@ class Facing:
 class Targets:
     """Triangles with their planes and the planes of their edges.
 
-    Attributes
-    ----------
-    edges : list of (3, G) float
-        Normals of the planes through the origin and each edge.
-    normal : (3, G) float
-    offset : (G,) float
-        A ray intersects the triangle's plane at ``offset / (normal . direction)``.
+    `edges` (3, G) each are normals of the planes through the origin and an edge. A ray intersects
+    the triangle's plane at ``offset / (normal . direction)``, `normal` (3, G) and `offset` (G,).
     """
 
     def __init__(self, triangles: Facing) -> None:

@@ -107,14 +107,8 @@ class PerceptionSpace:
 class GroundGrid:
     """Regular grid of squares on the ground, z = 0.
 
-    Attributes
-    ----------
-    origin : (2,) float
-        Corner of the grid with the lowest coordinates, ground frame [m].
-    shape : (2,) int
-        Number of squares along x and y.
-    step : float
-        Side of a square [m].
+    `origin` (2,) is the corner with the lowest coordinates, ground frame [m], `shape` the number of
+    squares along x and y, `step` the side of a square [m].
     """
 
     origin: tuple[float, float]
@@ -150,14 +144,7 @@ class GroundGrid:
 
 
 def top_heights(triangles: Floats, space: PerceptionSpace) -> Floats:
-    """Return the maximum z of triangles at each column's centre (nx, ny) [m]; -inf for none.
-
-    Parameters
-    ----------
-    triangles : (F, 3, 3) float
-        Ground frame [m].
-    space : PerceptionSpace
-    """
+    """Return the maximum z of triangles (F, 3, 3) at columns' centres (nx, ny) [m]; -inf: none."""
     nx, ny, _ = space.shape
     heights = np.full(nx * ny, -np.inf)
     face, column = _candidates(triangles, space)

@@ -41,24 +41,14 @@ PAIRS_AT_ONCE = 1 << 17
 class OcclusionMap:
     """The occlusion map of a mesh, for the part of a face that a raster covers.
 
-    Parameters
-    ----------
-    look : FaceLook
-    raster : Raster
-
-    Attributes
-    ----------
-    near, far : (count * count,) float
-        Depths, row after row of the raster [m]; inf where there is no mesh, or perhaps a gap.
+    `near` and `far` (count * count,) are depths, row after row of the raster [m]; inf where there
+    is no mesh, or perhaps a gap.
     """
 
     def __init__(self, look: FaceLook, raster: Raster) -> None:
         self.raster, self._look = raster, look
         self.near = np.full(raster.count**2, np.inf, np.float32)
         self.far = np.full(raster.count**2, np.inf, np.float32)
-        self._fill(raster)
-
-    def _fill(self, raster: Raster) -> None:
         boxes = self._look.boxes(raster.touches).number
         sheets = [_Sheet(raster, side, self._look) for side in (1.0, -1.0)]
         for start in range(0, len(boxes), BOXES_AT_ONCE):

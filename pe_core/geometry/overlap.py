@@ -22,14 +22,10 @@ PARALLEL = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Hull:
-    """A convex hull in the ground frame.
+    """A convex hull in the ground frame: `corners` (N, 3) [m].
 
-    Attributes
-    ----------
-    corners : (N, 3) float
-        Corners of the hull [m].
-    normals, edges : (K, 3), (E, 3) float
-        Unit directions of the face normals and of the edges; one for each opposite pair.
+    `normals` (K, 3) and `edges` (E, 3) are unit directions of the faces' normals and of the edges,
+    one for each opposite pair.
     """
 
     corners: Floats
@@ -38,17 +34,9 @@ class Hull:
 
 
 def upright_hull(shape: str, pose: Pose, center: Floats, size: Floats) -> Hull:
-    """Return the convex hull of a box or a cylinder that is upright in its frame.
+    """Return the convex hull of a box or a cylinder that is upright in a frame.
 
-    Parameters
-    ----------
-    shape : {"box", "cylinder"}
-    pose : Pose
-        Pose of the frame.
-    center : (3,) float
-        Middle of the shape in the frame [m].
-    size : (3,) float
-        Size along x, y and z of the frame [m].
+    `center` (3,) is its middle in the frame, `size` (3,) that along the frame's x, y and z [m].
     """
     outline, normals, edges = _BOX if shape == "box" else _CYLINDER
     rotation = pose.ground_from_sensor

@@ -55,15 +55,7 @@ class RayBoxes:
 
 
 class RayWalk:
-    """Rays from one point that are followed down a tree.
-
-    Parameters
-    ----------
-    tree : TriangleTree
-    origin : (3,) float
-        Common origin of the rays [m].
-    directions : (3, B) float
-    """
+    """Rays (3, B) from one point (3,) [m] that are followed down a tree."""
 
     def __init__(self, tree: TriangleTree, origin: Floats, directions: Floats) -> None:
         self._tree, self._origin, self._directions = tree, origin, directions

@@ -38,15 +38,8 @@ SORTING_SHARE = 0.8
 class BinnedRays:
     """Rays in the bins of a raster that covers exactly their directions.
 
-    Parameters
-    ----------
-    ray : (R,) int
-        Numbers of the rays.
-    u, v : (R,) float
-        Their directions on the face.
-    directions : (3, R) float
-    triangles : int
-        Number of triangles of the mesh.
+    `ray` (R,) are the rays' numbers, `u` and `v` (R,) their directions on the face; `triangles` is
+    the number of triangles of the mesh.
     """
 
     def __init__(self, ray: Ints, u: Floats, v: Floats, directions: Floats, triangles: int) -> None:
@@ -155,14 +148,7 @@ class Hits:
 
 
 class VisibleTriangles:
-    """A mesh for rays from one point.
-
-    Parameters
-    ----------
-    tree : TriangleTree
-    origin : (3,) float
-        The rays' common origin, in the frame of the mesh [m].
-    """
+    """A mesh for rays from one point (3,) in its frame [m]."""
 
     def __init__(self, tree: TriangleTree, origin: Floats) -> None:
         self.tree, self.origin = tree, np.asarray(origin, dtype=float)

@@ -24,16 +24,9 @@ class MeshEdges:
     Corners are the same point if their coordinates are equal to the bit. Points and edges are
     compared by 64-bit hashes: in meshes of 4 million triangles, one in a million has a collision.
 
-    Attributes
-    ----------
-    edge : (F, 3) int
-        Number of each edge, from 0; the same where two triangles share it.
-    turn : (F, 3) int
-        1 or -1: direction of the triangle along the edge; 0 if both ends are the same point.
-    count : int
-        Number of edges.
-    first : (N, 2) int
-        A triangle, and its corner, for each point of the mesh.
+    `edge` (F, 3) is the number of each edge of `count`, the same where two triangles share it;
+    `turn` (F, 3) the direction of the triangle along it, 1 or -1, 0 if both ends are the same
+    point; `first` (N, 2) a triangle, and its corner, for each point of the mesh.
     """
 
     def __init__(self, triangles: Floats) -> None:
@@ -72,24 +65,12 @@ MIN_EXTENT_M = 1e-300
 
 
 class TriangleTree:
-    """A mesh with its triangles in spatial order, and a tree of bounding boxes.
+    """A mesh (F, 3, 3) with its triangles in spatial order, and a tree of bounding boxes.
 
-    Parameters
-    ----------
-    triangles : (F, 3, 3) float
-        Corners, ground frame [m].
-
-    Attributes
-    ----------
-    triangles : (F, 3, 3) float
-        Corners in the order of the tree [m].
-    number : (F,) int
-        Index of each of them in the mesh.
-    boxes : list of (N, 2, 3) float
-        Lowest and highest corners by level: of BRANCH triangles first; at most BRANCH boxes last.
-    rows : list of (N, ...) float
-        Content of each box in a row, by level: corners of BRANCH triangles, then of BRANCH boxes.
-        The last row is filled with copies of the last item.
+    `triangles` are in the order of the tree, `number` (F,) the index of each in the mesh. `boxes`
+    (N, 2, 3) each are lowest and highest corners by level: of BRANCH triangles first; at most
+    BRANCH boxes last. `rows` hold the content of each box in a row, by level: corners of BRANCH
+    triangles, then of BRANCH boxes; the last row is filled with copies of the last item.
     """
 
     def __init__(self, triangles: Floats) -> None:

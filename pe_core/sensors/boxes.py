@@ -198,18 +198,9 @@ class BodyParts:
     """Cells of bodies, and shells that tell in which band of a body a ray ends.
 
     The surface of a body is between the shell round it and the boxes inside it. A body without one
-    of them has its surface on the cells.
-
-    Attributes
-    ----------
-    cells : Objects
-        What is measured; its scenes are the bodies.
-    shells : Objects or None
-        Boxes round and inside the bodies, with the same scenes.
-    bands : (N,) int
-        The band of height of each cell and of each shell after them.
-    layers : (N,) int
-        `CELLS`, `ROUND` or `INSIDE`.
+    of them has its surface on the cells. The `cells` are measured; their scenes are the bodies.
+    `shells` are boxes round and inside the bodies, with the same scenes. `bands` (N,) are the bands
+    of height of the cells and of the shells after them, `layers` (N,) `CELLS`, `ROUND` or `INSIDE`.
     """
 
     cells: Objects

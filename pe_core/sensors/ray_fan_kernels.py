@@ -50,35 +50,22 @@ NEAR_FIELD_M, FINE_M = 10.0, 0.02
 
 @dataclass(frozen=True, slots=True)
 class FanRules:
-    """How a kind of sensor measures by a fan of rays.
-
-    Attributes
-    ----------
-    through_covers : bool
-        Whether rays pass the covers of the vehicle.
-    field : callable
-        Of a sensor and its fan: which rays (E, A) are in the field of view.
-    reached : callable
-        Of a sensor, points (N, 3) and radii (N,) [m]: whether balls may reach into the field of
-        view and the range; never too few.
-    voxels : callable
-        Of a sensor, centres (V, 3), a side [m] and the fan: m (V,).
-    columns : callable
-        Of a sensor, centres of upright columns of cubes: x and y (C, 2) and heights (Z,), a side
-        and the fan: m (C, Z), equal to `voxels` of these centres.
-    posts : callable
-        Of a sensor, points (N, 3) of thin upright posts and the fan: whether they are detected.
-    objects : callable
-        Of a sensor, an `ObjectView` and the fan: m (N,).
-    """
+    """How a kind of sensor measures by a fan of rays."""
 
     through_covers: bool
+    """Whether rays pass the covers of the vehicle."""
     field: Callable[[Sensor, RayFan], Flags]
+    """Which rays (E, A) of a fan are in the field of view."""
     reached: Callable[[Sensor, Floats, Floats], Flags]
+    """Whether balls, points (N, 3) and radii (N,) [m], may reach into field and range."""
     voxels: Callable[[Sensor, Floats, float, RayFan], Floats]
+    """m (V,) of cubes with centres (V, 3) and a side [m]."""
     columns: Callable[[Sensor, Floats, Floats, float, RayFan], Floats]
+    """m (C, Z) of upright columns of cubes: x and y (C, 2), heights (Z,); the same as `voxels`."""
     posts: Callable[[Sensor, Floats, RayFan], Flags]
+    """Whether points (N, 3) of thin upright posts are detected."""
     objects: Callable[[Sensor, ObjectView, RayFan], Floats]
+    """m (N,) of the objects of a view."""
 
     def fan(self, sensor: Sensor, vehicle: Vehicle | None) -> RayFan:
         """Cast the fan of a sensor."""

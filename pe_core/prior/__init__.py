@@ -4,13 +4,5 @@ from .boxes import Boxes, BoxReport
 from .classes import HIGHWAY_CLASSES, ROAD_CLASSES, ObjectClass
 from .prior import ClassDensity, Focus, Prior
 
-__all__ = [
-    "HIGHWAY_CLASSES",
-    "ROAD_CLASSES",
-    "BoxReport",
-    "Boxes",
-    "ClassDensity",
-    "Focus",
-    "ObjectClass",
-    "Prior",
-]
+__all__ = ["HIGHWAY_CLASSES", "ROAD_CLASSES", "BoxReport", "Boxes", "ClassDensity", "Focus"]
+__all__ += ["ObjectClass", "Prior"]

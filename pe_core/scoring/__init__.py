@@ -15,19 +15,6 @@ from .score import (
     SummaryScore,
 )
 
-__all__ = [
-    "Evaluation",
-    "Evaluator",
-    "FoundClass",
-    "GroundMap",
-    "ObjectScore",
-    "PartScore",
-    "RigEvaluator",
-    "Scatter",
-    "Score",
-    "ScoreStopped",
-    "SensorScore",
-    "SummaryScore",
-    "VoxelSample",
-    "draw",
-]
+__all__ = ["Evaluation", "Evaluator", "FoundClass", "GroundMap", "ObjectScore", "PartScore"]
+__all__ += ["RigEvaluator", "Scatter", "Score", "ScoreStopped", "SensorScore", "SummaryScore"]
+__all__ += ["VoxelSample", "draw"]

@@ -12,29 +12,7 @@ from .redundancy import Redundancy, RedundancyMap
 from .verdict import Samples, Verdict, VerdictSummary
 from .zones import PlacedZone, Zone, signed_distance
 
-__all__ = [
-    "BODIES",
-    "FARTHEST_M",
-    "Body",
-    "CheckStep",
-    "Criterion",
-    "MeshShape",
-    "PlacedZone",
-    "Reason",
-    "Redundancy",
-    "RedundancyMap",
-    "Requirement",
-    "RequirementChecker",
-    "Samples",
-    "Under",
-    "VehiclePlanes",
-    "Verdict",
-    "VerdictSummary",
-    "Zone",
-    "body_met",
-    "checkable",
-    "checked_requirements",
-    "margin_of",
-    "sees",
-    "signed_distance",
-]
+__all__ = ["BODIES", "FARTHEST_M", "Body", "CheckStep", "Criterion", "MeshShape", "PlacedZone"]
+__all__ += ["Reason", "Redundancy", "RedundancyMap", "Requirement", "RequirementChecker", "Samples"]
+__all__ += ["Under", "VehiclePlanes", "Verdict", "VerdictSummary", "Zone", "body_met", "checkable"]
+__all__ += ["checked_requirements", "margin_of", "sees", "signed_distance"]

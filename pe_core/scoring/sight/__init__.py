@@ -6,17 +6,6 @@ from .reach import Reach, ends_with_space, reach_line
 from .sight import Sight
 from .visibility import GroundSight, VisibleShares
 
-__all__ = [
-    "BLIND_TO_M",
-    "BlindGround",
-    "BlindSpot",
-    "GroundSight",
-    "Reach",
-    "Sight",
-    "VisibleShares",
-    "ends_with_space",
-    "outlines",
-    "reach_line",
-    "shown_end",
-    "shown_start",
-]
+__all__ = ["BLIND_TO_M", "BlindGround", "BlindSpot", "GroundSight", "Reach", "Sight"]
+__all__ += ["VisibleShares", "ends_with_space", "outlines", "reach_line", "shown_end"]
+__all__ += ["shown_start"]

@@ -87,6 +87,7 @@ def test_all_presets_have_the_same_bits_everywhere(vehicle, tmp_path):
     for preset, row in rows.items():
         told = verdicts[preset]
         kept = json.loads(row.verdict)
+        assert kept.pop("name") == row.name
         assert kept == {key: told[key] for key in kept}, preset
     if vehicle == "foreign":
         check_planes(verdicts, found["unchecked"])

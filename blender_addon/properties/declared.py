@@ -64,7 +64,8 @@ def _kind_of(
     if isinstance(rule, studies.Name):
         return StringProperty, {"maxlen": rule.max_length}
     if isinstance(rule, studies.Texts):
-        return StringProperty, {"default": ""}
+        about = f"{setting.text}: names separated by commas"
+        return StringProperty, {"default": "", "description": about}
     if isinstance(rule, studies.Pair):
         return FloatVectorProperty, {"size": 2, "unit": UNITS.get(rule.rule.unit)}
     low = 0 if setting.is_optional else rule.minimum

@@ -7,14 +7,22 @@ Older settings stay on the scene, where scripts and older files have them: `show
 from __future__ import annotations
 
 import zlib
+from functools import partial
 
 from bpy.types import Context, PropertyGroup
 
 from ..choices import BEFORE_MOVE, NO_ANCHOR, PINNED
 from ..engine import catalog, pe
+from . import fields
 from .callbacks import redraw, switched
-from .fields import menu, number, numbers, switch, text, whole
 
+menu, number, numbers = (
+    partial(kind, update=redraw) for kind in (fields.menu, fields.number, fields.numbers)
+)
+switch, text, whole = (
+    partial(kind, update=redraw) for kind in (fields.switch, fields.text, fields.whole)
+)
+"""What is changed here draws 3D views again."""
 DEFAULT_CLASS = "pedestrian"
 HEIGHTS = (
     ("H0", "Ground", "The voxels that stand on the ground", 1),
@@ -49,9 +57,7 @@ def classes_of(_view: PropertyGroup, context: Context, _typed: str) -> list[str]
 class PE_ViewSettings(PropertyGroup):
     """Settings of what the 3D view draws."""
 
-    show_ground: switch(
-        "Ground Map", "Colour the ground by how well sensors see it", True, update=redraw
-    )
+    show_ground: switch("Ground Map", "Colour the ground by how well sensors see it", True)
     ground_quantity: menu(
         "Show",
         "Quantity that the colours of the ground show",
@@ -62,7 +68,6 @@ class PE_ViewSettings(PropertyGroup):
             ("REDUNDANCY", "Redundancy", "What is left when any one sensor is lost, or kinds"),
         ),
         default="ENTROPY",
-        update=redraw,
     )
     redundancy_of: menu(
         "Redundancy",
@@ -72,7 +77,6 @@ class PE_ViewSettings(PropertyGroup):
             ("KINDS", "Kinds", "How many kinds of sensors see the test body"),
             ("KINDS_LEFT", "Kinds Left", "The fewest kinds when any one sensor is lost"),
         ),
-        update=redraw,
     )
     redundancy_height: number(
         "Body Height",
@@ -81,19 +85,10 @@ class PE_ViewSettings(PropertyGroup):
         min=0.01,
         max=5.0,
         unit="LENGTH",
-        update=redraw,
     )
-    ground_height: menu(
-        "Height", "Height above the ground that is evaluated", (AVERAGED, *HEIGHTS), update=redraw
-    )
+    ground_height: menu("Height", "Height above the ground that is evaluated", (AVERAGED, *HEIGHTS))
     ground_opacity: number(
-        "Opacity",
-        "Opacity of the map's colours",
-        0.35,
-        min=0.05,
-        max=1.0,
-        subtype="FACTOR",
-        update=redraw,
+        "Opacity", "Opacity of the map's colours", 0.35, min=0.05, max=1.0, subtype="FACTOR"
     )
 
     ground_range: menu(
@@ -114,13 +109,9 @@ class PE_ViewSettings(PropertyGroup):
             ),
             ("FIXED", "Fixed", "Between two values that you set"),
         ),
-        update=redraw,
     )
     ground_fits: whole(
-        "Fits",
-        "How often the range of the colours was fitted again",
-        options={"HIDDEN"},
-        update=redraw,
+        "Fits", "How often the range of the colours was fitted again", options={"HIDDEN"}
     )
     entropy_range: numbers(
         "Entropy",
@@ -128,7 +119,6 @@ class PE_ViewSettings(PropertyGroup):
         2,
         default=(16.7, -11.0),
         precision=1,
-        update=redraw,
     )
     coverage_range: numbers(
         "Coverage",
@@ -138,13 +128,11 @@ class PE_ViewSettings(PropertyGroup):
         min=0.0,
         max=1.0,
         precision=2,
-        update=redraw,
     )
     ground_difference: switch(
         "Difference",
         "Show where the rig is better (blue) or worse (orange) than the rig that Live "
         "is compared with: before the last move, pinned sensors, or a variant",
-        update=redraw,
     )
 
     show_axles: switch(
@@ -152,53 +140,39 @@ class PE_ViewSettings(PropertyGroup):
         "Show the axles, if they are known, and the axes on the ground under the rear "
         "axle: the origin of other programs",
         True,
-        update=redraw,
     )
     show_front: switch(
         "Front",
         "Show with an arrow where the front of the vehicle is, until there is a sensor",
         True,
-        update=redraw,
     )
     show_ghosts: switch(
-        "Other Variant",
-        "Show the variant whose ghost is switched on in the list of variants",
-        True,
-        update=redraw,
+        "Other Variant", "Show the variant whose ghost is switched on in the list of variants", True
     )
-    ghost_key: whole("Ghost", "Key of the variant that is shown; 0: none", update=redraw)
+    ghost_key: whole("Ghost", "Key of the variant that is shown; 0: none")
     show_requirements: switch(
         "Requirements",
         "Draw the zones of requirements: filled where they are met, hatched where they are not",
         True,
-        update=redraw,
     )
-    show_place: switch("Queried Location", "Mark the queried location", True, update=redraw)
+    show_place: switch("Queried Location", "Mark the queried location", True)
 
     show_focus: switch(
-        "Focus",
-        "Outline the regions with a higher or lower weight than in the prior",
-        True,
-        update=redraw,
+        "Focus", "Outline the regions with a higher or lower weight than in the prior", True
     )
     show_mounts: switch(
-        "Mounts",
-        "Tint the surfaces of mounts; no-go areas and bounds are boxes",
-        True,
-        update=redraw,
+        "Mounts", "Tint the surfaces of mounts; no-go areas and bounds are boxes", True
     )
     show_blind: switch(
         "Blind Ground",
         "Outline the ground round the vehicle that no sensor sees, with its extent on each side",
         True,
-        update=redraw,
     )
     blind_height: menu(
         "Height",
         "Height of an object on the ground; ground where it is invisible is blind",
         TALL,
         default="H50",
-        update=redraw,
     )
 
     show_reach: switch(
@@ -206,15 +180,9 @@ class PE_ViewSettings(PropertyGroup):
         "Draw the distance up to which objects of a class are found: average precision "
         "of at least 0.5",
         False,
-        update=redraw,
     )
     reach_class: text(
-        "Class",
-        "Class of the objects",
-        DEFAULT_CLASS,
-        search=classes_of,
-        search_options=set(),
-        update=redraw,
+        "Class", "Class of the objects", DEFAULT_CLASS, search=classes_of, search_options=set()
     )
     reach_of: menu(
         "Of",
@@ -224,20 +192,15 @@ class PE_ViewSettings(PropertyGroup):
             ("SELECTED", "Selected", "All together, and each selected sensor alone"),
             ("ALL", "All", "All together, and each sensor alone"),
         ),
-        update=redraw,
     )
 
     show_frustums: switch(
-        "Camera Views",
-        "Draw the cameras' fields of view, true to lens and pitch",
-        True,
-        update=redraw,
+        "Camera Views", "Draw the cameras' fields of view, true to lens and pitch", True
     )
     footprints: switch(
         "On the Ground",
         "Draw the ground in a camera's field of view, up to the range or the horizon",
         True,
-        update=redraw,
     )
     view_range: number(
         "Range",
@@ -247,14 +210,12 @@ class PE_ViewSettings(PropertyGroup):
         soft_max=100.0,
         subtype="DISTANCE",
         unit="LENGTH",
-        update=redraw,
     )
 
     show_beams: switch(
         "Beams",
         "Draw a sample of LiDAR beams, with the true share of beams that end on the vehicle",
         True,
-        update=redraw,
     )
     beams_of: menu(
         "Of",
@@ -263,7 +224,6 @@ class PE_ViewSettings(PropertyGroup):
             ("SELECTED", "Selected", "Beams of selected sensors"),
             ("ALL", "All", "Beams of all sensors"),
         ),
-        update=redraw,
     )
     channels: menu(
         "Channels",
@@ -274,36 +234,22 @@ class PE_ViewSettings(PropertyGroup):
             ("EVERY", "Every nth", "Every nth channel"),
             ("ALL", "All", "All channels"),
         ),
-        update=redraw,
     )
-    channel: whole("Channel", "Number of the channel; the lowest is 1", 1, min=1, update=redraw)
-    every: whole("Every", "2: every second channel", 4, min=1, update=redraw)
+    channel: whole("Channel", "Number of the channel; the lowest is 1", 1, min=1)
+    every: whole("Every", "2: every second channel", 4, min=1)
     beam_colors: menu(
-        "Color By",
-        "Quantity that the colours of beams show",
-        COLORS,
-        default="SENSOR",
-        update=redraw,
+        "Color By", "Quantity that the colours of beams show", COLORS, default="SENSOR"
     )
-    rings: switch(
-        "On the Ground", "Draw the rings in which channels meet the ground", True, update=redraw
-    )
+    rings: switch("On the Ground", "Draw the rings in which channels meet the ground", True)
 
     show_heat: switch(
-        "Occluded Beams",
-        "Colour the vehicle where it occludes beams, by their number",
-        False,
-        update=redraw,
+        "Occluded Beams", "Colour the vehicle where it occludes beams, by their number", False
     )
-    show_labels: switch("Names", "Write each sensor's name beside it", True, update=redraw)
+    show_labels: switch("Names", "Write each sensor's name beside it", True)
     show_inset: switch(
-        "Picture in View",
-        "Show what the selected sensor sees in a corner of the 3D view",
-        update=redraw,
+        "Picture in View", "Show what the selected sensor sees in a corner of the 3D view"
     )
-    show_legend: switch(
-        "Legend", "Explain the colours in the lower right corner", True, update=redraw
-    )
+    show_legend: switch("Legend", "Explain the colours in the lower right corner", True)
 
 
 ANCHORS = (

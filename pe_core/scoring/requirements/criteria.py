@@ -188,13 +188,13 @@ class Under:
     states: tuple[str, ...] = setting(
         (),
         NAMES,
-        'It has to be met in these states of the vehicle, too; "*": in all',
+        'It has to be met in these states of the vehicle ("*": in all), too',
         Panel("states", "States"),
     )
     weathers: tuple[str, ...] = setting(
         (),
         NAMES,
-        'It has to be met in these weathers, too; "*": in all',
+        'It has to be met in these weathers ("*": in all), too',
         Panel("weathers", "Weathers"),
     )
 

@@ -29,22 +29,17 @@ class PE_PT_view(bpy.types.Panel):
         draw_label(self.layout, "Perception")
         column = self.layout.column()
         column.active = settings.show_overlay
-        draw_layers(column, settings)
-
-
-def draw_layers(layout: UILayout, settings: OverlaySettings) -> None:
-    """Draw a switch for each layer, and its options below."""
-    view = settings.view
-    for name, draw_choices in LAYERS:
-        layout.prop(view, f"show_{name}")
-        if draw_choices is not None:
-            choices = layout.column(align=True)
-            choices.active = getattr(view, f"show_{name}")
-            draw_choices(_indented(choices), settings)
-    row = layout.row()
-    row.prop(view, "show_labels")
-    row.prop(view, "show_legend")
-    layout.prop(view, "show_inset")
+        view = settings.view
+        for name, draw_choices in LAYERS:
+            column.prop(view, f"show_{name}")
+            if draw_choices is not None:
+                choices = column.column(align=True)
+                choices.active = getattr(view, f"show_{name}")
+                draw_choices(_indented(choices), settings)
+        row = column.row()
+        row.prop(view, "show_labels")
+        row.prop(view, "show_legend")
+        column.prop(view, "show_inset")
 
 
 def _ground(layout: UILayout, settings: OverlaySettings) -> None:

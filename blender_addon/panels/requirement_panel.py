@@ -96,7 +96,20 @@ def draw_requirement(layout: UILayout, context: Context, row: PropertyGroup) -> 
     _draw_source(layout, context, source)
     draw_properties(layout, row, ("asks",))
     if row.asks == BODIES_ASKED:
-        _draw_body(layout, row)
+        draw_properties(layout, row, ("body",))
+        if row.body == SEVERAL:
+            draw_properties(layout, row, ("bodies",))
+        if row.body == OWN:
+            column = layout.column(align=True)
+            if row.body_mesh:
+                _draw_mesh_file(column, row)
+                draw_properties(column, row, ("body_up", "body_forward", "body_scale"))
+            else:
+                column.prop(row, "body_size")
+                draw_properties(layout, row, ("body_round",))
+                _draw_mesh_file(layout, row)
+            draw_properties(layout, row, ("body_low", "body_class", "body_name"))
+        draw_properties(layout, row, ("headings",))
     _draw_zone(layout, row)
     _draw_criterion(layout, row)
     draw_declared(layout, row, "requirement.under")
@@ -113,24 +126,6 @@ def _draw_source(layout: UILayout, context: Context, source: ShownSource) -> Non
         draw_label(header, "Source")
     if inside is not None:
         draw_sentence(inside, context, source.text)
-
-
-def _draw_body(layout: UILayout, row: PropertyGroup) -> None:
-    """Draw which body stands at the samples, and the size of an own one."""
-    draw_properties(layout, row, ("body",))
-    if row.body == SEVERAL:
-        draw_properties(layout, row, ("bodies",))
-    if row.body == OWN:
-        column = layout.column(align=True)
-        if row.body_mesh:
-            _draw_mesh_file(column, row)
-            draw_properties(column, row, ("body_up", "body_forward", "body_scale"))
-        else:
-            column.prop(row, "body_size")
-            draw_properties(layout, row, ("body_round",))
-            _draw_mesh_file(layout, row)
-        draw_properties(layout, row, ("body_low", "body_class", "body_name"))
-    draw_properties(layout, row, ("headings",))
 
 
 def _draw_mesh_file(layout: UILayout, row: PropertyGroup) -> None:

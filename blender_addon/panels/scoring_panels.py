@@ -80,15 +80,11 @@ class PE_PT_focus(Tab, bpy.types.Panel):
         names, buttons = ("focus", "focus_index"), ("pe.add_focus", "pe.remove_focus")
         draw_list(layout, PE_UL_focus, settings, names, buttons)
         if settings.focus_index < len(settings.focus):
-            draw_focus(layout, settings.focus[settings.focus_index])
-
-
-def draw_focus(layout: UILayout, focus: PropertyGroup) -> None:
-    """Draw the settings of one focus."""
-    draw_properties(layout, focus, ("factor", "region"))
-    if focus.region == CUSTOM:
-        draw_declared(layout, focus, "prior.focus", ("factor",))
-    layout.column().prop(focus, "classes")
+            focus = settings.focus[settings.focus_index]
+            draw_properties(layout, focus, ("factor", "region"))
+            if focus.region == CUSTOM:
+                draw_declared(layout, focus, "prior.focus", ("factor",))
+            layout.column().prop(focus, "classes")
 
 
 class PE_UL_own_sensors(Rows, bpy.types.UIList):
@@ -109,7 +105,17 @@ class PE_PT_advanced(Tab, bpy.types.Panel):
     def draw(self, context: Context) -> None:
         settings = context.scene.perception_entropy
         draw_own_sensors(self.layout, context)
-        draw_curves(self.layout, settings)
+        layout = self.layout
+        draw_label(layout, "AP = a ln m + b")
+        if not settings.curves:
+            layout.operator("pe.own_curves")
+        for curve in settings.curves:
+            row = layout.row(align=True)
+            row.prop(curve, "own", text=shown(kind_label(curve.name)), translate=False)
+            pair = row.row(align=True)
+            pair.active = curve.own
+            pair.prop(curve, "a")
+            pair.prop(curve, "b")
         column = self.layout.column()
         draw_label(column, "Space and Voxels")
         draw_declared(column, settings, "space")
@@ -131,20 +137,6 @@ def draw_own_sensors(layout: UILayout, context: Context) -> None:
         draw_properties(layout.column(), sensor, ("kind", *own_fields(sensor.kind)))
         if sensor.problem:
             draw_sentence(layout, context, sensor.problem, icon="ERROR")
-
-
-def draw_curves(layout: UILayout, settings: PropertyGroup) -> None:
-    """Draw the AP curve of each kind."""
-    draw_label(layout, "AP = a ln m + b")
-    if not settings.curves:
-        layout.operator("pe.own_curves")
-    for curve in settings.curves:
-        row = layout.row(align=True)
-        row.prop(curve, "own", text=shown(kind_label(curve.name)), translate=False)
-        pair = row.row(align=True)
-        pair.active = curve.own
-        pair.prop(curve, "a")
-        pair.prop(curve, "b")
 
 
 CLASSES = (PE_PT_prior, PE_PT_targets, PE_UL_focus, PE_PT_focus)

@@ -106,18 +106,13 @@ def draw_mount(layout: UILayout, mount: PropertyGroup) -> None:
         return
     layout.row(align=True).prop(mount, "faces", expand=True)
     if mount.faces == BY_PARTS:
-        draw_parts(layout, mount)
+        column = layout.column(align=True)
+        for row in mount.parts:
+            column.prop(row, "part", text="")
+        column.operator("pe.mount_parts", icon="RESTRICT_SELECT_OFF")
     named = {BY_PARTS: (), BY_MATERIAL: ("material",), BY_GROUP: ("group",)}[mount.faces]
     draw_properties(layout, mount, named)
     draw_declared(layout, mount, "optimize.mount")
-
-
-def draw_parts(layout: UILayout, mount: PropertyGroup) -> None:
-    """Draw the parts of a mount, and the button that replaces them."""
-    column = layout.column(align=True)
-    for row in mount.parts:
-        column.prop(row, "part", text="")
-    column.operator("pe.mount_parts", icon="RESTRICT_SELECT_OFF")
 
 
 class PE_PT_constraints(Tab, bpy.types.Panel):

@@ -38,7 +38,13 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
         row.prop(view, "show_inset", toggle=True, icon="IMAGE_PLANE")
         layout.operator("pe.stand_upright", icon="ORIENTATION_GLOBAL")
         draw_mirror(layout, obj)
-        draw_mounted(layout, settings)
+        split = layout.split(factor=0.4)
+        draw_label(split, "Mounted on")
+        mount_name = settings.mount or "Box of Coordinates"
+        split.operator_menu_enum(
+            "pe.mount_sensor", "mount", text=shown(mount_name), translate=False
+        )
+        layout.prop(settings, "rack")
         draw_label(layout, f"The search may change, for {obj.name}:")
         layout.prop(settings, "stays")
         column = layout.column()
@@ -88,33 +94,6 @@ def draw_free(layout: UILayout, settings: PropertyGroup) -> None:
         part.prop(settings, "free", index=index, text=shown(label), translate=False, toggle=True)
 
 
-def draw_mounted(layout: UILayout, settings: PropertyGroup) -> None:
-    """Draw the mount of a sensor, and its rack."""
-    split = layout.split(factor=0.4)
-    draw_label(split, "Mounted on")
-    mount_name = settings.mount or "Box of Coordinates"
-    split.operator_menu_enum("pe.mount_sensor", "mount", text=shown(mount_name), translate=False)
-    layout.prop(settings, "rack")
-
-
-def draw_bounds(layout: UILayout, settings: PropertyGroup) -> None:
-    """Draw the bounds of each axis that the search may change."""
-    column = layout.column(align=True)
-    for index, label in enumerate(AXIS_LABELS):
-        if not settings.free[index]:
-            continue
-        row = column.row(align=True)
-        bounded = settings.bounded[index]
-        text = shown(label if bounded else f"Bound {label}")
-        button = row.operator("pe.bound_axis", text=text, depress=bounded, translate=False)
-        button.axis = index
-        if bounded:
-            pair = row.row(align=True)
-            pair.alert = settings.bounds_low[index] >= settings.bounds_high[index]
-            pair.prop(settings, "bounds_low", index=index, text="")
-            pair.prop(settings, "bounds_high", index=index, text="")
-
-
 class PE_PT_bounds(Tab, bpy.types.Panel):
     """Bounds of the search for this sensor; by default the vehicle's outline and 0.75 m above it"""
 
@@ -124,7 +103,22 @@ class PE_PT_bounds(Tab, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Context) -> None:
-        draw_bounds(self.layout, context.active_object.perception_entropy)
+        layout = self.layout
+        settings = context.active_object.perception_entropy
+        column = layout.column(align=True)
+        for index, label in enumerate(AXIS_LABELS):
+            if not settings.free[index]:
+                continue
+            row = column.row(align=True)
+            bounded = settings.bounded[index]
+            text = shown(label if bounded else f"Bound {label}")
+            button = row.operator("pe.bound_axis", text=text, depress=bounded, translate=False)
+            button.axis = index
+            if bounded:
+                pair = row.row(align=True)
+                pair.alert = settings.bounds_low[index] >= settings.bounds_high[index]
+                pair.prop(settings, "bounds_low", index=index, text="")
+                pair.prop(settings, "bounds_high", index=index, text="")
 
 
 class PE_PT_own_curve(Tab, bpy.types.Panel):

@@ -51,9 +51,13 @@ class PE_PT_variants(Tab, bpy.types.Panel):
             layout.operator("pe.save_variant", icon="ADD")
             layout.menu(PE_MT_known_rigs.bl_idname, icon="AUTO")
             return
-        draw_variants(layout, settings)
+        names, operators = ("variants", "variant_index"), ("pe.save_variant", "pe.delete_variant")
+        buttons = draw_list(layout, PE_UL_variants, settings, names, operators, rows=4)
+        buttons.separator()
+        buttons.operator("pe.duplicate_variant", text="", icon="DUPLICATE")
         draw_state(layout, settings)
-        draw_note(layout, context)
+        row = selected(context.scene.perception_entropy)
+        layout.prop(row, "note", text="", icon="TEXT", placeholder="Note")
 
 
 class PE_MT_known_rigs(bpy.types.Menu):
@@ -70,20 +74,6 @@ class PE_MT_known_rigs(bpy.types.Menu):
 def selected(settings: PropertyGroup) -> PropertyGroup:
     """Return the selected row; the last one where the list has become shorter."""
     return settings.variants[min(settings.variant_index, len(settings.variants) - 1)]
-
-
-def draw_note(layout: UILayout, context: Context) -> None:
-    """Draw the note of the selected variant, in a field."""
-    row = selected(context.scene.perception_entropy)
-    layout.prop(row, "note", text="", icon="TEXT", placeholder="Note")
-
-
-def draw_variants(layout: UILayout, settings: PropertyGroup) -> None:
-    """Draw the list with its buttons beside it."""
-    names, operators = ("variants", "variant_index"), ("pe.save_variant", "pe.delete_variant")
-    buttons = draw_list(layout, PE_UL_variants, settings, names, operators, rows=4)
-    buttons.separator()
-    buttons.operator("pe.duplicate_variant", text="", icon="DUPLICATE")
 
 
 def draw_state(layout: UILayout, settings: PropertyGroup) -> None:

@@ -147,7 +147,12 @@ def _sensor_records(study: pe.Study) -> tuple[SensorRecord, ...]:
     racks = {name: RACK.format(n) for n, group in enumerate(mounting.groups, 1) for name in group}
     records = []
     for sensor in study.rig:
-        _check_model(sensor)
+        model = None
+        with contextlib.suppress(pe.InputError):
+            model = catalog.load(sensor.model.name)
+        if model is None or catalog.to_table(model) != catalog.to_table(sensor.model):
+            field = f"sensor {sensor.name!r}: model"
+            raise pe.InputError("study", field, "one of the catalogue's", repr(sensor.model.name))
         name, free = sensor.name, study.search.free[sensor.name]
         mount = mounting.on.get(name, "")
         records.append(
@@ -186,16 +191,6 @@ def _bounds(limits: Mapping[str, tuple[float, float]]) -> dict[str, Any]:
             ends = limits[axis] if is_length else tuple(map(math.degrees, limits[axis]))
             bounded[number], (low[number], high[number]) = True, ends
     return {"bounded": tuple(bounded), "low": tuple(low), "high": tuple(high)}
-
-
-def _check_model(sensor: pe.Sensor) -> None:
-    """Raise `InputError` where a sensor's model is not the catalogue's of that name."""
-    model = None
-    with contextlib.suppress(pe.InputError):
-        model = catalog.load(sensor.model.name)
-    if model is None or catalog.to_table(model) != catalog.to_table(sensor.model):
-        field = f"sensor {sensor.name!r}: model"
-        raise pe.InputError("study", field, "one of the catalogue's", repr(sensor.model.name))
 
 
 def _write_vehicle(scene: Scene, vehicle: pe.Vehicle) -> None:

@@ -126,7 +126,8 @@ def place_poses(scene: Scene, poses: Mapping[str, pe.Pose]) -> list[str]:
     layer = view_layer_of(scene)
     # Parents first: a sensor may be mounted on another.
     for obj, pose in sorted(present, key=lambda pair: len(_ancestors(pair[0]))):
-        _check_own(obj)
+        if obj.library is not None:
+            raise _not_placed(obj, f"linked from {obj.library.filepath}")
         layer.update()
         place_at(obj, pose)
     layer.update()
@@ -142,12 +143,6 @@ def place_at(obj: Object, pose: pe.Pose) -> None:
     """Place an object at a pose; store the pose, because single precision would round it."""
     _move(obj, pose)
     obj.perception_entropy.placed = (*pose.position, *pose.rotation_deg)
-
-
-def _check_own(obj: Object) -> None:
-    """Raise `InputError` for a sensor linked from another file: that file defines its pose."""
-    if obj.library is not None:
-        raise _not_placed(obj, f"linked from {obj.library.filepath}")
 
 
 def _not_placed(obj: Object, found: str) -> pe.InputError:

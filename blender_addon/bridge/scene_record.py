@@ -208,7 +208,12 @@ def check_scene(scene: Scene) -> None:
 
     `InputError` when a unit is not a metre, or no vehicle is chosen.
     """
-    _check_metres(scene)
+    units = scene.unit_settings
+    if units.system == "IMPERIAL":
+        raise pe.InputError("scene", "unit system", "metres (Metric)", "Imperial")
+    if abs(units.scale_length - 1.0) > 1e-6:
+        expected = "1, so that a unit is a metre"
+        raise pe.InputError("scene", "unit scale", expected, f"{units.scale_length:g}")
     _vehicle_chosen(scene)
 
 
@@ -227,16 +232,6 @@ def _vehicle_chosen(scene: Scene) -> Collection:
         expected = "a collection with the vehicle's meshes"
         raise pe.InputError("scene", "vehicle collection", expected, "none chosen")
     return vehicle
-
-
-def _check_metres(scene: Scene) -> None:
-    """Raise `InputError` unless one unit is one metre and the scene displays metres."""
-    units = scene.unit_settings
-    if units.system == "IMPERIAL":
-        raise pe.InputError("scene", "unit system", "metres (Metric)", "Imperial")
-    if abs(units.scale_length - 1.0) > 1e-6:
-        expected = "1, so that a unit is a metre"
-        raise pe.InputError("scene", "unit scale", expected, f"{units.scale_length:g}")
 
 
 def selection_of(records: Sequence[SensorRecord], limits: pe.Selection) -> pe.Selection:

@@ -101,30 +101,21 @@ def update_view_cameras(scene: Scene, sensors: Sequence[Object]) -> None:
     for obj in sensors:
         view, model = view_camera(obj), _camera_of(obj)
         if view is not None and model is not None:
-            _follow(scene, view, model)
+            size = model.width, model.height
+            if abs(view.data.angle_x - shown_fov(model)) > 1e-5:
+                set_lens(view.data, model)
+            looking = scene.camera == view and scene.perception_entropy.before_look
+            if looking and (scene.render.resolution_x, scene.render.resolution_y) != size:
+                scene.render.resolution_x, scene.render.resolution_y = size
     cameras = [camera for camera in scene.objects if camera.type == "CAMERA"]
     for view in (camera for camera in cameras if camera.perception_entropy.is_view):
         if view.parent is None or _camera_of(view.parent) is None:
-            _remove(scene, view)
-
-
-def _follow(scene: Scene, view: Object, model: pe.Camera) -> None:
-    """Update the lens of a view camera when its sensor has another model."""
-    size = model.width, model.height
-    if abs(view.data.angle_x - shown_fov(model)) > 1e-5:
-        set_lens(view.data, model)
-    looking = scene.camera == view and scene.perception_entropy.before_look
-    if looking and (scene.render.resolution_x, scene.render.resolution_y) != size:
-        scene.render.resolution_x, scene.render.resolution_y = size
-
-
-def _remove(scene: Scene, view: Object) -> None:
-    if scene.camera == view:
-        look_back(scene)
-    data = view.data
-    bpy.data.objects.remove(view)
-    if data is not None and not data.users:
-        bpy.data.cameras.remove(data)
+            if scene.camera == view:
+                look_back(scene)
+            data = view.data
+            bpy.data.objects.remove(view)
+            if data is not None and not data.users:
+                bpy.data.cameras.remove(data)
 
 
 def _camera_of(obj: Object) -> pe.Camera | None:

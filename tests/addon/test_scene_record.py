@@ -68,11 +68,14 @@ def variant_study(scene, row):
 
 def set_what_is_by_default(settings):
     """Give declared numbers and switches that are not set above another value than the default."""
-    for _, setting in studies.setting_keys():
+    for _, setting in studies.setting_keys(of_scene=True):
         name = None if setting.panel is None else setting.panel.property
         if name is not None and not settings.is_property_set(name):
             value = getattr(settings, name)
-            setattr(settings, name, not value if isinstance(value, bool) else value + 1)
+            if studies.is_switch(setting):
+                setattr(settings, name, True)
+            elif isinstance(value, bool | int | float):
+                setattr(settings, name, not value if isinstance(value, bool) else value + 1)
 
 
 @pytest.fixture

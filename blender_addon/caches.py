@@ -29,11 +29,10 @@ class RecentCache(Generic[T]):
     def get(self, key: Any) -> T | None:
         """Return the value of a key, None where there is none; it was used last then."""
         with self._lock:
-            for each in self._kept:
-                if each[0] == key:
-                    self._kept.remove(each)
-                    self._kept.append(each)
-                    return each[1]
+            for number in reversed(range(len(self._kept))):  # what was used last is asked for most
+                if self._kept[number][0] == key:
+                    self._kept.append(self._kept.pop(number))
+                    return self._kept[-1][1]
         return None
 
     def put(self, key: Any, value: T) -> None:

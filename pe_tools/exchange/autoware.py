@@ -25,8 +25,7 @@ from pe_tools.formats.yaml_text import KeyPath, YamlText, parse_yaml
 
 from .camera_info import info_files, info_name, picture_of_info, with_info
 from .foreign_values import Export, FileTexts, named_numbers, plain_number, pose_from, text_of
-from .frame_tree import with_legal_frames
-from .frames import composed, seen_from
+from .frames import composed, seen_from, with_legal_frames
 from .lens_pictures import alike
 from .passthrough import is_there, is_turned_so
 from .portable import PortableRig, PortableSensor, merged_lines

@@ -28,9 +28,9 @@ from .foreign_values import (
     named_numbers,
     pose_from,
 )
-from .frame_tree import with_legal_frames
+from .frames import ORIGIN, with_legal_frames
 from .lens_pictures import picture_of_fov
-from .passthrough import ORIGIN, entry_row
+from .passthrough import entry_row
 from .portable import FieldOfView, PortableRig, PortableSensor, Scan, uneven
 from .portable_kinds import CAMERA, LIDAR, RADAR
 

@@ -36,9 +36,9 @@ from .foreign_values import (
     spaced,
     whole_figure,
 )
-from .frames import composed, shifted
+from .frames import ORIGIN, composed, shifted
 from .lens_pictures import Picture, pinhole_picture
-from .passthrough import ORIGIN, entry_row
+from .passthrough import entry_row
 from .portable import PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 

@@ -24,10 +24,10 @@ from pe_core.sensors import KINDS
 from pe_core.study.passthrough import Passthrough, json_entry
 
 from .foreign_values import pose_from
+from .frames import ORIGIN
 from .portable import PortableRig, PortableSensor
 from .portable_kinds import has_model
 
-ORIGIN = Pose((0.0, 0.0, 0.0))
 UNMOVED_M, UNTURNED = 2e-5, 4e-6
 """A pose nearer than this to the imported one is unchanged: .blend files and studies round to
 0.01 mm and 0.0001 degrees. The second number is a difference of rotation matrices."""

@@ -28,8 +28,14 @@ from .foreign_values import (
     require_at_most,
     text_of,
 )
-from .frame_tree import OPTICAL, poses_from_root, with_optical_frames
-from .frames import OPTICAL_RPY, from_quaternion, pose_of
+from .frames import (
+    OPTICAL,
+    OPTICAL_RPY,
+    from_quaternion,
+    pose_of,
+    poses_from_root,
+    with_optical_frames,
+)
 from .passthrough import pose_of_entry
 from .portable import PortableRig, PortableSensor
 from .portable_kinds import CAMERA

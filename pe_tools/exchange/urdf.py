@@ -30,8 +30,7 @@ from .foreign_values import (
     require_at_most,
     spaced,
 )
-from .frame_tree import OPTICAL, poses_from_root, with_optical_frames
-from .frames import OPTICAL_RPY, seen_from
+from .frames import OPTICAL, OPTICAL_RPY, poses_from_root, seen_from, with_optical_frames
 from .gazebo import SensorElement, picture_in, scan_in, write_clip, write_picture, write_scan
 from .passthrough import entry_row, pose_entry, pose_of_entry
 from .portable import PortableRig, PortableSensor, uneven

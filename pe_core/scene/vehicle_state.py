@@ -169,6 +169,10 @@ class State:
             moved.append(_Moved(everything, parts, sensors))
         return moved
 
+    def __call__(self, rig: Rig, vehicle: Vehicle | None) -> tuple[Rig, Vehicle | None]:
+        """Return a rig and a vehicle, which are as they are drawn, in this state."""
+        return self.rig(rig, vehicle), self.vehicle(vehicle)
+
     def vehicle(self, vehicle: Vehicle | None) -> Vehicle | None:
         """Return the vehicle in this state; the same object where nothing moves."""
         moves = self.moves(vehicle)

@@ -1,8 +1,8 @@
 """Weather: what rain, snow, fog and night leave of a sensor's range.
 
-A weather turns a rig into another rig (`rig_in_weather`): each kind of sensor answers with its
-model as it is under it (`Kind.in_weather`), by the formulas here. Nothing else knows of weather. A
-range under a weather is rounded down to 1 cm.
+A weather is a function of a rig and a vehicle: each kind of sensor answers with its model as it is
+under it (`Kind.in_weather`), by the formulas here. Nothing else knows of weather. A range under a
+weather is rounded down to 1 cm.
 
 Sources: [KO] Koschmieder's law with a contrast threshold of 5 %, extinction = ln 20 / MOR;
 [LISA] Kilic et al., arXiv 2107.07004; [FOG] Hahner et al., Fog Simulation on Real LiDAR Point
@@ -23,6 +23,7 @@ from ..base.errors import InputError, shown
 from ..base.setting import FLAG, Panel, check_settings, setting
 from ..base.values import A_NAME, WEIGHT, Number
 from ..scene.rig import Rig, SensorModel
+from ..scene.vehicle import Vehicle
 from .field_of_view import LIGHT_M_S
 from .kind import kind_of
 
@@ -124,6 +125,15 @@ class Weather:
         if self.lit_m is not None and not self.night:
             raise InputError(who, "lit_m", "night = true with it", "night = false")
 
+    def __call__(self, rig: Rig, vehicle: Vehicle | None = None) -> tuple[Rig, Vehicle | None]:
+        """Return a rig with its sensors as they are under this weather, and the vehicle itself."""
+        if self.is_clear:
+            return rig, vehicle
+        models = [_model_in_weather(sensor.model, self) for sensor in rig]
+        pairs = zip(rig, models, strict=True)
+        sensors = [s if model is s.model else replace(s, model=model) for s, model in pairs]
+        return Rig(sensors), vehicle
+
     @property
     def extinction(self) -> float:
         """Extinction of visible and near infrared light [1/m]; in fog ln 20 / MOR, [KO]."""
@@ -135,15 +145,6 @@ class Weather:
     def is_clear(self) -> bool:
         """Whether sensors are as they are without it."""
         return self.extinction == 0.0 and not self.night and self.reflectivity == 1.0
-
-
-def rig_in_weather(rig: Rig, weather: Weather | None) -> Rig:
-    """Return a rig with its sensors as they are under a weather; the same ones where none is."""
-    if weather is None or weather.is_clear:
-        return rig
-    models = [_model_in_weather(sensor.model, weather) for sensor in rig]
-    pairs = zip(rig, models, strict=True)
-    return Rig([s if model is s.model else replace(s, model=model) for s, model in pairs])
 
 
 @lru_cache(maxsize=1024)

@@ -10,7 +10,7 @@ from ..base.errors import InputError
 from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_state import State, check_name
-from ..sensors.weather import Weather, checked_weights, rig_in_weather
+from ..sensors.weather import Weather, checked_weights
 
 T = TypeVar("T", State, Weather)
 
@@ -44,6 +44,10 @@ class StateInWeather:
         state, weather = self.state, self.weather
         return (state is None or state.is_as_drawn) and (weather is None or weather.is_clear)
 
+    def __call__(self, rig: Rig, vehicle: Vehicle | None) -> tuple[Rig, Vehicle | None]:
+        """Return a rig and a vehicle, which are as they are drawn, under this condition."""
+        return self.rig(rig, vehicle), self.vehicle(vehicle)
+
     def vehicle(self, vehicle: Vehicle | None) -> Vehicle | None:
         """Return the vehicle under this condition."""
         return vehicle if self.state is None else self.state.vehicle(vehicle)
@@ -51,7 +55,7 @@ class StateInWeather:
     def rig(self, rig: Rig, vehicle: Vehicle | None) -> Rig:
         """Return a rig under this condition; `vehicle` is as it is drawn."""
         moved = rig if self.state is None else self.state.rig(rig, vehicle)
-        return rig_in_weather(moved, self.weather)
+        return moved if self.weather is None else self.weather(moved)[0]
 
 
 @dataclass(frozen=True)

@@ -318,13 +318,8 @@ class Study:
 
     def under(self, condition: StateInWeather) -> Study:
         """Return the study under a condition: a study of its own, as any other."""
-        return replace(
-            self,
-            rig=condition.rig(self.rig, self.vehicle),
-            vehicle=condition.vehicle(self.vehicle),
-            conditions=Conditions(),
-            requirements=(),
-        )
+        rig, vehicle = condition(self.rig, self.vehicle)
+        return replace(self, rig=rig, vehicle=vehicle, conditions=Conditions(), requirements=())
 
     @contextmanager
     def _naming_vehicle(self) -> Iterator[None]:

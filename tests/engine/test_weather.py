@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.sensors import rig_in_weather, weather
+from pe_core.sensors import weather
 from pe_core.sensors.weather import Weather, camera_range, fog_return_range, lidar_range
 from pe_core.study import Conditions, StateInWeather
 from tests.engine import shapes
@@ -116,7 +116,7 @@ def test_a_sensor_in_a_weather_has_the_bits_of_one_with_that_range():
             shapes.small_space(), pe.Prior.road(), body, samples=4096, shift=(0.1 * number,) * 3
         )
         evaluator.score(rig)
-        foggy = rig_in_weather(rig, Weather("fog", fog_mor_m=mor))
+        foggy = Weather("fog", fog_mor_m=mor)(rig)[0]
         anew = pe.Rig([replace(s, model=replace(s.model)) for s in foggy])
         assert [s.model.max_range for s in anew] == [s.model.max_range for s in foggy]
         assert evaluator.score(foggy).to_dict() == evaluator.score(anew).to_dict()
@@ -136,8 +136,8 @@ def test_rain_damps_a_radar_and_fog_does_not():
     assert weather.rain_db_per_km(50.0) == pytest.approx(18.8, abs=0.05)
     name = next(n for n, e in pe.catalog.entries().items() if e.kind == "radar")
     rig = pe.Rig([pe.Sensor("radar", pe.catalog.load(name), pe.Pose((2.0, 0.0, 0.5)))])
-    assert rig_in_weather(rig, named(fog_mor_m=50.0))["radar"] is rig["radar"]
-    wet = rig_in_weather(rig, named(rain_mm_h=10.0))["radar"].model
+    assert named(fog_mor_m=50.0)(rig)[0]["radar"] is rig["radar"]
+    wet = named(rain_mm_h=10.0)(rig)[0]["radar"].model
     assert wet.attenuation_db_km == weather.rain_db_per_km(10.0)
     evaluator = pe.Evaluator(pe.PerceptionSpace(), pe.Prior.road(), samples=4096)
-    assert evaluator.entropy(rig_in_weather(rig, named(rain_mm_h=50.0))) > evaluator.entropy(rig)
+    assert evaluator.entropy(named(rain_mm_h=50.0)(rig)[0]) > evaluator.entropy(rig)

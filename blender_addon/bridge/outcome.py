@@ -116,8 +116,8 @@ def store_warnings(settings: PropertyGroup, warnings: Sequence[pe.Advice]) -> No
     for each in warnings:
         if each.code != advice.FRAGILE:
             x, y, z = (*each.amount, 0.0, 0.0, 0.0)[:3]
-            named = each.subject or "", each.code, each.text, each.part or "", each.fix or ""
-            rows.append(StoredWarning(*named, (x, y, z)))
+            named = each.subject or "", each.code, dict(each.values)
+            rows.append(StoredWarning(*named, each.part or "", each.fix or "", (x, y, z)))
     settings.result_warnings = tuple(rows)
 
 

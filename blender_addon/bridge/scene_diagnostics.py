@@ -47,8 +47,7 @@ def _lost_data(blocks: Iterable[ID]) -> Iterator[pe.Advice]:
         if block.is_missing:
             lost.setdefault(block.library.filepath, []).append(block.name)
     for path, names in lost.items():
-        what = ", ".join(sorted(set(names)))
-        yield pe.Advice(None, MISSING, f"{what} is missing: there is no {path}")
+        yield pe.Advice(None, MISSING, {"names": sorted(set(names)), "path": path})
 
 
 def _scored_data(scene: Scene, sensors: Sequence[Object]) -> Iterator[ID]:
@@ -80,12 +79,9 @@ def _failed_drivers(blocks: Iterable[Any], sensors: Collection[Object]) -> Itera
         drivers = getattr(block.animation_data, "drivers", ()) if _animatable(block) else ()
         failed = sorted({d.data_path for d in drivers if not d.driver.is_valid})
         if failed:
-            why = "Python in drivers is not allowed in this file" if bpy.app.autoexec_fail else ""
-            text = f"the driver of its {', '.join(failed)} did not run{': ' * bool(why)}{why}"
-            if block in sensors:
-                yield pe.Advice(block.name, DRIVER, text)
-            else:
-                yield pe.Advice(None, DRIVER, f"{block.name}: {text}", part=block.name)
+            values = {"paths": failed, "is_allowed": not bpy.app.autoexec_fail}
+            subject, part = (block.name, None) if block in sensors else (None, block.name)
+            yield pe.Advice(subject, DRIVER, values, part)
 
 
 def _animatable(block: ID) -> bool:
@@ -95,8 +91,7 @@ def _animatable(block: ID) -> bool:
 def _units(scene: Scene) -> Iterator[pe.Advice]:
     units = scene.unit_settings
     if units.system == "IMPERIAL" or abs(units.scale_length - 1.0) > 1e-6:
-        text = "one unit is not one metre in this scene: nothing can be scored"
-        yield pe.Advice(None, UNITS, text, fix="metric_units")
+        yield pe.Advice(None, UNITS, fix="metric_units")
 
 
 def _hidden_vehicle(scene: Scene) -> Iterator[pe.Advice]:
@@ -106,17 +101,15 @@ def _hidden_vehicle(scene: Scene) -> Iterator[pe.Advice]:
         return
     layers = layers_of(layer.layer_collection, vehicle)
     if not layers:
-        text = (
-            f"the vehicle collection {vehicle.name} is not in this scene: nothing of it is scored"
-        )
-        yield pe.Advice(None, HIDDEN, text)
+        values = {"collection": vehicle.name, "how": "not in this scene", "is_whole": True}
+        yield pe.Advice(None, HIDDEN, values)
     elif how := hidden_how(layers[0]):
-        text = f"the vehicle collection {vehicle.name} is {how}: nothing of it is scored"
-        yield pe.Advice(None, HIDDEN, text, fix="show_vehicle")
+        values = {"collection": vehicle.name, "how": how, "is_whole": True}
+        yield pe.Advice(None, HIDDEN, values, fix="show_vehicle")
     else:
         for child in _hidden_children(layers[0]):
-            text = f"the vehicle's collection {child.name} is {hidden_how(child)}: it is not scored"
-            yield pe.Advice(None, HIDDEN, text)
+            values = {"collection": child.name, "how": hidden_how(child), "is_whole": False}
+            yield pe.Advice(None, HIDDEN, values)
 
 
 def _hidden_children(layer: LayerCollection) -> Iterator[LayerCollection]:
@@ -138,9 +131,9 @@ def _refused(scene: Scene, sensors: Sequence[Object]) -> Iterator[pe.Advice]:
             sensor_from_object(obj, layer.depsgraph)
         except pe.InputError as error:
             field = error.field.rpartition(": ")[2]
-            text = f"its {field} is {error.found}; expected {error.expected}"
+            values = {"field": field, "found": error.found, "expected": error.expected}
             fix = "apply_scale" if field == "scale" else None
-            yield pe.Advice(obj.name, REFUSED, text, fix=fix)
+            yield pe.Advice(obj.name, REFUSED, values, fix=fix)
 
 
 def check_placeable(scene: Scene, study: pe.Study) -> None:

@@ -13,6 +13,8 @@ from typing import Any, NamedTuple
 import bpy
 from bpy.types import Object, PropertyGroup, Scene
 
+from ..engine import wording
+
 
 class ResultPart(NamedTuple):
     """A zone of the ground or a class of objects: its label, entropy [nats], visible share.
@@ -52,10 +54,15 @@ class StoredWarning(NamedTuple):
 
     subject: str
     code: str
-    text: str
+    values: dict[str, Any]
     part: str
     fix: str
     amount: tuple[float, float, float]
+
+    @property
+    def text(self) -> str:
+        """The warning in a sentence, without the name of its subject."""
+        return wording.warning_text(self.code, self.part, self.values)
 
 
 class FrontRow(NamedTuple):

@@ -4,15 +4,15 @@ Nothing here computes a score; results of `pe_core` are checked, compared and de
 """
 
 from pe_core.scoring.sight import BLIND_TO_M as BLIND_TO_M
-from pe_tools.advice.advice import joined as joined
-from pe_tools.advice.advice import percent as percent
+from pe_tools.wording import joined as joined
+from pe_tools.wording import percent as percent
 
+from ..wording import off_by as off_by
 from .advice import FRAGILE as FRAGILE
 from .advice import PROVISIONAL as PROVISIONAL
 from .advice import UNMET as UNMET
 from .advice import Advice as Advice
 from .advice import fragile as fragile
-from .advice import off_by as off_by
 from .advice import unmet as unmet
 from .key_figures import KeyFigures as KeyFigures
 from .key_figures import SensorRow as SensorRow

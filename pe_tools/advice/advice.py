@@ -1,46 +1,12 @@
-"""The warning record, numbers in texts, and the warning about a sensitivity to mounting errors."""
+"""The warning record, and warnings about a placement as a whole."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
-
-def percent(share: float, digits: int | None = None) -> str:
-    """Return a share, 0 to 1, in percent with `digits` decimals: "81.4%".
-
-    Without `digits`: "85%" as in a sentence, with one decimal for shares near 0 or 1: "0.4%".
-    """
-    if digits is not None:
-        return f"{100.0 * share:.{digits}f}%"
-    value = 100.0 * share
-    if 0.0 < value < 0.05:
-        return "under 0.1%"
-    if 99.95 <= value < 100.0:
-        return "over 99.9%"
-    return f"{value:.1f}%" if 0.0 < value < 9.95 or 99.5 <= value < 100.0 else f"{value:.0f}%"
-
-
-def metres(length: float) -> str:
-    """Return a length [m] as "5 cm", "1.45 m" or "84 m"."""
-    if abs(length) < 0.995:
-        return f"{100.0 * length:.0f} cm"
-    return f"{length:.2f} m" if abs(length) < 9.995 else f"{length:.0f} m"
-
-
-def times(factor: float) -> str:
-    """Return a factor as "12 times" or "0.31 times"."""
-    return f"{factor:.0f} times" if factor >= 9.5 else f"{factor:.2g} times"
-
-
-def joined(texts: Sequence[str]) -> str:
-    """Join texts: "a", "a and b", "a, b and c"."""
-    if len(texts) < 2:
-        return "".join(texts)
-    return f"{', '.join(texts[:-1])} and {texts[-1]}"
-
+from ..wording import warning_text
 
 FRAGILE = "fragile"
 """Code of the warning that concerns the placement of all sensors."""
@@ -63,8 +29,8 @@ class Advice:
         or the AP curves.
     code : str
         Identifier of the warning for programs: ``"inside"``, ``"size"``, ...
-    text : str
-        One sentence, without the name of the subject.
+    values : mapping
+        What the warning says, in plain values: `pe_tools.wording.WARNINGS` by code.
     part : str or None
         The part of the vehicle that causes the warning.
     fix : str or None
@@ -77,10 +43,15 @@ class Advice:
 
     subject: str | None
     code: str
-    text: str
+    values: Mapping[str, Any] = field(default_factory=dict, hash=False)
     part: str | None = None
     fix: str | None = None
     amount: tuple[float, ...] = ()
+
+    @property
+    def text(self) -> str:
+        """The warning in a sentence, without the name of its subject."""
+        return warning_text(self.code, self.part, self.values)
 
     @property
     def line(self) -> str:
@@ -114,9 +85,8 @@ def fragile(
     """
     if rise <= max(FRAGILE_NATS, SURE * stderr):
         return ()
-    advice = "" if tolerant else "; a search with a tolerance looks for one that is less fragile"
-    text = f"{off_by(position, angle)} (1 sigma) it is {rise:.2f} nats worse on average{advice}"
-    return (Advice(None, FRAGILE, text),)
+    values = {"rise": rise, "position": position, "angle": angle, "tolerant": tolerant}
+    return (Advice(None, FRAGILE, values),)
 
 
 def unmet(conflicts: Mapping[str, tuple[str, ...] | None]) -> tuple[Advice, ...]:
@@ -124,22 +94,7 @@ def unmet(conflicts: Mapping[str, tuple[str, ...] | None]) -> tuple[Advice, ...]
 
     `conflicts` has the requirements that stand against each; None: it was met nowhere.
     """
-    found = []
-    for name, against in conflicts.items():
-        text = f"{name} is not met; no placement was found that keeps all requirements"
-        if against is None:
-            text += ", and a short search found none that meets this one alone"
-        elif against:
-            text += f": a short search met it only by breaking {', '.join(against)}"
-        else:
-            text += ", though none stands against it: a longer search may"
-        found.append(Advice(None, UNMET, text))
-    return tuple(found)
-
-
-def off_by(position: float, angle: float) -> str:
-    """Describe mounting errors [m, rad], 1 sigma: "mounted 1 cm and 0.3 deg off"."""
-    turned = f"{math.degrees(angle):.2g} deg"
-    moved = f"{1000.0 * position:.2g} mm" if position < 0.00995 else metres(position)
-    named = [*[moved] * (position > 0.0), *[turned] * (angle > 0.0)]
-    return f"mounted {' and '.join(named)} off"
+    return tuple(
+        Advice(None, UNMET, {"name": name, "against": against and list(against)})
+        for name, against in conflicts.items()
+    )

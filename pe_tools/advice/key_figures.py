@@ -10,7 +10,7 @@ from pe_core.scene.rig import Rig
 from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.score import FAR_M, NEAR_M, Score
 from pe_core.scoring.sight import BLIND_TO_M, Sight, ends_with_space
-from pe_tools.advice.advice import percent
+from pe_tools.wording import percent
 
 from .mount_checks import occluded_shares
 from .summary import SIDES, Outlook, class_of

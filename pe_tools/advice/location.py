@@ -22,7 +22,7 @@ from pe_core.scene.rig import Rig, Sensor
 from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.scenarios import fused_early
 from pe_core.sensors import PerceptionModel, kind_named, kind_of, measure
-from pe_tools.advice.advice import times
+from pe_tools.wording import times
 
 SEES, HIDDEN = "sees", "occluded"
 """Reason of a sensor that measures the location, and of one whose view of it the vehicle blocks.

@@ -21,7 +21,7 @@ from pe_core.scene.rig import Sensor
 from pe_core.scene.vehicle import Vehicle, closest_points
 from pe_core.scoring.score import SensorScore
 from pe_core.sensors import kind_of
-from pe_tools.advice.advice import metres, percent
+from pe_tools.wording import metres
 
 from .advice import Advice
 from .vehicle_checks import OFF_AXIS_M, Bodywork
@@ -38,7 +38,6 @@ MAX_OCCLUDED_SHARE = 1.0 / 3.0
 the vehicle loses."""
 MAX_RAYS = 4096
 """Rays of a sensor that are cast at most."""
-PARTS_NAMED = 3
 UPSIDE_DOWN = -0.2
 """Vertical component of a sensor's unit upward axis below which its picture is upside down."""
 
@@ -121,17 +120,15 @@ def odd_mounting(mounted: SensorAtBody) -> Iterator[Advice]:
     sensor, body = mounted.sensor, mounted.body.vehicle
     covers = {} if body is None else kind_of(sensor).covers_met(sensor, body)
     for part, (db, share) in covers.items():
-        text = f"the cover {part} takes {db:g} dB one way from {percent(share)} of its field"
-        yield Advice(sensor.name, "cover", text, part=part)
+        yield Advice(sensor.name, "cover", {"db": db, "share": share}, part)
     if covers:  # behind a cover a sensor is meant to be inside
         return
     if mounted.inside:
-        yield Advice(sensor.name, "inside", "it is inside the body and sees next to nothing")
+        yield Advice(sensor.name, "inside")
         return
     yield from _housing(mounted)
     if mounted.gap > (CLEAR_ABOVE_M if mounted.above else CLEAR_M):
-        text = f"it is {metres(mounted.gap)} clear of the vehicle: what holds it?"
-        yield Advice(sensor.name, "clear", text)
+        yield Advice(sensor.name, "clear", {"gap": mounted.gap})
     yield from _in_the_way(mounted)
 
 
@@ -139,17 +136,16 @@ def odd_place(sensor: Sensor, space: PerceptionSpace) -> Iterator[Advice]:
     """Yield warnings about a sensor's pose that do not depend on the vehicle."""
     x, y, z = sensor.pose.position
     if z < 0.0:
-        yield Advice(sensor.name, "underground", f"it is {metres(-z)} under the ground")
+        yield Advice(sensor.name, "underground", {"depth": -z})
     bounds = (space.x, space.y, (min(0.0, space.z[0]), space.z[1]))
     outside = (not low <= w <= high for w, (low, high) in zip((x, y, z), bounds, strict=True))
     if z >= 0.0 and any(outside):
-        text = f"it is outside the perception space, at ({x:g}, {y:g}, {z:g}) m"
-        yield Advice(sensor.name, "outside", text)
+        yield Advice(sensor.name, "outside", {"x": x, "y": y, "z": z})
     up = float(sensor.pose.ground_from_sensor[2, 2])
     kind = kind_of(sensor)
     if kind.has_top and up < UPSIDE_DOWN:
-        text = f"the {kind.label.lower()} is upside down"
-        yield Advice(sensor.name, "upside_down", text, fix="roll_sensor", amount=(180.0,))
+        values = {"kind": kind.label.lower()}
+        yield Advice(sensor.name, "upside_down", values, fix="roll_sensor", amount=(180.0,))
 
 
 def distance_to(vehicle: Vehicle, point: Floats) -> float:
@@ -195,10 +191,8 @@ def _housing(mounted: SensorAtBody) -> Iterator[Advice]:
     housing = catalog.housing(sensor.model.name)
     parts = () if housing is None else cuts_body(sensor.pose, housing, mounted.body.itself)
     if housing is not None and parts:
-        size = " x ".join(f"{100.0 * side:.0f}" for side in housing.size)
-        named = ", ".join(parts[:PARTS_NAMED]) + (", ..." if len(parts) > PARTS_NAMED else "")
-        text = f"its housing ({size} cm) cuts into {named}"
-        yield Advice(sensor.name, "housing", text, part=parts[0])
+        values = {"size": list(housing.size), "parts": list(parts)}
+        yield Advice(sensor.name, "housing", values, parts[0])
 
 
 def _in_the_way(mounted: SensorAtBody) -> Iterator[Advice]:
@@ -209,13 +203,10 @@ def _in_the_way(mounted: SensorAtBody) -> Iterator[Advice]:
     part, part_share = next(iter(mounted.occluded_by.items()))
     median = float(np.median(mounted.hits.distance)) if len(mounted.hits.face) else math.inf
     if median <= LOOKS_AT_M:
-        text = f"it looks at {part} from {metres(median)}"
-        yield Advice(name, "looks_at", text, part=part)
+        yield Advice(name, "looks_at", {"distance": median}, part)
         return
     share = sum(mounted.occluded_by.values())
     if share < MAX_OCCLUDED_SHARE:
         return
-    text = f"{percent(share)} of its {unit} are occluded by {part}"
-    if share - part_share > 0.005:
-        text = f"{percent(share)} of its {unit} are occluded, {percent(part_share)} by {part}"
-    yield Advice(name, "occluded", text, part=part)
+    values = {"share": share, "part_share": part_share, "unit": unit}
+    yield Advice(name, "occluded", values, part)

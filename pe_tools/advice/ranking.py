@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple
 
-from pe_tools.advice.advice import joined
+from pe_tools.wording import joined
 
 from .score_comparison import AP, COVERAGE, ENTROPY, ComparedRow
 from .summary_text import WHERE

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from pe_core.scoring.score import Score
 
-from .advice import joined
+from ..wording import joined
 from .score_comparison import AP, BLIND, COVERAGE, ENTROPY, MIN_CHANGE
 from .summary_text import WHERE
 

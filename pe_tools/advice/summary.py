@@ -12,7 +12,7 @@ from pe_core.prior.prior import Prior
 from pe_core.scene.rig import Rig
 from pe_core.scoring.score import FARTHEST_M, FoundClass, ObjectScore
 from pe_core.scoring.sight import BLIND_TO_M, BlindGround, Reach, Sight, VisibleShares, shown_end
-from pe_tools.advice.advice import percent
+from pe_tools.wording import percent
 
 NEAREST_M = 0.5
 """A shorter reach [m] is described as "nowhere"."""

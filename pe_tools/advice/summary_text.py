@@ -8,7 +8,7 @@ from pe_core.scene.rig import Rig, Sensor
 from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.score import FAR_M, NEAR_M, PartScore, Score, SensorScore
 from pe_core.sensors import kind_of
-from pe_tools.advice.advice import percent
+from pe_tools.wording import percent
 
 from .advice import Advice
 from .key_figures import MIN_LOSS, MIN_RISE

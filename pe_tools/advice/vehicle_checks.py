@@ -11,7 +11,6 @@ import numpy as np
 from pe_core.scene.body_shape import USUAL_SECOND_M, BodyShape, car_factor, fitting_units, is_usual
 from pe_core.scene.orientation import LONGER, ON_GROUND, across, front_by_names, wheel_center
 from pe_core.scene.vehicle import Vehicle
-from pe_tools.advice.advice import metres
 
 from .advice import Advice
 
@@ -62,8 +61,7 @@ def odd_vehicle(body: Bodywork) -> Iterator[Advice]:
     After a warning about its size no other check in metres is made.
     """
     for name in body.shape.rooms:  # such as the floor of a studio
-        text = f"{name} is as large as a room: a floor or a studio that belongs to no vehicle?"
-        yield Advice(None, "room", text, part=name)
+        yield Advice(None, "room", part=name)
     wrong_size = list(_size(body))
     yield from wrong_size
     if wrong_size:
@@ -77,20 +75,13 @@ def _size(body: Bodywork) -> Iterator[Advice]:
     if is_usual(longest, second):
         return
     x, y, z = body.shape.size
-    found_text = f"{metres(x)} long, {metres(y)} wide and {metres(z)} high is no vehicle"
-    if not longest:
-        yield Advice(None, "size", "all of it is one point")
-        return
-    if fitting := fitting_units(longest, second):
+    unit, factor = None, car_factor(longest) if longest else 1.0
+    if longest and (fitting := fitting_units(longest, second)):
         unit, factor = fitting[0]
-        long, wide, high = (metres(factor * w) for w in (x, y, z))
-        fix_text = f"if these are {unit}, scale by {factor:g}: {long} x {wide} x {high}"
-    else:
-        factor = car_factor(longest)
-        fix_text = f"scaled by {factor:g} it would be as long as a car"
-    if min(x, y) > USUAL_SECOND_M and z < FLOOR_M:
-        fix_text = f"is a floor part of its mesh? Or, {fix_text}"
-    yield Advice(None, "size", f"{found_text}; {fix_text}", fix="scale_vehicle", amount=(factor,))
+    has_floor = min(x, y) > USUAL_SECOND_M and z < FLOOR_M
+    values = {"size": [x, y, z], "factor": factor, "unit": unit, "has_floor": has_floor}
+    fix, amount = ("scale_vehicle", (factor,)) if longest else (None, ())
+    yield Advice(None, "size", values, fix=fix, amount=amount)
 
 
 def _wide(body: Bodywork) -> Iterator[Advice]:
@@ -101,22 +92,18 @@ def _wide(body: Bodywork) -> Iterator[Advice]:
     x, y, z = body.shape.size
     if WIDE_M < y < x and z < y and across(body.shape) != 2:
         factor = car_factor(x)
-        text = (
-            f"{metres(y)} wide is more than roads allow; scaled by {factor:g} it would be as long "
-            "as a car"
-        )
-        yield Advice(None, "width", text, fix="scale_vehicle", amount=(factor,))
+        values = {"width": y, "factor": factor}
+        yield Advice(None, "width", values, fix="scale_vehicle", amount=(factor,))
 
 
 def _stands(body: Bodywork) -> Iterator[Advice]:
     """Check for a vehicle that stands on its tail or lies on its side."""
     x, y, z = body.shape.size
     if z > LONGER * max(x, y):
-        text = f"taller ({metres(z)}) than long ({metres(max(x, y))}): does it stand on its tail?"
-        yield Advice(None, "on_tail", text, fix="stand_vehicle", amount=_quarter_turn(body))
+        values = {"height": z, "length": max(x, y)}
+        yield Advice(None, "on_tail", values, fix="stand_vehicle", amount=_quarter_turn(body))
     elif across(body.shape) == 2:
-        text = "its left half mirrors its right one from top to bottom: does it lie on its side?"
-        yield Advice(None, "on_side", text, fix="stand_vehicle", amount=_quarter_turn(body))
+        yield Advice(None, "on_side", fix="stand_vehicle", amount=_quarter_turn(body))
 
 
 def _quarter_turn(body: Bodywork) -> tuple[float, float, float]:
@@ -149,15 +136,11 @@ def _faces(body: Bodywork) -> Iterator[Advice]:
         axis, sign = direction
         if (axis, sign) != (0, 1.0):
             turn = {(0, -1.0): 180.0, (1, 1.0): -90.0, (1, -1.0): 90.0}[axis, sign]
-            side = {180.0: "backwards (-x)", -90.0: "left (+y)", 90.0: "right (-y)"}[turn]
-            text = f"it faces {side} by its parts' names; forward is +x: turn it by {turn:g} deg"
-            yield Advice(None, "faces", text, fix="turn_vehicle", amount=(turn,))
+            values = {"turn": turn, "length": x, "width": y, "is_named": True}
+            yield Advice(None, "faces", values, fix="turn_vehicle", amount=(turn,))
     elif y > LONGER * x or (y > x / LONGER and across(body.shape) == 0):
-        text = (
-            f"it lies along y ({metres(y)} wide, {metres(x)} long) but forward is +x: turn it by "
-            "90 or -90 deg; its shape does not tell which end is the front"
-        )
-        yield Advice(None, "faces", text, fix="turn_vehicle", amount=(90.0,))
+        values = {"turn": 90.0, "length": x, "width": y, "is_named": False}
+        yield Advice(None, "faces", values, fix="turn_vehicle", amount=(90.0,))
 
 
 def _on_its_roof(body: Bodywork) -> Iterator[Advice]:
@@ -165,35 +148,26 @@ def _on_its_roof(body: Bodywork) -> Iterator[Advice]:
     wheels = wheel_center(body.shape)
     middle = float(body.shape.bounds[0][2] + body.shape.bounds[1][2]) / 2.0
     if wheels is not None and float(wheels[2]) > middle + 0.1 * body.shape.size[2]:
-        text = "its wheels are on top: does it lie on its roof?"
         turn = (180.0, 0.0, 0.0)
-        yield Advice(None, "on_roof", text, fix="stand_vehicle", amount=turn)
+        yield Advice(None, "on_roof", fix="stand_vehicle", amount=turn)
 
 
 def _height(body: Bodywork) -> Iterator[Advice]:
     """Check for a vehicle that is sunk into the ground or floats above it."""
     bottom = float(body.shape.bounds[0][2])
-    if bottom < -SUNK_M:
-        text = f"it stands {metres(-bottom)} deep in the ground, z = 0"
-    elif bottom > FLOATS_M:
-        text = f"it floats {metres(bottom)} above the ground, z = 0"
-    else:
-        return
-    yield Advice(None, "height", text, fix="move_vehicle", amount=(0.0, 0.0, -bottom))
+    if not -SUNK_M <= bottom <= FLOATS_M:
+        values, amount = {"bottom": bottom}, (0.0, 0.0, -bottom)
+        yield Advice(None, "height", values, fix="move_vehicle", amount=amount)
 
 
 def _not_centred(body: Bodywork) -> Iterator[Advice]:
     """Check that the vehicle's axis is the x axis, and its middle near the origin."""
     x, y = body.shape.middle
-    if abs(y) > OFF_AXIS_M:
-        side = "left" if y > 0.0 else "right"
-        text = f"not centred: its axis is {metres(abs(y))} to the {side} of y = 0"
-        text += "; mirror images of sensors would be off the vehicle"
-    elif abs(x) > OFF_MIDDLE_M:
-        text = f"not centred: its middle is {metres(abs(x))} off the origin, at x = {x:.1f} m"
-    else:
-        return
-    yield Advice(None, "not_centred", text, fix="move_vehicle", amount=(0.0 - x, 0.0 - y, 0.0))
+    if abs(y) > OFF_AXIS_M or abs(x) > OFF_MIDDLE_M:
+        axis, off = ("y", y) if abs(y) > OFF_AXIS_M else ("x", x)
+        amount = (0.0 - x, 0.0 - y, 0.0)
+        values = {"axis": axis, "off": off}
+        yield Advice(None, "not_centred", values, fix="move_vehicle", amount=amount)
 
 
 CHECKS: tuple[Callable[[Bodywork], Iterator[Advice]], ...] = (

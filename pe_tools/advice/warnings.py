@@ -12,7 +12,7 @@ from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.score import Score
 from pe_core.sensors import SCANS, PerceptionModel, kind_of, scan_curves
 from pe_core.study.condition_table import ConditionTable
-from pe_tools.advice.advice import joined, percent
+from pe_tools.wording import joined, percent
 
 from .advice import PROVISIONAL, Advice
 from .mount_checks import SensorAtBody, odd_mounting, odd_place
@@ -54,17 +54,16 @@ def condition_warnings(table: ConditionTable | None) -> tuple[Advice, ...]:
     found = []
     for state, depths in table.below_ground.items():
         part, depth = next(iter(depths.items()))
-        more = f" and {len(depths) - 1} more parts" if len(depths) > 1 else ""
-        text = f"state {state!r} drives {part!r}{more} through the ground, {depth:.2f} m deep"
-        found.append(Advice(None, "below_ground", text, part))
+        values = {"state": state, "depth": depth, "parts": len(depths)}
+        found.append(Advice(None, "below_ground", values, part))
     told = set()
     for row in table.rows:
         for sensor, parts in (row.covered or {}).items():
             part, share = max(parts.items(), key=lambda each: each[1])
             if (key := (row.state, sensor)) not in told:
                 told.add(key)
-                text = f"in state {row.state!r}, {part!r} covers {share:.0%} of what it sees"
-                found.append(Advice(sensor, "covered", f"{text}, beyond that as drawn", part))
+                values = {"state": row.state, "share": share}
+                found.append(Advice(sensor, "covered", values, part))
     return tuple(found)
 
 
@@ -72,11 +71,7 @@ def curve_warnings(model: PerceptionModel) -> tuple[Advice, ...]:
     """Return a warning where curves of objects are those from scans and provisional."""
     if model.model != SCANS or (fitted := scan_curves()).complete:
         return ()
-    text = (
-        f"the curves from scans are provisional: {fitted.runs} of {fitted.planned} runs of their "
-        "study are done"
-    )
-    return (Advice(None, PROVISIONAL, text),)
+    return (Advice(None, PROVISIONAL, {"runs": fitted.runs, "planned": fitted.planned}),)
 
 
 def curve_note(models: Iterable[PerceptionModel]) -> str:

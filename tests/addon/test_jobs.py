@@ -63,8 +63,8 @@ def test_warnings_are_stored_as_the_result_has_them(car):
     assert [(each["subject"], each["code"]) for each in told] == [
         *((None, "height"), ("roof", "inside"))
     ]
-    assert [(row.subject, row.code, row.text) for row in rows] == [
-        (each["subject"] or "", each["code"], each["text"]) for each in told
+    assert [(row.subject, row.code, row.values) for row in rows] == [
+        (each["subject"] or "", each["code"], each["values"]) for each in told
     ]
     assert rows[0].fix == "move_vehicle"
     assert list(rows[0].amount) == pytest.approx(told[0]["amount"])

@@ -57,7 +57,7 @@ def test_score_live_and_optimize_stand_first_and_late_lines_have_their_room(car)
     shown = drawn_of(car).texts("label")
     assert "Changed since it was scored" in shown
     assert {*counts, len(shown)} == {counts[0]}, "as many lines before, after and when it is stale"
-    told = "roof", "clear", "it is clear of the vehicle", "", "", (0.0, 0.0, 0.0)
+    told = "roof", "clear", {"gap": 0.6}, "", "", (0.0, 0.0, 0.0)
     settings.result_warnings = (bridge.StoredWarning(*told),)
     assert len(drawn_of(car).texts("label")) == counts[0], "warnings move nothing"
     assert main.PE_PT_warnings.poll(layouts.Window(car))

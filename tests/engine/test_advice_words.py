@@ -5,7 +5,7 @@ import pytest
 import pe_core as pe
 from pe_core.base.errors import plural
 from pe_tools import advice
-from pe_tools.advice.advice import metres, percent, times
+from pe_tools.wording import metres, percent, times
 from tests.engine import shapes
 
 
@@ -182,7 +182,7 @@ def test_warnings_are_in_the_result_and_below_the_summary():
         {
             "subject": "roof",
             "code": "inside",
-            "text": "it is inside the body and sees next to nothing",
+            "values": {},
             "part": None,
             "fix": None,
             "amount": [],

@@ -46,7 +46,7 @@ RIG = pe.Rig([shapes.lidar_on_roof(), dataclasses.replace(shapes.camera(60.0), n
 def test_what_is_reported_of_it(stopped, coverage, warned, stderr, lines):
     own = {"roof": sensor_score(0.6), INSIDE: sensor_score(coverage, stopped)}
     score = pe.Score(2.0, 0.6, stderr, {}, {}, own, 9)
-    warnings = [pe.Advice(INSIDE, code, "it is inside the body") for code in warned]
+    warnings = [pe.Advice(INSIDE, code) for code in warned]
     assert advice.hidden_words(advice.hidden_sensors(RIG, score, warnings)) == lines
     assert advice.words(score, RIG, warnings=warnings)[: len(lines)] == lines
     assert not advice.words(score)[0].startswith("camera")

@@ -11,7 +11,6 @@ import pe_core as pe
 from pe_core.catalog import load
 from pe_core.sensors import Camera, KannalaBrandt, range_picture
 from pe_tools import graphics
-from pe_tools.advice.advice import percent
 from pe_tools.page.pictures import sensor_views
 from pe_tools.page.pictures.reference_figures import (
     CAR_M,
@@ -24,6 +23,7 @@ from pe_tools.page.pictures.reference_figures import (
 from pe_tools.page.pictures.sensor_views import camera_picture, lidar_picture, ray_camera
 from pe_tools.page.pictures.svg import LabelledPicture, stacked
 from pe_tools.page.sections.sensor_details import sensor_details
+from pe_tools.wording import percent
 from tests.engine.test_png import decoded
 from tests.review.conftest import box, html_of
 

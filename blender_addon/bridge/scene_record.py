@@ -21,10 +21,8 @@ from .requirements import requirements_of
 from .rig import sensor_objects, view_layer_of
 from .scene_settings import (
     clearance_of,
-    passthrough_of,
     perception_of,
     reference_of,
-    samples_of,
     search_of,
     space_of,
     targets_of,
@@ -146,11 +144,11 @@ def record_of_scene(
         prior=prior_from_scene(scene),
         model=perception_of(settings),
         targets=targets_of(settings),
-        samples=samples_of(settings),
+        samples=values_of(settings, pe.Study)["samples"],
         search=with_starts(search_of(settings, is_choice=is_choice), scene),
         selection=selection_limits(settings) if is_choice else pe.Selection(),
         reference=reference_of(settings),
-        passthrough=passthrough_of(settings),
+        passthrough=studies.passthrough_of_text(settings.passthrough, "scene"),
         requirements=requirements_of(settings),
         conditions=conditions_of(settings),
     )

@@ -187,11 +187,6 @@ def write_goals(settings: PropertyGroup, goals: search.Goals) -> None:
     settings.start_variants = False
 
 
-def samples_of(settings: PropertyGroup) -> int:
-    """Return how many voxels a score evaluates; 0: all."""
-    return values_of(settings, pe.Study)["samples"]
-
-
 def reference_of(settings: PropertyGroup) -> pe.Reference | None:
     """Return the positions of the axles; None if the scene does not have them."""
     return pe.Reference(**values_of(settings, pe.Reference)) if settings.axles_known else None
@@ -202,14 +197,6 @@ def write_reference(settings: PropertyGroup, reference: pe.Reference | None) -> 
     settings.axles_known = reference is not None
     if reference is not None:
         write_values(settings, reference)
-
-
-def passthrough_of(settings: PropertyGroup) -> exchange.Passthrough | None:
-    """Return the contents of an imported file besides the rig; None if there are none.
-
-    `InputError` when the scene's text is none that an import has written.
-    """
-    return studies.passthrough_of_text(settings.passthrough, "scene")
 
 
 def write_passthrough(settings: PropertyGroup, kept: exchange.Passthrough | None) -> None:

@@ -10,7 +10,6 @@ import pytest
 
 import pe_core as pe
 from blender_addon import bridge
-from blender_addon.bridge.scene_settings import samples_of
 from blender_addon.engine import studies
 from pe_core.scoring.sampling import FIRST_SAMPLES
 from tests.addon import scenes
@@ -225,4 +224,4 @@ def test_an_imported_study_becomes_the_record_of_the_scene_that_holds_it(rich, t
 
 def test_a_fresh_scene_is_scored_on_as_many_voxels_as_any_new_study(addon):
     fresh = bpy.data.scenes.new("fresh")
-    assert samples_of(fresh.perception_entropy) == FIRST_SAMPLES
+    assert fresh.perception_entropy.score_samples == FIRST_SAMPLES

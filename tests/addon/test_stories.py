@@ -1,4 +1,7 @@
-"""Five ways through the add-on from beginning to end, each in one scene, as a designer goes."""
+"""Ways through the add-on from beginning to end, each in one scene, as a designer goes.
+
+The drag that the live score follows is in `test_live`.
+"""
 
 import json
 

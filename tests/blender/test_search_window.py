@@ -7,7 +7,7 @@ from tests.blender.window import HEIGHT, WIDTH
 
 START_TIMEOUT_S, BETTER_TIMEOUT_S = 60, 120
 LINE = (0.45, 0.78, 0.96)
-"""Colour of the curve (`blender_addon/searching/drawing.py`)."""
+"""Colour of the curve (`blender_addon/search_curve.py`)."""
 ADDON = "bl_ext.user_default.perception_entropy"
 ON_THE_ROOF_M = 1.45 + 0.04 + 0.12
 """No sensor on a base plate of 40 mm is higher than this."""

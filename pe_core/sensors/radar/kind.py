@@ -21,9 +21,17 @@ from ..field_of_view import FieldPicture
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, PAPER_VOXEL_M, SIZES, Kind
 from ..ray_fan import angles_of, field_picture_of
 from ..weather import Weather, rain_db_per_km
-from .definition import SURE, TARGET, fan_of, measure_objects, seen_through, target_detections
+from .definition import (
+    RULES,
+    SURE,
+    TARGET,
+    fan_of,
+    field_of,
+    measure_objects,
+    seen_through,
+    target_detections,
+)
 from .detection import read_reflectivity, write_reflectivity
-from .kernels import RULES, field_of
 from .model import Radar, RadarMode, radar_of
 
 SLOPE = 0.152

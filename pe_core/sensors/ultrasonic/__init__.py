@@ -1,6 +1,6 @@
 """Ultrasonic sensors: whether an echo comes back."""
 
+from .definition import Ultrasonic
 from .kind import ULTRASONIC
-from .model import Ultrasonic
 
 __all__ = ["ULTRASONIC", "Ultrasonic"]

@@ -18,8 +18,17 @@ from ...scene.vehicle import Vehicle
 from ..field_of_view import NEAREST, FieldPicture
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, SIZES, Kind
 from ..ray_fan import RayFan, angles_of, field_picture_of
-from .definition import RULES, fan_of, in_cone, measure_objects, returns_echo
-from .model import RANGE, RIGHT_ANGLE, Ultrasonic, ultrasonic_of
+from .definition import (
+    RANGE,
+    RIGHT_ANGLE,
+    RULES,
+    Ultrasonic,
+    fan_of,
+    in_cone,
+    measure_objects,
+    returns_echo,
+    ultrasonic_of,
+)
 
 NO_AP = ApCurve(1e-12, AP_MIN)
 """AP 0.001 whatever is measured: adds nothing to an entropy. No AP of a detector on ultrasonic

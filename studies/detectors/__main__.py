@@ -27,7 +27,7 @@ from .cameras.placements import camera_placements
 from .cameras.plan import full_camera_plan, quick_camera_plan
 from .curve_file import write_curves
 from .findings import answer_after_search, short_answer
-from .page import TITLE, Study, page
+from .page import OWN, TITLE, Plans, Study, page
 from .placements import Placement, placements
 from .plan import AFTER_SEARCH, CAMERAS, StudyPlan, full_plan, quick_plan
 from .runs import Run, RunFiles, runs, seed_by_seed
@@ -43,64 +43,72 @@ def validate_own(args: argparse.Namespace, folder: Path) -> Answer:
     """Do the runs that are asked for, then draw the conclusions and write the page."""
     check_page(folder, TITLE, "detectors")
     folder = prepare_folder(folder)
-    plan = quick_plan() if args.quick else full_plan()
-    cameras = quick_camera_plan() if args.quick else full_camera_plan()
-    searches = quick_after_search_plan() if args.quick else full_after_search_plan()
-    files = RunFiles(folder, plan, runs(plan))
-    of_cameras = seed_by_seed(cameras.study, camera_placements(cameras))
-    camera_files = RunFiles(folder / CAMERAS, cameras.study, of_cameras)
+    plans = _plans(args.quick)
     report = print_progress if args.after_search and not args.page_only else None
-    searched = searched_placements(searches, folder, report)
-    after_runs = seed_by_seed(searches.study, searched)
-    after_files = RunFiles(folder / AFTER_SEARCH, searches.study, after_runs)
-
-    def run(run: Run) -> Json:
-        from .one_run import run_camera, run_one  # TensorFlow is loaded when a run is missing
-
-        if args.cameras:
-            return run_camera(cameras, run)
-        return run_one(searches.study if args.after_search else plan, run)
-
-    own = after_files if args.after_search else camera_files if args.cameras else files
-    do_runs(args, own, run)
-    results, of_cameras_found = files.read(), camera_files.read()
-    scores = _scores(files, _scored(plan, results))
-    with_cameras = [p for r in camera_files.all if r.name in of_cameras_found if (p := r.placement)]
-    camera_scores = _scores(camera_files, with_cameras, cameras.model)
-    found_of_cameras = camera_analysis(cameras, of_cameras_found, camera_scores)
-    if of_cameras_found:
-        _write(camera_files.folder / RESULTS, found_of_cameras)
-    done_after, after_scores = {}, {}
-    is_searched = len(searched) > len(searches.rigs)
-    if is_searched:
-        done_after, after_scores = after_files.read(), _scores(after_files, searched)
-    found_after = after_search_analysis(searches, done_after, after_scores)
-    if is_searched:
-        _write(after_files.folder / RESULTS, found_after)
-    found = analysis(plan, results, scores) | {"ap_curves": scan_curves(plan, results)}
-    found["afterwards"] = afterwards(plan, results, scores, found["ap_curves"])
-    found["answer"] = short_answer(plan, found, found_after, found_of_cameras)
-    groups = {".": results, AFTER_SEARCH: done_after, CAMERAS: of_cameras_found}
-    found["history"] = history(folder, groups)
-    _write(folder / RESULTS, found)
+    searched = searched_placements(plans.searches, folder, report)
+    files = _files(plans, folder, searched)
+    name = AFTER_SEARCH if args.after_search else CAMERAS if args.cameras else OWN
+    do_runs(args, files[name], lambda run: _run(plans, name, run))
+    study, scores = _study(plans, files, searched)
     if args.curves:
-        write_curves(Path(args.curves), found["ap_curves"])
-    study = Study(
-        plan,
-        cameras,
-        searches,
-        found,
-        found_of_cameras,
-        found_after,
-        results,
-        of_cameras_found,
-        done_after,
-    )
+        write_curves(Path(args.curves), study.found["ap_curves"])
     outside = {} if args.quick else segmentation_scores(folder, print_progress)
     write_bytes(folder / PAGE, page(study, outside).encode())
-    _draw(study, folder, scores, camera_scores)
-    shown = found_after if args.after_search else found_of_cameras if args.cameras else found
-    return dump_json(shown) if args.json else _summary(args, study), DONE
+    _draw(study, folder, scores)
+    found = {OWN: study.found, CAMERAS: study.of_cameras, AFTER_SEARCH: study.searched}[name]
+    return dump_json(found) if args.json else _summary(name, study), DONE
+
+
+def _plans(quick: bool) -> Plans:
+    if quick:
+        return Plans(quick_plan(), quick_camera_plan(), quick_after_search_plan())
+    return Plans(full_plan(), full_camera_plan(), full_after_search_plan())
+
+
+def _files(plans: Plans, folder: Path, searched: list[Placement]) -> dict[str, RunFiles]:
+    """Return the files of the runs of each study, by its folder."""
+    cameras, searches = plans.cameras.study, plans.searches.study
+    with_cameras = seed_by_seed(cameras, camera_placements(plans.cameras))
+    return {
+        OWN: RunFiles(folder, plans.own, runs(plans.own)),
+        AFTER_SEARCH: RunFiles(folder / AFTER_SEARCH, searches, seed_by_seed(searches, searched)),
+        CAMERAS: RunFiles(folder / CAMERAS, cameras, with_cameras),
+    }
+
+
+def _run(plans: Plans, name: str, run: Run) -> Json:
+    from .one_run import run_camera, run_one  # TensorFlow is loaded when a run is missing
+
+    if name == CAMERAS:
+        return run_camera(plans.cameras, run)
+    return run_one(plans.searches.study if name == AFTER_SEARCH else plans.own, run)
+
+
+def _study(
+    plans: Plans, files: dict[str, RunFiles], searched: list[Placement]
+) -> tuple[Study, dict[str, Results]]:
+    """Return what follows from the results of all runs, written to files, and the scores."""
+    results = {name: each.read() for name, each in files.items()}
+    if len(searched) == len(plans.searches.rigs):  # no search is done
+        searched, results[AFTER_SEARCH] = [], {}
+    tried = [r.placement for r in files[CAMERAS].all if r.name in results[CAMERAS]]
+    with_cameras = [placement for placement in tried if placement is not None]
+    scores: dict[str, Results] = {
+        OWN: _scores(files[OWN], _scored(plans.own, results[OWN])),
+        AFTER_SEARCH: _scores(files[AFTER_SEARCH], searched),
+        CAMERAS: _scores(files[CAMERAS], with_cameras, plans.cameras.model),
+    }
+    cameras = camera_analysis(plans.cameras, results[CAMERAS], scores[CAMERAS])
+    after = after_search_analysis(plans.searches, results[AFTER_SEARCH], scores[AFTER_SEARCH])
+    found = analysis(plans.own, results[OWN], scores[OWN])
+    found["ap_curves"] = scan_curves(plans.own, results[OWN])
+    found["afterwards"] = afterwards(plans.own, results[OWN], scores[OWN], found["ap_curves"])
+    found["answer"] = short_answer(plans.own, found, after, cameras)
+    found["history"] = history(files[OWN].folder, results)
+    for name, conclusions in ((OWN, found), (AFTER_SEARCH, after), (CAMERAS, cameras)):
+        if name == OWN or scores[name]:
+            write_bytes(files[name].folder / RESULTS, dump_json(conclusions).encode())
+    return Study(plans, found, cameras, after, results), scores
 
 
 def _scores(
@@ -119,25 +127,21 @@ def _scored(plan: StudyPlan, results: Results) -> list[Placement]:
     return [p for p in placements(plan) if p.name in named | tried]
 
 
-def _write(path: Path, found: Json) -> None:
-    write_bytes(path, dump_json(found).encode())
-
-
-def _draw(study: Study, folder: Path, scores: Results, camera_scores: Results) -> None:
+def _draw(study: Study, folder: Path, scores: dict[str, Results]) -> None:
     from .study_plots import draw_all, draw_cameras
 
-    draw_all(study, folder, scores)
-    if study.camera_runs:
-        draw_cameras(study, folder / CAMERAS, camera_scores)
+    draw_all(study, folder, scores[OWN])
+    if study.runs[CAMERAS]:
+        draw_cameras(study, folder / CAMERAS, scores[CAMERAS])
 
 
-def _summary(args: argparse.Namespace, study: Study) -> str:
+def _summary(name: str, study: Study) -> str:
     """Return what is done and what follows, for people."""
-    if args.after_search:
+    if name == AFTER_SEARCH:
         found = study.searched
         done = f"{found['done']} of {found['planned']} runs before and after a search are done"
         return f"{done}\n{answer_after_search(found)}"
-    if args.cameras:
+    if name == CAMERAS:
         found = study.of_cameras
         done = f"{found['done']} of {found['planned']} runs of cameras are done"
         return f"{done}\n{found['verdict']:12} The better-scored placement of cameras finds more"

@@ -12,50 +12,61 @@ from . import findings, segmentation
 from .after_search.plan import START, AfterSearchPlan
 from .analysis import Results
 from .cameras.plan import CameraPlan
-from .plan import StudyPlan
+from .plan import AFTER_SEARCH, CAMERAS, StudyPlan
 from .scores import PRIMARY
 
+OWN = "."
+"""The folder of the study of LiDARs, from that of all."""
 TITLE = "# Does a better score find more? Our own study"
 
 
 @dataclass(frozen=True)
-class Study:
-    """The three studies: plans, what follows from their runs, and the results of these."""
+class Plans:
+    """The plans of the studies of LiDARs, of cameras, and before and after a search."""
 
-    plan: StudyPlan
+    own: StudyPlan
     cameras: CameraPlan
     searches: AfterSearchPlan
+
+
+@dataclass(frozen=True)
+class Study:
+    """The three studies: plans, what follows from their runs, and these results by folder."""
+
+    plans: Plans
     found: Json
     of_cameras: Json
     searched: Json
-    runs: Results
-    camera_runs: Results
-    after_runs: Results
+    runs: Mapping[str, Results]
+
+    def trainings(self, name: str) -> str:
+        """Return how the trainings of a study went; empty where none is done."""
+        return findings.trainings(self.runs[name]) if self.runs[name] else ""
 
 
 def page(study: Study, outside: Mapping[str, Json]) -> str:
     """Return the page as Markdown; `outside` has the scores of Place3D's placements."""
-    plan, found, rule = study.plan, study.found, study.plan.statistics
+    plan, found = study.plans.own, study.found
     replaced, groups = found["history"]["replaced"], found["history"]["groups"].values()
     values = {
         "t": findings,
         "found": found,
         "quick": plan.digest.startswith("quick"),
-        "alpha": rule.alpha,
-        "tie": rule.tie_ap,
+        "alpha": plan.statistics.alpha,
+        "tie": plan.statistics.tie_ap,
         "primary": PRIMARY,
         "changes": [row["after"] - row["before"] for row in replaced.values()],
         "alone": [sum(g[key] for g in groups) for key in ("plan_alone", "runs")],
-        "trainings": findings.trainings(study.runs) if study.runs else "",
+        "trainings": study.trainings(OWN),
         "searched": _searched(study),
         "camera": _cameras(study),
-        "outside": segmentation.tables(outside, rule, plan.seed) if outside else {},
+        "outside": segmentation.tables(outside, plan.statistics, plan.seed) if outside else {},
     }
     return render(Path(__file__).parent, values, interval_of=findings.with_interval)
 
 
 def _searched(study: Study) -> Json:
-    found, runs = study.searched, study.after_runs
+    found = study.searched
     after = [rig["placements"] for rig in found["rigs"].values()]
     placed = any(
         row["entropy"] is not None for rig in after for what, row in rig.items() if what != START
@@ -65,20 +76,20 @@ def _searched(study: Study) -> Json:
         "done": found["done"],
         "planned": found["planned"],
         "answer": findings.answer_after_search(found),
-        "lines": findings.searches(study.searches, found),
+        "lines": findings.searches(study.plans.searches, found),
         "by_ring": findings.searches_by_ring(found),
-        "rings": list(study.plan.precision.rings),
-        "trainings": findings.trainings(runs) if runs else "",
+        "rings": list(study.plans.own.precision.rings),
+        "trainings": study.trainings(AFTER_SEARCH),
     }
 
 
 def _cameras(study: Study) -> Json:
-    plan, found = study.cameras, study.of_cameras
+    plan, found = study.plans.cameras, study.of_cameras
     return {
         "plan": plan,
         "count": sum(plan.count.values()),
         "found": found,
         "answer": findings.answer_of_cameras(plan, found),
         "lines": findings.cameras(found),
-        "trainings": findings.trainings(study.camera_runs) if study.camera_runs else "",
+        "trainings": study.trainings(CAMERAS),
     }

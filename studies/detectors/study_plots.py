@@ -21,7 +21,7 @@ from .analysis import DesignResults, Results, designs_of
 from .cameras.analysis import design_of_cameras
 from .cameras.rendering import Renderer
 from .findings import plot_name
-from .page import Study
+from .page import OWN, Study
 from .plan import CAMERAS, StudyPlan
 from .scores import COMPARED, EXPECTED_AP, HEIGHT, PRIMARY
 
@@ -39,9 +39,9 @@ SHOWN_SCENE = ("test", 0)
 
 def draw_all(study: Study, folder: Path, scores: Results) -> None:
     """Draw the plots of the study of LiDARs."""
-    for design in designs_of(study.plan, study.runs):
+    for design in designs_of(study.plans.own, study.runs[OWN]):
         if design.has_figures:
-            ap_against_scores(folder / plot_name(design.name), study.plan, design, scores)
+            ap_against_scores(folder / plot_name(design.name), study.plans.own, design, scores)
             pairs_by_distance(folder / plot_name(design.name, pairs=True), design, scores)
     if classes := study.found["ap_curves"]["classes"]:
         expected_against_found(folder / "ap_curves.png", classes)
@@ -49,11 +49,11 @@ def draw_all(study: Study, folder: Path, scores: Results) -> None:
 
 def draw_cameras(study: Study, folder: Path, scores: Results) -> None:
     """Draw the plots of the study of cameras."""
-    design = design_of_cameras(study.cameras, study.camera_runs)
-    scene = Renderer(study.cameras, design.chosen[0]).pictures(*SHOWN_SCENE)
+    design = design_of_cameras(study.plans.cameras, study.runs[CAMERAS])
+    scene = Renderer(study.plans.cameras, design.chosen[0]).pictures(*SHOWN_SCENE)
     pictures_of_scene(folder / "pictures.png", scene.pictures)
     if design.has_figures:
-        ap_against_scores(folder / plot_name(CAMERAS), study.cameras.study, design, scores)
+        ap_against_scores(folder / plot_name(CAMERAS), study.plans.cameras.study, design, scores)
 
 
 @styled

@@ -59,11 +59,6 @@ def plan(effort: ValidityEffort, values: Values) -> list[Task]:
     return [task for name, task in _tasks(effort).items() if name not in values]
 
 
-def names(effort: ValidityEffort) -> list[str]:
-    """Return the names of all tasks."""
-    return list(_tasks(effort))
-
-
 def _tasks(effort: ValidityEffort) -> dict[str, Task]:
     """Return all tasks by name: a task that several variants need is there once."""
     tasks = (

@@ -27,7 +27,7 @@ from studies.detectors.cameras.placements import camera_placements
 from studies.detectors.cameras.plan import full_camera_plan, quick_camera_plan
 from studies.detectors.casting import GROUND_M, MAX_POINTS, Caster, FreeBeams
 from studies.detectors.findings import short_answer
-from studies.detectors.page import Study, page
+from studies.detectors.page import OWN, Plans, Study, page
 from studies.detectors.placements import listing, placements
 from studies.detectors.plan import (
     ACROSS,
@@ -297,12 +297,11 @@ def test_the_page_is_that_of_the_saved_results():
     after = seed_by_seed(searches.study, searched_placements(searches, FOLDER))
     after_runs = RunFiles(FOLDER / AFTER_SEARCH, searches.study, after).read()
     found, of_cameras, searched = saved(), saved(CAMERAS), saved(AFTER_SEARCH)
-    for results, all_runs in ((found["runs"], done), (of_cameras, camera_runs)):
-        assert results["done"] == len(all_runs)
-    happened = history(FOLDER, {".": done, AFTER_SEARCH: after_runs, CAMERAS: camera_runs})
-    assert found["history"] == happened, "no result was replaced since the page was written"
-    plans = PLAN, cameras, searches
-    whole = Study(*plans, found, of_cameras, searched, done, camera_runs, after_runs)
+    for results, runs_done in ((found["runs"], done), (of_cameras, camera_runs)):
+        assert results["done"] == len(runs_done)
+    all_runs = {OWN: done, AFTER_SEARCH: after_runs, CAMERAS: camera_runs}
+    assert found["history"] == history(FOLDER, all_runs), "no result was replaced since"
+    whole = Study(Plans(PLAN, cameras, searches), found, of_cameras, searched, all_runs)
     outside = json.loads((FOLDER / "segmentation.json").read_text("utf-8"))
     assert (FOLDER / "README.md").read_text("utf-8") == page(whole, outside)
     assert found["answer"] == short_answer(PLAN, found, searched, of_cameras)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -47,12 +47,15 @@ def picture_file(study: pe.Study, outcome: pe.Outcome | None = None) -> bytes:
     size = round(SCALE * pictures.SIZE[0]), round(SCALE * pictures.SIZE[1])
     view = pictures.default_view(vehicle, study.rig, pictures.SIZE)
     picture = pictures.rendered(vehicle, study.rig, size, view)
-    places = _places_of_key(study.rig, size[0])
-    below = np.ones((LINE_PX * (1 + places[-1][1]) + MARGIN_PX, size[0], 3))
+    key = _key(study.rig, size[0])
+    below = np.ones((LINE_PX * (1 + key[-1].line) + MARGIN_PX, size[0], 3))
     drawn = DrawnPixels(np.concatenate([picture, below]))
     for label in pictures.labels(vehicle, study.rig, view):
         _draw_label(drawn, label)
-    _write_key(drawn, study.rig, places, size[1])
+    for entry in key:
+        baseline = size[1] + (entry.line + 1) * LINE_PX
+        drawn.disc((entry.left + SWATCH_PX, baseline - SWATCH_PX), SWATCH_PX, entry.color)
+        drawn.text(entry.text, entry.left + 3 * SWATCH_PX, baseline)
     if outcome is not None:
         for line, text in enumerate(_figures(outcome)):
             drawn.text(text, MARGIN_PX, MARGIN_PX + BASELINE_PX + line * LINE_PX)
@@ -74,28 +77,27 @@ def _draw_label(drawn: DrawnPixels, label: pictures.NumberLabel) -> None:
     drawn.text(text, disc[0] - text_width(text) / 2.0, disc[1] + BASELINE_PX / 3.0, WHITE)
 
 
-def _entry(number: int, sensor: pe.Sensor) -> str:
-    return f"{number} {sensor.name} ({sensor.model.name})"
+class KeyEntry(NamedTuple):
+    """A line of the key: text, colour, left edge [px], and the number of its line."""
+
+    text: str
+    color: graphics.Rgb
+    left: int
+    line: int
 
 
-def _places_of_key(rig: pe.Rig, width: int) -> list[tuple[int, int]]:
-    """Return the left edge [px] and the line of each entry of the key."""
-    places, left, line = [], MARGIN_PX, 0
+def _key(rig: pe.Rig, width: int) -> list[KeyEntry]:
+    """Return the entries of the key, as many to a line as there is room for."""
+    colors = graphics.sensor_colors_on_paper(rig)
+    entries, left, line = [], MARGIN_PX, 0
     for number, sensor in enumerate(rig, 1):
-        room = round(3 * SWATCH_PX) + text_width(_entry(number, sensor))
+        text = f"{number} {sensor.name} ({sensor.model.name})"
+        room = round(3 * SWATCH_PX) + text_width(text)
         if left > MARGIN_PX and left + room > width - MARGIN_PX:
             left, line = MARGIN_PX, line + 1
-        places.append((left, line))
+        entries.append(KeyEntry(text, colors[sensor.name], left, line))
         left += room + GAP_PX
-    return places
-
-
-def _write_key(drawn: DrawnPixels, rig: pe.Rig, places: list[tuple[int, int]], top: int) -> None:
-    colors = graphics.sensor_colors_on_paper(rig)
-    for number, (sensor, (left, line)) in enumerate(zip(rig, places, strict=True), 1):
-        baseline = top + (line + 1) * LINE_PX
-        drawn.disc((left + SWATCH_PX, baseline - SWATCH_PX), SWATCH_PX, colors[sensor.name])
-        drawn.text(_entry(number, sensor), left + 3 * SWATCH_PX, baseline)
+    return entries
 
 
 def _figures(outcome: pe.Outcome) -> list[str]:

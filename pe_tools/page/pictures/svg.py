@@ -117,47 +117,30 @@ class LabelledPicture:
     left_labels: tuple[tuple[float, str], ...] = ()
 
     def svg(self, alt: str) -> Markup:
-        """Return the picture with its labels as a drawing."""
-        canvas = Canvas(float(self.width), self.head + self.height + self.foot, alt)
-        box = 0.0, self.head, float(self.width), float(self.height)
-        canvas.picture(self.png, box, "cells" if self.bottom_labels else "shot")
-        self._write_labels(canvas)
-        for x, text in self.bottom_labels:
-            anchor = "start" if x < 1.0 else "end" if x > self.width - 1.0 else "middle"
-            down = self.head + self.height + 18.0
-            canvas.text(x, down, text, text_anchor=anchor, css="mark")
-        for y, text in self.left_labels:
-            down = self.head + min(max(y, 15.0), self.height - 5.0)
-            canvas.text(5.0, down, text, css="mark dark")
-        return canvas.svg()
-
-    @property
-    def head(self) -> float:
-        """Space above the picture for labels, if it has bottom labels: such pictures are low."""
-        ups = stacked(self._on_edge, -math.inf) if self.bottom_labels else []
-        return LINE_HEIGHT - min(ups) if ups else 0.0
-
-    @property
-    def _on_edge(self) -> tuple[TextLabel, ...]:
-        return tuple((x, 0.0, text) for x, _, text in self.labels)
-
-    @property
-    def foot(self) -> float:
-        """Space below the picture for bottom labels."""
-        return FOOT_HEIGHT if self.bottom_labels else 0.0
-
-    def _write_labels(self, canvas: Canvas) -> None:
-        """Write the labels above their points, in the picture or in the space above it."""
-        head, css = self.head, "mark" if self.head else "mark dark"
-        ups = stacked(self._on_edge, -math.inf) if head else stacked(self.labels)
+        """Return the picture with its labels; those of low pictures stand in a space above."""
+        is_low, width = bool(self.bottom_labels), float(self.width)
+        on_edge = tuple((x, 0.0, text) for x, _, text in self.labels)
+        ups = stacked(on_edge, -math.inf) if is_low else stacked(self.labels)
+        head = LINE_HEIGHT - min(ups) if is_low and ups else 0.0
+        foot = FOOT_HEIGHT if is_low else 0.0
+        canvas = Canvas(width, head + self.height + foot, alt)
+        box = 0.0, head, width, float(self.height)
+        canvas.picture(self.png, box, "cells" if is_low else "shot")
         for (x, y, text), up in zip(self.labels, ups, strict=True):
             if up < y - LINE_HEIGHT:
                 line = f"M{x:.1f} {head + y - 2:.1f}V{head + up + 3:.1f}"
-                color = "#8c959f" if head else "#fff"
+                color = "#8c959f" if is_low else "#fff"
                 canvas.add("path", d=line, stroke=color, stroke_opacity="0.7")
             half = LETTER_WIDTH * len(text) / 2.0
-            across = min(max(x, half), self.width - half)
+            across, css = min(max(x, half), width - half), "mark" if is_low else "mark dark"
             canvas.text(across, head + up, text, text_anchor="middle", css=css)
+        for x, text in self.bottom_labels:
+            anchor = "start" if x < 1.0 else "end" if x > width - 1.0 else "middle"
+            canvas.text(x, head + self.height + 18.0, text, text_anchor=anchor, css="mark")
+        for y, text in self.left_labels:
+            down = head + min(max(y, 15.0), self.height - 5.0)
+            canvas.text(5.0, down, text, css="mark dark")
+        return canvas.svg()
 
 
 def stacked(labels: tuple[TextLabel, ...], highest: float = LINE_HEIGHT) -> list[float]:

@@ -113,11 +113,11 @@ def shade(
 ) -> Floats:
     """(N, 3) sRGB colours of first hits; `sun` and `sky` (N,) are the light on them."""
     color = np.zeros((len(hits.surface), 3))
-    at = hits.surface == SKY
+    at = np.flatnonzero(hits.surface == SKY)
     color[at] = environment.sky(hits.directions[at])
-    at = hits.surface == GROUND
+    at = np.flatnonzero(hits.surface == GROUND)
     color[at] = _ground(hits[at], environment, sun[at], sky[at], pixel_rad)
-    at = hits.is_solid
+    at = np.flatnonzero(hits.is_solid)
     color[at] = _paint(hits[at], environment, sun[at], sky[at])
     # Values above `KNEE` approach white smoothly.
     room, over = 1.0 - KNEE, np.maximum(color - KNEE, 0.0)

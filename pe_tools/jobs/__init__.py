@@ -17,8 +17,6 @@ from .condition_files import condition_lines, conditions_csv
 from .designed import design_study
 from .folder import FileSet, check_files, prepare_folder
 from .front_files import (
-    DESIGNS,
-    FRONT_CSV,
     FRONT_JSON,
     FRONT_NAMES,
     FRONT_PAGE,
@@ -39,20 +37,17 @@ from .results import (
     write_outcome,
 )
 from .score_and_optimize import OptimizeJob, ScoreJob
-from .searched_figure import IN_NATS, SearchedFigure, searched_figure, searched_on
+from .searched_figure import SearchedFigure, searched_figure, searched_on
 from .stopping import stop_text, sureness_lines
 from .study_export import export_study, fingerprint, study_writers
 from .trade_off import Design, TradeOff
 
 __all__ = [
-    "DESIGNS",
-    "FRONT_CSV",
     "FRONT_JSON",
     "FRONT_NAMES",
     "FRONT_PAGE",
     "FRONT_PLOT",
     "FRONT_SEARCH",
-    "IN_NATS",
     "SAVE_EVERY_S",
     "BegunSearch",
     "CheckJob",

@@ -5,24 +5,20 @@ All of it is evaluated on voxels that the search has not seen. Nothing here chan
 
 from .analysis import Sensitivity, analyse, budget_of, is_analysed
 from .archive import Archive
-from .constraints import ActiveConstraint
-from .flatness import NEAR, AxisCost
+from .flatness import NEAR
 from .fresh_samples import Difference, FreshSamples, fresh_objectives
 from .reading import sensitivity_from_dict
-from .wording import gain_text, sensitivity_lines
+from .wording import sensitivity_lines
 
 __all__ = [
     "NEAR",
-    "ActiveConstraint",
     "Archive",
-    "AxisCost",
     "Difference",
     "FreshSamples",
     "Sensitivity",
     "analyse",
     "budget_of",
     "fresh_objectives",
-    "gain_text",
     "is_analysed",
     "sensitivity_from_dict",
     "sensitivity_lines",

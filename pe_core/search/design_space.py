@@ -134,17 +134,14 @@ class DesignSpace:
                 names = fewer
         if not names:
             return InputError("selection", "choice", "a design with a sensor", "none")
-        field, expected = " and ".join(names), "limits that leave a design"
-        return InputError("selection", field, expected, f"none{self._minimum_text(names)}")
-
-    def _minimum_text(self, names: Sequence[str]) -> str:
-        """Return the least value of a limit that alone allows no design, as text."""
+        least = ""
         if names == ["max_price"]:
-            return f"; the cheapest costs {sum(map(_min_price, self.sites)):g}"
-        if names == ["max_sensors"]:
+            least = f"; the cheapest costs {sum(map(_min_price, self.sites)):g}"
+        elif names == ["max_sensors"]:
             required = sum(len(site.sensors) for site in self.sites if None not in site.options)
-            return f"; the smallest has {max(self.others.total() + required, 1)} sensors"
-        return ""
+            least = f"; the smallest has {max(self.others.total() + required, 1)} sensors"
+        expected = "limits that leave a design"
+        return InputError("selection", " and ".join(names), expected, f"none{least}")
 
     def _limited_by(self, names: Sequence[str]) -> DesignSpace:
         """Return the designs under the named limits only."""

@@ -178,7 +178,12 @@ def sites_of(selection: Selection, rig: Rig, mounting: Mounting) -> tuple[Site, 
                 raise InputError(who, "option", expected, f"{option.model.name}, a {kind}")
         for sensors in _sites_of_choice(who, choice, rig, mounting):
             for name in sensors:
-                _check_sensor(who, name, sites, choice.optional, mounting)
+                if any(name in site.sensors for site in sites):
+                    expected, found = "one choice for each sensor", f"two for {name!r}"
+                    raise InputError(who, "sensor", expected, found)
+                if choice.optional and any(name == group[0] for group in mounting.groups):
+                    expected = "false for the leading sensor of a group"
+                    raise InputError(who, "optional", expected, f"true for {name!r}")
             left_out = (None,) if choice.optional else ()
             sites.append(Site(sensors, (*options, *left_out), number))
     return tuple(sites)
@@ -215,13 +220,3 @@ def _with_images(names: Sequence[str], mounting: Mounting) -> tuple[str, ...]:
         if first in taken and second not in taken:
             taken.append(second)
     return tuple(dict.fromkeys(taken))
-
-
-def _check_sensor(
-    who: str, name: str, before: list[Site], optional: bool, mounting: Mounting
-) -> None:
-    if any(name in site.sensors for site in before):
-        raise InputError(who, "sensor", "one choice for each sensor", f"two for {name!r}")
-    if optional and any(name == group[0] for group in mounting.groups):
-        expected = "false for the leading sensor of a group"
-        raise InputError(who, "optional", expected, f"true for {name!r}")

@@ -8,7 +8,7 @@ from .archive import Archive
 from .flatness import NEAR
 from .fresh_samples import Difference, FreshSamples, fresh_objectives
 from .reading import sensitivity_from_dict
-from .wording import sensitivity_lines
+from .wording import gain_text, sensitivity_lines
 
 __all__ = [
     "NEAR",
@@ -19,6 +19,7 @@ __all__ = [
     "analyse",
     "budget_of",
     "fresh_objectives",
+    "gain_text",
     "is_analysed",
     "sensitivity_from_dict",
     "sensitivity_lines",

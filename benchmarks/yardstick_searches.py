@@ -24,7 +24,7 @@ STEP = 0.15
 MAX_BROKEN = 20
 """Placements that break a rule are at most so many times those that are evaluated."""
 Floats = NDArray[np.float64]
-Told = Callable[[pe.Rig, float], None]
+ReportPlacement = Callable[[pe.Rig, float], None]
 
 
 class Spent(Exception):
@@ -45,7 +45,7 @@ class Landscape:
     """
 
     def __init__(
-        self, study: pe.Study, evaluator: pe.RigEvaluator, evaluations: int, told: Told
+        self, study: pe.Study, evaluator: pe.RigEvaluator, evaluations: int, told: ReportPlacement
     ) -> None:
         self._coding = Parametrization(study.rig, study.search_space())
         self._evaluator, self._told, self._left = evaluator, told, evaluations

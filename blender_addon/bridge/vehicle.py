@@ -18,7 +18,7 @@ RESIDUAL = "pe_residual"
 VEHICLE = "Vehicle"
 
 
-class Part(NamedTuple):
+class VehiclePart(NamedTuple):
     """Triangles (F, 3, 3) [m] of one object, whether cameras see through, a cover's loss [dB]."""
 
     name: str
@@ -105,7 +105,7 @@ def drawn_meshes(
             yield obj, np.array(instance.matrix_world, dtype=float)
 
 
-def _parts(collection: Collection, depsgraph: Depsgraph) -> Iterator[Part]:
+def _parts(collection: Collection, depsgraph: Depsgraph) -> Iterator[VehiclePart]:
     """Yield a part for every drawn object and instance that belongs to the collection."""
     local: dict[int, np.ndarray] = {}
     for obj, ground_from_object in drawn_meshes(collection, depsgraph):
@@ -117,7 +117,7 @@ def _parts(collection: Collection, depsgraph: Depsgraph) -> Iterator[Part]:
             raise pe.InputError("scene", field, "finite coordinates", "NaN or infinity")
         placed = placed_triangles(triangles, ground_from_object)
         own = original.perception_entropy
-        yield Part(original.name_full, placed, own.see_through, as_typed(own.cover_loss_db))
+        yield VehiclePart(original.name_full, placed, own.see_through, as_typed(own.cover_loss_db))
 
 
 def _triangles_local(obj: Object, cache: dict[int, np.ndarray]) -> np.ndarray:

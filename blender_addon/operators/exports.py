@@ -57,7 +57,7 @@ class ExportStopped(Exception):
     """The user stopped the export; raised on the thread to end its work."""
 
 
-Watch = Callable[[float], None]
+OnProgress = Callable[[float], None]
 SCORED_SHARE = 0.25
 """About which share of an export is done after the score."""
 
@@ -73,7 +73,7 @@ class ExportJob(pe.Job):
         self,
         study: pe.Study,
         stage: str,
-        make: Callable[[Any, Watch], Any],
+        make: Callable[[Any, OnProgress], Any],
         write: Callable[[Any], WrittenFiles],
         scored: bool = False,
     ) -> None:
@@ -274,7 +274,7 @@ def render_review(context: bpy.types.Context, filepath: str, asked_in_window: bo
     study = bridge.study_as_drawn(context.scene)
     pe.prepare_folder(path.parent)  # fail before the work, not after
 
-    def make(outcome: pe.Outcome, _watch: Watch) -> bytes:
+    def make(outcome: pe.Outcome, _watch: OnProgress) -> bytes:
         return page.picture_file(outcome.study, outcome)
 
     return run(ExportJob(study, "picture", make, _write_one(path), scored=True), asked_in_window)
@@ -309,7 +309,7 @@ def export_review(
     }
     pe.prepare_folder(path.parent)  # fail before the work, not after
 
-    def make(outcome: pe.Outcome, watch: Watch) -> bytes:
+    def make(outcome: pe.Outcome, watch: OnProgress) -> bytes:
         return page.page_bytes([page.ReportContext(path.stem, outcome, **facts)], watch, about)
 
     return run(ExportJob(study, "page", make, _write_one(path), scored=True), asked_in_window)

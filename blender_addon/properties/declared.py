@@ -23,7 +23,7 @@ LARGEST_INT = 2**31 - 1
 DRAWN = "reference."
 """Settings whose keys begin so change the picture in the 3D view, and no score."""
 UNITS = {"m": "LENGTH", "m2": "AREA"}
-More = Callable[[studies.Setting], dict[str, Any]]
+PropertyOptions = Callable[[studies.Setting], dict[str, Any]]
 
 
 def property_of(setting: studies.Setting, **more: Any) -> Any:

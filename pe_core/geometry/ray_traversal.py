@@ -20,7 +20,7 @@ from ..base.arrays import Floats, Ints, Singles
 from .indexing import blocks
 from .triangle_tree import BRANCH, TriangleTree
 
-Triple = tuple[Floats, Floats, Floats]
+XyzArrays = tuple[Floats, Floats, Floats]
 Meet = Callable[[Ints, Ints, Floats], None]
 """Called with rays (P,), the triangles (P,) that they hit, and distances (P,) [m]."""
 
@@ -128,12 +128,12 @@ def _joined(parts: list[RayBoxes]) -> RayBoxes:
     return RayBoxes(np.concatenate(boxes), np.concatenate(rays), np.concatenate(near))
 
 
-def _cross(a: Triple | Floats, b: Triple | Floats) -> Triple:
+def _cross(a: XyzArrays | Floats, b: XyzArrays | Floats) -> XyzArrays:
     """Cross products of (3, ...), with the same bits as `poses.cross`."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-def _product(a: Triple | Floats, b: Triple | Floats) -> Floats:
+def _product(a: XyzArrays | Floats, b: XyzArrays | Floats) -> Floats:
     """Scalar products, added in the order of x, y, z."""
     total: Floats = a[0] * b[0]
     total += a[1] * b[1]

@@ -18,7 +18,7 @@ from ..scene.rig import Rig
 from ..scoring.protocol import Evaluation, Objective
 from .dispatch import evaluate_all
 
-Told = Callable[[Rig, int, Evaluation], None]
+OnTold = Callable[[Rig, int, Evaluation], None]
 """Takes a rig, the level that it was evaluated on, and its value."""
 DIGEST_BYTES = 4
 """Length of the digest that identifies a placement."""
@@ -47,7 +47,7 @@ class Journal:
         """All entries so far; may be read while another thread searches."""
         return tuple(self._entries)
 
-    def wrap(self, objectives: Sequence[Objective], told: Told | None = None) -> list[Objective]:
+    def wrap(self, objectives: Sequence[Objective], told: OnTold | None = None) -> list[Objective]:
         """Return objectives, one for each level of a method, that replay and extend the journal.
 
         Behind the end of the journal they evaluate with the given objectives. `told` is called with
@@ -81,7 +81,7 @@ class JournaledObjective:
     """An objective that replays a journal, and records what it evaluates behind the end."""
 
     def __init__(
-        self, journal: Journal, objective: Objective, level: int = 0, told: Told | None = None
+        self, journal: Journal, objective: Objective, level: int = 0, told: OnTold | None = None
     ) -> None:
         self._journal, self._objective, self._level, self._told = journal, objective, level, told
 

@@ -13,7 +13,7 @@ from ..scene.rig import Rig
 from ..scoring.protocol import Evaluation, Objective
 from .dispatch import evaluate_all
 from .methods import Given, Question, checked_method, method_named
-from .methods.method import Evaluations, QuestionStream
+from .methods.method import Answered, QuestionStream
 from .parametrization import Candidate, Parametrization, feasible_start
 from .search_space import Schedule, SearchSpace
 
@@ -130,7 +130,7 @@ def _steps(
             if step.evaluations == budget:
                 return
         question = _within(question, budget - step.evaluations)
-        answers: Evaluations = []
+        answers: Answered = []
         evaluated = _evaluated(question, objective, executor_source())
         for candidate, answer in zip(question.candidates, evaluated, strict=True):
             answers.append(answer)

@@ -55,7 +55,7 @@ class _Kernels(Generic[K]):
         self._make, self._caches = make, {} if caches is None else caches
         self._by_key: dict[Hashable, K] = {}
 
-    def of(self, sensor: Sensor, key: Hashable = None) -> K:
+    def kernel_of(self, sensor: Sensor, key: Hashable = None) -> K:
         """Return the kernel of a sensor's kind, and of one more key."""
         found = self._by_key.get((sensor.kind, key))
         if found is None:
@@ -192,7 +192,7 @@ class MeasurementCache:
         return self._occlusions[key]
 
     def _kernel(self, sensor: Sensor) -> SampleKernel:
-        return self._kernels.of(sensor, sensor.curve)
+        return self._kernels.kernel_of(sensor, sensor.curve)
 
     def _new_kernel(self, sensor: Sensor) -> SampleKernel:
         kind = kind_of(sensor)
@@ -256,13 +256,13 @@ class ObjectMeasurementCache:
         """
         if self._view.vehicle is None and not self._view.traffic:
             return None
-        return self._kernels.of(sensor).unoccluded(sensor)
+        return self._kernels.kernel_of(sensor).unoccluded(sensor)
 
     def _one(self, sensor: Sensor) -> Floats:
         cached = self.cached(sensor)
         if cached is not None:
             return cached
-        kernel, parts = self._kernels.of(sensor), self._parts
+        kernel, parts = self._kernels.kernel_of(sensor), self._parts
         m = kernel.measure(sensor) if parts is None else kernel.measure_parts(sensor, parts)
         m.flags.writeable = False
         return m
@@ -310,4 +310,4 @@ class VisibleGroundCache:
         is_good = cached is not None and (approximate or not cached.approximate)
         if cached is not None and is_good and sensor.measures_as(cached.sensor):
             return cached
-        return self._kernels.of(sensor).mark(sensor, approximate)
+        return self._kernels.kernel_of(sensor).mark(sensor, approximate)

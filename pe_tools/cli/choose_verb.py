@@ -107,9 +107,9 @@ def _where(position: Sequence[float], rotation: Sequence[float]) -> str:
     return ", ".join([f"({x:g}, {y:g}, {z:g}) m", *turns])
 
 
-Draw = Callable[[Mapping[str, Any], Path], None]
+WritePlot = Callable[[Mapping[str, Any], Path], None]
 """Draws a front from its data into its folder."""
-plots: list[Draw] = []
+plots: list[WritePlot] = []
 """What draws the front beside its files: packages built on the engine add to it, with their verbs.
 """
 

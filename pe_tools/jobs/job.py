@@ -186,7 +186,7 @@ class Progress:
         return "" if self.entropy is None else self.figure.text(self.entropy)
 
 
-class Evaluators:
+class StudyEvaluators:
     """The evaluators of a study's rigs, each made once; jobs of other rigs may share them."""
 
     def __init__(self, study: Study, workers: int | None) -> None:
@@ -232,7 +232,7 @@ class Job:
         """Warnings of the program that created the study; they precede those of the checks."""
         self.as_drawn: AsDrawn | None = None
         """Returns what holds rigs to a study's requirements as drawn, if others use it as well."""
-        self.evaluators = Evaluators(study, workers)
+        self.evaluators = StudyEvaluators(study, workers)
         self._started = time.monotonic()
 
     def __iter__(self) -> Iterator[Progress]:

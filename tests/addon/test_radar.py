@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
+from blender_addon import bridge
 from tests.addon import scenes
 
 ARS, PARKING = "Continental ARS408-21", "Parking module 2.5 m"
@@ -22,7 +23,7 @@ def test_they_are_scored_as_the_engine_does(front):
     expected = study.evaluator().score(study.rig)
     assert bpy.ops.pe.score() == {"FINISHED"}
     for name in ("front", "parking"):
-        own = bpy.data.objects[name].perception_entropy
+        own = bridge.figures_of_sensor(bpy.data.objects[name])
         assert own.entropy == pytest.approx(expected.per_sensor[name].entropy, abs=1e-5)
         assert own.beams == expected.per_sensor[name].beams > 0
     assert expected.per_sensor["front"].entropy < 16.0 < expected.per_sensor["parking"].entropy

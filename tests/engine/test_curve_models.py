@@ -1,5 +1,6 @@
 """`[ap] model`: curves of whole objects from publications, or of LiDARs from scans."""
 
+import importlib
 import json
 from dataclasses import replace
 
@@ -59,7 +60,8 @@ def fitted(monkeypatch, missing):
     """Let so many runs be missing."""
     now = scan_curves()
     other = replace(now, runs=now.planned - missing)
-    monkeypatch.setattr("pe_tools.advice.curve_checks.scan_curves", lambda: other)
+    module = importlib.import_module("pe_tools.advice.warnings")  # a function has its name
+    monkeypatch.setattr(module, "scan_curves", lambda: other)
 
 
 def test_curves_from_scans_are_of_the_road_s_classes_and_of_lidars_alone():

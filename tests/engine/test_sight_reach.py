@@ -10,6 +10,7 @@ from pe_core import sensors as kinds
 from pe_core.metric.entropy import AP_MIN, ap_of_entropy, average_precision, entropy_of, sigma_of
 from pe_core.scoring import sight
 from tests.engine import shapes
+from tests.engine.kernels import on_sample
 from tests.thorough import tries
 
 SPACE = pe.PerceptionSpace((-60, 60), (-20, 20), (1, 2), 0.5)
@@ -92,7 +93,7 @@ def test_a_reach_is_that_of_every_voxel_in_the_sector():
         ap = np.zeros(len(columns))
         for k in np.flatnonzero(density.profile > 1e-3):
             index = np.column_stack([columns, np.full(len(columns), k)])
-            m = shapes.counted(rig["roof"], space, index, car)
+            m = on_sample(rig["roof"], space, index, car)
             ap += density.profile[k] * average_precision(m, kinds.PerceptionModel().lidar)
         ring = np.hypot(x, y)[tuple(columns.T)].astype(int)
         mean = np.convolve(np.bincount(ring, ap * weight), np.ones(5))

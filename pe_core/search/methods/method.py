@@ -88,8 +88,8 @@ class Question:
     level: int = 0
 
 
-Evaluations = list[Evaluation | None]
-QuestionStream = Generator[Question, Evaluations, None]
+Answered = list[Evaluation | None]
+QuestionStream = Generator[Question, Answered, None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +116,7 @@ class Method:
 T = TypeVar("T")
 Evaluated = list[tuple[Candidate, float]]
 """Placements, and their entropies or lower bounds [nats]."""
-MethodPart = Generator[Question, Evaluations, T]
+MethodPart = Generator[Question, Answered, T]
 """A part of a method: it yields questions, and returns its result."""
 
 

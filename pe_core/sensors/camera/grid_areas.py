@@ -66,7 +66,7 @@ class ColumnRuns(NamedTuple):
         return np.repeat(some * nz + first[some], counts) + count_up(counts)
 
 
-class _Planes:
+class _AreaPlanes:
     """A mounted camera, ready to measure a space plane by plane; `seen` is the vehicle from it."""
 
     def __init__(
@@ -98,7 +98,7 @@ class _Planes:
         return index, positions_of(self._aims, index, area.shape, first)
 
 
-class CameraPlanes(_Planes):
+class CameraPlanes(_AreaPlanes):
     """A mounted camera whose lens is a pinhole."""
 
     def __init__(
@@ -246,7 +246,7 @@ def _sides(axes: Floats, wide: tuple[float, float], high: tuple[float, float]) -
     return [n / np.sqrt(dot(n, n)) for n in normals]
 
 
-class BentPlanes(_Planes):
+class BentPlanes(_AreaPlanes):
     """A mounted camera whose lens has distortion."""
 
     def __init__(

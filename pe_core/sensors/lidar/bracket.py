@@ -36,7 +36,7 @@ BLOCK = 1 << 15
 """Voxels computed together: their arrays fit the processor's cache."""
 BALL = np.float32(0.867)
 """Radius of the ball around a cube, in sides, rounded up; bounds a cube on the sensor's axis."""
-ON_AXIS = np.float32(1e-20)
+ON_AXIS = np.float32(1e-25)
 """Replaces the minimum distance from the sensor's axis of a cube that the axis may touch: a channel
 along the axis has a slope of 1e16."""
 MIN_SHARE, MAX_SHARE = np.float32(0.85), np.float32(1.0 - 1e-5)

@@ -120,7 +120,7 @@ def sensor_differences(contexts: Sequence[ReportContext]) -> dict[str, Any]:
     }
 
 
-class Mounting(NamedTuple):
+class SensorMounting(NamedTuple):
     """Model and pose of a sensor as the table shows them, rounded.
 
     `values` holds the model's parameters, its fusion group and AP curve as text, for comparison.
@@ -135,7 +135,7 @@ class Mounting(NamedTuple):
 
 def _mountings(contexts: Sequence[ReportContext], name: str) -> list[dict[str, Any]]:
     """Return a row for each different mounting of a sensor, with its studies."""
-    studies_by_mounting: dict[Mounting | None, list[ReportContext]] = {}
+    studies_by_mounting: dict[SensorMounting | None, list[ReportContext]] = {}
     for context in contexts:
         sensor = next((s for s in context.rig if s.name == name), None)
         mounting = None if sensor is None else _mounting_of(context.study, sensor)
@@ -144,15 +144,15 @@ def _mountings(contexts: Sequence[ReportContext], name: str) -> list[dict[str, A
     return [_row(*pair, first) for pair in studies_by_mounting.items()]
 
 
-def _mounting_of(study: pe.Study, sensor: pe.Sensor) -> Mounting:
+def _mounting_of(study: pe.Study, sensor: pe.Sensor) -> SensorMounting:
     position = tuple(round(v, METRE_DIGITS) + 0.0 for v in sensor.pose.position)
     rotation = tuple(round(v, DEGREE_DIGITS) + 0.0 for v in sensor.pose.rotation_deg)
     values = repr((catalog.to_table(sensor.model), sensor.fusion, sensor.curve))
-    return Mounting(sensor.model.name, values, price_of(study, sensor), position, rotation)
+    return SensorMounting(sensor.model.name, values, price_of(study, sensor), position, rotation)
 
 
 def _row(
-    mounting: Mounting | None, studies: list[ReportContext], first: Mounting
+    mounting: SensorMounting | None, studies: list[ReportContext], first: SensorMounting
 ) -> dict[str, Any]:
     """Return what the table has of a mounting, None: without the sensor, beside the first one."""
     if mounting is None:

@@ -322,7 +322,7 @@ def test_a_known_rig_is_scored_on_this_vehicle_once(live, monkeypatch):
 
 def test_only_what_moved_is_measured_and_the_vehicle_is_not_read(live, monkeypatch):
     measured = []
-    kernel = type(kernels(live).of(reading(live).rig["front"]))
+    kernel = type(kernels(live).kernel_of(reading(live).rig["front"]))
     monkeypatch.setattr(kernel, "measure", lambda *_: measured.append("camera"))
     monkeypatch.setattr(bridge, "vehicle_from_collection", lambda *_: pytest.fail("read again"))
     before = evaluator_of(live)

@@ -105,8 +105,9 @@ def test_a_drag_is_followed_and_ends_exact_to_the_bit(live, screenshots, install
     held = next_exact(live, let_go, moved_from=end)  # the key alone may be scored first
     assert held["before"] == end
     live.key("Escape")
-    put_back = next_exact(live, held)
-    assert (put_back["before"], put_back["entropy"]) == (end, end)
+    # On a busy machine the end of the move may be scored once more before the key is heeded.
+    live.wait_for(lambda: wait_for_rest(live) == end, EFFECT_TIMEOUT_S, "the score from before")
+    assert live.state["live"]["before"] == end
 
     live.key("ctrl+z")
     live.wait_for(lambda: wait_for_rest(live) == start, EFFECT_TIMEOUT_S, "the start's score")

@@ -9,6 +9,7 @@ import queue
 import re
 import secrets
 from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -258,12 +259,11 @@ def _require_scheduler(distributed: Any, address: str) -> None:
             comm.abort()
         return str(answer.get("type")) if isinstance(answer, Mapping) else ""
 
-    loop = asyncio.new_event_loop()
-    try:
-        kind = loop.run_until_complete(asyncio.wait_for(kind_of_peer(), CONNECT_S))
-    except TimeoutError as error:
-        raise TimeoutError(str(error) or "no answer") from None
-    finally:
-        loop.close()
+    # A thread of its own: a notebook, or whatever calls this, may have a loop that runs already.
+    with ThreadPoolExecutor(1) as thread:
+        try:
+            kind = thread.submit(asyncio.run, asyncio.wait_for(kind_of_peer(), CONNECT_S)).result()
+        except TimeoutError as error:
+            raise TimeoutError(str(error) or "no answer") from None
     if kind != "Scheduler":
         raise ValueError(f"a {kind}" if kind.isidentifier() else "another program")

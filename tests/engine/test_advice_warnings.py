@@ -179,33 +179,10 @@ def test_stopped_by_a_part_by_hand():
     assert ("s", "occluded") not in told(wall, further)
 
 
-def test_beyond_its_range_nothing_is_stopped():
-    wall = pe.Vehicle(shapes.box((1, -9, 0), (1.1, 9, 2)))
-    near = pe.Sensor("s", pe.Lidar("ring", np.zeros(1), 360, 0.5), pe.Pose((0.45, 0.0, 1.0)))
-    assert ("s", "occluded") not in told(wall, near)
-
-
-def test_several_parts_that_stop_are_reported_by_the_worst():
-    triangles = [shapes.box((1, -1, 0), (1.1, 1, 2)), shapes.box((0.2, 1.2, 0), (1, 1.3, 2))]
-    both = pe.Vehicle(np.concatenate(triangles), np.repeat([0, 1], 12), ("wall", "post"))
-    level = pe.Lidar("ring", np.zeros(1), 3600, 50.0)
-    text = told(both, pe.Sensor("s", level, pe.Pose((0.6, 0.0, 1.0))))["s", "occluded"].text
-    assert text == "48% of its beams are occluded, 38% by wall"
-
-
 def test_pixels_that_are_stopped_are_reported_too():
     """The lower half of a level picture is the bonnet's."""
     found = told(shapes.box_car(), camera_at(0.85, 0, 0.95, hfov_deg=40.0))["s", "occluded"]
     assert found.text.endswith("of its pixels are occluded by body") and found.part == "body"
-
-
-def test_a_score_s_counts_are_those_that_are_reported():
-    car, sensor = shapes.box_car(), lidar_at(2.0, 0.0, 0.93, channels=32, azimuths=360)
-    space = shapes.small_space()
-    score = pe.Evaluator(space, PRIOR, car, samples=1024).score(pe.Rig([sensor]))
-    own = score.per_sensor["s"]
-    text = told(car, sensor, score=score)["s", "occluded"].text
-    assert text.startswith(f"{100 * own.occluded / own.beams:.0f}% of its beams are occluded")
 
 
 @pytest.mark.parametrize(
@@ -412,11 +389,6 @@ def test_sizes_that_are_no_vehicle():
         assert (None, "size") not in told(box), fine
 
 
-def test_a_flat_plate_does_no_harm():
-    plate = pe.Vehicle(np.array([[(-2.0, -1.0, 0.5), (2.0, -1.0, 0.5), (2.0, 1.0, 0.5)]]))
-    assert list(told(plate, lidar_at(1.0, 0.0, 0.9))) == [(None, "height")]
-
-
 def in_room(vehicle, *rooms):
     """A vehicle with boxes of their own parts round it."""
     names = [f"room {k}" for k in range(len(rooms))]
@@ -459,13 +431,3 @@ def test_a_body_with_small_parts_is_no_room(bus):
     )
     for vehicle in (two, decker):
         assert (None, "room") not in told(vehicle)
-
-
-def test_warnings_follow_from_their_input_alone(sedan):
-    sensors = [lidar_at(2.9, 0, 0.6), shapes.camera(60.0, (0, 0, 0.6), (180, 0, 0))]
-    first, second = (
-        advice.warnings(pe.Rig(sensors), moved(sedan, LEFT), SPACE, PRIOR) for _ in range(2)
-    )
-    assert first == second and len(first) >= 3
-    assert all("\n" not in each.line and len(each.line) < 200 for each in first)
-    assert first[0].line.startswith("vehicle: ")

@@ -7,8 +7,6 @@ import subprocess
 import sys
 import time
 from concurrent.futures import (
-    BrokenExecutor,
-    Executor,
     ProcessPoolExecutor,
     ThreadPoolExecutor,
 )
@@ -124,14 +122,6 @@ def test_processes_that_start_with_an_objective_stay(tmp_path, rigs):
     assert objective.unpacked and set(objective.unpacked) <= pids
 
 
-def test_threads_unpack_an_objective_once_each(tmp_path, rigs):
-    objective = Landscape(tmp_path)
-    with ThreadPoolExecutor(2) as threads:
-        for _ in range(3):
-            evaluate_all(objective, rigs, math.inf, threads)
-    assert 1 <= len(objective.unpacked) <= 2
-
-
 def test_workers_of_a_cluster_have_an_objective_by_a_plugin(tmp_path, evaluator, rigs):
     """Dask: no call brings the payload."""
     distributed = pytest.importorskip("distributed")
@@ -192,15 +182,6 @@ def test_an_objective_that_cannot_be_sent_evaluates_here(tmp_path, rigs, pool):
     objective.cannot_be_pickled = lambda: None
     assert evaluate_all(objective, rigs, math.inf, pool) == evaluate_all(objective, rigs)
     assert not objective.unpacked
-
-
-def test_an_executor_that_broke_down_is_named(evaluator, rigs):
-    class Broken(Executor):
-        def submit(self, *_, **__):
-            raise BrokenExecutor("gone")
-
-    with pytest.raises(pe.InputError, match="workers: process: expected a worker that survives"):
-        evaluate_all(evaluator, rigs, math.inf, Broken())
 
 
 def test_where_no_process_can_be_started_there_are_none(monkeypatch):

@@ -9,7 +9,8 @@ import pe_core as pe
 from pe_core.sensors.camera.lens import RINGS, field_outline, fold_angle
 from pe_core.sensors.camera.lens_models import BrownConrady, FTheta, KannalaBrandt, Pinhole
 from pe_core.sensors.camera.pixel_area import frustum_distance
-from pe_core.sensors.camera.sample_areas import BEYOND, NEAREST_RAD, QuickLens, _unevenness
+from pe_core.sensors.camera.sample_areas import BEYOND, NEAREST_RAD, QuickLens
+from tests.engine.refusals import wrongly_refused
 
 WIDE = BrownConrady(930.5, 932.25, 965.0, 530.0, k1=-0.25, k2=0.12, p1=1e-3, p2=-2e-3, k3=-0.02)
 RATIONAL = BrownConrady(
@@ -87,44 +88,36 @@ def test_a_pinhole_of_an_ideal_camera_is_that_camera():
 
 KEYS = {"kind": "camera", "width": 640, "height": 480, "fx": 400, "cx": 320, "cy": 240}
 BENT = {"model": "brown-conrady"}
+
+
 REFUSED = [
-    ({"cx": -0.5}, "cx: expected a place in the picture, 0 to 640, found -0.5"),
-    ({"cx": -5}, "cx: expected a place in the picture, 0 to 640, found -5"),
-    ({"cy": 481.5}, "cy: expected a place in the picture, 0 to 480, found 481.5"),
-    ({"fx": -400}, "fx: expected a focal length >= 1e-06 pixels, found -400"),
-    ({"fy": 0}, "fy: expected a focal length >= 1e-06 pixels, found 0"),
-    ({"cx": None}, "cx: expected a finite number, found None"),
-    ({"hfov_deg": 60}, "hfov_deg: expected either hfov_deg or a lens .*, found both"),
-    ({"distortion": 3}, "distortion: expected a table, found 3"),
-    ({"distortion": {"model": "fish"}}, "distortion.model: expected one of pinhole, .*'fish'"),
-    ({"distortion": BENT | {"k7": 1}}, "distortion.k7: expected one of .*, found an unknown key"),
-    ({"distortion": BENT | {"k1": "x"}}, "distortion.k1: expected a finite coefficient, .*'x'"),
+    ("cx", {"cx": -0.5}),
+    ("cx", {"cx": -5}),
+    ("cy", {"cy": 481.5}),
+    ("fx", {"fx": -400}),
+    ("fy", {"fy": 0}),
+    ("cx", {"cx": None}),
+    ("hfov_deg", {"hfov_deg": 60}),
+    ("distortion", {"distortion": 3}),
+    ("distortion.model", {"distortion": {"model": "fish"}}),
+    ("distortion.k7", {"distortion": BENT | {"k7": 1}}),
+    ("distortion.k1", {"distortion": BENT | {"k1": "x"}}),
+    ("distortion.coefficients", {"distortion": BENT | {"coefficients": [1, 2, 3]}}),
     (
-        {"distortion": BENT | {"coefficients": [1, 2, 3]}},
-        "distortion.coefficients: expected 4, 5 or 8 numbers, found 3",
-    ),
-    (
+        "distortion.coefficients",
         {"distortion": {"model": "kannala-brandt", "coefficients": [0] * 5}},
-        "coefficients: expected 4 numbers, found 5",
     ),
-    ({"distortion": BENT | {"coefficients": [0] * 4, "k1": 1}}, "a list or names, found both"),
-    ({"distortion": {"model": "f-theta"}}, "distortion.k1: expected pixels a radian.*found none"),
-    (
-        {"distortion": BENT | {"k1": -0.8}},
-        r"distortion: expected a lens that can be inverted in all of the picture, or fov_deg of "
-        r"at most 65\.\d, found it folds 32\.\d+ deg from the axis, 172 px from the centre",
-    ),
-    ({"fov_deg": 230}, "fov_deg: expected an angle from 0.001 to 220 degrees, found 230"),
-    ({"min_range_m": 8, "max_range_m": 6}, "min_range_m: expected a length below max_range, 6 m"),
-    ({"max_range_m": 0}, "max_range_m: expected a length >= 0.001 m, found 0"),
+    ("distortion.coefficients", {"distortion": BENT | {"coefficients": [0] * 4, "k1": 1}}),
+    ("distortion.k1", {"distortion": {"model": "f-theta"}}),
+    ("distortion", {"distortion": BENT | {"k1": -0.8}}),
+    ("fov_deg", {"fov_deg": 230}),
+    ("min_range_m", {"min_range_m": 8, "max_range_m": 6}),
+    ("max_range_m", {"max_range_m": 0}),
 ]
 
 
-@pytest.mark.parametrize(("change", "line"), REFUSED)
-def test_impossible_lenses_are_refused_in_one_line(change, line):
-    with pytest.raises(pe.InputError, match=line) as told:
-        pe.catalog.from_table("mine", {k: v for k, v in (KEYS | change).items()})
-    assert "\n" not in str(told.value)
+def test_impossible_lenses_are_refused():
+    assert wrongly_refused(lambda v: pe.catalog.from_table("mine", KEYS | v), REFUSED) == []
 
 
 def test_a_folding_lens_is_taken_up_to_a_field_of_view():
@@ -206,12 +199,6 @@ def test_tables_of_a_lens_are_the_lens(lens):
     assert (seen.stretch >= bound).all() and (seen.stretch <= 1.12 * bound).all()
 
 
-def test_unevenness_is_tabulated_in_the_middles_of_equal_angles():
-    theta, uneven = _unevenness(ROUND, 1.2)
-    np.testing.assert_allclose(theta, (np.arange(4096) + 0.5) * 1.2 / 4096, rtol=1e-12)
-    assert uneven.shape == theta.shape and (uneven > 0.0).all()
-
-
 OFF_CENTRE = Pinhole(400.0, 400.0, 300.0, 200.0)
 
 
@@ -230,8 +217,3 @@ def test_distances_to_the_sides_of_an_off_centre_frustum():
     bottom = (280 * 4 - 400 * 2) / math.hypot(280, 400)
     sides = (300 * 4 - 400 * 2) / 500, (340 * 4 - 400 * 3) / math.hypot(340, 400)
     assert found == pytest.approx([top, *sides, bottom])
-
-
-def test_an_ideal_camera_s_field_of_view_is_below_half_a_turn():
-    with pytest.raises(pe.InputError, match=r"hfov_deg: expected an angle .*below.* 180"):
-        pe.catalog.from_table("mine", {"kind": "camera", "width": 9, "height": 9, "hfov_deg": 180})

@@ -2,7 +2,6 @@
 
 import csv
 import json
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
@@ -119,28 +118,6 @@ def test_the_result_is_the_same_with_one_worker_or_two():
     assert {**one, "run": 0} == {**two, "run": 0}
 
 
-def test_all_designs_share_the_workers_of_an_executor():
-    """As a cluster is: what the workers are sent once is sent once for all designs."""
-    given = study([pe.Choice(options(["Pandar64", mounting.CAN]), ["roof"])], candidates=2)
-    sent = []
-
-    class Workers(ThreadPoolExecutor):
-        def submit(self, replied, function, payload, *rest):
-            sent.append(payload.key)
-            return super().submit(replied, function, payload, *rest)
-
-    with Workers(2) as workers:
-        job = pe.FrontJob(given, 1)
-        job.executor = workers
-        list(job)
-    alone = front_of(given, 1)
-    assert [d.study.rig["roof"].pose for d in job.trade_off.designs] == [
-        d.study.rig["roof"].pose for d in alone.designs
-    ]
-    assert [d.entropy for d in job.trade_off.designs] == [d.entropy for d in alone.designs]
-    assert len(sent) == 4 and len(set(sent)) == 1
-
-
 @pytest.mark.parametrize("after", [1, 2])
 def test_a_stop_keeps_the_front_so_far(after):
     job = pe.FrontJob(study([pe.Choice(options(), ["roof"])]))
@@ -229,14 +206,6 @@ def test_files_hold_every_design_of_the_front_as_a_study(tmp_path):
         assert {s.name: s.model.name for s in read.rig} == {
             name: model for name, model in row["models"].items() if model is not None
         }
-
-
-def test_an_earlier_run_s_designs_are_taken_away(tmp_path):
-    given = study([pe.Choice(options(), ["roof"])], free=())
-    write_front(front_of(given), tmp_path)
-    fewer = study([pe.Choice(options([mounting.CAN]), ["roof"])], free=())
-    write_front(front_of(fewer), tmp_path)
-    assert [p.name for p in (tmp_path / "designs").glob("*.toml")] == ["velodyne-vlp-16-puck.toml"]
 
 
 def test_on_a_surface_another_housing_keeps_the_place_of_its_base():

@@ -10,13 +10,12 @@ import pytest
 
 import pe_core as pe
 from pe_core.scoring.requirements import BODIES, Requirement, Zone
-from pe_core.search import Front, Goals, Journal, Start, Stop
+from pe_core.search import Front, Goals, Journal, Stop
 from pe_core.search.tolerance import without_each
 from pe_core.study import Conditions, load_study_data, study_from_dict, study_to_dict
 from pe_core.study.condition_search import study_objective
 from pe_core.study.objective_search import ExpectedApEvaluator, search_evaluator, searched_study
 from pe_tools import jobs
-from pe_tools.advice import OTHER_HARDWARE
 from pe_tools.cli.choose_verb import front_summary
 from pe_tools.cli.terminal import summary
 from pe_tools.cli.verbs import main
@@ -146,13 +145,6 @@ def test_files_have_the_ap_and_never_its_negative(plain):
     assert [float(line.split(",")[2]) for line in text.splitlines()[1:]] == aps
 
 
-def test_nothing_is_written_of_the_default():
-    given = study(objective="entropy")
-    assert "objective" not in study_to_dict(replace(given, vehicle=None))["optimize"]
-    data = result_dict(finished(given))
-    assert not {"objective", AP} & set(data) and "entropy" in data["history"][0]
-
-
 def test_the_objective_is_in_the_file_and_another_one_is_refused(tmp_path):
     given = replace(study(), vehicle=None)
     pe.save_study(given, tmp_path / "study.toml")
@@ -162,12 +154,6 @@ def test_the_objective_is_in_the_file_and_another_one_is_refused(tmp_path):
     data["optimize"]["objective"] = "ap"
     with pytest.raises(pe.InputError, match="objective: expected one of entropy, expected_ap, fo"):
         study_from_dict(data, "study.toml")
-
-
-def test_progress_is_an_ap():
-    texts = {p.stage: p.value_text for p in pe.OptimizeJob(study(), 1)}
-    assert texts["optimizing"].startswith("expected AP 0.")
-    assert texts["done"] == f"expected AP {finished(study()).in_traffic[1].ap:.4f}"
 
 
 @pytest.mark.parametrize("method", ["portfolio", "block-descent", "random"])
@@ -223,15 +209,6 @@ def test_the_analysis_is_of_the_ap_on_fresh_scenes():
     assert "What a step costs [expected AP]" in page and "nats" not in page
 
 
-def test_starts_end_at_an_ap():
-    poses = {"roof": pe.Pose((0.0, 0.0, 2.2))}
-    outcome = finished(study(Goals(starts=[Start("high", poses)])))
-    rows = result_dict(outcome)["starts"]
-    assert [row["name"] for row in rows] == ["", "high"]
-    assert max(row[AP] for row in rows) == pytest.approx(outcome.in_traffic[1].ap, abs=1e-9)
-    assert "the start high ended at an expected AP of 0." in summary(outcome)
-
-
 def test_tolerance_and_conditions_are_means_of_the_ap():
     tolerance = pe.Tolerance(0.05, 0.02, draws=2, failures=True)
     given = study(names=("roof", "front"), tolerance=tolerance)
@@ -272,12 +249,6 @@ def test_requirements_come_before_the_ap():
     assert texts[-1].startswith("expected AP 0.")
     first = result_dict(job.outcome)["history"][0]
     assert first[AP] < -100.0  # no AP: what breaks a requirement is worse than any
-
-
-def test_a_curve_of_voxels_is_refused_in_a_line():
-    own = replace(study().rig["roof"], curve=pe.ApCurve(0.2, 0.3))
-    with pytest.raises(pe.InputError, match="'roof': ap: expected none: objects have curves"):
-        finished(study(rig=pe.Rig([own])))
 
 
 def test_the_command_line_and_a_job_find_the_same_bits(tmp_path, capsys):
@@ -343,14 +314,6 @@ def test_choices_are_a_front_of_price_and_ap(screened, monkeypatch):
     assert [cell.strip() for cell in head if cell] == [
         *("price", "expected AP", "entropy [nats]", "design")
     ]
-
-
-def test_a_front_by_entropy_of_other_hardware_has_a_note():
-    job = pe.FrontJob(chosen(objective="entropy"), 1)
-    list(job)
-    note = job.trade_off.hardware_note
-    assert note == OTHER_HARDWARE and note in front_summary(job.trade_off)
-    assert front_dict(job.trade_off)["notes"] == [job.trade_off.hardware_note]
 
 
 def test_a_front_of_objectives_has_the_ap_in_traffic_and_wants_it_among_them():

@@ -141,13 +141,6 @@ def test_what_nobody_foresaw_is_one_line_too(error):
         raise error
 
 
-def test_the_machine_says_how_much_memory_it_has():
-    """Where /proc/meminfo is, there is more than this test takes."""
-    if not Path("/proc/meminfo").exists():
-        pytest.skip("another system")
-    assert available_bytes() > 10_000_000
-
-
 def test_several_files_are_written_together_or_not_at_all(tmp_path):
     (tmp_path / "first").write_bytes(b"old")
     (tmp_path / "second").mkdir()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.search import Front, Goals, Payload, pareto_front
+from pe_core.search import Front, Goals, pareto_front
 from pe_tools.cli.choose_verb import front_summary
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import FrontJob, FrontJournals, front_dict, write_front
@@ -231,12 +231,3 @@ def test_a_front_by_an_executor_is_the_same(keeps):
     assert asked[None] == asked[workers]
     evaluated = sum(map(len, asked[None][1].values()))
     assert workers.tasks == evaluated - len(asked[None][1]), "all but the starts"
-
-
-def test_weights_go_to_the_workers_without_the_mesh():
-    given = study(NAMES)
-    figures = FrontFigures(given, NAMES, given.evaluator(1024))
-    value = ScalarValue(figures, (0.2, 0.3, 0.5), (0.0,) * 3, (1.0,) * 3)
-    models = [sensor.model for sensor in given.rig]
-    payload = Payload((*value.shared_parts(), *models))
-    assert len(payload.pickled((value, given.rig))) < 1500 < len(payload.packed.data)

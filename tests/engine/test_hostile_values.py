@@ -551,14 +551,6 @@ def test_the_extremes_that_are_taken_score_to_finite_numbers(folder, change, sam
     assert "NaN" not in text and math.isfinite(job.outcome.after.entropy)
 
 
-def test_too_much_focus_is_refused_where_it_meets():
-    focus = [pe.Focus(1e9) for _ in range(40)]
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        with pytest.raises(pe.InputError, match="some weight left in the space"):
-            pe.Prior.road(focus).densities(shapes.small_space())
-
-
 NUMBERS = [v for v in VALUES.values() if isinstance(v, (int, float))]
 
 

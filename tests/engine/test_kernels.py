@@ -7,7 +7,6 @@ import pytest
 
 import pe_core as pe
 from pe_core import catalog
-from pe_core.metric.fusion import VisibleRows
 from pe_core.sensors import Voxels, kind_of
 from pe_core.sensors.camera.sample_areas import pixel_areas
 from pe_core.sensors.lidar.grid_sweep import MAX_COUNT, BeamGrid
@@ -161,21 +160,6 @@ def test_planes_do_not_depend_on_how_many_are_asked_for(model):
     sensor = pe.Sensor("s", MODELS[model], pe.Pose.from_degrees((0.2, -0.3, 1.6), (4, 5, 30)))
     one, *others = (on_grid(sensor, shapes.small_space(), CAR, run) for run in (1, 7, 80))
     assert all(np.array_equal(one, other) for other in others)
-
-
-def test_no_voxels_have_no_counts():
-    assert not len(on_sample(shapes.lidar_on_roof(), SPACE, np.zeros((0, 3), int)))
-
-
-def test_views_add_up():
-    some, more = (
-        VisibleRows(slice(1, 3), np.ones((2, 2, 4))),
-        VisibleRows(slice(2, 5), np.ones((2, 3, 4))),
-    )
-    none = VisibleRows(slice(0, 0), np.ones((2, 0, 4)))
-    total = some + more
-    assert total.rows == slice(1, 5) and total.m[1, :, 3].tolist() == [1.0, 2.0, 1.0, 1.0]
-    assert (none + some) is some and (some + none) is some
 
 
 @pytest.mark.parametrize("hfov", [30.0, 60.0, 120.0])

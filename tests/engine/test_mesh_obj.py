@@ -113,36 +113,26 @@ def test_what_is_not_as_programs_write_it_is_not_read_in_blocks(line: str) -> No
     assert obj._read_blocks(Path("car.obj"), data) is None
 
 
-BAD = {
-    "obj empty": ("a.obj", b"", "triangles", "none"),
-    "obj without faces": ("a.obj", V.encode(), "triangles", "none"),
-    "obj with faces of two only": ("a.obj", f"{V}f 1 2\n".encode(), "triangles", "none"),
-    "obj binary": ("a.obj", b"\x89PNG\0\0\0", "file", "binary"),
-    "obj index too high": ("a.obj", f"{V}f 1 2 3\nf 1 2 5\n".encode(), "line 6", "f 1 2 5"),
-    "obj index too low": ("a.obj", f"{V}f 1 2 -5\n".encode(), "line 5", "f 1 2 -5"),
-    "obj index 0": ("a.obj", f"{V}f 0 1 2\n".encode(), "line 5", "f 0 1 2"),
-    "obj index 0 before more": ("a.obj", f"{V}f 0 1 2\n{V}".encode(), "line 5", "f 0 1 2"),
-    "obj index too long": ("a.obj", f"{V}f 1 2 {HUGE[:99]}\n".encode(), "line 5", "f 1 2 999"),
-    "obj index beyond int": ("a.obj", f"{V}f 1 2 {HUGE}\n".encode(), "line 5", "f 1 2 999"),
-    "obj index after continuation": (
-        "a.obj",
-        f"{V}f 1 2 \\\n3\nf 1 \\\n 2 7\n".encode(),
-        "line 7",
-        "f 1 2 7",
-    ),
-    "obj index after two vertices": ("a.obj", f"{V}f 1 2\nf 1 2 5\n".encode(), "line 6", "2 5"),
-    "obj without an index": (
-        "a.obj",
-        f"{V}f 1 2 /3\n".encode(),
-        "line 5",
-        "indices, found 'f 1 2 /3'",
-    ),
-    "obj with a word": ("a.obj", b"v 0 0 zero\n", "line 1", "three numbers, found 'v 0 0 zero'"),
-    "obj with two numbers": ("a.obj", b"\r\n\rv 0 0\n", "line 3", "v 0 0"),
-    "obj of NaN": ("a.obj", b"v 0 0 0\nv 0 nan 0\n", "line 2", "nan"),
-    "obj of NaN, third": ("a.obj", f"{V}v 0 0 nan\n".encode(), "line 5", "nan"),
-    "obj of inf": ("a.obj", b"# c\nv 0 0 1e999\n", "line 2", "1e999"),
-}
+BAD = [
+    ("triangles", b""),
+    ("triangles", V.encode()),
+    ("triangles", f"{V}f 1 2\n".encode()),
+    ("file", b"\x89PNG\0\0\0"),
+    ("line 6", f"{V}f 1 2 3\nf 1 2 5\n".encode()),
+    ("line 5", f"{V}f 1 2 -5\n".encode()),
+    ("line 5", f"{V}f 0 1 2\n".encode()),
+    ("line 5", f"{V}f 0 1 2\n{V}".encode()),
+    ("line 5", f"{V}f 1 2 {HUGE[:99]}\n".encode()),
+    ("line 5", f"{V}f 1 2 {HUGE}\n".encode()),
+    ("line 7", f"{V}f 1 2 \\\n3\nf 1 \\\n 2 7\n".encode()),
+    ("line 6", f"{V}f 1 2\nf 1 2 5\n".encode()),
+    ("line 5", f"{V}f 1 2 /3\n".encode()),
+    ("line 1", b"v 0 0 zero\n"),
+    ("line 3", b"\r\n\rv 0 0\n"),
+    ("line 2", b"v 0 0 0\nv 0 nan 0\n"),
+    ("line 5", f"{V}v 0 0 nan\n".encode()),
+    ("line 2", b"# c\nv 0 0 1e999\n"),
+]
 
 
-test_bad_input_is_reported_in_one_line = one_line_test(BAD)
+test_bad_input_is_refused_in_one_line = one_line_test(BAD, "a.obj")

@@ -9,7 +9,7 @@ import pe_core as pe
 from pe_core.search import Parametrization
 from pe_core.search.domains import frame_of, snap_to_mount, standoff_point
 from tests.engine import mounting, shapes
-from tests.engine.mounting import BASE, CAN, CENTER, ON_ROOF, RADIUS, TOP, can, roof
+from tests.engine.mounting import BASE, CENTER, ON_ROOF, RADIUS, TOP, can, roof
 
 RNG_SEED = 3
 LEVEL = ("x", "y", "z")
@@ -198,14 +198,6 @@ def test_a_pair_of_racks():
     x, y, z = rig["rear_left"].pose.position
     assert rig["rear_right"].pose.position == (x, -y, z)
     assert x != -0.3
-
-
-def test_the_model_is_known_by_its_housing():
-    assert pe.catalog.housing(CAN).size == (
-        2 * mounting.RADIUS,
-        2 * mounting.RADIUS,
-        mounting.HEIGHT,
-    )
 
 
 def test_frames_of_walls_and_ceilings():

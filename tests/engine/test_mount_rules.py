@@ -10,11 +10,9 @@ from pe_core.geometry.overlap import hull_box, overlaps
 from pe_core.scene.housing import Housing, hull_of
 from pe_core.scene.inside_test import is_enclosed, is_open
 from pe_core.search import Parametrization, feasible_start
-from pe_core.search.rules import Trial
 from tests.engine import mounting, shapes
 from tests.engine.mounting import BASE, CENTER, HEIGHT, ON_ROOF, RADIUS, TOP, can, roof
 
-AT = pe.Pose((0.0, 0.0, 0.0))
 FLYING = 2.5
 """Above everything [m]."""
 
@@ -277,9 +275,3 @@ def test_two_rules_that_leave_no_place_together(few_tries):
         feasible_start(
             Parametrization(*mounting.space(can(), mount={"roof": roof()}, constraints=alone))
         )
-
-
-def test_a_room_is_worked_out_once():
-    rig, space = mounting.space(can())
-    trial = Trial(rig, space)
-    assert trial.hull("roof") is trial.hull("roof")

@@ -212,35 +212,6 @@ def test_results_that_cannot_be_written_go_elsewhere(study, out, elsewhere):
     assert out.read_text() == "in the way"
 
 
-def test_the_best_goes_elsewhere_at_the_second_signal_too(study, out, elsewhere):
-    options = {"env": environment(elsewhere), "hang_in_score": 2}
-    with Command("optimize", "--no-review", study, "-o", out, *ENDLESS, **options) as command:
-        command.wait_for_better()
-        shutil.rmtree(out)
-        out.write_text("in the way")
-        command.send(signal.SIGINT)
-        command.wait_for_stage("scoring the result")
-        command.send(signal.SIGINT)
-        assert command.end() == 130
-    (folder,) = elsewhere.iterdir()
-    assert entropy_of(folder / "study.toml") < entropy_of(study)
-    assert str(folder) in command.complaints[-2]
-
-
-@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
-def test_a_folder_that_may_not_be_written_any_more(study, out, elsewhere):
-    with Command(
-        "optimize", "--no-review", study, "-o", out, *ENDLESS, env=environment(elsewhere)
-    ) as command:
-        command.wait_for_better()
-        out.chmod(0o500)
-        command.send(signal.SIGINT)
-        assert command.end() == 1
-    out.chmod(0o700)
-    (folder,) = elsewhere.iterdir()
-    assert result(folder)["stopped"]
-
-
 def test_a_full_disk_leaves_the_old_set_whole(study, out, elsewhere):
     """A file may have no more bytes than a small study has: the result is larger."""
     import resource
@@ -327,16 +298,6 @@ def test_a_file_that_appears_meanwhile_is_not_written_over(study, out, elsewhere
     assert result(folder)["stopped"]
 
 
-@pytest.mark.parametrize("signum", SIGNALS if THOROUGH else [signal.SIGHUP])
-def test_a_page_that_is_not_written_is_said(study, out, signum):
-    with Command("review", study, "-o", out, hang_in_score=1) as command:
-        command.wait_for_stage("scoring")
-        command.send(signum)
-        assert command.end() == SIGNALS[signum]
-    (line,) = command.complaints
-    assert line.startswith("pe: interrupted; no ") and list(out.iterdir()) == []
-
-
 def test_a_signal_between_two_scores_is_a_line(study):
     """Where no verb looks for signals itself: they interrupt as Ctrl-C does."""
     code = (
@@ -366,18 +327,6 @@ def test_a_signal_to_the_whole_group_is_the_parent_s_affair(signum):
     command = [sys.executable, "-c", code]
     run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, start_new_session=True)
     assert (run.returncode, run.stderr) == (0, "")
-
-
-def test_a_file_of_the_user_s_that_appears_meanwhile_moves_the_whole_set(study, out, elsewhere):
-    options = {"env": environment(elsewhere)}
-    with Command("optimize", study, "-o", out, *ENDLESS, **options) as command:
-        command.wait_for_better()
-        (out / "review.html").write_text("mine")
-        command.send(signal.SIGTERM)
-        assert command.end() == 1
-    assert (out / "review.html").read_text() == "mine" and not (out / "result.json").exists()
-    (folder,) = elsewhere.iterdir()
-    assert result(folder)["stopped"] and (folder / "review.html").exists()
 
 
 def test_a_file_that_fails_after_the_result_sets_that_of_an_older_run_aside(

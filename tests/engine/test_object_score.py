@@ -10,7 +10,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.scoring import sight
-from pe_core.scoring.targets.lone_objects import RINGS, SECTORS, RingObjects, _positions
+from pe_core.scoring.targets.lone_objects import RINGS, SECTORS, RingObjects
 from pe_core.scoring.targets.lone_objects import _reach as reach_of
 from pe_core.scoring.targets.lone_objects import reach as reach_by_direction
 from pe_core.scoring.targets.object_metric import ObjectSums
@@ -271,41 +271,6 @@ def test_a_search_s_coarser_levels_have_fewer_scenes():
     study = study_from_dict({"sensor": [SENSOR], "metric": {"targets": "objects"}})
     assert [study.looks_at(n) for n in (0, 65_536, 16_384, 1024)] == [256, 256, 64, 32]
     assert study.evaluator(16_384).targets.scenes == 64
-
-
-@pytest.mark.parametrize(
-    ("metric", "told"),
-    [
-        ({"targets": "boxes"}, r"metric\.targets: expected one of voxels, objects"),
-        ({"traffic": True}, r"metric\.traffic: expected targets = 'objects' with it"),
-        ({"targets": "objects", "traffic": 1}, r"metric\.traffic: expected true or false"),
-        ({"scenes": 2}, r"metric\.scenes: expected a whole number of scenes >= 8|metric"),
-        ({"objects": 2}, r"metric\.objects: expected one of scenes, targets, traffic"),
-    ],
-)
-def test_bad_keys_are_reported(metric, told):
-    with pytest.raises(pe.InputError, match=told):
-        study_from_dict({"sensor": [SENSOR], "metric": metric})
-
-
-def test_a_search_finds_better_places_for_objects():
-    """The method, the levels and the voxels' rules are those of any search."""
-    space = pe.PerceptionSpace(x=(-40, 40), y=(-20, 20))
-    search = pe.Search(method="random", schedule=pe.Schedule(6, decay=0.3), seed=1)
-    low = shapes.lidar_on_roof(shapes.small_lidar(16, 90), (0.0, 0.0, 0.5))
-    targets = pe.TargetRule("objects", True, 8)
-    study = pe.Study(pe.Rig([low]), space=space, search=search, targets=targets)
-    job = pe.OptimizeJob(study)
-    for _ in job:
-        pass
-    assert job.outcome.after.entropy < job.outcome.before.entropy - 0.1
-    assert job.outcome.after.objects.traffic
-
-
-def test_lone_objects_in_depth_are_far_apart_in_angle():
-    x, y = _positions()[:8].T  # of the first ring ahead
-    assert np.argsort(np.hypot(x, y)).tolist() == list(range(8))
-    assert np.argsort(np.argsort(np.arctan2(y, x))).tolist() == [0, 4, 2, 6, 1, 5, 3, 7]
 
 
 def test_reach_by_hand():

@@ -1,7 +1,5 @@
 """Results are written over no file that we did not write, and the set of a run is one."""
 
-import json
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -107,14 +105,6 @@ def test_the_folder_of_the_study_is_refused(tmp_path, capsys, monkeypatch, no_wo
     assert contents(tmp_path) == before
 
 
-def test_the_same_folder_again_needs_no_questions(study, out, capsys):
-    assert optimize(study, out) == 0
-    assert optimize(study, out, "--seed", "8") == 0
-    assert json.loads((out / "result.json").read_text())["seed"] == 8
-    assert files_of_other_runs(out) == []
-    assert "output: " not in capsys.readouterr().err
-
-
 def test_an_edited_study_in_a_result_folder_is_the_users(study, out, capsys):
     assert optimize(study, out) == 0
     edited = (out / "study.toml").read_text() + "# a note\n"
@@ -182,11 +172,6 @@ def test_a_set_is_written_whole_or_not_at_all(tmp_path):
     assert contents(tmp_path) == before
 
 
-def test_a_writer_that_writes_nothing_is_reported(tmp_path):
-    with pytest.raises(pe.InputError, match="nothing was written"), FileSet(tmp_path) as files:
-        files.add("a", lambda path: None)
-
-
 @pytest.mark.parametrize("stops_at", [0, 1, 2])
 def test_killed_between_two_files_all_of_them_are_still_ours(tmp_path, stops_at, monkeypatch):
     """The list is written first: what was not replaced yet is known by its old digest."""
@@ -252,13 +237,6 @@ def test_a_study_newer_than_the_result_is_reported(study, out):
     assert optimize(study, out) == 0
     pe.export_study(a_study(x=0.2), out / "study.toml")
     assert files_of_other_runs(out) == ["study.toml"]
-
-
-def test_a_copied_folder_brings_its_list_along(study, out, tmp_path):
-    assert optimize(study, out) == 0
-    copy = tmp_path / "copy"
-    shutil.copytree(out, copy)
-    assert optimize(study, copy) == 0
 
 
 @pytest.mark.parametrize("found", ["a file", "below a file", "nothing"])

@@ -2,18 +2,16 @@
 
 import math
 from concurrent.futures import ThreadPoolExecutor
-from itertools import pairwise
 
-import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.search import METHODS, Evaluation, Parametrization, pose_values
+from pe_core.search import Evaluation, Parametrization, pose_values
 from pe_core.search.methods import portfolio
 from pe_core.search.methods.block_descent import PLACEMENTS_PER_START, race
 from pe_core.search.methods.method import Given, Phase
-from pe_core.search.methods.portfolio import Incumbent, Recurrence, Survey
-from pe_core.search.methods.portfolio_linear import LinearDescent, _inverse
+from pe_core.search.methods.portfolio import Incumbent, Survey
+from pe_core.search.methods.portfolio_linear import LinearDescent
 from pe_core.search.methods.portfolio_steps import BATCH, MultiscaleDescent
 from tests.engine import mounting
 from tests.engine.mounting import can
@@ -108,34 +106,6 @@ def test_a_valley_as_narrow_as_a_step_is_found_beside_a_wide_one():
     assert incumbent.entropy < 0.2
 
 
-def test_steps_are_of_all_lengths():
-    rig, space = mounting.space(can())
-    coding = Parametrization(rig, space)
-    steps = MultiscaleDescent(Given(coding, coding.start, 0.0), [0])
-    lengths = [abs(steps._step()) for _ in range(900)]
-    per_halving = np.bincount(np.floor(-np.log2(lengths)).astype(int), minlength=10)
-    assert per_halving[0] == 0 and (per_halving[1:10] > 60).all()
-
-
-def test_a_variable_whose_steps_gain_is_moved_more_often():
-    rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"), free=("x", "y"))
-    coding = Parametrization(rig, space)
-    incumbent, moved = Incumbent(coding.start, 100.0), []
-
-    def only_y_of_b_gains(rig):
-        now, best = (
-            [pose_values(s.pose)[axis] for s in each for axis in "xy"]
-            for each in (rig, incumbent.best.rig)
-        )
-        moved.append([a != b for a, b in zip(now, best, strict=True)])
-        return incumbent.entropy + (-0.02 if moved[-1][3] else 1.0)
-
-    steps = MultiscaleDescent(Given(coding, coding.start, incumbent.entropy), [0])
-    answered(steps.descend(incumbent, PHASE, 400), only_y_of_b_gains)
-    shares = np.mean(moved[200:], axis=0)
-    assert shares[3] > 0.7 and max(shares[:2]) < 0.1
-
-
 def test_a_linear_landscape_takes_few_placements_to_the_end_of_its_range():
     """Of a plane the model is exact: after the simplex, each step is downhill to a corner."""
 
@@ -186,17 +156,6 @@ def test_nothing_that_can_move_ends_the_search():
     assert len(recorder.rigs) <= 3
 
 
-def test_surveys_are_on_few_voxels_and_descents_on_all():
-    rig, space = mounting.space(can())
-    both = [Recorder(distance_to({"x": 0.5})), Recorder(distance_to({"x": 0.6}))]
-    steps = list(pe.optimize(both, rig, space, method="portfolio", evaluations=200))
-    assert METHODS["portfolio"].samples(65_536) == (16_384, 65_536)
-    assert len(both[0].rigs) == 1 + portfolio.SURVEYS * portfolio.SURVEYED
-    assert pose_values(steps[-1].best["roof"].pose)["x"] == pytest.approx(0.6, abs=0.01)
-    for before, after in pairwise(steps):
-        assert after.entropy <= before.entropy or after.level > before.level
-
-
 def test_the_first_survey_is_the_same_for_every_seed_and_the_second_is_not():
     rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
     asked = [searched(flat, rig, space, 60, seed)[0].rigs for seed in (0, 1)]
@@ -220,19 +179,6 @@ def test_a_survey_asks_for_one_sensor_at_a_time_and_tells_what_the_next_has_to_b
     assert len({c.rig["roof"].pose for c in question.candidates}) == 1
     exact = Survey(Given(coding, coding.start, 5.0), exact=True)
     assert next(exact.survey(Incumbent(coding.start, 5.0), PHASE, 4)).cutoff == math.inf
-
-
-def test_the_recurrence_fills_a_square_evenly():
-    """64 points meet more than 50 of 64 cells; random ones would meet 41."""
-    points = Recurrence(2)
-    cells = [tuple((8 * np.array(points.next())).astype(int)) for _ in range(64)]
-    assert len(set(cells)) > 50
-
-
-def test_the_inverse_is_that_of_the_matrix():
-    matrix = np.random.default_rng(0).normal(size=(20, 20))
-    matrix[0, 0] = 0.0
-    np.testing.assert_allclose(_inverse(matrix) @ matrix, np.eye(20), atol=1e-11)
 
 
 def test_workers_take_the_same_steps():

@@ -23,7 +23,6 @@ from pe_core.scoring.requirements import (
 from pe_core.scoring.requirements.body_checks import BodyChecks, SceneCaches
 from pe_core.scoring.sight import Sight
 from pe_core.search import Tolerance, mounted_off
-from pe_core.sensors import ObjectMeasurementCache
 from pe_tools.wording import margin_text, reason_text, unseen_text, verdict_text
 from tests.engine import shapes
 from tests.engine.requirement_scene import AHEAD, MIDDLE, check, rig, van
@@ -210,27 +209,6 @@ def test_a_preview_asks_of_the_zone_alone_and_says_so():
     assert preview.passed.tolist() == whole.passed[whole.samples.inside].tolist()
 
 
-def test_a_sensor_that_has_not_moved_is_not_measured_again(monkeypatch):
-    measured = []
-    one = ObjectMeasurementCache._one
-
-    def noted(self, sensor):
-        before = self._measured.get(sensor.name)
-        m = one(self, sensor)
-        if before is None or before[1] is not m:
-            measured.append(sensor.name)
-        return m
-
-    monkeypatch.setattr(ObjectMeasurementCache, "_one", noted)
-    checker = RequirementChecker([Requirement("ahead", AHEAD, (BODIES["child"],))], van())
-    whole = rig()
-    checker.check(whole)
-    moved = [s.pose for s in whole]
-    moved[1] = pe.Pose((2.53, 0.3, 0.93), moved[1].rpy)
-    checker.check(whole.with_poses(moved))
-    assert measured == ["top", "front", "rear", "front"]
-
-
 def test_mounting_errors_count_where_they_are_asked_for():
     """A case that sees nothing breaks the requirement under mounting errors, and that one alone."""
     two = [
@@ -289,24 +267,3 @@ def _plain_margin(own, one, cases):
         ring, away = placed.ring_of_samples(looked, wider, 30_000)
         points, distance = np.concatenate([points, ring]), np.concatenate([distance, away])
         looked = wider
-
-
-def test_growing_a_zone_measures_no_more_than_decides(monkeypatch):
-    """What one sensor sees round a zone is not asked of the others."""
-    zone = Zone(x=("front + 3", "front + 3.6"), y=(-0.3, 0.3), step=0.3)
-    own, boxes = Requirement("far", zone, (BODIES["adult"],)), []
-    again = ObjectMeasurementCache.measure_again
-
-    def noted(self, sensor):
-        boxes.append(len(again(self, sensor)))
-        return self.cached(sensor)
-
-    monkeypatch.setattr(ObjectMeasurementCache, "measure_again", noted)
-    top = rig()["top"]
-    (alone,) = RequirementChecker([own], van()).check(pe.Rig([top]))
-    once, in_the_zone = sum(boxes), boxes[0]
-    boxes.clear()
-    twins = pe.Rig([top, replace(top, name="second"), replace(top, name="third")])
-    (verdict,) = RequirementChecker([own], van()).check(twins)
-    assert verdict.margin == alone.margin and once > 10 * in_the_zone
-    assert sum(boxes) < 1.5 * once

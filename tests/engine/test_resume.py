@@ -2,7 +2,6 @@
 
 import json
 import math
-import pickle
 import signal
 import subprocess
 import sys
@@ -273,13 +272,6 @@ def test_usage(arguments, status, complaint, capsys):
     assert complaint in capsys.readouterr().err
 
 
-def test_a_folder_that_cannot_be_written_is_reported_before_the_work(out, capsys):
-    begun_in(out)
-    (out / "history.csv").write_text("somebody's own\n")
-    assert main(["optimize", "--resume", str(out)]) == 1
-    assert capsys.readouterr().err.splitlines()[-1].startswith(f"pe: {out / 'history.csv'}: output")
-
-
 def test_a_fingerprint_tells_studies_apart_by_what_they_are(tmp_path):
     """Not by the names of their files: a copy in another folder is the same study."""
     study = a_study()
@@ -295,12 +287,3 @@ def test_a_fingerprint_tells_studies_apart_by_what_they_are(tmp_path):
     ]
     prints = {fingerprint(other) for other in (study, *others)}
     assert len(prints) == len(others) + 1
-
-
-def test_a_study_that_has_been_to_a_worker_is_the_same():
-    """A model of the catalogue is written by its name, though it is another object then."""
-    rig = pe.Rig([replace(shapes.lidar_on_roof(), model=pe.catalog.load("Pandar64"))])
-    study = replace(a_study(), rig=rig)
-    back = pickle.loads(pickle.dumps(study))
-    assert back.rig["roof"].model is not rig["roof"].model
-    assert fingerprint(back) == fingerprint(study)

@@ -221,21 +221,3 @@ def test_previews_and_bounds_say_what_they_are():
     assert abs(told.entropy - free.entropy(rig)) < 0.5  # not the same voxels: none in the car
     exact = bounded.evaluate(rig, math.inf)
     assert (exact.entropy, exact.is_lower_bound) == (bounded.entropy(rig), False)
-
-
-def test_a_candidate_that_cannot_be_good_enough_costs_no_ray(monkeypatch):
-    """Two sensors have moved; what they see without the vehicle already settles the matter."""
-    sensors = [shapes.lidar_on_roof(shapes.small_lidar(), name=name) for name in ("a", "b")]
-    evaluator = pe.Evaluator(shapes.small_space(), pe.Prior.road(), shapes.box_car(), samples=2048)
-    evaluator.entropy(pe.Rig(sensors))
-    asked, cast = [], pe.Vehicle.seen_from
-
-    def seen_from(self, position, *options):
-        asked.append(tuple(position))
-        return cast(self, position, *options)
-
-    monkeypatch.setattr(pe.Vehicle, "seen_from", seen_from)
-    moved = pe.Rig([s.moved(pe.Pose((k, 0.0, 1.9))) for k, s in enumerate(sensors)])
-    assert evaluator.evaluate(moved, -99.0).is_lower_bound and asked == []
-    assert not evaluator.evaluate(moved, 99.0).is_lower_bound
-    assert asked == [(0.0, 0.0, 1.9), (1.0, 0.0, 1.9)]

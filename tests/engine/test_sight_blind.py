@@ -180,19 +180,6 @@ def test_nothing_blind_is_reported_as_nothing_wherever_the_body_ends(shift):
     assert ahead.nearest["front"].distance == 0.0
 
 
-@pytest.mark.parametrize(
-    ("asked", "line"),
-    [
-        ({"height": 2.0}, "sight: height: expected a height in the space"),
-        ({"step": -0.1}, "sight: step: expected a length above 0 m, found -0.1"),
-        ({"within": -1.0}, "sight: within: expected a length above 0 m, found -1"),
-    ],
-)
-def test_what_cannot_be_looked_at_is_reported_in_a_line(asked, line):
-    with pytest.raises(pe.InputError, match=line):
-        Sight(SPACE, pe.Prior.road()).blind(pe.Rig([cone_lidar()]), **asked)
-
-
 def test_a_lens_that_bends_and_a_definition_alone_see_the_same_ground():
     """The same pinhole as a lens of a round field; and a kind that has no kernel for ground."""
     pose = pe.Pose.from_degrees((2.1, 0.0, 0.9), (0, 25, 0))

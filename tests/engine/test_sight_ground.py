@@ -7,23 +7,16 @@ import pe_core as pe
 from pe_core import sensors as kinds
 from pe_core.metric.entropy import H_BLIND, entropy_of, precision_of
 from pe_core.metric.fusion import late_fusion
-from pe_core.scoring.sight import Sight, voxel_sets
+from pe_core.scoring.sight import Sight
 from pe_core.scoring.sight.grid_regions import gauss
 from pe_core.scoring.sight.voxel_sets import SPREAD_M
 from pe_core.sensors.lidar.beams import LazyEnds
 from pe_core.sensors.lidar.kernel_voxels import LidarSample
-from tests.engine import shapes, toy_kind
+from tests.engine import shapes
+from tests.engine.refusals import wrongly_refused
 
 SPACE = shapes.small_space(0.5)
 CAR = shapes.box_car()
-
-
-@pytest.fixture
-def ring_kind():
-    """The kind of tests, for a test."""
-    kinds.register(toy_kind.RING)
-    yield
-    kinds.unregister("toyring")
 
 
 def lidar(position=(-0.43, 0.11, 1.83), rotation=(0.0, 0.0, 0.0), name="roof", **options):
@@ -189,23 +182,6 @@ def test_beams_are_cast_once_for_all_that_is_looked_at(monkeypatch):
     assert exact.area == sight(shapes.box_car(2)).blind(moved).area
 
 
-def test_a_preview_says_so_and_the_next_does_not(measured):
-    own, rig = sight(shapes.box_car(2)), pe.Rig([lidar((0.3, 0.2, 1.6))])
-    preview = own.ground(rig, 0.5, preview=True)
-    assert preview.preview
-    exact = own.ground(rig, 0.5)
-    assert not exact.preview and measured == ["roof", "roof"]
-    assert np.nanmean(np.abs(preview.coverage - exact.coverage)) < 0.01
-
-
-def test_two_of_a_kind_find_the_same_bits():
-    rig = pe.Rig([lidar(), shapes.camera()])
-    one, two = sight().ground(rig), sight().ground(rig)
-    for name in ("x", "y", "entropy", "coverage", "sensors", "kinds"):
-        a, b = getattr(one, name), getattr(two, name)
-        assert a.tobytes() == b.tobytes() and not a.flags.writeable
-
-
 def test_within_looks_at_a_square_alone():
     own, rig = sight(), pe.Rig([lidar()])
     part, whole = own.ground(rig, 0.5, step=0.5, within=5.0), own.ground(rig, 0.5, step=0.5)
@@ -216,59 +192,19 @@ def test_within_looks_at_a_square_alone():
     assert np.array_equal(wide.entropy, whole.entropy, equal_nan=True)
 
 
-def test_a_study_has_one():
-    study = pe.Study(pe.Rig([lidar()]), CAR, SPACE)
-    ground = study.sight().ground(study.rig)
-    fresh = sight().ground(study.rig)
-    assert np.array_equal(ground.entropy, fresh.entropy, equal_nan=True)
+NO_VIEWS = [
+    ("height", {"height": [1.0]}),
+    ("height", {"height": 5.0}),
+    ("height", {"height": -0.1}),
+    ("height", {"height": "low"}),
+    ("step", {"step": 0.0}),
+    ("step", {"step": -1.0}),
+    ("step", {"step": 1e-3}),
+    ("within", {"within": 0.0}),
+    ("within", {"within": 0.1}),
+]
 
 
-def test_what_is_kept_has_a_bound(measured, monkeypatch):
-    """Of maps asked for in turn the last are kept, as many as there is room for."""
-    monkeypatch.setattr(voxel_sets, "MAX_VOXELS", 2 * 80 * 40)
+def test_what_cannot_be_looked_at_is_refused():
     own, rig = sight(), pe.Rig([lidar()])
-    for height in (0.0, 1.0, 2.0, 1.0, 2.0):
-        own.ground(rig, height, step=0.5)
-    assert measured == ["roof"] * 3
-    own.ground(rig, 0.0, step=0.5)
-    assert measured == ["roof"] * 4
-    monkeypatch.setattr(voxel_sets, "MAX_VOXELS", 1)
-    own.ground(rig, 0.0, step=0.5)  # larger than all the room: kept while it is the last
-    assert measured == ["roof"] * 4
-
-
-def test_heights_in_one_layer_are_one_map(measured):
-    own, rig = sight(), pe.Rig([lidar()])
-    low, high = own.ground(rig, 0.5), own.ground(rig, 0.9)
-    assert measured == ["roof"] and (low.height, high.height) == (0.5, 0.9)
-    assert np.array_equal(low.entropy, high.entropy, equal_nan=True)
-
-
-def test_a_kind_of_one_s_own_is_seen(ring_kind):
-    """Its ring of 6 m, all round: m is defined by the distance alone."""
-    ring = pe.Sensor("ring", toy_kind.Ring("ring", 6.0), pe.Pose((0.0, 0.0, 0.25)))
-    ground = sight(None).ground(pe.Rig([ring, shapes.camera()]), 0.0, step=0.5)
-    near = np.hypot(ground.x[:, None], ground.y) <= 6.0
-    assert np.array_equal(ground.kinds == 2, near & (ground.sensors == 2))
-    assert (ground.sensors[near] >= 1).all() and (ground.coverage[near] == 1.0).all()
-    assert (ground.sensors[~near & (ground.x < 0.0)[:, None]] == 0).all()
-
-
-@pytest.mark.parametrize(
-    ("asked", "line"),
-    [
-        ({"height": [1.0]}, r"sight: height: expected a finite number"),
-        ({"height": 5.0}, r"sight: height: expected a height in the space, z = \[0, 5\], found 5"),
-        ({"height": -0.1}, r"sight: height: expected a height in the space"),
-        ({"height": "low"}, r"sight: height: expected a finite number"),
-        ({"step": 0.0}, r"sight: step: expected a length above 0 m, found 0"),
-        ({"step": -1.0}, r"sight: step: expected a length above 0 m, found -1"),
-        ({"step": 1e-3}, r"sight: step: expected a step with at most 2,097,152 cells"),
-        ({"within": 0.0}, r"sight: within: expected a length above 0 m"),
-        ({"within": 0.1}, r"sight: within: expected a part of the space"),
-    ],
-)
-def test_what_cannot_be_looked_at_is_reported_in_a_line(asked, line):
-    with pytest.raises(pe.InputError, match=line) as told:
-        sight().ground(pe.Rig([lidar()]), **asked)
-    assert "\n" not in str(told.value)
+    assert wrongly_refused(lambda asked: own.ground(rig, **asked), NO_VIEWS, "sight") == []

@@ -8,9 +8,8 @@ import pytest
 
 import pe_core as pe
 from pe_tools.cli.verbs import main
-from pe_tools.outputs import export_scene, scene_files
+from pe_tools.outputs import scene_files
 from pe_tools.outputs.blind_volume import (
-    _round,
     _squares,
     blind_volume,
     joined,
@@ -140,21 +139,6 @@ def test_a_gap_of_one_cube_is_no_blind_volume():
     assert (_squares(flags) == np.stack([kept, kept & False, kept], axis=2)).all()
 
 
-def test_every_cube_of_the_blind_volume_is_in_a_square_of_blind_ones_or_the_vehicle(monkeypatch):
-    """Between a LiDAR's beams there are gaps of one cube; they are none of it."""
-    found = []
-    names = blind_volume.__globals__
-    monkeypatch.setitem(names, "joined", lambda cubes: found.append(cubes) or cubes)
-    car = box_car()
-    blind_volume("blind", pe.Rig([lidar_on_roof(small_lidar())]), car)
-    space = _round(car)
-    unseen = found[0] | (space.centers(2) < car.top(space)[..., None])
-    whole = unseen[:-1, :-1] & unseen[1:, :-1] & unseen[:-1, 1:] & unseen[1:, 1:]
-    padded = np.pad(whole, ((1, 1), (1, 1), (0, 0)))
-    beside = padded[:-1, :-1] | padded[1:, :-1] | padded[:-1, 1:] | padded[1:, 1:]
-    assert found[0].sum() > 1000 and not (found[0] & ~beside).any()
-
-
 def a_study(*sensors, vehicle=None):
     space = pe.PerceptionSpace((-16, 16), (-16, 16), (0, 3), 0.5)
     return pe.Study(pe.Rig(sensors), vehicle, space, reference=pe.Reference(-1.3, 0.3))
@@ -214,22 +198,6 @@ def test_the_glb_names_and_colours_every_solid(files):
 def test_a_range_that_is_none_is_refused_in_a_line(range_m):
     with pytest.raises(pe.InputError, match=r"export: range: expected a .*length above 0 m"):
         scene_files(a_study(camera()), "solids", range_m)
-
-
-@pytest.mark.parametrize("name", ["gltf", "solids"])
-def test_nothing_is_replaced_unasked(name, tmp_path):
-    study = a_study(camera(), vehicle=box_car())
-    paths, _ = export_scene(study, name, tmp_path / "out", 5.0)
-    with pytest.raises(pe.InputError, match="an existing file"):
-        export_scene(study, name, tmp_path / "out", 5.0)
-    assert export_scene(study, name, tmp_path / "out", 5.0, replace=True)[0] == paths
-
-
-def test_the_check_for_closed_surfaces_sees_a_hole_a_fold_and_a_turned_triangle():
-    closed = box((0, 0, 0), (1, 2, 3))
-    turned = np.concatenate([closed[:-1], closed[-1:, ::-1]])
-    assert is_watertight(closed)
-    assert not any(map(is_watertight, (closed[1:], turned, np.concatenate([closed, closed]))))
 
 
 @pytest.mark.parametrize(

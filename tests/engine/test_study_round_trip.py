@@ -363,39 +363,12 @@ def test_a_difference_of_one_bit_or_a_forgotten_field_is_seen():
     assert differences(0.0, -0.0) and differences(1, 1.0) and differences((1,), (1, 2))
 
 
-def test_every_field_of_the_schedule_is_a_key_of_the_file():
-    study = study_from_dict(
-        {
-            "sensor": [SENSOR],
-            "optimize": {
-                "method": "random",
-                "candidates": 5,
-                "reach_m": 0.5,
-                "reach_deg": 10,
-                "floor_m": 0.2,
-                "floor_deg": 4,
-                "decay": 0.25,
-            },
-        }
-    )
-    schedule = study.search.schedule
-    assert schedule == pe.Schedule(5, 0.5, math.radians(10), 0.2, math.radians(4), 0.25)
-    assert schedule.scales == [1.0]
-
-
 def test_bounds_are_degrees_in_files_and_radians_in_python():
     sensor = SENSOR | {"bounds": {"yaw": [-10, 20], "z": [1, 3]}}
     study = study_from_dict({"sensor": [sensor]})
     held = {"z": (1.0, 3.0), "yaw": (math.radians(-10), math.radians(20))}
     assert study.search.limits == {"roof": held}
     assert study_to_dict(study)["sensor"][0]["bounds"] == {"z": [1.0, 3.0], "yaw": [-10.0, 20.0]}
-
-
-def test_the_model_of_an_own_sensor_keeps_its_name():
-    model = pe.Camera("my camera", 640, 480, 1.0)
-    study = pe.Study(pe.Rig([pe.Sensor("nose", model)]))
-    again = study_from_dict(study_to_dict(study))
-    assert again.rig["nose"].model.name == "my camera"
 
 
 def test_a_search_knows_its_rig_s_sensors():

@@ -9,7 +9,7 @@ import socket
 import subprocess
 import sys
 import time
-from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, Future
 from contextlib import suppress
 from dataclasses import replace
 from threading import Thread
@@ -20,19 +20,17 @@ import pe_core as pe
 from pe_core.base.file_stem import is_reserved
 from pe_core.search import Journal
 from pe_core.study import SEARCH
-from pe_tools import advice, jobs
+from pe_tools import jobs
 from pe_tools.cli.executors import workplace
 from pe_tools.cli.verbs import main
-from pe_tools.jobs import Checkpoint, Outcome, read_search
+from pe_tools.jobs import Outcome, read_search
 from pe_tools.sweep import (
     RunTask,
     read_settings,
     run_all,
-    run_task,
     sweep_runs,
 )
 from pe_tools.sweep.parameter_grid import MAX_NAME_LENGTH, folder_names
-from pe_tools.sweep.sweep_runner import FolderCheckpoints
 from tests.engine import shapes
 from tests.engine.processes import Command
 from tests.limits import HANG_S
@@ -167,18 +165,6 @@ def test_a_peer_that_is_no_scheduler_ends_in_time(greeting, study, out, capsys, 
     assert line.startswith(f"pe: {address}: scheduler: expected a scheduler that answers within")
 
 
-def test_the_first_signal_ends_the_wait_for_a_silent_peer(study, out):
-    pytest.importorskip("distributed", reason="of the extra cluster")
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
-        server.settimeout(HANG_S)
-        with Command("sweep", study, "-o", out, "--scheduler", address) as command:
-            peer, _ = server.accept()
-            command.send(signal.SIGTERM)
-            assert command.end() == 128 + signal.SIGTERM, "".join(command.lines)
-            peer.close()
-
-
 def test_a_cluster_without_its_package_says_what_to_install(study, out, capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     assert main(["sweep", str(study), "-o", str(out), "--scheduler", "tcp://a:1"]) == 1
@@ -246,13 +232,6 @@ def test_a_sweep_by_expected_ap_has_a_column_of_it(study, out, capsys):
     assert capsys.readouterr().out == first
 
 
-def test_a_sweep_over_models_has_the_note_on_hardware(study, out, capsys):
-    models = "sensor.roof.model=Pandar40,HDL-64E"
-    call = ["sweep", str(study), "--set", models, "-o", str(out), "--grid-samples", "1024"]
-    assert main(call) == 0
-    assert capsys.readouterr().out.splitlines()[-1] == advice.OTHER_HARDWARE
-
-
 def test_a_sweep_goes_on_and_does_nothing_twice(study, out, capsys):
     argv = ["sweep", str(study), "-o", str(out), "--workers", "1", "--set"]
     assert main([*argv, "samples=1024,2048"]) == 0
@@ -300,26 +279,6 @@ def searched(study):
     return job.outcome
 
 
-def test_a_run_continues_the_search_in_its_folder(study, out, noted):
-    whole = searched(pe.load_study(study))
-    evaluated = len(noted)
-    job = pe.OptimizeJob(pe.load_study(study))
-    for _ in job:
-        if job.evaluations >= 5:
-            break
-    Checkpoint(job).save(out)
-    begun = len(read_search(out).evaluated)
-    noted.clear()
-    task = RunTask(pe.load_study(study), True, 1, FolderCheckpoints(out))
-    found = run_task(task)
-    assert (found.after.entropy, found.evaluated) == (whole.after.entropy, whole.evaluated)
-    assert len(noted) == evaluated - begun < evaluated
-    assert begun < len(read_search(out).evaluated) <= evaluated, "checkpoints go on as well"
-    noted.clear()
-    other = replace(task, study=replace(task.study, search=replace(task.study.search, seed=9)))
-    assert run_task(other).after.entropy and len(noted) > 5, "another study's are not taken"
-
-
 ENDINGS = [signal.SIGTERM, signal.SIGKILL, *([signal.SIGHUP] if THOROUGH else [])]
 
 
@@ -357,41 +316,6 @@ def test_a_sweep_that_is_ended_keeps_what_is_under_way(study, out, ending, capsy
 
 def replace_seed(study, seed):
     return replace(study, search=replace(study.search, seed=seed))
-
-
-def test_results_that_cannot_be_written_go_to_one_other_folder(study, out, tmp_path, monkeypatch):
-    """A full disk: runs and table cannot be left where they were wanted; nothing is lost."""
-    other = tmp_path / "temporary"
-    other.mkdir()
-    monkeypatch.setattr("tempfile.tempdir", str(other))
-    argv = ["sweep", str(study), "--set", "samples=1024,2048", "-o", str(out), "--workers", "1"]
-    assert main(argv) == 0
-    before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
-    real, fired = os.replace, []
-
-    def full(source, target):
-        if out in type(out)(target).parents:
-            fired.append(target)
-            raise OSError(28, "No space left on device")
-        real(source, target)
-
-    def work_until_full(workers, scheduler):
-        monkeypatch.setattr(os, "replace", full)
-        return workplace(workers, scheduler)
-
-    monkeypatch.setattr("pe_tools.cli.sweep_verb.workplace", work_until_full)
-    assert main([*argv, "--seed", "9"]) == 1
-    (folder,) = other.iterdir()
-    assert len(fired) >= 3, "two results and a table"
-    assert [row["status"] for row in table(folder)] == ["elsewhere", "elsewhere"]
-    for row in table(folder):
-        assert row["message"] == f"its results are in {folder / row['run']}"
-        result = json.loads((folder / row["run"] / "result.json").read_text())
-        assert result["entropy"] == float(row["entropy"])
-    table_written = {out / name: (out / name).read_bytes() for name in ("sweep.csv", "sweep.json")}
-    now = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
-    listing = {out / ".perception-entropy.json": now[out / ".perception-entropy.json"]}
-    assert now == {**before, **table_written, **listing}, "no file is half or gone"
 
 
 @pytest.mark.skipif(sys.platform != "linux" or os.geteuid() != 0, reason="only root may mount")
@@ -507,23 +431,6 @@ def test_a_worker_that_dies_costs_at_most_the_run_that_killed_it(study, deaths, 
     assert executor.given == [1, 2, 3, 1, 2], "what may be guilty is tried again, alone"
 
 
-def test_an_executor_that_refuses_tasks_because_it_is_gone_is_said_so(study, monkeypatch):
-    """A closed client of Dask raises an error of its own, which no user can read."""
-    place, tasks = Place(ThreadPoolExecutor(1), 1), {"run": RunTask(pe.load_study(study), False, 1)}
-    error = Exception("Client is closed. Can't send update-graph message.")
-
-    def refuse(*_):
-        monkeypatch.setattr(place, "check", say_gone)
-        raise error
-
-    def say_gone():
-        raise pe.InputError("tcp://head:8786", "scheduler", "one that stays", "that it is gone")
-
-    monkeypatch.setattr(place.executor, "submit", refuse)
-    with pytest.raises(pe.InputError, match="head:8786: scheduler: expected one that stays"):
-        run_all(list(tasks), tasks.get, place, print)
-
-
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 def test_real_processes_that_are_killed_are_replaced(study):
     plain = replace(pe.load_study(study), samples=1024)
@@ -542,8 +449,3 @@ def test_real_processes_that_are_killed_are_replaced(study):
     for child in multiprocessing.active_children():
         child.join(30)
         assert not child.is_alive(), "one that outlives its pool keeps the program from ending"
-
-
-def test_another_version_in_a_worker_is_reported(study):
-    found = run_task(replace(RunTask(pe.load_study(study), False, 1), version="0.0.9"))
-    assert str(found).startswith("worker: version: expected 0.0.9, the version of the program")

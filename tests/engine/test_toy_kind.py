@@ -5,7 +5,6 @@ A toy ring: m depends on the distance alone, and so does what is expected of eve
 
 import json
 import math
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -188,17 +187,6 @@ def test_kernels_of_ones_own_are_asked():
     assert score.entropy == pytest.approx(nine, abs=1e-9)
 
 
-def test_threads_may_share_a_sampled_evaluator():
-    """Each gets the score of its own rig, whatever the others ask at the same time."""
-    rigs = [pe.Rig([shapes.lidar_on_roof(position=(x, 0.0, 1.8))]) for x in (-1.0, 0.0, 1.0, 2.0)]
-    shared = pe.Evaluator(SPACE, pe.Prior.road(), shapes.box_car(), samples=2048)
-    alone = [pe.Evaluator(SPACE, pe.Prior.road(), shapes.box_car(), samples=2048) for _ in rigs]
-    expected = [own.score(rig).to_dict() for own, rig in zip(alone, rigs, strict=True)]
-    with ThreadPoolExecutor(4) as pool:
-        found = list(pool.map(lambda rig: shared.score(rig).to_dict(), rigs * 5))
-    assert found == expected * 5
-
-
 def test_it_goes_through_other_programs_files(ring_kind, tmp_path):
     """By its table where a format has room for it; elsewhere a line says what is left out."""
     away = pe.Sensor(
@@ -217,15 +205,6 @@ def test_it_goes_through_other_programs_files(ring_kind, tmp_path):
         assert any("away" in line and ("left out" in line or "no toy" in line) for line in lines), (
             name
         )
-
-
-def test_a_table_that_is_none_is_one_line(ring_kind, tmp_path):
-    (path,), _ = pe.export_rig(pe.Rig([ring()]), "csv", tmp_path / "rig.csv")
-    text = path.read_text()
-    for wrong, message in (('"{"', "a table of a model"), ('"{}"', "bumper|ring: kind")):
-        path.write_text(text.replace('"{""kind"":""toyring"",""range_m"":4.0}"', wrong))
-        with pytest.raises(pe.InputError, match=message):
-            pe.import_rig(path)
 
 
 def test_without_its_kind_its_row_passes_through(tmp_path):

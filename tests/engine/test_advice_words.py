@@ -55,22 +55,6 @@ def test_a_score_in_words():
     )
 
 
-def test_zones_that_are_alike_are_not_told():
-    alike = {"front": part(2.0, 0.5), "rear": part(2.0, 0.5)}
-    assert advice.words(score(zones=alike)) == ("85% of where objects are is seen",)
-
-
-def test_one_sensor_has_nothing_to_be_worse_without():
-    alone = {"roof": SENSORS["roof"]}
-    assert advice.words(score(sensors=alone))[1] == "roof: the only sensor"
-
-
-def test_small_gains_keep_their_digits():
-    small, none = (pe.SensorScore(4.0, 0.8, lost, 10, 0, {}) for lost in (0.0012, 0.00004))
-    assert advice.sensor_words(small) == ("without it 0.0012 nats worse",)
-    assert advice.sensor_words(none) == ("without it no worse",)
-
-
 def test_a_sensor_in_phrases():
     zones = {"front": 0.61, "rear": 0.02, "far": 0.3}
     assert advice.sensor_words(SENSORS["roof"], zones=zones) == (
@@ -162,11 +146,6 @@ def test_side_by_side():
     assert rows["zone", "front", "coverage"].best == (True, False)
     far = rows["zone", "far", "entropy"]
     assert (far.values, far.differences, far.best) == ((None, 9.0), (None, None), (False, False))
-
-
-def test_nothing_compared_is_an_empty_table_of_the_right_shape():
-    assert all(row.values == () for row in advice.compare({}))
-    assert advice.compare({"a": score()})[0].best == (False,)
 
 
 def test_warnings_are_in_the_result_and_below_the_summary():

@@ -36,16 +36,6 @@ def test_a_smooth_valley_is_found(method, most_m):
     assert math.sqrt(steps[-1].entropy) < most_m < math.sqrt(steps[0].entropy) / 100
 
 
-def test_lower_bounds_in_place_of_entropies_change_nothing():
-    rig, space = mounting.space(can())
-    runs = [
-        searched(distance_to({"x": 1.5, "y": 0.4}), rig, space, evaluations=200, bounds=bounds)[1]
-        for bounds in (False, True)
-    ]
-    told = [[(s.entropy, s.improved, s.evaluations) for s in steps] for steps in runs]
-    assert told[0] == told[1]
-
-
 def test_the_best_corner_is_found_from_the_opposite_one():
     """Hollows in the car's corners, the deepest one far from the start: descent alone stays."""
 
@@ -114,17 +104,6 @@ def test_several_workers_take_the_same_steps():
 
     with ThreadPoolExecutor(2) as executor:
         assert steps(executor) == steps(None) == steps(lambda: None)
-
-
-def test_a_schedule_chooses_no_method():
-    schedule = pe.Schedule(candidates=3)
-    assert pe.Search().method == pe.Search(schedule=pe.Schedule()).method == "portfolio"
-    assert pe.Search(method="cma-es", schedule=schedule).method == "cma-es"
-    with pytest.raises(pe.InputError, match="method: expected 'random' named with a schedule"):
-        pe.Search(schedule=schedule)
-    with pytest.raises(pe.InputError, match="method: expected 'random' named with a schedule"):
-        rig, space = mounting.space(can())
-        next(pe.optimize(None, rig, space, 0, schedule))
 
 
 def driven(part, landscape):

@@ -82,12 +82,6 @@ def test_a_search_finds_the_same_with_bounds_and_without():
     assert any(improved for _, improved, _ in found[0])
 
 
-def test_a_grid_score_takes_the_limit_and_stays_exact():
-    rig = sensors(np.random.default_rng(8))
-    evaluator = pe.Evaluator(SPACE, pe.Prior.road(), VEHICLE)
-    assert evaluator.evaluate(rig, cutoff=-99.0) == (evaluator.entropy(rig), False)
-
-
 def test_a_lidar_beside_a_voxels_axis_warns_of_nothing():
     """A tilted LiDAR whose own axis runs through a sampled voxel divides by nearly nothing."""
     pose = pe.Pose((-0.34371, -0.18753, 1.58554), (0.0, -0.005813691738393112, 0.0))
@@ -140,18 +134,3 @@ def test_a_search_in_traffic_finds_the_same_with_bounds_and_without():
     assert found[0] == found[1]
     assert any(improved for _, improved, _ in found[0])
     assert any(bounds) and not all(bounds), "some candidates are settled by a bound, some are not"
-
-
-def test_bounds_are_seldom_tried_while_they_settle_nothing(monkeypatch):
-    rule, rig = pe.TargetRule("objects", False, 8), sensors(np.random.default_rng(3))
-    evaluator, tried = ObjectEvaluator(SPACE, pe.Prior.road(), targets=rule), []
-    monkeypatch.setattr(evaluator, "_lower_bound", lambda _rig, _cutoff: tried.append(1) or -1e9)
-    for _ in range(200):
-        evaluator.evaluate(rig, 0.0)
-    assert 20 < len(tried) < 40
-    monkeypatch.setattr(evaluator, "_lower_bound", lambda _rig, cutoff: tried.append(1) or cutoff)
-    for _ in range(60):
-        evaluator.evaluate(rig, 0.0)
-    tried.clear()
-    assert evaluator.evaluate(rig, 0.0).is_lower_bound
-    assert evaluator.evaluate(rig, 0.0).is_lower_bound and len(tried) == 2

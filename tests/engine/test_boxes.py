@@ -2,13 +2,11 @@
 
 import math
 import pickle
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.prior.box_density import voxelised
 from tests.engine import shapes
 
 SPACE = shapes.small_space(0.25)
@@ -61,23 +59,6 @@ def test_a_class_is_its_ground_times_the_heights_of_all_its_boxes():
     np.testing.assert_allclose(density.profile, counts.sum(axis=(0, 1)) / counts.sum(), rtol=1e-12)
 
 
-@pytest.mark.parametrize("yaw", [0, 90, 180, 270, -90, 360])
-def test_edges_through_voxel_centres_belong_to_one_side(yaw):
-    """A box of 1.5 x 1.0 x 0.5 m covers 6 x 4 x 2 voxels wherever it stands on the grid."""
-    for shift in (0.0, 0.125):
-        row = ("cone", 1.0 + shift, 2.0 + shift, 1.0 + shift, 1.5, 1.0, 0.5, yaw)
-        (density,) = pe.Prior.from_boxes(boxes(row)).densities(SPACE)
-        assert (density.ground > 0).sum() == 24 and (density.profile > 0).sum() == 2
-
-
-@pytest.mark.parametrize("at", [(0.06, 0.19, 0.06), (0.0, 0.0, 0.5), (-19.99, 9.99, 4.99)])
-def test_a_box_thinner_than_a_voxel_has_the_one_that_holds_its_centre(at):
-    (density,) = pe.Prior.from_boxes(boxes(("pole", *at, 0.01, 0.01, 0.01, 30))).densities(SPACE)
-    i, j = (int((c - o) // 0.25) for c, o in zip(at[:2], SPACE.origin[:2], strict=True))
-    assert density.ground[i, j] == 1.0
-    assert density.profile[int(at[2] // 0.25)] == 1.0
-
-
 def test_every_class_sums_to_one_before_focus_and_shares_alike():
     prior = pe.Prior.from_boxes(boxes(*ROTATED, ("cone", 5, 5, 0.5, 0.4, 0.4, 1.0, 10)))
     assert prior.model == "boxes" and prior.class_names == ("car", "cone")
@@ -92,11 +73,6 @@ def test_focus_weighs_the_classes_of_the_boxes():
     assert [d.ground.sum() for d in focused] == pytest.approx([0.25, 0.75])
     with pytest.raises(pe.InputError, match="classes: expected one of car, tram, found 'cone'"):
         pe.Prior.from_boxes(table, [pe.Focus(3.0, classes=("cone",))])
-
-
-def test_classes_stand_in_one_order_whatever_the_boxes():
-    table = boxes(*((name, 0, 0, 0.5, 1, 1, 1, 0) for name in ("tram", "cone", "bus", "car")))
-    assert table.classes == ("car", "cone", "bus", "tram")
 
 
 def test_boxes_outside_the_space_are_counted():
@@ -114,15 +90,6 @@ def test_boxes_outside_the_space_are_counted():
         prior.densities(pe.PerceptionSpace((50, 60), (0, 10), (0, 5), 0.5))
 
 
-def test_reports_are_one_line():
-    report = pe.BoxReport("a.csv", 1234, (("outside the space", 40), ("of unknown class 'x'", 16)))
-    assert str(report) == (
-        "a.csv: 1,234 boxes taken, 56 left out (40 outside the space, 16 of unknown class 'x')"
-    )
-    assert str(pe.BoxReport("a.csv", 1)) == "a.csv: 1 box taken"
-    assert pe.Prior.road().report(SPACE) is None
-
-
 def test_a_prior_of_boxes_is_a_value():
     prior = pe.Prior.from_boxes(boxes(*ROTATED))
     same, other = (pe.Prior.from_boxes(boxes(*rows)) for rows in (ROTATED, ROTATED[1:]))
@@ -133,11 +100,6 @@ def test_a_prior_of_boxes_is_a_value():
         assert np.array_equal(a.ground, b.ground) and np.array_equal(a.profile, b.profile)
     with pytest.raises(ValueError, match="read-only"):
         prior.boxes.x[0] = 1.0
-
-
-def test_boxes_are_voxelised_once_for_a_space():
-    first = voxelised(boxes(*ROTATED), SPACE)
-    assert voxelised(boxes(*ROTATED), shapes.small_space(0.25)) is first
 
 
 def test_tables_in_memory_are_taken():
@@ -166,56 +128,3 @@ def test_yaws_wrap_and_are_what_a_file_gives_back(tmp_path):
     again = pe.read_boxes(tmp_path / "boxes.csv")
     assert again == table and np.array_equal(again.yaw, table.yaw)
     assert list(again.names) == list(names)
-
-
-GOOD = {
-    "names": ["car", "car"],
-    **{c: [0.5, 0.5] for c in ("x", "y", "z", "length", "width", "height", "yaw")},
-}
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"x": [0.0, math.nan]}, "box 1: x: expected a finite number, found nan"),
-        ({"yaw": [math.inf, 0.0]}, "box 0: yaw: expected a finite number, found inf"),
-        ({"width": [1.0, 0.0]}, "box 1: width: expected a length above 0 m, found 0.0"),
-        ({"height": [1.0, -2.0]}, "box 1: height: expected a length above 0 m, found -2.0"),
-        ({"z": [1.0]}, "z: expected 2 numbers, one for each box, found 1"),
-        ({"z": ["low", "high"]}, "z: expected numbers, found something else"),
-        ({"names": ["car", ""]}, "class: expected a name in printable letters, found ''"),
-        ({"names": ["car", "a\nb"]}, "class: expected a name in printable letters"),
-    ],
-)
-def test_wrong_boxes_in_memory_are_one_clear_line(change, message):
-    with pytest.raises(pe.InputError, match=f"^boxes: {message}"):
-        pe.Boxes(**{**GOOD, **change})
-
-
-@pytest.mark.parametrize(
-    ("table", "message"),
-    [
-        ([("car", 1, 2)], "boxes: box 0: expected class, x, y, z"),
-        ({"class": ["car"]}, "boxes: x: expected a column of that name, found none"),
-        (3.0, "boxes: table: expected columns or rows .*, found float"),
-        ([], "prior: boxes: expected at least one, found 0"),
-    ],
-)
-def test_what_is_no_table_of_boxes_is_refused(table, message):
-    with pytest.raises(pe.InputError, match=message):
-        pe.Prior.from_boxes(table)
-
-
-def test_a_prior_has_boxes_or_classes_as_its_model_says():
-    table = boxes(*ROTATED)
-    for wrong in (
-        {"model": "city"},
-        {"model": "road"},
-        {"model": "uniform", "boxes": table},
-        {"model": "boxes"},
-        {"model": "uniform", "classes": pe.Prior.road().classes},
-        {"model": "road", "classes": pe.Prior.road().classes[:1] * 2},
-    ):
-        with pytest.raises(pe.InputError, match=r"^prior: (model|classes|boxes): expected"):
-            pe.Prior(**wrong)
-    assert replace(pe.Prior.from_boxes(table), focus=()).boxes == table

@@ -58,15 +58,6 @@ def test_a_user_s_own_file_is_refused_before_the_work(file, tmp_path, capsys, mo
     assert (tmp_path / "out" / "front.csv").read_text() == "mine"
 
 
-def test_the_plots_that_others_add_are_drawn_of_what_is_kept(file, tmp_path, monkeypatch):
-    drawn = []
-    monkeypatch.setattr(choose_verb, "plots", [lambda data, folder: drawn.append((data, folder))])
-    assert verbs.main(["optimize", str(file), "-o", str(tmp_path / "out")]) == 0
-    ((data, folder),) = drawn
-    assert folder == tmp_path / "out"
-    assert data == json.loads((folder / "front.json").read_text())
-
-
 @pytest.mark.parametrize("names_study", [True, False])
 def test_an_interrupted_front_goes_on_to_the_same_bits(names_study, tmp_path, capsys):
     """Journals of half of the searches are lost, and half of the entries of another."""

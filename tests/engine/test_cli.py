@@ -2,9 +2,6 @@
 
 import json
 import re
-import signal
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -12,9 +9,6 @@ import pytest
 import pe_core as pe
 from pe_tools.cli.verbs import main
 from tests.engine import shapes
-from tests.limits import HANG_S
-
-ROOT = Path(pe.__file__).parent.parent
 
 
 @pytest.fixture
@@ -87,11 +81,6 @@ def test_a_schedule_of_another_method_is_refused_and_one_that_is_left_out_is_tol
     assert "candidates" not in written and "random" not in written
 
 
-def test_options_change_the_study(study, capsys):
-    assert main(["score", str(study), "--grid-samples", "4096", "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["after"]["stderr"] > 0
-
-
 def test_sensors_lists_the_catalogue_and_shows_one(capsys):
     assert main(["sensors"]) == 0
     assert "lidar   Pandar64" in capsys.readouterr().out
@@ -122,45 +111,6 @@ def test_exit_status(argv, status, message, capsys):
     assert message in err
     if status == 1:
         assert len(err.strip().splitlines()) == 1
-
-
-def test_an_output_that_cannot_be_written_is_reported_at_once(study, tmp_path, capsys):
-    (tmp_path / "file").touch()
-    assert main(["optimize", "--no-review", str(study), "-o", str(tmp_path / "file" / "out")]) == 1
-    assert "output: expected a folder that can be written" in capsys.readouterr().err
-
-
-@pytest.mark.usefixtures("heeded_signals")
-def test_interrupt_keeps_the_best_so_far(study, tmp_path):
-    """A real process, a real SIGINT in the middle of a search."""
-    out = tmp_path / "out"
-    command = [
-        sys.executable,
-        "-m",
-        "pe_core",
-        "optimize",
-        "--no-review",
-        str(study),
-        "-o",
-        str(out),
-    ]
-    process = subprocess.Popen(
-        [*command, "--method", "random", "--candidates", "100000"],
-        cwd=ROOT,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    for line in process.stderr:
-        if line.startswith("optimizing"):
-            break
-    process.send_signal(signal.SIGINT)
-    process.communicate(timeout=HANG_S)
-    assert process.returncode == 130
-    data = json.loads((out / "result.json").read_text())
-    assert data["stopped"] and 1 <= data["evaluations"] < 100_000
-    assert data["after"]["entropy"] <= data["before"]["entropy"]
-    best = pe.load_study(out / "study.toml")
-    assert best.evaluator().score(best.rig).to_dict() == data["after"]
 
 
 PATHS = (

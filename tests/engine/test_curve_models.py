@@ -8,7 +8,6 @@ import pytest
 
 import pe_core as pe
 from pe_core.sensors import KINDS, scan_curves
-from pe_core.sensors import perception as perception_module
 from pe_core.sensors.kind import SIZES
 from pe_core.study import study_from_dict, study_to_dict
 from pe_tools import advice
@@ -148,19 +147,6 @@ def test_the_result_says_which_curves_it_used(path, tmp_path, provisional, capsy
         codes = [each["code"] for each in result["warnings"]]
         assert codes.count(advice.PROVISIONAL) == (model == "scans")
         assert pe.load_study(folder / "study.toml").model.model == model
-
-
-def test_complete_curves_need_no_warning(monkeypatch):
-    fitted(monkeypatch, 0)
-    assert not advice.curve_warnings(SCANS) and not advice.curve_note([SCANS])
-    fitted(monkeypatch, 2)
-    assert advice.curve_warnings(SCANS) and not advice.curve_warnings(pe.PerceptionModel())
-    assert advice.curve_note([pe.PerceptionModel(), SCANS]).startswith("AP curves: the curves")
-
-
-def test_the_file_of_curves_is_read_only_when_it_is_needed(monkeypatch):
-    monkeypatch.setattr(perception_module, "scan_curves", lambda: pytest.fail("read"))
-    pe.PerceptionModel().object_curve("lidar", "car")
 
 
 def test_the_page_says_which_curves_it_used(path, tmp_path, provisional, capsys):

@@ -134,20 +134,6 @@ def test_the_local_search_finds_the_front_of_more_designs_than_it_looks_at(monke
     assert best == true
 
 
-def test_the_local_search_stops_at_its_limit(monkeypatch):
-    monkeypatch.setattr(design_space, "ALL_UP_TO", 10)
-    monkeypatch.setattr(design_space, "MAX_EVALUATED", 25)
-    rig = pe.Rig([sensor(name) for name in "abcd"])
-    every = designs(
-        rig, *(pe.Choice(options(MODELS, (9, 7, 4)), [n], optional=True) for n in "abcd")
-    )
-    search, looked = DesignSearch(every), {}
-    while asked := search.ask():
-        looked |= {picks: -every.price(picks) for picks in asked}
-        search.tell(looked)
-    assert len(looked) == 25
-
-
 def test_limits_that_would_be_checked_for_ever_are_refused(monkeypatch):
     """Each of 40 sites is a cheap LiDAR, of which 20 may be, or a dear camera: none is affordable,
     which only begins to show behind billions of begun designs."""

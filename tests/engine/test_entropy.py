@@ -95,14 +95,6 @@ def test_compact_counts_give_the_same_entropies(curve, kind):
     assert plain.tolist() == compacted.tolist()
 
 
-@pytest.mark.parametrize(
-    ("a", "b", "field"), [(0.0, 0.1, "a"), (-1.0, 0.1, "a"), (math.nan, 0, "a"), (0.1, "x", "b")]
-)
-def test_impossible_curves_are_refused(a, b, field):
-    with pytest.raises(pe.InputError, match=f"AP curve: {field}"):
-        pe.ApCurve(a, b)
-
-
 def test_the_ap_of_an_entropy_is_the_one_it_comes_from():
     ap = np.array([0.001, 0.5, 0.8, 0.999])
     assert ap_of_entropy(entropy_of(sigma_of(ap) ** -2)) == pytest.approx(ap, rel=1e-9)

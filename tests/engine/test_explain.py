@@ -72,21 +72,6 @@ def test_explain_one_place(study, capsys):
     assert data == json.loads(json.dumps(place.to_dict())) and data["sensors"][0]["name"] == "roof"
 
 
-@pytest.mark.parametrize(
-    ("at", "message"),
-    [
-        (["99", "0"], "place: x: expected -20 to 20 m, inside the space, found 99"),
-        (["1"], "place: point: expected three finite numbers"),
-        (["1", "2", "3", "4"], "place: point: expected three finite numbers"),
-        (["nan", "0"], "place: point: expected three finite numbers"),
-    ],
-)
-def test_places_that_are_none_are_one_line(study, at, message, capsys):
-    assert main(["explain", study, "--at", *at]) == 1
-    out, err = capsys.readouterr()
-    assert out == "" and err.startswith(f"pe: {message}") and len(err.splitlines()) == 1
-
-
 def test_compare_puts_studies_side_by_side(study, tmp_path, capsys):
     higher = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180), (-0.4, 0, 2.4))])
     other = saved(tmp_path, "higher.toml", higher)
@@ -105,18 +90,6 @@ def test_compare_puts_studies_side_by_side(study, tmp_path, capsys):
     assert [s["entropy"] for s in data["scores"].values()] == values
     assert data["rows"][0]["values"] == values
     assert data["notes"] == [] and not any("hardware" in line for line in lines)
-
-
-@pytest.mark.parametrize(("channels", "count"), [(8, 1), (16, 2)])
-def test_compare_has_a_note_on_other_hardware(study, channels, count, tmp_path, capsys):
-    """Other models or another number of sensors, but not other poses or names."""
-    model = shapes.small_lidar(channels, 180)
-    names = ("top", "bow")[:count]
-    sensors = [shapes.lidar_on_roof(model, (k, 0, 1.9), name=n) for k, n in enumerate(names)]
-    other = saved(tmp_path, "other.toml", pe.Rig(sensors))
-    assert main(["compare", study, other, "--grid-samples", "1024"]) == 0
-    assert capsys.readouterr().out.splitlines()[-1] == advice.OTHER_HARDWARE
-    assert "docs/validity/own" in advice.OTHER_HARDWARE
 
 
 def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(tmp_path, capsys):
@@ -166,14 +139,6 @@ def test_files_of_one_name_are_reported_apart_by_their_folders(tmp_path, capsys)
     paths = [str(tmp_path / folder / "study.toml") for folder in "ab"]
     assert main(["compare", *paths, "--grid-samples", "1024"]) == 0
     assert capsys.readouterr().out.splitlines()[0].split() == ["a/study", "b/study"]
-
-
-def test_other_vehicles_and_samples_are_said(study, tmp_path, capsys):
-    other = saved(tmp_path, "bare.toml", vehicle=None)
-    assert main(["compare", study, other, "--grid-samples", "2048"]) == 0
-    *_, vehicles, error = capsys.readouterr().out.splitlines()
-    assert vehicles == "their vehicles differ"
-    assert error.startswith("on samples: entropies have a standard error of up to 0.")
 
 
 @pytest.mark.parametrize(

@@ -101,11 +101,6 @@ def test_without_matplotlib_all_but_the_plot_is_there_and_a_line_says_what_to_in
     assert run.stderr.count("pe:") == 1
 
 
-def test_without_a_folder_nothing_is_drawn_and_matplotlib_is_not_needed():
-    run = pe_without_matplotlib("fit", TABLE)
-    assert run.returncode == 0 and "a  0.1520" in run.stdout and not run.stderr
-
-
 @pytest.mark.parametrize(
     "name",
     [
@@ -128,24 +123,6 @@ def test_a_name_is_drawn_as_it_is_never_as_a_formula(tmp_path, name):
     assert (tmp_path / "new" / "ap.png").read_bytes().startswith(b"\x89PNG")
     snippet = (tmp_path / "new" / "ap.toml").read_text("utf-8")
     assert list(tomllib.loads(snippet)) == ["ap"] and snippet in run.stdout
-
-
-def test_a_dollar_is_drawn_as_a_dollar(tmp_path):
-    """Read as formulas, both of these would draw nothing but an x."""
-    pictures = []
-    for name in ("$x$", "$ x $"):
-        table = tmp_path / f"{name}.csv"
-        table.write_bytes(TABLE.read_bytes())
-        pe("fit", table, "--output", tmp_path / name)
-        pictures.append((tmp_path / name / "ap.png").read_bytes())
-    assert pictures[0] != pictures[1]
-
-
-def test_a_folder_in_the_place_of_the_plot_is_one_line(tmp_path):
-    (tmp_path / "ap.png").mkdir()
-    run = pe("fit", TABLE, "--output", tmp_path)
-    assert run.returncode == 1 and not run.stdout and run.stderr.count("\n") == 1
-    assert run.stderr.startswith(f"pe: {tmp_path / 'ap.png'}: output: expected no file, or one ")
 
 
 def test_a_file_of_the_users_own_is_not_written_over(tmp_path):

@@ -9,7 +9,6 @@ import pe_core as pe
 from pe_core.metric import RTM3D, entropy_of, late_fusion, precision_of
 from pe_core.metric.fusion import DIGITS, Fusion, PlaneFusion, VisibleRows
 from tests.engine import shapes
-from tests.engine.test_evaluate import rig_of_all_kinds
 
 SHAPE = (60, 50)
 ROUNDING = 2.0**-DIGITS
@@ -112,14 +111,3 @@ def test_cameras_with_a_common_view_fuse_as_their_group_says(groups, two_cameras
     assert len(precisions) == (3 if groups[0] == "" else 2)
     entropy = np.average(entropy_of(late_fusion(precisions)), weights=two_cameras.weights)
     assert grid.entropy == pytest.approx(entropy, abs=1e-3)
-
-
-def test_the_score_does_not_depend_on_the_workers_nor_on_what_was_scored_before():
-    space, rig, other = shapes.small_space(0.25), rig_of_all_kinds(), shapes.lidar_on_roof()
-    scores = []
-    for workers in (1, 2, 3):
-        evaluator = pe.Evaluator(space, pe.Prior.road(), shapes.box_car(), workers=workers)
-        evaluator.entropy(pe.Rig([other]))
-        scores.append((evaluator.entropy(rig), evaluator.score(rig).to_dict()))
-        assert scores[-1][0] == scores[-1][1]["entropy"]
-    assert scores[0] == scores[1] == scores[2]

@@ -119,19 +119,6 @@ def test_housings_of_the_catalogue_are_read_and_say_their_source():
     assert puck.optical_center == (0.0, 0.0, 0.0377)
 
 
-def test_no_size_is_known_of_most_cameras():
-    assert pe.catalog.housing("Camera 60 deg") is None
-    assert pe.catalog.housing("no such sensor") is None
-
-
-def test_a_housing_is_no_part_of_the_sensor():
-    """It can't change a score: the sensor is the same with and without it."""
-    table = dict(pe.catalog.entries()["Pandar40"].table)
-    with_it = pe.catalog.from_table("one", table)
-    without = pe.catalog.from_table("one", {k: v for k, v in table.items() if k != "housing"})
-    assert pe.catalog.to_table(with_it) == pe.catalog.to_table(without)
-
-
 def test_what_a_box_s_table_leaves_out_is_assumed():
     box = read_housing("x", {"shape": "box", "size": [0.1, 0.2, 0.06], "source": "a test"})
     assert box.optical_center == (0.05, 0.0, 0.03)

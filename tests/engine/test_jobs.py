@@ -69,37 +69,6 @@ def test_an_optimize_job_improves_and_tells_its_history():
     assert stages[-1] == "done" and "optimizing" in stages
 
 
-def test_start_and_result_are_evaluated_by_one_evaluator(monkeypatch):
-    made, plain = [], pe.Study.evaluator
-
-    def counted(self, samples=None, workers=None):
-        made.append(samples)
-        return plain(self, samples, workers)
-
-    monkeypatch.setattr(pe.Study, "evaluator", counted)
-    _, outcome = finished(pe.OptimizeJob(study()))
-    assert outcome.after is not outcome.before
-    assert made == [2048, 0]  # the search's sample once, the whole grid once
-
-
-@pytest.mark.parametrize(("samples", "also"), [(0, [65_536]), (4096, [])])
-def test_one_evaluator_is_made_where_search_and_score_look_at_the_same(monkeypatch, samples, also):
-    made, plain = [], pe.Study.evaluator
-
-    def counted(self, samples=None, workers=None):
-        made.append(samples)
-        return plain(self, samples, workers)
-
-    given = study(candidates=1)
-    given = replace(given, samples=samples, search=replace(given.search, samples=samples))
-    expected = [given.evaluator().score(given.rig).to_dict()]
-    monkeypatch.setattr(pe.Study, "evaluator", counted)
-    _, outcome = finished(pe.OptimizeJob(given))
-    assert made == [samples, *also]  # mounting errors are not looked at on the grid
-    assert outcome.before.to_dict() == expected[0]
-    assert outcome.history[0].entropy == outcome.before.entropy
-
-
 def test_a_search_that_cannot_be_made_is_refused_before_any_work(monkeypatch):
     given = study()
     below = replace(given, search=replace(given.search, limits={"roof": {"z": (0.0, 1.0)}}))
@@ -213,21 +182,3 @@ def test_the_same_study_gives_the_same_result_but_for_the_run():
     first, second = (pe.result_dict(finished(pe.OptimizeJob(study()))[1]) for _ in range(2))
     assert first.pop("run") and second.pop("run")
     assert json.dumps(first) == json.dumps(second)
-
-
-def test_an_output_folder_that_cannot_be_written_is_reported_before_the_work(tmp_path):
-    blocked = tmp_path / "file"
-    blocked.write_text("in the way")
-    with pytest.raises(pe.InputError, match="output: expected a folder that can be written"):
-        pe.prepare_folder(blocked / "results")
-
-
-def test_a_failed_write_leaves_the_old_result(tmp_path, monkeypatch):
-    _, outcome = finished(pe.ScoreJob(study()))
-    pe.write_outcome(outcome, tmp_path)
-    before = (tmp_path / "result.json").read_bytes()
-    monkeypatch.setattr("os.replace", lambda *a: (_ for _ in ()).throw(OSError("disk full")))
-    with pytest.raises(pe.InputError, match="disk full"):
-        pe.write_outcome(replace(outcome, seconds=1.0), tmp_path)
-    assert (tmp_path / "result.json").read_bytes() == before
-    assert not list(tmp_path.glob(".*tmp"))

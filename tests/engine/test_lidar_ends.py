@@ -12,7 +12,6 @@ from pe_core.sensors.lidar.beams import FixedEnds, LazyEnds, RotatedBeams
 from pe_core.sensors.lidar.lattice import lattice_of
 from pe_core.sensors.lidar.occlusion import occlusion_candidates
 from pe_core.sensors.lidar.tie_rules import position_in_voxels
-from pe_core.sensors.lidar.upright import MAX_AZIMUTHS, SlopeCounts, Upright
 from pe_core.sensors.lidar.voxel_beams import (
     PlacedLidar,
     VoxelPoints,
@@ -78,14 +77,6 @@ def test_every_beam_that_is_stopped_may_be(pose, vehicle):
     assert stopped.any() and not (stopped & ~ends.occludable).any()
 
 
-def test_few_beams_may_be_stopped_that_are_not():
-    """A map that says so of all would be right, and of no use."""
-    for pose in ("roof", "tilted", "corner", "afar"):
-        sensor = lidar(POSES[pose], shapes.small_lidar(40, 720))
-        stopped = int((pe.beam_field(sensor, CAR).occluded_by >= 0).sum())
-        assert stopped <= lazy(sensor, CAR).occludable.sum() <= 1.3 * stopped + 300, pose
-
-
 def test_a_vehicle_of_no_triangle_that_is_left_stops_nothing():
     """All of it glass, to a sensor that looks through it."""
     clear = pe.Vehicle(CAR.triangles, CAR.parts, CAR.part_names, glass=("body", "cabin"))
@@ -111,19 +102,6 @@ def test_counts_are_those_of_all_beams_cast(pose, kind):
     assert kind != "full circle" or (free.counts > plain).any()
 
 
-def test_fewer_beams_are_cast_than_there_are_and_each_once(monkeypatch):
-    cast, plain = [], LazyEnds._cast
-    monkeypatch.setattr(LazyEnds, "_cast", lambda s, new: cast.append(new) or plain(s, new))
-    sensor = lidar(POSES["corner"])
-    ends = lazy(sensor, CAR)
-    count_voxel_beams(some_voxels(), placed(sensor, ends))
-    assert 0 < len(cast[0]) < 0.5 * sensor.model.beam_count
-    field, expected = ends.beam_field(), pe.beam_field(sensor, CAR)
-    assert len(np.unique(np.concatenate(cast))) == len(np.concatenate(cast))
-    assert np.array_equal(field.ends, expected.ends)
-    assert np.array_equal(field.occluded_by, expected.occluded_by)
-
-
 def test_what_a_bound_took_is_not_counted_again(monkeypatch):
     """A candidate whose bound is good is counted without the vehicle once."""
     calls, plain = [], bracket.bracket
@@ -137,20 +115,3 @@ def test_what_a_bound_took_is_not_counted_again(monkeypatch):
         SPACE, pe.Prior.uniform(), CAR, samples=2048
     ).entropy(moved)
     assert len(calls) == 3
-
-
-@pytest.mark.parametrize("place", [(-0.43, 0.0, 1.8), (0.0, 0.0, 2.0), (0.537, -0.281, 1.713)])
-def test_few_voxels_of_an_upright_lidar_are_left_to_the_exact_test(place):
-    """Ties as well: whole layers and rows of voxels touch a beam along a face at round numbers."""
-    rng, lidar = np.random.default_rng(4), pe.catalog.load("Pandar64")
-    space = pe.PerceptionSpace((-30, 30), (-15, 15), (0, 5), 0.1)
-    index = rng.integers(0, space.shape, (50_000, 3))
-    position = position_in_voxels(place, space.origin, space.interval)
-    table = SlopeCounts.of(lidar.elevations, lidar.azimuth_count)
-    stopped = np.zeros((64, lidar.azimuth_count), bool)
-    upright = Upright.of(table, np.eye(3), stopped, 0.0)
-    counts, unsure = upright.count([c.astype(np.float32) for c in index.T], position)
-    offset = (index + 0.5 - position) * space.interval
-    near = np.hypot(offset[:, 0], offset[:, 1]) < 0.15 / math.radians(0.2) / MAX_AZIMUTHS
-    assert unsure[~near].mean() < 0.02
-    assert counts[~unsure].max() > 10

@@ -90,23 +90,26 @@ LIMITS = [
     (pe.Schedule, "floor_rad", (1e-6, 359.9 * DEG), (0.0, -0.1, 361 * DEG)),
     (pe.Schedule, "decay", (0.001, 0.99), (0.0, 1.0, -0.5, 1.5, math.nan)),
 ]
-CASES = [
-    pytest.param(make, key, value, taken, id=f"{key} {value} {'taken' if taken else 'refused'}")
-    for make, key, good, bad in LIMITS
-    for values, taken in ((good, True), (bad, False))
-    for value in values
-]
 OTHERS = {pe.ApCurve: {"a": 0.1, "b": 0.1}, pe.Focus: {}}
 
 
-@pytest.mark.parametrize(("make", "key", "value", "taken"), CASES)
-def test_limits(make, key, value, taken):
-    options = OTHERS.get(make, {}) | {key: value}
-    if taken:
+def is_taken(make, **options):
+    try:
         make(**options)
-    else:
-        with pytest.raises(pe.InputError):
-            make(**options)
+    except pe.InputError:
+        return False
+    return True
+
+
+def test_limits():
+    offenders = [
+        (key, value)
+        for make, key, good, bad in LIMITS
+        for values, taken in ((good, True), (bad, False))
+        for value in values
+        if is_taken(make, **OTHERS.get(make, {}) | {key: value}) is not taken
+    ]
+    assert offenders == []
 
 
 @pytest.mark.parametrize(
@@ -150,12 +153,6 @@ def test_numbers_of_an_array():
     assert mixed[0] == 1.0 and np.isnan(mixed[1:4]).all()
     assert numbers(["1", "2"]) is None and numbers([True, False]) is None
     assert numbers([[1.0], [1.0, 2.0]]) is None and numbers([1j]) is None
-
-
-@pytest.mark.parametrize("beams", [[], [[1, 0]], [[0, 0, 0]], [[1, 0, np.nan]]])
-def test_impossible_patterns_are_refused(beams):
-    with pytest.raises(pe.InputError, match="mine: directions"):
-        pe.Lidar.from_directions("mine", beams, 10.0)
 
 
 def test_the_least_is_below_the_most():

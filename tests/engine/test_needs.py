@@ -68,12 +68,6 @@ def test_too_little_memory_is_one_line_with_what_would_fit(monkeypatch):
         ours.evaluator(0)
 
 
-def test_where_nobody_tells_how_much_there_is_all_is_tried(monkeypatch):
-    monkeypatch.setattr(memory_need, "available_bytes", lambda: None)
-    ours = study(1, 0)
-    assert ours.evaluator(0).entropy(ours.rig) > 0.0
-
-
 def test_too_large_a_sample_is_reported_with_one_that_fits(monkeypatch):
     ours = study(1, 0)
     monkeypatch.setattr(memory_need, "available_bytes", lambda: 100_000_000)

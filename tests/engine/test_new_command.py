@@ -13,10 +13,10 @@ from pe_tools.cli import new_verb
 from pe_tools.cli.first_study import study_text
 from pe_tools.cli.roof import find_roof
 from pe_tools.cli.verbs import main
-from pe_tools.formats import axes_in_text, read_mesh
+from pe_tools.formats import read_mesh
 from tests.engine.mesh_files import glb_file, gltf, obj_bytes, ply_binary, stl_binary
 from tests.engine.test_docs import ROOT
-from tests.engine.test_mesh_axes import TURNS, car, obj, triangles_of
+from tests.engine.test_mesh_axes import car, obj, triangles_of
 
 ASSETS = ROOT / "blend_assets"
 CHEAP = ["--grid-samples", "1024"]
@@ -151,15 +151,6 @@ def test_files_that_are_there_are_never_overwritten(tmp_path, capsys):
     assert (tmp_path / "box.obj").read_bytes() == mesh
 
 
-def test_the_mesh_is_found_from_a_folder_that_is_a_link(tmp_path):
-    (tmp_path / "meshes").mkdir()
-    (tmp_path / "a" / "b").mkdir(parents=True)
-    (tmp_path / "meshes" / "box.obj").write_bytes(obj_bytes())
-    (tmp_path / "link").symlink_to(tmp_path / "a" / "b")
-    assert new(tmp_path / "meshes" / "box.obj", tmp_path / "link" / "study.toml") == 0
-    assert checked(tmp_path / "link" / "study.toml").mesh == "../../meshes/box.obj"
-
-
 def test_a_mesh_that_floats_is_warned_of_and_a_plate_has_no_mount(tmp_path, capsys):
     """A plate has no roof that a housing is clear of: the LiDAR is above it and moves in a box."""
     points = np.array([(x, y, 1.0) for x in (-2.0, 2.0) for y in (-0.9, 0.9)])
@@ -201,16 +192,3 @@ def test_what_cannot_be_is_one_line_and_leaves_no_file(name, more, words, tmp_pa
     (line,) = capsys.readouterr().err.splitlines()[-1:]
     assert line.startswith("pe: ") and words in line
     assert {path.name for path in tmp_path.iterdir()} == before
-
-
-@pytest.mark.parametrize("turn", TURNS)
-def test_the_axes_of_a_text_are_those_of_the_reader(turn, tmp_path):
-    (tmp_path / "car.obj").write_bytes(obj(turn))
-    mesh = read_mesh(tmp_path / "car.obj")
-    found = axes_in_text(mesh.axes)
-    assert mesh.axes == (
-        f"faces {found.forward} ({found.forward_by}), up is {found.up} ({found.up_by})"
-    )
-    asked = read_mesh(tmp_path / "car.obj", pe.MeshAxes(found.up, found.forward))
-    np.testing.assert_array_equal(asked.triangles, mesh.triangles)
-    assert axes_in_text("") == ("+z", "file", "+x", "file")

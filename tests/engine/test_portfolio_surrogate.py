@@ -8,7 +8,7 @@ import pytest
 import pe_core as pe
 from pe_core.search import Evaluation, Parametrization, pose_values
 from pe_core.search.methods import portfolio_surrogate as surrogate
-from pe_core.search.methods.method import Given, Phase, Question
+from pe_core.search.methods.method import Given, Phase
 from pe_core.search.methods.portfolio_linear import LinearDescent
 from pe_core.search.methods.portfolio_surrogate import CubicModel, History, SurrogateDescent
 from tests.engine import mounting
@@ -78,12 +78,6 @@ def test_beyond_its_points_the_model_goes_on_downhill():
     assert fall.min() > 0.25 and fall.max() < 0.8
 
 
-def test_points_that_are_known_twice_and_fewer_than_variables_are_modelled():
-    points = np.array([[0.5] * 8, [0.5] * 8, [0.6] + [0.5] * 7])
-    found = expected(model_of(points, [1.0, 3.0, 0.0]), points)
-    assert found[0] == pytest.approx(found[1]) and found[2] < 0.1 < found[0]
-
-
 def rugged(rig):
     """A wide valley that both sensors share, with ripples as high as its slope."""
     values = [pose_values(sensor.pose)[axis] for sensor in rig for axis in "xy"]
@@ -128,73 +122,6 @@ def test_it_ends_where_every_step_breaks_a_rule(monkeypatch):
     found, run = descent(lambda rig: 0.0, rig, space)
     monkeypatch.setattr(Parametrization, "allowed", lambda *_: False)
     assert run(100) == [] and found.count == 0
-
-
-def test_a_large_model_is_begun_anew_with_the_nearest(monkeypatch):
-    monkeypatch.setattr(surrogate, "MAX_KNOWN", 10)
-    rig, space = mounting.space(can(), free=("x", "y"))
-    sizes, told = [], SurrogateDescent._told
-
-    def noted(self, *answers):
-        told(self, *answers)
-        sizes.append(self._model.count)
-
-    monkeypatch.setattr(SurrogateDescent, "_told", noted)
-    found, run = descent(lambda rig: pose_values(rig["roof"].pose)["x"] ** 2, rig, space)
-    run(60)
-    assert sizes[:6] == [5, 9, 13, 17, 21, 14] and max(sizes) < 24
-    at = found._ranges.point(found.best.vector)
-    assert found._model.distances(at[:, None]).min() == 0.0
-
-
-def test_steps_become_shorter_without_gains_and_longer_with_them():
-    rig, space = mounting.space(can(), free=("x", "y"))
-    found, _ = descent(lambda rig: 1.0, rig, space)
-    four = [found.best] * 4
-    for _ in range(2):
-        found._told(four, [2.0] * 4)
-    assert found._step == 0.1
-    for number in range(3):
-        found._told(four, [0.9 - 0.1 * number] * 4)
-    assert found._step == 0.2  # and never longer than at first
-    for _ in range(99):
-        found._told(four, [2.0] * 4)
-    assert found._step == 0.2 / surrogate.SHORTEST
-
-
-def test_only_placements_with_the_same_slots_are_learnt_from():
-    slots = [pe.Slot(f"s{k}", pe.Pose((0.5 * k, 0.0, 1.6))) for k in range(2)]
-    rig = pe.Rig([can((0.0, 0.0, 1.6)), can((-1.0, 0.3, 1.6), "b")])
-    rack = pe.Mounting(mounts={"rack": pe.SlotMount(slots)}, on={"roof": "rack"})
-    free = {"b": ("x", "y")}
-    space = pe.SearchSpace.on_vehicle(rig, mounting.car(), free, mounting=rack)
-    coding = Parametrization(rig, space)
-    given, history = Given(coding, coding.start, 1.0), History(coding.start, 1.0)
-    [slot] = [k for k, v in enumerate(coding.variables) if v.unit == "share"]
-    other = list(coding.start.vector)
-    other[slot] = 0.9
-    history.vectors += [tuple(other), coding.start.vector]
-    history.values += [0.5, 1.5]
-    found = SurrogateDescent(given, history, coding.start, 1.0, [0], 0.2)
-    assert found._model.count == 2 and len(found._free) == len(coding.variables) - 1
-
-
-def test_a_history_keeps_values_and_no_bounds():
-    rig, space = mounting.space(can())
-    coding = Parametrization(rig, space)
-    near = coding.candidate([value + 0.1 for value in coding.start.vector])
-
-    def asks():
-        answers = yield Question((near, None, coding.start), 2.0)
-        assert [answer and answer.entropy for answer in answers] == [1.0, None, 2.5]
-
-    history = History(coding.start, 3.0)
-    questions = history.follow(asks())
-    next(questions)
-    with pytest.raises(StopIteration):
-        questions.send([Evaluation(1.0, False), None, Evaluation(2.5, True)])
-    assert history.vectors == [coding.start.vector, near.vector]
-    assert history.values == [3.0, 1.0]
 
 
 def test_infinite_values_count_as_bad_ones_and_are_left_behind():

@@ -79,17 +79,6 @@ def test_a_vehicle_as_large_as_a_hall_is_cast():
     assert own.score(rig_at((0.3, 0.2, 1.6)), preview=True).preview
 
 
-def test_without_a_vehicle_nothing_is_a_preview():
-    own = pe.Evaluator(SPACE, pe.Prior.road(), samples=5000)
-    assert not own.score(rig_at((0.0, 0.0, 1.8)), preview=True).preview
-
-
-def test_a_grid_score_has_no_preview():
-    own, rig = pe.Evaluator(SPACE, pe.Prior.road(), CAR), rig_at((0.0, 0.0, 1.8))
-    assert own.score(rig, preview=True).to_dict() == own.score(rig).to_dict()
-    assert own.entropy(rig, preview=True) == own.entropy(rig)
-
-
 def test_a_roof_hides_what_is_below_its_edge():
     """A 2 x 2 m plate seen from 0.5 m above its middle: its edge is 26.6 degrees down ahead."""
     plate = shapes.box((-1, -1, 1.0), (1, 1, 1.1))

@@ -94,13 +94,6 @@ def test_result_json_and_the_terminal_say_it(outcome):
     assert f"one sensor lost  {before.loss:+.4f} -> {after.loss:+.4f} nats" in text
 
 
-def test_a_score_has_nothing_of_it():
-    job = pe.ScoreJob(study())
-    list(job)
-    assert job.outcome.robustness is None and "robustness" not in pe.result_dict(job.outcome)
-    assert "mounted" not in summary(job.outcome)
-
-
 def test_a_search_under_errors_keeps_what_it_found_though_it_scores_worse_as_it_stands(outcome):
     assert len(outcome.history) > 1
     again = pe.OptimizeJob(study(), before=replace(outcome.before, entropy=0.0))
@@ -115,14 +108,3 @@ def test_a_search_under_errors_keeps_what_it_found_though_it_scores_worse_as_it_
 def test_a_fragile_placement_is_reported(rise, stderr, told):
     found = advice.fragile(rise, stderr, 0.01, math.radians(0.3), tolerant=False)
     assert bool(found) is told
-
-
-def test_advice_on_a_fragile_placement_is_one_line():
-    (plain,) = advice.fragile(0.29, 0.01, 0.01, math.radians(0.3), tolerant=False)
-    assert plain.line == (
-        "placement: mounted 1 cm and 0.3 deg off (1 sigma) it is 0.29 nats worse on average; "
-        "a search with a tolerance looks for one that is less fragile"
-    )
-    (searched,) = advice.fragile(0.29, 0.01, 0.0, math.radians(0.3), tolerant=True)
-    assert searched.text == "mounted 0.3 deg off (1 sigma) it is 0.29 nats worse on average"
-    assert advice.off_by(0.0025, 0.0) == "mounted 2.5 mm off"

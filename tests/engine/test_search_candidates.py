@@ -281,22 +281,6 @@ def test_the_neighbourhood_shrinks_until_both_floors_are_reached(metres, degrees
     assert schedule.scales == scales
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"candidates": 0}, "candidates"),
-        ({"decay": 0.0}, "decay"),
-        ({"decay": -0.5}, "decay"),
-        ({"decay": 1.0}, "decay"),
-        ({"decay": 1.5}, "decay"),
-        ({"decay": math.nan}, "decay"),
-    ],
-)
-def test_schedules_without_an_end_are_refused(options, message):
-    with pytest.raises(pe.InputError, match=message):
-        pe.Schedule(**options)
-
-
 @pytest.mark.parametrize("unit", ["m", "rad"])
 def test_a_schedule_has_a_thousand_rounds_at_most(unit):
     """From 1 to exp(-10) by factors of exp(-0.01): 1000. The other one is at its floor."""

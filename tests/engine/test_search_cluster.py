@@ -3,14 +3,13 @@
 import os
 import sys
 import time
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.search import Goals, Payload, Processes, evaluate_all
+from pe_core.search import Processes, evaluate_all
 from pe_core.search.payload import plugin_name
 from tests.engine import shapes
 from tests.thorough import THOROUGH
@@ -109,27 +108,6 @@ def test_a_search_of_sixteen_sensors_by_workers_of_a_cluster_takes_the_steps_of_
             path.unlink()
 
 
-@pytest.mark.skipif(not THOROUGH, reason="starts four processes of a cluster")
-@pytest.mark.skipif(sys.platform == "win32", reason="as the other test of a cluster")
-def test_a_job_sends_the_mesh_once_for_both_levels_of_its_search(study, client):
-    search = replace(study.search, evaluations=40, samples=1024, goals=Goals(sensitivity="off"))
-    given = replace(study, search=search, samples=1024)
-    job, alone = pe.OptimizeJob(given), pe.OptimizeJob(given, 1)
-    job.executor = client.get_executor(pure=False)
-    sent, send = [], client.register_plugin
-
-    def counted(plugin, name):
-        sent.append(name)
-        send(plugin, name)
-
-    client.register_plugin = counted
-    for each in (job, alone):
-        for _ in each:
-            pass
-    assert job.outcome.evaluated == alone.outcome.evaluated
-    assert sent == [plugin_name(client)]
-
-
 @pytest.mark.skipif(not THOROUGH, reason="starts two processes of a cluster")
 @pytest.mark.skipif(sys.platform == "win32", reason="as the other test of a cluster")
 def test_a_worker_that_joins_later_has_the_payload(study):
@@ -163,11 +141,3 @@ def test_a_search_of_sixteen_sensors_by_processes_takes_the_steps_of_one(
         assert steps(study.evaluator(1024), study, pool) == by_one_process
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
-
-
-def test_a_candidate_is_sent_without_the_mesh_and_without_models(study):
-    evaluator = study.evaluator(1024)
-    payload = Payload((evaluator, *(sensor.model for sensor in study.rig)))
-    once, each = len(payload.packed.data), len(payload.pickled((evaluator, study.rig)))
-    assert once > study.vehicle.triangles.nbytes // 2
-    assert each < 200 * SENSORS < once / 20

@@ -7,10 +7,11 @@ import pytest
 
 import pe_core as pe
 from pe_core import sensors as kinds
-from pe_core.metric.entropy import AP_MIN, ap_of_entropy, average_precision, entropy_of, sigma_of
+from pe_core.metric.entropy import ap_of_entropy, average_precision, entropy_of, sigma_of
 from pe_core.scoring import sight
 from tests.engine import shapes
 from tests.engine.kernels import on_sample
+from tests.engine.refusals import wrongly_refused
 from tests.thorough import tries
 
 SPACE = pe.PerceptionSpace((-60, 60), (-20, 20), (1, 2), 0.5)
@@ -125,35 +126,19 @@ def test_a_rig_reaches_no_less_than_its_sensors():
     assert (reach.distance <= reach.limit).all()
 
 
-def test_what_is_asked_for_less_is_found_farther():
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(64, 720))])
-    own = sight.Sight(pe.PerceptionSpace(interval=0.5), pe.Prior.road())
-    near, far = (own.reach(rig, "pedestrian", ap=ap).distance for ap in (0.7, 0.3))
-    assert (near <= far).all() and near.sum() < far.sum()
+NO_QUESTIONS = [
+    ("class_name", ("tram", {})),
+    ("class_name", (None, {})),
+    ("ap", ("car", {"ap": 0.0})),
+    ("ap", ("car", {"ap": 1.5})),
+    ("bearings", ("car", {"bearings": 3})),
+]
 
 
-def test_two_of_a_kind_find_the_same_bits():
+def test_what_cannot_be_asked_is_refused():
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
-    one, two = (
-        sight.Sight(shapes.small_space(), pe.Prior.road()).reach(rig, "car") for _ in range(2)
-    )
-    assert one.distance.tobytes() == two.distance.tobytes()
-
-
-@pytest.mark.parametrize(
-    ("name", "asked", "line"),
-    [
-        ("tram", {}, "sight: class_name: expected one of car, pedestrian, cyclist, truck, cone"),
-        (None, {}, "sight: class_name: expected one of car"),
-        ("car", {"ap": 0.0}, "sight: ap: expected a number above 0 and below 1, found 0"),
-        ("car", {"ap": 1.5}, "sight: ap: expected a number above 0 and below 1, found 1.5"),
-        ("car", {"bearings": 3}, "sight: bearings: expected a whole number >= 4, found 3"),
-    ],
-)
-def test_what_cannot_be_asked_is_reported_in_a_line(name, asked, line):
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
-    with pytest.raises(pe.InputError, match=line):
-        sight.Sight(shapes.small_space(), pe.Prior.road()).reach(rig, name, **asked)
+    own = sight.Sight(shapes.small_space(), pe.Prior.road())
+    assert wrongly_refused(lambda v: own.reach(rig, v[0], **v[1]), NO_QUESTIONS, "sight") == []
 
 
 def test_ap_of_an_entropy_undoes_the_equations():
@@ -173,10 +158,3 @@ def test_expected_ap_is_the_prior_s_mean():
         p = density.ground[:, :, None] * density.profile
         assert found[density.name] == pytest.approx((p * ap).sum() / p.sum(), abs=0.005)
     assert set(found) == set(prior.class_names)
-
-
-def test_a_rig_that_sees_nothing_expects_nothing():
-    up = pe.Lidar("up", np.radians([80.0, 85.0]), 36, 60.0)
-    rig = pe.Rig([pe.Sensor("up", up, pe.Pose((0.0, 0.0, 40.0)))])
-    found = sight.Sight(shapes.small_space(), pe.Prior.road()).expected_ap(rig)
-    assert list(found.values()) == pytest.approx([AP_MIN] * 5)

@@ -57,14 +57,6 @@ def test_a_score_ends_when_it_is_reported_and_the_next_is_sound(at):
     assert own.score(rig()).to_dict() == evaluator().score(rig()).to_dict()
 
 
-def test_a_job_tells_how_far_its_score_is():
-    study = pe.Study(rig(), shapes.box_car(), SPACE)
-    job = pe.ScoreJob(study)
-    shares = [progress.fraction for progress in job]
-    assert shares == sorted(shares) and shares[0] == 0.0 and shares[-1] == 1.0
-    assert job.outcome is not None
-
-
 def test_a_stopped_job_s_thread_stops_as_well(monkeypatch):
     """Its score is given up, and does not run on behind the program's back."""
     started, go, done = threading.Event(), threading.Event(), threading.Event()

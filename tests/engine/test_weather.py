@@ -9,7 +9,7 @@ import pytest
 import pe_core as pe
 from pe_core.sensors import weather
 from pe_core.sensors.weather import Weather, camera_range, fog_return_range, lidar_range
-from pe_core.study import Conditions, StateInWeather
+from pe_core.study import Conditions
 from tests.engine import shapes
 
 
@@ -122,12 +122,6 @@ def test_a_sensor_in_a_weather_has_the_bits_of_one_with_that_range():
         assert evaluator.score(foggy).to_dict() == evaluator.score(anew).to_dict()
         assert evaluator.entropies([rig, foggy]) == [evaluator.entropy(r) for r in (rig, anew)]
         assert evaluator.entropy(foggy) > evaluator.entropy(rig)
-
-
-def test_clear_weather_changes_no_sensor():
-    rig = pe.Rig([pe.Sensor("roof", pe.catalog.load("Pandar64"))])
-    study = pe.Study(rig, samples=4096)
-    assert study.under(StateInWeather(None, named())).rig is rig
 
 
 def test_rain_damps_a_radar_and_fog_does_not():

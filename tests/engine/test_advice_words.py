@@ -1,10 +1,20 @@
-"""A score in words, figures as people read them, and scores side by side."""
+"""Scores in words: figures as people read them, tables, and sensors that see nothing."""
 
+import dataclasses
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
 import pe_core as pe
 from pe_core.base.errors import plural
+from pe_core.scoring import FoundClass
+from pe_core.scoring.targets.lone_objects import SECTORS
 from pe_tools import advice
+from pe_tools.cli.explain_verbs import comparison
+from pe_tools.cli.terminal import summary
 from pe_tools.wording import metres, percent, times
 from tests.engine import shapes
 
@@ -180,3 +190,198 @@ def test_a_search_warns_of_the_placement_it_found():
     assert list(job) and job.outcome.study.rig["roof"].pose.position[2] > 0.95
     told = [each.code for each in job.outcome.warnings]
     assert told == [advice.FRAGILE], "it is in the body no more; a few beams are easily off"
+
+
+REACH = {way: 0.0 for way in SECTORS} | {"front": 25.6, "left": 12.2}
+CAR = FoundClass(40, 0.5, 1.0, 0.1, 0.453, 0.01, {1: 1.0, 5: 0.9, 20: 0.5}, REACH)
+CONE = replace(CAR, ap=0.2, points={}, reach=dict.fromkeys(SECTORS, 0.0))
+
+
+def scored(ap=0.33, traffic=True, **classes):
+    found = pe.ObjectScore(ap, 0.004, 80, 8, traffic, {"car": CAR, "cone": CONE} | classes)
+    return pe.Score(3.0, 0.5, 0.1, {}, {}, {}, 0, objects=found)
+
+
+def test_words_of_a_score_on_objects():
+    assert advice.words(scored()) == (
+        "50% of the objects are seen, by weight (80 objects in 8 scenes, in traffic)",
+        "expected AP 0.33 +- 0.004: car 0.45, cone 0.20",
+        "car: 100%, 90%, 50% get 1, 5, 20 points or more; "
+        "found alone (AP 0.5) up to 26 m ahead, 12 m left; not behind, right",
+        "cone: found alone (AP 0.5) nowhere ahead, behind, left or right",
+    )
+    far = replace(CAR, reach=REACH | {"front": 80.0})
+    assert "up to 80 m and more ahead, 12 m left" in advice.words(scored(car=far))[2]
+    assert [advice.lone_reach(m) for m in (0.2, 25.6, 80.0)] == ["nowhere", "26 m", "≥ 80 m"]
+    assert "80 objects, none occludes another" in advice.words(scored(traffic=False))[0]
+
+
+def test_a_score_comes_back_from_its_data():
+    score = scored()
+    assert pe.ObjectScore.from_dict(score.to_dict()["objects"]) == score.objects
+
+
+def test_ap_and_reach_stand_side_by_side():
+    better = replace(CAR, ap=0.5, reach=REACH | {"front": 30.0})
+    rows = advice.compare({"a": scored(), "b": scored(0.35, car=better)})
+    found = {(row.measure, row.name): row for row in rows}
+    assert found["ap", ""].values == (0.33, 0.35) and found["ap", ""].best == (False, True)
+    assert found["reach", "car"].differences == (0.0, pytest.approx(4.4))
+    lines = comparison(["a", "b"], rows)
+    assert "expected AP" in lines and any("30.0 (+4.4)*" in line for line in lines)
+    voxels = pe.Score(3.0, 0.5, 0.1, {}, {}, {}, 9)
+    assert "expected AP" not in comparison(["a"], advice.compare({"a": voxels}))
+
+
+def test_the_summary_says_what_was_evaluated():
+    study = pe.Study(pe.Rig([shapes.lidar_on_roof()]), targets=pe.TargetRule("objects", scenes=64))
+    own = pe.SensorScore(3.0, 0.5, 1.0, 0, 0, {})
+    score = replace(scored(), per_sensor={"roof": own})
+    text = summary(pe.Outcome("optimize", study, study, score, score, evaluations=7))
+    assert "expected AP 0.33" in text and "on 80 objects in 8 scenes, in traffic" in text
+    assert "7 placements evaluated on 32, then 64 scenes of objects" in text
+
+
+INSIDE, SIDE = "camera in the boot", "side"
+
+
+def sensor_score(coverage, stopped=0, beams=1000):
+    return pe.SensorScore(4.0, coverage, 0.1, beams, stopped, {"body": stopped} if stopped else {})
+
+
+RIG = pe.Rig([shapes.lidar_on_roof(), dataclasses.replace(shapes.camera(60.0), name=INSIDE)])
+
+
+@pytest.mark.parametrize(
+    "stopped, coverage, warned, stderr, lines",
+    [
+        (0, 0.5, (), 0.0, ()),
+        (500, 0.5, (), 0.0, ()),  # half is the limit
+        (
+            *(860, 0.02, (), 0.0),
+            ("camera in the boot (86% of its picture occluded) is mostly occluded",),
+        ),
+        (
+            *(1000, 0.0, ("inside",), 0.0),
+            ("camera in the boot (inside the body, 100% of its picture occluded) sees nothing",),
+        ),
+        (
+            *(1000, 0.0, (), 0.02),
+            ("camera in the boot (100% of its picture occluded) sees nothing, or next to it",),
+        ),
+        (
+            *(0, 0.0, (), 0.0),
+            ("camera in the boot (no object is expected where it looks) sees nothing",),
+        ),
+    ],
+    ids=["well", "half", "mostly", "inside", "sampled", "away"],
+)
+def test_what_is_reported_of_it(stopped, coverage, warned, stderr, lines):
+    own = {"roof": sensor_score(0.6), INSIDE: sensor_score(coverage, stopped)}
+    score = pe.Score(2.0, 0.6, stderr, {}, {}, own, 9)
+    warnings = [pe.Advice(INSIDE, code) for code in warned]
+    assert advice.hidden_words(advice.hidden_sensors(RIG, score, warnings)) == lines
+    assert advice.words(score, RIG, warnings=warnings)[: len(lines)] == lines
+    assert not advice.words(score)[0].startswith("camera")
+
+
+def test_several_are_one_line_a_kind_and_the_dead_come_first():
+    names = ["a", "b", "c"]
+    rig = pe.Rig([dataclasses.replace(shapes.camera(60.0), name=name) for name in names])
+    own = {
+        "a": sensor_score(0.1, 700),
+        "b": sensor_score(0.0, 1000),
+        "c": sensor_score(0.0, 1000),
+    }
+    found = advice.hidden_sensors(rig, pe.Score(2.0, 0.1, 0.0, {}, {}, own, 9))
+    assert [each.name for each in found] == ["b", "c", "a"]
+    assert advice.hidden_words(found) == (
+        "b (100% of its picture occluded) and c (100% of its picture occluded) see nothing",
+        "a (70% of its picture occluded) is mostly occluded",
+    )
+
+
+def test_a_camera_inside_the_body_is_named_by_the_summary():
+    inside = dataclasses.replace(shapes.camera(60.0, (0.0, 0.0, 0.9)), name=INSIDE)
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(8, 90)), inside])
+    study = pe.Study(rig, shapes.box_car(), shapes.small_space(1.0))
+    job = pe.ScoreJob(study)
+    for _ in job:
+        pass
+    line = f"ATTENTION: {INSIDE} (inside the body, 100% of its picture occluded) sees nothing"
+    assert line in summary(job.outcome).splitlines()
+
+
+@pytest.mark.parametrize("samples", [0, 2048])
+def test_a_wall_hides_the_left_half_of_the_picture(samples):
+    """A wall from straight ahead to the left, one metre off, higher than the picture."""
+    wall = pe.Vehicle(
+        shapes.box((1.0, 0.0, 0.0), (1.1, 3.0, 4.0)), np.zeros(12, np.int32), ("wall",)
+    )
+    sensor = shapes.camera(60.0, (0.0, 0.0, 2.0))
+    space = pe.PerceptionSpace((-2, 8), (-4, 4), (0, 4), 0.5)
+    score = pe.Evaluator(space, pe.Prior.uniform(), wall, samples=samples).score(pe.Rig([sensor]))
+    own = score.per_sensor["camera"]
+    assert own.occluded / own.beams == pytest.approx(0.5, abs=0.01)
+    assert own.occluded_by == {"wall": own.occluded}
+    assert 16_000 < own.beams <= 16_384
+
+
+@pytest.fixture(scope="module")
+def study():
+    """A small LiDAR on a box of a car."""
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(32, 360))])
+    return pe.Study(rig, shapes.box_car(), space=shapes.small_space())
+
+
+def test_they_are_those_of_sight(study):
+    look = study.sight()
+    found = advice.key_figures(look, study.rig, 0.6, "car")
+    reach, blind = look.reach(study.rig, "car"), look.blind(study.rig, 0.6)
+    assert 0.0 < found.blind_m2 == blind.area and (found.height, found.within) == (0.6, 10.0)
+    assert found.class_name == "car" and found.reach_m == reach.distance[0]
+    assert found.at_least == (reach.distance[0] >= reach.limit[0] - 0.5)
+    assert found.expected_ap == look.expected_ap(study.rig)["car"]
+    assert advice.key_figures(look, study.rig).class_name == "pedestrian"
+    assert found.to_dict() == {
+        "blind_m2": found.blind_m2,
+        "height": 0.6,
+        "within": 10.0,
+        "class_name": "car",
+        "reach_m": found.reach_m,
+        "at_least": found.at_least,
+        "expected_ap": found.expected_ap,
+    }
+
+
+def test_on_objects_reach_and_ap_are_left_to_the_score(study):
+    found = advice.key_figures(study.sight(), study.rig, of_voxels=False)
+    assert found.blind_m2 > 0.0
+    assert (found.class_name, found.reach_m, found.expected_ap) == (None, None, None)
+
+
+def test_a_class_that_there_is_not(study):
+    with pytest.raises(pe.InputError, match=r"expected one of .*pedestrian"):
+        advice.key_figures(study.sight(), study.rig, class_name="boat")
+
+
+@pytest.mark.parametrize(
+    ("distance", "limit", "found"),
+    [(43.2, 80.0, (43.2, False)), (79.6, 80.0, (79.6, True)), (0.0, 0.0, (0.0, False))],
+)
+def test_straight_ahead(study, distance, limit, found):
+    reach = SimpleNamespace(
+        bearings=np.radians([0.0, 180.0]),
+        distance=np.array([distance, 9.0]),
+        limit=np.array([limit, math.inf]),
+    )
+    look = study.sight()
+    sight = SimpleNamespace(
+        prior=look.prior,
+        space=look.space,
+        blind=look.blind,
+        reach=lambda *_: reach,
+        expected_ap=look.expected_ap,
+    )
+    figures = advice.key_figures(sight, study.rig)
+    assert (figures.reach_m, figures.at_least) == found

@@ -263,23 +263,6 @@ def test_the_product_stays_small():
     assert sum(len(path.read_text("utf-8").splitlines()) for path in paths) <= MAX_LINES
 
 
-def test_the_check_sees_every_way_to_write_an_import(tmp_path):
-    """Modules from a package, packages from the root, imports inside functions."""
-    path = tmp_path / "pe_core" / "sensors" / "lidar" / "odd.py"
-    path.parent.mkdir(parents=True)
-    path.write_text(
-        "from ... import study\n"
-        "from ...scoring.score import Score\n"
-        "from ..kernels import Voxels\n"
-        "def late():\n    from pe_tools.cli import verbs\n    import numpy.linalg\n"
-    )
-    assert set(imported(path, tmp_path)) == {
-        *("pe_core.study", "pe_core.scoring.score.Score", "pe_core.sensors.kernels.Voxels"),
-        *("pe_tools.cli.verbs", "numpy.linalg"),
-    }
-    assert longest_path({"a": {"b", "c"}, "b": {"c"}, "c": set(), "d": set()}) == ("a", "b", "c")
-
-
 def test_a_sensor_s_kind_is_asked_of_the_table_alone():
     """Outside a kind's own folder nobody tells LiDARs from cameras by class or by name."""
     kinds = ("Lidar", "Camera", "Radar", "Ultrasonic")
@@ -330,24 +313,6 @@ def test_programs_outside_import_public_faces_only():
         if not is_public(module, wanted)
     ]
     assert not offenders
-
-
-@pytest.mark.parametrize(
-    "line",
-    [
-        "import pe_core.metric.entropy",
-        "import pe_core.metric",
-        "from pe_core.metric.entropy import H_BLIND",
-        "from pe_core.metric import entropy",
-        "from pe_core import metric",
-        "from pe_core.base.errors import InputError",
-        "from pe_core.metric import *",
-        "def late():\n    from pe_core.scoring.sampling import draw",
-    ],
-)
-def test_the_rule_catches_what_goes_deeper(line):
-    found = list(taken(ast.parse(line)))
-    assert found and not all(is_public(module, name) for module, name in found)
 
 
 def test_importing_the_engine_loads_no_numpy_until_a_name_is_asked_for():

@@ -3,13 +3,15 @@
 import math
 import multiprocessing.synchronize
 import os
+import platform
+import signal
+import socket
 import subprocess
 import sys
+import threading
 import time
-from concurrent.futures import (
-    ProcessPoolExecutor,
-    ThreadPoolExecutor,
-)
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -18,9 +20,10 @@ import pytest
 import pe_core as pe
 from pe_core.scoring import Evaluation
 from pe_core.search import Processes, evaluate_all, processes, start_processes
-from pe_core.search.payload import Payload
+from pe_core.search.payload import Payload, keep_freed_memory
 from pe_tools.cli.executors import workplace
 from tests.engine import shapes
+from tests.engine.processes import ROOT
 from tests.limits import HANG_S
 
 CANDIDATES = 7
@@ -110,16 +113,6 @@ def test_an_objective_is_sent_to_a_process_once(tmp_path, rigs, pool):
         evaluate_all(objective, rigs, math.inf, pool)
     assert 1 <= len(objective.unpacked) <= 2
     assert len(set(objective.unpacked)) == len(objective.unpacked)
-
-
-def test_processes_that_start_with_an_objective_stay(tmp_path, rigs):
-    """Their initializer has brought it: none is started anew, and no task brings it."""
-    objective = Landscape(tmp_path)
-    with start_processes(2, (objective, *(s.model for s in rigs[0]))) as made:
-        pids = {str(pid) for pid in made._pool._processes}
-        evaluate_all(objective, rigs, math.inf, made)
-        assert {str(pid) for pid in made._pool._processes} == pids
-    assert objective.unpacked and set(objective.unpacked) <= pids
 
 
 def test_workers_of_a_cluster_have_an_objective_by_a_plugin(tmp_path, evaluator, rigs):
@@ -232,3 +225,121 @@ def test_workers_of_an_engine_packed_into_an_add_on_run_no_add_on(tmp_path):
     command = [sys.executable, str(script), *arguments]
     done = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S)
     assert done.stdout == "done\n", done.stderr
+
+
+POSIX = pytest.mark.skipif(
+    not hasattr(signal, "pthread_sigmask"), reason="signals of POSIX systems"
+)
+
+
+class Ended(Exception):
+    """What the handler raises."""
+
+
+@pytest.fixture
+def handler() -> Iterator[None]:
+    def end(*_: object) -> None:
+        raise Ended
+
+    before = signal.signal(signal.SIGTERM, end)
+    yield
+    signal.signal(signal.SIGTERM, before)
+
+
+@pytest.fixture
+def other_thread() -> Iterator[None]:
+    """A thread that blocks no signal: the system gives it those that the main thread blocks."""
+    ended = threading.Event()
+    thread = threading.Thread(target=ended.wait)
+    thread.start()
+    yield
+    ended.set()
+    thread.join()
+
+
+@pytest.fixture
+def kill() -> Iterator[Callable[[], None]]:
+    """Send SIGTERM to this process, and wait until a thread has got it."""
+    ours, systems = socket.socketpair()
+    systems.setblocking(False)
+    ours.settimeout(10.0)
+    before = signal.set_wakeup_fd(systems.fileno())
+
+    def kill() -> None:
+        os.kill(os.getpid(), signal.SIGTERM)
+        assert ours.recv(1) == bytes([signal.SIGTERM])
+
+    yield kill
+    signal.set_wakeup_fd(before)
+    for end in (ours, systems):
+        end.close()
+
+
+@POSIX
+@pytest.mark.usefixtures("handler", "other_thread")
+def test_a_handler_raises_after_the_submission_and_the_pool_still_ends(monkeypatch, kill):
+    with Processes(1) as processes:
+        assert processes.submit(int, "7").result() == 7
+        numbers, whole = processes._pool._work_ids, []
+        put = numbers.put
+
+        def put_meanwhile(number: int) -> None:
+            kill()
+            put(number)
+            whole.append(number)
+
+        monkeypatch.setattr(numbers, "put", put_meanwhile)
+        with pytest.raises(Ended):
+            processes.submit(int, "8")
+        monkeypatch.setattr(numbers, "put", put)
+        answer = processes.submit(int, "9")
+        assert whole, "the task is in the pool's queue before the handler raises"
+        assert answer.result() == 9
+
+
+@POSIX
+def test_a_worker_can_be_ended_by_a_signal():
+    with Processes(1) as processes:
+        blocked = processes.submit(signal.pthread_sigmask, signal.SIG_BLOCK, ()).result()
+    assert signal.SIGTERM not in blocked
+
+
+DASK = {"MALLOC_TRIM_THRESHOLD_": "65536"}
+"""The environment in which Dask starts its workers."""
+FAULTS = """
+import resource, sys
+import numpy as np
+from pe_core.search.payload import keep_freed_memory
+assert "keep" not in sys.argv or keep_freed_memory()
+def faults():
+    return resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+np.ones(1 << 17).sum()
+before = faults()
+for _ in range(100):
+    np.ones(1 << 17).sum()
+print(faults() - before)
+"""
+"""Prints how many pages the system makes for a hundred arrays of 1 MB, one after the other."""
+
+
+def page_faults(*arguments):
+    command = [sys.executable, "-c", FAULTS, *arguments]
+    env = {**os.environ, **DASK}
+    done = subprocess.run(command, cwd=ROOT, env=env, capture_output=True, text=True, check=True)
+    return int(done.stdout)
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="settings of glibc")
+def test_arrays_of_a_worker_of_dask_are_not_paged_in_anew():
+    assert page_faults() > 100 * 100
+    assert page_faults("keep") < 1000
+
+
+def test_another_c_library_is_no_error(monkeypatch):
+    def no_library(_):
+        raise OSError("no such library")
+
+    keep_freed_memory.cache_clear()
+    monkeypatch.setattr("ctypes.CDLL", no_library)
+    assert not keep_freed_memory()
+    keep_freed_memory.cache_clear()

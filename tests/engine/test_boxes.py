@@ -1,13 +1,17 @@
-"""Boxes to densities: held to every voxel centre tested, clipped, thin, counted."""
+"""Boxes to densities: held to every voxel centre tested, and counted by hand."""
 
 import math
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.prior import BoxReport
+from pe_core.prior.box_density import voxelised
 from tests.engine import shapes
+from tests.engine.refusals import wrongly_refused
 
 SPACE = shapes.small_space(0.25)
 
@@ -128,3 +132,195 @@ def test_yaws_wrap_and_are_what_a_file_gives_back(tmp_path):
     again = pe.read_boxes(tmp_path / "boxes.csv")
     assert again == table and np.array_equal(again.yaw, table.yaw)
     assert list(again.names) == list(names)
+
+
+BY_HAND_SPACE = pe.PerceptionSpace((0.0, 3.0), (0.0, 2.0), (0.0, 2.0), 1.0)
+
+
+def counted(*boxes, space=BY_HAND_SPACE):
+    """Boxes (x, y, z, length, width, height, yaw in degrees) as ground, profile and a report."""
+    rows = [("car", *box[:6], math.radians(box[6])) for box in boxes]
+    prior = pe.Prior.from_boxes(rows)
+    (density,) = prior.densities(space)
+    return density.ground, density.profile.tolist(), str(prior.report(space))
+
+
+def test_a_box_has_the_voxels_whose_centres_it_holds():
+    """From 0.4 to 2.4 along x, 0.4 to 1.4 along y, 0 to 1 in height: centres 0.5 and 1.5; 0.5."""
+    ground, profile, report = counted((1.4, 0.9, 0.5, 2.0, 1.0, 1.0, 0.0))
+    assert ground.tolist() == [[0.5, 0.0], [0.5, 0.0], [0.0, 0.0]] and profile == [1.0, 0.0]
+    assert report == "boxes: 1 box taken"
+
+
+def test_a_box_that_is_turned_lies_across():
+    """2 m long, turned by 90 degrees: along y; by -90 the same."""
+    for yaw in (90.0, -90.0, 270.0):
+        ground, profile, _ = counted((1.5, 1.0, 1.0, 2.0, 1.0, 2.0, yaw))
+        assert ground.tolist() == [[0.0, 0.0], [0.5, 0.5], [0.0, 0.0]] and profile == [0.5, 0.5]
+
+
+def test_a_box_turned_by_45_degrees():
+    """Four centres are 0.5 m away along x and along y: inside where half a diagonal is over 1 m.
+
+    It is 1.025 m for a side of 1.45 m; 0.990 m for 1.40 m, a box without any centre.
+    """
+    for side, held in ((1.45, 4), (1.40, 1)):
+        ground, _, _ = counted((1.0, 1.0, 0.5, side, side, 1.0, 45.0))
+        assert np.count_nonzero(ground[:2]) == held
+        assert ground[2].tolist() == [0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "z", "voxel"),
+    [
+        (0.2, 0.2, 0.2, (0, 0, 0)),
+        (2.8, 1.8, 1.8, (2, 1, 1)),
+        (0.0, 0.0, 0.0, (0, 0, 0)),  # on the lower corner
+        (1.0, 1.0, 1.0, (1, 1, 1)),  # on a corner of eight: that of the upper one
+        (2.9999, 0.1, 1.9, (2, 0, 1)),
+    ],
+)
+def test_a_box_too_small_to_hold_a_centre_has_the_voxel_of_its_own(x, y, z, voxel):
+    ground, profile, report = counted((x, y, z, 0.1, 0.1, 0.1, 30.0))
+    i, j, k = voxel
+    assert ground[i, j] == 1.0 and ground.sum() == 1.0
+    assert profile[k] == 1.0 and report == "boxes: 1 box taken"
+
+
+def test_a_box_that_ends_on_centres_has_its_lower_ones():
+    """From 0.5 to 1.5 along x and y: the centre at 0.5 is inside, that at 1.5 is not."""
+    ground, profile, _ = counted((1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0))
+    assert ground[0, 0] == 1.0 and profile == [1.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    "box",
+    [
+        (-0.2, 0.5, 0.5, 0.1, 0.1, 0.1, 0.0),
+        (3.0, 0.5, 0.5, 0.1, 0.1, 0.1, 0.0),  # the space ends below 3
+        (0.5, -0.2, 0.5, 0.1, 0.1, 0.1, 0.0),
+        (0.5, 2.0, 0.5, 0.1, 0.1, 0.1, 0.0),
+        (0.5, 0.5, -0.2, 0.1, 0.1, 0.1, 0.0),
+        (0.5, 0.5, 2.0, 0.1, 0.1, 0.1, 0.0),
+        (9.0, 0.5, 0.5, 4.0, 1.0, 1.0, 0.0),
+        (0.5, 0.5, 4.0, 1.0, 1.0, 2.0, 0.0),
+    ],
+)
+def test_a_box_outside_is_left_out_and_counted(box):
+    inside = (1.5, 0.5, 0.5, 1.0, 1.0, 1.0, 0.0)
+    ground, profile, report = counted(inside, box)
+    assert ground[1, 0] == 1.0 and profile == [1.0, 0.0]
+    assert report == "boxes: 1 box taken, 1 left out (1 outside the space)"
+    with pytest.raises(pe.InputError, match="boxes: boxes: expected a box in the space"):
+        counted(box)
+
+
+def test_what_sticks_out_is_cut_off():
+    """From -2 to 1 along x and 1 to 5 in height."""
+    ground, profile, _ = counted((-0.5, 0.5, 3.0, 3.0, 1.0, 4.0, 0.0))
+    assert ground.tolist() == [[1.0, 0.0], [0.0, 0.0], [0.0, 0.0]] and profile == [0.0, 1.0]
+
+
+def test_columns_count_layers_and_layers_count_columns():
+    """A low box over two columns, a high one over one: of 4 voxels 2 in the high one's column,
+    and 3 in the lower layer."""
+    low, high = (1.0, 0.5, 0.5, 2.0, 1.0, 1.0, 0.0), (2.5, 1.5, 1.0, 1.0, 1.0, 2.0, 0.0)
+    ground, profile, report = counted(low, high)
+    assert ground.tolist() == [[0.25, 0.0], [0.25, 0.0], [0.0, 0.5]]
+    assert profile == [0.75, 0.25] and report == "boxes: 2 boxes taken"
+
+
+def test_a_report_counts_in_thousands():
+    report = BoxReport("a.csv", 12_345, (("far", 1_000), ("small", 1)))
+    assert str(report) == "a.csv: 12,345 boxes taken, 1,001 left out (1,000 far, 1 small)"
+    assert str(BoxReport("a.csv", 0)) == "a.csv: 0 boxes taken"
+
+
+ROW = ("car", 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.5)
+
+
+def changed(*changes):
+    """Four boxes, some numbers of which are changed: (box, column, value)."""
+    rows = [list(ROW) for _ in range(4)]
+    for box, column, value in changes:
+        rows[box][column] = value
+    return rows
+
+
+BAD_BOXES = [
+    ("box 2: x", changed((2, 1, math.nan), (3, 1, math.nan))),
+    ("box 1: width", changed((1, 5, -1.0), (3, 5, 0.0))),
+    ("box 0: height", changed((0, 6, 0.0))),
+    ("box 1: yaw", changed((1, 7, math.inf))),
+    ("box 3: z", changed((3, 3, -2e9))),
+    ("class", changed((1, 0, ""))),
+    ("class", changed((1, 0, " car"))),
+    ("box 1", [ROW, ROW[:-1]]),
+    ("box 1", [ROW, "carriage"]),
+    ("box 1", [ROW, 3]),
+    ("table", "boxes.csv"),
+    ("table", 3),
+    ("y", {"class": ["car"], "x": [1.0]}),
+]
+
+
+def test_the_first_bad_box_is_named():
+    assert wrongly_refused(pe.Prior.from_boxes, BAD_BOXES, "boxes") == []
+
+
+def test_numbers_are_kept_as_a_file_would_hold_them():
+    """No negative zeros; yaws from -180 to 180 degrees, to 9 decimals."""
+    boxes = pe.Boxes.of([("car", -0.0, 1.0, 2.0, 1.0, 1.0, 1.0, yaw) for yaw in (0.1, -4.0, 9.0)])
+    assert math.copysign(1.0, boxes.x[0]) == 1.0
+    degrees = np.degrees(boxes.yaw)
+    assert degrees.tolist() == pytest.approx(
+        [5.729577951, 360.0 - 229.183118052, 515.662015618 - 360.0], abs=1e-9
+    )
+    assert np.degrees(boxes.yaw).round(9).tolist() == pytest.approx(degrees.tolist(), abs=1e-13)
+
+
+def test_what_is_kept_of_boxes_cannot_be_changed():
+    """Counted once for a space: the next who asks gets the same arrays."""
+    voxels = voxelised(pe.Boxes.of([ROW]), pe.PerceptionSpace((0, 3), (0, 3), (0, 6), 1.0))
+    for ground, profile in voxels.shapes:
+        for values in (ground, profile):
+            with pytest.raises(ValueError, match="read-only"):
+                values[0] = 1.0
+
+
+def test_the_labels_origin_is_three_lengths_of_a_thousand_kilometres_at_most():
+    for origin in ((1e6, -1e6, 0.0), None):
+        assert replace(pe.Boxes.of([ROW]), origin=origin).origin == origin
+    for origin in ((1.0, 2.0), (1_000_000.5, 0.0, 0.0), (0.0, 0.0, math.nan), (1, 2, 3, 4)):
+        with pytest.raises(pe.InputError, match="boxes: origin"):
+            replace(pe.Boxes.of([ROW]), origin=origin)
+
+
+def test_boxes_are_equal_when_they_hold_the_same():
+    one, same = pe.Boxes.of([ROW]), pe.Boxes.of([ROW])
+    assert one == same and hash(one) == hash(same) and one != "boxes"
+    for column in range(1, 8):
+        row = [v + 1.0 if k == column else v for k, v in enumerate(ROW)]
+        assert pe.Boxes.of([row]) != one
+    assert pe.Boxes.of([("bus", *ROW[1:])]) != one
+    assert len(one) == 1 and one.source == "boxes"
+
+
+def test_classes_stand_in_the_paper_s_order_and_others_by_the_alphabet():
+    names = ("tram", "cone", "bus", "truck", "cyclist", "pedestrian", "car", "cone")
+    boxes = pe.Boxes.of([(name, *ROW[1:]) for name in names])
+    assert boxes.classes == ("car", "pedestrian", "cyclist", "truck", "cone", "bus", "tram")
+
+
+IMPOSSIBLE = [
+    ("model", {"model": "city"}),
+    ("classes", {"model": "road"}),
+    ("classes", {"model": "uniform", "classes": pe.Prior.road().classes}),
+    ("boxes", {"model": "boxes"}),
+    ("boxes", {"model": "road", "classes": pe.Prior.road().classes, "boxes": pe.Boxes.of([ROW])}),
+    ("classes", {"model": "road", "classes": pe.Prior.road().classes[:1] * 2}),
+]
+
+
+def test_impossible_priors_are_refused():
+    assert wrongly_refused(lambda v: pe.Prior(**v), IMPOSSIBLE, "prior") == []

@@ -9,7 +9,7 @@ import pytest
 import pe_core as pe
 from pe_core.search import design_space
 from pe_tools.cli.choose_verb import front_summary
-from pe_tools.jobs import design_study, front_dict, front_job, write_front
+from pe_tools.jobs import design_study, front_job, write_front
 from tests.engine import mounting
 
 pytestmark = pytest.mark.usefixtures("few_errors")
@@ -110,12 +110,6 @@ def test_a_further_sensor_never_raises_the_entropy():
     assert len(by_names) == 7
     for some, entropy in by_names.items():
         assert all(more <= entropy for names, more in by_names.items() if names > some)
-
-
-def test_the_result_is_the_same_with_one_worker_or_two():
-    given = study([pe.Choice(options(["Pandar64", mounting.CAN]), ["roof"])], candidates=1)
-    one, two = (front_dict(front_of(given, workers)) for workers in (1, 2))
-    assert {**one, "run": 0} == {**two, "run": 0}
 
 
 @pytest.mark.parametrize("after", [1, 2])

@@ -110,14 +110,6 @@ def test_paths_that_a_page_names_are_there(page):
         assert any((place / path).exists() for place in places), path
 
 
-def test_the_check_of_paths_finds_them():
-    assert paths_named("in `lidar/tie_rules.py`, `a/b.py: f`, `sensors/`, `x / y`") == [
-        "lidar/tie_rules.py",
-        "a/b.py",
-        "sensors/",
-    ]
-
-
 def anchor(heading):
     """The anchor that GitHub gives a heading: lower case, no punctuation, hyphens for spaces."""
     text = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading)
@@ -139,11 +131,6 @@ def test_links_of_a_page_lead_to_a_file_and_a_heading(page):
         target = page.parent / path if path else page
         assert target.exists(), link
         assert not name or name in anchors(target), link
-
-
-def test_the_anchor_of_a_heading_is_github_s():
-    assert anchor("Ground map: `sight/a.py`, `b.py`") == "ground-map-sightapy-bpy"
-    assert anchor("Blender's own cameras") == "blenders-own-cameras"
 
 
 def test_functions_that_the_table_of_equations_names_are_there():

@@ -1,7 +1,8 @@
 """Scores: grid against definition, sample against grid, and what must hold for any rig."""
 
 import math
-from itertools import pairwise
+from dataclasses import fields
+from itertools import pairwise, product
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,8 +10,11 @@ import pytest
 
 import pe_core as pe
 from pe_core.metric import average_precision, entropy_of, late_fusion, sigma_of
+from pe_core.sensors import Voxels, kind_of
 from tests.engine import shapes
-from tests.thorough import THOROUGH
+from tests.engine.test_preview import CAR, rig_at
+from tests.engine.test_preview import SPACE as FINE
+from tests.thorough import THOROUGH, pairs
 
 SPACE = shapes.small_space()
 ROAD = pe.Prior.road()
@@ -169,3 +173,122 @@ def test_rigs_together_are_their_mean_unless_the_worst_is_asked_for():
     mean = evaluator.evaluate_together(rigs, math.inf).entropy
     worst = evaluator.evaluate_together(rigs, math.inf, worst=True).entropy
     assert (mean, worst) == (pytest.approx(sum(entropies) / 4, abs=1e-8), max(entropies))
+
+
+@pytest.mark.parametrize("at", [(0.0, 0.0, 1.75), (0.0, 0.0, 1.85), (-0.35, 0.0, 1.6)])
+def test_beams_down_from_the_middle_are_stopped(at):
+    space = pe.PerceptionSpace((-3, 3), (-3, 3), (0, 2), 0.5)
+    index = np.stack(np.unravel_index(np.arange(space.size), space.shape), axis=1)
+    sensor = shapes.lidar_on_roof(shapes.small_lidar(), at, (0, 0, 20))
+    vehicle, centers = shapes.box_car(), space.center_of(index)
+    exact = pe.measure(sensor, centers, space.interval, vehicle)
+    assert exact.sum() < pe.measure(sensor, centers, space.interval).sum()
+    sample = kind_of(sensor).on_sample(Voxels(space, index, centers), vehicle, 60000)
+    assert (sample.measure(sensor, False).m == exact).all()
+
+
+SAMPLES = 4096
+
+
+def evaluator(samples=SAMPLES):
+    return pe.Evaluator(FINE, pe.Prior.road(), CAR, samples=samples)
+
+
+@pytest.mark.parametrize("preview", [False, True])
+def test_a_summary_and_a_score_agree(preview):
+    rig = rig_at((0.0, 0.0, 1.9))
+    summary, score = (
+        evaluator().summary(rig, preview=preview),
+        evaluator().score(rig, preview=preview),
+    )
+    names = {field.name for field in fields(summary)} - {"ap"}
+    assert names == {field.name for field in fields(score)} - {
+        "per_sensor",
+        "ground_map",
+        "objects",
+        "scatter",
+    }
+    assert {name: getattr(summary, name) for name in names} == {
+        name: getattr(score, name) for name in names
+    }
+    assert summary.preview == preview and summary.ap is None
+
+
+def test_a_summary_at_objects_has_the_ap_of_the_score():
+    rule = pe.TargetRule("objects", traffic=True, scenes=8)
+    evaluator = pe.ObjectEvaluator(FINE, pe.Prior.road(), CAR, targets=rule)
+    rig = rig_at((0.0, 0.0, 1.9))
+    assert evaluator.summary(rig).ap == evaluator.score(rig).objects.ap
+
+
+def test_an_exact_summary_after_previews_is_that_of_a_new_evaluator():
+    kept = evaluator()
+    for x in (0.0, 0.1, 0.2):
+        kept.summary(rig_at((x, 0.0, 1.9)), preview=True)
+    rig = rig_at((0.2, 0.0, 1.9))
+    assert kept.summary(rig) == evaluator().summary(rig)
+
+
+def test_the_grid_has_one_as_well():
+    on_grid, rig = evaluator(samples=0), rig_at((0.0, 0.0, 1.9))
+    summary, score = on_grid.summary(rig), on_grid.score(rig, preview=True)
+    assert summary.preview == score.preview is False
+    assert (summary.entropy, summary.per_zone) == (score.entropy, score.per_zone)
+
+
+EACH_SENSOR_SPACE = pe.PerceptionSpace((-12.0, 12.0), (-7.0, 7.5), (0.0, 2.5), 0.5)
+
+
+def sensors(groups):
+    """Two LiDARs and three cameras all round a car, in these fusion groups."""
+    lidar, camera = shapes.small_lidar(16, 180), pe.Camera("eye", 640, 480, 1.2)
+    placed = [
+        ("roof", lidar, (-0.4, 0.0, 1.7), 0.0),
+        ("nose", lidar, (2.0, 0.1, 0.9), 0.2),
+        ("ahead", camera, (0.9, 0.0, 1.5), 0.0),
+        ("left", camera, (0.0, 0.8, 1.4), 1.6),
+        ("back", camera, (-1.9, 0.0, 1.4), 3.1),
+    ]
+    rows = zip(placed, groups, strict=True)
+    return [pe.Sensor(n, m, pe.Pose(at, (0.0, 0.0, yaw)), g) for (n, m, at, yaw), g in rows]
+
+
+RIGS = {
+    "as usual": (None,) * 5,
+    "all late": ("a", "b", None, None, None),
+    "cameras early, too": (None, None, "eyes", "eyes", "eyes"),
+    "some of them": ("a", "b", "eyes", "eyes", None),
+}
+
+
+@pytest.mark.parametrize(("name", "how"), pairs(RIGS, product(["floor", "literal"], [5, 2])))
+def test_alone_and_failing_are_scores_of_other_rigs(name, how):
+    """To the last digit that is kept: sums of the same values in another order are rounded away."""
+    blind, count = how
+    model = pe.PerceptionModel(blind)
+    mounted = sensors(RIGS[name])[:count]
+    study = pe.Study(pe.Rig(mounted), shapes.box_car(), EACH_SENSOR_SPACE, model=model)
+    evaluator = study.evaluator(workers=2)
+    score = evaluator.score(study.rig)
+    assert score.entropy == evaluator.entropy(study.rig)
+    for sensor in mounted:
+        own = score.per_sensor[sensor.name]
+        alone = evaluator.score(pe.Rig([sensor]))
+        others = evaluator.entropy(pe.Rig([s for s in mounted if s is not sensor]))
+        assert own.coverage == pytest.approx(alone.coverage, abs=1.01e-9)
+        assert own.entropy == pytest.approx(alone.entropy, abs=1.01e-9)
+        assert own.lost == pytest.approx(others - score.entropy, abs=1.01e-9)
+        assert own.lost > 0.0 or blind == "literal"
+
+
+def test_many_lidars_score_as_few_do():
+    """More groups than are kept in bytes: each is still what it is alone."""
+    lidar = shapes.small_lidar(16, 180)
+    mounted = [pe.Sensor(f"{k}", lidar, pe.Pose((k - 2.0, 0.0, 1.8))) for k in range(5)]
+    study = pe.Study(pe.Rig(mounted), shapes.box_car(), EACH_SENSOR_SPACE)
+    evaluator = study.evaluator()
+    score = evaluator.score(study.rig)
+    assert score.entropy == evaluator.entropy(study.rig)
+    for sensor in mounted:
+        alone = evaluator.entropy(pe.Rig([sensor]))
+        assert score.per_sensor[sensor.name].entropy == pytest.approx(alone, abs=1.01e-9)

@@ -2,7 +2,6 @@
 
 import json
 import pickle
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +9,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.scoring.requirements import BODIES, Requirement, Zone
-from pe_core.search import Front, Goals, Journal, Stop
+from pe_core.search import Front, Goals, Stop
 from pe_core.search.tolerance import without_each
 from pe_core.study import Conditions, load_study_data, study_from_dict, study_to_dict
 from pe_core.study.condition_search import study_objective
@@ -154,23 +153,6 @@ def test_the_objective_is_in_the_file_and_another_one_is_refused(tmp_path):
     data["optimize"]["objective"] = "ap"
     with pytest.raises(pe.InputError, match="objective: expected one of entropy, expected_ap, fo"):
         study_from_dict(data, "study.toml")
-
-
-@pytest.mark.parametrize("method", ["portfolio", "block-descent", "random"])
-def test_workers_do_not_change_the_result(method):
-    given = study(names=("roof", "front"), method=method)
-    alone = result_dict(finished(given))
-    job = pe.OptimizeJob(given)
-    with ThreadPoolExecutor(3) as job.executor:
-        list(job)
-    beside = result_dict(job.outcome)
-    assert {**alone, "run": 0} == {**beside, "run": 0}
-
-
-def test_a_search_goes_on_from_its_journal():
-    whole = finished(study())
-    again = finished(study(), journal=Journal(whole.evaluated[:11]))
-    assert {**result_dict(again), "run": 0} == {**result_dict(whole), "run": 0}
 
 
 def test_a_target_is_an_ap(plain):

@@ -9,6 +9,7 @@ import pe_core as pe
 from pe_core.catalog.housings import read_housing
 from pe_core.scene.housing import SEAT_M, Housing, cuts_body
 from tests.engine import shapes
+from tests.engine.refusals import wrongly_refused
 
 CAN = Housing("cylinder", (0.2, 0.2, 0.3), (0.0, 0.0, 0.1), "a test")
 CRATE = Housing("box", (0.2, 0.4, 0.3), (0.1, 0.0, 0.15), "a test")
@@ -127,19 +128,19 @@ def test_what_a_box_s_table_leaves_out_is_assumed():
 
 
 BAD = [
-    ("round", "x: housing: expected a table, found 'round'"),
-    ({"shape": "ball"}, "x: housing.shape: expected one of cylinder, box, found 'ball'"),
-    ({"shape": "box", "diameter": 1}, "x: housing.diameter: expected one of"),
-    ({"shape": "box", "size": [1, 2], "source": "a"}, "x: housing.size: expected three"),
-    ({"shape": "cylinder", "height": 1, "source": "a"}, "x: housing.diameter: expected a length"),
-    ({"shape": "box", "size": [1, 2, 3]}, "x: housing.source: expected a text"),
+    ("housing", "round"),
+    ("housing.shape", {"shape": "ball"}),
+    ("housing.diameter", {"shape": "box", "diameter": 1}),
+    ("housing.size", {"shape": "box", "size": [1, 2], "source": "a"}),
+    ("housing.diameter", {"shape": "cylinder", "height": 1, "source": "a"}),
+    ("housing.source", {"shape": "box", "size": [1, 2, 3]}),
 ]
 
 
-@pytest.mark.parametrize("table, told", BAD, ids=range(len(BAD)))
-def test_a_wrong_table_is_refused_in_one_line(table, told):
-    camera = {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 60.0, "housing": table}
-    with pytest.raises(pe.InputError) as error:
-        pe.catalog.from_table("x", camera)
-    assert str(error.value).startswith(told)
-    assert "\n" not in str(error.value)
+def test_a_wrong_table_is_refused():
+    camera = {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 60.0}
+
+    def made(table):
+        pe.catalog.from_table("x", camera | {"housing": table})
+
+    assert wrongly_refused(made, BAD, "x") == []

@@ -1,7 +1,8 @@
-"""Mesh files: every format reads the same box, writes what it reads, and refuses in one line."""
+"""Mesh files: every format reads the same box; names, sizes, and what is refused."""
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -10,8 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+import pe_core as pe
 from pe_core.base.errors import InputError
+from pe_core.base.values import MAX_NAME
 from pe_tools.formats.meshes import Mesh, read_mesh, write_mesh
+from pe_tools.formats.meshes.mesh import fit_names
+from tests.engine import shapes
 from tests.engine.mesh_files import (
     BOX,
     FACES,
@@ -256,3 +261,138 @@ BAD = [
 
 
 test_bad_input_is_refused_in_one_line = one_line_test(BAD)
+
+
+LONG = "x" * 300
+
+
+@pytest.mark.parametrize(
+    ("names", "fit"),
+    [
+        (["Räder #1", " a", "車"], ["Räder #1", " a", "車"]),
+        (["a\nb", "c\x1b[2Jd", "e\u202ef", "g\ud800"], ["a?b", "c?[2Jd", "e?f", "g?"]),
+        (["", "  ", "\n"], ["?", "? (2)", "? (3)"]),
+        (["a\x01", "a\x02", "a\x03"], ["a?", "a? (2)", "a? (3)"]),
+        (["a\x01", "a?", "a? (2)", "a\x02"], ["a? (3)", "a?", "a? (2)", "a? (4)"]),
+        ([f"{LONG}a", f"{LONG}b"], ["x" * 243, f"{'x' * 243} (2)"]),
+    ],
+    ids=["fit", "unprintable", "empty", "alike", "taken", "long"],
+)
+def test_names_are_made_fit_and_stay_different(names: list[str], fit: list[str]) -> None:
+    """Names that are fit stay, even where another name becomes like one of them."""
+    assert list(fit_names(names)) == fit
+    assert all(name.isprintable() and len(name) <= MAX_NAME for name in fit)
+
+
+def test_a_hundred_thousand_alike_are_reported_apart() -> None:
+    """Each name is tried once, not with all numbers before its own."""
+    names = [f"{chr(0xE000 + i % 6000)}{'x' * (i // 6000)}" for i in range(100_000)]
+    assert len(set(fit_names(names))) == len(set(names)) == 100_000
+
+
+def files() -> dict[str, tuple[str, bytes]]:
+    """Two parts whose names differ in a character that cannot be printed."""
+    two = ["body\x01", "body\x02"]
+    root, binary = gltf(points=BOX[:1], indices=None)
+    root["nodes"] = [{"name": name, "mesh": 0} for name in two]
+    root["scenes"][0]["nodes"] = [0, 1]
+    corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
+    return {
+        "npz": ("a.npz", npz_bytes(triangles=BOX[:2], parts=[0, 1], part_names=two)),
+        "obj": ("a.obj", (corners + "".join(f"o {n}\nf 1 2 3\n" for n in two)).encode()),
+        "stl": ("a.stl", b"".join(stl_ascii(name, BOX[:1]) for name in two)),
+        "glb": ("a.glb", glb_file(json.dumps(root).encode(), binary)),
+    }
+
+
+@pytest.mark.parametrize(("name", "data"), files().values(), ids=files())
+def test_parts_do_not_become_one_by_their_names(tmp_path: Path, name: str, data: bytes) -> None:
+    """Each triangle still belongs to its own part."""
+    mesh = read(tmp_path, name, data)
+    assert mesh.part_names == ("body?", "body? (2)")
+    assert mesh.parts.tolist() == [0, 1]
+
+
+@pytest.mark.parametrize("stem", ["a\nb", "a\u202eb"])
+def test_a_file_s_own_name_as_a_part_s(tmp_path: Path, stem: str) -> None:
+    """Where the stem stands for the part's name, it is made printable too."""
+    assert read(tmp_path, f"{stem}.npz", npz_bytes(triangles=BOX)).part_names == ("a?b",)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("size", [1e5, 1e154, 1e308, -1.7e308])
+def test_a_vehicle_of_any_size_is_reported_without_warnings(tmp_path: Path, size: Any) -> None:
+    """The mesh is read as it is; as a vehicle it is refused, and NumPy does not overflow first."""
+    mesh = read(tmp_path, "a.npz", npz_bytes(triangles=np.sign(BOX) * size))
+    with pytest.raises(pe.InputError, match="vehicle: triangles: expected"):
+        pe.Vehicle(mesh.triangles, mesh.parts, mesh.part_names)
+
+
+CAR = np.array([4.5, 1.8, 1.5])
+ROBOTS = {  # longest side first, as their makers print them [m]
+    "TurtleBot3 Burger": (0.138, 0.178, 0.192),
+    "Jackal": (0.508, 0.430, 0.250),
+    "ANYmal": (0.93, 0.53, 0.89),
+    "T 284 mining truck": (15.7, 9.7, 8.0),
+    "bi-articulated bus": (30.0, 2.55, 3.3),
+    "road train": (53.5, 2.5, 4.6),
+}
+
+
+def body(size, floor=None):
+    """A study of a box of this size on the ground, perhaps on a floor so long."""
+    low, high = np.array([-0.5, -0.5, 0.0]) * size, np.array([0.5, 0.5, 1.0]) * size
+    triangles = shapes.box(low, high)
+    parts, names = np.zeros(len(triangles), np.int32), ["body"]
+    if floor is not None:
+        ground = shapes.box((-floor / 2, -floor / 2, -0.1), (floor / 2, floor / 2, 0.0))
+        triangles = np.concatenate([triangles, ground])
+        parts, names = np.append(parts, np.ones(len(ground), np.int32)), ["body", "floor"]
+    rig = pe.Rig([shapes.lidar_on_roof()])
+    return pe.Study(rig, pe.Vehicle(triangles, parts, names), mesh="body.npz")
+
+
+@pytest.mark.parametrize("size", ROBOTS.values(), ids=ROBOTS)
+def test_real_vehicles_of_all_sizes_are_taken(size):
+    assert body(np.array(size)).vehicle is not None
+
+
+@pytest.mark.parametrize(
+    ("unit", "metres", "factor"),
+    [
+        ("inches", 0.0254, "0.0254"),
+        ("centimetres", 0.01, "0.01"),
+        ("millimetres", 0.001, "0.001"),
+    ],
+)
+def test_other_units_are_reported_with_their_factor(unit, metres, factor):
+    with pytest.raises(pe.InputError) as caught:
+        body(CAR / metres)
+    assert f"; scale = {factor} if {unit} (4.50 m)" in str(caught.value)
+    assert body(CAR / metres * float(factor)).vehicle is not None
+
+
+def test_too_small_too_large_and_too_wide():
+    """The car of a unit cube, the suv of a hangar's size, and a body as wide as it is long."""
+    with pytest.raises(pe.InputError, match=r"0\.045 x .*scale = 100 if units of 100 m \(4\.5"):
+        body(CAR / 100)
+    with pytest.raises(pe.InputError, match=r"found 44\.00 x 84\.00 x 36\.00 m"):
+        body(np.array([44.0, 84.0, 36.0]))
+    with pytest.raises(pe.InputError, match="and up to 25 m wide"):
+        body(np.array([50.0, 40.0, 10.0]))
+    with pytest.raises(pe.InputError, match="all of it is one point"):
+        body(np.zeros(3))
+
+
+def test_a_floor_under_a_vehicle_does_not_make_it_one_too_large():
+    assert body(CAR, floor=100.0).vehicle is not None
+    with pytest.raises(pe.InputError, match="found 9000 x 9000 x"):
+        body(CAR * 100, floor=9000.0)  # what of it is the floor cannot be told
+
+
+def test_no_weight_outside_the_vehicle_names_the_mesh():
+    space = pe.PerceptionSpace((-1.0, 1.0), (-0.5, 0.5), (0.0, 1.0), 0.5)
+    study = body(CAR)
+    study = pe.Study(study.rig, study.vehicle, space, mesh="body.npz")
+    with pytest.raises(pe.InputError, match=r"none; body\.npz: 4\.50 x 1\.80 x 1\.50 m"):
+        study.evaluator()

@@ -162,19 +162,6 @@ def test_closed_streams_end_nothing(study, out, closed):
     assert not result(out)["stopped"]
 
 
-def test_a_reader_that_goes_away_ends_nothing(study, out):
-    """``pe optimize ... 2>&1 | head -1``"""
-    read, write = os.pipe()
-    with Command(
-        "optimize", "--no-review", study, "-o", out, *SHORT, stdout=write, stderr=write
-    ) as command:
-        os.close(write)
-        assert os.read(read, 1)
-        os.close(read)
-        assert command.end() == 0
-    assert not result(out)["stopped"]
-
-
 def test_an_answer_that_cannot_be_printed_is_kept(study, out, elsewhere):
     with open("/dev/full", "w") as full:
         options = {"stdout": full, "env": environment(elsewhere)}

@@ -292,10 +292,3 @@ def test_a_class_without_objects_hides_no_other():
     assert list(score.objects.per_class) == ["car", "truck", "cone"]
     assert score.objects.per_class["truck"].reach["front"] > 5.0
     assert (score.per_sensor["roof"].beams, score.per_sensor["roof"].occluded) == (0, 0)
-
-
-def test_one_scene_has_no_scatter():
-    ones = np.ones((2, 3))
-    objects = pe.Objects(ones, ones, np.zeros(2), [0, 0], ["car"], [0, 0])
-    sums = ObjectSums(SampledObjects(objects, np.array([0.5, 0.5]), 1))
-    assert sums.standard_error(np.array([1.0, 3.0]), 1) == pytest.approx(0.0, abs=1e-12)

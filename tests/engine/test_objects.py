@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import sensors as kinds
 from tests.engine import shapes
 from tests.engine.test_toy_kind import ring, ring_kind
 
@@ -120,16 +119,3 @@ def test_pixels_of_a_box_by_hand():
     camera = shapes.camera(60.0, (0.0, 0.0, 0.5))
     side = camera.model.focal_px / 9.5
     assert pe.measure_objects(camera, objects()).tolist() == pytest.approx([side**2])
-
-
-def test_rigs_are_measured_by_name_and_only_what_moved_anew():
-    some = objects([(10.0, 0.0, 1.0), (0.0, 12.0, 1.0)], (1.0, 2.0, 2.0))
-    still, moving = level_lidar(), shapes.camera(60.0, (0.0, 0.0, 1.0))
-    known = kinds.ObjectMeasurementCache(some)
-    first = known.measure(pe.Rig([still, moving]))
-    moved = moving.moved(pe.Pose.from_degrees((0.0, 0.0, 1.0), (0.0, 0.0, 90.0)))
-    second = known.measure(pe.Rig([still, moved]))
-    assert second["s"] is first["s"]
-    for sensor in (still, moved):
-        assert second[sensor.name].tolist() == pe.measure_objects(sensor, some).tolist()
-    assert first["camera"].tolist() != second["camera"].tolist()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.search import Processes, evaluate_all
+from pe_core.search import evaluate_all
 from pe_core.search.payload import plugin_name
 from tests.engine import shapes
 from tests.thorough import THOROUGH
@@ -129,15 +129,3 @@ def test_a_worker_that_joins_later_has_the_payload(study):
         assert evaluate_all(untried, rigs, executor=executor) == here
         assert not untried.here, "the workers evaluate"
         client.unregister_worker_plugin(plugin_name(client))
-
-
-@pytest.mark.skipif(not THOROUGH, reason="starts six processes")
-@pytest.mark.parametrize("count", [2, 4])
-def test_a_search_of_sixteen_sensors_by_processes_takes_the_steps_of_one(
-    study, by_one_process, count
-):
-    pool = Processes(count)
-    try:
-        assert steps(study.evaluator(1024), study, pool) == by_one_process
-    finally:
-        pool.shutdown(wait=False, cancel_futures=True)

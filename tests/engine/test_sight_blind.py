@@ -1,4 +1,4 @@
-"""Blind ground: cones and shadows that a hand can work out, gaps, sides."""
+"""Blind ground by hand, and the regions and outlines that it is made of."""
 
 import math
 
@@ -8,19 +8,13 @@ import pytest
 import pe_core as pe
 from pe_core.geometry.grids import GroundGrid
 from pe_core.scoring.sight import Sight
-from pe_core.scoring.sight.blind_ground import (
-    NARROW_M,
-    SIDES,
-    blind_ground,
-    shown_end,
-    shown_start,
-)
+from pe_core.scoring.sight.blind_ground import NARROW_M, SIDES, blind_ground, shown_end, shown_start
 from pe_core.scoring.sight.blind_squares import BODY_M, TOO_FAR_M
+from pe_core.scoring.sight.grid_regions import closed, gauss, opened, outlines, without_specks
 from pe_core.scoring.sight.ground_cells import GroundCells
 from pe_core.sensors import CAMERA, GroundView
 from pe_core.sensors.kernels import DefinedGround
 from tests.engine import shapes
-from tests.engine.test_sight_outline import signed_area
 
 SPACE = pe.PerceptionSpace((-15, 15), (-15, 15), (0, 2), 0.1)
 BOX = pe.Vehicle(shapes.box((-2.0, -0.5, 0.0), (2.0, 0.5, 1.0)))
@@ -200,3 +194,167 @@ def test_a_lens_that_bends_and_a_definition_alone_see_the_same_ground():
 def test_shown_distances_are_rounded_to_the_worse_side():
     assert [shown_start(d) for d in (0.0, 1.29, 1.3)] == [0.0, 1.2, 1.3]
     assert [shown_end(d) for d in (0.0, 1.21, 1.3)] == [0.0, 1.3, 1.3]
+
+
+def flooded(flags):
+    """Pieces connected by sides, found cell by cell."""
+    left = {tuple(cell) for cell in np.argwhere(flags).tolist()}
+    while left:
+        todo = [left.pop()]
+        piece = list(todo)
+        while todo:
+            i, j = todo.pop()
+            for cell in ((i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)):
+                if cell in left:
+                    left.remove(cell)
+                    todo.append(cell)
+                    piece.append(cell)
+        yield piece
+
+
+def test_opening_keeps_what_a_disc_fits_into():
+    flags = np.zeros((12, 12), bool)
+    flags[2:5, 2:10] = True  # three cells wide
+    flags[7:9, 2:10] = True  # two
+    flags[3, 10] = True  # a spur of one
+    expected = np.zeros_like(flags)
+    expected[2:5, 2:10] = True
+    assert np.array_equal(opened(flags, 1.5), expected)
+    assert np.array_equal(closed(~flags, 1.5), ~expected)
+
+
+def test_beyond_the_edge_a_region_goes_on():
+    flags = np.zeros((8, 8), bool)
+    flags[:, :1] = True
+    assert np.array_equal(opened(flags, 1.5), flags)
+    assert np.array_equal(opened(flags.T, 1.5), flags.T)
+
+
+@pytest.mark.parametrize("radius", [0.0, 0.9, 1.0, 1.5, 2.3])
+def test_opening_is_the_union_of_discs_that_fit(radius):
+    rng = np.random.default_rng(2)
+    flags = rng.random((15, 18)) < 0.85
+    whole = np.pad(flags, 6, mode="edge")
+    i, j = np.indices(whole.shape)
+    union = np.zeros_like(whole)
+    for at in np.argwhere(whole[3:-3, 3:-3]) + 3:
+        disc = (i - at[0]) ** 2 + (j - at[1]) ** 2 <= radius**2
+        if whole[disc].all():
+            union |= disc
+    assert np.array_equal(opened(flags, radius), union[6:-6, 6:-6])
+
+
+@pytest.mark.parametrize("share", [0.3, 0.5, 0.6, 0.8])
+def test_specks_are_pieces_of_few_cells(share):
+    rng = np.random.default_rng(int(share * 10))
+    for least in (0.5, 2, 5, 20):
+        flags = rng.random((23, 31)) < share
+        expected = np.zeros_like(flags)
+        for piece in flooded(flags):
+            if len(piece) >= least:
+                expected[tuple(np.transpose(piece))] = True
+        assert np.array_equal(without_specks(flags, least), expected)
+
+
+def test_a_long_way_round_is_one_piece():
+    """A spiral: its ends know nothing of each other but through all of it."""
+    flags = np.zeros((41, 41), bool)
+    i = j = 0
+    for turn, length in enumerate(n for k in range(40, 1, -2) for n in (k, k)):
+        di, dj = ((0, 1), (1, 0), (0, -1), (-1, 0))[turn % 4]
+        for _ in range(length):
+            flags[i, j] = True
+            i, j = i + di, j + dj
+    assert len(list(flooded(flags))) == 1
+    assert np.array_equal(without_specks(flags, flags.sum()), flags)
+    assert not without_specks(flags, flags.sum() + 1).any()
+
+
+def test_nothing_and_everything():
+    assert not without_specks(np.zeros((3, 4), bool), 1).any()
+    assert without_specks(np.ones((3, 4), bool), 12).all()
+
+
+def test_smoothing_is_a_gauss_curve_both_ways():
+    values = np.zeros((21, 25))
+    values[9, 12] = 1.0
+    found = gauss(values, 2.0)
+    i, j = np.indices(values.shape)
+    square = (i - 9) ** 2 + (j - 12) ** 2
+    near = (abs(i - 9) <= 4) & (abs(j - 12) <= 4)
+    assert found == pytest.approx(np.where(near, np.exp(-square / 8.0), 0.0))
+    assert np.array_equal(gauss(values, 0.4), values)
+
+
+X = Y = np.linspace(-5.0, 5.0, 101)
+
+
+def signed_area(ring):
+    x, y = ring[:, 0], ring[:, 1]
+    return float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]) / 2.0)
+
+
+def lines_of(flags):
+    count = np.arange(flags.shape[0], dtype=float), np.arange(flags.shape[1], dtype=float)
+    return outlines(np.asarray(flags, dtype=float), 0.5, *count)
+
+
+def test_a_cone_is_cut_in_a_circle():
+    cone = 3.0 - np.hypot(X[:, None], Y)
+    (ring,) = outlines(cone, 1.0, X, Y)
+    assert np.hypot(*ring.T) == pytest.approx(2.0, abs=0.003)
+    assert np.array_equal(ring[0], ring[-1])
+    assert signed_area(ring) == pytest.approx(4 * np.pi, rel=0.003)
+
+
+def test_a_hole_runs_the_other_way_round():
+    ring_shaped = 1.0 - np.abs(np.hypot(X[:, None], Y) - 3.0)
+    outer, inner = outlines(ring_shaped, 0.0, X, Y)
+    assert signed_area(outer) == pytest.approx(16 * np.pi, rel=0.01)
+    assert signed_area(inner) == pytest.approx(-4 * np.pi, rel=0.01)
+
+
+def test_a_region_that_reaches_the_edge_is_closed_along_it():
+    (ring,) = lines_of(np.ones((4, 3), bool))
+    assert ring.min(axis=0) == pytest.approx([-0.5, -0.5])
+    assert ring.max(axis=0) == pytest.approx([3.5, 2.5])
+    assert signed_area(ring) == pytest.approx(4 * 3 - 4 * 0.125)
+
+
+def test_two_corners_that_touch_are_apart():
+    flags = np.zeros((5, 5), bool)
+    flags[1, 1] = flags[2, 2] = True
+    rings = lines_of(flags)
+    assert len(rings) == 2
+    assert all(signed_area(ring) == pytest.approx(0.5) for ring in rings)
+
+
+def test_a_middle_that_is_inside_joins_two_corners():
+    field = np.array([[-1.0, 3.0], [3.0, -1.0]])
+    assert len(outlines(field, 0.0, np.arange(2.0), np.arange(2.0))) == 1
+    assert len(outlines(-field, 0.0, np.arange(2.0), np.arange(2.0))) == 2
+    hardly = np.array([[-1.0, 1.1], [1.1, -1.0]])
+    assert len(outlines(hardly, 0.0, np.arange(2.0), np.arange(2.0))) == 1
+
+
+def test_nothing_has_no_outline():
+    assert lines_of(np.zeros((4, 4), bool)) == ()
+
+
+def test_of_any_region_the_rings_are_closed_and_bound_its_area():
+    """Of unit squares with corners cut off: each cell's area but for an eighth a corner or more."""
+    rng = np.random.default_rng(5)
+    for _ in range(30):
+        flags = rng.random((12, 17)) < rng.random()
+        padded = np.pad(flags, 2)
+        rings = lines_of(padded)
+        steps = [np.diff(ring, axis=0) for ring in rings]
+        assert all(np.array_equal(ring[0], ring[-1]) for ring in rings)
+        assert all((np.hypot(*step.T) < 1.01).all() for step in steps)
+        area = sum(map(signed_area, rings))
+        total = padded.astype(float)
+        squares = total[:-1, :-1] + total[1:, :-1] + total[1:, 1:] + total[:-1, 1:]
+        diagonal = (squares == 2) & (total[:-1, :-1] == total[1:, 1:])
+        share = np.array([0.0, 0.125, 0.5, 0.875, 1.0])[squares.astype(int)]
+        share[diagonal] = 0.25
+        assert area == pytest.approx(share.sum())

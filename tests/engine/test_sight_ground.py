@@ -11,7 +11,6 @@ from pe_core.scoring.sight import Sight
 from pe_core.scoring.sight.grid_regions import gauss
 from pe_core.scoring.sight.voxel_sets import SPREAD_M
 from pe_core.sensors.lidar.beams import LazyEnds
-from pe_core.sensors.lidar.kernel_voxels import LidarSample
 from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
 
@@ -133,34 +132,6 @@ def test_where_objects_are_met_places_without_any_do_not_count():
     at = np.argmin(np.abs(ground.x - 8.25)), np.argmin(np.abs(ground.y - 3.25))
     layer = own.ground(pe.Rig([ring]), 0.0, step=0.5)
     assert ground.coverage[at] == pytest.approx(layer.coverage[at], abs=1e-6)
-
-
-@pytest.fixture
-def measured(monkeypatch):
-    """Names of the LiDARs that are measured, in order."""
-    names, plain = [], LidarSample.measure
-
-    def recording(self, sensor, preview):
-        names.append(sensor.name)
-        return plain(self, sensor, preview)
-
-    monkeypatch.setattr(LidarSample, "measure", recording)
-    return names
-
-
-def test_a_sensor_that_stayed_is_not_measured_again(measured):
-    own = sight()
-    first, second = lidar(), lidar((1.9, 0.0, 1.2), name="bonnet")
-    one = own.ground(pe.Rig([first, second]), 0.5)
-    again = own.ground(pe.Rig([first, second]), 0.5)
-    assert measured == ["roof", "bonnet"]
-    assert np.array_equal(one.entropy, again.entropy, equal_nan=True)
-    moved = second.moved(pe.Pose((1.9, 0.1, 1.2)))
-    there = own.ground(pe.Rig([first, moved]), 0.5)
-    assert measured == ["roof", "bonnet", "bonnet"]
-    fresh = sight().ground(pe.Rig([first, moved]), 0.5)
-    assert np.array_equal(there.entropy, fresh.entropy, equal_nan=True)
-    assert not np.array_equal(there.entropy, one.entropy, equal_nan=True)
 
 
 def test_beams_are_cast_once_for_all_that_is_looked_at(monkeypatch):

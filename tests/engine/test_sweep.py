@@ -2,7 +2,6 @@
 
 import csv
 import json
-import multiprocessing
 import os
 import signal
 import socket
@@ -21,9 +20,8 @@ from pe_core.base.file_stem import is_reserved
 from pe_core.search import Journal
 from pe_core.study import SEARCH
 from pe_tools import jobs
-from pe_tools.cli.executors import workplace
 from pe_tools.cli.verbs import main
-from pe_tools.jobs import Outcome, read_search
+from pe_tools.jobs import read_search
 from pe_tools.sweep import (
     RunTask,
     read_settings,
@@ -429,23 +427,3 @@ def test_a_worker_that_dies_costs_at_most_the_run_that_killed_it(study, deaths, 
         expected = "a worker that survives its task, found two that died (BrokenExecutor)"
         assert line == f"run2: worker: expected {expected}"
     assert executor.given == [1, 2, 3, 1, 2], "what may be guilty is tried again, alone"
-
-
-@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
-def test_real_processes_that_are_killed_are_replaced(study):
-    plain = replace(pe.load_study(study), samples=1024)
-    tasks, found = {name: RunTask(plain, False, 1) for name in "abcd"}, {}
-    with workplace(2, None) as place:
-        victims = [place.executor.submit(os.getpid).result()]
-        assert os.getpid() not in victims, "processes were to be had"
-
-        def take(name, what):
-            while victims:
-                os.kill(victims.pop(), signal.SIGKILL)
-            assert found.setdefault(name, what) is what, "each once"
-
-        run_all(list(tasks), tasks.get, place, take)
-    assert {name: type(what) for name, what in found.items()} == dict.fromkeys("abcd", Outcome)
-    for child in multiprocessing.active_children():
-        child.join(30)
-        assert not child.is_alive(), "one that outlives its pool keeps the program from ending"

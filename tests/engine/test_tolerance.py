@@ -149,19 +149,6 @@ def test_failures_are_the_loss_of_each_sensor():
     assert [len(each) for each in without_each(rig())] == [2, 2, 2]
 
 
-def test_what_several_cases_share_is_measured_once(evaluator, monkeypatch):
-    kernel = type(evaluator._scorer._sensors._kernel(rig()["roof"]))
-    measured, whole = [], kernel.measure
-    monkeypatch.setattr(kernel, "measure", lambda k, s, d: measured.append(s) or whole(k, s, d))
-    fresh = pe.Evaluator(evaluator.space, evaluator.prior, evaluator.vehicle, samples=1024)
-    objective, start = RobustObjective(fresh, BOTH), rig()
-    objective.entropy(start)
-    assert len(measured) == 2 * BOTH.draws  # of two LiDARs, though they are in 6 cases
-    moved = start.with_poses([pe.Pose((0.0, 0.0, 2.0)), *(s.pose for s in start.sensors[1:])])
-    objective.entropy(moved)
-    assert len(measured) == 3 * BOTH.draws  # the one that moved
-
-
 @pytest.mark.parametrize("changes", [{}, {"failures": True}, {"worst": True}])
 def test_a_bound_is_no_higher_than_the_truth_and_told_only_where_it_settles(changes, evaluator):
     tolerance = pe.Tolerance(0.02, 0.02, 2, **changes)

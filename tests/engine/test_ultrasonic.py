@@ -96,21 +96,6 @@ def test_it_is_in_no_entropy_until_a_curve_is_given():
     assert own.entropy(pe.Rig([roof, sonar])) < alone.entropy
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"max_range_m": 0}, "max_range_m: expected a .*length >= 0.001 m"),
-        ({"min_range_m": 3.0}, "min_range_m: expected a length below max_range, 2 m"),
-        ({"hfov_deg": 0}, "hfov_deg: expected an angle above 0"),
-        ({"vfov_deg": 179}, "vfov_deg: expected an angle"),
-        ({"max_incidence_deg": 100}, "max_incidence_deg: expected an angle"),
-    ],
-)
-def test_bad_tables_are_one_line(change, message):
-    with pytest.raises(pe.InputError, match=message):
-        catalog.from_table("own", {**TABLE, **change})
-
-
 def test_the_ground_map_hears_posts_and_no_more():
     """A post of half a metre is heard in the cone, seen from above."""
     sensor, grid = ultrasonic((0, 0, 0.3)), GroundGrid((-1.0, -2.0), (80, 80), 0.05)

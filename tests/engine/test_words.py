@@ -3,8 +3,6 @@
 import ast
 from collections import defaultdict
 
-import pytest
-
 from tests.engine.source_trees import ROOT, modules_of, text_of, tree_of
 
 PACKAGES = ("pe_core", "pe_tools", "blender_addon", "benchmarks")
@@ -43,24 +41,6 @@ def test_every_type_has_a_word_of_its_own():
     files = [path for package in PACKAGES for path in modules_of(ROOT / package)]
     assert len(files) > 100
     assert several_meanings((p.relative_to(ROOT), tree_of(p)) for p in files) == {}
-
-
-@pytest.mark.parametrize(
-    ("first", "second", "clash"),
-    [
-        ("class Beams: pass", "class Beams: pass", True),
-        ("class Window: pass", "class Windows: pass", True),
-        ("class _Window: pass", "Window = tuple[int, int]", True),
-        ("Counts = NDArray[np.int32]", "Counts = NDArray[np.uint16]", True),
-        ("Floats = NDArray[np.float64]", "Floats = NDArray[np.float64]", False),
-        ("LIMIT = 3", "LIMIT = 4", False),
-        ("class Sight: pass", "Sight = sight.Sight", False),
-        ("class Beams: pass", "class Rays: pass", False),
-    ],
-)
-def test_the_check_sees_what_it_should(first, second, clash):
-    found = several_meanings([("a", ast.parse(first)), ("b", ast.parse(second))])
-    assert bool(found) is clash
 
 
 def test_what_builds_an_object_is_the_only_thing_called_of():

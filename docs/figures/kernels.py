@@ -1,6 +1,6 @@
 """Draw the figures of docs/engine.md: ``python docs/figures/kernels.py`` writes docs/images/*.svg.
 
-They show the very voxels that the page works by hand (`worked`).
+They show the very voxels that are worked by hand (`worked`).
 """
 
 from __future__ import annotations

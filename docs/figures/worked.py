@@ -1,12 +1,11 @@
-"""The two voxels that docs/engine.md works by hand: their numbers, by formulas on plain numbers.
+"""The two voxels that docs/engine.md draws, worked by formulas on plain numbers.
 
-The page has `bracket_rows` and `upright_rows` word for word, and a test holds them to the kernels.
+A test holds the kernels to them.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -164,54 +163,6 @@ def kernel_bracket() -> Bracket:
     return bracket(_tilted_points(), rotation, bounds, MODEL.azimuth_count)
 
 
-def bracket_rows() -> list[str]:
-    """Rows of the page's table of the tilted voxel."""
-    b = bracketed()
-    outer, inner = b.outer, b.inner
-    return [
-        _row("centre, seen from the sensor along the ground's axes", "", _together(b.offset)),
-        _row("the same, along the sensor's axes", "x, y, z", _together(b.place)),
-        _row("distance from the sensor's axis", "flat = sqrt(x^2 + y^2)", f"{b.flat:.2f}"),
-        _row("azimuth, in steps of 0.2 degrees", "middle = atan2(y, x) / step", f"{b.middle:.2f}"),
-        _row(
-            "half the cube's extents",
-            "depth, width, height",
-            _together((b.depth, b.width, b.height), 3),
-        ),
-        _row(
-            "distances of the cube",
-            "near = flat - depth, far = sqrt((flat + depth)^2 + width^2)",
-            f"{b.near:.2f}, {b.far:.2f}",
-        ),
-        _row("**outer** azimuths", "middle -+ width / near / step", _azimuths(outer)),
-        _row("slopes", "(z - height) / near, (z + height) / far", _channels(outer)),
-        _row("beams that may pass", "upper = rows * columns", _product(outer)),
-        _row("the slice: how it recedes to the left", "skew", f"{b.skew:.3f}"),
-        _row(
-            "half sides of the rectangle in it",
-            "slice_width, slice_height",
-            f"{b.slice_width:.3f}, {b.slice_height:.3f}",
-        ),
-        _row(
-            "distances of that rectangle, nearest and farthest",
-            "flat - abs(skew) slice_width, sqrt((flat + abs(skew) slice_width)^2 + slice_width^2)",
-            _together(b.inner_distances),
-        ),
-        _row(
-            "**inner** azimuths",
-            "middle -+ atan(slice_width / (flat -+ skew * slice_width)) / step",
-            _azimuths(inner),
-        ),
-        _row(
-            "slopes",
-            "(z - slice_height) / farthest, (z + slice_height) / nearest",
-            _channels(inner),
-        ),
-        _row("beams that must pass", "lower = rows * columns", _product(inner)),
-        _row("beams that pass, each tested", "m", f"**{defined(TILTED, TILTED_CENTER)}**"),
-    ]
-
-
 @dataclass(frozen=True)
 class Crossing:
     """An azimuth through the square of the level voxel: distances [sides], slopes, channels."""
@@ -275,38 +226,6 @@ def kernel_upright() -> tuple[int, bool]:
     return int(counts[0]), bool(unsure[0])
 
 
-def upright_rows() -> list[str]:
-    """Rows of the page's table of the level voxel."""
-    x0, x1, y0, y1, z0, z1 = faces()
-    low, high = corner_azimuths()
-    meeting = [c.azimuth for c in crossings()]
-    rows = [
-        _row("faces, seen from the sensor", "x0, x1", f"{x0:.2f}, {x1:.2f}"),
-        _row("", "y0, y1", f"{y0:.2f}, {y1:.2f}"),
-        _row("", "z0, z1", f"{z0:.2f}, {z1:.2f}"),
-        _row(
-            "azimuths of the outermost corners, in steps",
-            "atan2(y0, x1), atan2(y1, x0)",
-            f"{low:.3f}, {high:.3f}: {_listed(meeting)}",
-        ),
-    ]
-    for c in crossings():
-        rows += [
-            _row(
-                f"azimuth {c.azimuth} cuts the square",
-                "max(x0 / cos, y0 / sin), min(x1 / cos, y1 / sin)",
-                f"{c.enter:.2f} to {c.leave:.2f}",
-            ),
-            _row(
-                "slopes there",
-                "min(z0 / enter, z0 / leave), max(z1 / enter, z1 / leave)",
-                f"{c.low:.5f} to {c.high:.5f}: {_listed(c.channels)}",
-            ),
-        ]
-    counted = " + ".join(str(len(c.channels)) for c in crossings())
-    return [*rows, _row("beams that pass", "m", f"{counted} = **{defined(LEVEL, LEVEL_CENTER)}**")]
-
-
 def _tilted_points() -> list[np.ndarray]:
     offsets = index_of(TILTED_CENTER) + 0.5 - position_of(TILTED)
     return [offsets[:, k].astype(np.float32) for k in range(3)]
@@ -314,33 +233,3 @@ def _tilted_points() -> list[np.ndarray]:
 
 def _rotation() -> np.ndarray:
     return TILTED.pose.ground_from_sensor.astype(np.float32)
-
-
-def _row(what: str, formula: str, value: str) -> str:
-    return f"| {what} | {formula and f'`{formula}`'} | {value} |"
-
-
-def _together(values: Sequence[float], digits: int = 2) -> str:
-    return ", ".join(f"{v:.{digits}f}" for v in values)
-
-
-def _azimuths(window: Window) -> str:
-    return f"{window.first:.2f} to {window.last:.2f}: {_listed(window.columns)}"
-
-
-def _channels(window: Window) -> str:
-    return f"{window.low:.5f} to {window.high:.5f}: {_listed(window.rows)}"
-
-
-def _product(window: Window) -> str:
-    return f"{len(window.rows)} * {len(window.columns)} = **{window.beams}**"
-
-
-def _listed(numbers: list[int]) -> str:
-    if len(numbers) < 3:
-        return " and ".join(str(n) for n in numbers)
-    return f"{numbers[0]} to {numbers[-1]}"
-
-
-if __name__ == "__main__":
-    print("\n".join([*bracket_rows(), "", *upright_rows()]))

@@ -64,11 +64,6 @@ def worked(figures):
     return figures["worked"]
 
 
-@pytest.mark.parametrize("rows", ["bracket_rows", "upright_rows"])
-def test_the_page_has_the_worked_voxels_word_for_word(worked, rows):
-    assert "\n".join(getattr(worked, rows)()) in ENGINE
-
-
 def test_the_bracket_worked_by_hand_is_the_kernel_s(worked):
     """Windows by formulas on plain numbers; rows and columns by the kernel; m by the definition."""
     by_hand, kernel = worked.bracketed(), worked.kernel_bracket()

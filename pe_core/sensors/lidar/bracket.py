@@ -6,8 +6,8 @@ counts. Where both windows hold the same number of beams, it is m; `voxel_beams`
 All arithmetic is in single precision, with margins on the safe side.
 
 The inner window is that of a slice of the cube: the plane through its centre that contains the
-sensor frame's up direction and its two silhouette edges. docs/engine.md has a figure, and a voxel
-worked by hand.
+sensor frame's up direction and its two silhouette edges. docs/engine.md has a figure; docs/figures
+works its voxel by hand.
 """
 
 from __future__ import annotations

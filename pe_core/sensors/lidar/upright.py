@@ -9,7 +9,7 @@ two look-ups in a table (`SlopeCounts`).
 
 All arithmetic is in single precision. Where rounding could decide, or the count is large, the voxel
 is unsure and left to the exact test in `voxel_beams`: a few in a hundred. docs/engine.md has a
-figure, and a voxel worked by hand.
+figure; docs/figures works its voxel by hand.
 """
 
 from __future__ import annotations

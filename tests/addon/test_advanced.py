@@ -6,7 +6,7 @@ import bpy
 import pytest
 
 import pe_core as pe
-from blender_addon import bridge, consistency
+from blender_addon import bridge
 from blender_addon.engine import catalog
 from blender_addon.live import evaluation
 from tests.addon import scenes
@@ -60,15 +60,6 @@ def full(car):
     return car
 
 
-def test_everything_is_in_the_study(full):
-    study = scenes.study()
-    assert study.space == pe.PerceptionSpace(x=(-20.0, 40.0), interval=0.2)
-    assert study.model == pe.PerceptionModel(lidar=pe.ApCurve(0.2, 0.659))
-    assert study.vehicle.clearance == 0.05
-    pitch = math.radians(-5.0), math.radians(5.1)
-    assert study.search.limits == {"roof": {"z": (1.7, 1.9), "pitch": pitch}}
-
-
 def test_an_exported_study_scores_and_searches_the_same(full, tmp_path):
     """Elsewhere nobody knows the own sensor: the file says what it is."""
     path = tmp_path / "study.toml"
@@ -79,12 +70,6 @@ def test_an_exported_study_scores_and_searches_the_same(full, tmp_path):
     assert "elevations_deg" in path.read_text() and "clearance = 0.05" in path.read_text()
     assert (read.space, read.model, read.search) == (study.space, study.model, study.search)
     assert read.evaluator().entropy(read.rig) == study.evaluator().entropy(study.rig)
-
-
-def test_left_as_it_is_a_study_is_that_of_always(car):
-    study, usual = scenes.study(), pe.Study(scenes.study().rig)
-    assert (study.space, study.model) == (usual.space, usual.model)
-    assert study.vehicle.clearance == pe.Vehicle.clearance and not study.search.limits
 
 
 @pytest.mark.parametrize(
@@ -162,25 +147,6 @@ def test_a_name_that_is_taken_and_figures_that_cannot_be_are_said_at_the_row(car
     assert "horizontal_fov" in row.problem and "Mine" not in catalog.entries()
     row.azimuths = (-10.0, 10.0)
     assert not row.problem and "Mine" in catalog.entries()
-
-
-def test_own_sensors_come_and_go_with_the_file(full, tmp_path):
-    blend = str(tmp_path / "own.blend")
-    bpy.ops.wm.save_as_mainfile(filepath=blend)
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    assert "My LiDAR" not in catalog.entries()
-    bpy.ops.wm.open_mainfile(filepath=blend)
-    assert "My LiDAR" in catalog.entries()
-    assert scenes.study().rig["bumper"].model.max_range == 90.0
-
-
-def test_undo_takes_them_back(car):
-    bpy.ops.ed.undo_push(message="before")
-    bpy.ops.pe.add_own_sensor("EXEC_DEFAULT", True)
-    assert "My LiDAR" in catalog.entries()
-    bpy.ops.ed.undo()
-    consistency.repair_scenes()
-    assert "My LiDAR" not in catalog.entries()
 
 
 def test_a_removed_one_is_refused_in_one_line(full):

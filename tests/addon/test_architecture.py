@@ -21,161 +21,60 @@ ARRAYS = {
 }
 """Modules that need neither a scene nor a GPU."""
 
-ALLOWED = {
-    "engine": set(),
-    "signals": set(),
-    "choices": set(),
-    "sensor_kinds": {"engine"},
-    "translation_context": set(),
-    "preferences": {"engine"},
-    "language": {"engine", "preferences", "translation_context"},
-    "own_catalog": {"engine"},
-    "properties": {"bridge", "choices", "engine", "sensor_kinds", "signals"},
-    "bridge": {"choices", "engine"},
-    "sensor_cache": {"bridge"},
-    "caches": {"engine"},
-    "vehicle_cache": {"bridge", "caches", "engine"},
-    "change_events": {"sensor_cache", "signals", "vehicle_cache"},
-    "consistency": {"bridge", "sensor_cache"},
-    "worker": set(),
-    "viewport": {"language"},
-    "result_staleness": {"bridge", "sensor_cache", "signals", "vehicle_cache"},
-    "diagnostics": {
-        "bridge",
-        "engine",
-        "sensor_cache",
-        "signals",
-        "vehicle_cache",
-        "viewport",
-        "worker",
-    },
-    "location_query": {"bridge", "engine", "sensor_cache", "signals", "vehicle_cache", "worker"},
-    "housing": {"engine", "sensor_cache", "sensor_kinds"},
-    "library": {"preferences"},
-    "preferences_panel": {
-        "engine",
-        "language",
-        "library",
-        "own_catalog",
-        "preferences",
-        "sensor_kinds",
-        "signals",
-        "translation_context",
-    },
-    "live": {
-        "bridge",
-        "caches",
-        "change_events",
-        "choices",
-        "engine",
-        "language",
-        "preferences",
-        "sensor_cache",
-        "signals",
-        "vehicle_cache",
-        "viewport",
-        "worker",
-    },
-    "search_curve": {"engine", "viewport"},
-    "overlay": {"caches", "engine", "viewport"},
-    "overlay.snapshot": {
-        "bridge",
-        "engine",
-        "live",
-        "location_query",
-        "overlay",
-        "preferences",
-        "search_curve",
-        "sensor_cache",
-        "vehicle_cache",
-    },
-    "overlay.scheduler": {
-        "engine",
-        "overlay",
-        "overlay.snapshot",
-        "sensor_cache",
-        "viewport",
-        "worker",
-    },
-    "overlay.surroundings": {"caches", "engine", "overlay", "vehicle_cache", "viewport"},
-    "overlay.draw_handler": {
-        "bridge",
-        "engine",
-        "overlay",
-        "overlay.scheduler",
-        "overlay.surroundings",
-        "vehicle_cache",
-        "viewport",
-    },
-    "operators": {
-        "bridge",
-        "caches",
-        "choices",
-        "diagnostics",
-        "engine",
-        "housing",
-        "language",
-        "library",
-        "live",
-        "location_query",
-        "overlay",
-        "overlay.surroundings",
-        "preferences",
-        "properties",
-        "result_staleness",
-        "search_curve",
-        "sensor_cache",
-        "sensor_kinds",
-        "signals",
-        "translation_context",
-        "vehicle_cache",
-        "viewport",
-        "worker",
-    },
-    "panels": {"choices", "language", "operators", "properties"},
-    "commands": {"bridge", "engine", "result_staleness"},
-    "wiring": {
-        "bridge",
-        "change_events",
-        "consistency",
-        "diagnostics",
-        "housing",
-        "live",
-        "location_query",
-        "operators",
-        "overlay.draw_handler",
-        "overlay.scheduler",
-        "result_staleness",
-        "sensor_cache",
-        "signals",
-        "vehicle_cache",
-        "viewport",
-    },
-    "__main__": {"__init__", "commands", "engine"},
-    "__init__": {
-        "change_events",
-        "commands",
-        "consistency",
-        "diagnostics",
-        "language",
-        "library",
-        "live",
-        "location_query",
-        "operators",
-        "overlay.draw_handler",
-        "panels",
-        "preferences_panel",
-        "properties",
-        "search_curve",
-        "sensor_cache",
-        "translation_context",
-        "vehicle_cache",
-        "wiring",
-        "worker",
-    },
-}
+ARROWS = """
+engine:
+signals:
+choices:
+sensor_kinds: engine
+translation_context:
+preferences: engine
+language: engine preferences translation_context
+own_catalog: engine
+properties: bridge choices engine sensor_kinds signals
+bridge: choices engine
+sensor_cache: bridge
+caches: engine
+vehicle_cache: bridge caches engine
+change_events: sensor_cache signals vehicle_cache
+consistency: bridge sensor_cache
+worker:
+viewport: language
+result_staleness: bridge sensor_cache signals vehicle_cache
+diagnostics: bridge engine sensor_cache signals vehicle_cache viewport worker
+location_query: bridge engine sensor_cache signals vehicle_cache worker
+housing: engine sensor_cache sensor_kinds
+library: preferences
+preferences_panel: engine language library own_catalog preferences sensor_kinds signals
+    translation_context
+live: bridge caches change_events choices engine language preferences sensor_cache signals
+    vehicle_cache viewport worker
+search_curve: engine viewport
+overlay: caches engine viewport
+overlay.snapshot: bridge engine live location_query overlay preferences search_curve sensor_cache
+    vehicle_cache
+overlay.scheduler: engine overlay overlay.snapshot sensor_cache viewport worker
+overlay.surroundings: caches engine overlay vehicle_cache viewport
+overlay.draw_handler: bridge engine overlay overlay.scheduler overlay.surroundings vehicle_cache
+    viewport
+operators: bridge caches choices diagnostics engine housing language library live location_query
+    overlay overlay.surroundings preferences properties result_staleness search_curve sensor_cache
+    sensor_kinds signals translation_context vehicle_cache viewport worker
+panels: choices language operators properties
+commands: bridge engine result_staleness
+wiring: bridge change_events consistency diagnostics housing live location_query operators
+    overlay.draw_handler overlay.scheduler result_staleness sensor_cache signals vehicle_cache
+    viewport
+__main__: __init__ commands engine
+__init__: change_events commands consistency diagnostics language library live location_query
+    operators overlay.draw_handler panels preferences_panel properties search_curve sensor_cache
+    translation_context vehicle_cache wiring worker
+"""
 """What each module or package may import. What stands below a package is part of it, unless it has
 a line of its own."""
+ALLOWED = {
+    name: set(to.split())
+    for name, to in re.findall(r"^(\w[\w.]*):((?:.*\n)(?:    .*\n)*)", ARROWS, re.M)
+}
 
 
 def files():

@@ -1,8 +1,6 @@
 """``python -m blender_addon FILE VERB`` as a user runs it, against ``python -m pe_core``."""
 
 import json
-import os
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -15,13 +13,10 @@ from blender_addon.engine import jobs
 from tests.addon import scenes
 from tests.addon.command_line import (
     FAST,
-    ROOT,
-    command,
     complaints,
     pe_here,
     run_alone,
     run_here,
-    wait_for,
 )
 from tests.limits import HANG_S
 
@@ -172,29 +167,6 @@ def test_sensors(blend):
     listed = run_here(blend, "sensors")
     assert listed.returncode == 0 and "lidar   Pandar64" in listed.stdout
     assert listed.stdout == pe_here("sensors").stdout
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for one process on Windows")
-@pytest.mark.usefixtures("heeded_signals")
-def test_interrupt_keeps_the_best_so_far(blend, tmp_path):
-    folder = tmp_path / "result"
-    arguments = (*FAST[:6], "--candidates", 100_000, "-o", folder)
-    with (tmp_path / "log").open("w+") as log:
-        process = subprocess.Popen(
-            command(blend, "optimize", "--no-review", *arguments),
-            cwd=ROOT,
-            stdout=subprocess.DEVNULL,
-            stderr=log,
-        )
-        try:
-            wait_for("optimizing", tmp_path / "log")
-            os.kill(process.pid, signal.SIGINT)
-            assert process.wait(HANG_S) == 130
-        finally:
-            process.kill()
-    result = without_run(folder / "result.json")
-    assert result["entropy"] <= result["before"]["entropy"]
-    assert (folder / "optimized.blend").exists()
 
 
 DRIVE = """

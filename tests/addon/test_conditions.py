@@ -10,7 +10,6 @@ import pe_core as pe
 from blender_addon import bridge, result_staleness
 from blender_addon.bridge import conditions
 from blender_addon.live import state
-from pe_core.study import condition_table
 from tests.addon import scenes
 from tests.engine import shapes
 
@@ -77,27 +76,6 @@ def test_a_frame_is_a_state_and_its_motions_are_those_of_the_hinge(car):
     pose = study.conditions.one("door open").rig(study.rig, study.vehicle)["mirror"].pose
     assert pose.position == pytest.approx(tuple(shown), abs=5e-5)
     assert car.frame_current == OPEN_FRAME  # reading shows the frame again that was shown
-
-
-def test_panel_study_file_and_engine_have_the_same_bits(car, tmp_path):
-    """The frame that is shown does not matter: all of them score the vehicle as drawn."""
-    bpy.ops.pe.add_state()
-    add_open_state(car)
-    bpy.ops.pe.add_weather(weather="CLEAR")
-    bpy.ops.pe.add_weather(weather="FOG")
-    car.perception_entropy.weathers[1].weight = 0.1
-    car.frame_set(OPEN_FRAME)
-    assert bpy.ops.pe.score() == {"FINISHED"}
-    shown = json.loads(car.perception_entropy.result_json)["conditions"]
-    bpy.ops.pe.export_study(filepath=str(tmp_path / "study.toml"))
-    study = pe.load_study(tmp_path / "study.toml")
-    assert condition_table(study).to_dict() == shown
-    assert [r["state"] for r in shown["rows"]] == ["As Drawn", "As Drawn", "door open", "door open"]
-    assert shown["rows"][1]["weight"] == 0.1
-    assert shown["rows"][0]["entropy"] != shown["rows"][2]["entropy"]
-    assert "mean of the conditions" in car.perception_entropy.result_conditions
-    car.frame_set(1)
-    assert pe.study_to_dict(bridge.study_as_drawn(car))["state"] == pe.study_to_dict(study)["state"]
 
 
 def test_a_study_s_conditions_are_loaded_and_undone(car):

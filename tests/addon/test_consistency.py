@@ -4,7 +4,6 @@ import bpy
 import pytest
 
 from blender_addon import bridge, consistency, sensor_cache
-from tests.addon import scenes
 
 
 @pytest.fixture
@@ -31,13 +30,6 @@ def test_a_duplicate_is_a_new_sensor_without_a_result(scored, linked):
     assert before["roof"] is not None
 
 
-def test_a_duplicate_of_a_duplicate_is_no_owner_of_its_original_s_result(scored):
-    for _ in range(2):
-        bpy.ops.object.duplicate()
-        consistency.repair_scenes()
-    assert [name for name, entropy in results(scored).items() if entropy is not None] == ["roof"]
-
-
 def test_a_renamed_sensor_keeps_its_result_and_its_duplicate_gets_none(scored):
     entropy = results(scored)["roof"]
     scored.objects["roof"].name = "top"
@@ -61,25 +53,3 @@ def test_an_appended_sensor_is_a_new_one(scored, tmp_path):
     consistency.repair_scenes()
     assert results(scored) == {**before, "roof": None}
     assert len(sensor_cache.sensors(scored)) == 2
-
-
-def test_a_score_gives_all_of_them_results(scored):
-    bpy.ops.object.duplicate()
-    consistency.repair_scenes()
-    bpy.ops.pe.score()
-    consistency.repair_scenes()
-    assert None not in results(scored).values() and len(results(scored)) == 2
-
-
-def collections_of(obj):
-    """Names of the collections that an object is in."""
-    return [each.name for each in obj.users_collection]
-
-
-@pytest.mark.parametrize("name", ["sedan", "bus"])
-def test_shipped_files_link_sensors_once(name, tmp_path):
-    """As they are on disk: opened without the add-on, which would mend them."""
-    bpy.ops.wm.open_mainfile(filepath=str(scenes.ASSETS / f"{name}.blend"))
-    assert len(bpy.data.collections["Sensors"].objects) == {"sedan": 1, "bus": 2}[name]
-    for obj in bpy.data.collections["Sensors"].objects:
-        assert collections_of(obj) == ["Sensors"]

@@ -5,7 +5,6 @@ import json
 import bpy
 import pytest
 
-import pe_core as pe
 from blender_addon import result_staleness
 from blender_addon.panels import scoring_panels, search_panels
 from pe_tools import advice
@@ -20,24 +19,6 @@ def settings(car):
     found = car.perception_entropy
     found.targets, found.traffic, found.scenes, found.ap_model = "objects", True, 8, "scans"
     return found
-
-
-def test_a_scene_has_the_paper_s_curves_until_told_otherwise(car):
-    scenes.add_sensor("roof")
-    assert scenes.study().model == pe.PerceptionModel()
-
-
-def test_the_choice_is_in_the_study_its_file_and_the_blend(settings, tmp_path):
-    assert scenes.study().model == pe.PerceptionModel(model="scans")
-    assert bpy.ops.pe.export_study(filepath=str(tmp_path / "car.toml")) == {"FINISHED"}
-    assert pe.load_study(tmp_path / "car.toml").model.model == "scans"
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "car.blend"))
-    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "car.blend"))
-    settings = bpy.context.scene.perception_entropy
-    assert settings.ap_model == "scans"
-    settings.ap_model = "paper"
-    assert bpy.ops.pe.import_study(filepath=str(tmp_path / "car.toml")) == {"FINISHED"}
-    assert bpy.context.scene.perception_entropy.ap_model == "scans"
 
 
 def test_the_panel_and_headless_blender_score_by_it(settings, tmp_path):

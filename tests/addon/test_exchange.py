@@ -34,12 +34,6 @@ def axled(car):
     return car
 
 
-def test_a_scene_s_axles_are_its_study_s_and_the_same_bits(axled):
-    assert scenes.study().reference == AXLE
-    axled.perception_entropy.axles_known = False
-    assert scenes.study().reference is None
-
-
 def test_the_suffix_of_a_rig_s_file_chooses_the_format(axled, tmp_path):
     """`prius.urdf` became a CSV: the dialog's format is a default, what is typed is meant."""
     path = tmp_path / "prius.urdf"
@@ -71,14 +65,6 @@ def test_a_camera_that_nobody_has_becomes_the_file_s_own(axled, tmp_path):
     bpy.ops.pe.import_rig(filepath=str(path))
     own = [row.name for row in axled.perception_entropy.own_sensors]
     assert "eye" in own and scenes.study().rig["eye"].model.width == 3840
-
-
-def test_an_imported_study_brings_its_axles(axled, tmp_path):
-    path = tmp_path / "study.toml"
-    assert bpy.ops.pe.export_study(filepath=str(path)) == {"FINISHED"}
-    axled.perception_entropy.axles_known = False
-    assert bpy.ops.pe.import_study(filepath=str(path)) == {"FINISHED"}
-    assert scenes.study().reference == AXLE
 
 
 def test_axles_are_found_by_wheels_and_refused_without(car):

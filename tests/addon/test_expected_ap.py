@@ -31,19 +31,6 @@ def settings(car):
     return found
 
 
-def test_the_panel_s_objective_and_scenes_are_those_of_the_study(settings, tmp_path):
-    study = scenes.study()
-    assert study.search.objective == "expected_ap"
-    assert study.targets == pe.TargetRule(scenes=8)
-    assert bpy.ops.pe.export_study(filepath=str(tmp_path / "car.toml")) == {"FINISHED"}
-    settings.objective, settings.scenes = "entropy", 256
-    assert scenes.study().search.objective == "entropy"
-    assert scenes.study().targets == pe.TargetRule()
-    assert bpy.ops.pe.import_study(filepath=str(tmp_path / "car.toml")) == {"FINISHED"}
-    settings = bpy.context.scene.perception_entropy
-    assert (settings.objective, settings.scenes) == ("expected_ap", 8)
-
-
 def test_a_job_the_command_lines_and_the_panel_find_the_same_bits(settings, tmp_path):
     blend = tmp_path / "car.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))

@@ -41,11 +41,6 @@ def labels(tmp_path):
     return path
 
 
-def test_no_focus_to_begin_with(scene):
-    assert bridge.prior_from_scene(scene) == pe.Prior.road()
-    assert len(scene.perception_entropy.focus) == 0
-
-
 def test_new_row_doubles_the_front_for_all_classes(scene):
     assert bpy.ops.pe.add_focus() == {"FINISHED"}
     (row,) = scene.perception_entropy.focus
@@ -63,12 +58,6 @@ def test_region_is_the_engines_focus(scene, region):
     add_focus(scene, region, factor=0.5)
     expected = tuple(pe.Focus(0.5, x, y) for x, y in AREAS[region])
     assert bridge.prior_from_scene(scene).focus == expected
-
-
-def test_numbers_are_those_that_were_typed(scene):
-    add_focus(scene, "custom", factor=1.3, x_range=(0.1, 33.35), y_range=(-7.2, 1e-4))
-    expected = pe.Focus(1.3, (0.1, 33.35), (-7.2, 1e-4))
-    assert bridge.prior_from_scene(scene).focus == (expected,)
 
 
 def test_classes_come_in_the_engines_order(scene):
@@ -232,54 +221,3 @@ def test_remove_takes_the_selected_row(scene):
     assert not bpy.ops.pe.remove_focus.poll()
     with pytest.raises(RuntimeError, match="No focus is selected"):
         bpy.ops.pe.remove_focus()
-
-
-def test_undo_takes_back_adding_and_removing(scene):
-    def names() -> list[str]:
-        return [row.name for row in bpy.context.scene.perception_entropy.focus]
-
-    bpy.ops.ed.undo_push(message="before")
-    bpy.ops.pe.add_focus("EXEC_DEFAULT", True)
-    bpy.ops.pe.remove_focus("EXEC_DEFAULT", True)
-    assert names() == []
-    bpy.ops.ed.undo()
-    assert names() == ["Focus 1"]
-    bpy.ops.ed.undo()
-    assert names() == []
-    bpy.ops.ed.redo()
-    assert names() == ["Focus 1"]
-
-
-def test_a_file_keeps_them(scene, tmp_path):
-    add_focus(scene, "custom", factor=1.3, x_range=(0.1, 5.0), classes={"truck"})
-    before = bridge.prior_from_scene(scene)
-    path = str(tmp_path / "focus.blend")
-    bpy.ops.wm.save_as_mainfile(filepath=path)
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    bpy.ops.wm.open_mainfile(filepath=path)
-    assert bridge.prior_from_scene(bpy.context.scene) == before
-
-
-@pytest.mark.parametrize("model", ["road", "boxes"])
-def test_exported_study_scores_the_same(car, labels, tmp_path, model):
-    settings = car.perception_entropy
-    settings.prior, settings.boxes = model, str(labels)
-    add_focus(car, "far", factor=1.7)
-    add_focus(car, "custom", factor=0.3, x_range=(-10.0, 12.3), classes={"car"})
-    path = tmp_path / "study" / "study.toml"
-    path.parent.mkdir()
-    assert bpy.ops.pe.export_study(filepath=str(path)) == {"FINISHED"}
-    loaded, study = pe.load_study(path), scenes.study()
-    assert loaded.prior == study.prior and len(loaded.prior.focus) == 3
-    first, second = pe.ScoreJob(loaded), pe.ScoreJob(study)
-    for job in (first, second):
-        for _ in job:
-            pass
-    assert first.outcome.after == second.outcome.after
-    (left, right) = (pe.result_dict(job.outcome)["inputs"] for job in (first, second))
-    assert left == right
-
-
-def test_panel_is_closed_at_first(addon):
-    assert not hasattr(bpy.types.PE_PT_focus, "bl_parent_id"), "a section of its own"
-    assert "DEFAULT_CLOSED" in bpy.types.PE_PT_focus.bl_options

@@ -64,7 +64,8 @@ def test_the_same_folder_again_is_one_set(blend, tmp_path, small_pictures):
 
 
 @pytest.mark.usefixtures("heeded_signals")
-def test_being_told_to_end_keeps_the_best(blend, tmp_path):
+@pytest.mark.parametrize("told", [signal.SIGINT, signal.SIGTERM])
+def test_being_told_to_end_keeps_the_best(blend, tmp_path, told):
     out, log = tmp_path / "out", tmp_path / "log"
     arguments = (*FAST[:6], "--candidates", 100_000, "-o", out)
     with log.open("w") as stderr:
@@ -76,11 +77,12 @@ def test_being_told_to_end_keeps_the_best(blend, tmp_path):
         )
         try:
             wait_for("optimizing", log)
-            process.send_signal(signal.SIGTERM)
-            assert process.wait(HANG_S) == 143, log.read_text()
+            process.send_signal(told)
+            assert process.wait(HANG_S) == 128 + told, log.read_text()
         finally:
             process.kill()
-    assert json.loads((out / "result.json").read_text())["stopped"]
+    result = json.loads((out / "result.json").read_text())
+    assert result["stopped"] and result["entropy"] <= result["before"]["entropy"]
     assert jobs.files_of_other_runs(out) == []
     assert (out / "optimized.blend").exists()
 

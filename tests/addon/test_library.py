@@ -10,7 +10,6 @@ import pytest
 import blender_addon
 import pe_core as pe
 from blender_addon import (
-    bridge,
     language,
     library,
     operators,
@@ -108,13 +107,6 @@ def test_an_appended_asset_is_a_sensor_at_once(car):
     assert {part for part in study.vehicle.part_names} == {"body", "cabin"}
 
 
-def test_two_of_a_kind_are_two_sensors(car):
-    first, second = (appended("QT128C2X")[0] for _ in range(2))
-    assert first != second and first.name != second.name
-    names = {each.name for each in bridge.sensor_objects(car)}
-    assert {first.name, second.name} <= names
-
-
 def libraries():
     """Names and paths of Blender's asset libraries."""
     return [(each.name, each.path) for each in bpy.context.preferences.filepaths.asset_libraries]
@@ -157,12 +149,6 @@ def test_it_is_taken_away_and_brought_back_in_the_preferences(enabled):
     entry.preferences.show_library = True
     assert libraries() == shown
     entry.preferences.show_library = True
-    assert libraries() == shown
-
-
-def test_a_library_that_was_saved_with_the_preferences_is_not_shown_twice(enabled):
-    shown = libraries()
-    library.register()
     assert libraries() == shown
 
 

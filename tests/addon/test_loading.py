@@ -48,37 +48,6 @@ def test_the_four_corners_come_into_an_empty_scene_to_the_bit(scene):
     assert history(here) == history(there)
 
 
-def test_all_that_a_scene_says_of_its_search_comes_back(car, tmp_path):
-    settings = car.perception_entropy
-    settings.max_height, settings.min_distance = 2.5, 0.2
-    settings.space_interval, settings.clearance = 0.2, 0.03
-    settings.evaluations, settings.seed, settings.prior = 7, 5, "highway"
-    settings.failures = True
-    for name, y in (("arm", 0.4), ("eye", 0.5)):
-        scenes.add_sensor(name, CAN, location=(0.0, y, 2.2)).perception_entropy.rack = "r"
-    bpy.ops.pe.add_no_go()
-    rack = scenes.add_collection(car.collection, "Rack")
-    slot = bpy.data.objects.new("front", None)
-    slot.location, slot.rotation_euler = (0.2, 0.0, 1.9), (0.1, 0.2, 0.3)
-    rack.objects.link(slot)
-    scenes.add_mount(car, "rack", kind="SLOTS", slots=rack)
-    scenes.add_mount(car, "cabin", bpy.data.objects["cabin"], standoff=0.04)
-    bpy.context.view_layer.update()
-    assert bpy.ops.pe.mount_sensor(name="roof", mount="rack") == {"FINISHED"}
-    own = bpy.data.objects["eye"].perception_entropy
-    own.bounded[0], own.bounds_low[0], own.bounds_high[0] = True, -1.0, 0.5
-    study = scenes.study()
-    path = tmp_path / "study.toml"
-    pe.export_study(study, path)
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    assert bpy.ops.pe.import_study(filepath=str(path)) == {"FINISHED"}
-    again, saved = scenes.study(), pe.load_study(path)
-    assert bridge.load_into(bpy.context.scene, saved) == []
-    assert again.search == saved.search
-    assert (again.space, again.model, again.samples) == (saved.space, saved.model, saved.samples)
-    assert {s.name: s.pose for s in again.rig} == {s.name: s.pose for s in saved.rig}
-
-
 ROWS = {
     "weather": "weathers",
     "state": "states",

@@ -65,16 +65,6 @@ def test_radars_and_ultrasonic_sensors_are_linked_pairs_too(car, model):
     assert np.quantile(np.abs(m[0] - m[1]), 0.99) < 1e-3  # but points at an edge of the field
 
 
-def test_a_rig_and_its_mirror_image_score_the_same_on_a_mirrored_vehicle(left):
-    """The car is its own mirror image, and so is the prior: on the whole grid nothing tells."""
-    right = mirror()
-    study = scenes.study()
-    space = pe.PerceptionSpace(x=(-10, 20), y=(-10, 10), z=(0, 3), interval=0.2)
-    evaluator = pe.Evaluator(space, study.prior, study.vehicle)
-    scores = [evaluator.entropy(pe.Rig([study.rig[o.name]])) for o in (left, right)]
-    assert scores[0] == pytest.approx(scores[1], abs=1e-3)
-
-
 @pytest.mark.parametrize(
     ("name", "other"),
     [
@@ -155,16 +145,6 @@ def test_redo_brings_both(left):
     assert alike(left, right) and left.location.x == pytest.approx(1.5)
 
 
-def test_the_link_is_kept_in_the_file(left, tmp_path):
-    mirror(linked=True)
-    blend = str(tmp_path / "pair.blend")
-    bpy.ops.wm.save_as_mainfile(filepath=blend)
-    bpy.ops.wm.open_mainfile(filepath=blend)
-    left, right = (bpy.data.objects[f"front_{side}"] for side in ("left", "right"))
-    moved(right, location=(0.5, -0.6, 1.2))
-    assert alike(left, right) and left.location.x == pytest.approx(0.5)
-
-
 def test_a_duplicate_is_linked_to_nobody(left):
     right = mirror(linked=True)
     bpy.ops.object.duplicate()
@@ -189,32 +169,7 @@ def test_a_deleted_one_leaves_the_other_free(left):
     assert left.perception_entropy.mirror_of == ""
 
 
-def test_unlinked_they_go_their_own_ways(left):
-    right = mirror(linked=True)
-    assert bpy.ops.pe.unlink_mirror(name="front_right") == {"FINISHED"}
-    moved(left, location=(1.5, 0.9, 1.0))
-    assert not alike(left, right)
-
-
-def test_a_search_moves_linked_mirror_images_as_a_pair(left):
-    mirror(linked=True)
-    study = scenes.study()
-    assert study.search.mounting.pairs == (("front_left", "front_right"),)
-    before = poses()
-    assert bpy.ops.pe.optimize() == {"FINISHED"}
-    found = poses()
-    assert found["front_left"] != before["front_left"]
-    assert found["front_right"] == bridge.mirrored_pose(found["front_left"])
-
-
 def test_a_pair_of_which_one_is_hidden_is_none(left):
     mirror(linked=True)
     bpy.data.objects["front_right"].hide_set(True)
     assert scenes.study().search.mounting.pairs == ()
-
-
-def poses():
-    """Where the two sensors stand."""
-    graph = scenes.depsgraph()
-    names = ("front_left", "front_right")
-    return {name: bridge.pose_of(bpy.data.objects[name], graph) for name in names}

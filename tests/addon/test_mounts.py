@@ -221,21 +221,6 @@ def test_what_every_placement_keeps_to(car):
     assert found == pe.Constraints(1.9, 1.7, 0.2, True, [area])
 
 
-def test_variants_hold_links_mounts_and_racks(roof):
-    sensor = bpy.data.objects["roof"]
-    sensor.location.y = 0.3
-    put(sensor, "roof area")
-    sensor.perception_entropy.rack = "arm"
-    bpy.ops.pe.mirror_sensor(name="roof", linked=True)
-    bpy.ops.pe.save_variant()
-    bpy.ops.pe.unlink_mirror(name="roof")
-    sensor.perception_entropy.mount = sensor.perception_entropy.rack = ""
-    bridge.activate_variant(roof, roof.perception_entropy.variants[0])
-    own = sensor.perception_entropy
-    assert (own.mirror_of, own.mount, own.rack) == ("roof right", "roof area", "arm")
-    assert bpy.data.objects["roof right"].perception_entropy.mirror_of == "roof"
-
-
 def test_the_view_tints_mounts_and_draws_boxes(roof):
     sensor = bpy.data.objects["roof"]
     sensor.select_set(True)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from blender_addon import bridge
-from blender_addon.engine import catalog, exchange, pe
+from blender_addon.engine import catalog, pe
 from tests.addon import scenes
 from tests.addon.command_line import run_here
 
@@ -207,18 +207,3 @@ def test_the_command_takes_objects_in_and_puts_them_out(rigged, tmp_path, capsys
     assert back.vehicle.triangles.tobytes() == before.vehicle.triangles.tobytes()
     lidar = "Velodyne VLP-16 Puck"
     assert [s.model.name for s in back.rig] == ["PandaSet wide", "KITTI cam2", lidar]
-
-
-def test_dialogs_offer_models_of_the_kind():
-    from types import SimpleNamespace
-
-    from blender_addon.operators.imports import empty_models, models_for
-
-    row = SimpleNamespace(kind="camera")
-    assert models_for(row, None, "kitti") == ["KITTI cam2"]
-    assert models_for(row, None, "") == catalog.names("camera")
-    assert empty_models(None, None, "QT128") == ["Hesai QT128C2X"]
-
-
-def test_the_usual_stand_in_is_the_engine_s():
-    assert exchange.STAND_INS["lidar"] in catalog.names("lidar")

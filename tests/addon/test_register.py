@@ -57,19 +57,6 @@ def traces() -> dict[str, list[str]]:
     }
 
 
-def test_register_unregister_register_leaves_nothing_behind(unregistered):
-    before = traces()
-    assert not any(before.values())
-    blender_addon.register()
-    registered = traces()
-    blender_addon.unregister()
-    assert traces() == before
-    blender_addon.register()
-    assert traces() == registered
-    blender_addon.unregister()
-    assert traces() == before
-
-
 def extended_menus() -> list[str]:
     """Return the menus and panels of Blender that something of ours draws into."""
     found = []

@@ -25,16 +25,6 @@ def test_the_panel_s_page_has_its_title_and_the_picture_once(car, tmp_path, smal
     assert len(PICTURE.findall(text)) == 1
 
 
-def test_a_page_that_cannot_be_written_is_one_line(car, tmp_path):
-    (tmp_path / "file").touch()
-    try:
-        bpy.ops.pe.export_review(filepath=str(tmp_path / "file" / "a.html"))
-    except RuntimeError as error:
-        assert "a folder that can be written" in str(error)
-    else:
-        raise AssertionError("it was written")
-
-
 def test_headless_blender_writes_the_page_of_the_command_line(car, tmp_path, small_pictures):
     scenes.add_sensor("front", model="Camera 60 deg")
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "study.blend"))

@@ -188,6 +188,7 @@ def test_a_variant_s_study_is_that_of_the_scene_once_it_is_applied(rich):
     eye, arm = (bpy.data.objects[name] for name in ("eye", "arm"))
     eye.location.z, eye.perception_entropy.model = 1.2, "Camera 90 deg"
     arm.perception_entropy.rack = ""
+    eye.perception_entropy.bounds_low[2] = 0.6
     bpy.data.objects.remove(bpy.data.objects["bar"])
     bpy.data.objects["hidden"].hide_set(False)
     scenes.add_sensor("third", CAN, location=(0.0, 0.0, 2.5)).perception_entropy.mount = "cabin"

@@ -240,6 +240,7 @@ def test_undo_save_and_reload(car, tmp_path):
         (lambda: bpy.ops.pe.add_sensor("EXEC_DEFAULT", True, model="Camera 60 deg"), "sensors"),
         (lambda: bpy.ops.pe.add_focus("EXEC_DEFAULT", True, region="front"), "focus"),
         (lambda: bpy.ops.pe.add_weather("EXEC_DEFAULT", True, weather="RAIN"), "weathers"),
+        (lambda: bpy.ops.pe.add_state("EXEC_DEFAULT", True), "states"),
         (lambda: bpy.ops.pe.add_requirement("EXEC_DEFAULT", True, preset="OWN"), "requirements"),
         (lambda: bpy.ops.pe.save_variant("EXEC_DEFAULT", True), "variants"),
         (lambda: bpy.ops.pe.add_own_sensor("EXEC_DEFAULT", True, kind="lidar"), "own_sensors"),

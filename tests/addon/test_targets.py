@@ -59,11 +59,3 @@ def test_the_live_score_follows_on_the_same_targets(settings):
     summary = evaluation.EvaluatorCache().summary("scene", wish)
     study = scenes.study()
     assert summary.entropy == study.evaluator().entropy(study.rig) and summary.voxels == 0
-
-
-def test_a_prior_without_objects_is_reported_in_a_line(settings):
-    settings.prior = "uniform"
-    with pytest.raises(
-        RuntimeError, match="a prior with classes, because objects need them, found uniform"
-    ):
-        bpy.ops.pe.score()

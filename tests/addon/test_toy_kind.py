@@ -12,7 +12,7 @@ import pytest
 import blender_addon
 import pe_core as pe
 from blender_addon import bridge, housing, operators, panels, properties, sensor_kinds
-from blender_addon.operators import listed_sensors, models, offers
+from blender_addon.operators import models, offers
 from pe_core import catalog
 from pe_core import sensors as kinds
 from tests.addon import scenes
@@ -167,24 +167,6 @@ def test_a_row_gives_it_a_picture_a_housing_and_fields(ring_kind, ring, monkeypa
     assert operators.own_fields("toyring") == ("max_range",)
     surface = housing.model_surface(PRESET)
     np.testing.assert_allclose(np.ptp(surface.points, axis=0), (0.5, 0.4, 0.3), atol=0.01)
-
-
-def test_without_the_kind_nothing_of_it_is_left(car):
-    known = [(o.kind, models(o.kind)) for o in offers()]
-    kinds.register(RING)
-    catalog.add(PRESET, {"kind": "toyring", "range_m": 12.0})
-    scenes.add_sensor("bumper", PRESET)
-    assert len(list(offers())) == 5
-    catalog.remove(PRESET)
-    kinds.unregister("toyring")
-    assert [(o.kind, models(o.kind)) for o in offers()] == known
-    assert PRESET not in dict(properties.model_suggestions(None, None, ""))
-    with pytest.raises(RuntimeError, match="sensor 'bumper': model: expected a name such as"):
-        bpy.ops.pe.score()
-    assert list(scenes.drawn(car)["labels"]) == ["roof"]
-    assert [obj.name for obj in listed_sensors(car)] == ["bumper", "roof"]
-    with pytest.raises(RuntimeError, match="expected a name such as"):
-        bpy.ops.pe.add_sensor(model=PRESET)
 
 
 def test_a_preset_of_a_kind_that_is_gone_is_refused(car):

@@ -1,7 +1,6 @@
 """Poses, spaces, sensors, rigs and the catalogue."""
 
 import math
-import re
 
 import numpy as np
 import pytest
@@ -32,32 +31,13 @@ def test_a_bad_position_is_one_clear_line(bad):
         pe.Pose(bad)
 
 
-@pytest.mark.parametrize(
-    ("options", "field"),
-    [
-        ({"x": (5, 5)}, "space: x"),
-        ({"y": (0, math.nan)}, "space: y"),
-        ({"z": (0, math.inf)}, "space: z"),
-        ({"interval": 0.0}, "space: interval"),
-        ({"interval": 0.3}, "space: interval: expected a length that divides x"),
-        ({"interval": 0.001}, "space: interval: expected at most"),
-        ({"x": "ab"}, "space: x"),
-    ],
-)
-def test_impossible_spaces_are_refused(options, field):
-    with pytest.raises(pe.InputError, match=re.escape(field)):
-        pe.PerceptionSpace(**options)
-
-
-@pytest.mark.parametrize("name", pe.catalog.names())
-def test_every_entry_of_the_catalogue_loads_and_says_its_source(name):
-    model = pe.catalog.load(name)
-    assert pe.catalog.load(name) is model
-    assert pe.catalog.entries()[name].source
-    if isinstance(model, pe.Lidar):
-        directions = model.directions
-        assert directions.shape == (model.beam_count, 3)
-        assert np.abs(np.linalg.norm(directions, axis=1) - 1.0).max() <= 1e-6
+def test_every_entry_of_the_catalogue_loads_and_says_its_source():
+    for name in pe.catalog.names():
+        model = pe.catalog.load(name)
+        assert pe.catalog.load(name) is model and pe.catalog.entries()[name].source, name
+        if isinstance(model, pe.Lidar):
+            assert model.directions.shape == (model.beam_count, 3), name
+            assert np.abs(np.linalg.norm(model.directions, axis=1) - 1.0).max() <= 1e-6, name
 
 
 def test_an_unknown_model_is_answered_with_near_ones():

@@ -8,9 +8,11 @@ import pytest
 import pe_core as pe
 from benchmarks import problems
 from pe_core.geometry.poses import dot, rotate
+from pe_core.geometry.raycast import VisibleTriangles
+from pe_core.geometry.triangle_tree import TriangleTree
 from pe_core.sensors.camera import grid_areas
 from pe_core.sensors.camera.voxel_occlusion import VoxelOcclusion
-from tests.engine import fixed_bins, shapes
+from tests.engine import shapes
 from tests.engine.kernels import on_grid
 
 ASSETS = Path(pe.__file__).parents[1] / "blend_assets"
@@ -64,7 +66,8 @@ def aimed(offsets):
 
 def hidden_by_rays(triangles, offsets):
     distance = np.sqrt(dot(offsets, offsets))
-    hits = fixed_bins.VisibleTriangles(triangles).first_hit(offsets / distance[:, None])
+    seen = VisibleTriangles(TriangleTree(triangles), np.zeros(3))
+    hits = seen.first_hit(offsets / distance[:, None])
     return hits.distance < distance
 
 

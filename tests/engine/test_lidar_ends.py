@@ -1,13 +1,10 @@
 """Beams cast when they are asked for: all that the vehicle stops are known beforehand, and no bit
 of a count depends on which were cast."""
 
-import math
-
 import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.sensors.lidar import bracket, voxel_beams
 from pe_core.sensors.lidar.beams import FixedEnds, LazyEnds, RotatedBeams
 from pe_core.sensors.lidar.lattice import lattice_of
 from pe_core.sensors.lidar.occlusion import occlusion_candidates
@@ -100,18 +97,3 @@ def test_counts_are_those_of_all_beams_cast(pose, kind):
         assert np.array_equal(found, plain)
     assert (free.counts >= plain).all()
     assert kind != "full circle" or (free.counts > plain).any()
-
-
-def test_what_a_bound_took_is_not_counted_again(monkeypatch):
-    """A candidate whose bound is good is counted without the vehicle once."""
-    calls, plain = [], bracket.bracket
-    monkeypatch.setattr(voxel_beams, "bracket", lambda *a: calls.append(a) or plain(*a))
-    evaluator = pe.Evaluator(SPACE, pe.Prior.uniform(), CAR, samples=2048)
-    rig = pe.Rig([lidar(POSES["tilted"])])
-    assert evaluator.evaluate(rig, math.nextafter(28.0, 30.0)) == (evaluator.entropy(rig), False)
-    assert len(calls) == 1
-    moved = pe.Rig([lidar(POSES["corner"])])
-    assert evaluator.entropy(moved) == pe.Evaluator(
-        SPACE, pe.Prior.uniform(), CAR, samples=2048
-    ).entropy(moved)
-    assert len(calls) == 3

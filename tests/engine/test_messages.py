@@ -38,15 +38,6 @@ def test_a_name_that_is_too_long_is_quoted_by_its_first_twenty_letters():
     assert "found 'abcdefghijklmnopqrst...'" in str(caught.value)
 
 
-def test_a_study_whose_mesh_is_missing_names_it_or_says_none(tmp_path):
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
-    for mesh, found in (("gone.npz", "found 'gone.npz'"), (None, "found none")):
-        study = pe.Study(rig, shapes.box_car(), mesh=mesh)
-        with pytest.raises(pe.InputError, match=f"a file beside the study .*, {found}"):
-            pe.save_study(study, tmp_path / "study.toml")
-    assert not list(tmp_path.iterdir())
-
-
 def test_the_worst_of_several_numbers_says_what_was_expected():
     """Beyond the cap the cap is told; before NaN, which is worse than anything, it is not."""
     rule = Number(0.0, cap=1e3, unit="m")

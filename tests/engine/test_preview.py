@@ -69,16 +69,6 @@ def test_a_sensor_below_the_top_is_cast():
     assert score.to_dict() == evaluator().score(rig).to_dict()
 
 
-def test_a_vehicle_as_large_as_a_hall_is_cast():
-    """A map of it would take longer to draw than many casts."""
-    hall = pe.Vehicle(np.concatenate([CAR.triangles, shapes.box((-9, -9, 0), (9, 9, 0.1))]))
-    own = pe.Evaluator(SPACE, pe.Prior.road(), hall, samples=5000)
-    assert not own.score(rig_at((0.3, 0.2, 1.6)), preview=True).preview
-    wide = pe.Vehicle(np.concatenate([CAR.triangles, shapes.box((-9, -4, 0), (9, 4, 0.1))]))
-    own = pe.Evaluator(SPACE, pe.Prior.road(), wide, samples=5000)
-    assert own.score(rig_at((0.3, 0.2, 1.6)), preview=True).preview
-
-
 def test_a_roof_hides_what_is_below_its_edge():
     """A 2 x 2 m plate seen from 0.5 m above its middle: its edge is 26.6 degrees down ahead."""
     plate = shapes.box((-1, -1, 1.0), (1, 1, 1.1))

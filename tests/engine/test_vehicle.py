@@ -84,29 +84,6 @@ def test_the_height_map_needs_no_closed_mesh():
     assert (np.abs(space.centers(0)[i]) < 1).all()
 
 
-@pytest.mark.parametrize(
-    ("triangles", "found"),
-    [(np.zeros((0, 3, 3)), r"\(0, 3, 3\)"), (np.zeros((4, 3)), r"\(4, 3\)")],
-)
-def test_a_mesh_without_triangles_is_refused(triangles, found):
-    with pytest.raises(pe.InputError, match=f"triangles.*{found}"):
-        pe.Vehicle(triangles)
-
-
-def test_a_mesh_with_nan_is_refused():
-    triangles = shapes.box((0, 0, 0), (1, 1, 1))
-    triangles[5, 1, 2] = np.nan
-    with pytest.raises(pe.InputError, match="triangle 5"):
-        pe.Vehicle(triangles)
-
-
-def test_a_mesh_of_another_world_is_refused():
-    triangles = shapes.box((-2, -1, 0), (2, 1, 1.5))
-    triangles[7] *= 1e4
-    with pytest.raises(pe.InputError, match=r"within \+-10000 m, found triangle 7 beyond"):
-        pe.Vehicle(triangles)
-
-
 def test_glass_must_name_a_part():
     with pytest.raises(pe.InputError, match=r"glass.*body, cabin.*'window'"):
         car = shapes.box_car()

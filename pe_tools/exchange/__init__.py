@@ -4,6 +4,7 @@ from pe_core.study.passthrough import Passthrough as Passthrough
 
 from .autoware import read_vehicle_info as read_vehicle_info
 from .exporting import export_rig as export_rig
+from .exporting import lost_line as lost_line
 from .exporting import rig_files as rig_files
 from .exporting import write_files as write_files
 from .foreign_values import MAX_BEAMS as MAX_BEAMS
@@ -15,15 +16,14 @@ from .importing import ImportedRig as ImportedRig
 from .importing import import_rig as import_rig
 from .lens_pictures import Picture as Picture
 from .lens_pictures import straight as straight
-from .losses import MAX_RANGE as MAX_RANGE
-from .losses import MIN_RANGE as MIN_RANGE
-from .losses import MODEL as MODEL
-from .losses import lost_line as lost_line
 from .portable import PortableSensor as PortableSensor
 from .portable import with_pictures as with_pictures
 from .portable_kinds import picture_of as picture_of
 from .portable_kinds import portable_sensors as portable_sensors
 from .rig_formats import FILES as FILES
+from .rig_formats import MAX_RANGE as MAX_RANGE
+from .rig_formats import MIN_RANGE as MIN_RANGE
+from .rig_formats import MODEL as MODEL
 from .rig_formats import RIG_FORMATS as RIG_FORMATS
 from .rig_formats import format_of_file as format_of_file
 from .rig_formats import rig_format as rig_format

@@ -12,8 +12,8 @@ do not change either.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pe_core import catalog
@@ -24,19 +24,27 @@ from pe_core.scene.vehicle_description import Reference
 from pe_tools.formats.yaml_text import KeyPath, YamlText, parse_yaml
 
 from .camera_info import info_files, info_name, picture_of_info, with_info
-from .foreign_values import Export, FileTexts, named_numbers, plain_number, pose_from, text_of
+from .foreign_values import (
+    RPY,
+    XYZ,
+    Export,
+    FileTexts,
+    named_numbers,
+    plain_number,
+    pose_from,
+    pose_numbers,
+    text_of,
+)
 from .frames import composed, seen_from, with_legal_frames
 from .lens_pictures import alike
 from .passthrough import is_there, is_turned_so
-from .portable import PortableRig, PortableSensor, merged_lines
+from .portable import ORIGIN, PortableRig, PortableSensor, merged_lines
 from .portable_kinds import CAMERA, LIDAR, RADAR
 
 BASE, KIT = "base_link", "sensor_kit_base_link"
 TO_KIT, IN_KIT = "sensors_calibration.yaml", "sensor_kit_calibration.yaml"
-FILES = IN_KIT, TO_KIT
 FRAMES = {CAMERA: "/camera_link", LIDAR: "_base_link", RADAR: "/radar_link"}
 """Suffixes of frame names, by kind."""
-POSITION_KEYS, ROTATION_KEYS = ("x", "y", "z"), ("roll", "pitch", "yaw")
 HEAD = "# Metres and radians; R = Rz(yaw) Ry(pitch) Rx(roll); x forward, y left, z up.\n"
 NO_INFO = "the kit has no camera_info of it; its lens is not written"
 
@@ -47,7 +55,7 @@ class Unit:
 
     text: YamlText
     parent: str
-    frames: Mapping[str, Pose] = field(default_factory=dict)
+    frames: Mapping[str, Pose]
 
 
 def kit_texts(folder: Path) -> dict[str, str]:
@@ -75,19 +83,16 @@ def _units(folder: Path, texts: Mapping[str, str]) -> dict[str, Unit]:
         (parent,) = parents
         if file != TO_KIT and parent not in units[TO_KIT].frames:
             raise InputError(folder / TO_KIT, BASE, parent, ", ".join(units[TO_KIT].frames))
-        units[file] = Unit(yaml, parent, dict(_frames(path, yaml, parent)))
+        if parent not in yaml.data:
+            raise InputError(path, parent, "a mapping of frames", "nothing")
+        table = Table(yaml.data, str(path)).table(parent)
+        frames = {}
+        for name in table.names:
+            row = table.table(name)
+            position, angles = (named_numbers(row, keys) for keys in (XYZ, RPY))
+            frames[name] = pose_from(path, row.path, position, angles)
+        units[file] = Unit(yaml, parent, frames)
     return units
-
-
-def _frames(path: Path, yaml: YamlText, parent: str) -> Iterator[tuple[str, Pose]]:
-    """Yield the name of each frame below a parent, and its pose in the parent's frame."""
-    if parent not in yaml.data:
-        raise InputError(path, parent, "a mapping of frames", "nothing")
-    table = Table(yaml.data, str(path)).table(parent)
-    for name in table.names:
-        row = table.table(name)
-        position, angles = (named_numbers(row, keys) for keys in (POSITION_KEYS, ROTATION_KEYS))
-        yield name, pose_from(path, row.path, position, angles)
 
 
 def _models(unit: Unit) -> dict[str, str]:
@@ -112,14 +117,12 @@ def read(path: Path) -> PortableRig:
     parents = {unit.parent for unit in units}
     poses |= {name: pose for name, pose in base.frames.items() if name not in parents}
     models = {frame: model for unit in (base, *units) for frame, model in _models(unit).items()}
-    return with_info(folder, [_sensor(f, pose, models.get(f)) for f, pose in poses.items()])
-
-
-def _sensor(frame: str, pose: Pose, model: str | None) -> PortableSensor:
-    for kind, suffix in FRAMES.items():
-        if frame.endswith(suffix):
-            return PortableSensor(frame.removesuffix(suffix), pose, kind, model)
-    return PortableSensor(frame, pose, None, model)
+    sensors = []
+    for frame, pose in poses.items():
+        kind = next((kind for kind, suffix in FRAMES.items() if frame.endswith(suffix)), None)
+        name = frame.removesuffix(FRAMES.get(kind or "", ""))
+        sensors.append(PortableSensor(name, pose, kind, models.get(frame)))
+    return with_info(folder, sensors)
 
 
 def source(path: Path) -> dict[str, str]:
@@ -158,28 +161,14 @@ def _base_frame(sensor: PortableSensor) -> Pose:
     return composed(sensor.pose, Pose((0.0, 0.0, -height))) if height else sensor.pose
 
 
-def _base_text(sensor: PortableSensor) -> str:
-    """Return where a LiDAR's frame is relative to the centre of its scan."""
-    if height := _height(sensor):
-        return (
-            f"its frame is {1000.0 * height:.1f} mm below the centre of its scan ({sensor.model})"
-        )
-    return (
-        f"its frame is written at the centre of its scan; Autoware's description of {sensor.model} "
-        "may want the base of the housing"
-    )
+def _frame_lines(sensor: PortableSensor, unit: Pose) -> list[str]:
+    """Return the YAML lines of a sensor's frame on a unit; the model name becomes a comment."""
+    model = f"  # {sensor.known_model}" if sensor.known_model else ""
+    return _lines_of(f"{_frame_of(sensor)}:{model}", seen_from(unit, _base_frame(sensor)))
 
 
-def _frame_lines(name: str, pose: Pose, model: str) -> list[str]:
-    """Return the YAML lines of a frame; the model name becomes a comment."""
-    head = f"{name}:" + (f"  # {model}" if model else "")
-    return [head, *(f"  {key}: {value}" for key, value in _pose_texts(pose).items())]
-
-
-def _pose_texts(pose: Pose) -> dict[str, str]:
-    """Return the coordinates and angles of a pose as text, by YAML key."""
-    numbers = zip((*POSITION_KEYS, *ROTATION_KEYS), (*pose.position, *pose.rpy), strict=True)
-    return {key: plain_number(value) for key, value in numbers}
+def _lines_of(head: str, pose: Pose) -> list[str]:
+    return [head, *(f"  {key}: {plain_number(v)}" for key, v in pose_numbers(pose).items())]
 
 
 def write(sensors: PortableRig, texts: FileTexts) -> Export:
@@ -195,9 +184,18 @@ def write(sensors: PortableRig, texts: FileTexts) -> Export:
         included, slashes=True, frames=lambda sensor: (_frame_of(sensor),), taken=parents
     )
     files, own_lines = _updated(units, texts, named) if units else (_new(named), [])
-    pairs = ((sensor.name, _base_text(sensor)) for sensor in named if sensor.kind == LIDAR)
+    notes = []
+    for sensor in (sensor for sensor in named if sensor.kind == LIDAR):
+        text = (
+            "its frame is written at the centre of its scan; Autoware's description of "
+            f"{sensor.model} may want the base of the housing"
+        )
+        if height := _height(sensor):
+            below = f"{1000.0 * height:.1f} mm below the centre of its scan"
+            text = f"its frame is {below} ({sensor.model})"
+        notes.append((sensor.name, text))
     written = {name: text.encode() for name, text in files.items()}
-    return written, [*lines, *own_lines, *merged_lines(pairs)]
+    return written, [*lines, *own_lines, *merged_lines(notes)]
 
 
 def _new(sensors: Sequence[PortableSensor]) -> dict[str, str]:
@@ -205,31 +203,31 @@ def _new(sensors: Sequence[PortableSensor]) -> dict[str, str]:
     middle = [sum(s.pose.position[k] for s in sensors) / len(sensors) for k in range(3)]
     x, y, z = (round(v, 2) for v in middle)
     kit = Pose((x, y, z))
-    frames = [(_frame_of(s), seen_from(kit, _base_frame(s)), s.known_model or "") for s in sensors]
+    frames = [line for sensor in sensors for line in _frame_lines(sensor, kit)]
     files = {}
-    for file, parent, rows in ((TO_KIT, BASE, [(KIT, kit, "")]), (IN_KIT, KIT, frames)):
-        lines = [f"  {line}\n" for row in rows for line in _frame_lines(*row)]
-        files[file] = f"{HEAD}{parent}:\n{''.join(lines)}"
+    for file, parent, lines in ((TO_KIT, BASE, _lines_of(f"{KIT}:", kit)), (IN_KIT, KIT, frames)):
+        files[file] = HEAD + "\n  ".join([f"{parent}:", *lines]) + "\n"
     return files | info_files(sensors)
 
 
 def _updated(
     units: Mapping[str, Unit], texts: Mapping[str, str], named: Sequence[PortableSensor]
 ) -> tuple[dict[str, str], list[str]]:
-    """Return the files of an existing kit with the sensors' poses, models and lenses."""
+    """Return the files of an existing kit with the sensors' poses, models and lenses.
+
+    Added sensors go into the first unit.
+    """
     by_frame = {_frame_of(sensor): sensor for sensor in named}
     parents = {unit.parent for unit in units.values()}
     base, known = units[TO_KIT].frames, {f for unit in units.values() for f in unit.frames}
     added = [sensor for frame, sensor in by_frame.items() if frame not in known]
-    files, is_first = {}, True
+    files, left = {}, added
     for file, unit in units.items():
-        pose = None if file == TO_KIT else base[unit.parent]
-        new_lines = []
-        if pose is not None and is_first:  # added sensors go into the first unit
-            for sensor in added:
-                frame_pose = seen_from(pose, _base_frame(sensor))
-                new_lines += _frame_lines(_frame_of(sensor), frame_pose, sensor.known_model or "")
-            is_first = False
+        pose = ORIGIN if file == TO_KIT else base[unit.parent]
+        new_lines: list[str] = []
+        if file != TO_KIT:
+            new_lines = [line for sensor in left for line in _frame_lines(sensor, pose)]
+            left = []
         files[file] = _patched(unit, pose, by_frame, new_lines)
     infos, lines = _infos(texts, named, added)
     if kept := sorted(known - by_frame.keys() - parents):
@@ -238,36 +236,29 @@ def _updated(
 
 
 def _patched(
-    unit: Unit, pose: Pose | None, by_frame: Mapping[str, PortableSensor], added: Sequence[str]
+    unit: Unit, pose: Pose, by_frame: Mapping[str, PortableSensor], added: Sequence[str]
 ) -> str:
-    """Return the text of a file with the new poses of the frames that moved.
+    """Return the text of a file with the new coordinates, or all angles, of frames that moved.
 
-    `pose` is that of the unit on base_link; None for frames directly on base_link.
+    `pose` is that of the unit on base_link.
     """
     values: dict[KeyPath, str] = {}
-    for frame in unit.frames.keys() & by_frame.keys():
-        now = _base_frame(by_frame[frame])
-        now = now if pose is None else seen_from(pose, now)
-        texts = _pose_texts(now)
-        changed = _changed(unit.frames[frame], now)
-        values |= {(unit.parent, frame, key): texts[key] for key in changed}
     comments: dict[KeyPath, str] = {}
-    for frame in _models(unit).keys() & by_frame.keys():
-        model = by_frame[frame].known_model or ""
-        if model in catalog.entries():
+    models = _models(unit)
+    for frame in unit.frames.keys() & by_frame.keys():
+        sensor, old = by_frame[frame], unit.frames[frame]
+        now = seen_from(pose, _base_frame(sensor))
+        moved = zip(XYZ, old.position, now.position, strict=True)
+        changed = [key for key, a, b in moved if not is_there(a, b)]
+        changed += [] if is_turned_so(old, now) else RPY
+        numbers = pose_numbers(now)
+        values |= {(unit.parent, frame, key): plain_number(numbers[key]) for key in changed}
+        model = sensor.known_model or ""
+        if frame in models and model in catalog.entries():
             comments[unit.parent, frame] = model
-        elif by_frame[frame].kind != CAMERA:  # such a camera is described by its camera_info
+        elif frame in models and sensor.kind != CAMERA:  # its camera_info describes a camera
             comments[unit.parent, frame] = ""
     return unit.text.edited(values, comments, ((unit.parent,), added))
-
-
-def _changed(old: Pose, now: Pose) -> Iterator[str]:
-    """Yield the keys to rewrite: changed coordinates, or all angles if the rotation changed."""
-    for key, a, b in zip(POSITION_KEYS, old.position, now.position, strict=True):
-        if not is_there(a, b):
-            yield key
-    if not is_turned_so(old, now):
-        yield from ROTATION_KEYS
 
 
 def _infos(

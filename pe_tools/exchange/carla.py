@@ -11,36 +11,21 @@ from pathlib import Path
 from typing import Any
 
 from pe_core.base.errors import InputError
-from pe_core.base.serialization import parse_json
+from pe_core.base.serialization import dump_json, parse_json
 from pe_core.base.table_reader import Table
 from pe_core.base.values import Number
 from pe_core.study.passthrough import json_entry
 
-from .foreign_values import (
-    CHANNELS,
-    PIXELS,
-    RANGE,
-    Export,
-    FileTexts,
-    json_bytes,
-    json_of,
-    json_rows,
-    named_numbers,
-    pose_from,
-)
-from .frames import ORIGIN, with_legal_frames
+from . import foreign_values as values
+from .foreign_values import PIXELS, RANGE, RPY, XYZ, Export, FileTexts, json_of, json_rows
+from .frames import with_legal_frames
 from .lens_pictures import picture_of_fov
 from .passthrough import entry_row
-from .portable import FieldOfView, PortableRig, PortableSensor, Scan, uneven
+from .portable import ORIGIN, FieldOfView, PortableRig, PortableSensor, Scan, uneven
 from .portable_kinds import CAMERA, LIDAR, RADAR
 
 FILE = "objects.json"
-FILES = (FILE,)
-TYPES = {
-    CAMERA: "sensor.camera.rgb",
-    LIDAR: "sensor.lidar.ray_cast",
-    RADAR: "sensor.other.radar",
-}
+TYPES = {CAMERA: "camera.rgb", LIDAR: "lidar.ray_cast", RADAR: "other.radar"}
 FRAMES_A_SECOND = 10
 TINY_DEG = 1e-6
 SCAN_KEYS = (
@@ -56,7 +41,6 @@ ACROSS, UPWARDS = "horizontal_fov", "vertical_fov"
 RADAR_FOV_DEG, RADAR_RANGE_M = 30.0, 100.0
 """CARLA's defaults of a radar: both angles, and the range (sensors reference)."""
 FIGURES = ("image_size_x", "image_size_y", "fov", *SCAN_KEYS, ACROSS, UPWARDS)
-POSITION_KEYS, ROTATION_KEYS = ("x", "y", "z"), ("roll", "pitch", "yaw")
 
 
 def write(sensors: PortableRig, texts: FileTexts) -> Export:
@@ -75,7 +59,7 @@ def write(sensors: PortableRig, texts: FileTexts) -> Export:
             ends = f"{math.degrees(low):g} to {math.degrees(high):g} deg"
             text = f"CARLA's horizontal_fov is to both sides alike; its azimuths are {ends}"
             lines.append(f"{sensor.name}: {text}")
-    return {FILE: json_bytes(document)}, lines + uneven(named, "CARLA")
+    return {FILE: dump_json(document).encode()}, lines + uneven(named, "CARLA")
 
 
 def _place_of_sensors(source: object, document: Any) -> tuple[dict[str, Any], str]:
@@ -96,12 +80,8 @@ def _place_of_sensors(source: object, document: Any) -> tuple[dict[str, Any], st
 
 
 def _row(sensor: PortableSensor) -> dict[str, Any]:
-    numbers = (*sensor.pose.position, *sensor.pose.rotation_deg)
-    row: dict[str, Any] = {
-        "type": TYPES[sensor.kind or ""],
-        "id": sensor.name,
-        SPAWN: dict(zip((*POSITION_KEYS, *ROTATION_KEYS), numbers, strict=True)),
-    }
+    row: dict[str, Any] = {"type": f"sensor.{TYPES[sensor.kind or '']}", "id": sensor.name}
+    row[SPAWN] = values.pose_numbers(sensor.pose, degrees=True)
     if sensor.picture is not None and sensor.picture.size is not None:
         width, height = sensor.picture.size
         fov = math.degrees(2.0 * math.atan(width / (2.0 * sensor.picture.fx)))
@@ -148,9 +128,8 @@ def _sensor(path: Path, row: Table) -> PortableSensor:
     if SPAWN not in row:  # a pseudo sensor: CARLA's own view of the world
         return PortableSensor(row.text("id"), ORIGIN, "pseudo", entry=json_entry(row.data))
     spawn = row.table(SPAWN)
-    position = named_numbers(spawn, POSITION_KEYS)
-    angles = [spawn.number(key, 0.0) for key in ROTATION_KEYS]
-    pose = pose_from(path, row.field(SPAWN), position, angles, degrees=True)
+    position, angles = values.named_numbers(spawn, XYZ), [spawn.number(key, 0.0) for key in RPY]
+    pose = values.pose_from(path, row.field(SPAWN), position, angles, degrees=True)
     kind = next((kind for kind in (CAMERA, LIDAR) if f".{kind}." in type_name), None)
     kind = kind or type_name.removeprefix("sensor.").removeprefix("other.")
     sensor = PortableSensor(row.text("id"), pose, kind, entry=json_entry(row.data))
@@ -172,7 +151,7 @@ def _sensor(path: Path, row: Table) -> PortableSensor:
 
 def _scan(row: Table) -> Scan:
     frames = row.number("rotation_frequency", rule=TURNS)
-    channels = row.whole("channels", rule=CHANNELS)
+    channels = row.whole("channels", rule=values.CHANNELS)
     beams = row.number("points_per_second", rule=RATE) / frames
     low, high = (math.radians(row.number(key, rule=UP)) for key in ("lower_fov", "upper_fov"))
     if low > high:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,32 +16,18 @@ from pe_core.sensors.camera.kind import FOV_DEG
 from pe_core.sensors.camera.lens_models import LENSES
 from pe_core.study.passthrough import json_entry
 
-from .foreign_values import (
-    FARTHEST,
-    MAX_FRAMES,
-    MIN_RANGE,
-    PIXELS,
-    Export,
-    FileTexts,
-    figure,
-    plain_number,
-    pose_from,
-    require_at_most,
-    spaced,
-    text_of,
-    whole_figure,
-)
+from . import foreign_values as values
+from .foreign_values import Export, FileTexts, plain_number
 from .lens_pictures import Picture
 from .passthrough import entry_row
 from .portable import PortableRig, PortableSensor
 from .portable_kinds import has_model
 
 FILE = "rig.csv"
-FILES = (FILE,)
 POSITION_KEYS, ROTATION_KEYS = ("x_m", "y_m", "z_m"), ("roll_deg", "pitch_deg", "yaw_deg")
 FIGURES = ("width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px")
 LENS = (*FIGURES, "lens", "coefficients", "fov_deg")
-RANGES = ("min_range_m", "max_range_m")
+RANGES = {"min_range_m": values.MIN_RANGE, "max_range_m": values.FARTHEST}
 COLUMNS = ("name", "kind", "model", *POSITION_KEYS, *ROTATION_KEYS, "fusion", *LENS, *RANGES)
 PARAMETERS = "parameters"
 """Column of a rig with sensors whose models have neither lens nor beams: tables as JSON."""
@@ -71,9 +57,9 @@ def _row(sensor: PortableSensor) -> dict[str, str]:
     if picture is not None and picture.size is not None:
         lens = picture.lens
         figures = [plain_number(v) for v in (lens.fx, lens.fy, lens.cx, lens.cy)]
-        values = spaced([getattr(lens, key) for key in lens.coefficients])
+        coefficients = values.spaced([getattr(lens, key) for key in lens.coefficients])
         fov = "" if lens.fov is None else plain_number(math.degrees(lens.fov))
-        lens_cells = [*map(str, picture.size), *figures, lens.model, values, fov]
+        lens_cells = [*map(str, picture.size), *figures, lens.model, coefficients, fov]
     ranges = (sensor.min_range, sensor.max_range)
     cells = (
         sensor.name,
@@ -90,66 +76,61 @@ def _row(sensor: PortableSensor) -> dict[str, str]:
 
 def read(path: Path) -> PortableRig:
     """Read a table of sensors. Only the columns of name, position and angles are required."""
-    lines = [line for line in text_of(path).splitlines() if line and not line.startswith("#")]
-    require_at_most(path, "file", len(lines), MAX_FRAMES, "rows")
+    lines = [
+        line for line in values.text_of(path).splitlines() if line and not line.startswith("#")
+    ]
+    values.require_at_most(path, "file", len(lines), values.MAX_FRAMES, "rows")
     rows = csv.DictReader(lines)
     try:
         for key in ("name", *POSITION_KEYS, *ROTATION_KEYS):
             if key not in (rows.fieldnames or ()):
                 expected = f"the columns {', '.join(COLUMNS)}"
                 raise InputError(path, key, expected, "none of that name")
-        return tuple(_SensorCells(path, f"row {k}", row).sensor() for k, row in enumerate(rows, 1))
+        return tuple(_sensor(path, f"row {k}", row) for k, row in enumerate(rows, 1))
     except csv.Error as error:
         raise InputError(path, "file", "a table (CSV)", error) from None
 
 
-class _SensorCells:
-    """The cells of a row by column; `place` is its name in messages."""
+def _sensor(path: Path, place: str, row: Mapping[str, Any]) -> PortableSensor:
+    """Return the sensor of a row, `place`; one of unknown kind has its cells as entry."""
+    # Cells that a row lacks or has too many are no texts.
+    cells = {k: unmarked(c) if isinstance(c, str) else c for k, c in row.items()}
 
-    def __init__(self, path: Path, place: str, cells: Mapping[str, Any]) -> None:
-        # Cells that a row lacks or has too many are no texts.
-        self.cells = {k: unmarked(c) if isinstance(c, str) else c for k, c in cells.items()}
-        self.path, self.place = path, place
+    def number(key: str, rule: Number = FINITE) -> float:
+        return values.figure(path, f"{place}, {key}", cells[key], rule)
 
-    def number(self, key: str, rule: Number = FINITE) -> float:
-        """Return the number of a cell, or raise `InputError`."""
-        return figure(self.path, f"{self.place}, {key}", self.cells[key], rule)
+    numbers = [number(key) for key in (*POSITION_KEYS, *ROTATION_KEYS)]
+    pose = values.pose_from(path, place, numbers[:3], numbers[3:], degrees=True)
+    kind, model, fusion = (cells.get(key) or None for key in ("kind", "model", "fusion"))
+    nearest, farthest = (
+        number(key, rule) if cells.get(key) else None for key, rule in RANGES.items()
+    )
+    picture = _picture(path, place, cells, number) if all(map(cells.get, FIGURES)) else None
+    properties = kind, model, picture, None, fusion, nearest, farthest
+    parameters = cells.get(PARAMETERS) or ""
+    sensor = PortableSensor(cells["name"], pose, *properties, parameters=parameters)
+    if kind is None or has_model(sensor):
+        return sensor
+    kept = {key: cells[key] for key in (*COLUMNS, PARAMETERS) if key in cells}
+    return replace(sensor, entry=json_entry(kept))
 
-    def sensor(self) -> PortableSensor:
-        """Return the sensor; one of unknown kind has its cells as entry."""
-        numbers = [self.number(key) for key in (*POSITION_KEYS, *ROTATION_KEYS)]
-        pose = pose_from(self.path, self.place, numbers[:3], numbers[3:], degrees=True)
-        kind, model, fusion = (self.cells.get(key) or None for key in ("kind", "model", "fusion"))
-        nearest, farthest = (
-            self.number(key, rule) if self.cells.get(key) else None
-            for key, rule in zip(RANGES, (MIN_RANGE, FARTHEST), strict=True)
-        )
-        properties = kind, model, self._picture(), None, fusion, nearest, farthest
-        parameters = self.cells.get(PARAMETERS) or ""
-        sensor = PortableSensor(self.cells["name"], pose, *properties, parameters=parameters)
-        if kind is None or has_model(sensor):
-            return sensor
-        cells = {key: self.cells[key] for key in (*COLUMNS, PARAMETERS) if key in self.cells}
-        return replace(sensor, entry=json_entry(cells))
 
-    def _picture(self) -> Picture | None:
-        """Return the lens of a row; None if one of its columns is empty."""
-        cells, path = self.cells, self.path
-        if not all(cells.get(key) for key in FIGURES):
-            return None
-        width, height = (
-            whole_figure(path, f"{self.place}, {key}", cells[key], PIXELS) for key in FIGURES[:2]
-        )
-        fx, fy, cx, cy = map(self.number, FIGURES[2:])
-        lens = LENSES[choice(path, f"{self.place}, lens", cells.get("lens") or "pinhole", LENSES)]
-        field, words = f"{self.place}, coefficients", (cells.get("coefficients") or "").split()
-        if len(words) > len(lens.coefficients):
-            expected = f"at most {len(lens.coefficients)} of a {lens.model} lens"
-            raise InputError(path, field, expected, len(words))
-        values = [figure(path, field, word) for word in words]
-        fov = None
-        if cells.get("fov_deg"):
-            degrees = self.number("fov_deg")
-            fov = math.radians(FOV_DEG.checked(path, f"{self.place}, fov_deg", degrees))
-        figures = dict(zip(lens.coefficients, values, strict=False))
-        return Picture(lens(fx, fy, cx, cy, fov, **figures), (width, height))
+def _picture(
+    path: Path, place: str, cells: Mapping[str, Any], number: Callable[..., float]
+) -> Picture:
+    """Return the lens of a row."""
+    width, height = (
+        values.whole_figure(path, f"{place}, {key}", cells[key]) for key in FIGURES[:2]
+    )
+    fx, fy, cx, cy = map(number, FIGURES[2:])
+    lens = LENSES[choice(path, f"{place}, lens", cells.get("lens") or "pinhole", LENSES)]
+    field, words = f"{place}, coefficients", (cells.get("coefficients") or "").split()
+    if len(words) > len(lens.coefficients):
+        expected = f"at most {len(lens.coefficients)} of a {lens.model} lens"
+        raise InputError(path, field, expected, len(words))
+    figures = [values.figure(path, field, word) for word in words]
+    fov = None
+    if cells.get("fov_deg"):
+        fov = math.radians(FOV_DEG.checked(path, f"{place}, fov_deg", number("fov_deg")))
+    bent = dict(zip(lens.coefficients, figures, strict=False))
+    return Picture(lens(fx, fy, cx, cy, fov, **bent), (width, height))

@@ -12,38 +12,22 @@ from typing import Any
 import numpy as np
 
 from pe_core.base.errors import InputError, shown
-from pe_core.base.serialization import parse_json
+from pe_core.base.serialization import dump_json, parse_json
 from pe_core.base.table_reader import Table
 from pe_core.base.values import FINITE, Number, vector
 from pe_core.geometry.poses import METRES, Pose
 from pe_core.sensors.camera import FTheta
 from pe_core.study.passthrough import json_entry
 
-from .foreign_values import (
-    COEFFICIENT,
-    FOCAL,
-    PIXELS,
-    PRINCIPAL_POINT,
-    Export,
-    FileTexts,
-    figure,
-    figures,
-    json_bytes,
-    json_of,
-    json_rows,
-    plain_number,
-    pose_from,
-    spaced,
-    whole_figure,
-)
-from .frames import ORIGIN, composed, shifted
+from . import foreign_values as values
+from .foreign_values import Export, FileTexts, json_of, json_rows, plain_number, pose_from
+from .frames import composed, shifted
 from .lens_pictures import Picture, pinhole_picture
 from .passthrough import entry_row
-from .portable import PortableRig, PortableSensor
+from .portable import ORIGIN, PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
 FILE = "rig.json"
-FILES = (FILE,)
 POSE_KEY, ROTATION_KEY, POSITION_KEY = "nominalSensor2Rig_FLU", "roll-pitch-yaw", "t"
 TURN_CORRECTION, SHIFT_CORRECTION = "correction_sensor_R_FLU", "correction_rig_T"
 PROTOCOLS = {CAMERA: "camera.gmsl", LIDAR: "lidar.virtual"}
@@ -69,7 +53,7 @@ def write(sensors: PortableRig, texts: FileTexts) -> Export:
         rows.append(row)
     lines = [f"{s.name}: DriveWorks has no {s.kind}" for s in sensors
              if s.kind not in PROTOCOLS and not s.is_left_out]  # fmt: skip
-    return {FILE: json_bytes(document)}, lines
+    return {FILE: dump_json(document).encode()}, lines
 
 
 def source(path: Path) -> dict[str, str]:
@@ -164,7 +148,10 @@ def write_properties(picture: Picture) -> dict[str, str]:
         return {"Model": PINHOLE, **common, **focal}
     polynomial = [0.0, *(lens.fx * getattr(lens, key) for key in lens.coefficients)]
     linear_terms = {"linear-c": "1.0", "linear-d": "0.0", "linear-e": "0.0"}
-    polynomial_texts = {"polynomial": spaced(polynomial[:MAX_POWER]), "polynomial-type": FORWARD}
+    polynomial_texts = {
+        "polynomial": values.spaced(polynomial[:MAX_POWER]),
+        "polynomial-type": FORWARD,
+    }
     return {"Model": F_THETA, **common, **polynomial_texts, **linear_terms}
 
 
@@ -175,20 +162,23 @@ def read_properties(properties: Table) -> tuple[Picture | None, str]:
     """
     if not all(key in properties for key in (*MIDDLE, *SIZE)):
         return None, ""
-    cx, cy = (_number(properties, key, PRINCIPAL_POINT) for key in MIDDLE)
+
+    def number(key: str, rule: Number = FINITE) -> float:
+        return values.figure(properties.source, properties.field(key), properties.raw(key), rule)
+
+    cx, cy = (number(key, values.PRINCIPAL_POINT) for key in MIDDLE)
     width, height = (
-        whole_figure(properties.source, properties.field(key), properties.raw(key), PIXELS)
+        values.whole_figure(properties.source, properties.field(key), properties.raw(key))
         for key in SIZE
     )
-    size = width, height
     key = next((name for name in POLYNOMIALS if name in properties), None)
     if key is not None:
         coefficients = _rising(properties, key)
         max_radius = math.hypot(max(cx, width - cx), max(cy, height - cy))
         for name, default in (("linear-c", 1.0), ("linear-d", 0.0), ("linear-e", 0.0)):
-            number = _number(properties, name) if name in properties else default
-            if abs(number - default) > 0.01:  # one polynomial serves both axes
-                raise properties.error(name, f"{default:g}, within 0.01", f"{number:g}")
+            value = number(name) if name in properties else default
+            if abs(value - default) > 0.01:  # one polynomial serves both axes
+                raise properties.error(name, f"{default:g}, within 0.01", f"{value:g}")
         note, forward = "", coefficients
         direction = properties.text("polynomial-type", "", choices=("", FORWARD, BACKWARD))
         if not direction and key == POLYNOMIALS[0] and coefficients[1] >= GENTLE:
@@ -196,11 +186,11 @@ def read_properties(properties: Table) -> tuple[Picture | None, str]:
         if direction != FORWARD:
             forward, error_px = _turned_round(coefficients, max_radius)
             note = TURNED.format(error_px) if error_px > NOTICED_PX else ""
-        return Picture(FTheta(1.0, 1.0, cx, cy, None, *forward[1:]), size), note
+        return Picture(FTheta(1.0, 1.0, cx, cy, None, *forward[1:]), (width, height)), note
     if not all(key in properties for key in FOCAL_KEYS):
         return None, ""
-    fx, fy = (_number(properties, name, FOCAL) for name in FOCAL_KEYS)
-    return pinhole_picture(fx, fy, cx, cy, size), ""
+    fx, fy = (number(name, values.FOCAL) for name in FOCAL_KEYS)
+    return pinhole_picture(fx, fy, cx, cy, (width, height)), ""
 
 
 def _rising(properties: Table, key: str) -> list[float]:
@@ -209,7 +199,9 @@ def _rising(properties: Table, key: str) -> list[float]:
     expected = f"2 to {MAX_POWER + 1} numbers, the first of them 0 and the second above 0"
     if not isinstance(value, str) or not 2 <= len(value.split()) <= MAX_POWER + 1:
         raise properties.error(key, expected, shown(value))
-    coefficients = figures(properties.source, properties.field(key), value, None, COEFFICIENT)
+    coefficients = values.figures(
+        properties.source, properties.field(key), value, None, values.COEFFICIENT
+    )
     if coefficients[0] != 0.0 or coefficients[1] < GENTLEST:
         raise properties.error(key, expected, shown(value))
     return coefficients
@@ -230,7 +222,3 @@ def _turned_round(coefficients: list[float], max_radius: float) -> tuple[list[fl
     solution = np.linalg.lstsq(powers, radius, rcond=None)[0]
     error_px = float(np.abs(powers @ solution - radius).max()) if count else 0.0
     return [0.0, *(float(v) / scale**n for n, v in enumerate(solution, start=1))], error_px
-
-
-def _number(properties: Table, key: str, rule: Number = FINITE) -> float:
-    return figure(properties.source, properties.field(key), properties.raw(key), rule)

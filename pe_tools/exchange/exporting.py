@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from pe_core import catalog
 from pe_core.base.errors import InputError
 from pe_core.base.files import require_new, write_all_bytes
-from pe_core.scene.rig import Rig
+from pe_core.scene.rig import Rig, Sensor
 from pe_core.scene.vehicle_description import Reference
 from pe_core.study.passthrough import Passthrough
 
+from . import rig_formats as formats
 from .frames import origin_in_ground, seen_from, shifted
-from .losses import lost_line
 from .passthrough import listed_kinds, model_text, restored
-from .portable import with_pictures
+from .portable import PortableSensor, with_pictures
 from .portable_kinds import portable_sensors
-from .rig_formats import RigFormat, rig_format
+from .rig_formats import rig_format
 
 
 def rig_files(
@@ -25,6 +26,7 @@ def rig_files(
     name: str,
     reference: Reference | None = None,
     passthrough: Passthrough | None = None,
+    existing: Mapping[str, str] | None = None,
 ) -> tuple[Mapping[str, bytes], list[str]]:
     """Return a rig in another program's format.
 
@@ -38,6 +40,8 @@ def rig_files(
     passthrough : Passthrough, optional
         Content of an imported file besides the rig. It is written again if the file had this
         format.
+    existing : mapping of str to str, optional
+        Texts of files of this format by name, which are updated in place of the imported ones.
 
     Returns
     -------
@@ -49,22 +53,11 @@ def rig_files(
     InputError
         When the format is unknown, needs the rear axle, or cannot express the rig.
     """
-    kept = passthrough if passthrough is not None and passthrough.format == name else None
-    return _written(rig, rig_format(name), reference, kept, {} if kept is None else kept.files)
-
-
-def _written(
-    rig: Rig,
-    row: RigFormat,
-    reference: Reference | None,
-    passthrough: Passthrough | None,
-    texts: Mapping[str, str],
-) -> tuple[Mapping[str, bytes], list[str]]:
-    """Return the files of a rig and messages; existing `texts` are updated if there are any."""
+    row, texts, left_out_lines = rig_format(name), existing, []
     back = [-value for value in origin_in_ground(row.origin, reference, row.title)]
     moved = tuple(dataclasses.replace(s, pose=shifted(s.pose, back)) for s in portable_sensors(rig))
-    left_out_lines = []
-    if passthrough is not None:
+    if passthrough is not None and passthrough.format == name:
+        texts = texts or passthrough.files
         if (placed := passthrough.placed) is not None:
             moved = tuple(dataclasses.replace(s, pose=seen_from(placed, s.pose)) for s in moved)
         models = {sensor.name: model_text(sensor.model) for sensor in rig}
@@ -72,8 +65,47 @@ def _written(
         if left_out := listed_kinds((each.kind, each.name) for each in passthrough.left_out):
             left_out_lines = [f"as they came in: {left_out}"]
     sensors, lens_lines = with_pictures(moved, row.keeps, row.title)
-    files, lines = row.code.write(sensors, texts)
+    files, lines = row.code.write(sensors, texts or {})
     return files, [*lines, *lens_lines, *lost_line(rig, row.title, row.holds), *left_out_lines]
+
+
+def lost_line(rig: Rig, title: str, holds: frozenset[str]) -> list[str]:
+    """Return one message with the properties of a rig that are not in `holds`; [] if none.
+
+    Losses of lenses and of uneven LiDAR channels have messages of their own.
+    """
+    pairs = zip(rig, portable_sensors(rig), strict=True)
+    lost = {sensor.name: set(_owned(sensor, portable, holds)) - holds for sensor, portable in pairs}
+    parts = []
+    for feature in formats.EVERYTHING:
+        names = [name for name, features in lost.items() if feature in features]
+        if names:
+            parts.append(f"{feature} of {', '.join(names)}")
+    return [f"left out of {title}: {'; '.join(parts)}"] if parts else []
+
+
+def _owned(sensor: Sensor, portable: PortableSensor, holds: frozenset[str]) -> Iterator[str]:
+    """Yield the properties of a sensor that differ from the defaults of its model."""
+    if sensor.fusion is not None:
+        yield formats.FUSION
+    if sensor.curve is not None:
+        yield formats.CURVE
+    model = sensor.model
+    if formats.MODEL in holds and model.name in catalog.names(model.kind):
+        known = catalog.load(model.name)
+        if known is model or catalog.to_table(known) == catalog.to_table(model):
+            return
+    if portable.scan is not None:
+        yield formats.BEAMS
+        if formats.BEAMS not in holds:
+            return  # with its ranges
+    if portable.parameters:
+        yield formats.PARAMETERS
+        return  # with its ranges
+    if portable.min_range is not None:
+        yield formats.MIN_RANGE
+    if portable.max_range is not None and portable.scan is None:
+        yield formats.MAX_RANGE
 
 
 def export_rig(
@@ -106,13 +138,11 @@ def export_rig(
     InputError
         As `rig_files`, and when a file exists and `replace` is False, or cannot be written.
     """
-    row, output = rig_format(name), Path(output)
-    kept = passthrough if passthrough is not None and passthrough.format == name else None
-    texts: Mapping[str, str] = {} if kept is None else kept.files
+    row, output, existing = rig_format(name), Path(output), None
     # The last of a format's files tells whether the folder already holds this format.
     if replace and len(row.files) > 1 and (output / row.files[-1]).is_file():
-        texts = row.source(output) or texts
-    files, lines = _written(rig, row, reference, kept, texts)
+        existing = row.source(output)
+    files, lines = rig_files(rig, name, reference, passthrough, existing)
     return write_files(files, output, inside=len(row.files) > 1, replace=replace), lines
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from pe_core.base.errors import InputError, shown
 from pe_core.base.files import TEXT_BYTES, decode_text, read_bytes
-from pe_core.base.serialization import dump_json, parse_json
+from pe_core.base.serialization import parse_json
 from pe_core.base.table_reader import Table
 from pe_core.base.values import FINITE, Number, Whole, vector
 from pe_core.geometry.poses import METRES, ROTATION, ROTATION_DEG, Pose
@@ -39,11 +40,6 @@ def text_of(path: Path, max_bytes: int = TEXT_BYTES) -> str:
 def json_of(path: Path, max_bytes: int = TEXT_BYTES) -> Any:
     """Return the data of a JSON file. Raise `InputError` when it is not valid JSON."""
     return parse_json(path, text_of(path, max_bytes))
-
-
-def json_bytes(data: Any) -> bytes:
-    """Return data as a JSON file's bytes."""
-    return dump_json(data).encode()
 
 
 def json_rows(path: Path, data: Any, field: str = "") -> list[Table]:
@@ -77,6 +73,16 @@ def pose_from(
     if degrees:
         return Pose.from_degrees((x, y, z), (roll, pitch, yaw))
     return Pose((x, y, z), (roll, pitch, yaw))
+
+
+XYZ, RPY = ("x", "y", "z"), ("roll", "pitch", "yaw")
+"""Keys of a pose in most formats."""
+
+
+def pose_numbers(pose: Pose, *, degrees: bool = False) -> dict[str, float]:
+    """Return the coordinates [m] and the angles of a pose by key, in radians unless `degrees`."""
+    angles = pose.rotation_deg if degrees else pose.rpy
+    return dict(zip((*XYZ, *RPY), (*pose.position, *angles), strict=True))
 
 
 def named_numbers(table: Table, keys: Sequence[str]) -> tuple[float, ...]:
@@ -125,6 +131,34 @@ def figures(
     if count not in (None, len(words)):
         raise InputError(source, field, f"{count} numbers", shown(text))
     return [figure(source, field, word, rule) for word in words]
+
+
+@dataclass(frozen=True, slots=True)
+class Figures:
+    """Numbers of an element of a file, by key: None if it is absent, `InputError` if it is wrong.
+
+    `get` returns the value of a key, a number or its text, or None; `field` is its name in
+    messages.
+    """
+
+    source: object
+    get: Callable[[str], Any]
+    field: Callable[[str], str]
+
+    def number(self, key: str, rule: Number = FINITE) -> float | None:
+        """Return the number of a key that meets a rule."""
+        value = self.get(key)
+        return None if value is None else figure(self.source, self.field(key), value, rule)
+
+    def whole(self, key: str, rule: Whole = PIXELS) -> int | None:
+        """Return the integer of a key that meets a rule."""
+        value = self.get(key)
+        return None if value is None else whole_figure(self.source, self.field(key), value, rule)
+
+    def numbers(self, keys: Sequence[str], rule: Number = FINITE) -> list[float] | None:
+        """Return the numbers of several keys; None if one of them is absent."""
+        values = [self.number(key, rule) for key in keys]
+        return None if None in values else [value for value in values if value is not None]
 
 
 MAX_FRAMES = 10_000

@@ -23,8 +23,9 @@ from pe_core.base.values import vector
 from pe_core.geometry.poses import METRES, Pose, rpy_from_matrix
 from pe_core.scene.vehicle_description import Reference
 
-from .foreign_values import MAX_FRAMES, require_at_most
-from .portable import PortableSensor
+from .foreign_values import MAX_FRAMES, FileTexts, require_at_most
+from .passthrough import pose_of_entry
+from .portable import ORIGIN, PortableSensor
 from .portable_kinds import CAMERA
 
 Quaternion = tuple[float, float, float, float]
@@ -44,7 +45,11 @@ ASKING = "calibration"
 OPTICAL = "_optical"
 """Suffix of the name of a camera's optical frame."""
 ILLEGAL, ILLEGAL_IN_TF = (re.compile(f"[^A-Za-z0-9_{more}]+") for more in ("", "/"))
-ORIGIN = Pose((0.0, 0.0, 0.0))
+AXES = (
+    "x forward, y left, z up; metres, radians. NAME_optical looks along z, x right, y down (REP "
+    "103). "
+)
+"""Comment in files of ROS, after `origin_text`."""
 Hung = Mapping[str, tuple[str, Pose]]
 """Parent frame and pose in the parent frame, by frame name."""
 
@@ -258,12 +263,33 @@ def with_legal_frames(
     return tuple(renamed), lines
 
 
-def with_optical_frames(
-    sensors: Sequence[PortableSensor], taken: Collection[str]
-) -> tuple[tuple[PortableSensor, ...], list[str]]:
-    """Return sensors with legal names; each camera also has an optical frame (REP 103)."""
+def linked(
+    sensors: Sequence[PortableSensor], root: str
+) -> tuple[list[tuple[PortableSensor, list[tuple[str, str, Pose]]]], list[str]]:
+    """Return sensors with legal names, each with its frames below a root, and messages.
 
-    def own_and_optical(sensor: PortableSensor) -> tuple[str, ...]:
+    A frame is its parent, its name and its pose in the parent. A camera also has an optical frame
+    (REP 103). Sensors that an import left out come last, with the pose in their entry.
+    """
+
+    def names(sensor: PortableSensor) -> tuple[str, ...]:
         return (sensor.name, sensor.name + OPTICAL) if sensor.kind == CAMERA else (sensor.name,)
 
-    return with_legal_frames(sensors, frames=own_and_optical, taken=taken, not_ending=OPTICAL)
+    left_out = [sensor for sensor in sensors if sensor.is_left_out]
+    included = [sensor for sensor in sensors if not sensor.is_left_out]
+    taken = (root, *(sensor.name for sensor in left_out))
+    named, lines = with_legal_frames(included, frames=names, taken=taken, not_ending=OPTICAL)
+    result = []
+    for sensor in named:
+        links = [(root, sensor.name, sensor.pose)]
+        if sensor.kind == CAMERA:
+            links.append((sensor.name, sensor.name + OPTICAL, Pose(ORIGIN.position, OPTICAL_RPY)))
+        result.append((sensor, links))
+    return [*result, *((s, [(root, s.name, pose_of_entry(s))]) for s in left_out)], lines
+
+
+def origin_text(texts: FileTexts) -> str:
+    """Return the comment on the root of a file: the ground frame, or that of imported `texts`."""
+    if texts:
+        return " is that of the imported file: "
+    return " is on the ground under the vehicle's centre: "

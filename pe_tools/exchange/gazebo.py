@@ -1,78 +1,26 @@
-"""Gazebo's sensors in SDF: elements, cameras and LiDARs."""
+"""Gazebo's cameras and LiDARs in SDF.
+
+A missing value is None. One that violates its rule raises `InputError`: the author of the file did
+not mean it to be missing.
+"""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement
 
 from pe_core.base.errors import InputError
-from pe_core.base.values import SHARE, Number, Whole
+from pe_core.base.values import SHARE, Number
 from pe_core.sensors.camera import BrownConrady
 
-from .foreign_values import (
-    AZIMUTH,
-    CHANNELS,
-    COEFFICIENT,
-    ELEVATION,
-    FOCAL,
-    MIN_RANGE,
-    PIXELS,
-    PRINCIPAL_POINT,
-    RANGE,
-    STEPS,
-    figure,
-    figures,
-    plain_number,
-    spaced,
-    whole_figure,
-)
+from . import foreign_values as values
+from .foreign_values import Figures, plain_number
 from .lens_pictures import Picture, Size, picture_of_fov, pinhole_picture
 from .portable import Scan
 
-
-@dataclass(frozen=True, slots=True)
-class SensorElement:
-    """A ``<sensor>`` element; `element` is None if the file has none.
-
-    A missing value is returned as None. A value that violates its rule raises `InputError`: the
-    author of the file did not mean it to be missing.
-    """
-
-    path: Path
-    name: str
-    element: Element | None
-
-    def number(self, key: str, rule: Number) -> float | None:
-        """Return the number at a key; None if missing. Raise `InputError` if it is invalid."""
-        text = self._text(key)
-        return None if text is None else figure(self.path, self._field(key), text, rule)
-
-    def whole(self, key: str, rule: Whole) -> int | None:
-        """Return the integer at a key; None if missing. Raise `InputError` if it is invalid."""
-        text = self._text(key)
-        return None if text is None else whole_figure(self.path, self._field(key), text, rule)
-
-    def pair(self, key: str, rule: Number) -> list[float] | None:
-        """Return two numbers of one element; None if missing. Raise `InputError` if invalid."""
-        text = self._text(key)
-        return None if text is None else figures(self.path, self._field(key), text, 2, rule)
-
-    def numbers(self, keys: tuple[str, ...], rule: Number) -> list[float] | None:
-        """Return the numbers at several keys; None if one of them is missing."""
-        values = [self.number(key, rule) for key in keys]
-        return None if None in values else [value for value in values if value is not None]
-
-    def _text(self, key: str) -> str | None:
-        return None if self.element is None else self.element.findtext(f".//{key}")
-
-    def _field(self, key: str) -> str:
-        return f"sensor of {self.name}, {key}"
-
-
 BENT = ("k1", "k2", "k3", "p1", "p2")
 INTRINSICS = ("fx", "fy", "cx", "cy")
+ENDS, CENTER = ("min_angle", "max_angle"), "camera/distortion/center"
 NEAR_M, FAR_M = 0.01, 1000.0
 """Clip distances [m] written when a camera has only a minimum or only a maximum range."""
 WIDEST = Number(0.0, 2.0 * math.pi, above=True, unit="rad", noun="angle")
@@ -97,7 +45,7 @@ def write_picture(element: Element, picture: Picture, size: Size) -> None:
         for key in BENT:
             SubElement(distortion, key).text = repr(getattr(picture.lens, key))
         cx, cy = picture.center
-        SubElement(distortion, "center").text = spaced((cx / width, cy / height))
+        SubElement(distortion, "center").text = values.spaced((cx / width, cy / height))
 
 
 def write_clip(element: Element, nearest: float | None, farthest: float | None) -> None:
@@ -112,7 +60,7 @@ def write_clip(element: Element, nearest: float | None, farthest: float | None) 
     SubElement(clip, "far").text = plain_number(FAR_M if farthest is None else farthest)
 
 
-def picture_in(sensor: SensorElement) -> Picture | None:
+def picture_in(sensor: Figures) -> Picture | None:
     """Return a camera's intrinsics; None if its field of view or its image size is missing.
 
     Without intrinsics in the file, the principal point is the centre of the distortion, which is
@@ -120,13 +68,14 @@ def picture_in(sensor: SensorElement) -> Picture | None:
     pinhole; the result is None and the user has to choose a model.
     """
     fov = sensor.number("camera/horizontal_fov", WIDEST)
-    width, height = (sensor.whole(f"image/{key}", PIXELS) for key in ("width", "height"))
-    focal = sensor.numbers(tuple(f"lens/intrinsics/{key}" for key in INTRINSICS[:2]), FOCAL)
-    principal_point = sensor.numbers(
-        tuple(f"lens/intrinsics/{key}" for key in INTRINSICS[2:]), PRINCIPAL_POINT
-    )
-    distortion = [sensor.number(f"camera/distortion/{key}", COEFFICIENT) or 0.0 for key in BENT]
-    center = sensor.pair("camera/distortion/center", SHARE)
+    width, height = (sensor.whole(f"image/{key}") for key in ("width", "height"))
+    intrinsics = [f"lens/intrinsics/{key}" for key in INTRINSICS]
+    focal = sensor.numbers(intrinsics[:2], values.FOCAL)
+    principal_point = sensor.numbers(intrinsics[2:], values.PRINCIPAL_POINT)
+    keys = [f"camera/distortion/{key}" for key in BENT]
+    distortion = [sensor.number(key, values.COEFFICIENT) or 0.0 for key in keys]
+    text, field = sensor.get(CENTER), sensor.field(CENTER)
+    center = None if text is None else values.figures(sensor.source, field, text, 2, SHARE)
     if fov is None or width is None or height is None or fov >= math.pi:
         return None
     picture = picture_of_fov(fov, (width, height))
@@ -136,11 +85,8 @@ def picture_in(sensor: SensorElement) -> Picture | None:
     cx, cy = principal_point or picture.center
     if not any(distortion):
         return pinhole_picture(fx, fy, cx, cy, (width, height))
-    values = dict(zip(BENT, distortion, strict=True))
-    return Picture(BrownConrady(fx, fy, cx, cy, None, **values), (width, height))
-
-
-ENDS = ("min_angle", "max_angle")
+    bent = dict(zip(BENT, distortion, strict=True))
+    return Picture(BrownConrady(fx, fy, cx, cy, None, **bent), (width, height))
 
 
 def write_scan(element: Element, scan: Scan) -> None:
@@ -150,9 +96,9 @@ def write_scan(element: Element, scan: Scan) -> None:
         "horizontal": (scan.azimuths, *scan.fov),
         "vertical": (scan.channels, scan.low, scan.high),
     }
-    for name, values in parts.items():
+    for name, numbers in parts.items():
         part = SubElement(block, name)
-        for key, value in zip(("samples", *ENDS), values, strict=True):
+        for key, value in zip(("samples", *ENDS), numbers, strict=True):
             SubElement(part, key).text = repr(value)
     range_element = SubElement(element, "range")
     if scan.min_range:
@@ -160,21 +106,22 @@ def write_scan(element: Element, scan: Scan) -> None:
     SubElement(range_element, "max").text = repr(scan.max_range)
 
 
-def scan_in(sensor: SensorElement) -> Scan | None:
+def scan_in(sensor: Figures) -> Scan | None:
     """Return a LiDAR's scan; None if it is incomplete. Without ``<vertical>`` it has one channel.
 
     Angles that end before they begin raise `InputError`.
     """
-    azimuths = sensor.whole("horizontal/samples", STEPS)
-    across = sensor.numbers(tuple(f"horizontal/{end}" for end in ENDS), AZIMUTH)
-    max_range = sensor.number("range/max", RANGE)
+    azimuths = sensor.whole("horizontal/samples", values.STEPS)
+    across = sensor.numbers([f"horizontal/{end}" for end in ENDS], values.AZIMUTH)
+    max_range = sensor.number("range/max", values.RANGE)
     if azimuths is None or across is None or max_range is None:
         return None
-    channels = sensor.whole("vertical/samples", CHANNELS) or 1
-    low, high = sensor.numbers(tuple(f"vertical/{end}" for end in ENDS), ELEVATION) or (0.0, 0.0)
+    channels = sensor.whole("vertical/samples", values.CHANNELS) or 1
+    ends = [f"vertical/{end}" for end in ENDS]
+    low, high = sensor.numbers(ends, values.ELEVATION) or (0.0, 0.0)
     for name, (min_angle, max_angle) in (("horizontal", across), ("vertical", (low, high))):
         if min_angle > max_angle:
-            field, found = f"sensor of {sensor.name}, {name}", f"{min_angle:g}, {max_angle:g}"
-            raise InputError(sensor.path, field, f"{ENDS[0]} up to {ENDS[1]}", found)
-    nearest, fov = sensor.number("range/min", MIN_RANGE) or 0.0, (across[0], across[1])
+            expected, found = f"{ENDS[0]} up to {ENDS[1]}", f"{min_angle:g}, {max_angle:g}"
+            raise InputError(sensor.source, sensor.field(name), expected, found)
+    nearest, fov = sensor.number("range/min", values.MIN_RANGE) or 0.0, (across[0], across[1])
     return Scan(channels, low, high, azimuths, fov, max_range, min_range=nearest)

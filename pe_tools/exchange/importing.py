@@ -119,7 +119,12 @@ def _imported(
     left_out_names = listed_kinds((sensor.kind or "", sensor.name) for sensor in left_out)
     if not included:
         raise InputError(path, "sensors", "cameras or LiDARs", left_out_names or "none")
-    _check_chosen(path, models, [sensor.name for sensor in included], left_out)
+    kinds = {sensor.name: sensor.kind for sensor in left_out}
+    known = [sensor.name for sensor in included]
+    for key in models:
+        if key not in known:
+            found = f"a {kinds[key]}, which is left out" if key in kinds else "no sensor"
+            raise InputError(path, f"model of {key}", f"one of {', '.join(known)}", found)
     modelled = [_with_model(sensor, models.get(sensor.name), row) for sensor in included]
     rig = []
     for sensor, model, _ in modelled:
@@ -133,17 +138,6 @@ def _imported(
     lines = (*left_out_lines, *notes, *(line for _, _, line in modelled if line))
     to_choose = tuple(sensor.name for sensor, _, line in modelled if line.endswith(CHOOSE))
     return ImportedRig(Rig(rig), to_choose, lines, passthrough if passthrough.holds else None)
-
-
-def _check_chosen(
-    path: Path, models: Mapping[str, str], names: list[str], left_out: Sequence[PortableSensor]
-) -> None:
-    """Raise `InputError` if a model was chosen for a name that is no sensor of the rig."""
-    kinds = {sensor.name: sensor.kind for sensor in left_out}
-    for key in models:
-        if key not in names:
-            found = f"a {kinds[key]}, which is left out" if key in kinds else "no sensor"
-            raise InputError(path, f"model of {key}", f"one of {', '.join(names)}", found)
 
 
 def _kept(
@@ -169,12 +163,21 @@ def _with_model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> M
 
 
 def _model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> tuple[SensorModel, str]:
+    """Return the chosen model, the catalogue's, one of the file's figures, or a stand-in.
+
+    A camera that the catalogue has with another lens gets the file's lens.
+    """
     if chosen is not None:
         return catalog.load(chosen), ""
     normalized = NO_WORD.sub("", (sensor.model or "").lower())
     names = {NO_WORD.sub("", name.lower()): name for name in catalog.names(sensor.kind)}
     if normalized and normalized in names:
-        model, line = _known_or_own(sensor, catalog.load(names[normalized]), row)
+        model, line = catalog.load(names[normalized]), ""
+        ours, theirs = picture_of(model), sensor.picture
+        if ours and theirs is not None and not alike(row.keeps(ours), theirs):
+            note = f"{sensor.name}: its lens is not that of {model.name} in the catalogue, but the"
+            model, line = camera_of(sensor.name, theirs, row.usual_size)
+            line = line or f"{note} file's"
         return with_ranges(model, sensor), line
     if (own := portable_kind(sensor.kind).model(sensor, row.usual_size)) is not None:
         return own
@@ -184,15 +187,3 @@ def _model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> tuple[
         f"no {shown(sensor.model)} in the catalogue" if sensor.model else "no model in the file"
     )
     return catalog.load(stand_in), f"{sensor.name}: {reason}; {stand_in} stands in: {CHOOSE}"
-
-
-def _known_or_own(
-    sensor: PortableSensor, model: SensorModel, row: RigFormat
-) -> tuple[SensorModel, str]:
-    """Return the catalogue's model, or a camera with the file's lens if the lenses differ."""
-    picture = picture_of(model)
-    if picture is None or sensor.picture is None or alike(row.keeps(picture), sensor.picture):
-        return model, ""
-    camera, line = camera_of(sensor.name, sensor.picture, row.usual_size)
-    note = f"{sensor.name}: its lens is not that of {model.name} in the catalogue, but the file's"
-    return camera, line or note

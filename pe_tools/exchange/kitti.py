@@ -24,7 +24,6 @@ from .portable import PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
 FILE, MAX_CAMERAS = "calib.txt", 4
-FILES = (FILE,)
 RECTIFIED, TO_CAMERA = ("R0_rect", "R_rect"), ("Tr_velo_to_cam", "Tr_velo_cam", "Tr")
 ODOMETRY = "Tr"
 """Key of the transform to the rectified first camera; odometry files have no R_rect beside it."""

@@ -12,13 +12,14 @@ from pathlib import Path
 from typing import Any
 
 from pe_core.base.errors import InputError, shown
+from pe_core.base.serialization import dump_json
 from pe_core.base.table_reader import Table
 from pe_core.base.values import numbers, vector
 from pe_core.geometry.poses import METRES
 from pe_core.sensors.camera import BrownConrady
 from pe_core.study.passthrough import json_entry
 
-from .foreign_values import Export, FileTexts, json_bytes, json_of, json_rows
+from .foreign_values import Export, FileTexts, json_of, json_rows
 from .frames import (
     BODY_FROM_OPTICAL,
     BODY_FROM_RIGHT_FORWARD,
@@ -41,15 +42,17 @@ AXES = {CAMERA: BODY_FROM_OPTICAL, LIDAR: BODY_FROM_RIGHT_FORWARD}
 
 def write(sensors: PortableRig, _texts: FileTexts) -> Export:
     """Return the two tables, and messages on image sizes, which the tables cannot hold."""
-    calibrated = [entry_row(sensor, _calibrated, POSE, FIGURES, CALIBRATED) for sensor in sensors]
-    sensor_rows = [entry_row(sensor, _known, (), (), SENSORS) for sensor in sensors]
+    tables = {
+        CALIBRATED: [entry_row(s, _calibrated, POSE, FIGURES, CALIBRATED) for s in sensors],
+        SENSORS: [entry_row(s, _known, (), (), SENSORS) for s in sensors],
+    }
     sizes = [
         f"{s.name}: nuScenes' tables have no size of a picture; it is {w} x {h}"
         for s in sensors
         if s.picture is not None and s.picture.size is not None
         for w, h in [s.picture.size]
     ]
-    return {CALIBRATED: json_bytes(calibrated), SENSORS: json_bytes(sensor_rows)}, sizes
+    return {name: dump_json(rows).encode() for name, rows in tables.items()}, sizes
 
 
 def _known(sensor: PortableSensor) -> dict[str, Any]:

@@ -19,31 +19,18 @@ import numpy as np
 
 from pe_core.base.errors import InputError, shown
 from pe_core.base.table_reader import Table
-from pe_core.base.values import FINITE, Number, Whole, numbers, real
+from pe_core.base.values import Number, Whole, numbers, real
 from pe_core.geometry.poses import METRES
 from pe_core.study.passthrough import json_entry
 
-from .foreign_values import (
-    BEAM_BYTES,
-    MAX_BEAMS,
-    PIXELS,
-    PLAIN,
-    RANGE,
-    Export,
-    FileTexts,
-    figure,
-    json_of,
-    pose_from,
-    require_at_most,
-    whole_figure,
-)
+from . import foreign_values as values
+from .foreign_values import MAX_BEAMS, RANGE, RPY, XYZ, Export, FileTexts, require_at_most
 from .lens_pictures import picture_of_fov
 from .passthrough import entry_row
 from .portable import FieldOfView, PortableRig, PortableSensor, Scan
 from .portable_kinds import CAMERA, LIDAR, RADAR, ULTRASONIC
 
 FILE = "sensor_view_configuration.json"
-FILES = (FILE,)
 OTHER_KINDS = (RADAR, ULTRASONIC)
 """Kinds whose entries an export keeps: OSI has fields of theirs that are not read."""
 COUNTS = ("number_of_rays_horizontal", "number_of_rays_vertical", "max_number_of_interactions")
@@ -52,12 +39,11 @@ LISTS = {k: f"{k}_sensor_view_configuration" for k in (CAMERA, LIDAR, *OTHER_KIN
 DIGITS = 9
 """Decimals of a beam's direction; a LiDAR has up to 240,000 beams."""
 OTHER = "generic_sensor_view_configuration"
-POSITION_KEYS, ROTATION_KEYS = ("x", "y", "z"), ("roll", "pitch", "yaw")
 WIDEST = Number(1e-4, 2.0 * math.pi, unit="rad", noun="angle")
+"""Field of view, fisheyes included; that of a pinhole is below pi."""
 DIRECTION = (1e-6, 1e6)
 """Lengths of vectors that may be directions; OSI has them of length 1."""
 COUNT = Whole(0, 1_000_000_000)
-"""Field of view, fisheyes included; that of a pinhole is below pi."""
 IDENTIFIER = Whole(0, (1 << 64) - 1)
 STAND_IN_RANGE_M = 100.0
 """Range of a LiDAR if the file states none; it is that of the stand-in model."""
@@ -99,19 +85,19 @@ def write(sensors: PortableRig, _texts: FileTexts) -> Export:
 
 def _id_of(row: Message) -> int | None:
     """Return the id of an entry; None if it has none."""
-    return row.message("sensor_id").whole_figure("value", IDENTIFIER)
+    return row.message("sensor_id").figures.whole("value", IDENTIFIER)
 
 
 def _row(sensor: PortableSensor) -> dict[str, Any]:
+    """Return the pose of a sensor, its fields of view [rad], counts and directions of beams."""
     mounting = {
-        "position": dict(zip(POSITION_KEYS, sensor.pose.position, strict=True)),
-        "orientation": dict(zip(ROTATION_KEYS, sensor.pose.rpy, strict=True)),
+        "position": dict(zip(XYZ, sensor.pose.position, strict=True)),
+        "orientation": dict(zip(RPY, sensor.pose.rpy, strict=True)),
     }
     return {"mounting_position": mounting, **_figures(sensor)}
 
 
 def _figures(sensor: PortableSensor) -> dict[str, Any]:
-    """Return the OSI fields of a camera or LiDAR: fields of view [rad], counts, beam directions."""
     if sensor.picture is not None and sensor.picture.size is not None:
         (width, height), p = sensor.picture.size, sensor.picture
         return {
@@ -134,7 +120,7 @@ def _figures(sensor: PortableSensor) -> dict[str, Any]:
         "max_number_of_interactions": 1,
         "num_of_pixels": len(beams),
         "directions": [
-            dict(zip(POSITION_KEYS, beam, strict=True)) for beam in np.round(beams, DIGITS).tolist()
+            dict(zip(XYZ, beam, strict=True)) for beam in np.round(beams, DIGITS).tolist()
         ],
     }
 
@@ -144,8 +130,8 @@ def read(path: Path) -> PortableRig:
 
     Fields may have the names of the schema (snake case) or of protobuf's JSON (camel case).
     """
-    top = Message(json_of(path, BEAM_BYTES), str(path))
-    max_range = top.figure("range", RANGE)
+    top = Message(values.json_of(path, values.BEAM_BYTES), str(path))
+    max_range = top.figures.number("range", RANGE)
     sensors: dict[int, PortableSensor] = {}
     for kind, key in (*LISTS.items(), (None, OTHER)):
         for row in top.messages(key):
@@ -160,54 +146,39 @@ def read(path: Path) -> PortableRig:
 def _sensor(
     path: Path, row: Message, kind: str | None, number: int, max_range: float | None
 ) -> PortableSensor:
-    mounting = row.message("mounting_position")
-    position, orientation = mounting.message("position"), mounting.message("orientation")
-    coordinates = [position.figure(key, METRES) or 0.0 for key in POSITION_KEYS]
-    angles = [orientation.figure(key, FINITE) or 0.0 for key in ROTATION_KEYS]
-    sensor = PortableSensor(
-        f"{kind or 'sensor'}_{number}", pose_from(path, mounting.path, coordinates, angles), kind
-    )
+    mounting, figures = row.message("mounting_position"), row.figures
+    position, orientation = (mounting.message(key).figures for key in ("position", "orientation"))
+    coordinates = [position.number(key, METRES) or 0.0 for key in XYZ]
+    angles = [orientation.number(key) or 0.0 for key in RPY]
+    pose = values.pose_from(path, mounting.path, coordinates, angles)
+    sensor = PortableSensor(f"{kind or 'sensor'}_{number}", pose, kind)
+    # No release of OSI has a range per sensor, but configurations written by hand do.
+    reach = figures.number("range", RANGE) or max_range
+    across, up = (figures.number(key, WIDEST) for key in FIGURES)
     if kind in OTHER_KINDS:
-        seen = _field(row, row.figure("range", RANGE) or max_range)
-        return replace(sensor, entry=json_entry(row.data), field=seen)
-    row.figure("range", RANGE)
-    for key in FIGURES:
-        row.figure(key, WIDEST)
+        sensor = replace(sensor, entry=json_entry(row.data))
+        if across is None or up is None or reach is None:
+            return sensor
+        ends = (-across / 2.0, across / 2.0), (-up / 2.0, up / 2.0)
+        return replace(sensor, field=FieldOfView(*ends, reach))
     for key in COUNTS:
-        row.whole_figure(key, COUNT)
+        figures.whole(key, COUNT)
     if kind == CAMERA:
-        return _camera(row, sensor)
+        width, height = (figures.whole(f"number_of_pixels_{s}") for s in ("horizontal", "vertical"))
+        if width is None or height is None or across is None or max(across, up or 0.0) >= math.pi:
+            return sensor
+        return replace(sensor, picture=picture_of_fov(across, (width, height), up))
     if kind != LIDAR or "directions" not in row:
         return sensor
-    # No release of OSI has a range per LiDAR, but configurations written by hand do.
-    reach = row.figure("range", RANGE) or max_range
     note = "" if reach else f"no range in the file; {STAND_IN_RANGE_M:g} m stands in"
     return replace(sensor, scan=_scan(path, row, reach or STAND_IN_RANGE_M), told=note)
-
-
-def _field(row: Message, max_range: float | None) -> FieldOfView | None:
-    """Return the field of view of a radar or an ultrasonic sensor; None without angles or range."""
-    across, up = (row.figure(key, WIDEST) for key in FIGURES)
-    if across is None or up is None or max_range is None:
-        return None
-    return FieldOfView((-across / 2.0, across / 2.0), (-up / 2.0, up / 2.0), max_range)
-
-
-def _camera(row: Message, sensor: PortableSensor) -> PortableSensor:
-    """Return a camera with its intrinsics, if image size and field of view are given."""
-    sides = ("horizontal", "vertical")
-    width, height = (row.whole_figure(f"number_of_pixels_{side}", PIXELS) for side in sides)
-    across, down = (row.figure(key, WIDEST) for key in FIGURES)
-    if width is None or height is None or across is None or max(across, down or 0.0) >= math.pi:
-        return sensor
-    return replace(sensor, picture=picture_of_fov(across, (width, height), down))
 
 
 def _component(value: Any) -> float:
     """Return a vector component: 0 if protobuf omitted it, NaN if it is not a number."""
     if value is None:
         return 0.0
-    return float(value) if isinstance(value, str) and PLAIN.fullmatch(value) else real(value)
+    return float(value) if isinstance(value, str) and values.PLAIN.fullmatch(value) else real(value)
 
 
 def _scan(path: Path, row: Message, max_range: float) -> Scan:
@@ -215,14 +186,14 @@ def _scan(path: Path, row: Message, max_range: float) -> Scan:
     directions = None
     if isinstance(beams, list) and all(isinstance(beam, dict) for beam in beams):
         require_at_most(path, field, len(beams), MAX_BEAMS, "beams")
-        directions = numbers([[_component(beam.get(k)) for k in POSITION_KEYS] for beam in beams])
+        directions = numbers([[_component(beam.get(k)) for k in XYZ] for beam in beams])
     low, high = DIRECTION
     lengths = np.zeros(0) if directions is None else np.abs(directions)
     # NaN is in no range.
     if not lengths.size or not (lengths <= high).all() or not (lengths.max(axis=1) >= low).all():
         raise InputError(path, field, "a list of vectors {x, y, z} of length 1", shown(beams))
     assert directions is not None
-    count = row.whole_figure("num_of_pixels", Whole(1))
+    count = row.figures.whole("num_of_pixels", Whole(1))
     if count is not None and count != len(directions):
         raise row.error("num_of_pixels", f"{len(directions)}, one a direction", count)
     elevations = np.arctan2(directions[:, 2], np.hypot(directions[:, 0], directions[:, 1]))
@@ -250,15 +221,10 @@ class Message(Table):
             if value is not None:
                 fields[name] = value
 
-    def figure(self, key: str, rule: Number) -> float | None:
-        """Return a number; None if the field is absent. Raise `InputError` if it is invalid."""
-        value = self.raw(key, None)
-        return None if value is None else figure(self.source, self.field(key), value, rule)
-
-    def whole_figure(self, key: str, rule: Whole) -> int | None:
-        """Return an integer; None if the field is absent. Raise `InputError` if it is invalid."""
-        value = self.raw(key, None)
-        return None if value is None else whole_figure(self.source, self.field(key), value, rule)
+    @property
+    def figures(self) -> values.Figures:
+        """The numbers of its fields."""
+        return values.Figures(self.source, lambda key: self.raw(key, None), self.field)
 
     def message(self, key: str) -> Message:
         """Return a nested message; an empty one if the field is absent."""

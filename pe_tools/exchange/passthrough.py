@@ -24,8 +24,7 @@ from pe_core.sensors import KINDS
 from pe_core.study.passthrough import Passthrough, json_entry
 
 from .foreign_values import pose_from
-from .frames import ORIGIN
-from .portable import PortableRig, PortableSensor
+from .portable import ORIGIN, PortableRig, PortableSensor
 from .portable_kinds import has_model
 
 UNMOVED_M, UNTURNED = 2e-5, 4e-6

@@ -11,6 +11,7 @@ from pe_core.geometry.poses import Pose
 
 from .lens_pictures import KeptPicture, Picture, lost
 
+ORIGIN = Pose((0.0, 0.0, 0.0))
 EVEN_RAD = 1e-4
 """Channels nearer to even distances than this are even."""
 

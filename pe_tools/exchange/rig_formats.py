@@ -22,39 +22,33 @@ from . import (
     ros_transforms,
     urdf,
 )
+from . import lens_pictures as lenses
 from .foreign_values import Export, FileTexts
 from .frames import GROUND, REAR_AXLE, REAR_AXLE_GROUND
-from .lens_pictures import (
-    KeptPicture,
-    Size,
-    centred,
-    f_theta_of_five,
-    opencv,
-    opencv_of_five,
-    square,
-    straight,
-)
-from .losses import BEAMS, FUSION, MAX_RANGE, MIN_RANGE, MODEL, PARAMETERS
 from .portable import PortableRig, PortableSensor
+
+MODEL = "model"
+"""The model name; properties of a catalogued model are then not lost."""
+BEAMS = "beams"
+"""A LiDAR's channels, azimuths and range."""
+MIN_RANGE, MAX_RANGE = "minimum range", "maximum range"
+PARAMETERS = "parameters"
+"""The table of a model that has neither lens nor beams."""
+FUSION, CURVE = "fusion group", "AP curve"
+EVERYTHING = (BEAMS, PARAMETERS, MIN_RANGE, MAX_RANGE, FUSION, CURVE)
 
 
 class Codec(Protocol):
-    """A module that reads and writes a format.
-
-    `FILES` are the names of the written files. `write` takes sensors in the format's frame, and the
-    texts of imported or existing files whose other content it keeps; it returns bytes by file name,
-    and messages. `read` takes a path and returns sensors in the format's frame.
-    """
-
-    @property
-    def FILES(self) -> tuple[str, ...]:
-        """Names of the written files."""
+    """A module that reads and writes a format."""
 
     def read(self, path: Path, /) -> PortableRig:
-        """Return the sensors of a file or folder."""
+        """Return the sensors of a file or folder, in the format's frame."""
 
     def write(self, sensors: PortableRig, texts: FileTexts, /) -> Export:
-        """Return the files of sensors, and messages."""
+        """Return bytes by file name, and messages, of sensors in the format's frame.
+
+        `texts` are those of imported or existing files whose other content it keeps.
+        """
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,10 +61,12 @@ class RigFormat:
         Name in commands, and title in messages.
     origin : str
         Origin of its frame on the vehicle; `GROUND` is the origin of the ground frame.
+    files : tuple of str
+        Names of the written files; the first one identifies the format.
     code : Codec
         Module that reads and writes it.
     holds : frozenset of str
-        Properties that it holds besides poses and lenses, from `losses`.
+        Properties that it holds besides poses and lenses.
     keeps : callable
         Function that reduces a camera's intrinsics to what the format can express.
     settled : callable
@@ -88,74 +84,68 @@ class RigFormat:
     name: str
     title: str
     origin: str
+    files: tuple[str, ...]
     code: Codec
     holds: frozenset[str] = frozenset()
-    keeps: KeptPicture = lambda picture: picture
+    keeps: lenses.KeptPicture = lambda picture: picture
     settled: Callable[[PortableSensor], PortableSensor] = lambda sensor: sensor
     source: Callable[[Path], FileTexts] = lambda path: {}
-    usual_size: Size | None = None
+    usual_size: lenses.Size | None = None
     beside: bool = False
     passes_through: bool = True
-
-    @property
-    def files(self) -> tuple[str, ...]:
-        """Names of the written files; the first one identifies the format."""
-        return self.code.FILES
 
 
 _TABLE = frozenset({MODEL, PARAMETERS, FUSION, MIN_RANGE, MAX_RANGE})
 _BEAMS = frozenset({BEAMS})
 _ROWS = (
-    RigFormat("csv", "table (CSV)", GROUND, csv_table, _TABLE),
-    RigFormat("urdf", "URDF", GROUND, urdf, _TABLE | _BEAMS, opencv_of_five, source=urdf.source),
+    RigFormat("csv", "table (CSV)", GROUND, (csv_table.FILE,), csv_table, _TABLE),
     RigFormat(
-        "ros",
-        "ROS 2 static transforms",
-        GROUND,
-        ros_transforms,
-        keeps=opencv,
+        *("urdf", "URDF", GROUND, (urdf.FILE,), urdf, _TABLE | _BEAMS, lenses.opencv_of_five),
+        source=urdf.source,
+    ),
+    RigFormat(
+        *("ros", "ROS 2 static transforms", GROUND, (ros_transforms.FILE,), ros_transforms),
+        keeps=lenses.opencv,
         source=ros_transforms.source,
         beside=True,
     ),
     RigFormat(
         "autoware",
         "Autoware sensor kit",
-        REAR_AXLE_GROUND,
-        autoware,
-        keeps=opencv,
+        *(REAR_AXLE_GROUND, (autoware.IN_KIT, autoware.TO_KIT), autoware),
+        keeps=lenses.opencv,
         settled=autoware.lifted,
         source=autoware.source,
         beside=True,
     ),
     RigFormat(
-        "nuscenes",
-        "nuScenes",
-        REAR_AXLE_GROUND,
-        nuscenes,
-        keeps=opencv_of_five,
+        *("nuscenes", "nuScenes", REAR_AXLE_GROUND, nuscenes.FILES, nuscenes),
+        keeps=lenses.opencv_of_five,
         usual_size=(1600, 900),
     ),
     RigFormat(
-        "argoverse2", argoverse2.TITLE, REAR_AXLE, argoverse2, keeps=straight, passes_through=False
+        *("argoverse2", argoverse2.TITLE, REAR_AXLE, argoverse2.FILES, argoverse2),
+        keeps=lenses.straight,
+        passes_through=False,
     ),
-    RigFormat("carla", "CARLA objects.json", GROUND, carla, _BEAMS, square, source=carla.source),
     RigFormat(
-        "kitti",
-        "KITTI calibration",
-        GROUND,
-        kitti,
-        keeps=straight,
+        *("carla", "CARLA objects.json", GROUND, (carla.FILE,), carla, _BEAMS, lenses.square),
+        source=carla.source,
+    ),
+    RigFormat(
+        *("kitti", "KITTI calibration", GROUND, (kitti.FILE,), kitti),
+        keeps=lenses.straight,
         usual_size=(1242, 375),
         passes_through=False,
     ),
-    RigFormat("osi", "ASAM OSI mounting positions", REAR_AXLE, osi, _BEAMS, centred),
     RigFormat(
-        "driveworks",
-        "DriveWorks rig.json",
-        REAR_AXLE_GROUND,
-        driveworks,
-        frozenset({MODEL}),
-        f_theta_of_five,
+        *("osi", "ASAM OSI mounting positions", REAR_AXLE, (osi.FILE,), osi, _BEAMS),
+        keeps=lenses.centred,
+    ),
+    RigFormat(
+        *("driveworks", "DriveWorks rig.json", REAR_AXLE_GROUND, (driveworks.FILE,), driveworks),
+        holds=frozenset({MODEL}),
+        keeps=lenses.f_theta_of_five,
         source=driveworks.source,
     ),
 )

@@ -16,39 +16,15 @@ from pe_core.base.errors import InputError, shown
 from pe_core.geometry.poses import Pose
 from pe_tools.formats.xml_text import parse_xml
 
+from . import foreign_values as values
+from . import frames
 from .camera_info import info_files, with_info
-from .foreign_values import (
-    MAX_FRAMES,
-    MAX_LINE_LENGTH,
-    Export,
-    FileTexts,
-    figure,
-    plain_number,
-    pose_from,
-    require_at_most,
-    text_of,
-)
-from .frames import (
-    OPTICAL,
-    OPTICAL_RPY,
-    from_quaternion,
-    pose_of,
-    poses_from_root,
-    with_optical_frames,
-)
-from .passthrough import pose_of_entry
+from .foreign_values import RPY, XYZ, Export, FileTexts
 from .portable import PortableRig, PortableSensor
 from .portable_kinds import CAMERA
 
 FILE, ROOT = "rig.launch.xml", "base_link"
-FILES = (FILE,)
-AXES = (
-    "x forward, y left, z up; metres, radians. NAME_optical looks along z, x right, y down (REP "
-    "103). "
-)
-OURS, THEIRS = " is on the ground under the vehicle's centre: ", " is that of the imported file: "
 PUBLISHER = "static_transform_publisher"
-POSITION_KEYS, ROTATION_KEYS = ("x", "y", "z"), ("roll", "pitch", "yaw")
 QUATERNION = ("qw", "qx", "qy", "qz")
 ENDS = ("frame-id", "child-frame-id")
 EQUALS = re.compile(r"(--[a-z-]+)=")
@@ -58,39 +34,29 @@ ARGS = re.compile(rf"{PUBLISHER}[\"']?(?:\s+args=[\"'])?([^<\"'\n]*)")
 
 def write(sensors: PortableRig, texts: FileTexts) -> Export:
     """Return a launch file with a publisher for each sensor, with the root of an imported one."""
-    root, origin_text = ROOT, OURS
+    root = ROOT
     if texts:
-        launch = parse_xml("passthrough", texts.get(FILE, "").encode())
-        root, origin_text = launch.get("root", ROOT), THEIRS
-    left_out = [sensor for sensor in sensors if sensor.is_left_out]
-    included = [sensor for sensor in sensors if not sensor.is_left_out]
-    named, lines = with_optical_frames(included, (root, *(sensor.name for sensor in left_out)))
+        root = parse_xml("passthrough", texts.get(FILE, "").encode()).get("root", ROOT)
     launch = Element("launch")
-    for sensor in named:
-        _publisher(launch, root, sensor.name, sensor.pose)
-        if sensor.kind == CAMERA:
-            optical = Pose((0.0, 0.0, 0.0), OPTICAL_RPY)
-            _publisher(launch, sensor.name, sensor.name + OPTICAL, optical)
-    for sensor in left_out:
-        _publisher(launch, root, sensor.name, pose_of_entry(sensor))
+    linked, lines = frames.linked(sensors, root)
+    for _, links in linked:
+        for parent, child, pose in links:
+            numbers = values.pose_numbers(pose).items()
+            args = " ".join(f"--{key} {values.plain_number(value)}" for key, value in numbers)
+            args += f" --{ENDS[0]} {parent} --{ENDS[1]} {child}"
+            SubElement(launch, "node", {"pkg": "tf2_ros", "exec": PUBLISHER, "args": args})
     indent(launch)
-    files = {FILE: f"<!-- {root}{origin_text}{AXES}-->\n{tostring(launch, 'unicode')}\n"}
-    files |= info_files(named)
+    head = f"<!-- {root}{frames.origin_text(texts)}{frames.AXES}-->\n"
+    files = {FILE: f"{head}{tostring(launch, 'unicode')}\n"}
+    files |= info_files(sensor for sensor, _ in linked if not sensor.is_left_out)
     return {name: text.encode() for name, text in files.items()}, lines
 
 
 def source(path: Path) -> dict[str, str]:
-    """Return an empty launch file that stores the root frame of this file, for `write_over`."""
+    """Return an empty launch file that stores the root frame of this file, for `write`."""
     links = _links(path / FILE if path.is_dir() else path)
     root = next(parent for parent, _ in links.values() if parent not in links)
     return {FILE: tostring(Element("launch", {"root": root}), "unicode")}
-
-
-def _publisher(launch: Element, parent: str, child: str, pose: Pose) -> None:
-    named = zip((*POSITION_KEYS, *ROTATION_KEYS), (*pose.position, *pose.rpy), strict=True)
-    numbers = " ".join(f"--{key} {plain_number(value)}" for key, value in named)
-    args = f"{numbers} --{ENDS[0]} {parent} --{ENDS[1]} {child}"
-    SubElement(launch, "node", {"pkg": "tf2_ros", "exec": PUBLISHER, "args": args})
 
 
 def read(path: Path) -> PortableRig:
@@ -100,23 +66,27 @@ def read(path: Path) -> PortableRig:
     """
     path = path / FILE if path.is_dir() else path
     links = _links(path)
-    frames = dict.fromkeys(name for child, (parent, _) in links.items() for name in (parent, child))
-    poses = poses_from_root(path, links, frames, "frame")
-    optical = {name for name in links if name.endswith(OPTICAL)}
+    names = dict.fromkeys(name for child, (parent, _) in links.items() for name in (parent, child))
+    poses = frames.poses_from_root(path, links, names, "frame")
+    optical = {name for name in links if name.endswith(frames.OPTICAL)}
     cameras = {links[name][0] for name in optical}
-    names = [name for name in links if name not in optical]
-    sensors = [PortableSensor(n, poses[n], CAMERA if n in cameras else None) for n in names]
+    sensors = [
+        PortableSensor(name, poses[name], CAMERA if name in cameras else None)
+        for name in links
+        if name not in optical
+    ]
     return with_info(path.parent, sensors)
 
 
 def _links(path: Path) -> dict[str, tuple[str, Pose]]:
     """Return the parent and the pose in the parent frame, by frame name."""
-    calls = ARGS.findall(without_comments(text_of(path)))
-    require_at_most(path, "file", len(calls), MAX_FRAMES, f"calls of {PUBLISHER}")
+    calls = ARGS.findall(without_comments(values.text_of(path)))
+    values.require_at_most(path, "file", len(calls), values.MAX_FRAMES, f"calls of {PUBLISHER}")
     links: dict[str, tuple[str, Pose]] = {}
     for number, arguments in enumerate(calls):
         field = f"transform {number + 1}"
-        require_at_most(path, field, len(arguments), MAX_LINE_LENGTH, "characters")
+        longest = values.MAX_LINE_LENGTH
+        values.require_at_most(path, field, len(arguments), longest, "characters")
         parent, child, pose = _transform(path, field, arguments)
         if child in links:
             raise InputError(path, f"frame {child}", "one parent", "two")
@@ -137,19 +107,15 @@ def _transform(path: Path, field: str, args: str) -> tuple[str, str, Pose]:
     if not all(ends):
         raise InputError(path, field, "--frame-id and --child-frame-id", shown(args.strip()))
 
-    def values(keys: Sequence[str]) -> list[float]:
-        defaults = {"qw": "1"}
-        return [
-            figure(path, f"{field}, {key}", options.get(f"--{key}", defaults.get(key, "0")))
-            for key in keys
-        ]
+    def numbers(keys: Sequence[str]) -> list[float]:
+        texts = [(key, options.get(f"--{key}", "1" if key == "qw" else "0")) for key in keys]
+        return [values.figure(path, f"{field}, {key}", text) for key, text in texts]
 
-    position = values(POSITION_KEYS)
+    position = numbers(XYZ)
     if any(f"--{key}" in options for key in QUATERNION):
-        pose = pose_of(from_quaternion(path, field, values(QUATERNION)), position)
-    else:
-        pose = pose_from(path, field, position, values(ROTATION_KEYS))
-    return ends[0], ends[1], pose
+        rotation = frames.from_quaternion(path, field, numbers(QUATERNION))
+        return ends[0], ends[1], frames.pose_of(rotation, position)
+    return ends[0], ends[1], values.pose_from(path, field, position, numbers(RPY))
 
 
 def without_comments(text: str) -> str:

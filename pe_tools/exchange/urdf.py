@@ -17,36 +17,23 @@ from pe_core.base.files import read_bytes
 from pe_core.geometry.poses import Pose
 from pe_tools.formats.xml_text import parse_xml
 
-from .foreign_values import (
-    FARTHEST,
-    MAX_FRAMES,
-    MIN_RANGE,
-    Export,
-    FileTexts,
-    figure,
-    figures,
-    plain_number,
-    pose_from,
-    require_at_most,
-    spaced,
-)
-from .frames import OPTICAL, OPTICAL_RPY, poses_from_root, seen_from, with_optical_frames
-from .gazebo import SensorElement, picture_in, scan_in, write_clip, write_picture, write_scan
-from .passthrough import entry_row, pose_entry, pose_of_entry
+from . import foreign_values as values
+from . import frames
+from .foreign_values import Export, Figures, FileTexts, spaced
+from .frames import OPTICAL
+from .gazebo import picture_in, scan_in, write_clip, write_picture, write_scan
+from .passthrough import entry_row, pose_entry
 from .portable import PortableRig, PortableSensor, uneven
 from .portable_kinds import CAMERA, LIDAR, has_model
 
-RANGES = ("min_range", "max_range")
+RANGES = {"min_range": values.MIN_RANGE, "max_range": values.FARTHEST}
 FILE, ROOT, NAME = "rig.urdf", "base_link", "rig"
-FILES = (FILE,)
 ON_GROUND = "base_footprint"
 """The link on the ground under a robot (REP 120)."""
-AXES = (
-    "x forward, y left, z up; metres, radians. NAME_optical looks along z, x right, y down (REP "
-    "103). Links have a mass and joints are preserved, so that Gazebo keeps each sensor's frame; "
-    "gravity does not move them. "
+MASSES = (
+    "Links have a mass and joints are preserved, so that Gazebo keeps each sensor's frame; gravity "
+    "does not move them. "
 )
-OURS, THEIRS = " is on the ground under the vehicle's centre: ", " is that of the imported file: "
 GAZEBO_KINDS = {CAMERA: CAMERA, LIDAR: "gpu_lidar"}
 KIND_BY_TEXT = {CAMERA: CAMERA, LIDAR: LIDAR, "ray": LIDAR, "depth": CAMERA}
 """What a word in a Gazebo sensor's type says of its kind."""
@@ -60,34 +47,31 @@ def write(sensors: PortableRig, texts: FileTexts) -> Export:
 
     Its name and its root link are those of an imported one, if there is one.
     """
-    name, root, origin_text = NAME, ROOT, OURS
+    name, root = NAME, ROOT
     if texts:
         imported = parse_xml("passthrough", texts.get(FILE, "").encode())
         link = imported.find("link")
         root = ROOT if link is None else link.get("name", ROOT)
-        name, origin_text = imported.get("name", NAME), THEIRS
-    left_out = [sensor for sensor in sensors if sensor.is_left_out]
-    included = [sensor for sensor in sensors if not sensor.is_left_out]
-    named, lines = with_optical_frames(included, (root, *(sensor.name for sensor in left_out)))
+        name = imported.get("name", NAME)
     robot = Element("robot", {"name": name})
     _link(robot, root)
-    for sensor in named:
-        _joint(robot, root, sensor.name, sensor.pose)
-        if sensor.kind == CAMERA:
-            _joint(robot, sensor.name, sensor.name + OPTICAL, Pose((0.0, 0.0, 0.0), OPTICAL_RPY))
-        _gazebo(robot, sensor)
-    for sensor in left_out:  # with its imported Gazebo elements
-        _joint(robot, root, sensor.name, pose_of_entry(sensor))
-        for block in entry_row(sensor, lambda _: {}, (), ()).get("gazebo", ()):
+    linked, lines = frames.linked(sensors, root)
+    for sensor, links in linked:
+        for link_and_pose in links:
+            _joint(robot, *link_and_pose)
+        if not sensor.is_left_out:
+            _gazebo(robot, sensor)
+            continue
+        for block in entry_row(sensor, lambda _: {}, (), ()).get("gazebo", ()):  # as imported
             robot.append(parse_xml("passthrough", str(block).encode()))
     indent(robot)
-    head = f'<?xml version="1.0"?>\n<!-- {root}{origin_text}{AXES}-->\n'
-    text = f"{head}{tostring(robot, 'unicode')}\n"
-    return {FILE: text.encode()}, lines + uneven(named, "Gazebo")
+    comment = f"{root}{frames.origin_text(texts)}{frames.AXES}{MASSES}"
+    text = f'<?xml version="1.0"?>\n<!-- {comment}-->\n{tostring(robot, "unicode")}\n'
+    return {FILE: text.encode()}, lines + uneven((sensor for sensor, _ in linked), "Gazebo")
 
 
 def source(path: Path) -> dict[str, str]:
-    """Return a robot of the same name with only the origin link, for `write_over`."""
+    """Return a robot of the same name with only the origin link, for `write`."""
     robot = _robot(path)
     skeleton = Element("robot", {"name": robot.get("name", NAME)})
     SubElement(skeleton, "link", {"name": _origin_of(_poses(path, robot))})
@@ -98,8 +82,8 @@ def _link(robot: Element, name: str) -> None:
     """Add a link with a mass, which Gazebo requires, and without gravity."""
     inertial = SubElement(SubElement(robot, "link", {"name": name}), "inertial")
     SubElement(inertial, "mass", {"value": repr(MASS_KG)})
-    values = {key: repr(INERTIA if key[1] == key[2] else 0.0) for key in INERTIA_KEYS}
-    SubElement(inertial, "inertia", values)
+    moments = {key: repr(INERTIA if key[1] == key[2] else 0.0) for key in INERTIA_KEYS}
+    SubElement(inertial, "inertia", moments)
     block = SubElement(robot, "gazebo", {"reference": name})
     SubElement(block, "turnGravityOff").text = "true"
 
@@ -119,14 +103,14 @@ def _joint(robot: Element, parent: str, child: str, pose: Pose) -> None:
 def _gazebo(robot: Element, sensor: PortableSensor) -> None:
     block = SubElement(robot, "gazebo", {"reference": sensor.name})
     kind = GAZEBO_KINDS.get(sensor.kind or "")
-    attributes = {
-        "kind": sensor.kind or "",
-        "model": sensor.known_model or "",
-        "fusion": sensor.fusion or "",
+    ranges = {key: getattr(sensor, key) for key in RANGES}
+    optional = {
+        "fusion": sensor.fusion,
+        **{k: None if v is None else values.plain_number(v) for k, v in ranges.items()},
+        "parameters": sensor.parameters,
     }
-    attributes |= {k: "" if (v := getattr(sensor, k)) is None else plain_number(v) for k in RANGES}
-    attributes["parameters"] = sensor.parameters
-    attributes = {k: v for k, v in attributes.items() if v or k in ("kind", "model")}
+    attributes = {"kind": sensor.kind or "", "model": sensor.known_model or ""}
+    attributes |= {key: text for key, text in optional.items() if text}
     SubElement(block, "perception_entropy", attributes)
     if kind is None or (sensor.picture is None and sensor.scan is None):
         return
@@ -156,7 +140,7 @@ def read(path: Path) -> PortableRig:
     if not names:
         raise InputError(path, "link", "links of sensors", "none")
     origin = _origin_of(in_root)
-    poses = {name: seen_from(in_root[origin], pose) for name, pose in in_root.items()}
+    poses = {name: frames.seen_from(in_root[origin], pose) for name, pose in in_root.items()}
     sensors = [_sensor(path, name, poses, blocks.get(name)) for name in names]
     is_ours = next(robot.iter("perception_entropy"), None) is not None
     result = []
@@ -190,7 +174,7 @@ def _origin_of(poses: dict[str, Pose]) -> str:
 def _poses(path: Path, robot: Element) -> dict[str, Pose]:
     """Return the poses of links in the root frame, by name, ordered by depth."""
     links = dict.fromkeys(link.get("name", "") for link in robot.iter("link"))
-    require_at_most(path, "link", len(links), MAX_FRAMES, "links")
+    values.require_at_most(path, "link", len(links), values.MAX_FRAMES, "links")
     joints = {}
     for joint in robot.findall("joint"):  # movable joints are at zero
         child, parent = (_end(path, joint, end, links) for end in ("child", "parent"))
@@ -199,10 +183,11 @@ def _poses(path: Path, robot: Element) -> dict[str, Pose]:
         origin, field = joint.find("origin"), f"joint {joint.get('name', '')!r}"
         texts = {} if origin is None else origin.attrib
         numbers = [
-            figures(path, f"{field}, {key}", texts.get(key, "0 0 0"), 3) for key in ("xyz", "rpy")
+            values.figures(path, f"{field}, {key}", texts.get(key, "0 0 0"), 3)
+            for key in ("xyz", "rpy")
         ]
-        joints[child] = parent, pose_from(path, field, *numbers)
-    return poses_from_root(path, joints, links, "link")
+        joints[child] = parent, values.pose_from(path, field, *numbers)
+    return frames.poses_from_root(path, joints, links, "link")
 
 
 def _end(path: Path, joint: Element, end: str, links: Collection[str]) -> str:
@@ -243,19 +228,16 @@ def _sensor(path: Path, name: str, poses: dict[str, Pose], block: Element | None
         kind = next((k for word, k in KIND_BY_TEXT.items() if word in type_name), type_name or kind)
     if project_element is not None:
         kind = project_element.get("kind") or kind
-    inside = SensorElement(path, name, sensor)
-    fields = {} if project_element is None else _known(path, name, project_element)
+
+    def field(key: str) -> str:
+        return f"sensor of {name}, {key}"
+
+    inside = Figures(path, lambda k: None if sensor is None else sensor.findtext(f".//{k}"), field)
+    fields: dict[str, Any] = {}
+    if project_element is not None:
+        known = Figures(path, project_element.get, field)
+        fields = {key: known.number(key, rule) for key, rule in RANGES.items()}
+        fields["parameters"] = project_element.get("parameters", "")
+        fields["fusion"] = project_element.get("fusion") or None
     picture_and_scan = picture_in(inside), scan_in(inside)
     return PortableSensor(name, poses[name], kind, model or None, *picture_and_scan, **fields)
-
-
-def _known(path: Path, name: str, project_element: Element) -> dict[str, Any]:
-    """Return fusion group, ranges and parameters of a sensor, from its perception_entropy."""
-    rules = dict(zip(RANGES, (MIN_RANGE, FARTHEST), strict=True))
-    ranges = {
-        key: figure(path, f"sensor of {name}, {key}", project_element.get(key), rule)
-        for key, rule in rules.items()
-        if project_element.get(key) is not None
-    }
-    texts = {key: project_element.get(key, "") for key in ("fusion", "parameters")}
-    return {"fusion": texts["fusion"] or None, "parameters": texts["parameters"], **ranges}

@@ -78,7 +78,7 @@ LIBRARIES = {
     "pyarrow": {"pe_tools/exchange"},
     "rerun": {"pe_tools/outputs"},
     "matplotlib": {"pe_tools/plots"},
-    "jinja2": {"pe_tools/page"},
+    "jinja2": {"pe_tools/page", "pe_tools/cli"},
     "markupsafe": {"pe_tools/page"},
 }
 """Libraries besides NumPy, and the rooms in which they are imported."""

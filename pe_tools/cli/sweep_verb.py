@@ -16,26 +16,9 @@ from pe_core.study import SEARCH, STUDY
 
 from .. import jobs
 from ..advice import curve_note, hardware_note
-from ..sweep import (
-    BEGUN,
-    DONE,
-    ELSEWHERE,
-    SWEEP_CSV,
-    SWEEP_JSON,
-    UNWRITTEN,
-    WAITING,
-    RunTask,
-    SweepRow,
-    SweepRun,
-    read_settings,
-    row_of,
-    row_of_result,
-    run_all,
-    sweep_runs,
-    table_data,
-    table_lines,
-    write_table,
-)
+from ..sweep import RunTask, SweepRun, read_settings, run_all, sweep_runs
+from ..sweep import sweep_table as table
+from ..sweep.sweep_table import BEGUN, DONE, ELSEWHERE, UNWRITTEN, WAITING, SweepRow
 from . import terminal
 from .command import add_score_options, add_search_options, with_options
 from .executors import workplace
@@ -53,7 +36,7 @@ def add_sweep_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--optimize", action="store_true", help="search in every run; else score")
     about = "have the workers of a Dask scheduler do it, tcp://host:8786"
     parser.add_argument("--scheduler", metavar="ADDRESS", help=about)
-    parser.add_argument("--json", action="store_true", help=f"print {SWEEP_JSON} on stdout")
+    parser.add_argument("--json", action="store_true", help=f"print {table.SWEEP_JSON} on stdout")
     add_score_options(parser, workers="processes")
     add_search_options(parser)
 
@@ -66,7 +49,7 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
     kind = "optimize" if args.optimize else "score"
     settings = read_settings(args.set)
     runs = sweep_runs(files, settings, lambda study: with_options(study, args))
-    folder = jobs.prepare_folder(args.output, [SWEEP_CSV, SWEEP_JSON])
+    folder = jobs.prepare_folder(args.output, [table.SWEEP_CSV, table.SWEEP_JSON])
     _refuse_folders(runs, files, folder, kind)
     with ExitStack() as places:
         work = _SweepVerb(runs, kind, folder, places)
@@ -82,7 +65,7 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
     rows = list(work.rows.values())
     missing = [row for row in rows if row.status in (ELSEWHERE, UNWRITTEN)]
     where = (f"{row.run.name}: {row.status}: {row.message}" for row in missing)
-    lines = [*table_lines(rows, kind), *where, *filter(None, notes)]
+    lines = [*table.table_lines(rows, kind), *where, *filter(None, notes)]
     text = dump_json(work.data) if args.json else "\n".join(lines)
     whole = work.count(DONE) == len(rows) and not work.failed_to_write
     return text, terminal.DONE if whole else terminal.BAD_INPUT
@@ -115,7 +98,7 @@ class _SweepVerb:
         self.failed_to_write = False
         self.rows: dict[str, SweepRow] = {}
         for run in runs:
-            known = row_of_result(run, folder / run.name, kind)
+            known = table.row_of_result(run, folder / run.name, kind)
             self.rows[run.name] = known or SweepRow(run, self._unfinished(run))
         self._reporter, self._on_terminal = Reporter(sys.stderr), is_terminal(sys.stderr)
         self.data: dict[str, Any] = {}
@@ -184,7 +167,7 @@ class _SweepVerb:
     def _take(self, name: str, found: jobs.Outcome | InputError) -> None:
         """Store the result of a run, update the table, and report the run."""
         kept = self._keep(name, found) if isinstance(found, jobs.Outcome) else ()
-        row = self.rows[name] = row_of(self.rows[name].run, found, *kept)
+        row = self.rows[name] = table.row_of(self.rows[name].run, found, *kept)
         self._write_table()
         if isinstance(found, InputError):
             self._print_failure("" if found.source == name else name, found)
@@ -217,17 +200,17 @@ class _SweepVerb:
         """Write the table; if that fails, to the fallback folder."""
         rows = list(self.rows.values())
         try:
-            self.data = write_table(rows, self._kind, self._folder)
+            self.data = table.write_table(rows, self._kind, self._folder)
         except InputError as error:
             first, self.failed_to_write = not self.failed_to_write, True
             if first:
                 self._print_failure("", error)
             try:
-                self.data = write_table(rows, self._kind, self._fall_back())
+                self.data = table.write_table(rows, self._kind, self._fall_back())
             except InputError as second:
                 if first:
                     self._print_failure("", second)
-                self.data = table_data(rows, self._kind)
+                self.data = table.table_data(rows, self._kind)
 
     def _fall_back(self) -> Path:
         """Return the fallback folder of the sweep; report it at its creation."""

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,13 +13,15 @@ from numpy.typing import NDArray
 
 from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError, shown
-from pe_core.base.files import decode_text, numbered_lines, parse_number, quoted, read_bytes
+from pe_core.base.files import decode_text, numbered_lines, parse_number, read_bytes
 from pe_core.geometry.poses import Pose
 from pe_core.metric.entropy import AP_MAX, AP_MIN, ApCurve
 from pe_core.scene import Objects
 from pe_core.scene.rig import Sensor, SensorModel
 from pe_core.sensors import measure_objects
 from pe_core.sensors.kind import PAPER_VOXEL_M, SIZES
+
+from .csv_rows import csv_rows
 
 HEADINGS = 24
 """Headings of an object whose m is averaged."""
@@ -168,32 +169,15 @@ def read_ap_table(
     if not rows:
         expected = f"a table with the columns {columns[0]} and ap"
         raise InputError(source, "file", expected, "nothing")
-    names = [name.lower() for name in _cells(source, *rows[0])]
-    for name in columns[:2]:
-        if names.count(name) != 1:
-            where, found = f"line {rows[0][0]}", quoted(", ".join(names))
-            raise InputError(source, where, f"one column named {name}", found)
-    values = [_values(source, k, names, _cells(source, k, row), columns) for k, row in rows[1:]]
+    values = [_values(source, *row, columns) for row in csv_rows(source, rows, columns[:2])]
     m, ap, n = np.array(values, dtype=float).reshape(-1, 3).T
     return ApTable(m if m_at_ranges is None else m_at_ranges(m), ap, n, source)
 
 
-def _cells(source: str, number: int, line: str) -> list[str]:
-    try:
-        row = next(csv.reader([line], skipinitialspace=True))
-    except csv.Error as error:
-        raise InputError(source, f"line {number}", "a line of CSV", error) from None
-    return [cell.strip() for cell in row]
-
-
 def _values(
-    source: str, line: int, names: Sequence[str], cells: Sequence[str], columns: Sequence[str]
+    source: str, where: str, row: Mapping[str, str], columns: Sequence[str]
 ) -> tuple[float, float, float]:
     """m or the range, ap and n of a row, checked."""
-    where = f"line {line}"
-    if len(cells) != len(names):
-        raise InputError(source, where, f"{len(names)} columns", len(cells))
-    row = dict(zip(names, cells, strict=True))
     m, ap, n = (parse_number(source, where, name, row.get(name, "1")) for name in columns)
     if m < 0.0:
         raise InputError(source, where, f"{columns[0]} of 0 or more", m)

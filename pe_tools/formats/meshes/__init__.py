@@ -12,27 +12,21 @@ import numpy as np
 from pe_core.base.errors import InputError
 from pe_core.base.files import MESH_BYTES, read_bytes, write_bytes
 from pe_core.base.memory import report_memory_errors
-from pe_core.scene.mesh import AS_SAID, Mesh, MeshAxes
+from pe_core.base.plugins import find_plugin
+from pe_core.scene.mesh import Mesh as Mesh
+from pe_core.scene.mesh import MeshAxes as MeshAxes
 
-from .axes import GLTF, OURS, UNSAID, SaidAxes, axes_in_text, oriented, said_in_comments
+from .axes import GLTF, OURS, UNSAID, SaidAxes, oriented, said_in_comments
+from .axes import axes_in_text as axes_in_text
 from .glb import read_glb
-from .mesh import FoundMesh, fit_names, has_plugin, make_mesh, read_with_plugin
+from .mesh import MESH_PLUGIN, fit_names, make_mesh, read_with_plugin
+from .mesh import FoundMesh as FoundMesh
 from .npz import dump_npz, read_npz
 from .obj import dump_obj, read_obj
 from .ply import read_ply
 from .stl import read_stl
 
 _F = TypeVar("_F")
-
-__all__ = [
-    "AS_SAID",
-    "FoundMesh",
-    "Mesh",
-    "MeshAxes",
-    "axes_in_text",
-    "read_mesh",
-    "write_mesh",
-]
 
 _READERS: dict[str, Callable[[Path, bytes], Mesh]] = {
     ".npz": read_npz,
@@ -78,7 +72,7 @@ def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
     """
     path = Path(path)
     suffix = path.suffix.lower()
-    if suffix not in _READERS and not has_plugin(suffix):
+    if suffix not in _READERS and find_plugin(MESH_PLUGIN, suffix[1:]) is None:
         _of_suffix(path, _READERS)  # reports it
     data = read_bytes(path, MESH_BYTES)
     # Overflow and NaN are refused later, with their location; NumPy need not warn first.

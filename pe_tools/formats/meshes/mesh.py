@@ -14,13 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError, shown
 from pe_core.base.memory import require_memory
-from pe_core.base.plugins import (
-    call_plugin,
-    find_plugin,
-    install_hint,
-    plugin_name,
-    required_plugin,
-)
+from pe_core.base.plugins import call_plugin, install_hint, plugin_name, required_plugin
 from pe_core.base.values import A_NAME, MAX_NAME
 from pe_core.scene.mesh import Mesh
 
@@ -196,8 +190,3 @@ def read_with_plugin(path: Path, data: bytes) -> tuple[Mesh, SaidAxes]:
     mesh = make_mesh(str(path), found.triangles, found.parts, found.part_names)
     forward = "+x" if found.up != "+x" else "+z"
     return mesh, SaidAxes(found.up, "file", forward, "")
-
-
-def has_plugin(suffix: str) -> bool:
-    """Whether a plugin reads files of a suffix."""
-    return find_plugin(MESH_PLUGIN, suffix[1:]) is not None

@@ -27,17 +27,12 @@ for _open, _close in ("()", "[]", "{}"):
     STEPS[ord(_open)], STEPS[ord(_close)] = 1, -1
 
 
-def check_layers(path: Path) -> None:
-    """Check a stage's root layer and all layers that it refers to, or raise `InputError`.
+class _UsdLayers:
+    """Opened layers, and the number of prims below each of their prims.
 
     None may be missing, no regular file, not USD or too deeply nested; references may not form a
-    circle, nor layers and prims be more than the limits.
+    circle, nor layers and prims be more than the limits: else `InputError`.
     """
-    _UsdLayers(str(path)).prims_below(str(path), Sdf.Path.absoluteRootPath, ())
-
-
-class _UsdLayers:
-    """Opened layers, and the number of prims below each of their prims."""
 
     def __init__(self, source: str) -> None:
         self._source = source
@@ -60,7 +55,7 @@ class _UsdLayers:
         if path == Sdf.Path.absoluteRootPath:
             specs = list(layer.rootPrims)
             total = sum(
-                self.prims_below(self._resolved(layer, sublayer), path, above)
+                self.prims_below(str(layer.ComputeAbsolutePath(sublayer)), path, above)
                 for sublayer in layer.subLayerPaths
             )
         else:
@@ -84,7 +79,9 @@ class _UsdLayers:
         for references in (spec.referenceList, spec.payloadList):
             for reference in references.GetAddedOrExplicitItems():
                 layer_name = (
-                    self._resolved(layer, reference.assetPath) if reference.assetPath else name
+                    str(layer.ComputeAbsolutePath(reference.assetPath))
+                    if reference.assetPath
+                    else name
                 )
                 inner = reference.primPath
                 if inner.isEmpty:
@@ -92,27 +89,21 @@ class _UsdLayers:
                     inner = Sdf.Path(f"/{default}") if default else Sdf.Path.absoluteRootPath
                 yield layer_name, inner
 
-    def _resolved(self, layer: Any, asset: str) -> str:
-        """Return the path of an asset that a layer names."""
-        return str(layer.ComputeAbsolutePath(asset))
-
     def _layer(self, name: str) -> Any:
         if name not in self._layers:
             if len(self._layers) >= MAX_LAYERS:
                 raise InputError(self._source, "layers", f"at most {MAX_LAYERS:,}", "more")
-            self._layers[name] = self._opened(name)
+            package = Ar.SplitPackageRelativePathOuter(name)[0] if "[" in name else name
+            _check_file(self._source, Path(package))
+            try:
+                layer = Sdf.Layer.FindOrOpen(name)
+            except Tf.ErrorException as error:
+                lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+                raise InputError(name, "file", "USD", [*lines, "an error"][0]) from error
+            if layer is None:
+                raise InputError(name, "file", "USD", "another file")
+            self._layers[name] = layer
         return self._layers[name]
-
-    def _opened(self, name: str) -> Any:
-        package = Ar.SplitPackageRelativePathOuter(name)[0] if "[" in name else name
-        _check_file(self._source, Path(package))
-        try:
-            layer = Sdf.Layer.FindOrOpen(name)
-        except Tf.ErrorException as error:
-            raise InputError(name, "file", "USD", _first_line(error)) from error
-        if layer is None:
-            raise InputError(name, "file", "USD", "another file")
-        return layer
 
 
 def _check_file(source: str, path: Path) -> None:
@@ -136,11 +127,6 @@ def _check_file(source: str, path: Path) -> None:
             depth = int(depths[-1])
 
 
-def _first_line(error: Exception) -> str:
-    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-    return lines[0] if lines else type(error).__name__
-
-
 HIDDEN_PURPOSES = ("guide", "proxy")
 
 
@@ -152,9 +138,9 @@ def read_usd(path: Path, _data: bytes) -> FoundMesh:
     represented by its cage.
     """
     source = str(path)
-    diagnostics = UsdUtils.CoalescingDiagnosticDelegate()  # while it exists, USD prints nothinghing
+    diagnostics = UsdUtils.CoalescingDiagnosticDelegate()  # while it exists, USD prints nothing
     try:
-        check_layers(path)
+        _UsdLayers(source).prims_below(source, Sdf.Path.absoluteRootPath, ())
         stage = Usd.Stage.Open(source)
         if errors := stage.GetCompositionErrors():
             problem = " ".join(str(errors[0]).split())

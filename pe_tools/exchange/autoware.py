@@ -23,7 +23,6 @@ from pe_core.geometry.poses import Pose
 from pe_core.scene.vehicle_description import Reference
 from pe_tools.formats.yaml_text import KeyPath, YamlText, parse_yaml
 
-from .camera_info import info_files, info_name, picture_of_info, with_info
 from .foreign_values import (
     RPY,
     XYZ,
@@ -40,6 +39,7 @@ from .lens_pictures import alike
 from .passthrough import is_there, is_turned_so
 from .portable import ORIGIN, PortableRig, PortableSensor, merged_lines
 from .portable_kinds import CAMERA, LIDAR, RADAR
+from .ros import info_files, info_name, picture_of_info, with_info
 
 BASE, KIT = "base_link", "sensor_kit_base_link"
 TO_KIT, IN_KIT = "sensors_calibration.yaml", "sensor_kit_calibration.yaml"

@@ -19,7 +19,7 @@ from . import (
     kitti,
     nuscenes,
     osi,
-    ros_transforms,
+    ros,
     urdf,
 )
 from . import lens_pictures as lenses
@@ -104,9 +104,9 @@ _ROWS = (
         source=urdf.source,
     ),
     RigFormat(
-        *("ros", "ROS 2 static transforms", GROUND, (ros_transforms.FILE,), ros_transforms),
+        *("ros", "ROS 2 static transforms", GROUND, (ros.FILE,), ros),
         keeps=lenses.opencv,
-        source=ros_transforms.source,
+        source=ros.source,
         beside=True,
     ),
     RigFormat(

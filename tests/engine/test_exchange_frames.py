@@ -8,10 +8,9 @@ import pytest
 
 import pe_core as pe
 from pe_core.sensors.camera.lens_models import Pinhole
-from pe_tools.exchange import csv_table, driveworks, import_rig, rig_files, ros_transforms
-from pe_tools.exchange.camera_info import info_name, picture_of_info
+from pe_tools.exchange import csv_table, driveworks, import_rig, rig_files, ros
 from pe_tools.exchange.lens_pictures import Picture, _squares
-from pe_tools.exchange.ros_transforms import without_comments
+from pe_tools.exchange.ros import info_name, picture_of_info, without_comments
 
 PUCK = "Velodyne VLP-16 Puck"
 IMU = (
@@ -169,7 +168,7 @@ def test_a_frame_with_an_optical_frame_below_it_is_a_camera(tmp_path):
     path = tmp_path / "rig.launch.xml"
     frames = ("base_link", "eye"), ("eye", "eye_optical"), ("base_link", "ears")
     path.write_text("<launch>" + "".join(CALL.format(*f, "") for f in frames) + "</launch>")
-    assert [(s.name, s.kind) for s in ros_transforms.read(path)] == [
+    assert [(s.name, s.kind) for s in ros.read(path)] == [
         ("eye", "camera"),
         ("ears", None),
     ]
@@ -179,7 +178,7 @@ def test_a_call_of_too_many_characters_is_refused_by_its_number(tmp_path):
     path = tmp_path / "rig.launch.xml"
     path.write_text(CALL.format("a", "b", "") + CALL.format("a", "c", " " * 10_000))
     with pytest.raises(pe.InputError, match="transform 2: expected at most 10,000 characters"):
-        ros_transforms.read(path)
+        ros.read(path)
 
 
 def test_a_damaged_file_beside_the_one_that_is_read_is_named(tmp_path):

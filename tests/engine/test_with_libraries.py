@@ -2,6 +2,7 @@
 
 import io
 import math
+import sys
 
 import numpy as np
 import pytest
@@ -176,14 +177,13 @@ def test_argoverse_s_own_projection_sees_a_point_where_ours_does():
 
 
 def test_distortion_in_an_argoverse_table_is_reported(tmp_path):
-    pytest.importorskip("pyarrow", reason="of the extra argoverse")
-    pe.export_rig(RIG, "argoverse2", tmp_path, AXLE)
-    from pe_tools.exchange import feather
+    feather = pytest.importorskip("pyarrow.feather", reason="of the extra argoverse")
+    import pyarrow
 
+    pe.export_rig(RIG, "argoverse2", tmp_path, AXLE)
     path = tmp_path / "intrinsics.feather"
-    (row,) = feather.rows_of(path.read_bytes())
-    rows = [[-0.25 if key == "k1" else value for key, value in row.items()]]
-    path.write_bytes(feather.table_bytes(list(row), rows, ("height_px", "width_px"), {}))
+    (row,) = feather.read_table(path).to_pylist()
+    feather.write_feather(pyarrow.Table.from_pylist([{**row, "k1": -0.25}]), path)
     assert any(
         "k1, k2, k3 are not applied" in line for line in pe.import_rig(tmp_path, None, AXLE).lines
     )
@@ -258,6 +258,7 @@ def test_without_its_library_it_says_in_one_line_what_to_install(monkeypatch, na
             monkeypatch.delitem(plugins.SHIPPED, plugin)
         else:
             monkeypatch.setitem(plugins.SHIPPED, plugin, "no_such_library:write")
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
     ask, extra = ASKING[name]
     with pytest.raises(
         pe.InputError, match=rf"pip install 'perception-entropy\[{extra}\]'"

@@ -86,39 +86,6 @@ class _RunSearch:
             self.meshes_saved = True
 
 
-class ClusterCheckpoints:
-    """Receives and saves the checkpoints of all runs of a sweep, by the client of a cluster."""
-
-    def __init__(self, client: Any) -> None:
-        self._topic = f"perception-entropy-{secrets.token_hex(8)}"
-        self._events: queue.SimpleQueue[Mapping[str, Any]] = queue.SimpleQueue()
-        self._searches: dict[str, _RunSearch] = {}
-        # The client calls this in its own thread.
-        client.subscribe_topic(self._topic, lambda event: self._events.put(event[1]))
-
-    def for_run(self, run: SweepRun, folder: Path) -> PostedCheckpoints:
-        """Return the checkpoints of a run; they begin with those in its folder."""
-        if run.name not in self._searches:
-            self._searches[run.name] = _RunSearch(run.study, folder)
-        return PostedCheckpoints(self._topic, run.name, tuple(self._searches[run.name].entries))
-
-    def save(self) -> None:
-        """Save the entries received since the last call."""
-        changed = {}
-        with suppress(queue.Empty):
-            while True:
-                event = self._events.get_nowait()
-                if search := self._searches.get(event["run"]):
-                    changed[event["run"]] = search
-                    search.add(event)
-        for search in changed.values():
-            search.save()
-
-    def finish(self, name: str) -> None:
-        """Forget a run whose result is here: events that come later do not replace its state."""
-        self._searches.pop(name, None)
-
-
 ADDRESS = re.compile(r"((tcp|tls)://)?[^/@\s]+:[0-9]{1,5}")
 """Address with a protocol that Dask supports without further libraries."""
 CONNECT_S = 5.0
@@ -162,17 +129,19 @@ def _tell_without_processes(count: int | None) -> None:
 
 
 class DaskWorkers(LocalWorkers):
-    """The worker pool of a Dask scheduler."""
+    """The worker pool of a Dask scheduler; it receives and saves the checkpoints of all runs."""
 
     threads = 1
     """Threads of one score: a Dask worker runs one task in each of its threads."""
 
     def __init__(self, address: str) -> None:
-        self._address = address
-        self._client = _client_of(address)
+        self._address, self._client, self._alone = address, _client_of(address), False
         self.executor = self._client.get_executor(pure=False)
-        self._alone = False
-        self._saved = ClusterCheckpoints(self._client)
+        self._topic = f"perception-entropy-{secrets.token_hex(8)}"
+        self._events: queue.SimpleQueue[Mapping[str, Any]] = queue.SimpleQueue()
+        self._searches: dict[str, _RunSearch] = {}
+        # The client calls this in its own thread.
+        self._client.subscribe_topic(self._topic, lambda event: self._events.put(event[1]))
 
     def width(self) -> int:
         """Two tasks for each thread, so that no thread waits for its next task."""
@@ -183,12 +152,19 @@ class DaskWorkers(LocalWorkers):
 
         `InputError` where the scheduler is gone.
         """
-        self._saved.save()
+        changed = {}
+        with suppress(queue.Empty):
+            while True:
+                event = self._events.get_nowait()
+                if search := self._searches.get(event["run"]):
+                    changed[event["run"]] = search
+                    search.add(event)
+        for search in changed.values():
+            search.save()
         if self._client.status == "closed":
+            expected = "a scheduler that runs until the end"
             found = "that it is gone; what is done is kept"
-            raise InputError(
-                self._address, "scheduler", "a scheduler that runs until the end", found
-            )
+            raise InputError(self._address, "scheduler", expected, found)
         alone = self._client.status == "running" and not self._thread_count()
         if alone and not self._alone:
             need = "they need this version of perception-entropy"
@@ -196,12 +172,17 @@ class DaskWorkers(LocalWorkers):
         self._alone = alone
 
     def checkpoints(self, run: SweepRun, folder: Path) -> PostedCheckpoints:
-        """Return checkpoints that the worker, maybe remote, sends here to be saved."""
-        return self._saved.for_run(run, folder)
+        """Return checkpoints that the worker, maybe remote, sends here to be saved.
+
+        They begin with those in the folder of the run.
+        """
+        if run.name not in self._searches:
+            self._searches[run.name] = _RunSearch(run.study, folder)
+        return PostedCheckpoints(self._topic, run.name, tuple(self._searches[run.name].entries))
 
     def finish(self, name: str) -> None:
-        """Forget the checkpoints of a run: its outcome is here, with the whole search."""
-        self._saved.finish(name)
+        """Forget a run whose result is here: events that come later do not replace its state."""
+        self._searches.pop(name, None)
 
     def _thread_count(self) -> int:
         """Return the number of threads of all workers."""
@@ -224,12 +205,8 @@ def _client_of(address: str) -> Any:
         expected = f'distributed: pip install "perception-entropy[{EXTRAS["distributed"]}]"'
         raise InputError("command line", "scheduler", expected, "it is not installed")
     if not ADDRESS.fullmatch(address):
-        raise InputError(
-            "command line",
-            "scheduler",
-            "HOST:PORT, tcp://HOST:PORT or tls://HOST:PORT",
-            shown(address),
-        )
+        expected = "HOST:PORT, tcp://HOST:PORT or tls://HOST:PORT"
+        raise InputError("command line", "scheduler", expected, shown(address))
     for name in list(logging.root.manager.loggerDict):  # lost connections are reported here
         if name.partition(".")[0] == "distributed":
             logging.getLogger(name).setLevel(logging.CRITICAL)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import shlex
 import sys
-from dataclasses import replace
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,21 +17,32 @@ import numpy as np
 from pe_core import catalog
 from pe_core.base.errors import InputError
 from pe_core.base.files import require_new, write_bytes
-from pe_core.scene import Pose, Sensor, Vehicle, vehicle_line
+from pe_core.base.serialization import dumps
+from pe_core.scene import Pose, Rig, Sensor, Vehicle, vehicle_line
 from pe_core.scene.body_shape import BodyShape, fitting_units, require_vehicle_size
 from pe_core.scene.mesh import AXIS_NAMES
 from pe_core.scene.orientation import is_called
+from pe_core.scoring.sampling import FIRST_SAMPLES
+from pe_core.study import Study
 
 from ..advice import warnings
-from ..formats import Mesh, MeshAxes, read_mesh, write_mesh
-from .first_study import FirstStudy, study_text
-from .roof import MOUNT, roof_sensor
+from ..formats import Mesh, MeshAxes, axes_in_text, read_mesh, write_mesh
+from .roof import MOUNT, RoofSensor, find_roof, roof_sensor
 from .terminal import DONE, Answer, one_line, show, tell
 
 MODEL = "Pandar64"
 GLASS = ("glass", "window", "windshield", "windscreen")
 NO_GLASS = ("frame", "trim", "seal", "wiper", "rubber", "washer")
 """Beginnings of words in the names of parts: glass, and parts of windows that are none."""
+TEMPLATE = Path(__file__).with_name("first_study.toml.j2")
+CAMERA, CAMERA_ABOVE_M = "Camera 60 deg", 0.1
+"""Model of the camera that is proposed as a comment, and its height above the roof."""
+PITCH_DEG = (-10.0, 10.0)
+MAX_HEIGHT_STEP_M = 0.05
+COLUMN = 30
+"""Column of the comments."""
+LONG = 50
+"""A line with more characters has its comment above it."""
 
 
 def add_new_verb(verbs: Any) -> None:
@@ -60,8 +73,11 @@ def new_study(args: argparse.Namespace) -> Answer:
     show(f"{one_line(f'{mesh_path}: {vehicle_line(vehicle, mesh.axes)}')}\n", sys.stderr)
     start = Sensor(MOUNT, model, Pose.from_degrees((0, 0, 0), (0, 0, 0)))
     roof = roof_sensor(vehicle, start, catalog.housing(args.sensor), area_path.name)
-    found = (output.name, vehicle, mesh.axes, scale, unit, roof)
-    first = FirstStudy(_relative(mesh_path, output.parent), *found)
+    # Folders that are links are followed first: `..` of a link is the folder that it leads to.
+    full = mesh_path.parent.resolve() / mesh_path.name
+    with suppress(ValueError):  # on another drive
+        full = Path(os.path.relpath(full, output.parent.resolve()))
+    first = FirstStudy(full.as_posix(), output.name, vehicle, mesh.axes, scale, unit, roof)
     written = [output]
     if roof.mount is not None and roof.mount.area is not None:  # no part of the vehicle
         require_new(area_path, replace=args.replace, inputs=[mesh_path])
@@ -75,18 +91,6 @@ def new_study(args: argparse.Namespace) -> Answer:
     lines = [f"wrote {path}" for path in written]
     lines += [f"next: pe score {file}", f"      pe optimize {file} -o results"]
     return "\n".join(lines), DONE
-
-
-def _relative(mesh: Path, folder: Path) -> str:
-    """Return the path of a mesh from the study's folder; the full path from another drive.
-
-    Folders that are links are followed first: `..` of a link is the folder that it leads to.
-    """
-    full = mesh.parent.resolve() / mesh.name
-    try:
-        return Path(os.path.relpath(full, folder.resolve())).as_posix()
-    except ValueError:
-        return full.as_posix()
 
 
 def read_in_metres(
@@ -111,3 +115,91 @@ def read_in_metres(
         tell(f"{path}: no vehicle in metres; taken as {unit}, scale {factor:g}{more}")
         return replace(mesh, triangles=mesh.triangles * factor), factor, unit
     return mesh, 1.0 if scale is None else scale, ""
+
+
+@dataclass(frozen=True)
+class FirstStudy:
+    """What a first study is written from.
+
+    The mesh file, relative to the study's folder, and the study's own; how the axes of the mesh
+    were determined, as `Mesh.axes` has it; metres in a unit of it, and the name of a unit that was
+    found (empty for metres).
+    """
+
+    mesh: str
+    file: str
+    vehicle: Vehicle
+    faces: str
+    scale: float
+    unit: str
+    roof: RoofSensor
+
+    @property
+    def axes(self) -> MeshAxes:
+        """The keys of the mesh file's axes in the study."""
+        if not self.faces:
+            return MeshAxes(scale=self.scale)
+        found = axes_in_text(self.faces)
+        return MeshAxes(found.up, found.forward, self.scale)
+
+    def study(self) -> Study:
+        """Return the study that the text is read as."""
+        name = self.roof.sensor.name
+        search = self.roof.search()
+        limits = {name: {"pitch": (math.radians(PITCH_DEG[0]), math.radians(PITCH_DEG[1]))}}
+        return Study(
+            Rig([self.roof.sensor]),
+            self.vehicle,
+            search=replace(search, limits=limits),
+            samples=FIRST_SAMPLES,
+            mesh=self.mesh,
+            axes=self.axes,
+        )
+
+
+def study_text(first: FirstStudy) -> str:
+    """Return the study file's text: keys with comments, in the order a newcomer asks."""
+    from jinja2 import Environment, StrictUndefined  # other verbs start without it
+
+    study, sensor, roof = first.study(), first.roof.sensor, find_roof(first.vehicle)
+    axes, top = study.axes, sensor.pose.position[2] + 0.1
+    named = axes.up is not None and axes.forward is not None
+    environment = Environment(trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
+    text: str = environment.from_string(TEMPLATE.read_text("utf-8")).render(
+        row=_row,
+        line=_line,
+        study=study,
+        file=_printable(shlex.quote(first.file)),
+        space=Study(Rig([sensor])).space,
+        vehicle=_printable(vehicle_line(first.vehicle, first.faces)),
+        found=axes_in_text(first.faces) if named else None,
+        back=(axes.forward or "").translate(str.maketrans("+-", "-+")),
+        unit=first.unit,
+        glass=list(first.vehicle.glass),
+        sensor=sensor,
+        mount=first.roof.mount,
+        mount_name=MOUNT,
+        free=list(study.search.free[sensor.name]),
+        pitch=list(PITCH_DEG),
+        camera=CAMERA,
+        camera_position=[round(roof.front, 2), 0.0, round(roof.level + CAMERA_ABOVE_M, 2)],
+        highest=round(math.ceil(top / MAX_HEIGHT_STEP_M) * MAX_HEIGHT_STEP_M, 2),
+    )
+    return f"{text.rstrip()}\n"
+
+
+def _row(key: str, value: Any, comment: str = "", *, off: bool = False) -> str:
+    """Return a line `key = value  # comment`; with `off` the line is a comment itself."""
+    return _line(f"{'# ' if off else ''}{dumps({key: value}).strip()}", comment)
+
+
+def _line(text: str, comment: str) -> str:
+    """Return a line with its comment behind it; above it, if the line is long."""
+    if len(text) > LONG:
+        return f"# {comment}\n{text}" if comment else text
+    return f"{text:{COLUMN - 2}}  # {comment}" if comment else text
+
+
+def _printable(text: str) -> str:
+    """Return a text that a TOML comment may hold."""
+    return "".join(c if c.isprintable() else "?" for c in text)

@@ -10,7 +10,7 @@ from pe_core import catalog
 from pe_core.scene import cuts_body
 from pe_core.study import study_to_dict
 from pe_tools.cli import new_verb
-from pe_tools.cli.first_study import study_text
+from pe_tools.cli.new_verb import study_text
 from pe_tools.cli.roof import find_roof
 from pe_tools.cli.verbs import main
 from pe_tools.formats import read_mesh

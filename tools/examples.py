@@ -30,7 +30,7 @@ import pe_core as pe  # noqa: E402
 from pe_core import advice  # noqa: E402
 from pe_tools.page import ReportContext, page_bytes  # noqa: E402
 from pe_tools.page.document import STYLES  # noqa: E402
-from pe_tools.page.pictures.requirement_plans import requirement_plan  # noqa: E402
+from pe_tools.page.pictures.sight_plans import requirement_plan  # noqa: E402
 from pe_tools.page.pictures.vehicle_picture import vehicle_picture  # noqa: E402
 from pe_tools.wording import verdict_text  # noqa: E402
 

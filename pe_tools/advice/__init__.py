@@ -29,15 +29,15 @@ from .mounting_places import place_name as place_name
 from .mounting_places import plain_name as plain_name
 from .mounting_places import sensor_labels as sensor_labels
 from .ranking import Notation as Notation
+from .ranking import costs_nothing as costs_nothing
 from .ranking import ranking as ranking
+from .ranking import search_cost as search_cost
 from .ranking import win_words as win_words
 from .score_comparison import OTHER_HARDWARE as OTHER_HARDWARE
 from .score_comparison import ComparedRow as ComparedRow
 from .score_comparison import compare as compare
 from .score_comparison import compare_figures as compare_figures
 from .score_comparison import hardware_note as hardware_note
-from .search_cost import costs_nothing as costs_nothing
-from .search_cost import search_cost as search_cost
 from .summary import Outlook as Outlook
 from .summary import class_of as class_of
 from .summary import lone_reach as lone_reach

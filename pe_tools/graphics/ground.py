@@ -1,4 +1,4 @@
-"""The ground map as a coloured sheet: entropy, coverage, or the number of sensors by location."""
+"""The ground as coloured cells: maps of what is seen, and samples of a requirement's zone."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pe_core.base.arrays import Floats
 from pe_core.scene import PerceptionSpace
 from pe_core.scoring import GroundMap
+from pe_core.scoring.requirements import Verdict
 from pe_core.scoring.sight import GroundSight
 
 from .colors import CIVIDIS, COUNTS, DIFFERENCE_ON_DARK, VIRIDIS, Rgba, Scale, on_scale
@@ -35,6 +36,8 @@ ALIKE_ALPHA, DIFFERENCE_GAIN = 0.08, 2.0
 """How much of a place that is alike is seen, and how much stronger than a map differences are."""
 FADE_M = 8.0
 """Width of the margin in which the sheet fades out, where its edge is no edge of anything."""
+SPOT_M = 0.3
+"""Size at which samples of paths and single spots are painted at least."""
 
 
 def swatches_of(scale: Scale) -> tuple[Rgba, ...]:
@@ -233,3 +236,32 @@ def as_scored(found: GroundMap, space: PerceptionSpace, step: float) -> GroundSi
 
 def _where(height: float | None) -> str:
     return "all heights" if height is None else f"{height:g} m high"
+
+
+def painted_samples(verdict: Verdict) -> tuple[Floats, Floats, float]:
+    """Return the samples that pass (N, 2), those that fail (M, 2), and the size of one [m].
+
+    Of blind ground these are the squares of the zone that are seen and those that are blind.
+    """
+    samples = verdict.samples
+    if verdict.ground is not None:
+        cells, blind, mask = verdict.ground.cells, verdict.ground.blind, samples.mask
+        places = np.stack(np.meshgrid(cells.x, cells.y, indexing="ij"), axis=-1)
+        inside = np.ones(blind.shape, bool) if mask is None else mask
+        return places[inside & ~blind], places[inside & blind], cells.step
+    points, inside, ok = samples.points, samples.inside, verdict.passed
+    step = samples.zone.zone.step
+    if samples.zone.kind in ("path", "spots"):
+        size = max(step, SPOT_M)
+    else:
+        size = _spacing(points[inside], step)
+        if samples.zone.zone.x is None:  # corners of its outline lie between the samples
+            size = max(step, size)
+    return points[inside & ok], points[inside & ~ok], size
+
+
+def _spacing(points: Floats, step: float) -> float:
+    """Return the distance of samples along x: a preview has larger ones than the zone's step."""
+    gaps = np.diff(np.unique(points[:, 0])) if len(points) else np.zeros(0)
+    gaps = gaps[gaps > step / 2.0]
+    return float(gaps.min()) if len(gaps) else step

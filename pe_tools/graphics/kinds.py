@@ -15,9 +15,9 @@ from pe_core.scene import Sensor
 
 from .beams import BeamChoice, ChannelMode, cast, free_lines, shown_beams
 from .colors import Palette
-from .fields import field_faces, field_footprint, field_lines
 from .frustums import footprint, frustum_faces, frustum_lines, ring_lines
 from .primitives import Primitives
+from .sensor_images import field_faces, field_footprint, field_lines
 
 FEW_BEAMS = BeamChoice(96, ChannelMode.FEW)
 """Of a LiDAR that is drawn alone."""

@@ -34,7 +34,6 @@ from pe_core.study.study import Study
 
 from .candidate_workers import ExecutorSource, candidate_workers
 from .checkpoint import FrontJournals
-from .designed import Models, design_names, design_study
 from .front_objectives import (
     FrontFigures,
     ScalarValue,
@@ -45,7 +44,7 @@ from .front_objectives import (
 )
 from .job import Job, Progress, begun
 from .score_and_optimize import OptimizeJob
-from .trade_off import Design, TradeOff
+from .trade_off import Design, Models, TradeOff, design_names, design_study
 
 ALL_SEARCHED_UP_TO = 16
 """Up to this number of designs, each is searched in full; more are screened first."""

@@ -1,4 +1,4 @@
-"""The result files of a run in its output folder: result.json, history.csv, study.toml.
+"""The result files of a run in its output folder: result.json, history.csv, study.toml, and more.
 
 The files of a run are one set. `FileSet` writes them together, with result.json last; result.json
 lists the SHA-256 of each other file.
@@ -20,6 +20,7 @@ from pe_core.base.serialization import dump_json, finite, parse_json
 from pe_core.scene.rig import Rig
 from pe_core.search import AXES
 from pe_core.study.catalog_lookup import mounts_table
+from pe_core.study.condition_table import ConditionScore, ConditionTable
 from pe_core.study.file_names import (
     AREAS,
     BESIDE_RESULT,
@@ -39,13 +40,13 @@ from pe_core.study.study import Study
 from pe_core.version import __version__
 
 from .checkpoint import SearchState
-from .condition_files import conditions_csv
 from .folder import FileSet, Write, our_files, prepare_folder, sha256_of
 from .job import HistoryRow, Outcome
 from .searched_figure import IN_NATS, SearchedFigure, searched_figure
 from .study_export import inputs_of, study_writers
 
 EARLIER = ".earlier"
+FIGURES = ("entropy", "stderr", "coverage")
 
 
 def result_names(study: Study, kind: str) -> list[str]:
@@ -258,3 +259,51 @@ def runners_up(outcome: Outcome) -> dict[str, Study]:
     ends = None if found is None else found.endings
     rigs = [] if ends is None else [each.rig for each in ends.runners_up]
     return {n: outcome.start.with_rig(rig) for n, rig in zip(RUNNERS_UP, rigs, strict=False)}
+
+
+def conditions_csv(table: ConditionTable) -> str:
+    """Return a row for each condition: figures, entropy without each sensor, figures by class.
+
+    In a study on objects the figures are AP and the reach ahead of lone objects [m], too.
+    """
+    classes = list(dict.fromkeys(name for row in table.rows for name in row.per_class))
+    with_ap = any(row.ap is not None for row in table.rows)
+    heads = ["state", "weather", "weight", *FIGURES, *["ap"] * with_ap]
+    heads += [f"without {name}" for name in table.sensors]
+    heads += [f"entropy of {name}" for name in classes]
+    for figure in ("ap of", "reach ahead for") if with_ap else ():
+        heads += [f"{figure} {name}" for name in classes]
+    lines: list[list[object]] = [[*heads]]
+    for row in table.rows:
+        figures = [getattr(row, key) for key in FIGURES] + [row.ap] * with_ap
+        without = [row.without[name] for name in table.sensors]
+        by_class = [row.per_class.get(name, "") for name in classes]
+        line: list[object] = [row.state, row.weather, row.weight, *figures, *without, *by_class]
+        if with_ap:
+            line += [(row.ap_per_class or {}).get(name, "") for name in classes]
+            line += [(row.reach or {}).get(name, {}).get("front", "") for name in classes]
+        lines.append(line)
+    return csv_text(lines)
+
+
+def condition_lines(table: ConditionTable) -> list[str]:
+    """Return a line for each condition, and the mean and the worst of them."""
+    worst = table.worst
+    sensor, lossy = table.worst_loss
+    lines = [f"conditions, on {table.samples:,} samples:", *map(_line, table.rows)]
+    lines.append(f"mean of the conditions {table.mean:.4f} nats, worst {worst.entropy:.4f}")
+    lines[-1] += f" ({worst.name})"
+    if len(table.sensors) > 1:
+        lines.append(
+            f"worst with one sensor lost {lossy.without[sensor]:.4f} nats: "
+            f"without {sensor}, {lossy.name}"
+        )
+    return lines
+
+
+def _line(row: ConditionScore) -> str:
+    ap = "" if row.ap is None else f", expected AP {row.ap:.3f}"
+    return (
+        f"  {row.name}: {row.entropy:.4f} nats, coverage {row.coverage:.1%}{ap}, "
+        f"weight {row.weight:g}"
+    )

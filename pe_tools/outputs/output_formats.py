@@ -21,7 +21,7 @@ from pe_core.base.plugins import (
 from pe_core.study import Study
 
 from ..exchange import Written, write_files
-from . import masks, scene_gltf, solids, svg
+from . import footprints, masks, scene_gltf
 from .request import OutputRequest
 
 
@@ -60,8 +60,10 @@ class SceneOutput:
 
 
 _ROWS = (
-    SceneOutput("solids", "Fields of View as Solids (glTF, STL)", "solids", solids.write, True),
-    SceneOutput("footprints", "Footprints on the Ground (SVG)", svg.FILE, svg.write),
+    SceneOutput(
+        "solids", "Fields of View as Solids (glTF, STL)", "solids", scene_gltf.write_solids, True
+    ),
+    SceneOutput("footprints", "Footprints on the Ground (SVG)", footprints.FILE, footprints.write),
     SceneOutput("gltf", "Whole Scene (glTF)", scene_gltf.FILE, scene_gltf.write),
     SceneOutput("rerun", "Rerun Recording", "scene.rrd", partial(_with_library, "rerun", "Rerun")),
     SceneOutput("masks", "Ego Masks (PNG, CSV)", "masks", masks.write, True, has_range=False),

@@ -80,7 +80,7 @@ def add_page() -> None:
 
 def _write_front_page(data: Mapping[str, Any], folder: Path) -> None:
     from ..jobs import FRONT_PAGE, FileSet
-    from .front_page import front_page
+    from .build import front_page
 
     with FileSet(folder) as files:
         files.add(FRONT_PAGE, front_page(data))

@@ -1,14 +1,14 @@
-"""Build the page: for the verb ``review``, for studies in memory, and beside a search's results.
+"""Build pages: for the verb ``review``, for studies in memory, and beside the results of a search.
 
-A folder of search results is read back to the outcome that the search had.
-"""
+A folder of search results is read back to the outcome that the search had."""
 
 from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +16,14 @@ import pe_core as pe
 from pe_core import base as text
 from pe_core import search
 from pe_core import study as studies
+from pe_core.search.goals import HIGHER_IS_BETTER, OBJECTIVES
 
 from .. import cli as app
 from .. import jobs
 from ..sensitivity import sensitivity_from_dict
-from .document import PAGE, page_bytes, write_page
+from .document import PAGE, html_file, page_bytes, write_page
+from .markup import capitalized, render
+from .pictures.charts import four_digits, pareto_plot
 from .report_context import MAX_STUDIES, About, ReportContext
 
 INTERRUPTED = "no page was written"
@@ -29,6 +32,8 @@ OWN_VERSIONS = ("perception-entropy", "numpy", "python")
 A_RESULT = "the result of a search by this version"
 MAX_RESULT_BYTES = 1 << 28
 """Size limit of a result.json that is read."""
+DesignRow = Mapping[str, Any]
+BELOW = "; the figures are in the table below"
 
 
 @app.noted_when_interrupted(INTERRUPTED)
@@ -205,3 +210,60 @@ def _robustness(table: Mapping[str, Any] | None) -> search.Robustness | None:
     errors = search.Tolerance(table["position"], math.radians(table["angle"]), draws=table["draws"])
     stands = (search.RigRobustness(**table[which]) for which in ("before", "after"))
     return search.Robustness(errors, int(table["samples"]), *stands)
+
+
+def front_page(data: Mapping[str, Any]) -> bytes:
+    """Return the page of a front: of its objectives, or of price and entropy."""
+    names = [*data.get("objectives", ("price", "entropy"))]
+    designs = [d for d in data["designs"] if all(_figure(d, name) is not None for name in names)]
+    front = [design for design in designs if design["on_front"]]
+    others = [design for design in designs if not design["on_front"]]
+    columns = [*names, *_shared_figures(names, front)]
+    values = {name: [_figure(design, name) or 0.0 for design in front] for name in columns}
+    best = {name: (max if name in HIGHER_IS_BETTER else min)(values[name]) for name in columns}
+    labels = {name: _axis_label(name, str(data.get("currency") or "")) for name in columns}
+    with_requirements = any("requirements_met" in design for design in front)
+    heads = ["design", *(labels[name].split(",")[0] for name in columns)]
+    titles = [capitalized(OBJECTIVES[name][0]) for name in names]
+    body = render(
+        "front.html",
+        labels=titles,
+        front=front,
+        stopped=data["stopped"],
+        notes=data.get("notes", ()),
+        plots=[
+            pareto_plot(
+                [(_figure(d, x) or 0.0, _figure(d, y) or 0.0) for d in front],
+                [(_figure(d, x) or 0.0, _figure(d, y) or 0.0) for d in others],
+                (labels[x], labels[y]),
+                f"{OBJECTIVES[x][0]} against {OBJECTIVES[y][0]}{BELOW}",
+            )
+            for x, y in combinations(names, 2)
+        ],
+        heads=[*heads, *["requirements met"] * with_requirements],
+        figures=[
+            [(four_digits(values[n][k]), values[n][k] == best[n]) for n in columns]
+            for k in range(len(front))
+        ],
+        with_requirements=with_requirements,
+    )
+    return html_file(f"Pareto front: {', '.join(titles)}", body)
+
+
+def _shared_figures(names: Sequence[str], front: Sequence[DesignRow]) -> list[str]:
+    """Return the figures of all designs that are no objective of the front."""
+    figures = [design.get("figures", {}) for design in front]
+    shared = set(figures[0]).intersection(*figures) if figures else set()
+    return [name for name in OBJECTIVES if name in shared and name not in names]
+
+
+def _figure(design: DesignRow, name: str) -> float | None:
+    value = design.get("figures", design).get(name)
+    return None if value is None else float(value)
+
+
+def _axis_label(name: str, currency: str) -> str:
+    label, unit = OBJECTIVES[name]
+    unit = unit or (currency if name == "price" else "")
+    better = "higher is better" if name in HIGHER_IS_BETTER else "lower is better"
+    return f"{label} [{unit}], {better}" if unit else f"{label}, {better}"

@@ -1,11 +1,13 @@
-"""The sensitivity analysis of a search's result: what it computes, within which budget."""
+"""The sensitivity analysis of a search's result: what is computed, its data, and its lines."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from typing import Any
 
+from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig
 from pe_core.search import AXES
 from pe_core.search.goals import FULL, OFF
@@ -13,16 +15,27 @@ from pe_core.study.objective_search import is_by_ap
 from pe_core.study.objective_setting import EXPECTED_AP
 from pe_core.study.study import Study
 
-from .archive import Archive
-from .constraints import ActiveConstraint, Neighbourhood, Unmet, active_constraints
-from .flatness import FAR, NEAR, AxisCost, flatness
-from .fresh_samples import FreshSamples
-from .optima import BETWEEN, DESCENT, EXAMINED, MAX_RUNNERS_UP, Basins, Endings
+from .flatness import (
+    FAR,
+    FLAT,
+    NEAR,
+    ActiveConstraint,
+    AxisCost,
+    Neighbourhood,
+    PoseStep,
+    Unmet,
+    active_constraints,
+    flatness,
+)
+from .fresh_samples import STEEP_AP, STEEP_NATS, Difference, FreshSamples
+from .optima import BETWEEN, DESCENT, EXAMINED, MAX_RUNNERS_UP, Archive, Basins, Endings, RunnerUp
 
 SHARE = 8
 """The analysis evaluates at most the search's evaluations divided by this."""
 ENDINGS_NEED = EXAMINED * (1 + len(BETWEEN)) + MAX_RUNNERS_UP * DESCENT
 """Evaluations that the endings of a search take at most, about."""
+NAMED = 4
+"""How many axes, constraints or runners-up a line names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,3 +157,105 @@ def _unmet_by(study: Study) -> Unmet | None:
         return [n for n, off in zip(names, checker.shortfalls(rig), strict=True) if off]
 
     return unmet
+
+
+def sensitivity_from_dict(table: Mapping[str, Any] | None, rig: Rig) -> Sensitivity | None:
+    """Return the analysis that `Sensitivity.to_dict` wrote; None for None.
+
+    Runners-up are of the rig's sensors, at other poses. `KeyError`, `TypeError` or `ValueError`
+    when the table is no such analysis.
+    """
+    if table is None:
+        return None
+    by_ap = table.get("objective") == EXPECTED_AP
+    steep = STEEP_AP if by_ap else STEEP_NATS
+    axes, constraints = list[AxisCost](), list[ActiveConstraint]()
+    for row in table["axes"]:
+        cost = {float(step): Difference(*map(float, pair)) for step, pair in row["cost"].items()}
+        names = str(row["sensor"]), str(row["axis"]), str(row["status"])
+        axes.append(AxisCost(*names, cost, steep))
+    for row in table["constraints"]:
+        step = PoseStep(str(row["sensor"]), str(row["axis"]), float(row["step"]))
+        gain = Difference(-float(row["gain"]), float(row["stderr"]))
+        constraints.append(ActiveConstraint(tuple(map(str, row["constraints"])), step, gain))
+    found = table["endings"]
+    endings = None
+    if found is not None:
+        runners_up = tuple(_runner_up(row, rig) for row in found["runners_up"])
+        endings = Endings(int(found["examined"]), int(found["same_basin"]), runners_up)
+    counts = int(table["voxels"]), int(table["evaluations"])
+    return Sensitivity(*counts, tuple(axes), tuple(constraints), endings, by_ap)
+
+
+def _runner_up(row: Mapping[str, Any], rig: Rig) -> RunnerUp:
+    tables = [row["placements"][sensor.name] for sensor in rig]
+    poses = [Pose.from_degrees(each["position"], each["rotation"]) for each in tables]
+    behind = Difference(float(row["behind"]), float(row["stderr"]))
+    return RunnerUp(rig.with_poses(poses), behind, tuple(map(str, row["moved"])))
+
+
+def nats(change: Difference) -> str:
+    """Return a difference with its error: "+0.0123 +- 0.0004"."""
+    return f"{change.mean + 0.0:+.4f} +- {max(change.stderr, 1e-4):.4f}"
+
+
+def sensitivity_lines(found: Sensitivity) -> Iterator[str]:
+    """Yield the analysis in lines: steep and flat axes, constraints, other optima."""
+    yield from _axes_lines(found.axes, unit_of(found))
+    yield from _constraint_lines(found)
+    yield from _ending_lines(found)
+
+
+def unit_of(found: Sensitivity) -> str:
+    """Return the unit of costs and gains: "nats", or "of AP" after a search by expected AP."""
+    return "of AP" if found.by_ap else "nats"
+
+
+def _axes_lines(axes: Sequence[AxisCost], unit: str) -> Iterator[str]:
+    ordered = sorted(axes, key=lambda each: -each.worst.mean)
+    steep = [each for each in ordered if each.worst.is_loss][:NAMED]
+    if steep:
+        named = ", ".join(f"{each.sensor} {each.axis} {each.worst.mean:+.4f}" for each in steep)
+        yield f"1 cm or 1 deg off costs most at: {named} {unit}"
+    else:
+        yield "1 cm or 1 deg off costs nothing that can be measured, at no sensor and axis"
+    if flat := [each for each in axes if each.word == FLAT]:
+        reach = f"{max(max(each.cost) for each in flat):g}"
+        named = "; ".join(
+            f"{sensor} {', '.join(row.axis for row in rows)}"
+            for sensor, rows in groupby(flat, key=lambda each: each.sensor)
+        )
+        yield f"flat within {reach} cm or deg: {named}"
+
+
+def _constraint_lines(found: Sensitivity) -> Iterator[str]:
+    unit = unit_of(found)
+    for each in found.active[:NAMED]:
+        yield f"held by {each.name}: {each.step.text} would gain {gain_text(each.gain)} {unit}"
+    if len(found.active) > NAMED:
+        yield f"held by {len(found.active) - NAMED} more constraints"
+    if not found.active:
+        yield "no constraint holds it back: no step that is forbidden would gain"
+    if (more := found.unfinished) is not None:
+        gain = f"{gain_text(more.gain)} {unit}"
+        yield f"not quite settled: {more.step.text} is allowed and would gain {gain}"
+
+
+def gain_text(gain: Difference) -> str:
+    """Return what a step gains, with its error."""
+    return f"{-gain.mean:.4f} +- {max(gain.stderr, 1e-4):.4f}"
+
+
+def _ending_lines(found: Sensitivity) -> Iterator[str]:
+    if found.endings is None:
+        yield "where the starts ended: not examined, the search was too short"
+        return
+    count = len(found.endings.runners_up)
+    same = found.endings.same_basin
+    if not count:
+        yield f"one optimum: {same} placements far from it lead to it without a hill between"
+        return
+    what, unit = "scenes" if found.by_ap else "voxels", unit_of(found)
+    yield f"{count + 1} optima found; runners-up, {found.voxels:,} fresh {what}:"
+    for number, each in enumerate(found.endings.runners_up, 1):
+        yield f"  {number}: {nats(each.behind)} {unit}, with {', '.join(each.moved)} elsewhere"

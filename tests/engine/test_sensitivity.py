@@ -19,8 +19,7 @@ from pe_tools.sensitivity import (
     sensitivity_from_dict,
     sensitivity_lines,
 )
-from pe_tools.sensitivity.constraints import Neighbourhood, active_constraints
-from pe_tools.sensitivity.flatness import PoseStep, flatness
+from pe_tools.sensitivity.flatness import Neighbourhood, PoseStep, active_constraints, flatness
 from pe_tools.sensitivity.fresh_samples import SAMPLES, FreshSamples
 from pe_tools.sensitivity.optima import Basins
 from tests.engine import shapes

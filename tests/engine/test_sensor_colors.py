@@ -10,7 +10,7 @@ import pe_core as pe
 from pe_core import catalog
 from pe_core.study import study_from_dict, study_to_dict
 from pe_tools.graphics import PAPER, VIEWPORT, tints
-from pe_tools.graphics.tints import tints_of
+from pe_tools.graphics.colors import tints_of
 
 EYES = {
     "all cones": np.eye(3),

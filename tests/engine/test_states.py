@@ -20,7 +20,7 @@ from pe_core.study.condition_file import read_conditions, state_table
 from pe_core.study.condition_search import study_objective
 from pe_tools.jobs import conditions_csv
 from pe_tools.page.markup import render
-from pe_tools.page.sections.breakdown import table_values
+from pe_tools.page.sections.score import table_values
 from tests.engine import shapes
 
 BODY, DOOR, WHEEL = range(3)

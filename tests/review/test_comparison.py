@@ -9,11 +9,10 @@ import pe_core as pe
 from pe_core.catalog import load
 from pe_tools.page import ReportContext, keyed_contexts
 from pe_tools.page.markup import escaped, render
-from pe_tools.page.sections.bill_of_materials import price_of, price_text
 from pe_tools.page.sections.comparison import comparison as comparison_section
-from pe_tools.page.sections.comparison import sensor_differences
-from pe_tools.page.sections.overview import overview
-from pe_tools.page.sections.sensor_details import sensor_details
+from pe_tools.page.sections.comparison import price_of, price_text, sensor_differences
+from pe_tools.page.sections.score import overview
+from pe_tools.page.sections.visibility import sensor_details
 from tests.review.conftest import NAMES, html_of, outcome_of, small_study
 
 LIDAR, CAMERA = NAMES

@@ -6,7 +6,7 @@ import numpy as np
 
 import pe_core as pe
 from pe_tools.page import ReportContext, report_context
-from pe_tools.page.sections.overview import warnings_and_text
+from pe_tools.page.sections.score import warnings_and_text
 from tests.review.conftest import html_of, outcome_of, small_study
 
 ACROSS, FEW = 120, 4_000

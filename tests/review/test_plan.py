@@ -13,8 +13,7 @@ from pe_core.scoring.sight.blind_ground import BlindSpot
 from pe_tools.page import ReportContext, keyed_contexts
 from pe_tools.page.pictures.dimension_drawing import side_view, spread_labels, top_view
 from pe_tools.page.pictures.sight_plans import blind_plan
-from pe_tools.page.sections.bill_of_materials import bill_of_materials
-from pe_tools.page.sections.sensor_details import dimensions
+from pe_tools.page.sections.comparison import bill_of_materials
 from pe_tools.page.sections.traceability import (
     CURVE_SOURCES,
     PRIOR_SOURCES,
@@ -22,6 +21,7 @@ from pe_tools.page.sections.traceability import (
     VALIDITY_PAGE,
     assumptions,
 )
+from pe_tools.page.sections.visibility import dimensions
 from tests.review.conftest import NAMES, html_of, small_study
 from tests.review.test_comparison import beside, cells, rig
 

@@ -12,10 +12,15 @@ from pe_tools import graphics
 from pe_tools.page import ReportContext, page_bytes
 from pe_tools.page.document import STYLES
 from pe_tools.page.markup import percent
-from pe_tools.page.pictures.requirement_plans import MET_RGBA, NOT_MET_RGBA, requirement_plan
-from pe_tools.page.pictures.test_bodies import worst_bodies
-from pe_tools.page.sections.requirement_verdicts import requirement_verdicts
-from pe_tools.page.sections.visibility import HEIGHT_M, STEP_M, WITHIN_M, redundancy
+from pe_tools.page.pictures.reference_figures import worst_bodies
+from pe_tools.page.pictures.sight_plans import MET_RGBA, NOT_MET_RGBA, requirement_plan
+from pe_tools.page.sections.visibility import (
+    HEIGHT_M,
+    STEP_M,
+    WITHIN_M,
+    redundancy,
+    requirement_verdicts,
+)
 from pe_tools.wording import margin_text
 from tests.review.conftest import NAMES, html_of, outcome_of, small_study
 from tests.review.test_maps import pixels_of

@@ -11,7 +11,7 @@ from pe_tools.page import ReportContext, page_bytes
 from pe_tools.page.pictures.sensor_views import SENSOR_VIEWS, SensorView
 from pe_tools.page.pictures.vehicle_picture import housing_of
 from pe_tools.page.scene3d import scene_data
-from pe_tools.page.sections.sensor_details import sensor_details
+from pe_tools.page.sections.visibility import sensor_details
 from tests.engine.toy_kind import RING, Ring
 from tests.review.conftest import html_of, outcome_of, small_study
 from tests.review.test_page import Elements

@@ -22,7 +22,7 @@ from pe_tools.page.pictures.reference_figures import (
 )
 from pe_tools.page.pictures.sensor_views import camera_picture, lidar_picture, ray_camera
 from pe_tools.page.pictures.svg import LabelledPicture, stacked
-from pe_tools.page.sections.sensor_details import sensor_details
+from pe_tools.page.sections.visibility import sensor_details
 from pe_tools.wording import percent
 from tests.engine.test_png import decoded
 from tests.review.conftest import box, html_of

@@ -15,15 +15,11 @@ from markupsafe import Markup
 from .. import scene3d
 from ..markup import render
 from ..report_context import ReportContext
-from .bill_of_materials import bill_of_materials
-from .breakdown import by_class_and_zone, conditions, objects, sensor_loss
-from .comparison import comparison
-from .overview import overview, warnings_and_text
-from .requirement_verdicts import requirement_verdicts
+from .comparison import bill_of_materials, comparison
+from .score import by_class_and_zone, conditions, objects, overview, sensor_loss, warnings_and_text
 from .search import search_history, sensitivity
-from .sensor_details import dimensions, sensor_details
 from .traceability import assumptions, copy_script, reproduction
-from .visibility import redundancy, visibility
+from .visibility import dimensions, redundancy, requirement_verdicts, sensor_details, visibility
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,15 +1,24 @@
-"""What the rig sees where: maps, blind ground, reach, and what one lost sensor leaves."""
+"""What the rig sees where: maps, blind ground, reach, requirements, and what each sensor sees."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
+from markupsafe import Markup
+
+import pe_core as pe
 from pe_core.base.errors import InputError
+from pe_core.scoring import requirements
 from pe_core.scoring.requirements import Redundancy
 
-from ..markup import capitalized, percent
+from ...wording import margin_text, unseen_text, verdict_text
+from ..markup import capitalized, number, percent
+from ..pictures.dimension_drawing import side_view, top_view
 from ..pictures.ground_plan import COVERAGE, ENTROPY, LAYERS, count_map, difference_map, ground_map
-from ..pictures.sight_plans import blind_plan, reach_plan, reach_text, side_text
+from ..pictures.reference_figures import WorstBody, count_text, worst_bodies
+from ..pictures.sensor_views import sensor_view
+from ..pictures.sight_plans import blind_plan, reach_plan, reach_text, requirement_plan, side_text
 from ..pictures.vehicle_picture import sensor_key
 from ..report_context import MAP_STEP_M, ReportContext
 
@@ -22,6 +31,9 @@ BEARINGS_DEG = {"ahead": 0.0, "ahead left": 45.0, "left": 90.0, "behind": 180.0,
 BEARINGS_DEG["ahead right"] = 315.0
 HEIGHT_M, WITHIN_M, STEP_M = 0.8, 10.0, 0.25
 """Height of the test body, ground round the vehicle, and distance of the places [m]."""
+DIGITS = 3
+MAX_PARTS, MIN_SHARE = 3, 0.0005
+"""Parts of the vehicle that a row names, and the smallest share that such a part occludes."""
 
 
 def visibility(context: ReportContext) -> dict[str, Any]:
@@ -130,3 +142,102 @@ def redundancy(context: ReportContext) -> dict[str, Any] | None:
             for text, least in counts
         ],
     }
+
+
+def requirement_verdicts(context: ReportContext) -> dict[str, Any] | None:
+    """Return the verdicts of a study; None for a study without requirements."""
+    verdicts = context.outcome.verdicts
+    if not verdicts:
+        return None
+    bodies = worst_bodies(verdicts, context.rig, context.vehicle)
+    alts = [f"Zone of {v.name} from above: {'met' if v.met else 'not met'}" for v in verdicts]
+    return {
+        "verdicts": verdicts,
+        "texts": [verdict_text(verdict.summary) for verdict in verdicts],
+        "margins": [_margin(verdict) for verdict in verdicts],
+        "unseen": ["" if v.met else unseen_text(v.unseen_by) for v in verdicts],
+        "plans": [
+            requirement_plan(verdict, context.vehicle, alt)
+            for verdict, alt in zip(verdicts, alts, strict=True)
+        ],
+        "counts": [
+            [f"{each.number} {each.verdict.name}: {each.body.name}"]
+            + [
+                count_text(sensor, count) if (count := each.counts[sensor.name]) > 0.0 else "none"
+                for sensor in context.rig
+            ]
+            for each in bodies
+        ],
+        "pictures": list(_pictures(context, bodies)),
+    }
+
+
+def _margin(verdict: requirements.Verdict) -> str:
+    if verdict.blind_m2 is not None:
+        return margin_text(verdict.summary).replace("m2", "m²")
+    share = "" if verdict.met else f"; {percent(verdict.share)} of the zone pass"
+    return f"{margin_text(verdict.summary)}{share}"
+
+
+def _pictures(
+    context: ReportContext, bodies: tuple[WorstBody, ...]
+) -> Iterator[tuple[str, Markup]]:
+    """Yield name and picture of each sensor that sees a body."""
+    for sensor in context.rig:
+        picture = sensor_view(sensor.kind).picture
+        seen = [each.figure(sensor) for each in bodies if each.counts[sensor.name] > 0.0]
+        if picture is not None and seen:
+            shown = picture(sensor, context.display_vehicle[0], seen)
+            yield sensor.name, shown.svg(f"Test bodies in the picture of {sensor.name}")
+
+
+def dimensions(context: ReportContext) -> dict[str, Any] | None:
+    """Return side and top view with dimensions; None without a vehicle."""
+    vehicle, axle = context.display_vehicle[0], context.study.reference
+    if vehicle is None:
+        return None
+    axle_x = None if axle is None else axle.rear_axle_x
+    length, width, _ = (vehicle.bounds[1] - vehicle.bounds[0]).tolist()
+    front, height = float(vehicle.bounds[1][0]), float(vehicle.bounds[1][2])
+    rows = []
+    for k, sensor in enumerate(context.rig, 1):
+        x, y, z = sensor.pose.position
+        side = "" if abs(y) < 0.5 * 10.0**-DIGITS else " left" if y > 0.0 else " right"
+        from_axle = [] if axle_x is None else [number(x - axle_x, DIGITS)]
+        row = [f"{k} {sensor.name}", number(z, DIGITS), number(front - x, DIGITS), *from_axle]
+        rows.append([*row, f"{number(abs(y), DIGITS)}{side}"])
+    heads = ["Sensor", "above the ground", "behind the foremost point"]
+    heads += [] if axle_x is None else ["forward of the rear axle"]
+    return {
+        "side": side_view(context.rig, vehicle, f"Side view of {context.name} with dimensions"),
+        "top": top_view(
+            context.rig, vehicle, axle_x, f"Top view of {context.name} with dimensions"
+        ),
+        **{"length": length, "width": width, "height": height, "axle": axle},
+        "heads": [*heads, "from the centre line"],
+        "rows": rows,
+    }
+
+
+def sensor_details(context: ReportContext) -> dict[str, Any]:
+    """Return the parts that occlude each sensor, and what each one sees."""
+    return {
+        "occluding_parts": {
+            name: _occluding_parts(score) for name, score in context.after.per_sensor.items()
+        },
+        "key": sensor_key(context.rig),
+        "views": [
+            sensor_view(sensor.kind).figure(sensor, context.display_vehicle[0])
+            for sensor in context.rig
+        ],
+    }
+
+
+def _occluding_parts(score: pe.SensorScore) -> str:
+    """Return the parts of the vehicle that occlude most of a sensor."""
+    if not score.occluded:
+        return "none"
+    shares = {name: count / score.beams for name, count in score.occluded_by.items()}
+    names = sorted((name for name in shares if shares[name] >= MIN_SHARE), key=lambda n: -shares[n])
+    parts = (f"{name} {percent(shares[name], 1)}" for name in names[:MAX_PARTS])
+    return ", ".join(parts) or "little"

@@ -299,7 +299,7 @@ class FrontJob(Job):
 
     def _search_points(self) -> Iterator[Progress]:
         waiting = Progress("preparing", 0.0)
-        if (yield from self._beside(self._prepare, lambda: waiting)) is None:
+        if (yield from self._beside(lambda _: self._prepare(), waiting)) is None:
             return
         models = (sensor.model for each in self._searched for sensor in each.study.rig)
         found: list[tuple[_Searched, Rig]] = []
@@ -445,7 +445,6 @@ class _DesignJob(OptimizeJob):
 
     def look(self) -> Iterator[Progress]:
         """Search without scoring the start and the result."""
-        waiting = Progress("preparing", 0.0)
-        yield from self._beside(self._checked, lambda: waiting)
+        yield from self._beside(lambda _: self._checked(), Progress("preparing", 0.0))
         with self._candidate_workers() as self._helpers:
             yield from self._search()

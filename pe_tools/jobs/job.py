@@ -51,7 +51,7 @@ def best_so_far(*starts: Sequence[HistoryRow]) -> tuple[tuple[int, float], ...]:
     for rows in starts:
         curve: list[tuple[int, float]] = []
         for row, before in zip(rows, (None, *rows), strict=False):
-            if before is not None and _poses(row.rig) == _poses(before.rig):
+            if before is not None and _poses(row) == _poses(before):
                 shift = row.entropy - before.entropy
                 curve = [(evaluation, value + shift) for evaluation, value in curve]
             elif not curve or row.entropy < curve[-1][1]:
@@ -61,8 +61,8 @@ def best_so_far(*starts: Sequence[HistoryRow]) -> tuple[tuple[int, float], ...]:
     return tuple(kept or best)
 
 
-def _poses(rig: Rig) -> list[Pose]:
-    return [sensor.pose for sensor in rig]
+def _poses(row: HistoryRow) -> list[Pose]:
+    return [sensor.pose for sensor in row.rig]
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,24 +267,21 @@ class Job:
         def work(watch: Watch) -> Score:
             return self.evaluators.on(self.study.samples).score(rig, watch=watch)
 
-        return (yield from self._watched(work, waiting, to_the_end, waiting.fraction))
+        return (yield from self._beside(work, waiting, to_the_end))
 
-    def _watched(
-        self,
-        work: Callable[[Watch], T],
-        waiting: Progress,
-        to_the_end: bool = False,
-        least: float = 0.0,
+    def _beside(
+        self, work: Callable[[Watch], T], waiting: Progress, to_the_end: bool = False
     ) -> Generator[Progress, None, T | None]:
-        """Run `work` in a thread as `_beside`; it tells its progress, and hears whether to go on.
+        """Run `work` in a thread, yielding progress; return None if the job ends before it.
 
-        The fraction that `waiting` is yielded with is never below `least`.
+        The work tells its progress, and hears whether to go on. The fraction is never below that of
+        `waiting`.
         """
-        done = least
+        done = waiting.fraction
 
         def watch(share: float) -> bool:
             nonlocal done
-            done = max(least, share)
+            done = max(waiting.fraction, share)
             return self._goes_on(to_the_end)
 
         def guarded() -> T | None:
@@ -293,19 +290,15 @@ class Job:
             except ScoreStopped:
                 return None
 
-        def now() -> Progress:
-            return replace(waiting, fraction=done)
-
-        return (yield from self._beside(guarded, now, to_the_end))
-
-    def _beside(
-        self, work: Callable[[], T], waiting: Callable[[], Progress], to_the_end: bool = False
-    ) -> Generator[Progress, None, T | None]:
-        """Run `work` in a thread, yielding progress; return None if the job ends before it."""
-        yield waiting()
+        yield waiting
         if not self._goes_on(to_the_end):
             return None
-        return (yield from self._awaited(begun(work), waiting, to_the_end))
+        begun_work = begun(guarded)
+        return (
+            yield from self._awaited(
+                begun_work, lambda: replace(waiting, fraction=done), to_the_end
+            )
+        )
 
     def _awaited(
         self, future: Future[T], waiting: Callable[[], Progress], to_the_end: bool = False
@@ -326,11 +319,11 @@ class Job:
     ) -> Generator[Progress, None, tuple[Advice, ...] | None]:
         """Collect the warnings about a study in a thread, yielding `waiting` until it is done."""
 
-        def work() -> tuple[Advice, ...]:
+        def work(_: Watch) -> tuple[Advice, ...]:
             found_warnings = warnings(study.rig, study.vehicle, study.space, study.prior, score)
             return (*self.notes, *curve_warnings(study.model), *found_warnings)
 
-        return (yield from self._beside(work, lambda: waiting, to_the_end=True))
+        return (yield from self._beside(work, waiting, to_the_end=True))
 
     def _verdicts(
         self, study: Study, waiting: Progress, to_the_end: bool = True
@@ -347,7 +340,7 @@ class Job:
                 found += [] if step.verdict is None else [step.verdict]
             return tuple(found)
 
-        return (yield from self._watched(work, waiting, to_the_end))
+        return (yield from self._beside(work, replace(waiting, fraction=0.0), to_the_end))
 
     def _check_steps(self, study: Study) -> Iterator[CheckStep]:
         """Yield the verdicts on a study one by one, with steps in between."""
@@ -363,7 +356,7 @@ class Job:
         def work(watch: Watch) -> ConditionTable | None:
             return condition_table(study, self.workers, watch)
 
-        return (yield from self._watched(work, waiting, to_the_end))
+        return (yield from self._beside(work, replace(waiting, fraction=0.0), to_the_end))
 
 
 def begun(work: Callable[[], T]) -> Future[T]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
@@ -33,7 +33,7 @@ from pe_core.study.requirement_search import (
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 
 from ..advice import Advice, condition_warnings, fragile, unmet
-from ..sensitivity import Archive, FreshSamples, Sensitivity, analyse, fresh_objectives, is_analysed
+from ..sensitivity import Archive, FreshSamples, analyse, fresh_objectives, is_analysed
 from .candidate_workers import ExecutorSource, candidate_workers
 from .job import HistoryRow, Job, Outcome, Progress, StartEnd, begun, best_so_far
 from .searched_figure import IN_AP, searched_figure, searched_samples
@@ -164,7 +164,7 @@ class OptimizeJob(Job):
 
     def __iter__(self) -> Iterator[Progress]:
         preparing = Progress("preparing", 0.0)
-        if (yield from self._beside(self._checked, lambda: preparing)) is None:
+        if (yield from self._beside(lambda _: self._checked(), preparing)) is None:
             return
         with self._candidate_workers() as self._helpers:
             yield from self._scored_and_searched()
@@ -180,21 +180,21 @@ class OptimizeJob(Job):
         last, best = yield from self._better_of(first)
         looking = self._about("scoring the result", last.value)
         warnings = yield from self._warnings(best, last.score, looking)
-        blind = yield from self._beside(lambda: self._blind(best), lambda: looking, to_the_end=True)
+        blind = yield from self._beside(lambda _: self._blind(best), looking, to_the_end=True)
         # A stop, before it or while it runs, ends what follows: the result does not wait for it.
         analysing = replace(looking, stage="analysing")
-
-        def analysed(work: Callable[[], T]) -> Generator[Progress, None, T | None]:
-            return self._beside(work, lambda: analysing)
-
-        found = yield from analysed(lambda: self._robustness(best))
+        found = yield from self._beside(lambda _: self._robustness(best), analysing)
         verdicts = (yield from self._verdicts(best, analysing, to_the_end=False)) or ()
         against: tuple[Advice, ...] | None = ()
         if best.search.requirements and not all(verdict.met for verdict in verdicts):
-            against = yield from analysed(lambda: unmet(conflicts(best, best.rig)))
+            against = yield from self._beside(lambda _: unmet(conflicts(best, best.rig)), analysing)
         sensitivity = None
         if self.analyses and not self.stopped:
-            sensitivity = yield from analysed(lambda: self._sensitivity(best))
+            samples = FreshSamples(best, best.rig, self._fresh_objectives, self._helpers)
+            given = self.study, best, self._archive, self.evaluations, samples
+            sensitivity = yield from self._beside(
+                lambda _: analyse(*given, lambda: not self.stopped), analysing
+            )
         table = yield from self._conditions(best, analysing, to_the_end=False)
         if self.dropped or warnings is None or blind is None:
             return
@@ -269,12 +269,6 @@ class OptimizeJob(Job):
         last = self.evaluators.on(search.samples)
         sampled = last if last.samples else self.evaluators.on(DEFAULT_SEARCH_SAMPLES)
         return robustness(sampled, self.study.rig, best.rig, search.tolerance, search.seed)
-
-    def _sensitivity(self, best: Study) -> Sensitivity | None:
-        """Analyse the result; None if the job is stopped, or the search too short."""
-        samples = FreshSamples(best, best.rig, self._fresh_objectives, self._helpers)
-        given = (self.study, best, self._archive, self.evaluations)
-        return analyse(*given, samples, lambda: not self.stopped)
 
     def _blind(self, best: Study) -> tuple[float, float]:
         """Return the blind ground of start and result [m2]."""

@@ -34,21 +34,20 @@ class StopWatch:
         self._stop, self._objectives, self._started = stop, objectives, started
         self._target = None if stop.target is None else figure.to_figure(stop.target)
         self._bests: deque[float] = deque(maxlen=stop.over + 1)
-        self._level = 0
         self._checked: float | None = None
 
     def reason(self, step: Step) -> str:
         """Return why the search ends after a step; empty where it goes on."""
         if self._is_at_target(step):
             return TARGET
-        if self._has_no_gain(step):
-            return GAIN
+        if self._stop.gain is not None and step.level == len(self._objectives) - 1:
+            self._bests.append(step.entropy)
+            full = len(self._bests) == self._stop.over + 1
+            if full and self._bests[0] - self._bests[-1] < self._stop.gain:
+                return GAIN
         seconds = self._stop.seconds
-        return SECONDS if seconds is not None and self._seconds >= seconds else ""
-
-    @property
-    def _seconds(self) -> float:
-        return time.monotonic() - self._started
+        is_over = seconds is not None and time.monotonic() - self._started >= seconds
+        return SECONDS if is_over else ""
 
     def _is_at_target(self, step: Step) -> bool:
         target = self._target
@@ -60,14 +59,6 @@ class StopWatch:
             return False
         self._checked = step.entropy
         return self._objectives[-1].entropy(step.best) <= target
-
-    def _has_no_gain(self, step: Step) -> bool:
-        """Whether the last placements on the last level lowered the best by less than asked."""
-        if self._stop.gain is None or step.level < len(self._objectives) - 1:
-            return False
-        self._bests.append(step.entropy)
-        full = len(self._bests) == self._stop.over + 1
-        return full and self._bests[0] - self._bests[-1] < self._stop.gain
 
 
 def stop_text(reason: str, study: Study) -> str:

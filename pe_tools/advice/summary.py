@@ -88,7 +88,16 @@ class Outlook:
             "expected_ap": dict(self.expected_ap),
             "seen_by_at_least": list(self.shares.by_number),
             "seen_by_sensor": {name: dict(shares) for name, shares in self.shares.zones.items()},
-            "reach": _reach_dict(self.reach),
+            "reach": {
+                "class": self.reach.class_name,
+                "ap": self.reach.ap,
+                "bearings_deg": [round(math.degrees(b), 6) for b in self.reach.bearings],
+                "distance_m": self.reach.distance.tolist(),
+                "limit_m": self.reach.limit.tolist(),
+                "per_sensor_m": {
+                    name: distances.tolist() for name, distances in self.reach.per_sensor.items()
+                },
+            },
             "blind": _blind_dict(self.blind),
         }
 
@@ -172,17 +181,6 @@ def _blind_to(blind: BlindGround, side: str) -> str:
     if end == 0.0:
         return "none"
     return f"beyond {blind.within:g} m" if end is None else f"to {shown_end(end):.1f} m"
-
-
-def _reach_dict(reach: Reach) -> dict[str, Any]:
-    return {
-        "class": reach.class_name,
-        "ap": reach.ap,
-        "bearings_deg": [round(math.degrees(b), 6) for b in reach.bearings],
-        "distance_m": reach.distance.tolist(),
-        "limit_m": reach.limit.tolist(),
-        "per_sensor_m": {name: distances.tolist() for name, distances in reach.per_sensor.items()},
-    }
 
 
 def _blind_dict(blind: BlindGround) -> dict[str, Any]:

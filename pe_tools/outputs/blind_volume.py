@@ -27,7 +27,10 @@ def level_outlines(solid: Solid, height: float) -> tuple[Floats, ...]:
     # Counter-clockwise from outside: an outline comes in where an edge leads down through the
     # plane, and goes on to the triangle beside where one leads up.
     down, up = _leading(faces, above), _leading(faces, ~above)
-    points = _passing(solid.points, down, height)
+    # The points (E, 2) where edges (E, 2) cross a height [m].
+    start, end = solid.points[down[:, 0]], solid.points[down[:, 1]]
+    share = (height - start[:, 2]) / (end[:, 2] - start[:, 2])
+    points = start[:, :2] + share[:, None] * (end - start)[:, :2]
     numbers, back = (edge.min(axis=1) * len(solid.points) + edge.max(axis=1) for edge in (down, up))
     row = {number: k for k, number in enumerate(numbers.tolist())}
     return tuple(points[[row[number] for number in loop]] for loop in chained(numbers, back))
@@ -38,13 +41,6 @@ def _leading(faces: Ints, first: Ints) -> Ints:
     corner = np.argmax(first & ~np.roll(first, -1, axis=1), axis=1)
     row = np.arange(len(faces))
     return np.stack([faces[row, corner], faces[row, (corner + 1) % 3]], axis=1)
-
-
-def _passing(points: Floats, edges: Ints, height: float) -> Floats:
-    """Return the points (E, 2) where edges (E, 2) cross a height [m]."""
-    start, end = points[edges[:, 0]], points[edges[:, 1]]
-    share = (height - start[:, 2]) / (end[:, 2] - start[:, 2])
-    return start[:, :2] + share[:, None] * (end - start)[:, :2]
 
 
 SIDES = {

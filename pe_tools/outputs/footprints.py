@@ -16,7 +16,7 @@ import numpy as np
 
 from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
-from pe_core.scene import PerceptionSpace, Pose, Sensor, Vehicle
+from pe_core.scene import PerceptionSpace, Pose, Vehicle
 from pe_core.scoring.sight.grid_regions import outlines
 from pe_core.sensors import kind_of
 
@@ -90,7 +90,13 @@ def ground_plan(request: OutputRequest) -> tuple[GroundPlan, list[str]]:
     lines: list[str] = []
     colors = sensor_colors_on_paper(study.rig)
     for sensor in study.rig:
-        footprint = _footprint(request, sensor, names[sensor.name], colors[sensor.name])
+        plain = names[sensor.name]
+        color = colors[sensor.name]
+        reach = request.reach(sensor, REACH_M)
+        view = mounted_view(sensor, request.study.vehicle, reach, STEP)
+        loops = () if view is None else level_outlines(free_solid(plain, view), 0.0)
+        model = f"{sensor.model.name}, {kind_of(sensor).label}"
+        footprint = GroundFootprint(sensor.name, plain, model, color, sensor.pose, reach, loops)
         if not footprint.outlines:
             lines.append(f"{sensor.name}: sees no ground within {footprint.reach:g} m")
         footprints.append(footprint)
@@ -103,14 +109,6 @@ def ground_plan(request: OutputRequest) -> tuple[GroundPlan, list[str]]:
     except InputError as error:
         lines.append(f"no blind ground: {error}")
     return GroundPlan(tuple(footprints), outline_from_above(study.vehicle), blind), lines
-
-
-def _footprint(request: OutputRequest, sensor: Sensor, plain: str, color: Rgb) -> GroundFootprint:
-    reach = request.reach(sensor, REACH_M)
-    view = mounted_view(sensor, request.study.vehicle, reach, STEP)
-    loops = () if view is None else level_outlines(free_solid(plain, view), 0.0)
-    model = f"{sensor.model.name}, {kind_of(sensor).label}"
-    return GroundFootprint(sensor.name, plain, model, color, sensor.pose, reach, loops)
 
 
 def outline_from_above(vehicle: Vehicle) -> ClosedLines:

@@ -19,7 +19,11 @@ from ..cli import Answer, plots
 def add_verbs(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the verbs to the parser of ``pe``."""
     _add_fit(verbs)
-    _add_front(verbs)
+    front = verbs.add_parser("front", help="draw the Pareto front of price and entropy again")
+    front.add_argument(
+        "folder", metavar="DIR", help="folder that `pe optimize` wrote for a study with choices"
+    )
+    front.set_defaults(function=_front)
     if _draw_front not in plots:
         plots.append(_draw_front)
 
@@ -48,14 +52,6 @@ def _add_fit(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
     fit.add_argument("-o", "--output", metavar="DIR", help="folder for ap.toml and ap.png")
     fit.add_argument("--json", action="store_true", help="print JSON on stdout")
     fit.set_defaults(function=_fit)
-
-
-def _add_front(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    front = verbs.add_parser("front", help="draw the Pareto front of price and entropy again")
-    front.add_argument(
-        "folder", metavar="DIR", help="folder that `pe optimize` wrote for a study with choices"
-    )
-    front.set_defaults(function=_front)
 
 
 def _fit(args: argparse.Namespace) -> Answer:

@@ -202,7 +202,16 @@ def nats(change: Difference) -> str:
 def sensitivity_lines(found: Sensitivity) -> Iterator[str]:
     """Yield the analysis in lines: steep and flat axes, constraints, other optima."""
     yield from _axes_lines(found.axes, unit_of(found))
-    yield from _constraint_lines(found)
+    unit = unit_of(found)
+    for each in found.active[:NAMED]:
+        yield f"held by {each.name}: {each.step.text} would gain {gain_text(each.gain)} {unit}"
+    if len(found.active) > NAMED:
+        yield f"held by {len(found.active) - NAMED} more constraints"
+    if not found.active:
+        yield "no constraint holds it back: no step that is forbidden would gain"
+    if (more := found.unfinished) is not None:
+        gain = f"{gain_text(more.gain)} {unit}"
+        yield f"not quite settled: {more.step.text} is allowed and would gain {gain}"
     yield from _ending_lines(found)
 
 
@@ -226,19 +235,6 @@ def _axes_lines(axes: Sequence[AxisCost], unit: str) -> Iterator[str]:
             for sensor, rows in groupby(flat, key=lambda each: each.sensor)
         )
         yield f"flat within {reach} cm or deg: {named}"
-
-
-def _constraint_lines(found: Sensitivity) -> Iterator[str]:
-    unit = unit_of(found)
-    for each in found.active[:NAMED]:
-        yield f"held by {each.name}: {each.step.text} would gain {gain_text(each.gain)} {unit}"
-    if len(found.active) > NAMED:
-        yield f"held by {len(found.active) - NAMED} more constraints"
-    if not found.active:
-        yield "no constraint holds it back: no step that is forbidden would gain"
-    if (more := found.unfinished) is not None:
-        gain = f"{gain_text(more.gain)} {unit}"
-        yield f"not quite settled: {more.step.text} is allowed and would gain {gain}"
 
 
 def gain_text(gain: Difference) -> str:

@@ -192,7 +192,10 @@ class Neighbourhood:
 
     def forbidding(self, step: PoseStep) -> tuple[str, ...]:
         """Return the constraints that forbid a step of one sensor alone; none: it is allowed."""
-        rules = self._rules(lone_move(self.rig, step))
+        # The rules that a rig breaks and the placement does not, in their order.
+        rig = lone_move(self.rig, step)
+        broken = self._broken(rig) - self._broken_here
+        rules = [rule.text for rule in self._parametrization.rules if rule.text in broken]
         held = self._held(step)
         if held.startswith("mount"):
             rules = [text for text in rules if not text.startswith(CLEARANCE)]
@@ -223,11 +226,6 @@ class Neighbourhood:
         for name, leader in self._leaders.items():
             if sensor in (name, leader):
                 yield f"link of {name!r} to {leader!r}"
-
-    def _rules(self, rig: Rig) -> list[str]:
-        """Return the rules that a rig breaks and the placement does not, in their order."""
-        broken = self._broken(rig) - self._broken_here
-        return [rule.text for rule in self._parametrization.rules if rule.text in broken]
 
     def _broken(self, rig: Rig) -> frozenset[str]:
         trial = Trial(rig, self._space)

@@ -9,7 +9,8 @@ import pytest
 import pe_core as pe
 from pe_core import catalog
 from pe_core.study import study_from_dict, study_to_dict
-from pe_tools.graphics import PAPER, VIEWPORT, tints
+from pe_tools.graphics import PAPER, VIEWPORT
+from pe_tools.graphics import colors as tints
 from pe_tools.graphics.colors import tints_of
 
 EYES = {

@@ -155,17 +155,18 @@ def rounded_box(half: Floats, bevel: float = 0.12) -> Floats:
     """(F, 3, 3) triangles of a box of half sizes (3,) with bevelled edges."""
     x, y, z = half.tolist()
     cut = bevel * min(x, y, z)
-    return capped([_outline(x - c, y - c, cut, h) for c, h in _levels(z, cut)])
+    return capped(
+        [
+            _outline(x - c, y - c, cut, h)
+            for c, h in ((cut, -z), (0.0, cut - z), (0.0, z - cut), (cut, z))
+        ]
+    )
 
 
 def capped(rings: Sequence[Floats]) -> Floats:
     """(F, 3, 3) triangles of a loft with closed ends."""
     ends = [np.tile(ring.mean(axis=0), (len(ring), 1)) for ring in (rings[0], rings[-1])]
     return loft([ends[0], *rings, ends[1]])
-
-
-def _levels(z: float, cut: float) -> tuple[tuple[float, float], ...]:
-    return (cut, -z), (0.0, cut - z), (0.0, z - cut), (cut, z)
 
 
 def _outline(x: float, y: float, cut: float, height: float) -> Floats:

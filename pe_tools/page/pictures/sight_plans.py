@@ -201,7 +201,15 @@ def requirement_plan(verdict: requirements.Verdict, vehicle: pe.Vehicle | None, 
     grown, or shrunk, by the margin. A cross marks the worst sample.
     """
     zone = verdict.samples.zone
-    bounds = _zone_bounds(verdict, vehicle)
+    # The ground of a plan: the zone, grown by its margin, and the vehicle.
+    low, high = verdict.samples.zone.bounds
+    grown = max(verdict.margin or 0.0, 0.0)
+    low, high = low - grown, high + grown
+    if vehicle is not None:
+        low = np.minimum(low, vehicle.bounds[0][:2])
+        high = np.maximum(high, vehicle.bounds[1][:2])
+    (x0, y0), (x1, y1) = (low - AROUND_M).tolist(), (high + AROUND_M).tolist()
+    bounds = (x0, x1), (y0, y1)
     plan = PlanDrawing(bounds, alt, width=PLAN_WIDTH)
     plan.cells(_sample_png(verdict, bounds))
     color = MET if verdict.met else NOT_MET
@@ -212,21 +220,13 @@ def requirement_plan(verdict: requirements.Verdict, vehicle: pe.Vehicle | None, 
     _draw_margin(plan, verdict, bounds)
     plan.vehicle(vehicle)
     if verdict.worst is not None and not verdict.met:
-        _draw_worst(plan, verdict.worst)
+        # Mark the worst sample by a cross in a ring.
+        x, y = plan.point(*verdict.worst)
+        plan.canvas.add("circle", cx=x, cy=y, r=6.0, fill="#fff", stroke=INK, stroke_width=1.4)
+        cross = f"M{x - 3:.1f} {y - 3:.1f}l6 6m0 -6l-6 6"
+        plan.canvas.add("path", d=cross, fill="none", stroke=INK, stroke_width=1.4)
     plan.frame()
     return plan.canvas.svg()
-
-
-def _zone_bounds(verdict: requirements.Verdict, vehicle: pe.Vehicle | None) -> PlanBounds:
-    """Return the ground of a plan: the zone, grown by its margin, and the vehicle."""
-    low, high = verdict.samples.zone.bounds
-    grown = max(verdict.margin or 0.0, 0.0)
-    low, high = low - grown, high + grown
-    if vehicle is not None:
-        low = np.minimum(low, vehicle.bounds[0][:2])
-        high = np.maximum(high, vehicle.bounds[1][:2])
-    (x0, y0), (x1, y1) = (low - AROUND_M).tolist(), (high + AROUND_M).tolist()
-    return (x0, x1), (y0, y1)
 
 
 def _sample_png(verdict: requirements.Verdict, bounds: PlanBounds) -> bytes:
@@ -295,11 +295,3 @@ def _draw_margin(plan: PlanDrawing, verdict: requirements.Verdict, bounds: PlanB
     text = f"{sign}{number(verdict.margin)} m"
     right = max(x - 4.0, plan.left + LETTER * (len(text) + 1))
     plan.canvas.text(right, max(y - 5.0, 20.0), text, text_anchor="end", css="strong halo")
-
-
-def _draw_worst(plan: PlanDrawing, worst: tuple[float, float]) -> None:
-    """Mark the worst sample by a cross in a ring."""
-    x, y = plan.point(*worst)
-    plan.canvas.add("circle", cx=x, cy=y, r=6.0, fill="#fff", stroke=INK, stroke_width=1.4)
-    cross = f"M{x - 3:.1f} {y - 3:.1f}l6 6m0 -6l-6 6"
-    plan.canvas.add("path", d=cross, fill="none", stroke=INK, stroke_width=1.4)

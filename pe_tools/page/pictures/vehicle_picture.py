@@ -132,7 +132,15 @@ def labelled_picture(context: ReportContext, alt: str) -> LabelledVehicle:
     canvas = Canvas(width, height, alt)
     canvas.picture(png, (0.0, 0.0, width, height))
     for label in labels(vehicle, rig, default_view(vehicle, rig)):
-        _draw_number(canvas, label)
+        # Draw a disc with a number, and a line to its sensor: dashed if the vehicle hides it.
+        end, disc, color = label.end, label.disc, graphics.color_text(label.color)
+        line = f"M{disc[0]:.1f} {disc[1]:.1f}L{end[0]:.1f} {end[1]:.1f}"
+        dashes = "4 4" if label.is_hidden else "none"
+        canvas.add("path", d=line, stroke="#1b1f24", stroke_width=1.5, stroke_dasharray=dashes)
+        if label.is_hidden:
+            canvas.add("circle", cx=end[0], cy=end[1], r=4.0, fill=color, stroke="#1b1f24")
+        canvas.add("circle", cx=disc[0], cy=disc[1], r=RADIUS, fill=color, stroke="#1b1f24")
+        canvas.text(disc[0], disc[1] + 6.0, str(label.number), text_anchor="middle", css="number")
     return LabelledVehicle(canvas.svg(), sensor_key(rig))
 
 
@@ -185,18 +193,6 @@ def spread_apart(positions: Floats) -> Floats:
         moved = moved + (apart / length[..., None] * push[..., None]).sum(axis=1) / 2.0
         moved = np.clip(moved, RADIUS + 2.0, np.array(SIZE) - RADIUS - 2.0)
     return moved
-
-
-def _draw_number(canvas: Canvas, label: NumberLabel) -> None:
-    """Draw a disc with a number, and a line to its sensor: dashed if the vehicle hides it."""
-    end, disc, color = label.end, label.disc, graphics.color_text(label.color)
-    line = f"M{disc[0]:.1f} {disc[1]:.1f}L{end[0]:.1f} {end[1]:.1f}"
-    dashes = "4 4" if label.is_hidden else "none"
-    canvas.add("path", d=line, stroke="#1b1f24", stroke_width=1.5, stroke_dasharray=dashes)
-    if label.is_hidden:
-        canvas.add("circle", cx=end[0], cy=end[1], r=4.0, fill=color, stroke="#1b1f24")
-    canvas.add("circle", cx=disc[0], cy=disc[1], r=RADIUS, fill=color, stroke="#1b1f24")
-    canvas.text(disc[0], disc[1] + 6.0, str(label.number), text_anchor="middle", css="number")
 
 
 def housing_of(sensor: pe.Sensor) -> scene.Housing:

@@ -94,7 +94,10 @@ def vehicle_data(
     order = np.argsort(shown.parts, kind="stable")
     low, step = quantization(shown.triangles.reshape(-1, 3))
     corners = quantized(shown.triangles[order].reshape(-1, 3), low, step)
-    points, indices = _welded(corners)
+    # The distinct points among corners (N, 3), and the index (N,) of each corner's.
+    keys = corners.astype(np.int64) @ np.array([1 << 32, 1 << 16, 1])
+    _, first, which = np.unique(keys, return_index=True, return_inverse=True)
+    points, indices = corners[first], which.reshape(-1)
     kind = "u2" if len(points) <= 1 << 16 else "u4"
     return {
         "low": low.tolist(),
@@ -116,13 +119,6 @@ def housing_data(model: str) -> dict[str, Any] | None:
     if housing is None:
         return None
     return {"shape": housing.shape, "size": list(housing.size), "center": housing.center.tolist()}
-
-
-def _welded(corners: NDArray[np.uint16]) -> tuple[NDArray[np.uint16], NDArray[np.int64]]:
-    """Return the distinct points among corners (N, 3), and the index (N,) of each corner's."""
-    keys = corners.astype(np.int64) @ np.array([1 << 32, 1 << 16, 1])
-    _, first, which = np.unique(keys, return_index=True, return_inverse=True)
-    return corners[first], which.reshape(-1)
 
 
 def _parts(vehicle: pe.Vehicle, order: NDArray[np.int64]) -> list[dict[str, Any]]:

@@ -8,7 +8,6 @@ from typing import Any
 
 from markupsafe import Markup
 
-import pe_core as pe
 from pe_core import scene
 
 from ... import advice, jobs
@@ -76,7 +75,10 @@ def _moves(context: ReportContext) -> Iterator[list[str]]:
     """Yield how far each sensor was moved and turned."""
     for old, new in zip(context.start.rig, context.rig, strict=True):
         moved = math.dist(old.pose.position, new.pose.position)
-        turned = _rotation_deg(old.pose, new.pose)
+        # The angle of the rotation from one pose to the other [deg].
+        first, last = (scene.rotation_matrix(*pose.rpy) for pose in (old.pose, new.pose))
+        cosine = (float((first * last).sum()) - 1.0) / 2.0  # the sum is trace(first.T @ last)
+        turned = math.degrees(math.acos(min(max(cosine, -1.0), 1.0)))
         angles = triple(new.pose.rotation_deg, 1)
         if turned >= MIN_TURN_DEG:
             angles = f"{triple(old.pose.rotation_deg, 1)} {ARROW} {angles}"
@@ -88,13 +90,6 @@ def _moves(context: ReportContext) -> Iterator[list[str]]:
             f"{number(turned, 1)}°" if turned >= MIN_TURN_DEG else "no",
             angles,
         ]
-
-
-def _rotation_deg(old: pe.Pose, new: pe.Pose) -> float:
-    """Return the angle of the rotation from one pose to the other [deg]."""
-    first, last = (scene.rotation_matrix(*pose.rpy) for pose in (old, new))
-    cosine = (float((first * last).sum()) - 1.0) / 2.0  # the sum is trace(first.T @ last)
-    return math.degrees(math.acos(min(max(cosine, -1.0), 1.0)))
 
 
 def sensitivity(context: ReportContext) -> dict[str, Any] | None:

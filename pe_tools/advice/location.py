@@ -133,10 +133,8 @@ def ask_place(
 
 
 def _voxel(space: PerceptionSpace, point: Sequence[float]) -> tuple[int, int, int]:
-    """Return the indices of the voxel that contains a point.
-
-    A point on an upper face of the space belongs to the last voxel.
-    """
+    """Return the indices of the voxel that contains a point. A point on an upper face of the space
+    belongs to the last voxel."""
     bounds = (space.x, space.y, space.z)
     for axis, value, (low, high) in zip("xyz", point, bounds, strict=True):
         if not low <= value <= high:

@@ -154,10 +154,8 @@ class _RankingSentences:
         return f"{self._difference(abs(a - b))}{error_text}{self._words.unit_of_gap}"
 
     def _difference(self, value: float) -> str:
-        """Format a difference or an error, of shares in percentage points.
-
-        A value that would be shown as 0 is rounded up to the last digit.
-        """
+        """Format a difference or an error, of shares in percentage points. A value that would be
+        shown as 0 is rounded up to the last digit."""
         digits = self._words.digits
         shown = 100.0 * value if self._in_percent else value
         return self._notation.number(max(shown, 10.0**-digits) if shown else 0.0, digits)

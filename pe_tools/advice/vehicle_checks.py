@@ -56,10 +56,8 @@ WHEELS_BELOW = 0.1
 
 
 def odd_vehicle(body: Bodywork) -> Iterator[Advice]:
-    """Yield warnings about a vehicle's mesh.
-
-    After a warning about its size no other check in metres is made.
-    """
+    """Yield warnings about a vehicle's mesh. After a warning about its size no other check in
+    metres is made."""
     for name in body.shape.rooms:  # such as the floor of a studio
         yield Advice(None, "room", part=name)
     wrong_size = list(_size(body))
@@ -85,10 +83,8 @@ def _size(body: Bodywork) -> Iterator[Advice]:
 
 
 def _wide(body: Bodywork) -> Iterator[Advice]:
-    """Check for a mesh in other units: wider than any road vehicle, but flat like a car.
-
-    On its side, a bus is as wide as it is high.
-    """
+    """Check for a mesh in other units: wider than any road vehicle, but flat like a car. On its
+    side, a bus is as wide as it is high."""
     x, y, z = body.shape.size
     if WIDE_M < y < x and z < y and across(body.shape) != 2:
         factor = car_factor(x)
@@ -108,10 +104,8 @@ def _stands(body: Bodywork) -> Iterator[Advice]:
 
 def _quarter_turn(body: Bodywork) -> tuple[float, float, float]:
     """Return the turn about x and y [deg] that puts the wheels of a lying vehicle below its body.
-
     Without names of wheels the side that is at coordinate 0 is taken for them; without either the
-    vehicle may then be on its roof.
-    """
+    vehicle may then be on its roof."""
     (low, high), size = body.shape.bounds, body.shape.size
     wheels, mirrored = wheel_center(body.shape), across(body.shape)
     offset = np.zeros(2)

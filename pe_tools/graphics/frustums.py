@@ -34,11 +34,9 @@ def outline(sensor: Sensor, length_m: float) -> Floats:
 
 
 def frustum_points(sensor: Sensor, length_m: float) -> Floats:
-    """(8, 3) pinhole, picture corners and up mark of a camera, ground frame [m].
-
-    Corners: upper left, upper right, lower right, lower left as the camera sees them, `length_m`
-    from the pinhole. The mark's left, right and tip follow, above the upper edge.
-    """
+    """(8, 3) pinhole, picture corners and up mark of a camera, ground frame [m]. Corners: upper
+    left, upper right, lower right, lower left as the camera sees them, `length_m` from the pinhole.
+    The mark's left, right and tip follow, above the upper edge."""
     side, up = _half_picture(sensor)
     base, tip = up * (1.0 + MARK_GAP), up * (1.0 + MARK_GAP + MARK_HEIGHT)
     mark = up * MARK_HALF_WIDTH
@@ -85,9 +83,7 @@ def frustum_faces(sensor: Sensor, length_m: float, palette: Palette = VIEWPORT) 
 
 def footprint(sensor: Sensor, far_m: float) -> Floats:
     """(N, 3) convex outline of the ground (z = 0) that a camera looks at, as far as `far_m` [m].
-
-    What the vehicle hides is not taken away. Without points when it looks at no ground.
-    """
+    What the vehicle hides is not taken away. Without points when it looks at no ground."""
     place = np.asarray(sensor.pose.position)
     if place[2] <= 0.0:
         return np.empty((0, 3))
@@ -149,9 +145,7 @@ def _half_picture(sensor: Sensor) -> tuple[float, float]:
 
 def _cut(outline: Floats, inside: Floats) -> Floats:
     """Return the part of a convex outline (N, 3) where a linear function (N,) is positive.
-
-    Sutherland and Hodgman, "Reentrant polygon clipping", 1974.
-    """
+    Sutherland and Hodgman, "Reentrant polygon clipping", 1974."""
     found = []
     for at in range(len(outline)):
         here, after = inside[at], inside[(at + 1) % len(outline)]

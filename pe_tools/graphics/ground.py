@@ -48,10 +48,8 @@ def swatches_of(scale: Scale) -> tuple[Rgba, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A quantity of a ground map: its scale of colours from `low`, dark, to `high`, bright.
-
-    Bright is good; `ticks` are the words for the ends. `shares`: values are shares, 0 to 1.
-    """
+    """A quantity of a ground map: its scale of colours from `low`, dark, to `high`, bright. Bright
+    is good; `ticks` are the words for the ends. `shares`: values are shares, 0 to 1."""
 
     title: str
     scale: Scale
@@ -190,10 +188,8 @@ def fitted_bounds(seen: GroundSight, quantity: str) -> tuple[float, float]:
 
 
 def fitted_bound(better: Floats, quantity: str) -> float:
-    """Return the difference at the ends of the colours that fits what is shown, rounded up.
-
-    Most locations do not differ: the percentile is that of the others.
-    """
+    """Return the difference at the ends of the colours that fits what is shown, rounded up. Most
+    locations do not differ: the percentile is that of the others."""
     step = STEPS[quantity]
     size = np.abs(better[np.isfinite(better)])
     size = size[size > step / 10.0]

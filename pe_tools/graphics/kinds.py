@@ -27,12 +27,9 @@ Draw = Callable[[Sensor, float, Palette], Primitives]
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """How sensors of one kind are drawn.
-
-    `lines` are two points each, `faces` translucent triangles. `beams` states whether sensors of
-    the kind share the budget of beams. `footprint` returns the outline of the ground in the field
-    of view, up to some metres.
-    """
+    """How sensors of one kind are drawn. `lines` are two points each, `faces` translucent
+    triangles. `beams` states whether sensors of the kind share the budget of beams. `footprint`
+    returns the outline of the ground in the field of view, up to some metres."""
 
     lines: Draw
     faces: Draw = lambda *_: Primitives.empty()

@@ -104,9 +104,7 @@ def hidden_lines(
 @dataclass(frozen=True, slots=True)
 class Lobe:
     """One mode of a sensor: arcs of directions (3, N, 3), sensor frame, lowest first, and ranges.
-
-    `ranges` (3, N) are in metres, without a limit by the drawing.
-    """
+    `ranges` (3, N) are in metres, without a limit by the drawing."""
 
     directions: Floats
     ranges: Floats
@@ -178,10 +176,8 @@ def field_faces(sensor: Sensor, length_m: float, palette: Palette) -> Primitives
 
 
 def field_footprint(sensor: Sensor, far_m: float) -> Floats:
-    """(N, 3) outline of the ground (z = 0) in the field of view, as far as `far_m` [m].
-
-    It is that of the longest mode. What the vehicle hides is not taken away.
-    """
+    """(N, 3) outline of the ground (z = 0) in the field of view, as far as `far_m` [m]. It is that
+    of the longest mode. What the vehicle hides is not taken away."""
     lobe = lobes_of(sensor)[0]
     place = np.asarray(sensor.pose.position, dtype=float)
     outline = np.vstack([place, _arcs(sensor, lobe, far_m)[1]])

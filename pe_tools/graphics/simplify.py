@@ -92,9 +92,7 @@ class _Kept:
 @dataclass(frozen=True, slots=True)
 class _Clusters:
     """Cubes: `corners` (F, 3) which of them each corner is in, `middles` (C, 3) of their corners.
-
-    `moves` (F,) is how far the farthest of a triangle's corners moves [m].
-    """
+    `moves` (F,) is how far the farthest of a triangle's corners moves [m]."""
 
     corners: Ints
     middles: Floats
@@ -166,19 +164,15 @@ def _area(triangles: Floats) -> float:
 
 
 def _first_not_among(candidates: Ints, number: Ints, excluded: Ints) -> Ints:
-    """Return the first index of each number that is not in `excluded`.
-
-    `candidates` (C,) are indices into `number`.
-    """
+    """Return the first index of each number that is not in `excluded`. `candidates` (C,) are
+    indices into `number`."""
     candidates = candidates[~np.isin(number[candidates], excluded)]
     return candidates[np.unique(number[candidates], return_index=True)[1]]
 
 
 def _numbers(columns: Sequence[NDArray[np.integer]], sizes: Sequence[int]) -> Ints:
-    """Return one number (N,) for each row of `columns`: equal numbers mean equal rows.
-
-    `sizes` are the exclusive upper bounds of the columns.
-    """
+    """Return one number (N,) for each row of `columns`: equal numbers mean equal rows. `sizes` are
+    the exclusive upper bounds of the columns."""
     number, span = columns[0].astype(np.int64), sizes[0]
     for column, size in zip(columns[1:], sizes[1:], strict=True):
         if span * size >= MAX_INDEX:

@@ -18,11 +18,9 @@ ExecutorSource = Callable[[], Executor | None]
 def candidate_workers(
     job: Job, objectives: Iterable[Objective], others: Iterable[object] = ()
 ) -> Iterator[ExecutorSource]:
-    """Yield the source of the executor that evaluates candidates of a job.
-
-    The job's executor does, if it has one. Otherwise processes are started, which end here. They
-    are sent what the objectives share, and `others` that searches have in common, such as models.
-    """
+    """Yield the source of the executor that evaluates candidates of a job. The job's executor does,
+    if it has one. Otherwise processes are started, which end here. They are sent what the
+    objectives share, and `others` that searches have in common, such as models."""
     parts = (part for objective in objectives for part in shared_parts(objective))
     common = chain(parts, others)  # read when the processes start, if they do
     if job.executor is not None:

@@ -165,11 +165,9 @@ class FileSet:
 
 @contextmanager
 def _alone_in(folder: Path) -> Iterator[None]:
-    """Lock the folder against other runs that list and replace its files.
-
-    After a short wait the run continues without the lock: its holder may be suspended, or the file
-    system may not support locks.
-    """
+    """Lock the folder against other runs that list and replace its files. After a short wait the
+    run continues without the lock: its holder may be suspended, or the file system may not support
+    locks."""
     if fcntl is None:
         yield
         return

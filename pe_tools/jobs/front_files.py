@@ -127,11 +127,9 @@ def design_files(chosen: TradeOff) -> dict[str, str]:
 
 
 def _design_dict(design: Design, on_front: bool, file: str | None) -> dict[str, Any]:
-    """Return a design as plain data; `file` has its study.
-
-    A screening that found no placement that keeps requirements, or went by expected AP, has no
-    entropy. A design that was only screened was not held to requirements.
-    """
+    """Return a design as plain data; `file` has its study. A screening that found no placement that
+    keeps requirements, or went by expected AP, has no entropy. A design that was only screened was
+    not held to requirements."""
     score, no_entropy = design.score, design.is_led_in or math.isnan(design.entropy)
     met = len(design.verdicts) - len(design.broken)
     asked = {"requirements_met": met, "requirements_not_met": list(design.broken)}

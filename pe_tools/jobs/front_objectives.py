@@ -41,11 +41,9 @@ Figures = Mapping[str, float]
 
 
 def check_objectives(study: Study, names: Sequence[str]) -> None:
-    """Raise `InputError` for an objective that the study has no figures of.
-
-    Expected AP is that of the study's objects; with `objective = "expected_ap"` in traffic,
-    whatever the study's targets.
-    """
+    """Raise `InputError` for an objective that the study has no figures of. Expected AP is that of
+    the study's objects; with `objective = "expected_ap"` in traffic, whatever the study's
+    targets."""
     if is_by_ap(study) and AP not in names:
         expected = f'{AP!r} among them, with objective = "{EXPECTED_AP}"'
         raise InputError("optimize", "front.objectives", expected, ", ".join(names))
@@ -65,11 +63,8 @@ def check_objectives(study: Study, names: Sequence[str]) -> None:
 
 
 class FrontFigures:
-    """Computes the objectives of rigs of one study; a rig is evaluated once.
-
-    `evaluator` is that of the search; `in_traffic` evaluates the expected AP of a study whose
-    objective it is.
-    """
+    """Computes the objectives of rigs of one study; a rig is evaluated once. `evaluator` is that of
+    the search; `in_traffic` evaluates the expected AP of a study whose objective it is."""
 
     def __init__(
         self,
@@ -205,11 +200,9 @@ class ScalarValue:
 
 
 def weights_of(count: int, objectives: int) -> list[tuple[float, ...]]:
-    """Return weights: first each objective alone, then evenly over all of them together.
-
-    Even weights are a rank-1 lattice on the unit cube, mapped to the simplex by the spacings of its
-    sorted coordinates.
-    """
+    """Return weights: first each objective alone, then evenly over all of them together. Even
+    weights are a rank-1 lattice on the unit cube, mapped to the simplex by the spacings of its
+    sorted coordinates."""
     alone = [tuple(float(k == n) for k in range(objectives)) for n in range(objectives)]
     together = max(0, count - objectives)
     golden = (math.sqrt(5.0) - 1.0) / 2.0

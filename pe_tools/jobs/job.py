@@ -258,11 +258,9 @@ class Job:
     def _score(
         self, rig: Rig, waiting: Progress, *, to_the_end: bool = False
     ) -> Generator[Progress, None, Score | None]:
-        """Score in a thread, yielding `waiting` until it is done.
-
-        Returns None if the job is dropped meanwhile, or stopped without `to_the_end`. The thread
-        then ends soon by itself; nothing waits for it.
-        """
+        """Score in a thread, yielding `waiting` until it is done. Returns None if the job is
+        dropped meanwhile, or stopped without `to_the_end`. The thread then ends soon by itself;
+        nothing waits for it."""
 
         def work(watch: Watch) -> Score:
             return self.evaluators.on(self.study.samples).score(rig, watch=watch)
@@ -272,11 +270,9 @@ class Job:
     def _beside(
         self, work: Callable[[Watch], T], waiting: Progress, to_the_end: bool = False
     ) -> Generator[Progress, None, T | None]:
-        """Run `work` in a thread, yielding progress; return None if the job ends before it.
-
-        The work tells its progress, and hears whether to go on. The fraction is never below that of
-        `waiting`.
-        """
+        """Run `work` in a thread, yielding progress; return None if the job ends before it. The
+        work tells its progress, and hears whether to go on. The fraction is never below that of
+        `waiting`."""
         done = waiting.fraction
 
         def watch(share: float) -> bool:

@@ -227,10 +227,8 @@ class OptimizeJob(Job):
         yield self._about("done", last.value)
 
     def _checked(self) -> list[Objective]:
-        """Return the objectives; raise `InputError` before the search if it is infeasible.
-
-        This runs in a thread, because the objectives of a large vehicle take long to build.
-        """
+        """Return the objectives; raise `InputError` before the search if it is infeasible. This
+        runs in a thread, because the objectives of a large vehicle take long to build."""
         feasible_start(self.study.coding(), self.study.search.seed)
         return self._objectives
 

@@ -50,11 +50,9 @@ FIGURES = {figure.key: figure for figure in (IN_NATS, IN_AP)}
 
 
 def searched_samples(study: Study, samples: int) -> int:
-    """Return what stands for a level's number of voxels: by expected AP, half on the last level.
-
-    A scene takes long to evaluate. So a search looks at no more than half of the study's scenes,
-    and its result is scored on all of them.
-    """
+    """Return what stands for a level's number of voxels: by expected AP, half on the last level. A
+    scene takes long to evaluate. So a search looks at no more than half of the study's scenes, and
+    its result is scored on all of them."""
     half = study.search.samples // 2
     return min(samples, half) if is_by_ap(study) and half else samples
 

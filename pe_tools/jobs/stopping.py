@@ -18,11 +18,9 @@ TARGET, SECONDS, GAIN = "target", "seconds", "gain"
 
 
 class StopWatch:
-    """Watches the steps of one search.
-
-    There is an objective for each level: a target that is reached on few voxels is checked on the
-    last one. `started` is `time.monotonic()` when the first search of a job began.
-    """
+    """Watches the steps of one search. There is an objective for each level: a target that is
+    reached on few voxels is checked on the last one. `started` is `time.monotonic()` when the first
+    search of a job began."""
 
     def __init__(
         self,

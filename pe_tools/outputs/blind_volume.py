@@ -16,11 +16,9 @@ from .solid import Solid
 
 
 def level_outlines(solid: Solid, height: float) -> tuple[Floats, ...]:
-    """Return the closed outlines (N, 2) of a solid's cross-section at a height [m].
-
-    The inside is on the left. The last point repeats the first. A corner at exactly this height
-    counts as above.
-    """
+    """Return the closed outlines (N, 2) of a solid's cross-section at a height [m]. The inside is
+    on the left. The last point repeats the first. A corner at exactly this height counts as
+    above."""
     above = solid.points[solid.faces][..., 2] >= height
     cut = above.any(axis=1) & ~above.all(axis=1)
     faces, above = solid.faces[cut], above[cut]
@@ -55,11 +53,9 @@ SIDES = {
 
 
 def voxel_solid(name: str, cubes: Flags, lowest: Floats, side: float) -> Solid | None:
-    """Return the closed surface of cubes (NX, NY, NZ); None if no cube is set.
-
-    `lowest` (3,) is the lowest corner of the grid [m], `side` the length of a cube [m]. No edge may
-    have four faces; `joined` makes sure of that.
-    """
+    """Return the closed surface of cubes (NX, NY, NZ); None if no cube is set. `lowest` (3,) is the
+    lowest corner of the grid [m], `side` the length of a cube [m]. No edge may have four faces;
+    `joined` makes sure of that."""
     shape = np.array(cubes.shape) + 1
     quads = [_quads(cubes, shape, *key) for key in SIDES]
     corners = np.concatenate(quads)

@@ -117,10 +117,8 @@ def add_vehicle(
     reference: Reference | None,
     taken: Collection[str] = (),
 ) -> list[int]:
-    """Add the vehicle's parts and rear axle, if known; return the indices of their root nodes.
-
-    A part whose name is in `taken` gets the suffix "(body)".
-    """
+    """Add the vehicle's parts and rear axle, if known; return the indices of their root nodes. A
+    part whose name is in `taken` gets the suffix "(body)"."""
     groups = []
     if vehicle is not None:
         groups.append(scene.add_node(STATIC, _parts(scene, vehicle, taken)))

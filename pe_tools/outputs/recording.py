@@ -48,10 +48,8 @@ MAPS = {"coverage": COVERAGE, "entropy": ENTROPY}
 
 
 def write(request: OutputRequest) -> tuple[Written, list[str]]:
-    """Return a recording, and lines on what is not in it.
-
-    More beams of LiDARs than `MAX_BEAMS` raise `InputError`: maps of the ground measure all.
-    """
+    """Return a recording, and lines on what is not in it. More beams of LiDARs than `MAX_BEAMS`
+    raise `InputError`: maps of the ground measure all."""
     study = request.study
     portable, left_out = with_pictures(portable_sensors(study.rig), straight, "Rerun")
     beams = sum(each.scan.beam_count for each in portable if each.scan is not None)

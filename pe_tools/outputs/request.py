@@ -15,10 +15,8 @@ from ..graphics import Rgb
 
 
 def plain_names(names: Sequence[str]) -> tuple[dict[str, str], list[str]]:
-    """Return a name of files for each name, and a message for each name that changed.
-
-    Plain names have letters, digits, ``_`` and ``-``; they differ also without regard to case.
-    """
+    """Return a name of files for each name, and a message for each name that changed. Plain names
+    have letters, digits, ``_`` and ``-``; they differ also without regard to case."""
     plain_by_name: dict[str, str] = {}
     for name in names:
         taken = {used.lower() for used in plain_by_name.values()}

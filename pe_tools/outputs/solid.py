@@ -75,10 +75,8 @@ def _star(name: str, view: MountedView, ends: Floats) -> Solid:
 
 
 def _without_pinches(faces: Ints, taken: Flags) -> Flags:
-    """Add faces until no two pieces of the taken faces touch in a single point.
-
-    Walls at such a point would have an edge that belongs to four triangles.
-    """
+    """Add faces until no two pieces of the taken faces touch in a single point. Walls at such a
+    point would have an edge that belongs to four triangles."""
     while True:
         starts = np.bincount(border(faces[taken])[:, 0], minlength=int(faces.max()) + 1)
         more = (starts > 1)[faces].any(axis=1) & ~taken

@@ -166,9 +166,7 @@ def _print_margins(text: str) -> str:
 
 def without_style_attributes(html: str) -> tuple[Markup, str]:
     """Replace style attributes by numbers; return the HTML, and the style sheet with their rules.
-
-    Texts in the HTML must be escaped, so that a quotation mark occurs only around attributes.
-    """
+    Texts in the HTML must be escaped, so that a quotation mark occurs only around attributes."""
     rules: dict[str, int] = {}
 
     def number_of(attribute: re.Match[str]) -> str:

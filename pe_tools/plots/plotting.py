@@ -71,9 +71,7 @@ def check_matplotlib() -> None:
 
 def pyplot() -> Any:
     """Return ``matplotlib.pyplot``, which draws without a window; `InputError` where it is missing.
-
-    The first call imports it.
-    """
+    The first call imports it."""
     check_matplotlib()
     import matplotlib
 

@@ -78,12 +78,9 @@ def _moved(pose: Pose, step: PoseStep) -> Pose:
 
 @dataclass(frozen=True, slots=True)
 class AxisCost:
-    """What moving one sensor alone along one axis costs.
-
-    `status` is what the search does with the axis: "free", "surface", "slot", "fixed" or "linked".
-    `cost` is by step [cm or deg] how much the entropy rises [nats] (or the expected AP falls). From
-    a cost of `steep` on the axis is steep.
-    """
+    """What moving one sensor alone along one axis costs. `status` is what the search does with the
+    axis: "free", "surface", "slot", "fixed" or "linked". `cost` is by step [cm or deg] how much the
+    entropy rises [nats] (or the expected AP falls). From a cost of `steep` on the axis is steep."""
 
     sensor: str
     axis: str
@@ -115,9 +112,7 @@ def flatness(
     steps: tuple[float, ...] = (NEAR, FAR),
 ) -> Iterator[AxisCost]:
     """Yield the costs of each axis of each sensor, in the rig's order, for steps to both sides.
-
-    `status` returns what the search does with an axis of a sensor.
-    """
+    `status` returns what the search does with an axis of a sensor."""
     both = (*(-each for each in steps), *steps)
     for sensor in samples.reference:
         moved = {
@@ -134,11 +129,9 @@ def flatness(
 
 @dataclass(frozen=True, slots=True)
 class ActiveConstraint:
-    """A constraint (or several) that keeps a sensor from a better place.
-
-    Without a name nothing forbids the step: a longer search would gain this. The step is the one
-    that gains most; the gain is negative [nats].
-    """
+    """A constraint (or several) that keeps a sensor from a better place. Without a name nothing
+    forbids the step: a longer search would gain this. The step is the one that gains most; the gain
+    is negative [nats]."""
 
     constraints: tuple[str, ...]
     step: PoseStep
@@ -163,10 +156,8 @@ class ActiveConstraint:
 
 
 class Neighbourhood:
-    """A placement in the space of a search: what each axis does, and what forbids a step.
-
-    The placement breaks no rule; the space has the bounds that it had at the start of the search.
-    """
+    """A placement in the space of a search: what each axis does, and what forbids a step. The
+    placement breaks no rule; the space has the bounds that it had at the start of the search."""
 
     def __init__(self, rig: Rig, space: SearchSpace) -> None:
         self.rig, self._space = rig, space
@@ -178,10 +169,8 @@ class Neighbourhood:
         self._broken_here = self._broken(rig)
 
     def status(self, sensor: str, axis: str) -> str:
-        """Return what the search does with an axis of a sensor.
-
-        "free", "fixed", "linked" (it follows another sensor), "surface" or "slot".
-        """
+        """Return what the search does with an axis of a sensor. "free", "fixed", "linked" (it
+        follows another sensor), "surface" or "slot"."""
         if sensor in self._leaders:
             return "linked"
         mount = None if sensor in self._space.fixed else self._space.mounting.mount_of(sensor)
@@ -252,9 +241,7 @@ def active_constraints(
     table: Iterable[AxisCost], space: Neighbourhood, unmet: Unmet | None = None
 ) -> tuple[ActiveConstraint, ...]:
     """Return the active constraints, that of the largest gain first; one without names last.
-
-    `table` has what each step costs; `unmet` tells requirements that are to be kept.
-    """
+    `table` has what each step costs; `unmet` tells requirements that are to be kept."""
     found: dict[tuple[str, ...], ActiveConstraint] = {}
     for row in table:
         for units in (-NEAR, NEAR):

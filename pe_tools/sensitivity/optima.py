@@ -85,10 +85,8 @@ class Archive:
 
 @dataclass(frozen=True, slots=True)
 class RunnerUp:
-    """An optimum that the search did not choose, behind its result by so much [nats].
-
-    Sensors that `moved` are elsewhere than in the result.
-    """
+    """An optimum that the search did not choose, behind its result by so much [nats]. Sensors that
+    `moved` are elsewhere than in the result."""
 
     rig: Rig
     behind: Difference
@@ -113,11 +111,9 @@ class RunnerUp:
 
 @dataclass(frozen=True, slots=True)
 class Endings:
-    """Where the starts of a search ended.
-
-    So many placements apart from the result were `examined`; `same_basin` of them lead to the
-    result without a hill between. Runners-up are other optima, the best first.
-    """
+    """Where the starts of a search ended. So many placements apart from the result were `examined`;
+    `same_basin` of them lead to the result without a hill between. Runners-up are other optima, the
+    best first."""
 
     examined: int
     same_basin: int

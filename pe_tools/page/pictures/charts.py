@@ -44,10 +44,8 @@ def ticks(low: float, high: float, most: int = 4) -> list[float]:
 def step_curve(
     points: Sequence[tuple[float, float]], end: float, x: str, y: str, alt: str
 ) -> Markup:
-    """Return a step curve: each value holds until the next point, the last until `end`.
-
-    `points` are (x, y) in order of x; `x` and `y` are labels of the axes.
-    """
+    """Return a step curve: each value holds until the next point, the last until `end`. `points`
+    are (x, y) in order of x; `x` and `y` are labels of the axes."""
     width, height, left, right, top, bottom = 720.0, 260.0, 54.0, 706.0, 14.0, 222.0
     canvas = Canvas(width, height, alt, "curve")
     values = [value for _, value in points]
@@ -76,10 +74,8 @@ def step_curve(
 
 
 def cost_bars(found: sure.Sensitivity, status: dict[str, str], alt: str) -> Markup:
-    """Return what one step back and forth costs, a row for each axis of each sensor.
-
-    `status` says what the search does with an axis, where that is more than to move it.
-    """
+    """Return what one step back and forth costs, a row for each axis of each sensor. `status` says
+    what the search does with an axis, where that is more than to move it."""
     width, left, right, row_height, group, top = 484.0, 120.0, 444.0, 18.0, 30.0, 10.0
     sensors = list(dict.fromkeys(row.sensor for row in found.axes))
     costs = [row.cost[step] for row in found.axes for step in (-sure.NEAR, sure.NEAR)]

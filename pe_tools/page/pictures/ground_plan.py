@@ -230,10 +230,8 @@ def difference_map(
 def count_map(
     values: NDArray[Any], bounds: PlanBounds, vehicle: pe.Vehicle | None, alt: str
 ) -> Markup:
-    """Return a map of numbers (NX, NY) of sensors or kinds as SVG; below 0 is no ground.
-
-    `bounds` are the ends of the map along x and y [m].
-    """
+    """Return a map of numbers (NX, NY) of sensors or kinds as SVG; below 0 is no ground. `bounds`
+    are the ends of the map along x and y [m]."""
     return _map(bounds, _count_colors(values), values >= 0, COUNT_KEY, vehicle, alt)
 
 

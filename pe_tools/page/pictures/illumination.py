@@ -104,9 +104,7 @@ def _dome_light(scene: RayScene, hits: RayHits, coarse: Ints) -> Floats:
 @dataclass(frozen=True, slots=True)
 class _PixelSurfaces:
     """Surfaces of pixels (h, w), with `normals` and `points` (h, w, 3); `slack` is a distance [m].
-
-    Points nearer than `slack` to the plane of another pixel may belong to the same surface.
-    """
+    Points nearer than `slack` to the plane of another pixel may belong to the same surface."""
 
     surface: Ints
     normals: NDArray[np.float32]
@@ -151,10 +149,8 @@ def _shifted(count: int, step: int) -> tuple[slice, slice]:
 
 
 def _interpolated(light: Floats, hits: RayHits, pixels: Ints, coarse: Ints, step: Size) -> Floats:
-    """Return the light of pixels `step` = (0 or 1, 0 or 1) away from those of the coarse grid.
-
-    It is the mean of the coarse pixels around that are on the same surface.
-    """
+    """Return the light of pixels `step` = (0 or 1, 0 or 1) away from those of the coarse grid. It
+    is the mean of the coarse pixels around that are on the same surface."""
     there = _PixelSurfaces.of(hits, pixels)
     rows, columns = (np.arange(n) for n in there.surface.shape)
     total, weight = np.zeros(there.surface.shape), np.zeros(there.surface.shape)

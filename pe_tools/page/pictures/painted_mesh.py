@@ -97,9 +97,7 @@ def unit(vectors: Floats) -> Floats:
 
 def corner_normals(triangles: Floats) -> Floats:
     """(F, 3, 3) unit normals at corners: means over the faces that meet there at small angles.
-
-    Neighbours may have the opposite winding order: a face keeps its own side.
-    """
+    Neighbours may have the opposite winding order: a face keeps its own side."""
     sides = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     by_corner = np.repeat(np.cross(*sides), 3, axis=0)  # their length is twice the area
     if len(triangles) > MAX_SMOOTH_TRIANGLES:

@@ -45,10 +45,8 @@ POLE_M = 0.06
 
 @dataclass(frozen=True, slots=True)
 class ReferenceFigure:
-    """A person or a car (`name`) at a `distance` [m]; `top` is the point that is labelled [m].
-
-    The label is the `text`, or else the distance.
-    """
+    """A person or a car (`name`) at a `distance` [m]; `top` is the point that is labelled [m]. The
+    label is the `text`, or else the distance."""
 
     name: str
     distance: float
@@ -65,11 +63,9 @@ class ReferenceFigure:
 def reference_figures(
     sensor: pe.Sensor, half_view: float, vehicle: pe.Vehicle | None
 ) -> list[ReferenceFigure]:
-    """Return persons on the left and cars on the right of a sensor's heading.
-
-    Figures that do not fit into the horizontal field of view, twice `half_view` [rad], or that
-    would overlap the vehicle are left out.
-    """
+    """Return persons on the left and cars on the right of a sensor's heading. Figures that do not
+    fit into the horizontal field of view, twice `half_view` [rad], or that would overlap the
+    vehicle are left out."""
     figures = []
     for name, size, side in (("person", PERSON_M, 1.0), ("car", CAR_M, -1.0)):
         for distance, angle in _angle_by_distance(size[1], half_view).items():
@@ -172,11 +168,9 @@ def _rounded(z: float, long: float, wide: float, x: float) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class WorstBody:
-    """The test body of a requirement, at the worst sample of its zone: at `foot` (3,) [m].
-
-    `number` is that of the requirement in the table, from 1; `counts` are points or pixels on the
-    body by the name of the sensor, of the heading with the fewest.
-    """
+    """The test body of a requirement, at the worst sample of its zone: at `foot` (3,) [m]. `number`
+    is that of the requirement in the table, from 1; `counts` are points or pixels on the body by
+    the name of the sensor, of the heading with the fewest."""
 
     number: int
     verdict: requirements.Verdict
@@ -224,9 +218,7 @@ def worst_bodies(
     verdicts: Iterable[requirements.Verdict], rig: pe.Rig, vehicle: pe.Vehicle | None
 ) -> tuple[WorstBody, ...]:
     """Return each requirement's test body at its worst sample, with what each sensor has on it.
-
-    Requirements of blind ground have no body and are left out.
-    """
+    Requirements of blind ground have no body and are left out."""
     found = []
     for number, verdict in enumerate(verdicts, start=1):
         bodies = {body.name: body for body in verdict.requirement.bodies}

@@ -229,10 +229,8 @@ def _joint_mesh(figures: list[ReferenceFigure]) -> pe.Vehicle | None:
 
 
 def _pixel_azimuths(ranges: kinds.RangePicture) -> NDArray[np.int64]:
-    """(W,) index of the azimuth that each pixel shows.
-
-    It is the nearest one; if a pixel stands for several, the first that meets a figure.
-    """
+    """(W,) index of the azimuth that each pixel shows. It is the nearest one; if a pixel stands for
+    several, the first that meets a figure."""
     if len(ranges.azimuths) == 1:
         return np.zeros(1, np.int64)
     nearest = graphics.even_angles(ranges.azimuths, CIRCLE_WIDTH / 360.0)

@@ -48,11 +48,9 @@ LETTER = 7.5
 
 
 def blind_plan(blind: sight.BlindGround, vehicle: pe.Vehicle | None, alt: str) -> Markup:
-    """Return a plan of blind ground, with its extent in metres on each side.
-
-    A line from the body to a cap is the extent of blind ground that begins at the body. If none
-    begins there, a ring marks the nearest blind ground.
-    """
+    """Return a plan of blind ground, with its extent in metres on each side. A line from the body
+    to a cap is the extent of blind ground that begins at the body. If none begins there, a ring
+    marks the nearest blind ground."""
     plan = PlanDrawing(_bounds(blind, vehicle), alt, width=BLIND_WIDTH)
     if lines := [plan.points(line) for line in blind.outlines]:
         style = {"fill": BLIND, "fill_opacity": "0.32", "stroke": BLIND}
@@ -195,11 +193,9 @@ def _draw_key(plan: PlanDrawing, has_before: bool, color: str) -> None:
 
 
 def requirement_plan(verdict: requirements.Verdict, vehicle: pe.Vehicle | None, alt: str) -> Markup:
-    """Return a plan of a requirement's zone with its verdict.
-
-    Samples that pass are green, samples that fail are hatched in red. A dashed line is the zone
-    grown, or shrunk, by the margin. A cross marks the worst sample.
-    """
+    """Return a plan of a requirement's zone with its verdict. Samples that pass are green, samples
+    that fail are hatched in red. A dashed line is the zone grown, or shrunk, by the margin. A cross
+    marks the worst sample."""
     zone = verdict.samples.zone
     # The ground of a plan: the zone, grown by its margin, and the vehicle.
     low, high = verdict.samples.zone.bounds
@@ -248,11 +244,9 @@ def _sample_png(verdict: requirements.Verdict, bounds: PlanBounds) -> bytes:
 def _within(
     zone: requirements.PlacedZone, low: tuple[float, float], scale: float, shape: tuple[int, int]
 ) -> Flags:
-    """Return an image (H, W) of the zone: samples at its edge are not painted beyond it.
-
-    A pixel is inside where a line to its right crosses the outlines an odd number of times. Paths
-    and spots have no inside: all of the image is returned.
-    """
+    """Return an image (H, W) of the zone: samples at its edge are not painted beyond it. A pixel is
+    inside where a line to its right crosses the outlines an odd number of times. Paths and spots
+    have no inside: all of the image is returned."""
     if zone.kind not in ("area", "ring"):
         return np.ones(shape, bool)
     image = np.zeros(shape, bool)

@@ -26,10 +26,8 @@ FOOT_HEIGHT = 26.0
 
 @dataclass(eq=False)
 class Canvas:
-    """An SVG drawing; `width` and `height` are its view box, `alt` is its text alternative.
-
-    A drawing of the class ``drawn`` is as wide as what it is in, others are as wide as their box.
-    """
+    """An SVG drawing; `width` and `height` are its view box, `alt` is its text alternative. A
+    drawing of the class ``drawn`` is as wide as what it is in, others are as wide as their box."""
 
     width: float
     height: float
@@ -103,11 +101,9 @@ TextLabel = tuple[float, float, str]
 
 @dataclass(frozen=True, slots=True)
 class LabelledPicture:
-    """A PNG of a size [px] with labels.
-
-    `labels` stand above points of the picture, `bottom_labels` below its lower edge at a distance
-    from the left, `left_labels` at its left edge at a distance from the top.
-    """
+    """A PNG of a size [px] with labels. `labels` stand above points of the picture, `bottom_labels`
+    below its lower edge at a distance from the left, `left_labels` at its left edge at a distance
+    from the top."""
 
     png: bytes
     width: int

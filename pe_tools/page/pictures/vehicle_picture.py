@@ -53,10 +53,8 @@ def vehicle_picture(
     view: Viewpoint | None = None,
 ) -> bytes:
     """Return a picture of a rig on its vehicle as a PNG file of a size (width, height) [px].
-
     Sensors are drawn in their housings, in default ones if their size is not known. By default the
-    view is from ahead on the right, with the whole vehicle in the picture.
-    """
+    view is from ahead on the right, with the whole vehicle in the picture."""
     view = view or default_view(vehicle, rig, size)
     return graphics.png_bytes(graphics.as_bytes(rendered(vehicle, rig, size, view)))
 

@@ -84,10 +84,8 @@ def vehicle_data(
     vehicle: pe.Vehicle | None, simplified: tuple[pe.Vehicle | None, float]
 ) -> dict[str, Any] | None:
     """Return the vehicle's points, its triangles by part, and how much it was simplified.
-
     `simplified` is the vehicle that all pictures of the page share, and how far its surface moved
-    [m]; `vehicle` has all its triangles.
-    """
+    [m]; `vehicle` has all its triangles."""
     if vehicle is None or simplified[0] is None:
         return None
     shown, moved = graphics.simplified(simplified[0], MAX_TRIANGLES)

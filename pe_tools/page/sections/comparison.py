@@ -34,10 +34,8 @@ MAP_ENDS = ("8 nats less here", "8 nats less here")
 
 
 def price_of(study: pe.Study, sensor: pe.Sensor) -> float | None:
-    """Return the price of a sensor in the study's currency; None if the study gives none.
-
-    A choice that names the sensor has precedence over other choices that offer its model.
-    """
+    """Return the price of a sensor in the study's currency; None if the study gives none. A choice
+    that names the sensor has precedence over other choices that offer its model."""
     choices = study.selection.choices
     naming = [choice for choice in choices if sensor.name in (choice.sensors or ())]
     for choice in (*naming, *choices):
@@ -211,10 +209,8 @@ def sensor_differences(contexts: Sequence[ReportContext]) -> dict[str, Any]:
 
 
 class SensorMounting(NamedTuple):
-    """Model and pose of a sensor as the table shows them, rounded.
-
-    `values` holds the model's parameters, its fusion group and AP curve as text, for comparison.
-    """
+    """Model and pose of a sensor as the table shows them, rounded. `values` holds the model's
+    parameters, its fusion group and AP curve as text, for comparison."""
 
     model: str
     values: str

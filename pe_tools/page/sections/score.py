@@ -123,10 +123,8 @@ def warnings_and_text(context: ReportContext) -> dict[str, Any]:
 
 
 def by_class_and_zone(context: ReportContext) -> dict[str, Any] | None:
-    """Return no values: the template shows coverage and entropy of the scores.
-
-    On a page of several studies that were only scored, the comparison contains these values.
-    """
+    """Return no values: the template shows coverage and entropy of the scores. On a page of several
+    studies that were only scored, the comparison contains these values."""
     return None if context.study_count > 1 and not context.was_searched else {}
 
 
@@ -153,11 +151,9 @@ def objects(context: ReportContext) -> dict[str, Any] | None:
 
 @dataclass(frozen=True, slots=True)
 class SensorLoss:
-    """The rig without one of its sensors, compared with the whole rig.
-
-    `rise` is that of the entropy, as scored [nats], `uncovered` the coverage that is lost, 0 to 1;
-    `zone` is the one in which the entropy rises most, by `zone_rise` [nats], empty if in none.
-    """
+    """The rig without one of its sensors, compared with the whole rig. `rise` is that of the
+    entropy, as scored [nats], `uncovered` the coverage that is lost, 0 to 1; `zone` is the one in
+    which the entropy rises most, by `zone_rise` [nats], empty if in none."""
 
     sensor: str
     rise: float

@@ -74,14 +74,8 @@ def fragile(
 ) -> tuple[Advice, ...]:
     """Return a warning if the entropy of a placement rises much under mounting errors, or none.
 
-    Parameters
-    ----------
-    rise, stderr : float
-        Rise of the mean entropy over random mounting errors, and its standard error [nats].
-    position, angle : float
-        Standard deviations (1 sigma) of the errors [m, rad].
-    tolerant : bool
-        Whether the search already took such errors into account.
+    `rise` is that of the mean entropy, with its standard error [nats], under errors of `position`
+    [m] and `angle` [rad], 1 sigma; a `tolerant` search already took them into account.
     """
     if rise <= max(FRAGILE_NATS, SURE * stderr):
         return ()

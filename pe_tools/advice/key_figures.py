@@ -120,21 +120,17 @@ class KeyFigures:
 
     Attributes
     ----------
-    blind_m2 : float
-        Ground around the vehicle on which an object `height` tall is invisible [m2].
-    height, within : float
-        Height of the object, and the distance from the body's rectangle up to which the ground was
-        evaluated [m].
+    blind_m2, height, within : float
+        Ground within a distance of the body's rectangle on which an object `height` tall is
+        invisible [m2, m, m].
     class_name : str or None
-        Class of the reach and the AP. None where objects are scored instead of voxels: that score
-        already has both.
+        Class of the reach and the AP; None where objects are scored: that score already has both.
     reach_m : float or None
-        Distance straight ahead of the origin up to which an object of that class is found with an
-        AP of 0.5 or more [m]; 0 where it is not found.
+        How far ahead of the origin an object is found with an AP of 0.5 or more [m]; 0: it is not.
     at_least : bool
         Whether the perception space ends there: the true reach may be longer.
     expected_ap : float or None
-        Expected AP of that class, 0 to 1; None where the prior has no such objects in the space.
+        0 to 1; None where the prior has no such objects in the space.
     """
 
     blind_m2: float
@@ -160,16 +156,10 @@ def key_figures(
 ) -> KeyFigures:
     """Return the key figures of a rig.
 
-    Parameters
-    ----------
-    sight, rig
-    height : float
-        Height of the object for which blind ground is computed [m]; the lowest height of the space
-        if that is greater. One that is not in the space raises `InputError`.
-    class_name : str, optional
-        Class of the reach and the AP: see `class_of`.
-    of_voxels : bool
-        False where objects are scored: the score then has reach and AP, and they are left out.
+    Blind ground is that of an object `height` tall [m], or of the lowest height of the space if
+    that is greater; one that is not in the space raises `InputError`. Reach and AP are of a class
+    (`class_of`). Without `of_voxels` objects are scored: the score then has reach and AP, and they
+    are left out.
     """
     name = class_of(sight.prior, class_name)
     blind = sight.blind(rig, max(height, sight.space.z[0]))

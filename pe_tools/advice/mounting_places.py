@@ -65,15 +65,8 @@ def place_name(
     bounds: tuple[Floats, Floats],
     mirrors: tuple[tuple[Floats, Floats], ...] = (),
 ) -> str:
-    """Return where on a vehicle a position is.
-
-    Parameters
-    ----------
-    position : (x, y, z)
-        [m] in the ground frame.
-    bounds, mirrors
-        Lowest and highest corner (3,) of the vehicle [m], and those of its mirrors.
-    """
+    """Return where on a vehicle a position [m] is; `bounds` are the lowest and highest corner (3,)
+    of the vehicle, `mirrors` those of its mirrors."""
     at, (low, high) = np.array(position), bounds
     side = "left" if at[1] > (low[1] + high[1]) / 2.0 else "right"
     if any((at > a - NEAR_MIRROR_M).all() and (at < b + NEAR_MIRROR_M).all() for a, b in mirrors):

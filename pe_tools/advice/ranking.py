@@ -162,15 +162,8 @@ class _RankingSentences:
 
 
 def search_cost(before: Score, after: Score, blind_m2: tuple[float, float]) -> str:
-    """Return one sentence: what got worse by a search, or that nothing did.
-
-    Parameters
-    ----------
-    before, after : Score
-        Of start and result.
-    blind_m2 : (float, float)
-        Blind ground of start and result [m2] (`blind_area`).
-    """
+    """Return one sentence on what a search made worse, or that nothing is; `blind_m2` is the blind
+    ground of start and result [m2]."""
     losses = list(_losses(before, after, blind_m2))
     if losses:
         return f"It cost {joined(losses)}"

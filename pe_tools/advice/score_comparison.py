@@ -112,17 +112,15 @@ class ComparedRow:
 
     Attributes
     ----------
-    group : {"rig", "zone", "class"}
-    name : str
-        Name of the zone or class; empty for the rig itself.
+    group, name : str
+        "rig", "zone" or "class", and the name of the zone or class.
     measure : {"entropy", "coverage", "ap", "reach", "blind"}
         Entropy [nats] and blind ground [m2]: lower is better. Coverage and expected AP, 0 to 1, and
         reach ahead [m]: higher is better.
     values : tuple of float or None
-        One value for each score, in their order; None for a score without this zone or class.
+        By score; None for a score without this zone or class.
     errors : tuple of tuple of float
-        (N, N) standard errors of the differences between each two values; 0 where nothing is
-        sampled.
+        (N, N) standard errors of the differences of each two values; 0 where nothing is sampled.
     factor : float
         Number of standard errors beyond which a difference is significant (`sure_factor`).
     is_ranked : bool

@@ -28,14 +28,7 @@ def warnings(
 ) -> tuple[Advice, ...]:
     """Return warnings about probable mistakes: of the vehicle, then of the sensors in their order.
 
-    Parameters
-    ----------
-    rig : Rig, or any sensors
-    vehicle : Vehicle, optional
-    space : PerceptionSpace
-    prior : Prior
-    score : Score, optional
-        Score of this rig. Beams that the score has counted as stopped are not cast again.
+    `score` is the rig's: beams that it has counted as occluded are not cast again.
     """
     body = None if vehicle is None else Bodywork(vehicle)
     found = [] if body is None else [*odd_vehicle(body)]

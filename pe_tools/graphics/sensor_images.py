@@ -78,17 +78,10 @@ def even_angles(angles: NDArray[np.float64], pixels_per_deg: float) -> NDArray[n
 def hidden_lines(
     sensor: Sensor, vehicle: Vehicle | None, color: ArrayLike, most: int = RAYS
 ) -> Primitives:
-    """Return lines from a sensor to its own vehicle, evenly spread over its field of view.
+    """Return lines from a sensor to its own vehicle, along at most `most` rays over its field of
+    view.
 
-    Parameters
-    ----------
-    sensor : Sensor
-    vehicle : Vehicle or None
-        The vehicle; cameras see through its glass, radars through its covers. None gives no
-        lines.
-    color : (4,) float
-    most : int
-        Number of rays.
+    Cameras see through the vehicle's glass, radars through its covers; None gives no lines.
     """
     body = None if vehicle is None else kind_of(sensor).opaque(vehicle)
     if body is None:

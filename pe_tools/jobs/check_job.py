@@ -14,17 +14,10 @@ from .job import Job, Progress, begun
 class CheckJob(Job):
     """Holds the rig of a study to its requirements, with mounting errors and margins.
 
-    A job that is stopped keeps the verdicts that it has found. With `fitting`, requirements that
-    the rig cannot be held to are left out instead of raising `InputError`.
-
-    Attributes
-    ----------
-    verdicts : list of Verdict
-        Found so far, in the order of the requirements.
-    unchecked : dict of str
-        Why requirements were left out, by name.
-    complete : bool
-        Whether it was not stopped.
+    A job that is stopped keeps the `verdicts` that it has found, in the order of the requirements.
+    With `fitting`, requirements that the rig cannot be held to are left out instead of raising
+    `InputError`: `unchecked` has the reason of each by name. `complete` is whether it was not
+    stopped.
     """
 
     def __init__(self, study: Study, *, fitting: bool = False) -> None:

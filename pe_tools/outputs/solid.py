@@ -91,20 +91,10 @@ NEAREST_M = 1e-3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MountedView:
-    """A sensor's field of view on the vehicle.
+    """A sensor's field of view on the vehicle, ground frame.
 
-    Attributes
-    ----------
-    origin : (3,) float
-        Position of the sensor, ground frame [m].
-    directions : (N, 3) float
-        Unit, ground frame.
-    faces : (F, 3) int
-        Triangles of directions, counter-clockwise as seen from outside.
-    reach : float
-        Range without occlusion [m].
-    ends : (N,) float
-        Distance along each direction to the vehicle, at most `reach` [m].
+    From `origin` (3,) [m] along unit `directions` (N, 3) to `ends` (N,): the vehicle, at most
+    `reach` [m]. `faces` (F, 3) are triangles of directions, counter-clockwise as seen from outside.
     """
 
     origin: Floats

@@ -118,13 +118,9 @@ def write_search_page(outcome: pe.Outcome, data: dict[str, Any], folder: Path) -
 def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> pe.Outcome | None:
     """Return the outcome of the search in a folder; None if the folder contains no search.
 
-    Start and end are scored again, because result.json does not contain all of a score; the
-    history of the search is read from the file.
-
-    Raises
-    ------
-    InputError
-        When a file of the search is damaged, or was written by another version.
+    Start and end are scored again, because result.json does not contain all of a score; the history
+    of the search is read from the file. A damaged file, or one of another version, raises
+    `InputError`.
     """
     if not (folder / studies.SEARCH).exists() or not (folder / studies.RESULT).exists():
         return None

@@ -123,13 +123,8 @@ class ReportContext:
 
 
 def keyed_contexts(contexts: Sequence[ReportContext]) -> tuple[ReportContext, ...]:
-    """Return the studies of one page, each with a key of its own.
-
-    Raises
-    ------
-    InputError
-        When there is no study, or more than `MAX_STUDIES`.
-    """
+    """Return the studies of one page, each with a key of its own; `InputError` for none, or for
+    more than `MAX_STUDIES`."""
     if not 1 <= len(contexts) <= MAX_STUDIES:
         raise pe.InputError("review", "studies", f"1 to {MAX_STUDIES}", len(contexts))
     return tuple(

@@ -95,15 +95,8 @@ def _summary(fit: CurveFit) -> str:
 
 @styled
 def draw_ap_curves(path: Path, fits: Mapping[str, Any]) -> None:
-    """Draw AP against the measurement, a panel for each fit: points, curve, points left out.
-
-    Parameters
-    ----------
-    path : Path
-        The picture.
-    fits : mapping
-        Name of each panel, and its data from `fit_data`.
-    """
+    """Draw AP against the measurement, a panel for each fit: points, curve, points left out. `fits`
+    has the data of `fit_data` by the name of the panel."""
     plt = pyplot()
     size = (0.6 + 3.0 * len(fits), 3.4)
     layout: dict[str, Any] = {"sharey": True, "layout": "constrained", "squeeze": False}

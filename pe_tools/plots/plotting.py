@@ -100,12 +100,7 @@ def remove_frame(axes: Axes) -> None:
 
 def save_plot(figure: Figure, path: Path) -> None:
     """Write a plot without matplotlib's version in it: the same plot gives the same file.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
-    """
+    `InputError` where it cannot be written."""
     picture = io.BytesIO()
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from", UserWarning)  # a box is shown
@@ -128,13 +123,8 @@ def front(args: argparse.Namespace) -> Answer:
 
 
 def write_front_plot(data: Mapping[str, Any], folder: Path) -> None:
-    """Write the plot of a Pareto front to its folder.
-
-    Raises
-    ------
-    InputError
-        Where matplotlib is missing, or a file of that name is not ours.
-    """
+    """Write the plot of a Pareto front to its folder. `InputError` where matplotlib is missing, or
+    a file of that name is not ours."""
     check_matplotlib()
     with FileSet(folder) as files:
         files.add(FRONT_PLOT, lambda path: draw_front(path, data))

@@ -44,10 +44,9 @@ class Sensitivity:
 
     Attributes
     ----------
-    voxels : int
-        Voxels (or scenes of objects) that the search has not seen, on which all is evaluated.
-    evaluations : int
-        Rigs that were evaluated.
+    voxels, evaluations : int
+        Voxels (or scenes of objects) that the search has not seen, and rigs that were evaluated on
+        them.
     axes : tuple of AxisCost
         What a step costs, by sensor and axis.
     constraints : tuple of ActiveConstraint
@@ -55,8 +54,7 @@ class Sensitivity:
     endings : Endings or None
         Where the starts ended; None where the budget was too small.
     by_ap : bool
-        Whether the search was by expected AP: costs and gains are then differences of the AP, and
-        positive is still worse.
+        Whether costs and gains are differences of the expected AP; positive is still worse.
     """
 
     voxels: int

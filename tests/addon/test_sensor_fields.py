@@ -11,7 +11,7 @@ from blender_addon import bridge, consistency
 from blender_addon.engine import graphics
 from blender_addon.overlay import layers
 from blender_addon.panels import selected_object as sensor_panel
-from pe_tools.graphics import tints
+from pe_tools.graphics import colors as tints
 from tests.addon import scenes
 from tests.addon.layouts import Layout, Window
 

@@ -33,14 +33,8 @@ WHITE: graphics.Rgb = (1.0, 1.0, 1.0)
 
 
 def picture_file(study: pe.Study, outcome: pe.Outcome | None = None) -> bytes:
-    """Return the picture of a study's rig on its vehicle as PNG, with numbers and their key.
-
-    Parameters
-    ----------
-    study : Study
-    outcome : Outcome, optional
-        Its figures are written above the picture.
-    """
+    """Return the picture of a study's rig on its vehicle as PNG, with numbers and their key; above
+    it the figures of an outcome."""
     vehicle = study.vehicle
     if vehicle is not None:
         vehicle, _ = graphics.simplified(vehicle, MAX_TRIANGLES)
@@ -115,13 +109,8 @@ def _figures(outcome: pe.Outcome) -> list[str]:
 
 
 class DrawnPixels:
-    """An sRGB picture to draw into.
-
-    Parameters
-    ----------
-    pixels : (H, W, 3) float
-        0 to 1, the top row first; changed by each drawing. Places are (right, down) from the top
-        left [px].
+    """An sRGB picture (H, W, 3), 0 to 1, to draw into: the top row first. Places are (right, down)
+    from the top left [px].
     """
 
     def __init__(self, pixels: Floats) -> None:

@@ -64,17 +64,10 @@ PictureMaker = Callable[[pe.Sensor, "pe.Vehicle | None", list[ReferenceFigure]],
 class SensorView:
     """How the page shows the sensors of one kind.
 
-    Attributes
-    ----------
-    figure : callable
-        Takes a sensor and the vehicle or None; returns a drawing of what the sensor sees, or lines
-        of text, and a caption.
-    picture : callable or None
-        Takes a sensor, the vehicle or None and figures; returns the picture with these in it.
-    housing : Housing
-        Drawn for models whose size the catalogue does not know.
-    image_field : callable
-        Takes a model; returns width and height of its image [deg], None if it has no image.
+    `figure` returns a drawing (or lines of text) of what a sensor sees beside a vehicle or None,
+    and a caption; `picture` the picture with given figures in it. `housing` is drawn where the
+    catalogue knows no size. `image_field` returns width and height of a model's image [deg], or
+    None.
     """
 
     figure: Callable[[pe.Sensor, pe.Vehicle | None], ViewFigure]

@@ -28,23 +28,18 @@ class Section:
 
     Attributes
     ----------
-    anchor : str
-        Id of the section, the target of links: lower-case letters and hyphens. The template has
-        this name, if it has no `template` of its own.
-    title : str
-        Plain text.
+    anchor, title : str
+        Id (lower-case letters and hyphens), which names the template, too; and title, plain text.
     data : callable
-        Takes a `ReportContext`, or a tuple of all if the section is joint; returns the values of
-        the template, or None. ``script_data`` is plain JSON for the scripts, the text of
-        ``#data-ANCHOR-KEY``.
+        Takes a `ReportContext`, or a tuple of all if the section is `joint`; returns the values of
+        the template, or None. ``script_data`` is plain JSON, the text of ``#data-ANCHOR-KEY``.
     joint : bool
         One section for all studies; several studies have the others side by side.
     template : str
-        Headings in it begin at h3. Ids end in ``-KEY`` of the `ReportContext`, since a page may
-        show several studies.
+        Another template. Headings begin at h3; ids end in ``-KEY`` of the `ReportContext`.
     scripts : callable
-        Returns whole JavaScript programs, of which the page contains each once; a program looks
-        for ``[data-section=ANCHOR]``, whose ``data-key`` is KEY.
+        Returns whole JavaScript programs, of which the page contains each once; a program looks for
+        ``[data-section=ANCHOR]``, whose ``data-key`` is KEY.
     """
 
     anchor: str

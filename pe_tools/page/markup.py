@@ -15,6 +15,7 @@ from markupsafe import Markup, escape
 
 from pe_core import metric
 from pe_core.base.errors import plural
+from pe_core.scoring.sight import shown_end
 
 from .. import advice, graphics
 
@@ -50,6 +51,9 @@ def _environment() -> Environment:
         environment.filters[function.__name__] = function
     environment.filters |= {
         "css_string": css_string,
+        "price": price_text,
+        "shown_end": shown_end,
+        "study_name": lambda context: macros().study_name(context),
         "entropy_share": entropy_share,
         "hexadecimal": graphics.color_text,
         "where": lambda name: advice.WHERE.get(name, name),
@@ -97,6 +101,12 @@ def signed(value: float, digits: int = 2) -> str:
 def points(share: float) -> str:
     """Return a difference of shares as "+3.2 points"."""
     return f"{signed(100.0 * share, 1)} points"
+
+
+def price_text(price: float, currency: str) -> str:
+    """Return a price with its currency: "12,500 EUR", "99.50"."""
+    amount = f"{price:,.0f}" if float(price).is_integer() else f"{price:,.2f}"
+    return f"{amount} {currency}".strip()
 
 
 def triple(values: Sequence[float], digits: int = 2) -> str:

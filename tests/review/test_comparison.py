@@ -8,9 +8,9 @@ import pytest
 import pe_core as pe
 from pe_core.catalog import load
 from pe_tools.page import ReportContext, keyed_contexts
-from pe_tools.page.markup import escaped, render
+from pe_tools.page.markup import escaped, price_text, render
 from pe_tools.page.sections.comparison import comparison as comparison_section
-from pe_tools.page.sections.comparison import price_of, price_text, sensor_differences
+from pe_tools.page.sections.comparison import price_of, sensor_differences
 from pe_tools.page.sections.score import overview
 from pe_tools.page.sections.visibility import sensor_details
 from tests.review.conftest import NAMES, html_of, outcome_of, small_study

@@ -15,18 +15,15 @@ from markupsafe import Markup
 import pe_core as pe
 from pe_core import catalog
 from pe_core import sensors as kinds
-from pe_core.scoring import sight
 
 from ... import advice
-from ..markup import capitalized, escaped, macros, number
+from ..markup import capitalized, escaped, macros, number, price_text
 from ..pictures.ground_plan import difference_map
 from ..pictures.vehicle_picture import labelled_picture
 from ..report_context import ReportContext
 from .score import hidden_sensor_lines
 
 NO_PRICE = "no price"
-ModelPrice = tuple[str, float | None]
-"""A model's name and its unit price; None if the study gives no price."""
 SIDES = {"front": "ahead", "rear": "behind", "left": "left", "right": "right"}
 PAGE_NOTATION = advice.Notation(number, plus_minus="±")
 METRE_DIGITS, DEGREE_DIGITS = 3, 2
@@ -45,65 +42,23 @@ def price_of(study: pe.Study, sensor: pe.Sensor) -> float | None:
     return None
 
 
-def price_text(price: float, currency: str) -> str:
-    """Return a price with its currency: "12,500 EUR", "99.50"."""
-    amount = f"{price:,.0f}" if float(price).is_integer() else f"{price:,.2f}"
-    return f"{amount} {currency}".strip()
-
-
-def currency_of(study: pe.Study) -> str:
-    """Return the currency of a study's prices; empty if it gives none."""
-    return study.selection.currency or ""
-
-
 def bill_of_materials(contexts: tuple[ReportContext, ...]) -> dict[str, Any]:
-    """Return the bill of materials of a study, or of several in one table."""
-    bold, study_name = macros().bold, macros().study_name
-    by_model = [_sensors_by_model(context) for context in contexts]
-    models = dict.fromkeys(key for own in by_model for key in own)
-    currency = currency_of(contexts[0].study)
-    counts = [str(len(tuple(context.rig))) for context in contexts]
-    rows: list[list[str]]
-    if len(contexts) == 1:
-        caption = "Sensors"
-        heads = ["Sensor model", "Kind", "Sensors", "Count", "Unit price", "Sum"]
-        rows = [
-            [
-                *(model, kinds.kind_of(sensors[0]).label, ", ".join(s.name for s in sensors)),
-                str(len(sensors)),
-                *(_priced(price, currency), _priced(price, currency, len(sensors))),
-            ]
-            for (model, price), sensors in by_model[0].items()
-        ]
-        rows.append([bold("All sensors"), "", "", bold(counts[0]), "", bold(_total(contexts[0]))])
-    else:
-        caption = "Sensors of each study"
-        heads = ["Sensor model", "Unit price", *map(study_name, contexts)]
-        rows = [
-            [
-                key[0],
-                _priced(key[1], currency),
-                *(str(len(o.get(key, ())) or "–") for o in by_model),
-            ]
-            for key in models
-        ]
-        rows.append([bold("Count"), "", *map(bold, counts)])
-        rows.append([bold("Sum"), "", *(bold(_total(context)) for context in contexts)])
-    no_price = list(dict.fromkeys(model for model, price in models if price is None))
-    return {"caption": caption, "heads": heads, "rows": rows, "no_price": no_price}
-
-
-def _sensors_by_model(context: ReportContext) -> dict[ModelPrice, list[pe.Sensor]]:
-    """Return the sensors of each model, in the rig's order."""
-    by_model: dict[ModelPrice, list[pe.Sensor]] = {}
-    for sensor in context.rig:
-        key = sensor.model.name, price_of(context.study, sensor)
-        by_model.setdefault(key, []).append(sensor)
-    return by_model
-
-
-def _priced(price: float | None, currency: str, count: int = 1) -> str:
-    return NO_PRICE if price is None else price_text(price * count, currency)
+    """Return the sensors of each study by model and unit price (None: not given), and the sums."""
+    by_model: list[dict[tuple[str, float | None], list[pe.Sensor]]] = []
+    for context in contexts:
+        own = {}
+        for sensor in context.rig:
+            key = sensor.model.name, price_of(context.study, sensor)
+            own.setdefault(key, []).append(sensor)
+        by_model.append(own)
+    models = list(dict.fromkeys(key for own in by_model for key in own))
+    return {
+        "by_model": by_model,
+        "models": models,
+        "totals": [_total(context) for context in contexts],
+        "no_price": list(dict.fromkeys(model for model, price in models if price is None)),
+        "kind_of": kinds.kind_of,
+    }
 
 
 def _total(context: ReportContext) -> str:
@@ -112,7 +67,7 @@ def _total(context: ReportContext) -> str:
     known = [price for price in prices if price is not None]
     if not known:
         return NO_PRICE
-    total = price_text(sum(known), currency_of(context.study))
+    total = price_text(sum(known), context.study.selection.currency)
     return total if len(known) == len(prices) else f"at least {total}"
 
 
@@ -122,7 +77,6 @@ def comparison(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
         return None
     first, *others = contexts
     rows = advice.compare({context.key: context.after for context in contexts})
-    blind = [context.outlook.blind for context in contexts]
     return {
         "names": [macros().bold_study(context) for context in contexts],
         "rows": rows,
@@ -144,11 +98,8 @@ def comparison(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
             for other in others
         ],
         "voxel_ap": _voxel_ap(contexts),
-        "blind_height": max(each.height for each in blind),
-        "blind_extents": [
-            [capitalized(words), *(_blind_extent(each, side) for each in blind)]
-            for side, words in SIDES.items()
-        ],
+        "blind": [context.outlook.blind for context in contexts],
+        "sides": SIDES,
     }
 
 
@@ -188,13 +139,6 @@ def _voxel_ap(contexts: Sequence[ReportContext]) -> list[list[str]]:
     ]
 
 
-def _blind_extent(blind: sight.BlindGround, side: str) -> str:
-    end = blind.zone[side]
-    if end is None:
-        return f"more than {blind.within:g} m"
-    return "none" if end == 0.0 else f"{number(sight.shown_end(end), 1)} m"
-
-
 def sensor_differences(contexts: Sequence[ReportContext]) -> dict[str, Any]:
     """Return the mountings of each sensor, and how they differ from its first one."""
     names = dict.fromkeys(sensor.name for context in contexts for sensor in context.rig)
@@ -205,6 +149,7 @@ def sensor_differences(contexts: Sequence[ReportContext]) -> dict[str, Any]:
         "differing": [name for name, mountings in sensors.items() if len(mountings) > 1],
         "has_prices": any(price is not None for price in prices),
         "lacks_prices": any(price is None for price in prices),
+        "turn": lambda a, b: math.remainder(a - b, 360.0),
     }
 
 
@@ -219,41 +164,18 @@ class SensorMounting(NamedTuple):
     rotation: tuple[float, ...]
 
 
-def _mountings(contexts: Sequence[ReportContext], name: str) -> list[dict[str, Any]]:
-    """Return a row for each different mounting of a sensor, with its studies."""
-    studies_by_mounting: dict[SensorMounting | None, list[ReportContext]] = {}
+def _mountings(
+    contexts: Sequence[ReportContext], name: str
+) -> dict[SensorMounting | None, list[ReportContext]]:
+    """Return the studies of each different mounting of a sensor; None: those without it."""
+    by_mounting: dict[SensorMounting | None, list[ReportContext]] = {}
     for context in contexts:
-        sensor = next((s for s in context.rig if s.name == name), None)
-        mounting = None if sensor is None else _mounting_of(context.study, sensor)
-        studies_by_mounting.setdefault(mounting, []).append(context)
-    first = next(mounting for mounting in studies_by_mounting if mounting is not None)
-    return [_row(*pair, first) for pair in studies_by_mounting.items()]
-
-
-def _mounting_of(study: pe.Study, sensor: pe.Sensor) -> SensorMounting:
-    position = tuple(round(v, METRE_DIGITS) + 0.0 for v in sensor.pose.position)
-    rotation = tuple(round(v, DEGREE_DIGITS) + 0.0 for v in sensor.pose.rotation_deg)
-    values = repr((catalog.to_table(sensor.model), sensor.fusion, sensor.curve))
-    return SensorMounting(sensor.model.name, values, price_of(study, sensor), position, rotation)
-
-
-def _row(
-    mounting: SensorMounting | None, studies: list[ReportContext], first: SensorMounting
-) -> dict[str, Any]:
-    """Return what the table has of a mounting, None: without the sensor, beside the first one."""
-    if mounting is None:
-        return {"studies": studies, "model": None}
-    same_name, price = mounting.model == first.model, mounting.price
-    modified = same_name and mounting.values != first.values
-    turned = zip(mounting.rotation, first.rotation, strict=True)
-    return {
-        "studies": studies,
-        "model": f"{mounting.model} (other values)" if modified else mounting.model,
-        "is_other_model": modified or not same_name,
-        "price": "" if price is None else price_text(price, currency_of(studies[0].study)),
-        "is_other_price": price != first.price,
-        "position": mounting.position,
-        "moved": [a - b for a, b in zip(mounting.position, first.position, strict=True)],
-        "rotation": mounting.rotation,
-        "turned": [math.remainder(a - b, 360.0) for a, b in turned],
-    }
+        sensor, mounting = next((s for s in context.rig if s.name == name), None), None
+        if sensor is not None:
+            position = tuple(round(v, METRE_DIGITS) + 0.0 for v in sensor.pose.position)
+            rotation = tuple(round(v, DEGREE_DIGITS) + 0.0 for v in sensor.pose.rotation_deg)
+            values = repr((catalog.to_table(sensor.model), sensor.fusion, sensor.curve))
+            price = price_of(context.study, sensor)
+            mounting = SensorMounting(sensor.model.name, values, price, position, rotation)
+        by_mounting.setdefault(mounting, []).append(context)
+    return by_mounting

@@ -107,10 +107,7 @@ def outlook(sight: Sight, rig: Rig, class_name: str | None = None) -> Outlook:
     name = class_of(sight.prior, class_name)
     height = max(BLIND_TO_M, sight.space.z[0])
     return Outlook(
-        sight.expected_ap(rig),
-        sight.shares(rig),
-        sight.reach(rig, name),
-        sight.blind(rig, height),
+        sight.expected_ap(rig), sight.shares(rig), sight.reach(rig, name), sight.blind(rig, height)
     )
 
 

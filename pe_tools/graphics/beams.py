@@ -202,11 +202,7 @@ def _some(count: int, preferred: Ints, fallback: Ints) -> Ints:
 
 
 def free_lines(
-    sensor: Sensor,
-    beams: Beams,
-    length_m: float,
-    colors: Colors,
-    around: BoxBounds | None = None,
+    sensor: Sensor, beams: Beams, length_m: float, colors: Colors, around: BoxBounds | None = None
 ) -> Primitives:
     """Lines of the free beams, two pieces each, in (N, 4) colours.
 

@@ -199,11 +199,7 @@ def fitted_bound(better: Floats, quantity: str) -> float:
 
 
 def _shape(
-    seen: GroundSight,
-    rgb: NDArray[np.float32],
-    alpha: Floats,
-    faded: bool,
-    legend: ColorKey,
+    seen: GroundSight, rgb: NDArray[np.float32], alpha: Floats, faded: bool, legend: ColorKey
 ) -> LayerShape:
     """Return a sheet in these colours (NX, NY, 3), as opaque as `alpha` (NX, NY) says."""
     half = seen.step / 2.0

@@ -323,11 +323,7 @@ class OptimizeJob(Job):
             yield helpers
 
     def _search_from(
-        self,
-        rig: Rig,
-        objectives: list[Objective],
-        watch: StopWatch,
-        share: tuple[float, float],
+        self, rig: Rig, objectives: list[Objective], watch: StopWatch, share: tuple[float, float]
     ) -> Iterator[Progress]:
         """Search step by step in a thread: one candidate may take longer than a window can wait."""
         search, before = self.study.search, self.evaluations

@@ -102,10 +102,7 @@ def _view(scene: GlbScene, request: OutputRequest, sensor: Sensor, color: Rgb) -
     sides = scene.add_mesh(name, _own(sensor, solid.points), solid.faces, material)
     drawn = np.stack([steps, steps + 1], axis=1), scene.add_material(f"{name}, edges", color)
     edges = scene.add_mesh(f"{name}, edges", _own(sensor, np.vstack(lines)), *drawn, LINES)
-    return [
-        scene.add_node(name, mesh=sides),
-        scene.add_node(f"{sensor.name} edges", mesh=edges),
-    ]
+    return [scene.add_node(name, mesh=sides), scene.add_node(f"{sensor.name} edges", mesh=edges)]
 
 
 def _own(sensor: Sensor, points: Floats) -> Floats:

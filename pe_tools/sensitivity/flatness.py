@@ -107,9 +107,7 @@ class AxisCost:
 
 
 def flatness(
-    samples: FreshSamples,
-    status: Callable[[str, str], str],
-    steps: tuple[float, ...] = (NEAR, FAR),
+    samples: FreshSamples, status: Callable[[str, str], str], steps: tuple[float, ...] = (NEAR, FAR)
 ) -> Iterator[AxisCost]:
     """Yield the costs of each axis of each sensor, in the rig's order, for steps to both sides.
     `status` returns what the search does with an axis of a sensor."""

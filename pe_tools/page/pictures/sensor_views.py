@@ -32,9 +32,7 @@ from .svg import LETTER_WIDTH, Canvas, LabelledPicture, TextLabel
 MAX_WIDTH, MAX_HEIGHT = 640, 480
 """Size of a camera's image on the page [px]."""
 ROAD, RING, ZENITH, HORIZON = graphics.linear_of_srgb(
-    np.array(
-        [(0.50, 0.51, 0.52), (0.93, 0.94, 0.95), (0.62, 0.74, 0.86), (0.90, 0.92, 0.93)],
-    )
+    np.array([(0.50, 0.51, 0.52), (0.93, 0.94, 0.95), (0.62, 0.74, 0.86), (0.90, 0.92, 0.93)])
 )
 SUN = np.array([-0.35, 0.5, 1.0])
 """Direction to the sun relative to the sensor's heading: from behind, on the left."""
@@ -111,9 +109,7 @@ def lidar_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> ViewFigure:
 
 
 def camera_picture(
-    sensor: pe.Sensor,
-    vehicle: pe.Vehicle | None,
-    figures: list[ReferenceFigure] | None = None,
+    sensor: pe.Sensor, vehicle: pe.Vehicle | None, figures: list[ReferenceFigure] | None = None
 ) -> LabelledPicture:
     """Return the image of a camera with figures in front of it, by default persons and cars."""
     rays, scale = ray_camera(sensor)
@@ -191,9 +187,7 @@ def _road_environment(sensor: pe.Sensor) -> Environment:
 
 
 def lidar_picture(
-    sensor: pe.Sensor,
-    vehicle: pe.Vehicle | None,
-    figures: list[ReferenceFigure] | None = None,
+    sensor: pe.Sensor, vehicle: pe.Vehicle | None, figures: list[ReferenceFigure] | None = None
 ) -> LabelledPicture:
     """Return the ranges of a LiDAR with figures in front of it, by default persons and cars."""
     lidar = graphics.lidar_of(sensor)

@@ -134,11 +134,7 @@ def redundancy(context: ReportContext) -> dict[str, Any] | None:
             for name, (about, values) in maps.items()
         ],
         "shares": [
-            (
-                text,
-                percent(seen.share(*least), 1),
-                percent(seen.share(*least, one_lost=True), 1),
-            )
+            (text, percent(seen.share(*least), 1), percent(seen.share(*least, one_lost=True), 1))
             for text, least in counts
         ],
     }

@@ -43,15 +43,25 @@ TRIM = Paint((0.10, 0.105, 0.11), 0.2)
 LAMP = Paint((0.78, 0.80, 0.80), 0.8)
 TAIL = Paint((0.33, 0.03, 0.02), 0.6)
 PLATE = Paint((0.72, 0.72, 0.68), 0.1)
-PAINTS = (
-    (("tail", "brake"), TAIL),
-    (("headl", "lamp", "light"), LAMP),
-    (("plate",), PLATE),
-    (("wheel", "tyre", "tire"), TYRE),
-    (("window", "windshield", "windscreen", "glass"), GLASS),
-    (("bumper", "trim", "grille", "mirror", "wiper", "antenna", "rubber"), TRIM),
-)
-"""Paint by words in a part's name; the first match counts, other parts are `BODY`."""
+LOOKS = {
+    "rear-light": ("tail", "brake"),
+    "light": ("headl", "lamp", "light"),
+    "plate": ("plate",),
+    "rubber": ("wheel", "tyre", "tire"),
+    "glass": ("window", "windshield", "windscreen", "glass"),
+    "trim": ("bumper", "trim", "grille", "mirror", "wiper", "antenna", "rubber"),
+}
+"""Words in the names of parts by their look; the first match counts, others look like the body."""
+PAINTS = {"rear-light": TAIL, "light": LAMP, "plate": PLATE, "rubber": TYRE}
+PAINTS |= {"glass": GLASS, "trim": TRIM, "body": BODY}
+
+
+def look_of(name: str, vehicle: pe.Vehicle) -> str:
+    """Return the look of a part by its name: a key of `LOOKS`, or "body"."""
+    if name in vehicle.glass:
+        return "glass"
+    named = (look for look, words in LOOKS.items() if any(word in name.lower() for word in words))
+    return next(named, "body")
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,13 +90,8 @@ class PaintedMesh:
 
 def painted_vehicle(vehicle: pe.Vehicle) -> PaintedMesh:
     """Return a vehicle with paint by the names of its parts; glass is dark."""
-    names = vehicle.part_names
-    return PaintedMesh(vehicle, tuple(GLASS if n in vehicle.glass else _paint_of(n) for n in names))
-
-
-def _paint_of(name: str) -> Paint:
-    paints = (paint for words, paint in PAINTS if any(word in name.lower() for word in words))
-    return next(paints, BODY)
+    paints = (PAINTS[look_of(name, vehicle)] for name in vehicle.part_names)
+    return PaintedMesh(vehicle, tuple(paints))
 
 
 def unit(vectors: Floats) -> Floats:

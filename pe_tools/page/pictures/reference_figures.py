@@ -74,14 +74,12 @@ def reference_figures(
             x = sensor.pose.position[0] + away * math.cos(heading)
             y = sensor.pose.position[1] + away * math.sin(heading)
             painted = car(x, y, heading) if name == "car" else person(x, y, heading + math.pi)
-            if vehicle is None or _are_apart(painted.mesh, vehicle):
-                figures.append(ReferenceFigure(name, distance, (x, y, size[2]), painted))
+            if vehicle is not None:
+                (low, high), (low_2, high_2) = painted.mesh.bounds, vehicle.bounds
+                if not ((low > high_2 + CLEAR_M) | (high < low_2 - CLEAR_M))[:2].any():
+                    continue
+            figures.append(ReferenceFigure(name, distance, (x, y, size[2]), painted))
     return figures
-
-
-def _are_apart(one: pe.Vehicle, other: pe.Vehicle) -> bool:
-    (low, high), (low_2, high_2) = one.bounds, other.bounds
-    return bool(((low > high_2 + CLEAR_M) | (high < low_2 - CLEAR_M))[:2].any())
 
 
 def _angle_by_distance(width: float, half_view: float) -> dict[float, float]:

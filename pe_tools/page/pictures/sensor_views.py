@@ -27,7 +27,7 @@ from .painted_mesh import painted_vehicle
 from .ray_scene import RayCamera, RayScene
 from .reference_figures import DISTANCES, ReferenceFigure, reference_figures
 from .rendering import Environment, render
-from .svg import LETTER_WIDTH, Canvas, LabelledPicture, TextLabel
+from .svg import LETTER_WIDTH, Canvas, LabelledPicture
 
 MAX_WIDTH, MAX_HEIGHT = 640, 480
 """Size of a camera's image on the page [px]."""
@@ -119,8 +119,15 @@ def camera_picture(
     road = RayScene([*solids, *(target.painted for target in figures)], vehicle is not None)
     image = render(rays, road, _road_environment(sensor))
     png = graphics.png_bytes(graphics.as_bytes(image))
-    labels = _camera_labels(sensor, figures, rays, scale)
-    return LabelledPicture(png, rays.width, rays.height, labels)
+    lens, labels = graphics.camera_of(sensor).projection, []
+    for target in figures:  # labels are above heads and roofs, where these are in the image
+        offset = np.subtract(target.top, sensor.pose.position)[None]
+        ahead, left, up = scene.rotate(sensor.pose.ground_from_sensor.T, offset).T
+        if math.atan2(math.hypot(left[0], up[0]), ahead[0]) < lens.edge:
+            x, y = (float(v[0]) * scale for v in lens.project(ahead, left, up))
+            if 0.0 <= x <= rays.width and 0.0 <= y <= rays.height:
+                labels.append((round(x, 1), round(y, 1), target.label))
+    return LabelledPicture(png, rays.width, rays.height, tuple(labels))
 
 
 def ray_camera(sensor: pe.Sensor) -> tuple[RayCamera, float]:
@@ -139,23 +146,6 @@ def ray_camera(sensor: pe.Sensor) -> tuple[RayCamera, float]:
     pixel_rad = math.sqrt(float(((two - one) ** 2).sum()))
     eye = np.array(sensor.pose.position)
     return RayCamera(eye, width, height, rays_through, pixel_rad, True), 1.0 / across
-
-
-def _camera_labels(
-    sensor: pe.Sensor, figures: list[ReferenceFigure], rays: RayCamera, scale: float
-) -> tuple[TextLabel, ...]:
-    """Return the distances above heads and roofs, where these are in the image."""
-    camera, labels = graphics.camera_of(sensor), []
-    for target in figures:
-        offset = scene.rotate(
-            sensor.pose.ground_from_sensor.T, np.subtract(target.top, sensor.pose.position)[None]
-        )
-        theta = math.atan2(math.hypot(offset[0, 1], offset[0, 2]), offset[0, 0])
-        if theta < camera.projection.edge:
-            x, y = (float(v[0]) * scale for v in camera.projection.project(*offset.T))
-            if 0.0 <= x <= rays.width and 0.0 <= y <= rays.height:
-                labels.append((round(x, 1), round(y, 1), target.label))
-    return tuple(labels)
 
 
 def _road_environment(sensor: pe.Sensor) -> Environment:
@@ -194,25 +184,41 @@ def lidar_picture(
     if figures is None:
         half = min(FIGURES_RAD, (lidar.horizontal_fov[1] - lidar.horizontal_fov[0]) / 2.0)
         figures = reference_figures(sensor, half, vehicle)
-    ranges = kinds.range_picture(sensor, vehicle, _joint_mesh(figures))
+    joint = None
+    if figures:  # one mesh, a part for each
+        meshes = [target.painted.mesh.triangles for target in figures]
+        parts = np.repeat(np.arange(len(meshes)), [len(triangles) for triangles in meshes])
+        names = [f"thing {k}" for k in range(len(meshes))]
+        joint = pe.Vehicle(np.concatenate(meshes), parts, names)
+    ranges = kinds.range_picture(sensor, vehicle, joint)
     columns = _pixel_azimuths(ranges)
     channels = len(ranges.elevations)
     row_px = int(np.clip(math.ceil(MIN_ROWS_HEIGHT / channels), 1, MAX_ROW_HEIGHT))
     rows = np.repeat(np.arange(channels), row_px)
     colors = graphics.range_colors(ranges, lidar.max_range)[np.ix_(rows, columns)]
     png = graphics.png_bytes(graphics.as_bytes(colors))
-    labels = _lidar_labels(ranges, figures, columns, row_px)
-    edges = _side_labels(ranges, len(columns)), _elevation_labels(ranges, len(rows))
-    return LabelledPicture(png, len(columns), len(rows), labels, *edges)
+    labels = []  # figures that no beam meets have none
+    for index, target in enumerate(figures):
+        down, across = np.nonzero(ranges.things[:, columns] == index)
+        if len(down):
+            place = float(np.median(across)) + 0.5, float(down.min() * row_px)
+            labels.append((*place, target.label))
+    width, height = len(columns), len(rows)
+    return LabelledPicture(png, width, height, tuple(labels), *_axis_labels(ranges, width, height))
 
 
-def _joint_mesh(figures: list[ReferenceFigure]) -> pe.Vehicle | None:
-    """Return all figures as one mesh, a part for each."""
-    if not figures:
-        return None
-    meshes = [target.painted.mesh.triangles for target in figures]
-    parts = np.repeat(np.arange(len(meshes)), [len(triangles) for triangles in meshes])
-    return pe.Vehicle(np.concatenate(meshes), parts, [f"thing {k}" for k in range(len(meshes))])
+def _axis_labels(
+    ranges: kinds.RangePicture, width: int, height: int
+) -> tuple[tuple[tuple[float, str], ...], tuple[tuple[float, str], ...]]:
+    """Return the sides along a range image, and the elevations of its first and last channel."""
+    left, right = np.degrees(ranges.azimuths[[0, -1]]).tolist()
+    top, bottom = np.degrees(ranges.elevations[[0, -1]]).tolist()
+    ends = ((0.0, f"{signed(top, 0)}°"), (float(height), f"{signed(bottom, 0)}°"))
+    sides: dict[str, float] = {}
+    if left > right:
+        sides = {side: (left - at) / (left - right) * width for side, at in SIDES.items()}
+    shown = ((round(x, 1), side) for side, x in sides.items() if -1.0 < x < width + 1.0)
+    return tuple(shown), ends if len(ranges.elevations) > 1 else ends[:1]
 
 
 def _pixel_azimuths(ranges: kinds.RangePicture) -> NDArray[np.int64]:
@@ -228,40 +234,6 @@ def _pixel_azimuths(ranges: kinds.RangePicture) -> NDArray[np.int64]:
         if len(meeting):
             nearest[pixel] += meeting[0]
     return nearest
-
-
-def _lidar_labels(
-    ranges: kinds.RangePicture,
-    figures: list[ReferenceFigure],
-    columns: NDArray[np.int64],
-    row_px: int,
-) -> tuple[TextLabel, ...]:
-    """Return the distances above figures that beams meet; other figures have no label."""
-    labels = []
-    shown = ranges.things[:, columns]
-    for index, target in enumerate(figures):
-        rows, across = np.nonzero(shown == index)
-        if len(rows):
-            labels.append(
-                (float(np.median(across)) + 0.5, float(rows.min() * row_px), target.label)
-            )
-    return tuple(labels)
-
-
-def _side_labels(ranges: kinds.RangePicture, width: int) -> tuple[tuple[float, str], ...]:
-    """Return the sides and their positions along an image of that width."""
-    left, right = np.degrees(ranges.azimuths[[0, -1]]).tolist()
-    if left <= right:
-        return ()
-    positions = {side: (left - at) / (left - right) * width for side, at in SIDES.items()}
-    return tuple((round(x, 1), side) for side, x in positions.items() if -1.0 < x < width + 1.0)
-
-
-def _elevation_labels(ranges: kinds.RangePicture, height: int) -> tuple[tuple[float, str], ...]:
-    """Return the elevations of the uppermost and the lowest channel."""
-    top, bottom = np.degrees(ranges.elevations[[0, -1]]).tolist()
-    labels = ((0.0, f"{signed(top, 0)}°"), (float(height), f"{signed(bottom, 0)}°"))
-    return labels if len(ranges.elevations) > 1 else labels[:1]
 
 
 def field_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> ViewFigure:

@@ -16,24 +16,12 @@ import pe_core as pe
 from pe_core import catalog
 
 from ... import graphics
+from ..pictures.painted_mesh import look_of
 
 MAX_STEPS = 65_535
 """Quantization steps of the longest side: a vehicle's points are exact to 0.1 mm."""
 MAX_TRIANGLES = 40_000
 """Of the vehicle in the 3-D view: a phone renders so many smoothly."""
-LOOKS = {
-    "wheel": "rubber",
-    "tyre": "rubber",
-    "tire": "rubber",
-    "window": "glass",
-    "windshield": "glass",
-    "windscreen": "glass",
-    "glass": "glass",
-    "headlight": "light",
-    "taillight": "rear-light",
-    "plate": "plate",
-}
-"""Look of a part by a word in its name; other parts look like the body."""
 STEP_M = 1.0
 MAX_MAP_CELLS = 40_000
 """Limit of cells of a map: a space of hundreds of metres has larger cells."""
@@ -124,16 +112,15 @@ def _parts(vehicle: pe.Vehicle, order: NDArray[np.int64]) -> list[dict[str, Any]
     counts = np.bincount(vehicle.parts[order], minlength=len(vehicle.part_names))
     starts = np.cumsum(counts) - counts
     return [
-        {"name": name, "look": _look(name, vehicle), "first": int(first), "count": int(count)}
+        {
+            "name": name,
+            "look": look_of(name, vehicle).replace("trim", "body"),
+            "first": int(first),
+            "count": int(count),
+        }
         for name, first, count in zip(vehicle.part_names, starts, counts, strict=True)
         if count
     ]
-
-
-def _look(name: str, vehicle: pe.Vehicle) -> str:
-    if name in vehicle.glass:
-        return "glass"
-    return next((look for word, look in LOOKS.items() if word in name.lower()), "body")
 
 
 def maps_data(sight: pe.Sight, rig: pe.Rig) -> list[dict[str, Any]]:

@@ -5,15 +5,14 @@ The overview has three sentences (question, result, notes), key figures and a pi
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 from markupsafe import Markup
 
 import pe_core as pe
 from pe_core import metric
 from pe_core import sensors as kinds
-from pe_core.scoring import sight
 from pe_core.study.condition_table import ConditionTable
 
 from ... import advice
@@ -33,30 +32,25 @@ def overview(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
     if len(contexts) > 1:
         return None
     (context,) = contexts
-    space, sensors, scores = context.study.space, _sensor_counts(context), context.after
+    rig_kinds, scores = [kinds.kind_of(sensor) for sensor in context.rig], context.after
+    counts = []  # "2 LiDARs", "1 camera"
+    for kind in dict.fromkeys(rig_kinds):
+        count = rig_kinds.count(kind)
+        noun = kind.label if count == 1 else kind.plural
+        counts.append(f"{count} {noun.lower() if noun.istitle() else noun}")
     blind = context.outlook.blind
-    moved = sum(a.pose != b.pose for a, b in zip(context.start.rig, context.rig, strict=True))
+    away = {side: float("inf") if end is None else end for side, end in blind.zone.items()}
     return {
-        "sensors": sensors,
-        "vehicle": _vehicle_text(context),
-        "classes": joined([f"a {name}" for name in context.study.prior.class_names]),
-        "ahead": _span(space.x),
-        "aside": _span(space.y),
-        "moved": moved,
+        "sensors": joined(counts),
+        "moved": sum(a.pose != b.pose for a, b in zip(context.start.rig, context.rig, strict=True)),
         "zones": sorted(scores.per_zone, key=lambda zone: scores.per_zone[zone].entropy),
         "costs_nothing": advice.costs_nothing(context.outcome.cost),
         "hidden": [Markup(capitalized(line)) for line in hidden_sensor_lines(context)],
         "blind": blind,
-        "blind_extents": [
-            f"more than {blind.within:g} m {side}"
-            if (end := blind.zone[key]) is None
-            else f"up to {number(sight.shown_end(end), 1)} m {side}"
-            for key, side in SIDES.items()
-            if blind.zone[key] != 0.0
-        ],
-        "farthest_blind": _farthest_blind(context),
+        "sides": SIDES,
+        "farthest": max(away, key=lambda side: away[side]),
         "worst": max(scores.per_sensor, key=lambda name: scores.per_sensor[name].lost),
-        "picture": labelled_picture(context, f"The vehicle with {sensors}"),
+        "picture": labelled_picture(context, f"The vehicle with {joined(counts)}"),
         "unseen_nats": metric.H_BLIND,
         "best_nats": metric.H_BEST,
     }
@@ -68,43 +62,6 @@ def hidden_sensor_lines(context: ReportContext) -> list[str]:
     bold = macros().bold
     named = [replace(sensor, name=bold(sensor.name), why=escaped(sensor.why)) for sensor in sensors]
     return list(advice.hidden_words(named))
-
-
-def _sensor_counts(context: ReportContext) -> str:
-    """Return "2 LiDARs and 1 camera", the sensors of each kind."""
-    rig_kinds = [kinds.kind_of(sensor) for sensor in context.rig]
-    counts = []
-    for kind in dict.fromkeys(rig_kinds):
-        count = rig_kinds.count(kind)
-        noun = kind.label if count == 1 else kind.plural
-        counts.append(f"{count} {noun.lower() if noun.istitle() else noun}")
-    return joined(counts)
-
-
-def _vehicle_text(context: ReportContext) -> str:
-    vehicle = context.vehicle
-    if vehicle is None:
-        return "no vehicle (nothing is occluded)"
-    size = vehicle.bounds[1] - vehicle.bounds[0]
-    name = (context.study.mesh or "a vehicle").replace("\\", "/").rpartition("/")[2]
-    return f"{name} ({' × '.join(number(side) for side in size.tolist())} m)"
-
-
-def _span(bounds: tuple[float, float]) -> str:
-    low, high = bounds
-    return f"{high:g}" if low == -high else f"{number(low, 0)} to {number(high, 0)}"
-
-
-def _farthest_blind(context: ReportContext) -> tuple[str, str, str]:
-    """Return figure, unit and note on the side where blind ground at the body extends farthest."""
-    zone = context.outlook.blind.zone
-    away = {side: float("inf") if end is None else end for side, end in zone.items()}
-    side = max(away, key=lambda side: away[side])
-    if away[side] == 0.0:
-        return "none", "", "all around, within 10 m"
-    end = zone[side]
-    figure = "> 10" if end is None else number(sight.shown_end(end), 1)
-    return figure, "m", f"from the body, {SIDES[side]}"
 
 
 def warnings_and_text(context: ReportContext) -> dict[str, Any]:
@@ -149,11 +106,9 @@ def objects(context: ReportContext) -> dict[str, Any] | None:
     }
 
 
-@dataclass(frozen=True, slots=True)
-class SensorLoss:
-    """The rig without one of its sensors, compared with the whole rig. `rise` is that of the
-    entropy, as scored [nats], `uncovered` the coverage that is lost, 0 to 1; `zone` is the one in
-    which the entropy rises most, by `zone_rise` [nats], empty if in none."""
+class SensorLoss(NamedTuple):
+    """The rig without one of its sensors: rise of the entropy, as scored [nats], and coverage that
+    is lost, 0 to 1; the zone in which the entropy rises most (empty: in none), and by how much."""
 
     sensor: str
     rise: float
@@ -168,25 +123,18 @@ def sensor_loss(context: ReportContext) -> dict[str, Any]:
     if len(context.rig) > 1:
         evaluator = context.study.evaluator(LOSS_SAMPLES)
         whole = evaluator.summary(context.rig)
-        losses = [_loss_of(context, sensor.name, evaluator, whole) for sensor in context.rig]
+        for name, own in context.after.per_sensor.items():
+            left = evaluator.summary(pe.Rig([s for s in context.rig if s.name != name]))
+            rises = {
+                zone: part.entropy - whole.per_zone[zone].entropy
+                for zone, part in left.per_zone.items()
+            }
+            zone = max(rises, key=lambda zone: rises[zone], default="")
+            rise = rises.get(zone, 0.0)
+            lost = own.lost, whole.coverage - left.coverage, zone if rise > 0.0 else "", rise
+            losses.append(SensorLoss(name, *lost))
     losses.sort(key=lambda loss: -loss.rise)
-    max_rise = max((loss.rise for loss in losses), default=0.0)
-    return {"losses": losses, "max_rise": max(max_rise, 1e-9)}
-
-
-def _loss_of(
-    context: ReportContext, name: str, evaluator: pe.RigEvaluator, whole: pe.SummaryScore
-) -> SensorLoss:
-    remaining = pe.Rig([sensor for sensor in context.rig if sensor.name != name])
-    score = evaluator.summary(remaining)
-    rises = {
-        zone: part.entropy - whole.per_zone[zone].entropy for zone, part in score.per_zone.items()
-    }
-    zone = max(rises, key=lambda zone: rises[zone], default="")
-    zone_rise = rises.get(zone, 0.0)
-    rise = context.after.per_sensor[name].lost
-    uncovered = whole.coverage - score.coverage
-    return SensorLoss(name, rise, uncovered, zone if zone_rise > 0.0 else "", zone_rise)
+    return {"losses": losses, "max_rise": max([1e-9, *(loss.rise for loss in losses)])}
 
 
 def conditions(context: ReportContext) -> dict[str, Any] | None:

@@ -20,6 +20,7 @@ from pe_core.metric.fusion import Fusion
 from pe_core.prior.prior import ClassDensity, Prior
 from pe_core.scene.rig import Rig, Sensor
 from pe_core.scene.vehicle import Vehicle
+from pe_core.scoring.requirements import part_in_the_way
 from pe_core.scoring.scenarios import fused_early
 from pe_core.sensors import PerceptionModel, kind_named, kind_of, measure
 from pe_tools.wording import times
@@ -117,7 +118,10 @@ def ask_place(
     measured = {s.name: np.array([s.m]) for s in sensors}
     entropies, seen = Fusion(model).entropies(fused_early(rig, measured, list(measured)))
     x, y, z = (float(v) for v in center[0])
-    inside = vehicle is not None and z < _top(vehicle, space, x, y)
+    inside = False
+    if vehicle is not None:  # below its top over the column of the voxel
+        column = ((w - side / 2.0, w + side / 2.0) for w in (x, y))
+        inside = z < float(vehicle.top(PerceptionSpace(*column, space.z, side))[0, 0])
     densities = () if inside else densities or prior.densities(space)
     i, j, k = index
     density = sum((float(d.ground[i, j] * d.profile[k]) for d in densities), 0.0) * space.size
@@ -148,34 +152,16 @@ def _voxel(space: PerceptionSpace, point: Sequence[float]) -> tuple[int, int, in
 def _at_place(
     sensor: Sensor, center: Floats, side: float, vehicle: Vehicle | None, model: PerceptionModel
 ) -> SensorAtPlace:
+    kind, part, reason = kind_of(sensor), None, SEES
     unhidden = float(measure(sensor, center, side)[0])
     m = float(measure(sensor, center, side, vehicle)[0]) if unhidden and vehicle else unhidden
-    part, reason = None, SEES
     if not unhidden:
-        reason = kind_of(sensor).missed(sensor, center[0], side)
+        reason = kind.missed(sensor, center[0], side)
     elif not m and vehicle is not None:
-        part, reason = _part_in_the_way(sensor, center[0], side, vehicle), HIDDEN
+        rays = kind.rays_to(sensor, center[0], side)
+        part, reason = part_in_the_way(sensor, vehicle, *rays), HIDDEN
     ap = float(average_precision(m, sensor.curve or model.curve(sensor.kind)))
     return SensorAtPlace(sensor.name, sensor.kind, m, unhidden, ap, part, reason)
-
-
-def _part_in_the_way(sensor: Sensor, center: Floats, side: float, vehicle: Vehicle) -> str | None:
-    """Return the part that blocks most of a sensor's rays to a cube; None if no part does."""
-    directions, far = kind_of(sensor).rays_to(sensor, center, side)
-    glass = sensor.model.sees_through_glass
-    hits = vehicle.first_hit(sensor.pose.position, directions, glass)
-    stopped = hits.face[hits.distance < far]
-    if not len(stopped):
-        return None
-    counts = np.bincount(np.asarray(vehicle.parts)[stopped])
-    return str(vehicle.part_names[int(np.argmax(counts))])
-
-
-def _top(vehicle: Vehicle, space: PerceptionSpace, x: float, y: float) -> float:
-    """Return the height of the vehicle's top over the column of a space around x, y [m]."""
-    half = space.interval / 2.0
-    ends = (x - half, x + half), (y - half, y + half)
-    return float(vehicle.top(PerceptionSpace(*ends, space.z, space.interval))[0, 0])
 
 
 def _headline(place: AskedPlace) -> str:

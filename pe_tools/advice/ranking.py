@@ -130,7 +130,10 @@ class _RankingSentences:
 
     def _leaders(self, best: Sequence[int], has_rest: bool) -> str:
         row, leaders, words = self._row, [self._names[k] for k in best], self._words
-        figures = f"{joined([self._figure(row.values[k]) for k in best])}{words.unit}"
+        values = [value for k in best if (value := row.values[k]) is not None]
+        share, number = self._notation.share, self._notation.number
+        texts = [share(v) if self._in_percent else number(v, words.digits) for v in values]
+        figures = f"{joined(texts)}{words.unit}"
         better = f"{'lower' if row.lower_is_better else 'higher'} is better"
         if len(leaders) == 1:
             return f"{leaders[0]} is best by {words.noun}: {figures}, {better}"
@@ -140,11 +143,6 @@ class _RankingSentences:
             shown = f"{self._difference(error)}{words.unit_of_gap}"
             better = f"{better}; standard error of {subject} {shown}"
         return f"{joined(leaders)} are alike by {words.noun}{also}: {figures}, {better}"
-
-    def _figure(self, value: float | None) -> str:
-        assert value is not None  # a rig with a rank has a value
-        share, number = self._notation.share, self._notation.number
-        return share(value) if self._in_percent else number(value, self._words.digits)
 
     def _gap(self, one: int, other: int) -> str:
         a, b = self._row.values[one], self._row.values[other]

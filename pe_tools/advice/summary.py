@@ -137,8 +137,16 @@ def outlook_words(found: Outlook, of_voxels: bool = True) -> Iterator[str]:
 
 
 def _reach_words(reach: Reach) -> str:
-    subject = f"{_one(reach.class_name)} is found (AP {reach.ap:g} or more)"
-    ways = {side: _reach_to(reach, side) for side in SIDES}
+    noun = "object" if reach.class_name == ANY_CLASS else reach.class_name
+    article = "an" if noun[:1].lower() in "aeiou" else "a"
+    subject = f"{article} {noun} is found (AP {reach.ap:g} or more)"
+    ways = {}
+    for side in SIDES:
+        away = [abs(math.remainder(b - BEARINGS[side], math.tau)) for b in reach.bearings.tolist()]
+        k = away.index(min(away))
+        distance, limit = float(reach.distance[k]), float(reach.limit[k])
+        more = " and more" if distance >= limit else ""
+        ways[side] = f"{distance:.0f} m{more}" if distance > 0.0 else ""
     if not any(ways.values()):
         return f"{subject} nowhere ahead, behind, left or right"
     return f"{subject} up to " + ", ".join(
@@ -146,38 +154,16 @@ def _reach_words(reach: Reach) -> str:
     )
 
 
-def _reach_to(reach: Reach, side: str) -> str:
-    """Describe the reach along the bearing nearest to a side; empty if the reach is 0."""
-    differences = [
-        abs(math.remainder(b - BEARINGS[side], math.tau)) for b in reach.bearings.tolist()
-    ]
-    k = differences.index(min(differences))
-    distance, limit = float(reach.distance[k]), float(reach.limit[k])
-    if distance <= 0.0:
-        return ""
-    return f"{distance:.0f} m{' and more' if distance >= limit else ''}"
-
-
-def _one(class_name: str) -> str:
-    """Return a class name with its article: "a pedestrian", "an object"."""
-    noun = "object" if class_name == ANY_CLASS else class_name
-    return f"{'an' if noun[:1].lower() in 'aeiou' else 'a'} {noun}"
-
-
 def _blind_words(blind: BlindGround) -> str:
     subject = f"blind to what is {blind.height:g} m tall"
     if all(end == 0.0 for end in blind.zone.values()):
         return f"{subject} nowhere at the body"
-    ways = (f"{_blind_to(blind, side)} {words}" for side, words in SIDES.items())
+    ways = []
+    for side, words in SIDES.items():
+        end = blind.zone[side]
+        to = f"beyond {blind.within:g} m" if end is None else f"to {shown_end(end):.1f} m"
+        ways.append(f"{'none' if end == 0.0 else to} {words}")
     return f"{subject}, from the body: {', '.join(ways)}"
-
-
-def _blind_to(blind: BlindGround, side: str) -> str:
-    """Describe how far the blind ground that begins at the body extends to a side."""
-    end = blind.zone[side]
-    if end == 0.0:
-        return "none"
-    return f"beyond {blind.within:g} m" if end is None else f"to {shown_end(end):.1f} m"
 
 
 def _blind_dict(blind: BlindGround) -> dict[str, Any]:

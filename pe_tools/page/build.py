@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
@@ -53,7 +53,6 @@ def review(args: argparse.Namespace) -> app.Answer:
             return ReportContext(name, scored, command=args.command_line)
         return ReportContext(name, outcome, command=command_of_folder(folders[name]))
 
-    _check_count(len(files))
     studies_of = {
         name: pe.load_study(Path(path) / studies.STUDY if name in folders else path)
         for name, path in files.items()
@@ -69,26 +68,15 @@ def review_studies(
 ) -> app.Answer:
     """Score studies by name and write their page.
 
-    Parameters
-    ----------
-    by_name : mapping of str to Study
-    args : Namespace
-        Parsed options of `add_review_options` and of a score.
-    versions : mapping of str, optional
-        Versions of programs besides the engine's, by name.
+    `args` are parsed options of `add_review_options` and of a score; `versions` are those of
+    programs besides the engine's, by name.
     """
 
     def context_of(name: str, study: pe.Study) -> ReportContext:
         outcome = app.scored(study, args.workers)
         return ReportContext(name, outcome, command=args.command_line, versions=versions or {})
 
-    _check_count(len(by_name))
     return _write(by_name, context_of, args)
-
-
-def _check_count(study_count: int) -> None:
-    if study_count > MAX_STUDIES:
-        raise pe.InputError("command line", "STUDY", f"{MAX_STUDIES} at most", study_count)
 
 
 def _write(
@@ -97,6 +85,8 @@ def _write(
     args: argparse.Namespace,
 ) -> app.Answer:
     """Score the studies and write their page; what is refused is refused before the work."""
+    if len(by_name) > MAX_STUDIES:
+        raise pe.InputError("command line", "STUDY", f"{MAX_STUDIES} at most", len(by_name))
     requested = {name: app.with_options(study, args) for name, study in by_name.items()}
     app.refuse_different(requested)
     about = About(args.title, args.author, args.date, args.revision)
@@ -130,8 +120,19 @@ def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> 
     try:
         result = _result_of(folder)
         figure = jobs.searched_figure(start)
-        history = tuple(_history_row(start.rig, row, figure) for row in result["history"])
-        robustness = _robustness(result.get("robustness"))
+        history = []
+        for row in result["history"]:
+            tables = [row["placements"][sensor.name] for sensor in start.rig]
+            poses = [pe.Pose.from_degrees(table["position"], table["rotation"]) for table in tables]
+            value = figure.to_figure(float(row[figure.key]))
+            numbers = int(row["evaluation"]), int(row["round"])
+            history.append(jobs.HistoryRow(*numbers, value, start.rig.with_poses(poses)))
+        robustness = None
+        if (table := result.get("robustness")) is not None:
+            off = table["position"], math.radians(table["angle"])
+            errors = search.Tolerance(*off, draws=table["draws"])
+            stands = (search.RigRobustness(**table[which]) for which in ("before", "after"))
+            robustness = search.Robustness(errors, int(table["samples"]), *stands)
         sure = sensitivity_from_dict(result.get("sensitivity"), start.rig)
         starts = tuple(
             jobs.StartEnd(
@@ -162,7 +163,7 @@ def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> 
     scores = first.after, last.after
     return pe.Outcome(
         "optimize",
-        *(start, best, *scores, history, evaluations, stopped, 0.0, warnings),
+        *(start, best, *scores, tuple(history), evaluations, stopped, 0.0, warnings),
         inputs=checkpoint.inputs,
         evaluated=checkpoint.evaluated,
         robustness=robustness,
@@ -190,34 +191,23 @@ def _result_of(folder: Path) -> dict[str, Any]:
     return result
 
 
-def _history_row(
-    rig: pe.Rig, row: Mapping[str, Any], figure: jobs.SearchedFigure
-) -> jobs.HistoryRow:
-    tables = [row["placements"][sensor.name] for sensor in rig]
-    poses = [pe.Pose.from_degrees(table["position"], table["rotation"]) for table in tables]
-    numbers = int(row["evaluation"]), int(row["round"])
-    value = figure.to_figure(float(row[figure.key]))
-    return jobs.HistoryRow(*numbers, value, rig.with_poses(poses))
-
-
-def _robustness(table: Mapping[str, Any] | None) -> search.Robustness | None:
-    if table is None:
-        return None
-    errors = search.Tolerance(table["position"], math.radians(table["angle"]), draws=table["draws"])
-    stands = (search.RigRobustness(**table[which]) for which in ("before", "after"))
-    return search.Robustness(errors, int(table["samples"]), *stands)
-
-
 def front_page(data: Mapping[str, Any]) -> bytes:
     """Return the page of a front: of its objectives, or of price and entropy."""
     names = [*data.get("objectives", ("price", "entropy"))]
     designs = [d for d in data["designs"] if all(_figure(d, name) is not None for name in names)]
     front = [design for design in designs if design["on_front"]]
     others = [design for design in designs if not design["on_front"]]
-    columns = [*names, *_shared_figures(names, front)]
+    figures = [design.get("figures", {}) for design in front]
+    shared = set(figures[0]).intersection(*figures) if figures else set()
+    columns = [*names, *(name for name in OBJECTIVES if name in shared and name not in names)]
     values = {name: [_figure(design, name) or 0.0 for design in front] for name in columns}
     best = {name: (max if name in HIGHER_IS_BETTER else min)(values[name]) for name in columns}
-    labels = {name: _axis_label(name, str(data.get("currency") or "")) for name in columns}
+    labels = {}
+    for name in columns:
+        label, unit = OBJECTIVES[name]
+        unit = unit or (str(data.get("currency") or "") if name == "price" else "")
+        better = "higher is better" if name in HIGHER_IS_BETTER else "lower is better"
+        labels[name] = f"{label} [{unit}], {better}" if unit else f"{label}, {better}"
     with_requirements = any("requirements_met" in design for design in front)
     heads = ["design", *(labels[name].split(",")[0] for name in columns)]
     titles = [capitalized(OBJECTIVES[name][0]) for name in names]
@@ -246,20 +236,6 @@ def front_page(data: Mapping[str, Any]) -> bytes:
     return html_file(f"Pareto front: {', '.join(titles)}", body)
 
 
-def _shared_figures(names: Sequence[str], front: Sequence[DesignRow]) -> list[str]:
-    """Return the figures of all designs that are no objective of the front."""
-    figures = [design.get("figures", {}) for design in front]
-    shared = set(figures[0]).intersection(*figures) if figures else set()
-    return [name for name in OBJECTIVES if name in shared and name not in names]
-
-
 def _figure(design: DesignRow, name: str) -> float | None:
     value = design.get("figures", design).get(name)
     return None if value is None else float(value)
-
-
-def _axis_label(name: str, currency: str) -> str:
-    label, unit = OBJECTIVES[name]
-    unit = unit or (currency if name == "price" else "")
-    better = "higher is better" if name in HIGHER_IS_BETTER else "lower is better"
-    return f"{label} [{unit}], {better}" if unit else f"{label}, {better}"

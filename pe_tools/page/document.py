@@ -29,6 +29,9 @@ PAGE = studies.REVIEW_PAGE
 STYLES = Path(__file__).with_name("styles")
 STYLE_SHEETS = ("base", "parts", "print", "drawn", "scene3d")
 NO_INFO = About()
+FONT = "font: 8pt system-ui, sans-serif; color: #57606a"
+PAGES = f'@bottom-right {{ content: counter(page) " / " counter(pages); {FONT} }}'
+"""Of the margins of a printed page: letters, and page numbers."""
 STYLE_ATTRIBUTE = re.compile(r' style="([^"]*)"')
 
 
@@ -127,7 +130,7 @@ def html_file(
     """Return a whole page; `margin` is printed at the lower left of each sheet of paper."""
     body, rules = without_style_attributes(body)
     css = [(STYLES / f"{name}.css").read_text("utf-8") for name in STYLE_SHEETS]
-    css += [_print_margins(margin), rules]
+    css += [f"@page {{ @bottom-left {{ content: {css_string(margin)}; {FONT} }} {PAGES} }}", rules]
     sheets = [Markup(f"\n{sheet}\n") for sheet in css]
     # What would end the script element within a string of the script is escaped.
     safe = [s.replace("</script", "<\\/script").replace("<!--", "<\\!--") for s in scripts]
@@ -153,15 +156,6 @@ def html_file(
         scripts=programs,
     )
     return f"{page}\n".encode()
-
-
-def _print_margins(text: str) -> str:
-    """Return CSS for the margins of a printed page: a text, and page numbers."""
-    font = "font: 8pt system-ui, sans-serif; color: #57606a"
-    return (
-        f"@page {{ @bottom-left {{ content: {css_string(text)}; {font} }} "
-        f'@bottom-right {{ content: counter(page) " / " counter(pages); {font} }} }}'
-    )
 
 
 def without_style_attributes(html: str) -> tuple[Markup, str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
@@ -179,46 +179,21 @@ def sensitivity_from_dict(table: Mapping[str, Any] | None, rig: Rig) -> Sensitiv
     found = table["endings"]
     endings = None
     if found is not None:
-        runners_up = tuple(_runner_up(row, rig) for row in found["runners_up"])
-        endings = Endings(int(found["examined"]), int(found["same_basin"]), runners_up)
+        runners_up = []
+        for row in found["runners_up"]:
+            tables = [row["placements"][sensor.name] for sensor in rig]
+            poses = [Pose.from_degrees(each["position"], each["rotation"]) for each in tables]
+            behind = Difference(float(row["behind"]), float(row["stderr"]))
+            moved = tuple(map(str, row["moved"]))
+            runners_up.append(RunnerUp(rig.with_poses(poses), behind, moved))
+        endings = Endings(int(found["examined"]), int(found["same_basin"]), tuple(runners_up))
     counts = int(table["voxels"]), int(table["evaluations"])
     return Sensitivity(*counts, tuple(axes), tuple(constraints), endings, by_ap)
 
 
-def _runner_up(row: Mapping[str, Any], rig: Rig) -> RunnerUp:
-    tables = [row["placements"][sensor.name] for sensor in rig]
-    poses = [Pose.from_degrees(each["position"], each["rotation"]) for each in tables]
-    behind = Difference(float(row["behind"]), float(row["stderr"]))
-    return RunnerUp(rig.with_poses(poses), behind, tuple(map(str, row["moved"])))
-
-
-def nats(change: Difference) -> str:
-    """Return a difference with its error: "+0.0123 +- 0.0004"."""
-    return f"{change.mean + 0.0:+.4f} +- {max(change.stderr, 1e-4):.4f}"
-
-
 def sensitivity_lines(found: Sensitivity) -> Iterator[str]:
     """Yield the analysis in lines: steep and flat axes, constraints, other optima."""
-    yield from _axes_lines(found.axes, unit_of(found))
-    unit = unit_of(found)
-    for each in found.active[:NAMED]:
-        yield f"held by {each.name}: {each.step.text} would gain {gain_text(each.gain)} {unit}"
-    if len(found.active) > NAMED:
-        yield f"held by {len(found.active) - NAMED} more constraints"
-    if not found.active:
-        yield "no constraint holds it back: no step that is forbidden would gain"
-    if (more := found.unfinished) is not None:
-        gain = f"{gain_text(more.gain)} {unit}"
-        yield f"not quite settled: {more.step.text} is allowed and would gain {gain}"
-    yield from _ending_lines(found)
-
-
-def unit_of(found: Sensitivity) -> str:
-    """Return the unit of costs and gains: "nats", or "of AP" after a search by expected AP."""
-    return "of AP" if found.by_ap else "nats"
-
-
-def _axes_lines(axes: Sequence[AxisCost], unit: str) -> Iterator[str]:
+    unit, axes = "of AP" if found.by_ap else "nats", found.axes
     ordered = sorted(axes, key=lambda each: -each.worst.mean)
     steep = [each for each in ordered if each.worst.is_loss][:NAMED]
     if steep:
@@ -233,6 +208,16 @@ def _axes_lines(axes: Sequence[AxisCost], unit: str) -> Iterator[str]:
             for sensor, rows in groupby(flat, key=lambda each: each.sensor)
         )
         yield f"flat within {reach} cm or deg: {named}"
+    for each in found.active[:NAMED]:
+        yield f"held by {each.name}: {each.step.text} would gain {gain_text(each.gain)} {unit}"
+    if len(found.active) > NAMED:
+        yield f"held by {len(found.active) - NAMED} more constraints"
+    if not found.active:
+        yield "no constraint holds it back: no step that is forbidden would gain"
+    if (more := found.unfinished) is not None:
+        gain = f"{gain_text(more.gain)} {unit}"
+        yield f"not quite settled: {more.step.text} is allowed and would gain {gain}"
+    yield from _ending_lines(found, unit)
 
 
 def gain_text(gain: Difference) -> str:
@@ -240,16 +225,17 @@ def gain_text(gain: Difference) -> str:
     return f"{-gain.mean:.4f} +- {max(gain.stderr, 1e-4):.4f}"
 
 
-def _ending_lines(found: Sensitivity) -> Iterator[str]:
+def _ending_lines(found: Sensitivity, unit: str) -> Iterator[str]:
     if found.endings is None:
         yield "where the starts ended: not examined, the search was too short"
         return
     count = len(found.endings.runners_up)
-    same = found.endings.same_basin
     if not count:
+        same = found.endings.same_basin
         yield f"one optimum: {same} placements far from it lead to it without a hill between"
         return
-    what, unit = "scenes" if found.by_ap else "voxels", unit_of(found)
+    what = "scenes" if found.by_ap else "voxels"
     yield f"{count + 1} optima found; runners-up, {found.voxels:,} fresh {what}:"
     for number, each in enumerate(found.endings.runners_up, 1):
-        yield f"  {number}: {nats(each.behind)} {unit}, with {', '.join(each.moved)} elsewhere"
+        behind = f"{each.behind.mean + 0.0:+.4f} +- {max(each.behind.stderr, 1e-4):.4f}"
+        yield f"  {number}: {behind} {unit}, with {', '.join(each.moved)} elsewhere"

@@ -186,7 +186,12 @@ class Neighbourhood:
         held = self._held(step)
         if held.startswith("mount"):
             rules = [text for text in rules if not text.startswith(CLEARANCE)]
-        return (*filter(None, (held, *self._links(step.sensor))), *rules)
+        links = (  # that the sensor would leave if it moved alone
+            f"link of {name!r} to {leader!r}"
+            for name, leader in self._leaders.items()
+            if step.sensor in (name, leader)
+        )
+        return (*filter(None, (held, *links)), *rules)
 
     def _held(self, step: PoseStep) -> str:
         """Return what holds a sensor's axis itself; empty where it may take the step."""
@@ -207,12 +212,6 @@ class Neighbourhood:
         variable = self._parametrization.variables[number]
         within = variable.low - SLACK <= vector[number] <= variable.high + SLACK
         return "" if within else f"bounds of {axis} of {sensor!r}"
-
-    def _links(self, sensor: str) -> Iterator[str]:
-        """Yield the links that a sensor would leave if it moved alone."""
-        for name, leader in self._leaders.items():
-            if sensor in (name, leader):
-                yield f"link of {name!r} to {leader!r}"
 
     def _broken(self, rig: Rig) -> frozenset[str]:
         trial = Trial(rig, self._space)

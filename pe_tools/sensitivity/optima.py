@@ -153,7 +153,10 @@ class Basins:
                     found.append(lower)
                 else:
                     same += 1
-        runners_up = [self._runner_up(rig) for rig in found]
+        runners_up = []
+        for rig in found:
+            moved = tuple(s.name for s in rig if s.pose != self._samples.reference[s.name].pose)
+            runners_up.append(RunnerUp(rig, self._samples.change(rig), moved))
         runners_up.sort(key=lambda each: each.behind.mean)
         return Endings(len(apart), same, tuple(runners_up))
 
@@ -216,7 +219,3 @@ class Basins:
                     step = sign * FIRST_STEP[variable.unit]
                     vector[number] = variable.clipped(vector[number] + step)
                     yield coding.candidate(vector)
-
-    def _runner_up(self, rig: Rig) -> RunnerUp:
-        moved = tuple(s.name for s in rig if s.pose != self._samples.reference[s.name].pose)
-        return RunnerUp(rig, self._samples.change(rig), moved)

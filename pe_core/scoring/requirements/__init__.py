@@ -7,7 +7,7 @@ from .definition import body_met, sees
 from .margins import FARTHEST_M, margin_of
 from .mesh_shape import MeshShape
 from .planes import VehiclePlanes
-from .reasons import Reason
+from .reasons import Reason, part_in_the_way
 from .redundancy import Redundancy, RedundancyMap
 from .verdict import Samples, Verdict, VerdictSummary
 from .zones import PlacedZone, Zone, signed_distance
@@ -15,4 +15,4 @@ from .zones import PlacedZone, Zone, signed_distance
 __all__ = ["BODIES", "FARTHEST_M", "Body", "CheckStep", "Criterion", "MeshShape", "PlacedZone"]
 __all__ += ["Reason", "Redundancy", "RedundancyMap", "Requirement", "RequirementChecker", "Samples"]
 __all__ += ["Under", "VehiclePlanes", "Verdict", "VerdictSummary", "Zone", "body_met", "checkable"]
-__all__ += ["checked_requirements", "margin_of", "sees", "signed_distance"]
+__all__ += ["checked_requirements", "margin_of", "part_in_the_way", "sees", "signed_distance"]

@@ -59,11 +59,17 @@ def why_not(sensor: Sensor, body: Body, foot: tuple[float, ...], vehicle: Vehicl
         return Reason(kind.missed(sensor, centers[count // 2], CUBE_M))
     rays = [kind.rays_to(sensor, center, CUBE_M) for center in centers[in_view]]
     directions, lengths = (np.concatenate([ray[k] for ray in rays]) for k in (0, 1))
-    if vehicle is None or not len(directions):
-        return Reason(TOO_FEW)
+    part = None if vehicle is None else part_in_the_way(sensor, vehicle, directions, lengths)
+    return Reason(TOO_FEW) if part is None else Reason(OCCLUDED, part)
+
+
+def part_in_the_way(
+    sensor: Sensor, vehicle: Vehicle, directions: Floats, lengths: Floats
+) -> str | None:
+    """Return the part that most of a sensor's rays (N, 3) of `lengths` (N,) [m] end on, or None."""
+    if not len(directions):
+        return None
     glass = sensor.model.sees_through_glass
     hits = vehicle.first_hit(sensor.pose.position, directions, glass)
-    parts = vehicle.parts[hits.face[hits.distance < lengths]]
-    if not len(parts):
-        return Reason(TOO_FEW)
-    return Reason(OCCLUDED, str(vehicle.part_names[int(np.bincount(parts).argmax())]))
+    parts = np.asarray(vehicle.parts)[hits.face[hits.distance < lengths]]
+    return str(vehicle.part_names[int(np.bincount(parts).argmax())]) if len(parts) else None

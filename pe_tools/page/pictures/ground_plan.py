@@ -132,16 +132,13 @@ def outline_of(vehicle: pe.Vehicle) -> tuple[Floats, ...]:
     """Return the vehicle's outline from above as closed lines (N, 2) [m]."""
     (x0, y0, _), (x1, y1, _) = (corner.tolist() for corner in vehicle.bounds)
     step = max(OUTLINE_M, (x1 - x0) / MAX_SQUARES, (y1 - y0) / MAX_SQUARES)
-    across = [_padded_interval(low, high, step) for low, high in ((x0, x1), (y0, y1))]
-    space = pe.PerceptionSpace(x=across[0], y=across[1], z=(0.0, step), interval=step)
+    x, y = (  # a whole number of steps around each side
+        (low - step, low - step + (math.ceil((high - low) / step) + 2) * step)
+        for low, high in ((x0, x1), (y0, y1))
+    )
+    space = pe.PerceptionSpace(x, y, z=(0.0, step), interval=step)
     covered = np.isfinite(vehicle.top(space)).astype(float)
     return sight.outlines(covered, 0.5, space.centers(0), space.centers(1))
-
-
-def _padded_interval(low: float, high: float, step: float) -> tuple[float, float]:
-    """Return an interval around [low, high] whose length is a whole number of steps."""
-    count = math.ceil((high - low) / step) + 2
-    return low - step, low - step + count * step
 
 
 def _ticks(low: float, high: float, step: float) -> list[float]:

@@ -97,11 +97,8 @@ def reproduction(context: ReportContext) -> dict[str, Any]:
         "samples": samples,
         "study_digest": jobs.fingerprint(context.start),
         "vehicle_digest": studies.vehicle_digest(context.vehicle),
-        "files": [(*names, _study_lines(study)) for names, study in files.items()],
+        "files": [
+            (*names, bytes(jobs.study_writers(study, studies.STUDY)[studies.STUDY]).decode())
+            for names, study in files.items()
+        ],
     }
-
-
-def _study_lines(study: pe.Study) -> list[str]:
-    text = jobs.study_writers(study, studies.STUDY)[studies.STUDY]
-    assert isinstance(text, bytes)
-    return text.decode().split("\n")

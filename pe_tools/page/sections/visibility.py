@@ -7,7 +7,6 @@ from typing import Any
 
 from markupsafe import Markup
 
-import pe_core as pe
 from pe_core.base.errors import InputError
 from pe_core.scoring import requirements
 from pe_core.scoring.requirements import Redundancy
@@ -217,23 +216,17 @@ def dimensions(context: ReportContext) -> dict[str, Any] | None:
 
 def sensor_details(context: ReportContext) -> dict[str, Any]:
     """Return the parts that occlude each sensor, and what each one sees."""
+    occluding = {}
+    for name, score in context.after.per_sensor.items():
+        shares = {part: count / score.beams for part, count in score.occluded_by.items()}
+        parts = sorted((n for n in shares if shares[n] >= MIN_SHARE), key=lambda n: -shares[n])
+        named = ", ".join(f"{part} {percent(shares[part], 1)}" for part in parts[:MAX_PARTS])
+        occluding[name] = named or ("little" if score.occluded else "none")
     return {
-        "occluding_parts": {
-            name: _occluding_parts(score) for name, score in context.after.per_sensor.items()
-        },
+        "occluding_parts": occluding,
         "key": sensor_key(context.rig),
         "views": [
             sensor_view(sensor.kind).figure(sensor, context.display_vehicle[0])
             for sensor in context.rig
         ],
     }
-
-
-def _occluding_parts(score: pe.SensorScore) -> str:
-    """Return the parts of the vehicle that occlude most of a sensor."""
-    if not score.occluded:
-        return "none"
-    shares = {name: count / score.beams for name, count in score.occluded_by.items()}
-    names = sorted((name for name in shares if shares[name] >= MIN_SHARE), key=lambda n: -shares[n])
-    parts = (f"{name} {percent(shares[name], 1)}" for name in names[:MAX_PARTS])
-    return ", ".join(parts) or "little"

@@ -120,8 +120,8 @@ def ask_place(
     x, y, z = (float(v) for v in center[0])
     inside = False
     if vehicle is not None:  # below its top over the column of the voxel
-        column = ((w - side / 2.0, w + side / 2.0) for w in (x, y))
-        inside = z < float(vehicle.top(PerceptionSpace(*column, space.z, side))[0, 0])
+        over_x, over_y = ((w - side / 2.0, w + side / 2.0) for w in (x, y))
+        inside = z < float(vehicle.top(PerceptionSpace(over_x, over_y, space.z, side))[0, 0])
     densities = () if inside else densities or prior.densities(space)
     i, j, k = index
     density = sum((float(d.ground[i, j] * d.profile[k]) for d in densities), 0.0) * space.size

@@ -126,10 +126,24 @@ def odd_mounting(mounted: SensorAtBody) -> Iterator[Advice]:
     if mounted.inside:
         yield Advice(sensor.name, "inside")
         return
-    yield from _housing(mounted)
+    housing = catalog.housing(sensor.model.name)
+    parts = () if housing is None else cuts_body(sensor.pose, housing, mounted.body.itself)
+    if housing is not None and parts:
+        values = {"size": list(housing.size), "parts": list(parts)}
+        yield Advice(sensor.name, "housing", values, parts[0])
     if mounted.gap > (CLEAR_ABOVE_M if mounted.above else CLEAR_M):
         yield Advice(sensor.name, "clear", {"gap": mounted.gap})
-    yield from _in_the_way(mounted)
+    if not mounted.occluded_by:
+        return
+    part, part_share = next(iter(mounted.occluded_by.items()))
+    median = float(np.median(mounted.hits.distance)) if len(mounted.hits.face) else math.inf
+    share = sum(mounted.occluded_by.values())
+    if median <= LOOKS_AT_M:
+        yield Advice(sensor.name, "looks_at", {"distance": median}, part)
+    elif share >= MAX_OCCLUDED_SHARE:
+        unit = kind_of(sensor).unit
+        values = {"share": share, "part_share": part_share, "unit": unit}
+        yield Advice(sensor.name, "occluded", values, part)
 
 
 def odd_place(sensor: Sensor, space: PerceptionSpace) -> Iterator[Advice]:
@@ -183,30 +197,3 @@ def check_mirror_image(vehicle: Vehicle, sensor: Sensor, image: Pose) -> None:
     if image_gap > gap + IMAGE_GAP_M:
         expected = f"one as near to the vehicle as the sensor, {metres(gap)}"
         raise InputError("scene", field, expected, f"one {metres(image_gap)} off it")
-
-
-def _housing(mounted: SensorAtBody) -> Iterator[Advice]:
-    """Check for a housing of known size that intersects the body."""
-    sensor = mounted.sensor
-    housing = catalog.housing(sensor.model.name)
-    parts = () if housing is None else cuts_body(sensor.pose, housing, mounted.body.itself)
-    if housing is not None and parts:
-        values = {"size": list(housing.size), "parts": list(parts)}
-        yield Advice(sensor.name, "housing", values, parts[0])
-
-
-def _in_the_way(mounted: SensorAtBody) -> Iterator[Advice]:
-    """Check for a sensor that looks at the body from near, or whose view is mostly blocked."""
-    name, unit = mounted.sensor.name, kind_of(mounted.sensor).unit
-    if not mounted.occluded_by:
-        return
-    part, part_share = next(iter(mounted.occluded_by.items()))
-    median = float(np.median(mounted.hits.distance)) if len(mounted.hits.face) else math.inf
-    if median <= LOOKS_AT_M:
-        yield Advice(name, "looks_at", {"distance": median}, part)
-        return
-    share = sum(mounted.occluded_by.values())
-    if share < MAX_OCCLUDED_SHARE:
-        return
-    values = {"share": share, "part_share": part_share, "unit": unit}
-    yield Advice(name, "occluded", values, part)

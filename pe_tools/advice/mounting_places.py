@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -40,7 +40,11 @@ def sensor_labels(sensors: Iterable[Sensor], vehicle: Vehicle | None) -> dict[st
     sensors = list(sensors)
     if vehicle is None:
         return {sensor.name: sensor.name for sensor in sensors}
-    mirrors = _mirrors(vehicle)
+    mirrors = []  # lowest and highest corner of each part that is named so
+    for number, name in enumerate(vehicle.part_names):
+        points = vehicle.triangles[vehicle.parts == number].reshape(-1, 3)
+        if is_called(name, MIRRORS, SKIPPED) and len(points):
+            mirrors.append((points.min(axis=0), points.max(axis=0)))
     places, kinds = {}, {}
     for sensor in sensors:
         kind = plain_name(sensor.name)
@@ -63,7 +67,7 @@ def sensor_labels(sensors: Iterable[Sensor], vehicle: Vehicle | None) -> dict[st
 def place_name(
     position: tuple[float, float, float],
     bounds: tuple[Floats, Floats],
-    mirrors: tuple[tuple[Floats, Floats], ...] = (),
+    mirrors: Sequence[tuple[Floats, Floats]] = (),
 ) -> str:
     """Return where on a vehicle a position [m] is; `bounds` are the lowest and highest corner (3,)
     of the vehicle, `mirrors` those of its mirrors."""
@@ -80,14 +84,3 @@ def place_name(
     if end:
         return f"{end} {beside}".strip()
     return f"{side} side" if aside > SIDE_SHARE else "cabin"
-
-
-def _mirrors(vehicle: Vehicle) -> tuple[tuple[Floats, Floats], ...]:
-    """Return the lowest and highest corners of parts that are named mirrors."""
-    found = []
-    for number, name in enumerate(vehicle.part_names):
-        if is_called(name, MIRRORS, SKIPPED):
-            points = vehicle.triangles[vehicle.parts == number].reshape(-1, 3)
-            if len(points):
-                found.append((points.min(axis=0), points.max(axis=0)))
-    return tuple(found)

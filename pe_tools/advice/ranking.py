@@ -162,7 +162,25 @@ class _RankingSentences:
 def search_cost(before: Score, after: Score, blind_m2: tuple[float, float]) -> str:
     """Return one sentence on what a search made worse, or that nothing is; `blind_m2` is the blind
     ground of start and result [m2]."""
-    losses = list(_losses(before, after, blind_m2))
+    losses = []
+    if blind_m2[1] > blind_m2[0] + MIN_CHANGE[BLIND]:
+        losses.append(f"blind ground ({_areas(blind_m2)})")
+    if before.coverage - after.coverage >= MIN_CHANGE[COVERAGE]:
+        losses.append(f"coverage ({before.coverage:.1%} to {after.coverage:.1%})")
+    if before.objects is not None and after.objects is not None:
+        if before.objects.ap - after.objects.ap >= MIN_CHANGE[AP]:
+            losses.append(f"expected AP ({before.objects.ap:.3f} to {after.objects.ap:.3f})")
+    elif after.entropy - before.entropy >= MIN_CHANGE[ENTROPY]:
+        losses.append(f"entropy ({before.entropy:.3f} to {after.entropy:.3f} nats)")
+    rises = {
+        name: after.per_zone[name].entropy - zone.entropy
+        for name, zone in before.per_zone.items()
+        if name in after.per_zone
+    }
+    worse = [name for name, rise in rises.items() if rise >= MIN_CHANGE[ENTROPY]]
+    for name in sorted(worse, key=lambda name: -rises[name])[:ZONES_NAMED]:
+        first, last = before.per_zone[name].entropy, after.per_zone[name].entropy
+        losses.append(f"sight {WHERE.get(name, name)} ({first:.2f} to {last:.2f} nats)")
     if losses:
         return f"It cost {joined(losses)}"
     rest = "coverage and all zones are no worse"
@@ -172,28 +190,6 @@ def search_cost(before: Score, after: Score, blind_m2: tuple[float, float]) -> s
 def costs_nothing(cost: str) -> bool:
     """Whether a sentence of `search_cost` says that nothing got worse."""
     return cost.startswith(NOTHING)
-
-
-def _losses(before: Score, after: Score, blind_m2: tuple[float, float]) -> Iterator[str]:
-    if blind_m2[1] > blind_m2[0] + MIN_CHANGE[BLIND]:
-        yield f"blind ground ({_areas(blind_m2)})"
-    if before.coverage - after.coverage >= MIN_CHANGE[COVERAGE]:
-        yield f"coverage ({before.coverage:.1%} to {after.coverage:.1%})"
-    if before.objects is not None and after.objects is not None:
-        if before.objects.ap - after.objects.ap >= MIN_CHANGE[AP]:
-            yield f"expected AP ({before.objects.ap:.3f} to {after.objects.ap:.3f})"
-    elif after.entropy - before.entropy >= MIN_CHANGE[ENTROPY]:
-        yield f"entropy ({before.entropy:.3f} to {after.entropy:.3f} nats)"
-    worse = {
-        name: (zone.entropy, after.per_zone[name].entropy)
-        for name, zone in before.per_zone.items()
-        if name in after.per_zone
-        and after.per_zone[name].entropy - zone.entropy >= MIN_CHANGE[ENTROPY]
-    }
-    most = sorted(worse, key=lambda name: worse[name][0] - worse[name][1])[:ZONES_NAMED]
-    for name in most:
-        first, last = worse[name]
-        yield f"sight {WHERE.get(name, name)} ({first:.2f} to {last:.2f} nats)"
 
 
 def _areas(blind_m2: tuple[float, float]) -> str:

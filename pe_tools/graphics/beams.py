@@ -168,12 +168,9 @@ def channels_of(lidar: Lidar, choice: BeamChoice) -> Ints:
         return upwards[[min(number, count) - 1]]
     if choice.channels == ChannelMode.EVERY:
         return np.sort(upwards[::number][: choice.budget])
-    return _a_few(lidar.elevations, min(A_FEW, choice.budget))
-
-
-def _a_few(elevations: Floats, count: int) -> Ints:
-    """Channels nearest to evenly spread elevations, from the highest to the lowest."""
-    wanted = np.linspace(elevations.min(), elevations.max(), max(count, 1))
+    # Those nearest to evenly spread elevations, from the highest to the lowest.
+    few, elevations = max(min(A_FEW, choice.budget), 1), lidar.elevations
+    wanted = np.linspace(elevations.min(), elevations.max(), few)
     return np.unique(np.abs(elevations[:, None] - wanted).argmin(axis=0))
 
 

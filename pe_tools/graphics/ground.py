@@ -149,7 +149,11 @@ def difference_map(
     sign = -1.0 if quantity == ENTROPY else 1.0
     better = sign * (values_of(seen, quantity) - values_of(before, quantity))
     is_known = np.isfinite(better)
-    end = fitted_bound(better, quantity)
+    # The ends of the colours fit what is shown: most locations do not differ.
+    step, size = STEPS[quantity], np.abs(better[is_known])
+    size = size[size > step / 10.0]
+    high = float(np.percentile(size, 95.0)) if len(size) else 0.0
+    end = max(step, math.ceil(high / step - ROUNDING) * step)
     share = np.clip(np.where(is_known, better, 0.0) / end, -1.0, 1.0)
     rgb = on_scale(0.5 + 0.5 * share, DIFFERENCE_ON_DARK)
     strength = ALIKE_ALPHA + (1.0 - ALIKE_ALPHA) * np.abs(share)
@@ -185,17 +189,6 @@ def fitted_bounds(seen: GroundSight, quantity: str) -> tuple[float, float]:
     lower_limit, upper_limit = sorted((kind.low, kind.high))
     low, high = max(lower_limit, low), min(upper_limit, high)
     return (low, high) if kind.low < kind.high else (high, low)
-
-
-def fitted_bound(better: Floats, quantity: str) -> float:
-    """Return the difference at the ends of the colours that fits what is shown, rounded up. Most
-    locations do not differ: the percentile is that of the others."""
-    step = STEPS[quantity]
-    size = np.abs(better[np.isfinite(better)])
-    size = size[size > step / 10.0]
-    if not len(size):
-        return step
-    return max(step, math.ceil(float(np.percentile(size, 95.0)) / step - ROUNDING) * step)
 
 
 def _shape(
@@ -246,14 +239,10 @@ def painted_samples(verdict: Verdict) -> tuple[Floats, Floats, float]:
     if samples.zone.kind in ("path", "spots"):
         size = max(step, SPOT_M)
     else:
-        size = _spacing(points[inside], step)
+        # A preview has samples farther apart than the zone's step.
+        gaps = np.diff(np.unique(points[inside, 0])) if inside.any() else np.zeros(0)
+        gaps = gaps[gaps > step / 2.0]
+        size = float(gaps.min()) if len(gaps) else step
         if samples.zone.zone.x is None:  # corners of its outline lie between the samples
             size = max(step, size)
     return points[inside & ok], points[inside & ~ok], size
-
-
-def _spacing(points: Floats, step: float) -> float:
-    """Return the distance of samples along x: a preview has larger ones than the zone's step."""
-    gaps = np.diff(np.unique(points[:, 0])) if len(points) else np.zeros(0)
-    gaps = gaps[gaps > step / 2.0]
-    return float(gaps.min()) if len(gaps) else step

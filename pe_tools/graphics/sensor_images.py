@@ -50,19 +50,14 @@ def range_colors(picture: RangePicture, far_m: float) -> NDArray[np.float32]:
     """(C, A, 3) sRGB of a LiDAR's beams; the scale is logarithmic, up to `far_m`."""
     heard = np.isfinite(picture.distance)
     distance = np.where(heard, np.maximum(picture.distance, NEAREST_M), far_m)
-    colors = on_scale(range_share(distance, far_m), RANGES)
+    far = max(far_m, 2.0 * NEAREST_M)
+    share = np.log(np.maximum(distance, NEAREST_M) / NEAREST_M) / math.log(far / NEAREST_M)
+    colors = on_scale(share, RANGES)
     colors[~heard] = NO_ECHO
     colors[picture.occluded & ~heard] = BODY_SILENT
     own = picture.occluded & heard
     colors[own] = on_scale(distance[own] / BODY_FAR_M, (BODY_NEAR, BODY_FAR))
     return colors
-
-
-def range_share(distance: NDArray[np.float64], far_m: float) -> NDArray[np.float64]:
-    """Return the position of distances [m] on the logarithmic scale: 0 near, 1 at `far_m`."""
-    far = max(far_m, 2.0 * NEAREST_M)
-    share = np.log(np.maximum(distance, NEAREST_M) / NEAREST_M) / math.log(far / NEAREST_M)
-    return np.asarray(share)
 
 
 def even_angles(angles: NDArray[np.float64], pixels_per_deg: float) -> NDArray[np.int64]:

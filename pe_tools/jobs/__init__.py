@@ -47,6 +47,7 @@ from .stopping import stop_text as stop_text
 from .stopping import sureness_lines as sureness_lines
 from .study_export import export_study as export_study
 from .study_export import fingerprint as fingerprint
+from .study_export import study_text as study_text
 from .study_export import study_writers as study_writers
 from .trade_off import Design as Design
 from .trade_off import TradeOff as TradeOff

@@ -37,16 +37,15 @@ class CheckJob(Job):
     def __iter__(self) -> Iterator[Progress]:
         yield self._progress
         steps = self._steps()
-        while step := (yield from self._awaited(begun(lambda: next(steps, None)), self._now)):
+        while step := (
+            yield from self._awaited(begun(lambda: next(steps, None)), lambda: self._progress)
+        ):
             self._progress = Progress("checking", step.fraction)
             if step.verdict is not None:
                 self.verdicts.append(step.verdict)
             yield self._progress
         self.complete = not self.stopped
         yield Progress("done", 1.0)
-
-    def _now(self) -> Progress:
-        return self._progress
 
     def _steps(self) -> Iterator[CheckStep]:
         """Yield the steps of the check; the first one takes as long as all zones to be placed."""

@@ -25,7 +25,7 @@ from pe_core.version import __version__
 
 from .folder import FileSet, prepare_folder
 from .score_and_optimize import OptimizeJob
-from .study_export import fingerprint, inputs_of, study_writers
+from .study_export import fingerprint, inputs_of, study_text, study_writers
 
 PROGRAM = "perception-entropy"
 FRONT_SEARCH = "front_search.json"
@@ -42,14 +42,8 @@ SAVE_EVERY_S = 10.0
 
 def _head(kind: str, study: Study) -> dict[str, Any]:
     """Return what the state files of all kinds begin with: program, version, and the study."""
-    written = study_writers(study, STUDY)[STUDY]
-    assert isinstance(written, bytes)
-    return {
-        PROGRAM: kind,
-        "version": __version__,
-        "study_sha256": fingerprint(study),
-        "study": written.decode(),
-    }
+    head = {PROGRAM: kind, "version": __version__, "study_sha256": fingerprint(study)}
+    return {**head, "study": study_text(study)}
 
 
 def _state_of(path: Path, kind: str, more: Mapping[str, type]) -> dict[str, Any]:

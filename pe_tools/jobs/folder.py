@@ -147,20 +147,17 @@ class FileSet:
         # A file with the same content is not replaced: a file of the user stays the user's.
         new = {n: made for n, made in self._made.items() if sha256_of(self._folder / n) != made[1]}
         check_files(self._folder, new, self._replaceable)
-        self._list(new)
-        put_in_place({temporary: self._folder / name for name, (temporary, _) in new.items()})
-        for name in set(self._unwanted) & set(our_files(self._folder)) - set(self._made):
-            _unlink(self._folder / name)
-
-    def _list(self, new: Collection[str]) -> None:
-        """List the new digests before renaming, so that both are known if the process is killed."""
+        # New digests are listed before renaming: both are known if the process is killed.
         listed = _listed(self._folder)
         for name in new:
             listed.setdefault(name, []).append(self._made[name][1])
         recent = {name: digests[-DIGESTS_KEPT:] for name, digests in sorted(listed.items())}
-        data = {PROGRAM: VERSION, "files": recent}
         if new:
+            data = {PROGRAM: VERSION, "files": recent}
             write_bytes(self._folder / LISTING, dump_json(data).encode())
+        put_in_place({temporary: self._folder / name for name, (temporary, _) in new.items()})
+        for name in set(self._unwanted) & set(our_files(self._folder)) - set(self._made):
+            _unlink(self._folder / name)
 
 
 @contextmanager

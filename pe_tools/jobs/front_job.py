@@ -180,7 +180,12 @@ class FrontJob(Job):
             screening = DesignSearch(self._designs)
             possible = screening.max_designs if screening.is_complete else None
             yield from self._screen_all(screening, possible)
-            wanted = self._promising()
+            # Those within a margin of the front are searched, the nearest first.
+            evaluated, margin = list(self._found), MARGIN_AP if is_by_ap(self.study) else MARGIN
+            figures = [(self._found[p].price, self._found[p].value) for p in evaluated]
+            above = dict(zip(evaluated, above_front(figures), strict=True))
+            near = [picks for picks in evaluated if above[picks] <= margin]
+            wanted = sorted(near, key=lambda p: (above[p], self._found[p].price, p))
         for number, picks in enumerate(wanted):
             if self.stopped:
                 break
@@ -197,14 +202,6 @@ class FrontJob(Job):
                 yield from self._screen(picks, Progress("looking at designs", done))
                 self._complete = len(self._found) + len(self._errors) == possible
             screening.tell({picks: design.value for picks, design in self._found.items()})
-
-    def _promising(self) -> list[Picks]:
-        """Return the designs within a margin of the front, those nearest to it first."""
-        evaluated, margin = list(self._found), MARGIN_AP if is_by_ap(self.study) else MARGIN
-        figures = [(self._found[picks].price, self._found[picks].value) for picks in evaluated]
-        above = dict(zip(evaluated, above_front(figures), strict=True))
-        near = [picks for picks in evaluated if above[picks] <= margin]
-        return sorted(near, key=lambda picks: (above[picks], self._found[picks].price, picks))
 
     def _screen(self, picks: Picks, progress: Progress) -> Iterator[Progress]:
         """Search a design with few candidates, and store the result."""
@@ -303,7 +300,12 @@ class FrontJob(Job):
             return
         models = (sensor.model for each in self._searched for sensor in each.study.rig)
         found: list[tuple[_Searched, Rig]] = []
-        self._helpers = self._open.enter_context(candidate_workers(self, self._values(), models))
+        none, one = [0.0] * len(self.names), [1.0] * len(self.names)
+        values = (  # of each design: what its searches share goes to the workers beforehand
+            feasible_first(ScalarValue(each.figures, none, none, one), each.constraints)
+            for each in self._searched
+        )
+        self._helpers = self._open.enter_context(candidate_workers(self, values, models))
         for number, searched in enumerate(self._searched):
             if self.stopped:
                 break
@@ -334,13 +336,6 @@ class FrontJob(Job):
             searched = models, price, study, figures, constraints_of(study), free, starts
             self._searched.append(_Searched(*searched))
         return True
-
-    def _values(self) -> Iterator[Objective]:
-        """Yield a value of each design: what its searches share goes to the workers beforehand."""
-        count = len(self.names)
-        for each in self._searched:
-            value = ScalarValue(each.figures, [0.0] * count, [0.0] * count, [1.0] * count)
-            yield feasible_first(value, each.constraints)
 
     def _search_weights(
         self, number: int, searched: _Searched

@@ -43,7 +43,7 @@ from .checkpoint import SearchState
 from .folder import FileSet, Write, our_files, prepare_folder, sha256_of
 from .job import HistoryRow, Outcome
 from .searched_figure import IN_NATS, SearchedFigure, searched_figure
-from .study_export import inputs_of, study_writers
+from .study_export import inputs_of, study_text, study_writers
 
 EARLIER = ".earlier"
 FIGURES = ("entropy", "stderr", "coverage")
@@ -177,7 +177,7 @@ def write_outcome(
         text = history_csv(outcome.history, searched_figure(outcome.start))
         writers[HISTORY] = text.encode(errors="backslashreplace")
         for name, each in runners_up(outcome).items():
-            writers[name] = study_writers(each, STUDY)[STUDY]
+            writers[name] = study_text(each).encode()
         writers[SEARCH] = SearchState(outcome.start, outcome.inputs).to_bytes(outcome.evaluated)
     if outcome.conditions is not None:
         text = conditions_csv(outcome.conditions)

@@ -337,16 +337,15 @@ class OptimizeJob(Job):
             evaluations=round(search.evaluations * share[1]),
             executor=self._helpers,
         )
-        while step := (yield from self._awaited(begun(lambda: next(steps, None)), self._now)):
+        while step := (
+            yield from self._awaited(begun(lambda: next(steps, None)), lambda: self._progress)
+        ):
             fraction = share[0] + share[1] * step.fraction
             self._note(replace(step, evaluations=before + step.evaluations, fraction=fraction))
-            yield self._now()
+            yield self._progress
             if self.study.search.goals.stop.is_on and (reason := watch.reason(step)):
                 self.stop_reason = reason
                 break
-
-    def _now(self) -> Progress:
-        return self._progress
 
     def _note(self, step: Step) -> None:
         self.evaluations, self.round = step.evaluations, step.round

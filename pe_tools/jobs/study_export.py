@@ -72,6 +72,13 @@ def study_writers(study: Study, name: str) -> dict[str, Write | bytes]:
     return writers
 
 
+def study_text(study: Study) -> str:
+    """Return the text of a study's file as `study_writers` has it."""
+    written = study_writers(study, STUDY)[STUDY]
+    assert isinstance(written, bytes)
+    return written.decode()
+
+
 def _with_bodies(study: Study, path: Path, writers: dict[str, Write | bytes]) -> Study:
     """Return a study whose test bodies from meshes are in files beside it; add their writers."""
     requirements, stem = [], "" if path.name == STUDY else f"{path.stem}."
@@ -101,9 +108,7 @@ def fingerprint(study: Study) -> str:
 
 
 def _parts(study: Study) -> Iterator[bytes]:
-    written = study_writers(replace(study, passthrough=None), STUDY)[STUDY]
-    assert isinstance(written, bytes)
-    yield written
+    yield study_text(replace(study, passthrough=None)).encode()
     yield json.dumps([catalog.to_table(sensor.model) for sensor in study.rig]).encode()
     if (vehicle := study.vehicle) is not None:
         yield np.ascontiguousarray(vehicle.triangles).tobytes()

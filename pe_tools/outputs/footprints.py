@@ -134,6 +134,9 @@ def svg_text(plan: GroundPlan) -> str:
     top = -y1 - LINE * (len(plan.footprints) + 2.5)
     width, height = x1 - x0, -y0 - top
     paper = [f"{1000.0 * side / SCALE:.1f}mm" for side in (width, height)]
+    left, low = x0 + MARGIN_M / 2.0, -y0 - MARGIN_M / 2.0
+    bar = [f'<path class="scale" d="M{left:g},{low - 0.3:g}v0.3h{GRID_M:g}v-0.3"/>']
+    bar.append(_text(left, low - 0.5, f"{GRID_M:g} m, 1:{SCALE}"))
     sheet = f'x="{x0:.2f}" y="{top:.2f}" width="{width:.2f}" height="{height:.2f}"'
     parts = [
         '<?xml version="1.0" encoding="UTF-8"?>',
@@ -153,8 +156,8 @@ def svg_text(plan: GroundPlan) -> str:
         *_layer("blind-ground", "Blind ground", _path(plan.blind, "blind", color_text(BLIND))),
         *_layer("vehicle", "Vehicle", _path(plan.vehicle, "body", color_text(BODY))),
         *_layer("sensors", "Sensors", [line for f in plan.footprints for line in _mark(f)]),
-        *_layer("legend", "Legend", _legend(plan, x0 + MARGIN_M / 2.0, top)),
-        *_layer("scale", "Scale", _scale_bar(x0 + MARGIN_M / 2.0, -y0 - MARGIN_M / 2.0)),
+        *_layer("legend", "Legend", _legend(plan, left, top)),
+        *_layer("scale", "Scale", bar),
         "</svg>",
     ]
     return "\n".join(parts) + "\n"
@@ -206,7 +209,11 @@ def _grid(box: OnPaper) -> list[str]:
 
 
 def _legend(plan: GroundPlan, x: float, top: float) -> list[str]:
-    rows = [(color_text(f.color), _legend_text(f)) for f in plan.footprints]
+    rows = []
+    for f in plan.footprints:
+        reach = f"to {f.reach:g} m" if f.outlines else "sees no ground"
+        height = f"{f.pose.position[2]:.2f} m high"
+        rows.append((color_text(f.color), f"{f.name} ({f.model}), {height}, {reach}"))
     rows += [(color_text(BLIND), BLIND_TEXT)] if plan.blind else []
     parts = []
     for number, (color, text) in enumerate(rows, 1):
@@ -215,17 +222,6 @@ def _legend(plan: GroundPlan, x: float, top: float) -> list[str]:
         parts.append(f'<rect {mark} fill="{color}" fill-opacity="0.7"/>')
         parts.append(_text(x + 2.0 * TEXT, y - 0.1, text))
     return parts
-
-
-def _legend_text(footprint: GroundFootprint) -> str:
-    reach_text = f"to {footprint.reach:g} m" if footprint.outlines else "sees no ground"
-    height = f"{footprint.pose.position[2]:.2f} m high"
-    return f"{footprint.name} ({footprint.model}), {height}, {reach_text}"
-
-
-def _scale_bar(x: float, y: float) -> list[str]:
-    bar = f"M{x:g},{y - 0.3:g}v0.3h{GRID_M:g}v-0.3"
-    return [f'<path class="scale" d="{bar}"/>', _text(x, y - 0.5, f"{GRID_M:g} m, 1:{SCALE}")]
 
 
 def _text(x: float, y: float, text: str) -> str:

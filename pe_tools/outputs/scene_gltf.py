@@ -8,7 +8,6 @@ and looks along -z.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -151,14 +150,10 @@ def write_solids(request: OutputRequest) -> tuple[Written, list[str]]:
     else:
         shown.append((blind, BLIND, BLIND_ALPHA))
     files |= {f"{solid.name}.stl": stl_bytes(solid) for solid, _, _ in shown}
-    return {SOLIDS_FILE: _together(request, shown), **files}, lines
-
-
-def _together(request: OutputRequest, solids: Iterable[Coloured]) -> bytes:
     scene = GlbScene()
-    nodes = add_vehicle(scene, request.study.vehicle, request.study.reference)
-    for solid, color, alpha in solids:
+    nodes = add_vehicle(scene, vehicle, request.study.reference)
+    for solid, color, alpha in shown:
         material = scene.add_material(solid.name, color, alpha)
         mesh = scene.add_mesh(solid.name, solid.points, solid.faces, material)
         nodes.append(scene.add_node(solid.name, mesh=mesh, extras={"volume_m3": solid.volume}))
-    return scene.encoded(scene.add_node(ROOT, nodes))
+    return {SOLIDS_FILE: scene.encoded(scene.add_node(ROOT, nodes)), **files}, lines

@@ -156,27 +156,19 @@ def loft(rings: Sequence[Floats]) -> Floats:
 
 def rounded_box(half: Floats, bevel: float = 0.12) -> Floats:
     """(F, 3, 3) triangles of a box of half sizes (3,) with bevelled edges."""
-    x, y, z = half.tolist()
-    cut = bevel * min(x, y, z)
-    return capped(
-        [
-            _outline(x - c, y - c, cut, h)
-            for c, h in ((cut, -z), (0.0, cut - z), (0.0, z - cut), (cut, z))
-        ]
-    )
+    (_, _, z), cut, rings = half.tolist(), bevel * float(half.min()), []
+    for inset, height in ((cut, -z), (0.0, cut - z), (0.0, z - cut), (cut, z)):
+        x, y = (half[:2] - inset).tolist()
+        a, b = x - cut, y - cut
+        flat = [(x, -b), (x, b), (a, y), (-a, y), (-x, b), (-x, -b), (-a, -y), (a, -y)]
+        rings.append(np.array([(*point, height) for point in flat]))
+    return capped(rings)
 
 
 def capped(rings: Sequence[Floats]) -> Floats:
     """(F, 3, 3) triangles of a loft with closed ends."""
     ends = [np.tile(ring.mean(axis=0), (len(ring), 1)) for ring in (rings[0], rings[-1])]
     return loft([ends[0], *rings, ends[1]])
-
-
-def _outline(x: float, y: float, cut: float, height: float) -> Floats:
-    """(8, 3) corners of a bevelled rectangle, counter-clockwise."""
-    a, b = x - cut, y - cut
-    flat = [(x, -b), (x, b), (a, y), (-a, y), (-x, b), (-x, -b), (-a, -y), (a, -y)]
-    return np.array([(*point, height) for point in flat])
 
 
 def _barycentric(corners: Floats, points: Floats) -> Floats:

@@ -44,9 +44,9 @@ def price_of(study: pe.Study, sensor: pe.Sensor) -> float | None:
 
 def bill_of_materials(contexts: tuple[ReportContext, ...]) -> dict[str, Any]:
     """Return the sensors of each study by model and unit price (None: not given), and the sums."""
-    by_model: list[dict[tuple[str, float | None], list[pe.Sensor]]] = []
+    by_model = []
     for context in contexts:
-        own = {}
+        own: dict[tuple[str, float | None], list[pe.Sensor]] = {}
         for sensor in context.rig:
             key = sensor.model.name, price_of(context.study, sensor)
             own.setdefault(key, []).append(sensor)

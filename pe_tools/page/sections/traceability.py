@@ -97,8 +97,5 @@ def reproduction(context: ReportContext) -> dict[str, Any]:
         "samples": samples,
         "study_digest": jobs.fingerprint(context.start),
         "vehicle_digest": studies.vehicle_digest(context.vehicle),
-        "files": [
-            (*names, bytes(jobs.study_writers(study, studies.STUDY)[studies.STUDY]).decode())
-            for names, study in files.items()
-        ],
+        "files": [(*names, jobs.study_text(study)) for names, study in files.items()],
     }

@@ -88,27 +88,19 @@ def _seated(before: Rig, rig: Rig, mounting: Mounting) -> list[Pose]:
     poses = {}
     for sensor in rig:
         mount = mounting.mount_of(sensor.name)
-        old_model = before[sensor.name].model
+        models = before[sensor.name].model, sensor.model
         poses[sensor.name] = sensor.pose
-        if isinstance(mount, SurfaceMount) and old_model is not sensor.model:
-            poses[sensor.name] = _with_base(sensor, mount, old_model)
+        if isinstance(mount, SurfaceMount) and models[0] is not models[1]:
+            old, new = (standoff_point(mount, catalog.housing(m.name)) for m in models)
+            if not np.array_equal(old, new):
+                shift = rotate(sensor.pose.ground_from_sensor, old - new).tolist()
+                moved = zip("xyz", sensor.pose.position, shift, strict=True)
+                values = pose_values(sensor.pose) | {axis: w + by for axis, w, by in moved}
+                poses[sensor.name] = pose_from_values(values)
     for first, second in mounting.pairs:
         if poses[first] is not rig[first].pose:
             poses[second] = mirrored(poses[first])
     return [poses[sensor.name] for sensor in rig]
-
-
-def _with_base(sensor: Sensor, mount: SurfaceMount, old: SensorModel) -> Pose:
-    """Return the pose of a sensor whose base replaces that of the old model."""
-    old_seat, new_seat = (
-        standoff_point(mount, catalog.housing(m.name)) for m in (old, sensor.model)
-    )
-    if np.array_equal(old_seat, new_seat):
-        return sensor.pose
-    shift = rotate(sensor.pose.ground_from_sensor, old_seat - new_seat).tolist()
-    position = zip("xyz", sensor.pose.position, shift, strict=True)
-    moved = {axis: where + by for axis, where, by in position}
-    return pose_from_values(pose_values(sensor.pose) | moved)
 
 
 @dataclass(frozen=True, slots=True)

@@ -77,7 +77,9 @@ def _table(mask: EgoMask) -> bytes:
     """A LiDAR's mask: elevations down, azimuths across [deg], 1 sees out, 0 is the own body."""
     assert mask.elevations is not None and mask.azimuths is not None
     up, around = (np.round(np.degrees(w), DECIMALS) + 0.0 for w in (mask.elevations, mask.azimuths))
-    head = ",".join(["elevation_deg\\azimuth_deg", *(f"{a:g}" for a in around.tolist())])
-    rows = mask.sees_out.astype(np.uint8).astype(str)
-    lines = (f"{e:g}," + ",".join(row) for e, row in zip(up.tolist(), rows, strict=True))
-    return "\n".join([head, *lines, ""]).encode()
+    rows: list[list[object]] = [
+        ["elevation_deg\\azimuth_deg", *(f"{a:g}" for a in around.tolist())]
+    ]
+    seen = mask.sees_out.astype(np.uint8).tolist()
+    rows += [[f"{e:g}", *row] for e, row in zip(up.tolist(), seen, strict=True)]
+    return csv_text(rows).encode()

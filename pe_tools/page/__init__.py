@@ -7,15 +7,11 @@ them together. Names are imported at first use: other verbs of `pe` start withou
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
+from collections.abc import Callable
 from importlib import import_module
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from pe_core import Outcome
-
-    from ..cli import Answer
     from .build import review_studies as review_studies
     from .document import PAGE as PAGE
     from .document import page_bytes as page_bytes
@@ -51,7 +47,7 @@ def add_verbs(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
     review.add_argument("studies", nargs="+", metavar="STUDY", help=about)
     add_review_options(review)
     app.add_score_options(review)
-    review.set_defaults(function=_review)
+    review.set_defaults(function=_later("review"))
     add_page()
 
 
@@ -74,25 +70,10 @@ def add_page() -> None:
     from .. import cli as app
 
     if not any(studies.REVIEW_PAGE in artifact.names for artifact in app.pages):
-        app.pages.append(app.More([studies.REVIEW_PAGE], _write_search_page))
-        app.plots.append(_write_front_page)
+        app.pages.append(app.More([studies.REVIEW_PAGE], _later("write_search_page")))
+        app.plots.append(_later("write_front_page"))
 
 
-def _write_front_page(data: Mapping[str, Any], folder: Path) -> None:
-    from ..jobs import FRONT_PAGE, FileSet
-    from .build import front_page
-
-    with FileSet(folder) as files:
-        files.add(FRONT_PAGE, front_page(data))
-
-
-def _review(args: argparse.Namespace) -> Answer:
-    from .build import review
-
-    return review(args)
-
-
-def _write_search_page(outcome: Outcome, data: dict[str, Any], folder: Path) -> None:
-    from .build import write_search_page
-
-    write_search_page(outcome, data, folder)
+def _later(name: str) -> Callable[..., Any]:
+    """Return a function of `build` that is imported when it is called."""
+    return lambda *given: getattr(import_module(".build", __name__), name)(*given)

@@ -191,6 +191,12 @@ def _result_of(folder: Path) -> dict[str, Any]:
     return result
 
 
+def write_front_page(data: Mapping[str, Any], folder: Path) -> None:
+    """Write the page of a front beside its results."""
+    with jobs.FileSet(folder) as files:
+        files.add(jobs.FRONT_PAGE, front_page(data))
+
+
 def front_page(data: Mapping[str, Any]) -> bytes:
     """Return the page of a front: of its objectives, or of price and entropy."""
     names = [*data.get("objectives", ("price", "entropy"))]

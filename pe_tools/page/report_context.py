@@ -72,19 +72,9 @@ class ReportContext:
         return self.study.rig
 
     @property
-    def before(self) -> pe.Score:
-        """Score of `start`."""
-        return self.outcome.before
-
-    @property
     def after(self) -> pe.Score:
         """Score of `study`."""
         return self.outcome.after
-
-    @property
-    def warnings(self) -> tuple[pe.Advice, ...]:
-        """Warnings about `study`."""
-        return self.outcome.warnings
 
     @property
     def vehicle(self) -> pe.Vehicle | None:

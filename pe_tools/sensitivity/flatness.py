@@ -163,7 +163,7 @@ class Neighbourhood:
         self._leaders = {
             each.name: each.leader for each in followers(rig, space.mounting, space.vehicle)
         }
-        self._variables = dict(self._positions())
+        self._variables = {pair: number for number, pair in enumerate(self._positions())}
         self._broken_here = self._broken(rig)
 
     def status(self, sensor: str, axis: str) -> str:
@@ -217,21 +217,18 @@ class Neighbourhood:
         trial = Trial(rig, self._space)
         return frozenset(r.text for r in self._parametrization.rules if r.broken(trial))
 
-    def _positions(self) -> Iterator[tuple[tuple[str, str], int]]:
-        """Yield sensor and axis of each design variable, with its position in the vector."""
-        names = (sensor.name for sensor in self.rig if sensor.name not in self._leaders)
-        variables = ((name, axis) for name in names for axis in self._axes_of(name))
-        yield from ((variable, number) for number, variable in enumerate(variables))
-
-    def _axes_of(self, name: str) -> tuple[str, ...]:
-        if name in self._space.fixed:
-            return ()
-        bounds, mount = self._space.bounds.get(name, {}), self._space.mounting.mount_of(name)
-        if mount is None:
-            return tuple(axis for axis in AXES if axis in bounds)
-        if isinstance(mount, SurfaceMount):
-            return (*POSITION_AXES, *(axis for axis in AXES[3:] if axis in bounds))
-        return ("slot",)
+    def _positions(self) -> Iterator[tuple[str, str]]:
+        """Yield sensor and axis of each design variable, in the order of the vector."""
+        for name in (sensor.name for sensor in self.rig if sensor.name not in self._leaders):
+            bounds, mount = self._space.bounds.get(name, {}), self._space.mounting.mount_of(name)
+            axes: tuple[str, ...] = ("slot",)
+            if name in self._space.fixed:
+                axes = ()
+            elif mount is None:
+                axes = tuple(axis for axis in AXES if axis in bounds)
+            elif isinstance(mount, SurfaceMount):
+                axes = (*POSITION_AXES, *(axis for axis in AXES[3:] if axis in bounds))
+            yield from ((name, axis) for axis in axes)
 
 
 def active_constraints(

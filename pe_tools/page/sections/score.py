@@ -58,7 +58,7 @@ def overview(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
 
 def hidden_sensor_lines(context: ReportContext) -> list[str]:
     """Return lines, as HTML, on the sensors that see nothing or are mostly hidden."""
-    sensors = advice.hidden_sensors(context.rig, context.after, context.warnings)
+    sensors = advice.hidden_sensors(context.rig, context.after, context.outcome.warnings)
     bold = macros().bold
     named = [replace(sensor, name=bold(sensor.name), why=escaped(sensor.why)) for sensor in sensors]
     return list(advice.hidden_words(named))
@@ -68,7 +68,7 @@ def warnings_and_text(context: ReportContext) -> dict[str, Any]:
     """Return the warnings about the study, and its score as text."""
     lines: list[tuple[str, list[str]]] = []
     for line in advice.words(
-        context.after, context.rig, context.vehicle, context.outlook, context.warnings
+        context.after, context.rig, context.vehicle, context.outlook, context.outcome.warnings
     ):
         if line.startswith(" ") and lines:
             lines[-1][1].append(line.strip())

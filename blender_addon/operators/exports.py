@@ -79,33 +79,31 @@ class ExportJob(pe.Job):
     ) -> None:
         super().__init__(study)
         self._stage, self._make, self._write, self._scored = stage, make, write, scored
-        self._begin = self._share = SCORED_SHARE if scored else 0.0
         self.written: WrittenFiles | None = None
 
     def __iter__(self) -> Iterator[pe.Progress]:
-        score = pe.ScoreJob(self.study)
+        score, begin = pe.ScoreJob(self.study), SCORED_SHARE if self._scored else 0.0
         for step in score if self._scored else ():
             if self.stopped:
                 score.drop()
             yield pe.Progress("scoring", SCORED_SHARE * step.fraction)
         if self.stopped:
             return
-        made = yield from self._beside(
-            lambda: self._make(score.outcome, self._note),
-            lambda: pe.Progress(self._stage, self._share),
-        )
+
+        def work(watch: Callable[[float], bool]) -> Any:
+            def note(share: float) -> None:
+                if not watch(begin + (1.0 - begin) * share):
+                    raise ExportStopped
+
+            return self._make(score.outcome, note)
+
+        made = yield from self._beside(work, pe.Progress(self._stage, begin))
         if made is not None and not self.stopped:
             self.written = self._write(made)
 
     def stop(self) -> None:
         """End at once, and write nothing."""
         self.drop()
-
-    def _note(self, share: float) -> None:
-        """Note the progress of the work on the thread; end the work where the job was stopped."""
-        if self.stopped:
-            raise ExportStopped
-        self._share = self._begin + (1.0 - self._begin) * share
 
 
 last: WrittenFiles | None = None

@@ -50,7 +50,7 @@ class EndsAfterTheWait(Future):
 
 def test_work_that_ends_just_after_a_wait_is_taken(monkeypatch):
     monkeypatch.setattr("pe_tools.jobs.job.begun", lambda work: EndsAfterTheWait())
-    steps = pe.ScoreJob(study())._beside(str, str)
+    steps = pe.ScoreJob(study())._beside(str, pe.Progress("waiting", 0.0))
     next(steps)
     with pytest.raises(StopIteration) as ended:
         next(steps)

@@ -18,6 +18,7 @@ from pe_core.base.errors import plural
 from pe_core.scoring.sight import shown_end
 
 from .. import advice, graphics
+from ..wording import margin_text, unseen_text, verdict_text
 
 TEMPLATES = Path(__file__).with_name("templates")
 ALLOWED_SPACES = "\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}"
@@ -53,6 +54,10 @@ def _environment() -> Environment:
         "css_string": css_string,
         "price": price_text,
         "shown_end": shown_end,
+        "tall": lambda height: f"{height:g} m tall" if height else "flat on the ground",
+        "margin": margin_text,
+        "unseen": unseen_text,
+        "verdict": verdict_text,
         "study_name": lambda context: macros().study_name(context),
         "entropy_share": entropy_share,
         "hexadecimal": graphics.color_text,

@@ -38,9 +38,6 @@ from .colors import sensor_colors_on_paper as sensor_colors_on_paper
 from .colors import sensor_palette as sensor_palette
 from .colors import srgb_of_linear as srgb_of_linear
 from .colors import with_alpha as with_alpha
-from .frustums import footprint_faces as footprint_faces
-from .frustums import footprint_lines as footprint_lines
-from .frustums import ring_lines as ring_lines
 from .ground import AS_SCORED as AS_SCORED
 from .ground import COVERAGE as COVERAGE
 from .ground import ENTROPY as ENTROPY
@@ -54,6 +51,9 @@ from .ground import ground_map as ground_map
 from .ground import painted_samples as painted_samples
 from .kinds import beam_budget as beam_budget
 from .kinds import drawing_of as drawing_of
+from .kinds import footprint_faces as footprint_faces
+from .kinds import footprint_lines as footprint_lines
+from .kinds import ring_lines as ring_lines
 from .png import as_bytes as as_bytes
 from .png import png_bytes as png_bytes
 from .primitives import ColorKey as ColorKey

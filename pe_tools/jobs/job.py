@@ -186,6 +186,10 @@ class Progress:
         return "" if self.entropy is None else self.figure.text(self.entropy)
 
 
+Steps = Generator[Progress, None, T | None]
+"""Yields progress while work runs; returns the result, None where the job ends before it."""
+
+
 class StudyEvaluators:
     """The evaluators of a study's rigs, each made once; jobs of other rigs may share them."""
 
@@ -255,9 +259,7 @@ class Job:
         """Time since the job was made [s]."""
         return time.monotonic() - self._started
 
-    def _score(
-        self, rig: Rig, waiting: Progress, *, to_the_end: bool = False
-    ) -> Generator[Progress, None, Score | None]:
+    def _score(self, rig: Rig, waiting: Progress, *, to_the_end: bool = False) -> Steps[Score]:
         """Score in a thread, yielding `waiting` until it is done. Returns None if the job is
         dropped meanwhile, or stopped without `to_the_end`. The thread then ends soon by itself;
         nothing waits for it."""
@@ -269,7 +271,7 @@ class Job:
 
     def _beside(
         self, work: Callable[[Watch], T], waiting: Progress, to_the_end: bool = False
-    ) -> Generator[Progress, None, T | None]:
+    ) -> Steps[T]:
         """Run `work` in a thread, yielding progress; return None if the job ends before it. The
         work tells its progress, and hears whether to go on. The fraction is never below that of
         `waiting`."""
@@ -298,7 +300,7 @@ class Job:
 
     def _awaited(
         self, future: Future[T], waiting: Callable[[], Progress], to_the_end: bool = False
-    ) -> Generator[Progress, None, T | None]:
+    ) -> Steps[T]:
         while self._goes_on(to_the_end):
             # Not result(timeout=...): work may end between its TimeoutError and a look at done().
             wait([future], timeout=WAIT_S)
@@ -310,9 +312,7 @@ class Job:
     def _goes_on(self, to_the_end: bool) -> bool:
         return not self.dropped and (to_the_end or not self.stopped)
 
-    def _warnings(
-        self, study: Study, score: Score, waiting: Progress
-    ) -> Generator[Progress, None, tuple[Advice, ...] | None]:
+    def _warnings(self, study: Study, score: Score, waiting: Progress) -> Steps[tuple[Advice, ...]]:
         """Collect the warnings about a study in a thread, yielding `waiting` until it is done."""
 
         def work(_: Watch) -> tuple[Advice, ...]:
@@ -323,7 +323,7 @@ class Job:
 
     def _verdicts(
         self, study: Study, waiting: Progress, to_the_end: bool = True
-    ) -> Generator[Progress, None, tuple[Verdict, ...] | None]:
+    ) -> Steps[tuple[Verdict, ...]]:
         """Hold a study to its requirements in a thread, yielding `waiting` until it is done."""
         if not study.requirements:
             return ()
@@ -344,7 +344,7 @@ class Job:
 
     def _conditions(
         self, study: Study, waiting: Progress, to_the_end: bool = True
-    ) -> Generator[Progress, None, ConditionTable | None]:
+    ) -> Steps[ConditionTable]:
         """Score a study under its conditions in a thread; None without, or where it is dropped."""
         if not study.conditions:
             return None

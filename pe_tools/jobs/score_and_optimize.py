@@ -7,7 +7,7 @@ from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigEvaluator
@@ -35,11 +35,10 @@ from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 from ..advice import Advice, condition_warnings, fragile, unmet
 from ..sensitivity import Archive, FreshSamples, analyse, fresh_objectives, is_analysed
 from .candidate_workers import ExecutorSource, candidate_workers
-from .job import HistoryRow, Job, Outcome, Progress, StartEnd, begun, best_so_far
+from .job import HistoryRow, Job, Outcome, Progress, StartEnd, Steps, begun, best_so_far
 from .searched_figure import IN_AP, searched_figure, searched_samples
 from .stopping import TARGET, StopWatch
 
-T = TypeVar("T")
 
 
 class _Scored(NamedTuple):
@@ -234,7 +233,7 @@ class OptimizeJob(Job):
 
     def _scored(
         self, rig: Rig, waiting: Progress, known: Score | None = None, to_the_end: bool = False
-    ) -> Generator[Progress, None, _Scored | None]:
+    ) -> Steps[_Scored]:
         """Score a placement; of a search by expected AP, on objects in traffic, too."""
         by_ap = is_by_ap(self.study)
         apart = by_ap and searched_study(self.study).targets != self.study.targets

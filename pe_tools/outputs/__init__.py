@@ -1,7 +1,6 @@
 """Export of the scene: solids, footprints, glTF, recordings and ego masks (no import)."""
 
 from ..graphics import color_text as color_text
-from .blind_volume import blind_volume as blind_volume
 from .footprints import GroundFootprint as GroundFootprint
 from .footprints import GroundPlan as GroundPlan
 from .footprints import ground_plan as ground_plan
@@ -16,4 +15,5 @@ from .request import BLIND as BLIND
 from .request import BODY as BODY
 from .request import OutputRequest as OutputRequest
 from .solid import Solid as Solid
+from .solid import blind_volume as blind_volume
 from .solid import mounted_view as mounted_view

@@ -22,9 +22,8 @@ from pe_core.sensors import kind_of
 
 from ..exchange import Written
 from ..graphics import Rgb, color_text, sensor_colors_on_paper
-from .blind_volume import level_outlines
 from .request import BLIND, BODY, OutputRequest, plain_names
-from .solid import free_solid, mounted_view
+from .solid import free_solid, level_outlines, mounted_view
 
 STEP = math.radians(0.5)
 REACH_M = 30.0

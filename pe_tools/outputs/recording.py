@@ -26,10 +26,9 @@ from ..exchange import (
     with_pictures,
 )
 from ..graphics import COVERAGE, ENTROPY, Rgb, drawing_of, ground_map, sensor_colors
-from .blind_volume import blind_volume
 from .glb import view_wires
 from .request import BLIND, BODY, GLASS, OutputRequest, plain_names
-from .solid import mounted_view
+from .solid import blind_volume, mounted_view
 
 FILE, APPLICATION = "scene.rrd", "perception_entropy"
 WORLD, VEHICLE, SENSORS, BEAMS, GROUND = "world", "vehicle", "sensors", "beams", "ground"

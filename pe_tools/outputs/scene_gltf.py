@@ -22,10 +22,9 @@ from ..exchange.lens_pictures import centred
 from ..exchange.portable import PortableSensor, with_pictures
 from ..exchange.portable_kinds import portable_sensors
 from ..graphics import Rgb, sensor_colors_on_paper
-from .blind_volume import blind_volume
 from .glb import LINES, GlbScene, add_vehicle, view_wires, y_up
 from .request import BLIND, HIDDEN, NO_RANGE_M, OutputRequest, plain_names
-from .solid import Solid, free_solid, hidden_solid, mounted_view, whole_solid
+from .solid import Solid, blind_volume, free_solid, hidden_solid, mounted_view, whole_solid
 
 FILE, TITLE = "scene.glb", "glTF"
 ROOT = "Grp_Root"

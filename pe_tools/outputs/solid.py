@@ -1,14 +1,34 @@
-"""A mounted sensor's field of view as a closed solid."""
+"""Closed solids: a mounted sensor's field of view, and the blind volume around a vehicle."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
 from pe_core.base.arrays import Flags, Floats, Ints
-from pe_core.scene import Sensor, Vehicle, rotate
-from pe_core.sensors import kind_of
+from pe_core.scene import PerceptionSpace, Rig, Sensor, Vehicle, rotate
+from pe_core.scoring.sight.grid_regions import chained
+from pe_core.sensors import MeasurementCache, Voxels, kind_of
+
+NEAREST_M = 1e-3
+"""No ray ends nearer to its sensor: solids stay solid."""
+SIDES = {
+    (0, 1): ((1, 0, 0), (1, 1, 0), (1, 1, 1), (1, 0, 1)),
+    (0, -1): ((0, 0, 0), (0, 0, 1), (0, 1, 1), (0, 1, 0)),
+    (1, 1): ((0, 1, 0), (0, 1, 1), (1, 1, 1), (1, 1, 0)),
+    (1, -1): ((0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1)),
+    (2, 1): ((0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)),
+    (2, -1): ((0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)),
+}
+"""Corners of a cube's sides by axis and direction, counter-clockwise as seen from outside."""
+WITHIN_M = 10.0
+HEIGHT_M = 2.5
+SIDE_M = 0.25
+ANYTHING = 1
+"""Saturation count: only whether a voxel is measured matters here."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,10 +105,6 @@ def _without_pinches(faces: Ints, taken: Flags) -> Flags:
         taken = taken | more
 
 
-NEAREST_M = 1e-3
-"""No ray ends nearer to its sensor: solids stay solid."""
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class MountedView:
     """A sensor's field of view on the vehicle, ground frame.
@@ -119,3 +135,101 @@ def mounted_view(
         hits = body.first_hit(position, directions, through)
         ends = np.clip(hits.distance, NEAREST_M, reach)
     return MountedView(np.asarray(sensor.pose.position), directions, patch.faces, reach, ends)
+
+
+def level_outlines(solid: Solid, height: float) -> tuple[Floats, ...]:
+    """Return the closed outlines (N, 2) of a solid's cross-section at a height [m]. The inside is
+    on the left. The last point repeats the first. A corner at exactly this height counts as
+    above."""
+    above = solid.points[solid.faces][..., 2] >= height
+    cut = above.any(axis=1) & ~above.all(axis=1)
+    faces, above = solid.faces[cut], above[cut]
+    # Counter-clockwise from outside: an outline comes in where an edge leads down through the
+    # plane, and goes on to the triangle beside where one leads up.
+    down, up = _leading(faces, above), _leading(faces, ~above)
+    # The points (E, 2) where edges (E, 2) cross a height [m].
+    start, end = solid.points[down[:, 0]], solid.points[down[:, 1]]
+    share = (height - start[:, 2]) / (end[:, 2] - start[:, 2])
+    points = start[:, :2] + share[:, None] * (end - start)[:, :2]
+    numbers, back = (edge.min(axis=1) * len(solid.points) + edge.max(axis=1) for edge in (down, up))
+    row = {number: k for k, number in enumerate(numbers.tolist())}
+    return tuple(points[[row[number] for number in loop]] for loop in chained(numbers, back))
+
+
+def _leading(faces: Ints, first: Ints) -> Ints:
+    """Return the edge (T, 2) of each triangle that runs from a flagged to an unflagged corner."""
+    corner = np.argmax(first & ~np.roll(first, -1, axis=1), axis=1)
+    row = np.arange(len(faces))
+    return np.stack([faces[row, corner], faces[row, (corner + 1) % 3]], axis=1)
+
+
+def voxel_solid(name: str, cubes: Flags, lowest: Floats, side: float) -> Solid | None:
+    """Return the closed surface of cubes (NX, NY, NZ); None if no cube is set. `lowest` (3,) is the
+    lowest corner of the grid [m], `side` the length of a cube [m]. No edge may have four faces;
+    `joined` makes sure of that."""
+    shape = np.array(cubes.shape) + 1
+    quads = [_quads(cubes, shape, *key) for key in SIDES]
+    corners = np.concatenate(quads)
+    if not len(corners):
+        return None
+    used, index = np.unique(corners, return_inverse=True)
+    a, b, c, d = index.reshape(-1, 4).T
+    points = lowest + np.stack(np.unravel_index(used, tuple(shape)), axis=1) * side
+    faces = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    return Solid(name, points, faces)
+
+
+def _quads(cubes: Flags, shape: Ints, axis: int, direction: int) -> Ints:
+    """Return the free faces (Q, 4) in one direction, as indices of lattice points."""
+    padded = np.pad(cubes, 1)
+    beside = np.roll(padded, -direction, axis)[1:-1, 1:-1, 1:-1]
+    cells = np.argwhere(cubes & ~beside)
+    corners = cells[:, None] + np.array(SIDES[axis, direction])
+    numbers = np.ravel_multi_index(tuple(np.moveaxis(corners, -1, 0)), tuple(shape))
+    return np.asarray(numbers, np.int64).reshape(-1, 4)
+
+
+def joined(cubes: Flags) -> Flags:
+    """Fill the lower neighbour cube wherever two cubes touch only along an edge."""
+    cubes = cubes.copy()
+    while True:
+        before = int(cubes.sum())
+        for axes in combinations(range(3), 2):
+            turned = np.moveaxis(cubes, axes, (0, 1))
+            a, b = turned[:-1, :-1], turned[1:, :-1]
+            c, d = turned[:-1, 1:], turned[1:, 1:]
+            b |= a & d & ~b & ~c
+            a |= b & c & ~a & ~d
+        if int(cubes.sum()) == before:
+            return cubes
+
+
+def blind_volume(name: str, rig: Rig, vehicle: Vehicle) -> Solid | None:
+    """Return the volume near a vehicle that no sensor sees; None if every voxel is visible."""
+    space = _round(vehicle)
+    index = np.argwhere(np.ones(space.shape, bool))
+    voxels = Voxels(space, index, space.center_of(index))
+    measured = MeasurementCache(voxels, vehicle, lambda _: ANYTHING)
+    measured.measure(rig, False)
+    visible = np.logical_or.reduce([m > 0 for m in measured.m.values()]).reshape(space.shape)
+    inside_vehicle = space.centers(2) < vehicle.top(space)[..., None]
+    blind = joined(_squares(~visible | inside_vehicle) & ~inside_vehicle)
+    return voxel_solid(name, blind, np.asarray(space.origin), SIDE_M)
+
+
+def _round(vehicle: Vehicle) -> PerceptionSpace:
+    """Return the perception space around a vehicle, aligned with multiples of the cube side."""
+    low, high = vehicle.bounds
+    first = [math.floor((float(w) - WITHIN_M) / SIDE_M) * SIDE_M for w in low[:2]]
+    last = [math.ceil((float(w) + WITHIN_M) / SIDE_M) * SIDE_M for w in high[:2]]
+    return PerceptionSpace((first[0], last[0]), (first[1], last[1]), (0.0, HEIGHT_M), SIDE_M)
+
+
+def _squares(flags: Flags) -> Flags:
+    """Keep only the cubes that belong to a horizontal 2 x 2 square of set cubes."""
+    squares = flags[:-1, :-1] & flags[1:, :-1] & flags[:-1, 1:] & flags[1:, 1:]
+    result = np.zeros_like(flags)
+    for i in (slice(None, -1), slice(1, None)):
+        for j in (slice(None, -1), slice(1, None)):
+            result[i, j] |= squares
+    return result

@@ -9,14 +9,18 @@ import pytest
 import pe_core as pe
 from pe_tools.cli.verbs import main
 from pe_tools.outputs import scene_files
-from pe_tools.outputs.blind_volume import (
+from pe_tools.outputs.solid import (
+    MountedView,
     _squares,
     blind_volume,
+    free_solid,
+    hidden_solid,
     joined,
     level_outlines,
+    mounted_view,
     voxel_solid,
+    whole_solid,
 )
-from pe_tools.outputs.solid import MountedView, free_solid, hidden_solid, mounted_view, whole_solid
 
 from .shapes import box, box_car, camera, lidar_on_roof, small_lidar
 from .surfaces import is_watertight, read_stl, volume

@@ -40,7 +40,6 @@ from .searched_figure import IN_AP, searched_figure, searched_samples
 from .stopping import TARGET, StopWatch
 
 
-
 class _Scored(NamedTuple):
     """A score, and that on objects in traffic where the search goes by expected AP."""
 

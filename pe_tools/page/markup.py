@@ -54,6 +54,8 @@ def _environment() -> Environment:
         "css_string": css_string,
         "price": price_text,
         "shown_end": shown_end,
+        "at_least": lambda count: f"{count} points or more",
+        "lone_reach": advice.lone_reach,
         "tall": lambda height: f"{height:g} m tall" if height else "flat on the ground",
         "margin": margin_text,
         "unseen": unseen_text,

@@ -16,7 +16,7 @@ from pe_core import sensors as kinds
 from pe_core.study.condition_table import ConditionTable
 
 from ... import advice
-from ..markup import capitalized, escaped, joined, macros, number
+from ..markup import capitalized, escaped, joined, macros
 from ..pictures.vehicle_picture import labelled_picture
 from ..report_context import ReportContext
 
@@ -90,19 +90,10 @@ def objects(context: ReportContext) -> dict[str, Any] | None:
     score = context.after.objects
     if score is None:
         return None
-    classes = score.per_class.values()
-    first = next(iter(classes), None)
     return {
         "score": score,
         "sample": advice.objects_looked_at(score),
-        "thresholds": [f"{n} points or more" for n in (first.points if first else ())],
-        "reach": [
-            [
-                capitalized(direction),
-                *(advice.lone_reach(each.reach[direction]) for each in classes),
-            ]
-            for direction in (first.reach if first else ())
-        ],
+        "first": next(iter(score.per_class.values()), None),
     }
 
 
@@ -160,9 +151,6 @@ def table_values(found: ConditionTable) -> dict[str, Any]:
         rgb = (str(round(p + (d - p) * share)) for p, d in zip(PALE, DARK, strict=True))
         return f"rgb({' '.join(rgb)})"
 
-    with_ap = all(row.ap_per_class for row in rows)
-    classes = list(dict.fromkeys(name for row in rows for name in row.per_class))
-    by_class = [(row.name, (row.ap_per_class or {}) if with_ap else row.per_class) for row in rows]
     return {
         "table_of": found,
         "names": [row.name for row in rows],
@@ -174,12 +162,6 @@ def table_values(found: ConditionTable) -> dict[str, Any]:
             if row.weight
         ),
         "color_of": color_of,
-        "per_class": {
-            "title": "Expected AP by class" if with_ap else "Entropy by class [nats]",
-            "classes": classes,
-            "rows": [
-                [name, *(number(own[n], 3) if n in own else "" for n in classes)]
-                for name, own in by_class
-            ],
-        },
+        "by_ap": all(row.ap_per_class for row in rows),
+        "classes": list(dict.fromkeys(name for row in rows for name in row.per_class)),
     }

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from typing import Any
 
 from markupsafe import Markup
@@ -12,13 +11,10 @@ from pe_core import scene
 
 from ... import advice, jobs
 from ... import sensitivity as sure
-from ..markup import capitalized, number, triple
+from ..markup import capitalized, number
 from ..pictures.charts import cost_bars, step_curve
 from ..report_context import ReportContext
 
-MIN_MOVE_M, MIN_TURN_DEG = 5e-6, 5e-5
-"""Smaller moves and turns are rounding errors."""
-ARROW = "\N{RIGHTWARDS ARROW}"
 STATUS = {
     "free": "free",
     "surface": "on its mount",
@@ -37,17 +33,20 @@ def search_history(context: ReportContext) -> dict[str, Any] | None:
     levels, what = jobs.searched_on(context.start)
     figure = jobs.searched_figure(context.start)
     curve, caption = _curve(context, figure)
+    moves = []  # how far each sensor was moved [m] and turned [deg]
+    for old, new in zip(context.start.rig, context.rig, strict=True):
+        first, last = (scene.rotation_matrix(*each.pose.rpy) for each in (old, new))
+        cosine = (float((first * last).sum()) - 1.0) / 2.0  # the sum is trace(first.T @ last)
+        turned = math.degrees(math.acos(min(max(cosine, -1.0), 1.0)))
+        moves.append((old, new, math.dist(old.pose.position, new.pose.position), turned))
     return {
         "levels": levels,
         "what": what,
         "reason": jobs.stop_text(outcome.stop_reason, context.start),
-        "starts": [
-            (end.name, figure.amount(number(figure.to_figure(end.entropy), 4)))
-            for end in outcome.starts
-        ],
+        "searched": figure,
         "curve": curve,
         "caption": caption,
-        "moves": list(_moves(context)),
+        "moves": moves,
         "robustness": robustness,
         "errors": capitalized(
             advice.off_by(robustness.errors.position, robustness.errors.angle) if robustness else ""
@@ -69,27 +68,6 @@ def _curve(context: ReportContext, figure: jobs.SearchedFigure) -> tuple[Markup 
     alt = f"Convergence curve. {caption}"
     evaluations = context.outcome.evaluations
     return step_curve(points, evaluations, "placements evaluated", label, alt), caption
-
-
-def _moves(context: ReportContext) -> Iterator[list[str]]:
-    """Yield how far each sensor was moved and turned."""
-    for old, new in zip(context.start.rig, context.rig, strict=True):
-        moved = math.dist(old.pose.position, new.pose.position)
-        # The angle of the rotation from one pose to the other [deg].
-        first, last = (scene.rotation_matrix(*pose.rpy) for pose in (old.pose, new.pose))
-        cosine = (float((first * last).sum()) - 1.0) / 2.0  # the sum is trace(first.T @ last)
-        turned = math.degrees(math.acos(min(max(cosine, -1.0), 1.0)))
-        angles = triple(new.pose.rotation_deg, 1)
-        if turned >= MIN_TURN_DEG:
-            angles = f"{triple(old.pose.rotation_deg, 1)} {ARROW} {angles}"
-        yield [
-            new.name,
-            f"{number(moved)} m" if moved >= MIN_MOVE_M else "no",
-            triple(old.pose.position),
-            triple(new.pose.position),
-            f"{number(turned, 1)}°" if turned >= MIN_TURN_DEG else "no",
-            angles,
-        ]
 
 
 def sensitivity(context: ReportContext) -> dict[str, Any] | None:

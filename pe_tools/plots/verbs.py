@@ -6,8 +6,7 @@ What a verb does is imported when it is called, so that the other verbs start wi
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Mapping
-from importlib import import_module
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +23,7 @@ def add_verbs(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
     front.add_argument(
         "folder", metavar="DIR", help="folder that `pe optimize` wrote for a study with choices"
     )
-    front.set_defaults(function=_later("plotting", "front"))
+    front.set_defaults(function=_front)
     if _draw_front not in plots:
         plots.append(_draw_front)
 
@@ -52,12 +51,19 @@ def _add_fit(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
     )
     fit.add_argument("-o", "--output", metavar="DIR", help="folder for ap.toml and ap.png")
     fit.add_argument("--json", action="store_true", help="print JSON on stdout")
-    fit.set_defaults(function=_later("fitting", "fit"))
+    fit.set_defaults(function=_fit)
 
 
-def _later(module: str, name: str) -> Callable[[argparse.Namespace], Answer]:
-    """Return what a verb does, which is imported when it is called."""
-    return lambda args: getattr(import_module(f".{module}", __package__), name)(args)  # type: ignore[no-any-return]
+def _fit(args: argparse.Namespace) -> Answer:
+    from .fitting import fit
+
+    return fit(args)
+
+
+def _front(args: argparse.Namespace) -> Answer:
+    from .plotting import front
+
+    return front(args)
 
 
 def _draw_front(data: Mapping[str, Any], folder: Path) -> None:

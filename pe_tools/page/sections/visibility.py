@@ -41,7 +41,7 @@ def visibility(context: ReportContext) -> dict[str, Any]:
         alt = f"Map from above of {layer.title.lower()}, {context.name}{when}"
         return layer, ground_map(ground, layer, vehicle, alt)
 
-    maps = {"maps": [drawn(context.ground, layer) for layer in LAYERS]}
+    maps: dict[str, Any] = {"maps": [drawn(context.ground, layer) for layer in LAYERS]}
     if context.was_searched:
         before = sight.ground(context.start.rig, step=MAP_STEP_M)
         alt = f"Map of the change of entropy, {context.name}"

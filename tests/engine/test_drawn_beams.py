@@ -76,10 +76,6 @@ def test_one_channel_shows_its_own_share(vehicle):
     assert elevations_of(shown(sensor, vehicle, 200, ChannelMode.ONE, 99)) == {10.0}
 
 
-def test_every_nth_channel_is_counted_from_below():
-    assert elevations_of(shown(mounted(), None, 60, ChannelMode.EVERY, 2)) == {-40.0, -10.0, 10.0}
-
-
 def test_few_channels_are_spread_over_the_angles_not_over_their_numbers():
     """A Pandar64 has most of its channels near the horizon; the few reach from top to bottom."""
     pandar = catalog.load("Pandar64")

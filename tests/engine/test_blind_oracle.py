@@ -24,7 +24,7 @@ ASSETS = Path(__file__).parents[2] / "blend_assets"
 SPACE = pe.PerceptionSpace((-12, 12), (-10, 10), (0, 3), 0.1)
 WITHIN_M = 4.0 if THOROUGH else 2.5
 RADIUS = 0.15
-PLACES = tries(50, 200)
+PLACES = tries(80, 200)
 SURE_RADIUS = 0.07
 """What is blind lies within `FAR_M` of a hole in which nothing is seen, at least so large."""
 FAR_M = 0.15 + SURE_RADIUS * math.sqrt(2.0)

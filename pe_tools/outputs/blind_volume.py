@@ -9,7 +9,7 @@ import numpy as np
 
 from pe_core.base.arrays import Flags, Floats, Ints
 from pe_core.scene import PerceptionSpace, Rig, Vehicle
-from pe_core.scoring.sight.grid_regions import chained
+from pe_core.scoring.sight.ground_cells import chained
 from pe_core.sensors import MeasurementCache, Voxels
 
 from .solid import Solid

@@ -14,7 +14,7 @@ import numpy as np
 from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
 from pe_core.scene import PerceptionSpace, Pose, Sensor, Vehicle
-from pe_core.scoring.sight.grid_regions import outlines
+from pe_core.scoring.sight.ground_cells import outlines
 from pe_core.sensors import kind_of
 
 from ..graphics import Rgb, sensor_colors_on_paper

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from pe_core.scene.rig import Rig
-from pe_core.scoring.protocol import Evaluation
+from pe_core.scoring.score import Evaluation
 from pe_core.study.requirement_search import is_infeasible
 
 APART_M, APART_RAD = 0.15, math.radians(6.0)

@@ -13,8 +13,8 @@ from typing import Any
 
 from pe_core.scene.rig import Rig
 from pe_core.search import AXES, POSITION_AXES, Parametrization, SearchSpace, SurfaceMount
-from pe_core.search.linkage import followers
-from pe_core.search.rules import Trial
+from pe_core.search.parametrization import followers
+from pe_core.search.search_space import Trial
 
 from .flatness import NEAR, UNIT_M, AxisCost, PoseStep, lone_move, unit_of_axis
 from .fresh_samples import Difference

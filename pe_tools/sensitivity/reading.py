@@ -7,7 +7,7 @@ from typing import Any
 
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig
-from pe_core.study.objective_setting import EXPECTED_AP
+from pe_core.study.study import EXPECTED_AP
 
 from .analysis import Sensitivity
 from .constraints import ActiveConstraint

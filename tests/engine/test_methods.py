@@ -13,7 +13,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.search import METHODS, PARTS, Evaluation, Parametrization, pose_values
-from pe_core.search.design_variable import RADIAN
+from pe_core.search.domains import RADIAN
 from pe_core.search.methods import Given, Question, block_descent
 from pe_core.search.methods.block_descent import Descent, corner_start, random_start
 from pe_core.search.methods.cma_es import Evolution, SymmetricCma

@@ -22,12 +22,12 @@ from pe_core.scoring.requirements import (
 )
 from pe_core.scoring.sight import BLIND_TO_M
 from pe_core.search import Goals
-from pe_core.study.requirement_help import suggestions
 from pe_core.study.requirement_search import (
     INFEASIBLE,
     conflicts,
     constraints_of,
     feasible_first,
+    suggestions,
 )
 from pe_tools import advice
 from pe_tools.jobs import result_dict

@@ -13,7 +13,7 @@ from itertools import product
 
 import numpy as np
 
-from ..design_variable import METRE, RADIAN, SHARE
+from ..domains import METRE, RADIAN, SHARE
 from ..parametrization import Candidate
 from .cma_es import STEP, Evolution
 from .method import (

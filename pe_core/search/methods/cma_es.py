@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base.arrays import Floats
 from .._vendor.cmaes._cma import CMA
-from ..design_variable import METRE, RADIAN, SHARE
+from ..domains import METRE, RADIAN, SHARE
 from ..parametrization import Candidate
 from .method import Evaluated, Given, MethodPart, Phase, QuestionStream, sampled_candidate
 

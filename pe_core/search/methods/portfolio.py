@@ -17,7 +17,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..design_variable import SHARE, DesignVariable
+from ..domains import SHARE, DesignVariable
 from ..parametrization import Candidate
 from .block_descent import (
     FINEST,

@@ -200,17 +200,6 @@ def _value(score, figure):
     return getattr(parts[group][name], measure)
 
 
-def test_objects_are_paired_by_scene():
-    rule, prior = pe.TargetRule("objects", scenes=24), pe.Prior.road()
-    evaluator = pe.ObjectEvaluator(shapes.small_space(), prior, targets=rule)
-    a, b = (evaluator.score(rig) for rig in PAIR)
-    for figure in (ENTROPY, COVERAGE, ("rig", "", "ap"), ("class", "car", "ap")):
-        assert 0.0 < difference_errors([a, b], figure)[0][1] < 1.0
-    own = a.scatter.error(ENTROPY)
-    assert a.scatter.batches == 24 and own == pytest.approx(a.stderr, rel=0.35)
-    assert difference_errors([a, b], ENTROPY)[0][1] < 0.9 * math.hypot(own, own)
-
-
 def test_a_gain_counts_when_it_is_clear_and_a_loss_always():
     """The error of a difference is 0.02: 2.13 times that is clear."""
     scores = [score(h, own=NOISE[k]) for k, h in enumerate((2.0, 1.98, 2.02, 1.9, 2.001))]

@@ -35,12 +35,6 @@ def test_a_file_may_be_as_large_as_its_limit_and_no_larger(tmp_path):
         read_bytes(path, 4)
 
 
-def test_links_to_files_are_followed(tmp_path):
-    (tmp_path / "a").write_bytes(b"data")
-    (tmp_path / "b").symlink_to("a")
-    assert read_bytes(tmp_path / "b") == b"data"
-
-
 @pytest.mark.parametrize(("grown", "whole"), [(3, True), (4, True), (5, False), (9_000_000, False)])
 def test_a_file_that_grows_while_it_is_read_is_bounded_too(tmp_path, monkeypatch, grown, whole):
     """The size is asked before the first byte is read; then more comes."""

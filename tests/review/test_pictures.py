@@ -17,7 +17,7 @@ from pe_tools.page.pictures.vehicle_picture import (
     spread_apart,
     vehicle_picture,
 )
-from tests.engine.test_png import decoded
+from tests.engine.test_masks import decoded
 from tests.review.conftest import box
 
 SIZE = (96, 54)

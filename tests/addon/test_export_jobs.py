@@ -69,14 +69,6 @@ def test_stopped_at_any_stage_it_leaves_nothing(job_of, tmp_path, name, stage):
     assert job.written is None and not list(tmp_path.iterdir())
 
 
-def test_a_page_that_is_stopped_is_not_worked_on(job_of, tmp_path):
-    job = job_of(tmp_path / "page.html")
-    job._note(0.5)
-    job.stop()
-    with pytest.raises(exports.ExportStopped):
-        job._note(0.6)
-
-
 def test_what_was_written_is_kept_for_the_panel(small, tmp_path):
     path = tmp_path / "study.toml"
     assert bpy.ops.pe.export_study(filepath=str(path)) == {"FINISHED"}

@@ -19,13 +19,6 @@ def test_the_curve_is_a_staircase_from_the_start_to_now():
     assert curve.aside == "from 4.000"
 
 
-@pytest.mark.parametrize("points", [((1, 2.0),), ((1, 2.0), (2, 1.9999))])
-def test_next_to_nothing_does_not_look_like_progress(points):
-    curve = search_curve.curve_of(SearchProgress(points, 0, sampled=False))
-    assert all(up >= 0.98 for _, up in curve.points)
-    assert "\N{ALMOST EQUAL TO}" not in curve.title
-
-
 def test_the_best_so_far_is_shown_as_ghosts_until_the_search_ends(car):
     car.perception_entropy.view.show_ghosts = True
     sensor = bpy.data.objects["roof"]
@@ -71,17 +64,6 @@ def test_a_running_search_tells_the_view_each_time_it_finds_better(car, monkeypa
     assert f"best \N{ALMOST EQUAL TO} {job.curve[-1][1]:.3f}" in best_lines[-1]
     assert shown.sensors == tuple(job.best.rig) != tuple(job.study.rig)
     search_curve.drop(car.name)
-
-
-def test_the_method_and_the_budget_are_the_study_s(car):
-    settings = car.perception_entropy
-    settings.property_unset("method")
-    assert scenes.study().search.method == search.DEFAULT_METHOD
-    for name in search.METHODS:
-        settings.method = name
-        assert scenes.study().search.method == name
-    settings.method, settings.evaluations = "random", 3
-    assert scenes.study().search.evaluations == 3
 
 
 def test_the_schedule_is_shown_and_written_for_the_method_that_has_it(car):

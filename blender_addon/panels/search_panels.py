@@ -14,7 +14,6 @@ from ..choices import (
     EXPECTED_AP,
     OBJECTS,
     ON_SLOTS,
-    PARTS,
     RANDOM,
 )
 from ..language import shown
@@ -41,10 +40,7 @@ class PE_PT_search(Tab, bpy.types.Panel):
     def draw(self, context: Context) -> None:
         settings, layout = context.scene.perception_entropy, self.layout
         draw_properties(layout, settings, FIRST)
-        methods = layout.row(align=True)
-        for item in settings.bl_rna.properties["method"].enum_items:
-            if item.identifier not in PARTS:
-                methods.prop_enum(settings, "method", item.identifier)
+        layout.row(align=True).prop(settings, "method", expand=True)
         own = ("candidates",) if settings.method == RANDOM else ()
         draw_properties(layout, settings, (*own, "evaluations", "seed"))
         if settings.targets != OBJECTS:

@@ -29,10 +29,9 @@ from .view import PE_LiveSettings, PE_ViewSettings
 
 METHODS = tuple(
     (name, method.label, method.about, 1 + zlib.crc32(name.encode()) % 2**30)
-    for name, method in {**search.METHODS, **search.PARTS}.items()
+    for name, method in search.METHODS.items()
 )
-"""Of searches; a file holds a number that stays a method's whatever others there are. Parts of the
-portfolio come from studies that name them; the panel offers none."""
+"""Of searches; a file holds a number that stays a method's whatever others there are."""
 
 DEFAULT_BEAM_LIMIT = 5_000
 

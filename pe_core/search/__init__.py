@@ -14,11 +14,9 @@ from .goals import Front, Goals, Start, Stop
 from .methods import (
     DEFAULT_METHOD,
     METHODS,
-    PARTS,
     SCHEDULED_METHOD,
     Method,
     checked_method,
-    method_named,
 )
 from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .optimize import EvaluatedRig, Journal, Step, optimize
@@ -53,7 +51,7 @@ from .tolerance import (
     robustness,
 )
 
-__all__ = ["AXES", "DEFAULT_METHOD", "METHODS", "PAPER_FREE", "PARTS", "POSITION_AXES"]
+__all__ = ["AXES", "DEFAULT_METHOD", "METHODS", "PAPER_FREE", "POSITION_AXES"]
 __all__ += ["SCHEDULED_METHOD", "AnyMount", "Call", "Candidate", "Choice", "Constraints"]
 __all__ += ["DesignSearch", "DesignSpace", "EvaluatedRig", "Evaluation", "Front", "Goals"]
 __all__ += ["Journal", "LazyProcesses", "Method", "MountArea", "Mounting", "NoGo", "Objective"]
@@ -61,7 +59,7 @@ __all__ += ["Option", "Parametrization", "Payload", "Picks", "Processes", "RigRo
 __all__ += ["RobustObjective", "Robustness", "Schedule", "SearchSpace", "Selection", "Slot"]
 __all__ += ["SlotMount", "Start", "Step", "Stop", "SurfaceMount", "Tolerance", "Unreadable"]
 __all__ += ["WorkerDied", "above_front", "checked_axes", "checked_bounds", "checked_method"]
-__all__ += ["default_bounds", "evaluate_all", "feasible_start", "method_named", "mirrored"]
+__all__ += ["default_bounds", "evaluate_all", "feasible_start", "mirrored"]
 __all__ += ["mounted_off", "no_processes", "objective_of", "optimize", "pareto_front"]
 __all__ += ["pose_from_values", "pose_values", "robustness", "run_tasks", "send_payload"]
 __all__ += ["shared_parts", "snap_to_mount", "standoff_point", "start_processes"]

@@ -22,7 +22,7 @@ from ..base.errors import InputError
 from ..scene.rig import Rig
 from ..scoring.score import Evaluation, Objective
 from .dispatch import evaluate_all
-from .methods import Given, Question, checked_method, method_named
+from .methods import METHODS, Given, Question, checked_method
 from .methods.method import Answered, QuestionStream
 from .parametrization import Candidate, Parametrization, feasible_start
 from .search_space import Schedule, SearchSpace
@@ -206,7 +206,7 @@ def optimize(
     schedule : Schedule, optional
         Of the method "random"; the paper's by default: seven rounds of 1000 candidates.
     method : str, optional
-        A name of `METHODS` (or `PARTS`); needed where a schedule is given.
+        A name of `METHODS`; needed where a schedule is given.
     evaluations : int
         How many placements are evaluated at most; 0: as many as the method takes.
     executor : concurrent.futures.Executor, or callable, optional
@@ -219,7 +219,7 @@ def optimize(
         When there is no such method, the search space does not fit the rig, or no placement keeps
         to all of its rules.
     """
-    chosen = method_named(checked_method("optimize", method, schedule is not None))
+    chosen = METHODS[checked_method("optimize", method, schedule is not None)]
     levels = list(objective) if isinstance(objective, Sequence) else [objective]
     parametrization, schedule = Parametrization(rig, search_space), schedule or Schedule()
     start = feasible_start(parametrization, seed)

@@ -17,7 +17,6 @@ from ..search import (
     AXES,
     DEFAULT_METHOD,
     METHODS,
-    PARTS,
     POSITION_AXES,
     SCHEDULED_METHOD,
     Choice,
@@ -73,8 +72,7 @@ def read_search(
     `free`, `limits` and `on` are free axes, bounds and mounts by sensor, from `[[sensor]]`;
     `is_choice`: the study has a choice of sensors, which is screened by a schedule.
     """
-    known = () if table.data.get("method") in tuple(PARTS) else tuple(METHODS)
-    method = table.text("method", DEFAULT_METHOD, known)
+    method = table.text("method", DEFAULT_METHOD, tuple(METHODS))
     search = Search(
         free,
         limits,

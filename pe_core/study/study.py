@@ -37,6 +37,7 @@ from ..scoring.sight import Sight
 from ..scoring.targets import ObjectEvaluator, TargetRule
 from ..search import (
     AXES,
+    METHODS,
     PAPER_FREE,
     DesignSpace,
     Goals,
@@ -49,7 +50,6 @@ from ..search import (
     checked_axes,
     checked_bounds,
     checked_method,
-    method_named,
 )
 from ..sensors import PerceptionModel
 from .conditions import (
@@ -185,7 +185,7 @@ class Search:
     @property
     def level_samples(self) -> tuple[int, ...]:
         """Number of voxels of each level of the method, the coarsest first."""
-        return method_named(self.method).samples(self.samples)
+        return METHODS[self.method].samples(self.samples)
 
 
 @dataclass(frozen=True, eq=False)

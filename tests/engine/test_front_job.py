@@ -34,7 +34,7 @@ def study(objectives=("entropy", "height"), points=4, **more):
     goals = Goals(front=Front(objectives, points))
     free = {"roof": ("z", "pitch"), "front": ("z",)}
     limits = {name: {"z": (1.6, 2.6)} for name in free}
-    search = pe.Search(free, limits, samples=1024, method="cma-es", evaluations=160, goals=goals)
+    search = pe.Search(free, limits, samples=1024, evaluations=160, goals=goals)
     given = {"search": search, "samples": 1024} | more
     return pe.Study(pe.Rig(sensors), shapes.box_car(), shapes.small_space(), **given)
 

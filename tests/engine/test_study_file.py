@@ -150,7 +150,7 @@ BAD = [
     ("optimize.seed", MINIMAL + "[optimize]\nseed = -1\n"),
     ("optimize.candidates", MINIMAL + f"[optimize]\n{RANDOM}candidates = 0\n"),
     ("optimize.candidates", MINIMAL + "[optimize]\ncandidates = 9\n"),
-    ("optimize.decay", MINIMAL + '[optimize]\nmethod = "cma-es"\ndecay = 0.5\n'),
+    ("optimize.decay", MINIMAL + '[optimize]\nmethod = "portfolio"\ndecay = 0.5\n'),
     ("optimize.seed", MINIMAL + "[optimize]\nseed = true\n"),
     ("samples", "samples = 2.5\n" + MINIMAL),
 ]

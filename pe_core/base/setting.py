@@ -118,7 +118,7 @@ class Panel:
     Parameters
     ----------
     property : str
-        Name of the property in .blend files; it never changes.
+        Name of the property in .blend files, which never changes; empty: that of the field.
     label : str
     default : optional
         The panel's initial value, if it differs from that of a study file.
@@ -138,7 +138,7 @@ class Panel:
         Word beside the field while it is 0.
     when : str
         The field is drawn while this property is not 0 (``night``), or has this value
-        (``targets=objects``).
+        (``targets=objects``) or another (``targets!=objects``).
     """
 
     property: str

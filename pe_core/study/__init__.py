@@ -10,6 +10,7 @@ from ..base.setting import (
     Texts,
     Toggle,
     Triple,
+    setting,
     settings_of,
     value_in_file,
 )
@@ -33,5 +34,6 @@ __all__ += ["Study", "Texts", "Toggle", "Triple", "Whole"]
 __all__ += ["condition_table", "is_switch", "load_study", "load_study_data", "menu_of"]
 __all__ += ["mounts_table", "panel_default", "passthrough_of_text", "passthrough_table"]
 __all__ += ["passthrough_text", "read_passthrough", "requirement_file", "requirement_search"]
-__all__ += ["save_study", "setting_keys", "settings_of", "settings_of_part", "state_from_dict"]
-__all__ += ["state_table", "study_from_dict", "study_to_dict", "value_in_file", "vehicle_digest"]
+__all__ += ["save_study", "setting", "setting_keys", "settings_of", "settings_of_part"]
+__all__ += ["state_from_dict", "state_table", "study_from_dict", "study_to_dict"]
+__all__ += ["value_in_file", "vehicle_digest"]

@@ -168,7 +168,7 @@ def test_the_add_menu_has_each_kind_in_object_mode_alone(scene):
 
 def headings():
     """Return the steps that the first panel names."""
-    shown = drawn(main.PE_PT_main, **vars(Window(bpy.context.scene)))
+    shown = drawn(main.main, **vars(Window(bpy.context.scene)))
     steps = [f"{number}  {text}" for number, text in main.STEPS.items()]
     return [text for text in shown.texts("label") if text in steps], shown
 

@@ -53,7 +53,7 @@ def test_the_panel_finds_the_front_of_the_job(asked):
     figures = front_dict(job.trade_off)["designs"][0]["figures"]
     assert settings.front[0].figures == ", ".join(f"{n} {v:.4g}" for n, v in figures.items())
     assert settings.front_told == "Pareto front of entropy, height"
-    row = bridge.variant_named(asked, names[0])
+    [row] = [each for each in settings.variants if each.key == settings.front[0].key]
     study = bridge.study_of_variant(asked, row, scenes.depsgraph())
     assert study.rig["roof"].pose == job.trade_off.front[0].study.rig["roof"].pose
 

@@ -71,7 +71,7 @@ def test_the_schedule_is_shown_and_written_for_the_method_that_has_it(car):
     window, settings = layouts.Window(car), car.perception_entropy
     for name in search.METHODS:
         settings.method = name
-        drawn = layouts.drawn(search_panels.PE_PT_search, **vars(window)).texts("prop")
+        drawn = layouts.drawn(search_panels.search, **vars(window)).texts("prop")
         table = pe.study_to_dict(scenes.study())["optimize"]
         has_schedule = name == search.SCHEDULED_METHOD
         assert ("candidates" in drawn) == ("candidates" in table) == has_schedule, name

@@ -86,7 +86,7 @@ def draw_in_header(self: bpy.types.Header, context: Context) -> None:
     row.prop(settings, "show_overlay", text="", icon="LIGHT_HEMI")
     part = row.row(align=True)
     part.active = settings.show_overlay
-    part.popover(panel=view.bl_idname, text="")
+    part.popover(panel=view.__name__, text="")
 
 
 LAYERS = (

@@ -50,8 +50,8 @@ def panel(
         def draw(self: bpy.types.Panel, context: Context) -> None:
             function(self.layout, context.scene.perception_entropy, context)
 
-        content = {"__doc__": function.__doc__, "__module__": function.__module__, "draw": draw}
-        content |= TAB | {"bl_label": label, **members}
+        content: dict[str, Any] = {"__doc__": function.__doc__, "draw": draw}
+        content |= TAB | {"__module__": function.__module__, "bl_label": label, **members}
         content |= {"bl_parent_id": parent} if parent else {}
         content |= {"bl_options": {"DEFAULT_CLOSED"}} if closed else {}
         if poll is not None:

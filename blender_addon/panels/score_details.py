@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import bpy
-from bpy.types import Context, Object, UILayout
+from bpy.types import Context, Object, PropertyGroup, UILayout
 
 from ..choices import BEFORE_MOVE, PINNED
 from ..language import draw_label, shown

@@ -28,7 +28,6 @@ from .run_files import restore, run_once
 ROOT = Path(__file__).resolve().parent.parent
 STUDIES = ROOT / "blend_assets" / "experiments"
 RUNS = ROOT / "build" / "searches"
-COMPARED = ("portfolio", "block-descent", "random")
 SAMPLES, EVALUATED, SHIFT = 65_536, 262_144, (0.31, 0.62, 0.13)
 """Voxels a candidate is evaluated on; voxels, others, that tell what the best so far is worth."""
 MARKS_S = (1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 80, 100, 150, 200, 300, 450)
@@ -43,7 +42,7 @@ def main(arguments: list[str]) -> int:
     )
     parser.add_argument("--seeds", type=int, default=10, help="runs of each (10)")
     parser.add_argument("--seconds", type=float, default=20.0, help="longest search by random (20)")
-    parser.add_argument("--methods", nargs="+", choices=METHODS, default=COMPARED)
+    parser.add_argument("--methods", nargs="+", choices=METHODS, default=METHODS)
     parser.add_argument("--experiments", nargs="+", choices=EXPERIMENTS, default=EXPERIMENTS)
     parser.add_argument("--again", nargs="+", choices=METHODS, default=[])
     parser.add_argument("--runs", type=Path, default=RUNS, help="folder of the runs' files")

@@ -10,7 +10,7 @@ from typing import Any
 from .run_files import summarise
 from .search_curves import draw_curve, save_with_legend
 
-METHODS = ("portfolio", "block-descent", "cma-es", "random")
+METHODS = ("portfolio", "random")
 SUMMARY = Path(__file__).with_name("experiment_searches.json")
 EXPERIMENTS = {
     "1_pandar64": "1, Pandar64 on a car",

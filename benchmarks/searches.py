@@ -19,7 +19,6 @@ from pathlib import Path
 from typing import Any
 
 import pe_core as pe
-from pe_core.search import PARTS
 
 from .run_files import restore, run_once
 from .search_problems import PROBLEMS
@@ -27,7 +26,7 @@ from .yardstick_searches import YARDSTICKS, Landscape
 
 RUNS = Path(__file__).resolve().parent.parent / "build" / "search_problems"
 SUMMARY = Path(__file__).with_name("searches.json")
-OURS = pe.METHODS | PARTS
+OURS = pe.METHODS
 METHODS = (*OURS, *YARDSTICKS)
 MARKS = 16
 """Points of a curve, at most."""

@@ -7,7 +7,6 @@ from statistics import median
 from typing import Any
 
 import pe_core as pe
-from pe_core.search import PARTS
 
 from .run_files import summarise
 from .search_curves import draw_curve, save_with_legend
@@ -34,9 +33,7 @@ def write_summary(runs: Path, path: Path) -> None:
 
 def methods_of(runs: list[Json]) -> list[str]:
     """Return the methods that have runs, the engine's first."""
-    return [
-        m for m in (*pe.METHODS, *PARTS, *YARDSTICKS) if any(run["method"] == m for run in runs)
-    ]
+    return [m for m in (*pe.METHODS, *YARDSTICKS) if any(run["method"] == m for run in runs)]
 
 
 def table(runs: list[Json]) -> list[str]:

@@ -39,8 +39,6 @@ PRIORS = (
 OBJECTS, EXPECTED_AP, RANDOM = "objects", "expected_ap", "random"
 """Targets of a score, objective of a search, and the method with a schedule, that panels treat in
 another way; all are declared by the engine."""
-PARTS = ("block-descent", "cma-es")
-"""Parts of the portfolio, a method of search: a study may name one, the panel offers none."""
 
 
 @dataclass(frozen=True)

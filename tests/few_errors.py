@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import pytest
 
-ROBUSTNESS = importlib.import_module("pe_core.search.robustness")
+ROBUSTNESS = importlib.import_module("pe_core.search.tolerance")
 """The module: its package has a function of this name."""
 
 

@@ -209,10 +209,8 @@ def draw(name: str) -> None:
 
 def in_blender(what: str, name: str) -> None:
     """Make a file of a project with bpy 4.2: later versions read its files."""
-    release.install_bpy_4_2()
-    python = release.CACHE / "bpy-4.2" / "bin" / "python"
-    subprocess.run([python, ROOT / "blend_assets" / "make_example.py", what, name], check=True,
-                   stdout=subprocess.DEVNULL, timeout=release.TIMEOUT_S)  # fmt: skip
+    command = [release.install_bpy_4_2(), ROOT / "blend_assets" / "make_example.py", what, name]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, timeout=release.TIMEOUT_S)
 
 
 def tell(name: str) -> None:

@@ -100,6 +100,15 @@ def folder_of_bpy_4_2() -> Path:
     return real_blender.cache_folder() / "bpy-4.2"
 
 
+def install_bpy_4_2() -> Path:
+    """Install the oldest Blender that the extension supports; return its Python."""
+    python = folder_of_bpy_4_2() / "bin" / "python"
+    if not python.exists():
+        run(sys.executable, "-m", "venv", folder_of_bpy_4_2())
+    run(python, "-m", "pip", "install", "-qq", BPY_4_2)  # again where it was interrupted
+    return python
+
+
 def install_blenders() -> None:
     """Install the Blenders to validate with that are not there yet; later releases use them, too.
 
@@ -113,10 +122,7 @@ def install_blenders() -> None:
     for suite in DEBIAN_SUITES:  # first: they may be refused at once
         if real_blender.from_chroot(suite) is None:
             real_blender.install(suite)
-    python = folder_of_bpy_4_2() / "bin" / "python"
-    if not python.exists():
-        run(sys.executable, "-m", "venv", folder_of_bpy_4_2())
-    run(python, "-m", "pip", "install", "-qq", BPY_4_2)  # again where it was interrupted
+    install_bpy_4_2()
 
 
 def validate(archive: Path, every_version: bool) -> list[str]:

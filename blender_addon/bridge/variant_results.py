@@ -12,6 +12,7 @@ from typing import NamedTuple
 from bpy.types import Depsgraph, Scene
 
 from ..engine import advice, jobs, pe
+from ..view_settings import HEIGHTS_M
 from .fingerprint import Fingerprint
 from .outcome import store_outcome
 from .scene_diagnostics import check_placeable, scene_advice
@@ -197,7 +198,7 @@ def figure_rule(scene: Scene, prior: pe.Prior) -> FigureRule:
     """Return the height and the class that the 3D view's blind ground and reach are set to."""
     view, classes = scene.perception_entropy.view, prior.class_names
     class_name = view.reach_class if view.reach_class in classes else classes[0]
-    return FigureRule(int(view.blind_height.removeprefix("H")) / 100.0, class_name)
+    return FigureRule(HEIGHTS_M[view.blind_height] or 0.0, class_name)
 
 
 def figures_signature(scene: Scene, now: Fingerprint) -> str:

@@ -16,6 +16,7 @@ from ..live import live_state
 from ..overlay import layer_cache
 from ..properties import DEFAULT_REGION
 from ..sensor_kinds import own_kinds, row_of
+from ..view_settings import FITTED, FIXED, RANGES
 from .declared import INTERNAL, Refused, RowList, operator
 
 FOCUS_ROWS = RowList("focus", "focus_index", "focus")
@@ -130,10 +131,6 @@ def guess_axles(context: bpy.types.Context) -> str:
     return f"Rear axle at x {reference.rear_axle_x:g} m, z {reference.rear_axle_z:g} m"
 
 
-RANGES = {"ENTROPY": "entropy_range", "COVERAGE": "coverage_range"}
-"""The property of a fixed range, by quantity."""
-
-
 @operator("Fix Colors")
 def fix_colors(context: bpy.types.Context) -> None:
     """Keep the present range of the ground map's colours"""
@@ -143,14 +140,14 @@ def fix_colors(context: bpy.types.Context) -> None:
     if bounds is None or view.ground_difference or view.ground_quantity not in RANGES:
         raise Refused("No ground map of entropy or coverage is shown")
     setattr(view, RANGES[view.ground_quantity], bounds)
-    view.ground_range = "FIXED"
+    view.ground_range = FIXED
 
 
 @operator("Fit Colors")
 def fit_colors(context: bpy.types.Context) -> None:
     """Fit the range of the ground map's colours to what is shown now"""
     view = context.scene.perception_entropy.view
-    view.ground_range = "FITTED"
+    view.ground_range = FITTED
     view.ground_fits += 1
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..engine import Floats, graphics, pe, sight
-from .request import COUNTED, FIXED, KINDS, KINDS_LEFT, REDUNDANCY, SENSORS_LEFT, WHOLE
+from ..view_settings import COUNTED, FIXED, KINDS, KINDS_LEFT, REDUNDANCY, SENSORS_LEFT, WHOLE
 
 if TYPE_CHECKING:
     from ..engine import pe, sight
@@ -73,7 +73,7 @@ def shows_difference(request: ViewRequest) -> bool:
 def scored_map(request: ViewRequest) -> pe.GroundMap | None:
     """Return the score's own map, if it is to be shown."""
     view = request.view
-    averaged = view.ground_height is None and view.ground_quantity not in COUNTED
+    averaged = view.ground_height_m is None and view.ground_quantity not in COUNTED
     return request.scored if averaged and not shows_difference(request) else None
 
 
@@ -97,7 +97,7 @@ def _ground_sight(request: ViewRequest, cache: LayerCache, rig: pe.Rig) -> sight
     assert request.space is not None  # the layer has no key without one
     step = step_of(request.space, moving=request.moving)
     return cache.sight(request).ground(
-        rig, request.view.ground_height, step, preview=request.moving
+        rig, request.view.ground_height_m, step, preview=request.moving
     )
 
 
@@ -108,7 +108,7 @@ def _difference(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
     view = request.view
     of = (
         compared_key(request),
-        view.ground_height,
+        view.ground_height_m,
         request.moving,
         request.body_key,
         request.prior_key,

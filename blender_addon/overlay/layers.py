@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..engine import advice, graphics, pe
+from ..view_settings import ALL, BY_CHANNEL, BY_SENSOR, RIG, ViewSettings
 from . import ground_layers, heatmap, regions
 from .annotations import (
     GHOST_PALETTE,
@@ -21,7 +22,7 @@ from .annotations import (
     location_mark,
 )
 from .layer_cache import LayerCache
-from .request import ALL, BY_CHANNEL, BY_SENSOR, RIG, SceneSensor, ViewRequest, ViewSettings
+from .request import SceneSensor, ViewRequest
 from .requirement_zones import requirement_zones
 
 WHOLE_RIG = ""
@@ -84,7 +85,7 @@ def _ground(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.Lay
 
 
 def _blind(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
-    height = request.view.blind_height
+    height = request.view.blind_height_m
     found = cache.sight(request).blind(
         _counted_rig(request), height, within=BLIND_WITHIN_M, preview=request.moving
     )
@@ -126,7 +127,7 @@ def _reach(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.Laye
 def _beam_keys(request: ViewRequest) -> dict[str, Hashable]:
     view, shown = request.view, request.of_beams()
     budget = graphics.beam_budget([each.sensor for each in shown], view.beam_limit)
-    chosen = view.channels, view.channel, view.beam_colors, view.rings, view.beam_length
+    chosen = view.channels, view.channel_number, view.beam_colors, view.rings, view.beam_length
     chosen_key = *chosen, budget, view.palette
     return {each.sensor.name: (each.key, request.body_key, chosen_key) for each in shown}
 
@@ -135,7 +136,7 @@ def _beams(request: ViewRequest, cache: LayerCache, name: str) -> graphics.Layer
     view, shown = request.view, request.of_beams()
     of = next(each for each in shown if each.sensor.name == name)
     budget = graphics.beam_budget([each.sensor for each in shown], view.beam_limit)
-    choice = graphics.BeamChoice(budget, graphics.ChannelMode(view.channels), view.channel)
+    choice = graphics.BeamChoice(budget, graphics.ChannelMode(view.channels), view.channel_number)
     found = cache.cast(request, of)
     beams = graphics.shown_beams(found, choice)
     colors = _beam_colors(of, view, beams.channel, beams.occluded)

@@ -10,53 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..engine import graphics
+from ..view_settings import ALL, ViewSettings
 
 if TYPE_CHECKING:
     from ..engine import advice, pe, requirements
-
-
-AVERAGE = "AVERAGE"
-SELECTED, ALL, RIG = "SELECTED", "ALL", "RIG"
-BY_STATE, BY_SENSOR, BY_CHANNEL = "STATE", "SENSOR", "CHANNEL"
-
-
-REDUNDANCY = "REDUNDANCY"
-"""Quantity of the ground map: what one lost sensor leaves, or how many kinds see a place."""
-COUNTED = (graphics.SENSORS, REDUNDANCY)
-"""Quantities that are numbers of sensors or kinds: they have no range of colours."""
-SENSORS_LEFT, KINDS, KINDS_LEFT = "SENSORS_LEFT", "KINDS", "KINDS_LEFT"
-FITTED, WHOLE, FIXED = "FITTED", "WHOLE", "FIXED"
-"""The range of values that the colours of the ground map cover."""
-
-
-@dataclass(frozen=True, slots=True)
-class ViewSettings:
-    """Settings of the overlay, with the names of the scene's properties."""
-
-    layers: frozenset[str] = frozenset()
-    ground_quantity: str = graphics.SENSORS
-    ground_height: float | None = None
-    ground_opacity: float = 0.5
-    redundancy_of: str = SENSORS_LEFT
-    redundancy_height: float = 0.8
-    ground_range: str = FITTED
-    ground_fits: int = 0
-    entropy_range: tuple[float, float] = (0.0, 0.0)
-    coverage_range: tuple[float, float] = (0.0, 1.0)
-    ground_difference: bool = False
-    blind_height: float = 0.0
-    reach_class: str = "pedestrian"
-    reach_of: str = RIG
-    beams_of: str = ALL
-    channels: str = graphics.ChannelMode.FEW
-    channel: int = 1
-    beam_colors: str = BY_SENSOR
-    rings: bool = True
-    footprints: bool = True
-    view_range: float = 12.0
-    beam_limit: int = 2000
-    beam_length: float = 8.0
-    palette: graphics.Palette = graphics.VIEWPORT
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,20 +11,18 @@ import bpy
 import numpy as np
 
 from .. import bridge, location_query, preferences, search_curve, sensor_cache, vehicle_cache
-from ..engine import graphics, pe
+from ..engine import graphics, pe, studies
 from ..live import live_state
+from ..view_settings import MIN_LENGTH_M, RANGES, ViewSettings
 from .layers import LAYERS
 from .request import (
-    AVERAGE,
     FocusRegion,
     MountFaces,
     SceneSensor,
     SearchBox,
     ViewRequest,
-    ViewSettings,
 )
 
-MIN_LENGTH_M = 0.1
 BEST_SO_FAR = "best so far"
 SLOW_S = 0.05
 """A vehicle that took longer to read is not read again while it is moving."""
@@ -143,27 +141,13 @@ class SnapshotReader:
 def view_of(scene: bpy.types.Scene) -> ViewSettings:
     """Return the view settings as plain values."""
     settings = scene.perception_entropy
-    view = settings.view
-    on = settings.show_overlay
-    layers = (each.name for each in LAYERS if on and getattr(view, f"show_{each.name}"))
-    same = (
-        *("ground_quantity", "ground_opacity", "ground_range", "ground_fits", "ground_difference"),
-        *("redundancy_of", "redundancy_height"),
-        *("reach_class", "reach_of", "beams_of", "channels"),
-        *("beam_colors", "rings", "footprints", "view_range"),
-    )
-    return ViewSettings(
-        layers=frozenset(layers),
-        ground_height=_height(view.ground_height),
-        entropy_range=tuple(view.entropy_range),
-        coverage_range=tuple(view.coverage_range),
-        blind_height=_height(view.blind_height) or 0.0,
-        channel=view.every if view.channels == "EVERY" else view.channel,
-        beam_limit=settings.beam_limit,
-        palette=preferences.palette(),
-        beam_length=max(MIN_LENGTH_M, settings.beam_length),  # also where it is not a number
-        **{name: getattr(view, name) for name in same},
-    )
+    values = {name: getattr(settings.view, name) for name in studies.settings_of(ViewSettings)}
+    on = [each.name for each in LAYERS if settings.show_overlay and values[f"show_{each.name}"]]
+    for name in RANGES.values():
+        values[name] = tuple(values[name])
+    length_m = max(MIN_LENGTH_M, values.pop("beam_length"))  # also where it is not a number
+    more = {"layers": frozenset(on), "palette": preferences.palette(), "beam_length": length_m}
+    return ViewSettings(**values, **more)
 
 
 def _sensors(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> tuple[SceneSensor, ...]:
@@ -257,7 +241,3 @@ def _requirements(scene: bpy.types.Scene) -> dict[str, Any]:
         return {"requirement": chosen}
     key = bridge.requirements_key(settings)
     return {"requirements": found, "requirements_key": key, "requirement": chosen}
-
-
-def _height(choice: str) -> float | None:
-    return None if choice == AVERAGE else int(choice.removeprefix("H")) / 100.0

@@ -7,50 +7,41 @@ from typing import Any
 import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
-from .layout import Rows, Tab, columns, draw_declared, draw_properties, draw_sentence
+from .layout import columns, draw_declared, draw_properties, draw_sentence, panel, row_list
 
 
-class PE_UL_states(Rows, bpy.types.UIList):
+@row_list("PE_UL_states")
+def states_rows(context: Context, layout: UILayout, settings: Any, item: Any) -> None:
     """The states: used, name, and a button that shows the state"""
-
-    def draw_row(self, context: Context, layout: UILayout, settings: Any, item: Any) -> None:
-        row, row_index = _draw_row(layout, item), list(settings.states).index(item)
-        icon = "HIDE_OFF" if item.frame == context.scene.frame_current else "HIDE_ON"
-        row.operator("pe.show_state", text="", icon=icon, emboss=False).index = row_index
+    row, row_index = _draw_row(layout, item), list(settings.states).index(item)
+    icon = "HIDE_OFF" if item.frame == context.scene.frame_current else "HIDE_ON"
+    row.operator("pe.show_state", text="", icon=icon, emboss=False).index = row_index
 
 
-class PE_UL_weathers(Rows, bpy.types.UIList):
+@row_list("PE_UL_weathers")
+def weathers_rows(_context: Context, layout: UILayout, _settings: Any, item: Any) -> None:
     """The weathers: used and name"""
-
-    def draw_row(self, _context: Context, layout: UILayout, _settings: Any, item: Any) -> None:
-        _draw_row(layout, item)
+    _draw_row(layout, item)
 
 
-class PE_PT_conditions(Tab, bpy.types.Panel):
+@panel("Conditions", bl_ui_units_x=17)
+def conditions(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """States of the vehicle and weathers in which the rig is scored, too"""
-
-    bl_idname = "PE_PT_conditions"
-    bl_label = "Conditions"
-    bl_options = {"DEFAULT_CLOSED"}
-    bl_ui_units_x = 17
-
-    def draw(self, context: Context) -> None:
-        settings, layout = context.scene.perception_entropy, self.layout
-        _draw_list(layout, settings, PE_UL_states, "state", "pe.add_state")
-        if settings.states:
-            row = layout.row(align=True)
-            row.operator("pe.show_state", text="Show as Drawn", icon="LOOP_BACK").index = -1
-            row.operator("pe.read_states", text="", icon="FILE_REFRESH")
-            draw_properties(layout, settings, ("drawn_frame",))
-        else:
-            draw_sentence(layout, context, "Pose the vehicle at another frame, then add the frame")
-        _draw_list(layout, settings, PE_UL_weathers, "weather", None)
-        if settings.weather_index < len(settings.weathers):
-            draw_declared(layout, settings.weathers[settings.weather_index], "weather")
-        if settings.states or settings.weathers:
-            draw_properties(layout, settings, ("search_conditions",))
-        for line in settings.result_conditions.splitlines():
-            draw_sentence(layout, context, line)
+    _draw_list(layout, settings, states_rows, "state", "pe.add_state")
+    if settings.states:
+        row = layout.row(align=True)
+        row.operator("pe.show_state", text="Show as Drawn", icon="LOOP_BACK").index = -1
+        row.operator("pe.read_states", text="", icon="FILE_REFRESH")
+        draw_properties(layout, settings, ("drawn_frame",))
+    else:
+        draw_sentence(layout, context, "Pose the vehicle at another frame, then add the frame")
+    _draw_list(layout, settings, weathers_rows, "weather", None)
+    if settings.weather_index < len(settings.weathers):
+        draw_declared(layout, settings.weathers[settings.weather_index], "weather")
+    if settings.states or settings.weathers:
+        draw_properties(layout, settings, ("search_conditions",))
+    for line in settings.result_conditions.splitlines():
+        draw_sentence(layout, context, line)
 
 
 def _draw_row(layout: UILayout, item: PropertyGroup) -> UILayout:
@@ -83,4 +74,4 @@ def _draw_list(
     buttons.operator(f"pe.remove_{name}", text="", icon="REMOVE")
 
 
-CLASSES = (PE_UL_states, PE_UL_weathers, PE_PT_conditions)
+CLASSES = (states_rows, weathers_rows, conditions)

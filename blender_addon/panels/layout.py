@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any
 
 import blf
 import bpy
@@ -16,40 +16,84 @@ from ..language import draw_label, shown
 from ..operators import FIX_LABELS, SAME, sense_icon, warnings_outdated
 from ..properties import ROWS, DeclaredRow, StoredWarning, declared_rows
 
-# Blender registers the subclasses of its classes alone; for the checker of types these are some.
-if TYPE_CHECKING:
-    _Panel: TypeAlias = bpy.types.Panel
-    _List: TypeAlias = bpy.types.UIList
-else:
-    _Panel = _List = object
+Draw = Callable[[UILayout, PropertyGroup, Context], None]
+DrawHeader = Callable[[UILayout, Context], None]
+TAB: dict[str, Any] = {
+    "bl_space_type": "VIEW_3D",
+    "bl_region_type": "UI",
+    "bl_category": "Perception",
+}
 
 
-class Tab(_Panel):
-    """The tab of all panels."""
+def panel(
+    label: str,
+    *,
+    parent: str = "",
+    closed: bool = True,
+    poll: Callable[[Context], bool] | None = None,
+    header: DrawHeader | None = None,
+    preset: DrawHeader | None = None,
+    count: str = "",
+    chosen: str = "",
+    **members: Any,
+) -> Callable[[Draw], type[bpy.types.Panel]]:
+    """Return what makes a panel of the tab of a function, whose name and docstring it takes.
 
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Perception"
+    The function draws into a layout; it takes the settings of the scene and the context. `parent`
+    is the panel that it is in, `closed` whether it is at first, `poll` when it is there. `header`
+    draws before its label, `preset` at the end of that line. There `count` shows how many rows a
+    list has, and `chosen` the entry of a menu. Both are visible also when the panel is closed.
+    `members` are attributes of the class.
+    """
+
+    def make(function: Draw) -> type[bpy.types.Panel]:
+        def draw(self: bpy.types.Panel, context: Context) -> None:
+            function(self.layout, context.scene.perception_entropy, context)
+
+        content: dict[str, Any] = {"__doc__": function.__doc__, "draw": draw}
+        content |= TAB | {"__module__": function.__module__, "bl_label": label, **members}
+        content |= {"bl_parent_id": parent} if parent else {}
+        content |= {"bl_options": {"DEFAULT_CLOSED"}} if closed else {}
+        if poll is not None:
+            content["poll"] = classmethod(lambda _cls, context: poll(context))
+        if header is not None:
+            content["draw_header"] = lambda self, context: header(self.layout, context)
+        at_end = preset or ((count or chosen) and _header_text(count, chosen))
+        if at_end:
+            content["draw_header_preset"] = lambda self, context: at_end(self.layout, context)
+        return type(f"PE_PT_{function.__name__}", (bpy.types.Panel,), content)
+
+    return make
 
 
-class Rows(_List):
-    """A list: Blender asks for the type of each argument, of which rows need four."""
+def _header_text(count: str, chosen: str) -> DrawHeader:
+    def draw(layout: UILayout, context: Context) -> None:
+        settings = context.scene.perception_entropy
+        value = getattr(settings, count or chosen)
+        text = layout.enum_item_name(settings, chosen, value) if chosen else str(len(value) or "")
+        layout.label(text=text, translate=False)
 
-    def draw_item(
-        self,
-        context: Context,
-        layout: UILayout,
-        settings: Any,
-        item: Any,
-        _icon: int,
-        _active_data: Any,
-        _active_property: str,
-    ) -> None:
-        self.draw_row(context, layout, settings, item)
+    return draw
 
-    def draw_row(self, context: Context, layout: UILayout, settings: Any, item: Any) -> None:
-        """Draw a row of the list that `settings` have."""
-        raise NotImplementedError
+
+def row_list(
+    name: str, **members: Any
+) -> Callable[[Callable[[Context, UILayout, Any, Any], None]], type[bpy.types.UIList]]:
+    """Return what makes a list of a function that draws a row of it.
+
+    The function takes context, layout, the owner of the list and the row's item.
+    """
+
+    def make(function: Callable[[Context, UILayout, Any, Any], None]) -> type[bpy.types.UIList]:
+        def draw_item(  # Blender counts the arguments
+            _self: Any, context: Any, layout: Any, owner: Any, item: Any, _icon: Any, _active: Any
+        ) -> None:
+            function(context, layout, owner, item)
+
+        content = {"__doc__": function.__doc__, "__module__": function.__module__}
+        return type(name, (bpy.types.UIList,), {**content, "draw_item": draw_item, **members})
+
+    return make
 
 
 def draw_properties(layout: UILayout, settings: PropertyGroup, names: Iterable[str]) -> None:
@@ -65,14 +109,14 @@ def draw_declared(
 ) -> None:
     """Draw what the engine declares for a part of the panel, each field where it is asked for."""
     rows = (row for row in declared_rows(part) if row.name not in leave_out)
-    draw_properties(layout, settings, [row.name for row in rows if _is_asked(settings, row.when)])
+    draw_properties(layout, settings, [row.name for row in rows if is_asked(settings, row.when)])
 
 
-def _is_asked(settings: PropertyGroup, when: str) -> bool:
-    """Whether a condition holds: "night", "targets=objects"; an empty one does."""
+def is_asked(settings: PropertyGroup, when: str) -> bool:
+    """Whether a condition holds: "night", "targets=objects", "targets!=objects"; "" does."""
     name, _, value = when.partition("=")
-    found = getattr(settings, name) if name else True
-    return found == value if value else bool(found)
+    found = getattr(settings, name.removesuffix("!")) if name else True
+    return (found == value) != name.endswith("!") if value else bool(found)
 
 
 def _draw_row(layout: UILayout, settings: PropertyGroup, row: DeclaredRow) -> None:

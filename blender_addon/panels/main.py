@@ -22,14 +22,7 @@ from ..operators import (
     shown_score,
     shown_state,
 )
-from .layout import (
-    BUTTON_PX,
-    Tab,
-    columns,
-    draw_declared,
-    draw_sentence,
-    draw_warning,
-)
+from .layout import BUTTON_PX, columns, draw_declared, draw_sentence, draw_warning, panel
 from .sensor_lists import draw_sensors
 from .sensor_menus import KIND, PE_MT_add_sensor
 
@@ -229,42 +222,30 @@ def draw_vehicle(layout: UILayout, context: Context) -> None:
         button.operator("pe.turn_round", icon="FILE_REFRESH")
 
 
-class PE_PT_main(Tab, bpy.types.Panel):
+@panel("Perception Entropy", closed=False)
+def main(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Vehicle, sensors, score and search"""
-
-    bl_idname = "PE_PT_main"
-    bl_label = "Perception Entropy"
-
-    def draw(self, context: Context) -> None:
-        settings = context.scene.perception_entropy
-        if settings.version > VERSION:
-            newer = "Saved by a newer version of the extension: its new settings are not shown"
-            draw_sentence(self.layout, context, newer, icon="ERROR")
-        draw_actions(self.layout, settings)  # first: nothing that comes late moves them
-        draw_vehicle(self.layout, context)
-        draw_step(self.layout, context, 2)
-        draw_add(self.layout, settings)
-        draw_sensors(self.layout, context)
-        draw_result(self.layout, context)
-        draw_written(self.layout, context)
+    if settings.version > VERSION:
+        newer = "Saved by a newer version of the extension: its new settings are not shown"
+        draw_sentence(layout, context, newer, icon="ERROR")
+    draw_actions(layout, settings)  # first: nothing that comes late moves them
+    draw_vehicle(layout, context)
+    draw_step(layout, context, 2)
+    draw_add(layout, settings)
+    draw_sensors(layout, context)
+    draw_result(layout, context)
+    draw_written(layout, context)
 
 
-class PE_PT_warnings(Tab, bpy.types.Panel):
+@panel(
+    "Warnings",
+    closed=False,
+    poll=lambda context: bool(context.scene.perception_entropy.result_warnings),
+    count="result_warnings",
+)
+def warnings(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
     """What is wrong with the vehicle and the sensors, and buttons that correct it"""
-
-    bl_idname = "PE_PT_warnings"
-    bl_label = "Warnings"
-
-    @classmethod
-    def poll(cls, context: Context) -> bool:
-        return bool(context.scene.perception_entropy.result_warnings)
-
-    def draw_header_preset(self, context: Context) -> None:
-        count = len(context.scene.perception_entropy.result_warnings)
-        self.layout.label(text=str(count), translate=False)  # visible also when closed
-
-    def draw(self, context: Context) -> None:
-        draw_warnings(self.layout, context)
+    draw_warnings(layout, context)
 
 
 def draw_add(layout: UILayout, settings: PropertyGroup) -> None:
@@ -280,29 +261,21 @@ def draw_add(layout: UILayout, settings: PropertyGroup) -> None:
     row.menu(PE_MT_add_sensor.bl_idname, text="", icon="DOWNARROW_HLT")
 
 
-class PE_PT_export(Tab, bpy.types.Panel):
+@panel("Export and Import")
+def export(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
     """Files to take away, and rigs of other programs"""
-
-    bl_idname = "PE_PT_export"
-    bl_label = "Export and Import"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: Context) -> None:
-        layout = self.layout
-        layout.operator("pe.export_study", icon="EXPORT")
-        layout.operator("pe.import_study", icon="IMPORT")
-        layout.operator("pe.render_review", icon="RENDER_STILL")
-        layout.operator("pe.export_review", icon="DOCUMENTS")
-        row = layout.row(align=True)
-        row.operator("pe.export_rig", text="Export Rig", icon="FILE_TICK")
-        row.operator("pe.import_rig", text="Import Rig", icon="FILE_FOLDER")
-        row = layout.row(align=True)
-        row.operator("pe.sensors_to_objects", text="To Objects", icon="OUTLINER_OB_CAMERA")
-        row.operator("pe.sensors_from_objects", text="From Objects", icon="OUTLINER_OB_EMPTY")
-        layout.operator_menu_enum(
-            "pe.export_scene", "output", text="Export Scene", icon="SCENE_DATA"
-        )
-        draw_axles(layout, context.scene.perception_entropy)
+    layout.operator("pe.export_study", icon="EXPORT")
+    layout.operator("pe.import_study", icon="IMPORT")
+    layout.operator("pe.render_review", icon="RENDER_STILL")
+    layout.operator("pe.export_review", icon="DOCUMENTS")
+    row = layout.row(align=True)
+    row.operator("pe.export_rig", text="Export Rig", icon="FILE_TICK")
+    row.operator("pe.import_rig", text="Import Rig", icon="FILE_FOLDER")
+    row = layout.row(align=True)
+    row.operator("pe.sensors_to_objects", text="To Objects", icon="OUTLINER_OB_CAMERA")
+    row.operator("pe.sensors_from_objects", text="From Objects", icon="OUTLINER_OB_EMPTY")
+    layout.operator_menu_enum("pe.export_scene", "output", text="Export Scene", icon="SCENE_DATA")
+    draw_axles(layout, context.scene.perception_entropy)
 
 
 def draw_axles(layout: UILayout, settings: PropertyGroup) -> None:
@@ -344,8 +317,8 @@ def unregister() -> None:
     bpy.types.TOPBAR_MT_file_export.remove(draw_export)
 
 
-CLASSES = (PE_PT_main,)
+CLASSES = (main,)
 
-WARNING_CLASSES = (PE_PT_warnings,)  # below the selected sensor's panel, which they would move
+WARNING_CLASSES = (warnings,)  # below the selected sensor's panel, which they would move
 
-EXPORT_CLASSES = (PE_PT_export,)  # below all other panels
+EXPORT_CLASSES = (export,)  # below all other panels

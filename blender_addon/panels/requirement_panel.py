@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
 from ..language import draw_label
@@ -17,7 +16,15 @@ from ..properties.requirement_fields import (
     RING,
     SEVERAL,
 )
-from .layout import Rows, Tab, columns, draw_declared, draw_list, draw_properties, draw_sentence
+from .layout import (
+    columns,
+    draw_declared,
+    draw_list,
+    draw_properties,
+    draw_sentence,
+    panel,
+    row_list,
+)
 
 ADD_REMOVE = ("pe.add_requirement", "pe.remove_requirement")
 
@@ -27,59 +34,52 @@ ICONS = {True: "CHECKMARK", False: "CANCEL", None: "QUESTION"}
 """By what is known of a requirement: met, not met, not checked."""
 
 
-class PE_UL_requirements(Rows, bpy.types.UIList):
+@row_list("PE_UL_requirements")
+def requirements_rows(context: Context, layout: UILayout, _settings: Any, item: Any) -> None:
     """The requirements: verdict and name, and below them the regulation and the margin"""
-
-    def draw_row(self, context: Context, layout: UILayout, _settings: Any, item: Any) -> None:
-        verdict = shown_verdicts(context.scene).get(item.name)
-        lines = layout.column(align=True)
-        row = lines.row(align=True)
-        row.prop(item, "enabled", text="")
-        name = row.row(align=True)
-        name.active = item.enabled
-        icon = "BLANK1" if verdict is None else ICONS[verdict.met]
-        name.alert = verdict is not None and verdict.met is False
-        name.prop(item, "name", text="", emboss=False, icon=icon)
-        below = lines.row(align=True)
-        below.scale_y = BELOW_SCALE
-        after, margin = columns(below, 0.5)
-        after.active = False
-        after.label(text=after_of(item), icon="BLANK1", translate=False)
-        margin.alignment = "RIGHT"
-        draw_label(margin, "" if verdict is None else verdict.margin)
+    verdict = shown_verdicts(context.scene).get(item.name)
+    lines = layout.column(align=True)
+    row = lines.row(align=True)
+    row.prop(item, "enabled", text="")
+    name = row.row(align=True)
+    name.active = item.enabled
+    icon = "BLANK1" if verdict is None else ICONS[verdict.met]
+    name.alert = verdict is not None and verdict.met is False
+    name.prop(item, "name", text="", emboss=False, icon=icon)
+    below = lines.row(align=True)
+    below.scale_y = BELOW_SCALE
+    after, margin = columns(below, 0.5)
+    after.active = False
+    after.label(text=after_of(item), icon="BLANK1", translate=False)
+    margin.alignment = "RIGHT"
+    draw_label(margin, "" if verdict is None else verdict.margin)
 
 
-class PE_PT_requirements(Tab, bpy.types.Panel):
+def _requirements_header(layout: UILayout, context: Context) -> None:
+    verdicts = shown_verdicts(context.scene).values()
+    if not verdicts:
+        return
+    checked = [verdict.met for verdict in verdicts if verdict.met is not None]
+    met = sum(checked)
+    text = f"{met} of {len(checked)} met" if checked else str(len(verdicts))
+    draw_label(layout, text)  # visible also when closed
+
+
+@panel("Requirements", bl_ui_units_x=17, preset=_requirements_header)
+def requirements(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Zones in which test bodies have to be seen: met or not, and by which margin"""
-
-    bl_idname = "PE_PT_requirements"
-    bl_label = "Requirements"
-    bl_options = {"DEFAULT_CLOSED"}
-    bl_ui_units_x = 17  # where it is called as a popup
-
-    def draw_header_preset(self, context: Context) -> None:
-        verdicts = shown_verdicts(context.scene).values()
-        if not verdicts:
-            return
-        checked = [verdict.met for verdict in verdicts if verdict.met is not None]
-        met = sum(checked)
-        text = f"{met} of {len(checked)} met" if checked else str(len(verdicts))
-        draw_label(self.layout, text)  # visible also when closed
-
-    def draw(self, context: Context) -> None:
-        settings, layout = context.scene.perception_entropy, self.layout
-        names, operators = ("requirements", "requirement_index"), ADD_REMOVE
-        buttons = draw_list(layout, PE_UL_requirements, settings, names, operators, rows=4)
-        buttons.operator("pe.copy_requirement", text="", icon="DUPLICATE")
-        for step, icon in ((-1, "TRIA_UP"), (1, "TRIA_DOWN")):
-            buttons.operator("pe.move_requirement", text="", icon=icon).step = step
-        if not settings.requirements:
-            draw_sentence(layout, context, "Add a preset of a regulation or test, or an own zone")
-            return
-        layout.operator("pe.check_requirements", icon="VIEWZOOM")
-        layout.prop(settings, "keep_requirements")
-        if settings.requirement_index < len(settings.requirements):
-            draw_requirement(layout, context, settings.requirements[settings.requirement_index])
+    names, operators = ("requirements", "requirement_index"), ADD_REMOVE
+    buttons = draw_list(layout, requirements_rows, settings, names, operators, rows=4)
+    buttons.operator("pe.copy_requirement", text="", icon="DUPLICATE")
+    for step, icon in ((-1, "TRIA_UP"), (1, "TRIA_DOWN")):
+        buttons.operator("pe.move_requirement", text="", icon=icon).step = step
+    if not settings.requirements:
+        draw_sentence(layout, context, "Add a preset of a regulation or test, or an own zone")
+        return
+    layout.operator("pe.check_requirements", icon="VIEWZOOM")
+    layout.prop(settings, "keep_requirements")
+    if settings.requirement_index < len(settings.requirements):
+        draw_requirement(layout, context, settings.requirements[settings.requirement_index])
 
 
 def draw_requirement(layout: UILayout, context: Context, row: PropertyGroup) -> None:
@@ -179,4 +179,4 @@ def _draw_pair(layout: UILayout, row: PropertyGroup, name: str) -> None:
     draw_properties(pair, row, (f"{name}_from", f"{name}_to"))
 
 
-CLASSES = (PE_UL_requirements, PE_PT_requirements)
+CLASSES = (requirements_rows, requirements)

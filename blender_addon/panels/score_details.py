@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import bpy
-from bpy.types import Context, Object, UILayout
+from bpy.types import Context, Object, PropertyGroup, UILayout
 
 from ..choices import BEFORE_MOVE, PINNED
 from ..language import draw_label, shown
 from ..operators import answer, live_lines, reference_label, sense_of, text_of
 from ..properties import figures_of_sensor
-from .layout import BUTTON_PX, Tab, columns, draw_sentence, draw_stale_mark
+from .layout import BUTTON_PX, columns, draw_sentence, draw_stale_mark, panel
 from .sensor_lists import draw_sensor_table
 
 
@@ -30,58 +30,44 @@ class PE_MT_live_against(bpy.types.Menu):
             layout.operator("pe.live_against", text=row.name, translate=False).key = row.key
 
 
-class PE_PT_live(Tab, bpy.types.Panel):
+@panel("Live", poll=lambda context: context.scene.perception_entropy.live.on)
+def live(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
     """What the live score is compared with, and its key figures"""
-
-    bl_idname = "PE_PT_live"
-    bl_label = "Live"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context: Context) -> bool:
-        return context.scene.perception_entropy.live.on
-
-    def draw(self, context: Context) -> None:
-        name, menu = columns(self.layout, 0.4)
-        draw_label(name, "Compared With")
-        label = reference_label(context.scene)
-        menu.menu(PE_MT_live_against.bl_idname, text=shown(label), translate=False)
-        live = context.scene.perception_entropy.live
-        name, field = columns(self.layout, 0.4)
-        draw_label(name, "Known Rig")
-        field.prop(live, "anchor", text="")
-        self.layout.prop(live, "figures")
-        for line in live_lines(context.scene):
-            draw_sentence(self.layout, context, text_of(line), sense=sense_of(line))
+    name, menu = columns(layout, 0.4)
+    draw_label(name, "Compared With")
+    label = reference_label(context.scene)
+    menu.menu(PE_MT_live_against.bl_idname, text=shown(label), translate=False)
+    live = context.scene.perception_entropy.live
+    name, field = columns(layout, 0.4)
+    draw_label(name, "Known Rig")
+    field.prop(live, "anchor", text="")
+    layout.prop(live, "figures")
+    for line in live_lines(context.scene):
+        draw_sentence(layout, context, text_of(line), sense=sense_of(line))
 
 
-class PE_PT_explain(Tab, bpy.types.Panel):
+@panel("Explain", closed=False)
+def explain(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """The score in words, and the answer of a location query"""
-
-    bl_idname = "PE_PT_explain"
-    bl_label = "Explain"
-
-    def draw(self, context: Context) -> None:
-        settings, obj = context.scene.perception_entropy, context.active_object
-        layout = self.layout
-        layout.operator("pe.ask_place", icon="EYEDROPPER")
-        draw_answer(layout, context)
-        if settings.has_result and settings.result_words:
-            lines = layout.column(align=True)
-            lines.active = not settings.result_stale
-            for line in settings.result_words.splitlines():
-                draw_sentence(lines, context, line[:1].upper() + line[1:], icon="DOT")
-        if settings.has_result and settings.result_sureness:
-            lines = layout.box().column(align=True)
-            lines.active = not settings.result_stale
-            draw_label(lines, "How sure the search is")
-            for line in settings.result_sureness.splitlines():
-                text = line.strip()
-                draw_sentence(lines, context, text[:1].upper() + text[1:], icon="DOT")
-        if settings.has_result:
-            draw_sensor_table(layout, context)
-        if obj is not None and obj.perception_entropy.is_sensor:
-            draw_sensor_text(layout, context, obj)
+    settings, obj = context.scene.perception_entropy, context.active_object
+    layout.operator("pe.ask_place", icon="EYEDROPPER")
+    draw_answer(layout, context)
+    if settings.has_result and settings.result_words:
+        lines = layout.column(align=True)
+        lines.active = not settings.result_stale
+        for line in settings.result_words.splitlines():
+            draw_sentence(lines, context, line[:1].upper() + line[1:], icon="DOT")
+    if settings.has_result and settings.result_sureness:
+        lines = layout.box().column(align=True)
+        lines.active = not settings.result_stale
+        draw_label(lines, "How sure the search is")
+        for line in settings.result_sureness.splitlines():
+            text = line.strip()
+            draw_sentence(lines, context, text[:1].upper() + text[1:], icon="DOT")
+    if settings.has_result:
+        draw_sensor_table(layout, context)
+    if obj is not None and obj.perception_entropy.is_sensor:
+        draw_sensor_text(layout, context, obj)
 
 
 def draw_sensor_text(layout: UILayout, context: Context, obj: Object) -> None:
@@ -112,35 +98,29 @@ def draw_answer(layout: UILayout, context: Context) -> None:
 PART_SHARE, NARROW_PART_SHARE = 0.5, 0.3
 
 
-class PE_PT_breakdown(Tab, bpy.types.Panel):
+def _breakdown_is_shown(context: Context) -> bool:
+    settings = context.scene.perception_entropy
+    return settings.has_result and len(settings.result_parts) > 0
+
+
+@panel("By Zone and Class", poll=_breakdown_is_shown)
+def breakdown(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
     """Entropy and coverage by zone of the ground, and by class of object"""
-
-    bl_idname = "PE_PT_breakdown"
-    bl_label = "By Zone and Class"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context: Context) -> bool:
-        settings = context.scene.perception_entropy
-        return settings.has_result and len(settings.result_parts) > 0
-
-    def draw(self, context: Context) -> None:
-        settings = context.scene.perception_entropy
-        draw_stale_mark(self.layout, settings)
-        column = self.layout.box().column(align=True)
-        column.active = not settings.result_stale
-        for is_class, title in ((False, "Zone"), (True, "Class")):
-            has_ap = is_class and bool(settings.result_ap)
-            more = ("AP", "ahead") if has_ap else ()
-            draw_part_row(column, title, "nats", "seen", *more, header=True)
-            for part in settings.result_parts:
-                if part.is_class == is_class:
-                    more = (part.ap, part.reach) if has_ap else ()
-                    digits = 0 if has_ap else 1  # four figures have to fit
-                    nats = f"{part.entropy:.{digits + 1}f}"
-                    draw_part_row(column, part.name, nats, f"{part.coverage:.{digits}%}", *more)
-            if not is_class:
-                column.separator()
+    draw_stale_mark(layout, settings)
+    column = layout.box().column(align=True)
+    column.active = not settings.result_stale
+    for is_class, title in ((False, "Zone"), (True, "Class")):
+        has_ap = is_class and bool(settings.result_ap)
+        more = ("AP", "ahead") if has_ap else ()
+        draw_part_row(column, title, "nats", "seen", *more, header=True)
+        for part in settings.result_parts:
+            if part.is_class == is_class:
+                more = (part.ap, part.reach) if has_ap else ()
+                digits = 0 if has_ap else 1  # four figures have to fit
+                nats = f"{part.entropy:.{digits + 1}f}"
+                draw_part_row(column, part.name, nats, f"{part.coverage:.{digits}%}", *more)
+        if not is_class:
+            column.separator()
 
 
 def draw_part_row(layout: UILayout, name: str, *figures: str, header: bool = False) -> None:
@@ -155,5 +135,5 @@ def draw_part_row(layout: UILayout, name: str, *figures: str, header: bool = Fal
         draw_label(cell, text)
 
 
-LIVE_CLASSES = (PE_MT_live_against, PE_PT_live)
-CLASSES = (PE_PT_explain, PE_PT_breakdown)
+LIVE_CLASSES = (PE_MT_live_against, live)
+CLASSES = (explain, breakdown)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
 from ..choices import (
@@ -14,11 +13,10 @@ from ..choices import (
     EXPECTED_AP,
     OBJECTS,
     ON_SLOTS,
-    PARTS,
     RANDOM,
 )
 from ..language import shown
-from .layout import Rows, Tab, columns, draw_declared, draw_list, draw_properties
+from .layout import columns, draw_declared, draw_list, draw_properties, panel, row_list
 from .variant_panels import draw_front
 
 ICONS = {BY_PARTS: "OBJECT_DATA", BY_MATERIAL: "MATERIAL", BY_GROUP: "WPAINT_HLT"}
@@ -31,39 +29,29 @@ ELSEWHERE = (
 SLOTS_ICON = "OUTLINER_COLLECTION"
 
 
-class PE_PT_search(Tab, bpy.types.Panel):
+@panel("Search")
+def search(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
     """How to search"""
-
-    bl_idname = "PE_PT_search"
-    bl_label = "Search"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: Context) -> None:
-        settings, layout = context.scene.perception_entropy, self.layout
-        draw_properties(layout, settings, FIRST)
-        methods = layout.row(align=True)
-        for item in settings.bl_rna.properties["method"].enum_items:
-            if item.identifier not in PARTS:
-                methods.prop_enum(settings, "method", item.identifier)
-        own = ("candidates",) if settings.method == RANDOM else ()
-        draw_properties(layout, settings, (*own, "evaluations", "seed"))
-        if settings.targets != OBJECTS:
-            by_ap = settings.objective == EXPECTED_AP
-            names = ("scenes", "ap_model") if by_ap else ("search_samples",)
-            draw_properties(layout, settings, names)
-        draw_declared(layout, settings, "search", ELSEWHERE)
+    draw_properties(layout, settings, FIRST)
+    layout.row(align=True).prop(settings, "method", expand=True)
+    own = ("candidates",) if settings.method == RANDOM else ()
+    draw_properties(layout, settings, (*own, "evaluations", "seed"))
+    if settings.targets != OBJECTS:
+        by_ap = settings.objective == EXPECTED_AP
+        names = ("scenes", "ap_model") if by_ap else ("search_samples",)
+        draw_properties(layout, settings, names)
+    draw_declared(layout, settings, "search", ELSEWHERE)
 
 
-class PE_UL_mounts(Rows, bpy.types.UIList):
+@row_list("PE_UL_mounts")
+def mounts_rows(_context: Context, layout: UILayout, _settings: Any, item: Any) -> None:
     """The mounts: name, faces or slots"""
-
-    def draw_row(self, _context: Context, layout: UILayout, _settings: Any, item: Any) -> None:
-        name, what = columns(layout, 0.6)
-        icon = SLOTS_ICON if item.kind == ON_SLOTS else ICONS[item.faces]
-        name.prop(item, "name", text="", emboss=False, icon=icon)
-        what.alignment = "RIGHT"
-        made = made_of(item)
-        what.label(text="" if made == item.name else shown(made), translate=False)
+    name, what = columns(layout, 0.6)
+    icon = SLOTS_ICON if item.kind == ON_SLOTS else ICONS[item.faces]
+    name.prop(item, "name", text="", emboss=False, icon=icon)
+    what.alignment = "RIGHT"
+    made = made_of(item)
+    what.label(text="" if made == item.name else shown(made), translate=False)
 
 
 def made_of(mount: PropertyGroup) -> str:
@@ -78,24 +66,13 @@ def made_of(mount: PropertyGroup) -> str:
     return names[0] if len(names) == 1 else f"{len(names)} parts"
 
 
-class PE_PT_mounts(Tab, bpy.types.Panel):
+@panel("Mounts", parent="PE_PT_search", count="mounts")
+def mounts(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
     """Where sensors may be mounted: surfaces of the vehicle, or slots of a rack"""
-
-    bl_idname = "PE_PT_mounts"
-    bl_label = "Mounts"
-    bl_parent_id = "PE_PT_search"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw_header_preset(self, context: Context) -> None:
-        count = len(context.scene.perception_entropy.mounts)
-        self.layout.label(text=str(count or ""), translate=False)  # visible also when closed
-
-    def draw(self, context: Context) -> None:
-        settings, layout = context.scene.perception_entropy, self.layout
-        names, buttons = ("mounts", "mount_index"), ("pe.add_mount", "pe.remove_mount")
-        draw_list(layout, PE_UL_mounts, settings, names, buttons)
-        if settings.mount_index < len(settings.mounts):
-            draw_mount(layout, settings.mounts[settings.mount_index])
+    names, buttons = ("mounts", "mount_index"), ("pe.add_mount", "pe.remove_mount")
+    draw_list(layout, mounts_rows, settings, names, buttons)
+    if settings.mount_index < len(settings.mounts):
+        draw_mount(layout, settings.mounts[settings.mount_index])
 
 
 def draw_mount(layout: UILayout, mount: PropertyGroup) -> None:
@@ -115,68 +92,47 @@ def draw_mount(layout: UILayout, mount: PropertyGroup) -> None:
     draw_declared(layout, mount, "optimize.mount")
 
 
-class PE_PT_constraints(Tab, bpy.types.Panel):
+@panel("Constraints", parent="PE_PT_search")
+def constraints(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
     """Constraints of every placement of a search"""
-
-    bl_idname = "PE_PT_constraints"
-    bl_label = "Constraints"
-    bl_parent_id = "PE_PT_search"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: Context) -> None:
-        layout = self.layout
-        draw_declared(layout, context.scene.perception_entropy, "constraints")
-        layout.operator("pe.add_no_go", icon="CUBE")
-        obj = context.active_object
-        if obj is not None and not obj.perception_entropy.is_sensor:
-            layout.label(text=f"{obj.name}:", translate=False)
-            draw_properties(layout, obj.perception_entropy, ("is_no_go", "is_rack"))
+    draw_declared(layout, context.scene.perception_entropy, "constraints")
+    layout.operator("pe.add_no_go", icon="CUBE")
+    obj = context.active_object
+    if obj is not None and not obj.perception_entropy.is_sensor:
+        layout.label(text=f"{obj.name}:", translate=False)
+        draw_properties(layout, obj.perception_entropy, ("is_no_go", "is_rack"))
 
 
-class PE_PT_goals(Tab, bpy.types.Panel):
+@panel("Goals", parent="PE_PT_search")
+def goals(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """When a search stops, from where it starts, and how its result is analysed"""
-
-    bl_idname = "PE_PT_goals"
-    bl_label = "Goals"
-    bl_parent_id = "PE_PT_search"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: Context) -> None:
-        settings, layout = context.scene.perception_entropy, self.layout
-        draw_declared(layout, settings, "optimize.stop")
-        draw_properties(layout, settings, ("start_variants",))
-        draw_declared(layout, settings, "goals", ("keep_blind_ground",))
-        draw_declared(layout, settings, "optimize.front")
-        layout.operator("pe.choose_sensors", text="Find Front", icon="FCURVE")
-        if settings.front and settings.front[0].figures:
-            draw_front(layout, settings, context)
+    draw_declared(layout, settings, "optimize.stop")
+    draw_properties(layout, settings, ("start_variants",))
+    draw_declared(layout, settings, "goals", ("keep_blind_ground",))
+    draw_declared(layout, settings, "optimize.front")
+    layout.operator("pe.choose_sensors", text="Find Front", icon="FCURVE")
+    if settings.front and settings.front[0].figures:
+        draw_front(layout, settings, context)
 
 
-class PE_PT_tolerance(Tab, bpy.types.Panel):
+@panel("Tolerance", parent="PE_PT_search")
+def tolerance(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
     """What placements have to tolerate: mounting errors, or the loss of a sensor"""
-
-    bl_idname = "PE_PT_tolerance"
-    bl_label = "Tolerance"
-    bl_parent_id = "PE_PT_search"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: Context) -> None:
-        settings, layout = context.scene.perception_entropy, self.layout
-        draw_properties(layout, settings, ("mounting_errors",))
-        column = layout.column()
-        column.active = settings.mounting_errors
-        draw_declared(column, settings, "optimize.tolerance")
-        draw_declared(layout, settings, "cases", ("worst",))
-        row = layout.row()
-        row.active = settings.mounting_errors or settings.failures
-        row.prop(settings, "worst")
+    draw_properties(layout, settings, ("mounting_errors",))
+    column = layout.column()
+    column.active = settings.mounting_errors
+    draw_declared(column, settings, "optimize.tolerance")
+    draw_declared(layout, settings, "cases", ("worst",))
+    row = layout.row()
+    row.active = settings.mounting_errors or settings.failures
+    row.prop(settings, "worst")
 
 
 CLASSES = (
-    PE_PT_search,
-    PE_UL_mounts,
-    PE_PT_mounts,
-    PE_PT_constraints,
-    PE_PT_tolerance,
-    PE_PT_goals,
+    search,
+    mounts_rows,
+    mounts,
+    constraints,
+    tolerance,
+    goals,
 )

@@ -2,54 +2,46 @@
 
 from __future__ import annotations
 
-import bpy
 from bpy.types import Context, Object, PropertyGroup, UILayout
 
 from ..language import draw_label, shown
 from ..operators import holder_of
 from ..properties import AXIS_LABELS
-from .layout import Tab, draw_sentence
+from .layout import draw_sentence, panel
 
 POSITION_LABELS = ("X", "Y", "Height")
 """Height is z of the optical centre over the ground."""
 
 
-class PE_PT_sensor(Tab, bpy.types.Panel):
+def _sensor_is_shown(context: Context) -> bool:
+    obj = context.active_object
+    return obj is not None and obj.perception_entropy.is_sensor
+
+
+@panel("Sensor", closed=False, poll=_sensor_is_shown)
+def sensor(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
     """Settings of the sensor that is selected"""
-
-    bl_idname = "PE_PT_sensor"
-    bl_label = "Sensor"
-
-    @classmethod
-    def poll(cls, context: Context) -> bool:
-        obj = context.active_object
-        return obj is not None and obj.perception_entropy.is_sensor
-
-    def draw(self, context: Context) -> None:
-        obj = context.active_object
-        settings = obj.perception_entropy
-        layout = self.layout
-        layout.prop(settings, "model")
-        layout.prop(settings, "fusion")
-        draw_pose(layout, context, obj)
-        row = layout.row(align=True)
-        row.operator("pe.look_through", icon="VIEW_CAMERA").name = obj.name
-        view = context.scene.perception_entropy.view
-        row.prop(view, "show_inset", toggle=True, icon="IMAGE_PLANE")
-        layout.operator("pe.stand_upright", icon="ORIENTATION_GLOBAL")
-        draw_mirror(layout, obj)
-        split = layout.split(factor=0.4)
-        draw_label(split, "Mounted on")
-        mount_name = settings.mount or "Box of Coordinates"
-        split.operator_menu_enum(
-            "pe.mount_sensor", "mount", text=shown(mount_name), translate=False
-        )
-        layout.prop(settings, "rack")
-        draw_label(layout, f"The search may change, for {obj.name}:")
-        layout.prop(settings, "stays")
-        column = layout.column()
-        column.active = not settings.stays
-        draw_free(column, settings)
+    obj = context.active_object
+    settings = obj.perception_entropy
+    layout.prop(settings, "model")
+    layout.prop(settings, "fusion")
+    draw_pose(layout, context, obj)
+    row = layout.row(align=True)
+    row.operator("pe.look_through", icon="VIEW_CAMERA").name = obj.name
+    view = context.scene.perception_entropy.view
+    row.prop(view, "show_inset", toggle=True, icon="IMAGE_PLANE")
+    layout.operator("pe.stand_upright", icon="ORIENTATION_GLOBAL")
+    draw_mirror(layout, obj)
+    split = layout.split(factor=0.4)
+    draw_label(split, "Mounted on")
+    mount_name = settings.mount or "Box of Coordinates"
+    split.operator_menu_enum("pe.mount_sensor", "mount", text=shown(mount_name), translate=False)
+    layout.prop(settings, "rack")
+    draw_label(layout, f"The search may change, for {obj.name}:")
+    layout.prop(settings, "stays")
+    column = layout.column()
+    column.active = not settings.stays
+    draw_free(column, settings)
 
 
 def draw_pose(layout: UILayout, context: Context, obj: Object) -> None:
@@ -94,75 +86,59 @@ def draw_free(layout: UILayout, settings: PropertyGroup) -> None:
         part.prop(settings, "free", index=index, text=shown(label), translate=False, toggle=True)
 
 
-class PE_PT_bounds(Tab, bpy.types.Panel):
+@panel("Bounds", parent="PE_PT_sensor")
+def bounds(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
     """Bounds of the search for this sensor; by default the vehicle's outline and 0.75 m above it"""
-
-    bl_idname = "PE_PT_bounds"
-    bl_label = "Bounds"
-    bl_parent_id = "PE_PT_sensor"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: Context) -> None:
-        layout = self.layout
-        settings = context.active_object.perception_entropy
-        column = layout.column(align=True)
-        for index, label in enumerate(AXIS_LABELS):
-            if not settings.free[index]:
-                continue
-            row = column.row(align=True)
-            bounded = settings.bounded[index]
-            text = shown(label if bounded else f"Bound {label}")
-            button = row.operator("pe.bound_axis", text=text, depress=bounded, translate=False)
-            button.axis = index
-            if bounded:
-                pair = row.row(align=True)
-                pair.alert = settings.bounds_low[index] >= settings.bounds_high[index]
-                pair.prop(settings, "bounds_low", index=index, text="")
-                pair.prop(settings, "bounds_high", index=index, text="")
-
-
-class PE_PT_own_curve(Tab, bpy.types.Panel):
-    """Score this sensor with an AP curve of its own: another perception algorithm"""
-
-    bl_idname = "PE_PT_own_curve"
-    bl_label = "Own AP Curve"
-    bl_parent_id = "PE_PT_sensor"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw_header(self, context: Context) -> None:
-        self.layout.prop(context.active_object.perception_entropy, "own_curve", text="")
-
-    def draw(self, context: Context) -> None:
-        settings = context.active_object.perception_entropy
-        column = self.layout.column()
-        column.active = settings.own_curve
-        draw_label(column, "AP = a ln m + b")
+    settings = context.active_object.perception_entropy
+    column = layout.column(align=True)
+    for index, label in enumerate(AXIS_LABELS):
+        if not settings.free[index]:
+            continue
         row = column.row(align=True)
-        row.prop(settings, "curve_a")
-        row.prop(settings, "curve_b")
+        bounded = settings.bounded[index]
+        text = shown(label if bounded else f"Bound {label}")
+        button = row.operator("pe.bound_axis", text=text, depress=bounded, translate=False)
+        button.axis = index
+        if bounded:
+            pair = row.row(align=True)
+            pair.alert = settings.bounds_low[index] >= settings.bounds_high[index]
+            pair.prop(settings, "bounds_low", index=index, text="")
+            pair.prop(settings, "bounds_high", index=index, text="")
 
 
-class PE_PT_part(Tab, bpy.types.Panel):
+def _own_curve_header(layout: UILayout, context: Context) -> None:
+    layout.prop(context.active_object.perception_entropy, "own_curve", text="")
+
+
+@panel("Own AP Curve", parent="PE_PT_sensor", header=_own_curve_header)
+def own_curve(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
+    """Score this sensor with an AP curve of its own: another perception algorithm"""
+    settings = context.active_object.perception_entropy
+    column = layout.column()
+    column.active = settings.own_curve
+    draw_label(column, "AP = a ln m + b")
+    row = column.row(align=True)
+    row.prop(settings, "curve_a")
+    row.prop(settings, "curve_b")
+
+
+def _part_is_shown(context: Context) -> bool:
+    obj = context.active_object
+    return obj is not None and obj.type != "EMPTY" and not obj.perception_entropy.is_sensor
+
+
+@panel("Vehicle Part", closed=False, poll=_part_is_shown)
+def part(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
     """Settings of the part of the vehicle that is selected"""
-
-    bl_idname = "PE_PT_part"
-    bl_label = "Vehicle Part"
-
-    @classmethod
-    def poll(cls, context: Context) -> bool:
-        obj = context.active_object
-        return obj is not None and obj.type != "EMPTY" and not obj.perception_entropy.is_sensor
-
-    def draw(self, context: Context) -> None:
-        obj = context.active_object
-        self.layout.label(text=obj.name, icon="OBJECT_DATA", translate=False)
-        self.layout.prop(obj.perception_entropy, "see_through")
-        self.layout.prop(obj.perception_entropy, "cover_loss_db", text="Radar Cover [dB]")
+    obj = context.active_object
+    layout.label(text=obj.name, icon="OBJECT_DATA", translate=False)
+    layout.prop(obj.perception_entropy, "see_through")
+    layout.prop(obj.perception_entropy, "cover_loss_db", text="Radar Cover [dB]")
 
 
 CLASSES = (
-    PE_PT_sensor,
-    PE_PT_own_curve,
-    PE_PT_bounds,
-    PE_PT_part,
+    sensor,
+    own_curve,
+    bounds,
+    part,
 )

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import bpy
 from bpy.types import Context, Object, PropertyGroup, Scene, UILayout
 
 from ..language import draw_label
 from ..operators import listed_sensors
 from ..properties import SensorFigures, figures_of_sensor
-from .layout import Rows, letters_per_line
+from .layout import letters_per_line, row_list
 
 MIN_NAME_SHARE = 0.34
 """Smallest share of a row for the name."""
@@ -37,23 +36,25 @@ def draw_sensors(layout: UILayout, context: Context) -> None:
     draw_header(box, share)
     if len(objects) > MAX_ROWS:
         given = context.scene, "objects", context.scene.perception_entropy, "selected_sensor"
-        box.template_list(PE_UL_sensors.__name__, "", *given, rows=MAX_ROWS, maxrows=MAX_ROWS)
+        box.template_list(sensors_rows.__name__, "", *given, rows=MAX_ROWS, maxrows=MAX_ROWS)
         return
     for obj in objects:
         draw_sensor(box, context, obj, share)
 
 
-class PE_UL_sensors(Rows, bpy.types.UIList):
+def shown_sensors(
+    _self: Any, context: Context, data: Scene, name: str
+) -> tuple[list[int], list[int]]:
+    """Show the sensors alone, in the order of the list."""
+    return shown_rows(list(getattr(data, name)), listed_sensors(context.scene))
+
+
+@row_list("PE_UL_sensors", filter_items=shown_sensors)
+def sensors_rows(context: Context, layout: UILayout, _scene: Any, item: Any) -> None:
     """The sensors of the scene, without its other objects"""
-
-    def draw_row(self, context: Context, layout: UILayout, _scene: Any, item: Any) -> None:
-        objects = listed_sensors(context.scene)
-        share = name_share(objects, letters_per_line(context) - BESIDE_LETTERS)
-        draw_sensor(layout, context, item, share)
-
-    def filter_items(self, context: Context, data: Scene, name: str) -> tuple[list[int], list[int]]:
-        """Show the sensors alone, in the order of the list."""
-        return shown_rows(list(getattr(data, name)), listed_sensors(context.scene))
+    objects = listed_sensors(context.scene)
+    share = name_share(objects, letters_per_line(context) - BESIDE_LETTERS)
+    draw_sensor(layout, context, item, share)
 
 
 def shown_rows(objects: list[Object], sensors: list[Object]) -> tuple[list[int], list[int]]:
@@ -200,4 +201,4 @@ def _cells(layout: UILayout, wide: bool) -> list[UILayout]:
     return [name, loss, where] if half is None else [name, loss, where, half.row(align=True)]
 
 
-CLASSES = (PE_UL_sensors,)
+CLASSES = (sensors_rows,)

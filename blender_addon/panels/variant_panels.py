@@ -10,54 +10,52 @@ from bpy.types import Context, Object, PropertyGroup, UILayout
 from ..choices import RANDOM
 from ..language import draw_label, shown
 from ..operators import known_rigs
-from .layout import Rows, Tab, columns, draw_declared, draw_list, draw_properties, draw_sentence
+from .layout import (
+    columns,
+    draw_declared,
+    draw_list,
+    draw_properties,
+    draw_sentence,
+    panel,
+    row_list,
+)
 
 
-class PE_UL_variants(Rows, bpy.types.UIList):
+@row_list("PE_UL_variants")
+def variants_rows(_context: Context, layout: UILayout, settings: Any, item: Any) -> None:
     """Variants: which one is in the scene, name, entropy"""
-
-    def draw_row(self, _context: Context, layout: UILayout, settings: Any, item: Any) -> None:
-        active = item.key == settings.variant_key
-        row = layout.row(align=True)
-        tick = "RADIOBUT_ON" if active else "RADIOBUT_OFF"
-        row.operator("pe.switch_variant", text="", icon=tick, emboss=False).key = item.key
-        name, figures = columns(row, 0.74)
-        name.prop(item, "name", text="", emboss=False)
-        if active and settings.variant_changed:
-            name.label(text="", icon="GREASEPENCIL")
-        figures.alignment = "RIGHT"
-        figures.active = not item.stale
-        if not active:
-            ghost = "GHOST_ENABLED" if item.key == settings.view.ghost_key else "GHOST_DISABLED"
-            row.operator("pe.ghost_variant", text="", icon=ghost, emboss=False).key = item.key
-        else:
-            row.label(text="", icon="BLANK1")
-        figures.label(text=f"{item.entropy:.3f}" if item.has_result else "–", translate=False)
+    active = item.key == settings.variant_key
+    row = layout.row(align=True)
+    tick = "RADIOBUT_ON" if active else "RADIOBUT_OFF"
+    row.operator("pe.switch_variant", text="", icon=tick, emboss=False).key = item.key
+    name, figures = columns(row, 0.74)
+    name.prop(item, "name", text="", emboss=False)
+    if active and settings.variant_changed:
+        name.label(text="", icon="GREASEPENCIL")
+    figures.alignment = "RIGHT"
+    figures.active = not item.stale
+    if not active:
+        ghost = "GHOST_ENABLED" if item.key == settings.view.ghost_key else "GHOST_DISABLED"
+        row.operator("pe.ghost_variant", text="", icon=ghost, emboss=False).key = item.key
+    else:
+        row.label(text="", icon="BLANK1")
+    figures.label(text=f"{item.entropy:.3f}" if item.has_result else "–", translate=False)
 
 
-class PE_PT_variants(Tab, bpy.types.Panel):
+@panel("Variants", closed=False, count="variants")
+def variants(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Designs for this vehicle: save, switch, compare"""
-
-    bl_idname = "PE_PT_variants"
-    bl_label = "Variants"
-
-    def draw_header_preset(self, context: Context) -> None:
-        count = len(context.scene.perception_entropy.variants)
-        self.layout.label(text=str(count or ""), translate=False)  # visible also when closed
-
-    def draw(self, context: Context) -> None:
-        settings, layout = context.scene.perception_entropy, self.layout
-        if not settings.variants:
-            layout.operator("pe.save_variant", icon="ADD")
-            layout.menu(PE_MT_known_rigs.bl_idname, icon="AUTO")
-            return
-        names, operators = ("variants", "variant_index"), ("pe.save_variant", "pe.delete_variant")
-        buttons = draw_list(layout, PE_UL_variants, settings, names, operators, rows=4)
-        buttons.separator()
-        buttons.operator("pe.duplicate_variant", text="", icon="DUPLICATE")
-        draw_state(layout, settings)
-        row = selected(context.scene.perception_entropy)
-        layout.prop(row, "note", text="", icon="TEXT", placeholder="Note")
+    if not settings.variants:
+        layout.operator("pe.save_variant", icon="ADD")
+        layout.menu(PE_MT_known_rigs.bl_idname, icon="AUTO")
+        return
+    names, operators = ("variants", "variant_index"), ("pe.save_variant", "pe.delete_variant")
+    buttons = draw_list(layout, variants_rows, settings, names, operators, rows=4)
+    buttons.separator()
+    buttons.operator("pe.duplicate_variant", text="", icon="DUPLICATE")
+    draw_state(layout, settings)
+    row = selected(context.scene.perception_entropy)
+    layout.prop(row, "note", text="", icon="TEXT", placeholder="Note")
 
 
 class PE_MT_known_rigs(bpy.types.Menu):
@@ -94,24 +92,18 @@ def draw_state(layout: UILayout, settings: PropertyGroup) -> None:
     row.menu(PE_MT_known_rigs.bl_idname, icon="AUTO", text=shown("Add Rig"), translate=False)
 
 
-class PE_PT_selection(Tab, bpy.types.Panel):
+@panel("Sensor Choices")
+def selection(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Choices of models for each sensor, with prices"""
-
-    bl_idname = "PE_PT_selection"
-    bl_label = "Sensor Choices"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: Context) -> None:
-        settings, layout = context.scene.perception_entropy, self.layout
-        obj = context.active_object
-        if obj is not None and obj.perception_entropy.is_sensor:
-            draw_options(layout, obj)
-        else:
-            draw_label(layout, "Select a sensor to choose models for it", "INFO")
-        draw_limits(layout.column(), settings)
-        layout.operator("pe.choose_sensors", icon="VIEWZOOM")
-        if settings.front:
-            draw_front(layout, settings, context)
+    obj = context.active_object
+    if obj is not None and obj.perception_entropy.is_sensor:
+        draw_options(layout, obj)
+    else:
+        draw_label(layout, "Select a sensor to choose models for it", "INFO")
+    draw_limits(layout.column(), settings)
+    layout.operator("pe.choose_sensors", icon="VIEWZOOM")
+    if settings.front:
+        draw_front(layout, settings, context)
 
 
 def draw_options(layout: UILayout, obj: Object) -> None:
@@ -184,7 +176,7 @@ def _draw_design(
 
 CLASSES = (
     PE_MT_known_rigs,
-    PE_UL_variants,
-    PE_PT_variants,
-    PE_PT_selection,
+    variants_rows,
+    variants,
+    selection,
 )

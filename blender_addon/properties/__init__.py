@@ -10,9 +10,10 @@ from bpy.props import PointerProperty
 
 from ..bridge import SensorFigures, StoredWarning, figures_of_sensor
 from ..sensor_kinds import DEFAULT_MODEL
+from ..view_settings import ViewSettings
 from .callbacks import model_suggestions
 from .condition import PE_State, PE_Weather
-from .declared import ROWS, DeclaredRow, declared_rows
+from .declared import ROWS, DeclaredRow, declared_rows, rows_of
 from .list_rows import (
     DEFAULT_REGION,
     PE_CurveSettings,
@@ -28,6 +29,9 @@ from .scene import PE_SceneSettings
 from .sensor import AXIS_LABELS, FREE_BY_DEFAULT, PE_ObjectSettings
 from .view import PE_LiveSettings, PE_ViewSettings
 
+VIEW_ROWS = rows_of(ViewSettings)
+"""Fields of the settings of the 3D view, by property."""
+
 __all__ = [
     "AXIS_LABELS",
     "CLASSES",
@@ -35,6 +39,7 @@ __all__ = [
     "DEFAULT_REGION",
     "FREE_BY_DEFAULT",
     "ROWS",
+    "VIEW_ROWS",
     "DeclaredRow",
     "SensorFigures",
     "StoredWarning",

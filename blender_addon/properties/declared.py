@@ -78,7 +78,14 @@ def _kind_of(
     return FloatProperty, {"min": low, "max": high, "unit": UNITS.get(rule.unit)}
 
 
-def group_of(cls: Any, names: Iterable[str] = (), *, prefix: str = "", **more: Any) -> Any:
+def group_of(
+    cls: Any,
+    names: Iterable[str] = (),
+    *,
+    prefix: str = "",
+    own: dict[str, dict[str, Any]] | None = None,
+    **more: Any,
+) -> Any:
     """Return a mixin of a property group: all settings of a dataclass that the panel shows.
 
     Parameters
@@ -88,6 +95,8 @@ def group_of(cls: Any, names: Iterable[str] = (), *, prefix: str = "", **more: A
         Only these settings; all by default.
     prefix : str
         Before the properties' names.
+    own : dict, optional
+        As of `property_of`, for single settings by their names.
     **more
         As of `property_of`, for each of them.
     """
@@ -96,7 +105,9 @@ def group_of(cls: Any, names: Iterable[str] = (), *, prefix: str = "", **more: A
     return mixin(
         cls.__name__,
         {
-            f"{prefix}{each.panel.property}": property_of(each, **more)
+            f"{prefix}{each.panel.property or each.name}": property_of(
+                each, **more | (own or {}).get(each.name, {})
+            )
             for each in chosen
             if each.panel is not None
         },
@@ -136,6 +147,12 @@ class DeclaredRow(NamedTuple):
     when: str = ""
 
 
+def rows_of(cls: Any) -> dict[str, DeclaredRow]:
+    """Return the fields of a dataclass's settings, by property."""
+    rows = (_row_of(each) for each in studies.settings_of(cls).values() if each.panel is not None)
+    return {row.name: row for row in rows}
+
+
 def declared_rows(part: str) -> tuple[DeclaredRow, ...]:
     """Return the fields that the engine declares for a part of the panel, in their order."""
     return tuple(_row_of(setting) for setting in studies.settings_of_part(part))
@@ -145,7 +162,8 @@ def _row_of(setting: studies.Setting) -> DeclaredRow:
     panel, rule = setting.panel, setting.rule
     assert panel is not None
     is_pair, is_list = isinstance(rule, studies.Pair), isinstance(rule, studies.Several)
-    return DeclaredRow(panel.property, is_pair, is_list, panel.beside, panel.when)
+    name = panel.property or setting.name
+    return DeclaredRow(name, is_pair, is_list, panel.beside, panel.when)
 
 
 ROWS = {

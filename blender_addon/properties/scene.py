@@ -21,7 +21,7 @@ from .callbacks import (
 )
 from .condition import PE_State, PE_Weather
 from .declared import scene_group
-from .fields import menu, number, pointer, rows, switch, text, whole
+from .fields import menu, pointer, rows, switch, text, whole
 from .list_rows import PE_CurveSettings, PE_FocusSettings, PE_MountSettings, PE_OwnSensorSettings
 from .requirement import PE_Requirement
 from .results import PE_Variant
@@ -29,14 +29,9 @@ from .view import PE_LiveSettings, PE_ViewSettings
 
 METHODS = tuple(
     (name, method.label, method.about, 1 + zlib.crc32(name.encode()) % 2**30)
-    for name, method in {**search.METHODS, **search.PARTS}.items()
+    for name, method in search.METHODS.items()
 )
-"""Of searches; a file holds a number that stays a method's whatever others there are. Parts of the
-portfolio come from studies that name them; the panel offers none."""
-
-DEFAULT_BEAM_LIMIT = 5_000
-
-DEFAULT_BEAM_LENGTH_M = 8.0
+"""Of searches; a file holds a number that stays a method's whatever others there are."""
 
 # Before 4.5 every path could be relative to the .blend file; since then a property has to say so.
 PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) else set()
@@ -137,25 +132,6 @@ class PE_SceneSettings(StudyFields, ResultFields, CheckFields, FrontFields, Prop
     show_overlay: switch(
         "Show Perception", "Show in the 3D view what the sensors see and miss", True, update=redraw
     )
-    beam_limit: whole(
-        "Maximum Beams",
-        "Maximum number of drawn beams, evenly chosen; more beams make the view slow",
-        DEFAULT_BEAM_LIMIT,
-        min=1,
-        soft_max=200_000,
-        update=redraw,
-    )
-    beam_length: number(
-        "Beam Length",
-        "Drawn length of beams that hit nothing",
-        DEFAULT_BEAM_LENGTH_M,
-        min=0.1,
-        soft_max=200.0,
-        subtype="DISTANCE",
-        unit="LENGTH",
-        update=redraw,
-    )
-
     view: pointer("View", "Overlay of the 3D view", PE_ViewSettings)
     before_look: text(
         "Before Looking", "Camera and size of pictures before a sensor was looked through, as JSON"

@@ -12,8 +12,8 @@ import numpy as np
 
 import pe_core as pe
 from pe_core.sensors.lidar.bracket import Bracket, Silhouettes, bracket, slice_through
+from pe_core.sensors.lidar.definition import position_in_voxels
 from pe_core.sensors.lidar.lattice import lattice_of
-from pe_core.sensors.lidar.tie_rules import position_in_voxels
 from pe_core.sensors.lidar.upright import Upright, circle, faces_of
 
 SPACE = pe.PerceptionSpace()

@@ -1,11 +1,9 @@
 """Values and files: checks of input values, files read and written whole, TOML, JSON, XML, YAML."""
 
 from .arrays import Flags, Floats, Ints, Singles
-from .csv_text import csv_text
-from .files import decode_text, named_path, read_bytes, require_new, write_bytes
+from .files import csv_text, decode_text, named_path, read_bytes, require_new, write_bytes
 from .memory import available_bytes, require_memory
-from .serialization import dump_json, dumps, parse_json
-from .table_reader import Table
+from .table_reader import Table, dump_json, dumps, parse_json
 from .values import Name, Number
 
 __all__ = [

@@ -1,13 +1,21 @@
-"""Whole files, read with size limits and written atomically; lines and numbers in text files."""
+"""Whole files, read with size limits and written atomically; their lines, numbers, names and CSV.
+
+A spreadsheet computes what begins with ``=``, ``+``, ``-`` or ``@``, and a name may come from
+anybody's file. Such a text gets an apostrophe in front (OWASP, "CSV injection"); our own readers
+take it off again.
+"""
 
 from __future__ import annotations
 
+import csv
+import io
 import math
 import os
 import re
 import secrets
 import stat
 import threading
+import unicodedata
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -20,14 +28,11 @@ LABEL_BYTES = 2 << 30
 """Maximum size of a mesh file and of a file of labelled boxes."""
 TEXT_BYTES = 16 << 20
 """Maximum size of a study, a file of channel angles or a table."""
-
 MAX_NAME_BYTES = 255
 """Most bytes of a name of a file or folder on the usual file systems."""
-
 CHUNK = 1 << 20
 BINARY = getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
 """Flags of every file that is opened: no line ends changed, no child process inherits it."""
-
 _FILE_TYPES = {
     stat.S_IFDIR: "a folder",
     stat.S_IFIFO: "a pipe",
@@ -35,11 +40,18 @@ _FILE_TYPES = {
     stat.S_IFCHR: "a device",
     stat.S_IFBLK: "a device",
 }
-
-
 _writing_files = threading.RLock()
 END_WAIT_S = 5.0
 """How long a process that ends at once waits for a file that a thread is writing."""
+NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+"""Each digit can match in one way only: otherwise the time would grow with the square of a text."""
+MAX_QUOTE = 40
+MARK = "'"
+_FORMULA = re.compile(rf"{MARK}*[=+\-@\t\r\uff1d\uff0b\uff0d\uff20]")
+"""Apostrophes count: a text that has one already gets another, so that it can be told apart."""
+_NUMBERS = re.compile(rf"{NUMBER.pattern}( {NUMBER.pattern})*", re.ASCII)
+MAX_STEM = 100
+_RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 
 
 def read_bytes(path: Path, max_bytes: int = TEXT_BYTES) -> bytes:
@@ -148,16 +160,11 @@ def finish_writing() -> None:
 
 
 def put_in_place(moves: Mapping[Path, Path]) -> None:
-    """Rename whole files that are on the disk, all of them or none, and wait for the disk.
+    """Rename whole files, final by temporary path, all of them or none, and wait for the disk.
 
-    Where the file system has no hard links, a rename that fails leaves the earlier ones.
-
-    Parameters
-    ----------
-    moves : mapping of path to path
-        Final by temporary path, in the same folder each.
-
-    `InputError` when one of them cannot be renamed. The old files are back then.
+    The files are on the disk, each in the folder of its new name. Where the file system has no hard
+    links, a rename that fails leaves the earlier ones. `InputError` when one of them cannot be
+    renamed: the old files are back then.
     """
     old: dict[Path, Path] = {}
     new: list[Path] = []
@@ -190,10 +197,7 @@ def put_in_place(moves: Mapping[Path, Path]) -> None:
 def write_synced(path: Path, data: bytes) -> None:
     """Write a file that is on the disk, not in its cache, when the function returns.
 
-    Raises
-    ------
-    OSError
-        When the disk is full or fails.
+    `OSError` when the disk is full or fails.
     """
     number = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | BINARY, 0o666)
     try:
@@ -208,10 +212,7 @@ def write_synced(path: Path, data: bytes) -> None:
 def sync_file(path: Path) -> None:
     """Have the disk hold a file's bytes before its name counts; a power failure would empty it.
 
-    Raises
-    ------
-    OSError
-        When the disk is full or fails: some file systems tell only here.
+    `OSError` when the disk is full or fails: some file systems tell only here.
     """
     number = os.open(path, os.O_RDWR | BINARY)
     try:
@@ -298,11 +299,6 @@ def reason_of(error: OSError | ValueError) -> str:
     return str(getattr(error, "strerror", None) or error).lower()
 
 
-NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
-"""Each digit can match in one way only: otherwise the time would grow with the square of a text."""
-MAX_QUOTE = 40
-
-
 def parse_number(source: str, where: str, what: str, text: str) -> float:
     """Return a finite number of a text; `what` names it in the message."""
     value = float(text) if NUMBER.fullmatch(text) else math.nan
@@ -321,3 +317,49 @@ def numbered_lines(text: str) -> list[tuple[int, str]]:
     """Return lines and their numbers from 1, without comments, blank lines and trailing blanks."""
     lines = ((n, raw.split("#", 1)[0].rstrip()) for n, raw in enumerate(text.split("\n"), 1))
     return [(n, line) for n, line in lines if line]
+
+
+def csv_text(rows: Iterable[Iterable[object]], *, quote_texts: bool = False) -> str:
+    """Return rows as CSV: None is an empty cell, texts that look like formulas are marked.
+
+    Parameters
+    ----------
+    rows : iterable of iterable
+    quote_texts : bool
+        Whether every text is in quotes, not only those that need them.
+    """
+    text = io.StringIO()
+    if quote_texts:
+        writer = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC)
+    else:
+        writer = csv.writer(text, lineterminator="\n")
+    writer.writerows([marked(c) if isinstance(c, str) else c for c in row] for row in rows)
+    return text.getvalue()
+
+
+def marked(text: str) -> str:
+    """Return a text as a cell: with an apostrophe in front if it looks like a formula."""
+    is_formula = _FORMULA.match(text) and not _NUMBERS.fullmatch(text)
+    return MARK + text if is_formula else text
+
+
+def unmarked(cell: str) -> str:
+    """Return the text of a cell that `marked` made."""
+    return cell[1:] if cell.startswith(MARK) and _FORMULA.match(cell) else cell
+
+
+def is_reserved(name: str) -> bool:
+    """Whether Windows keeps a name for a device, whatever its suffix: no file can have it."""
+    return _RESERVED.fullmatch(name) is not None
+
+
+def file_stem(name: str, default: str, *, joint: str = "_", max_length: int = MAX_STEM) -> str:
+    """Return a name as that of a file, without suffix: ASCII letters, digits, ``-`` and ``_``.
+
+    `default` says what the thing is; it stands for a name without such letters, and `joint` for one
+    or several other characters.
+    """
+    plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
+    stem = re.sub("[^A-Za-z0-9_-]+" if joint == "_" else "[^A-Za-z0-9]+", joint, plain)
+    stem = stem.strip(joint)[:max_length].strip(joint) or default
+    return f"{stem}{joint}{default}" if is_reserved(stem) else stem

@@ -62,7 +62,13 @@ def size_text(count: int) -> str:
 def _limits() -> Iterator[int]:
     yield from _free_memory()
     yield from (int(text) for text in map(_content, GROUP_LIMITS) if text.strip().isdecimal())
-    yield from _address_space()
+    if sys.platform != "win32":
+        import resource
+
+        limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+        used = _content(STATM).split()
+        if limit != resource.RLIM_INFINITY and used:
+            yield max(0, limit - int(used[0]) * resource.getpagesize())
 
 
 def _free_memory() -> Iterator[int]:
@@ -73,17 +79,6 @@ def _free_memory() -> Iterator[int]:
             return
     if hasattr(os, "sysconf") and "SC_PHYS_PAGES" in os.sysconf_names:
         yield os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-
-
-def _address_space() -> Iterator[int]:
-    """Rest of the limit that `ulimit -v` sets."""
-    if sys.platform != "win32":
-        import resource
-
-        limit, _ = resource.getrlimit(resource.RLIMIT_AS)
-        used = _content(STATM).split()
-        if limit != resource.RLIM_INFINITY and used:
-            yield max(0, limit - int(used[0]) * resource.getpagesize())
 
 
 def _content(path: Path) -> str:

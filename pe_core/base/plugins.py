@@ -94,12 +94,8 @@ def plugin_name(point: EntryPoint) -> str:
 def load_plugin(point: EntryPoint) -> Any:
     """Return the object that an entry point names.
 
-    Raises
-    ------
-    ImportError
-        When a library is missing; the caller knows which extra installs it.
-    InputError
-        When the plugin fails while it is loaded.
+    `ImportError` when a library is missing: the caller knows which extra installs it. `InputError`
+    when the plugin fails while it is loaded.
     """
     return _guarded(point, "to load", point.load, ImportError)
 
@@ -115,13 +111,9 @@ def call_plugin(point: EntryPoint, function: Any, *arguments: Any) -> Any:
 
 
 def required_plugin(sort: str, name: str, source: str, field: str, expected: str) -> Any:
-    """Return a plugin and what it leads to.
+    """Return a plugin, and what it leads to.
 
-    Returns
-    -------
-    tuple of EntryPoint and what it leads to
-
-    `InputError` There is no such plugin, or a library is missing: `expected` says what to install.
+    `InputError` when there is none, or a library is missing: `expected` says what to install.
     """
     point = find_plugin(sort, name)
     if point is None:

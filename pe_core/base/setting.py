@@ -3,22 +3,26 @@
 The declaration has the allowed values (`rule`), the meaning (`text`) and the field in Blender's
 panel (`panel`). Name, type and default are those of the dataclass field. Five things follow from
 the declaration: the check when the dataclass is made (`check_settings`), the key of the study file
-(`setting_file`), the property and its tooltip in Blender, loading a study into a scene, and the
+(`read_settings`), the property and its tooltip in Blender, loading a study into a scene, and the
 table of keys in docs/settings.md.
 """
 
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Iterable
 from dataclasses import MISSING, dataclass, field, fields
 from typing import Any, Protocol, TypeVar
 
 from .errors import InputError, shown
-from .values import A_NAME, Name, Number, choice, listed, pair, vector
+from .table_reader import REQUIRED as NEEDED
+from .table_reader import Table
+from .values import A_NAME, ANY, Angle, Name, Number, choice, degrees_in_file, listed, pair, vector
 
 T = TypeVar("T")
 _KEY = "setting"
+REQUIRED = MISSING
 
 
 class ValueRule(Protocol):
@@ -114,7 +118,7 @@ class Panel:
     Parameters
     ----------
     property : str
-        Name of the property in .blend files; it never changes.
+        Name of the property in .blend files, which never changes; empty: that of the field.
     label : str
     default : optional
         The panel's initial value, if it differs from that of a study file.
@@ -134,7 +138,7 @@ class Panel:
         Word beside the field while it is 0.
     when : str
         The field is drawn while this property is not 0 (``night``), or has this value
-        (``targets=objects``).
+        (``targets=objects``) or another (``targets!=objects``).
     """
 
     property: str
@@ -190,9 +194,6 @@ class Setting:
         return f"{self.text}; 0: {zero}" if zero else self.text
 
 
-REQUIRED = MISSING
-
-
 def setting(
     default: T, rule: ValueRule, text: str, panel: Panel | None = None, *, scored: bool = False
 ) -> T:
@@ -224,18 +225,10 @@ def _declared(cls: Any) -> dict[str, Setting]:
 
 
 def check_settings(instance: Any, source: str, prefix: str = "", names: Iterable[str] = ()) -> None:
-    """Replace each setting of a frozen dataclass by its checked value.
+    """Replace each setting of a frozen dataclass, or those of `names`, by its checked value.
 
-    Parameters
-    ----------
-    instance : dataclass
-        Called from its ``__post_init__``.
-    source, prefix : str
-        Source and prefix of the field's name, for messages.
-    names : iterable of str
-        Only these settings; all by default.
-
-    `InputError` when a value breaks its rule.
+    It is called from ``__post_init__``. `source`, and a `prefix` of the field's name, are for the
+    message of the `InputError` when a value breaks its rule.
     """
     settings = settings_of(type(instance))
     for name in names or settings:
@@ -243,3 +236,78 @@ def check_settings(instance: Any, source: str, prefix: str = "", names: Iterable
         if value is not None or not settings[name].is_optional:
             checked = settings[name].rule.checked(source, prefix + name, value)
             object.__setattr__(instance, name, checked)
+
+
+def key_of(name: str) -> str:
+    """Return the key of a setting in its table: angles are in degrees there."""
+    return name.replace("_rad", "_deg")
+
+
+def read_settings(
+    table: Table, cls: type, names: Iterable[str] = (), default: object = None
+) -> dict[str, Any]:
+    """Return the settings of a dataclass that a table has, defaults for the others.
+
+    An instance as `default` has the defaults in place of the declared ones.
+
+    `InputError` when a value breaks its rule; the line names the key in the file.
+    """
+    settings = settings_of(cls)
+    return {
+        name: _read(table, settings[name], getattr(default, name, settings[name].default))
+        for name in names or settings
+    }
+
+
+def read_declared(table: Table, cls: type[T], *others: Any, default: T | None = None) -> T:
+    """Return a dataclass of settings from its table, which has no further keys.
+
+    `others` are fields before them that are no settings. Errors name the table.
+    """
+    values = read_settings(table, cls, default=default)
+    table.finish()
+    with table.naming():
+        return cls(*others, **values)
+
+
+def settings_table(instance: Any, names: Iterable[str] = ()) -> dict[str, Any]:
+    """Return the table that `read_settings` reads; None for what is absent."""
+    settings = settings_of(type(instance))
+    return {
+        key_of(name): value_in_file(settings[name], getattr(instance, name))
+        for name in names or settings
+    }
+
+
+def changed_settings(instance: Any, names: Iterable[str] = ()) -> dict[str, Any]:
+    """Return the table that `read_settings` reads, without what has its default."""
+    settings = settings_of(type(instance))
+    changed = [n for n in names or settings if getattr(instance, n) != settings[n].default]
+    return settings_table(instance, changed) if changed else {}
+
+
+def value_in_file(setting: Setting, value: Any) -> Any:
+    """Return a value as a file holds it: angles in degrees, lists for tuples."""
+    if isinstance(value, tuple):
+        return [value_in_file(setting, each) for each in value]
+    return degrees_in_file(value) if value is not None and _is_angle(setting) else value
+
+
+def _is_angle(setting: Setting) -> bool:
+    rule = setting.rule
+    return isinstance(rule.rule if isinstance(rule, Triple) else rule, Angle)
+
+
+def _read(table: Table, setting: Setting, default: Any) -> Any:
+    key = key_of(setting.name)
+    value = table.raw(key, NEEDED if default is REQUIRED else default)
+    if key not in table:
+        return value
+    source, field = table.source, table.field(key)
+    if not _is_angle(setting):
+        return setting.rule.checked(source, field, value)
+    items = listed(value, 3) if isinstance(setting.rule, Triple) else None
+    if items is None:
+        return setting.rule.checked(source, field, math.radians(ANY.checked(source, field, value)))
+    radians = [math.radians(ANY.checked(source, field, item)) for item in items]
+    return setting.rule.checked(source, field, radians)

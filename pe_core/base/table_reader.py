@@ -1,7 +1,14 @@
-"""A table of plain data, such as TOML gives, read and checked field by field."""
+"""Tables of plain data, read and checked field by field, from and to TOML and JSON as text.
+
+The standard library reads TOML; it does not write it.
+"""
 
 from __future__ import annotations
 
+import json
+import math
+import re
+import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -11,6 +18,13 @@ from .values import A_TEXT, ANY, Name, Number, Whole, choice, listed, real
 
 REQUIRED = object()
 WHOLE = Whole()
+MAX_KEY_PARTS = 30
+"""Maximum parts of a dotted key. The library's time and memory grow with their square: 17 s and
+1.7 GB for a key of 40 kB."""
+PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+"""
+HALF = re.compile("[\ud800-\udfff]|" + r"\\u[dD][89a-fA-F]")
+"""What may be half a surrogate pair in a JSON text."""
+LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-])(?:{PART}){{{MAX_KEY_PARTS},}}+")
 
 
 class Table:
@@ -61,7 +75,9 @@ class Table:
         except InputError as error:
             if error.source == self.source:
                 raise
-            raise self.error(error.field, error.expected, error.found) from None
+            own = self.path.rpartition(".")[2].partition("[")[0]
+            key = error.field.removeprefix(f"{own}.")
+            raise self.error(key, error.expected, error.found) from None
 
     def raw(self, key: str, default: Any = REQUIRED) -> Any:
         """Return the unchecked value of a key."""
@@ -133,3 +149,122 @@ class Table:
             if key not in self._read:
                 known = ", ".join(sorted(self._read))
                 raise self.error(key, f"one of {known}", "an unknown key")
+
+
+def load_toml(source: object, field: str, text: str) -> dict[str, Any]:
+    """Return the tables of a TOML text.
+
+    `InputError` when it is not TOML, is nested too deep, or has an integer of thousands of digits
+    or a key of more than `MAX_KEY_PARTS` parts.
+    """
+    if found := LONG_KEY.search(text):
+        line = text.count("\n", 0, found.start()) + 1
+        raise InputError(source, f"line {line}", f"keys of at most {MAX_KEY_PARTS} parts", "more")
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        raise InputError(source, field, "valid TOML", "lists or tables nested too deep") from None
+    except ValueError as error:  # of tomllib, or of int() for too many digits
+        raise InputError(source, field, "valid TOML", error) from None
+
+
+def dumps(data: Mapping[str, Any]) -> str:
+    """Return TOML text of nested mappings, lists and scalars; floats round-trip exactly.
+
+    A mapping becomes a table, a list of mappings an array of tables. Values of None are left out.
+    """
+    return "\n".join(_table(data, "")).lstrip("\n") + "\n"
+
+
+def _table(data: Mapping[str, Any], path: str) -> list[str]:
+    items = {k: v for k, v in data.items() if v is not None}
+    lines = [f"{_key(k)} = {_value(v)}" for k, v in items.items() if not _is_section(v)]
+    for key, value in items.items():
+        name = f"{path}.{_key(key)}" if path else _key(key)
+        if isinstance(value, Mapping):
+            lines += ["", f"[{name}]", *_table(value, name)]
+        elif _is_section(value):
+            for element in value:
+                lines += ["", f"[[{name}]]", *_table(element, name)]
+    return lines
+
+
+def _is_section(value: object) -> bool:
+    if isinstance(value, list):
+        return bool(value) and all(isinstance(v, Mapping) for v in value)
+    return isinstance(value, Mapping)
+
+
+def _key(key: str) -> str:
+    plain = key and all(c.isascii() and (c.isalnum() or c in "-_") for c in key)
+    return key if plain else _value(key)
+
+
+def _value(value: object) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float):
+        words = {math.inf: "inf", -math.inf: "-inf"}
+        # The repr of a NumPy float names its type.
+        return "nan" if math.isnan(value) else words.get(value) or float.__repr__(value)
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_value(v) for v in value) + "]"
+    raise TypeError(f"no TOML for {type(value).__name__}")
+
+
+def dump_json(data: Any) -> str:
+    """Return JSON text; floats round-trip exactly. Infinity and NaN are refused (see `finite`)."""
+    return json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def finite(value: Any) -> Any:
+    """Return data that JSON can hold: infinity becomes the text ``inf`` or ``-inf``, NaN null."""
+    if isinstance(value, dict):
+        return {k: finite(v) for k, v in value.items()}
+    if isinstance(value, list):
+        return [finite(v) for v in value]
+    if isinstance(value, float) and value in (float("inf"), float("-inf")):
+        return str(value)
+    if isinstance(value, float) and value != value:
+        return None
+    return value
+
+
+def parse_json(source: object, text: str | bytes, *, infinite: bool = False) -> Any:
+    """Return the data of a JSON text; bytes are in UTF-8.
+
+    What Python takes but no file could be written of is refused: NaN, infinity (unless `infinite`
+    allows it), numbers beyond those of 64 bits, halves of surrogate pairs.
+
+    Raises
+    ------
+    InputError
+    """
+
+    def constant(word: str) -> float:
+        if infinite and word.endswith("Infinity"):
+            return float(word)
+        raise ValueError(f"{word}, which is no JSON")
+
+    def number(digits: str) -> float:
+        value = float(digits)
+        if math.isinf(value):
+            raise ValueError(f"{digits[:20]}, which is too large")
+        return value
+
+    try:
+        text = text if isinstance(text, str) else text.decode("utf-8-sig")
+        data = json.loads(text, parse_constant=constant, parse_float=number)
+        if HALF.search(text):
+            json.dumps(data, ensure_ascii=False).encode()
+        return data
+    except RecursionError:
+        raise InputError(source, "file", "valid JSON", "too many nested brackets") from None
+    except UnicodeEncodeError:
+        raise InputError(source, "file", "valid JSON", "half a surrogate pair") from None
+    except ValueError as error:
+        raise InputError(source, "file", "valid JSON", error) from None

@@ -19,10 +19,9 @@ from typing import Any
 from ..base.arrays import read_only_data
 from ..base.errors import InputError, shown
 from ..base.files import decode_text, read_bytes
-from ..base.serialization import load_toml
+from ..base.table_reader import load_toml
 from ..base.values import A_NAME, A_TEXT
-from ..scene.housing import Housing
-from ..scene.rig import Rig, Sensor, SensorModel
+from ..scene.rig import Housing, Rig, Sensor, SensorModel
 from ..scene.vehicle import Vehicle
 from ..sensors import kind_named, kind_of
 from .housings import read_housing, scan_above_base

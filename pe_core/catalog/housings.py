@@ -8,7 +8,7 @@ from typing import Any
 
 from ..base.errors import InputError, shown
 from ..base.values import A_TEXT, LENGTH, choice, vector
-from ..scene.housing import NEAR, SHAPES, Housing
+from ..scene.rig import NEAR, SHAPES, Housing
 
 KEYS = {
     "cylinder": frozenset({"shape", "diameter", "height", "optical_height", "source"}),

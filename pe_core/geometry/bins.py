@@ -3,27 +3,49 @@
 On a face a direction is (1, u, v): the other two coordinates are divided by the depth, which is the
 coordinate along the face's axis. The raster covers the directions of the mesh only. It has `count`
 by `count` bins: the rows follow one another along u, the bins of a row along v.
+
+Index arrays are ranges counted up side by side, or cut into blocks.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arrays import Floats, Ints
-from .indexing import count_up
 
 Spans = tuple[Floats, Floats]
 """Minimum and maximum of a coordinate of G shapes, each (G,)."""
-
 MARGIN = 1e-9
 """Projections are enlarged by this in u and v, against rounding errors."""
 BOX_MARGIN = 2e-9
 """The same for boxes; larger, so that the projection of a box contains that of its content."""
 SIDE_MARGIN = 1e-11
 """Rounding error of a plane through two corners, relative to the farthest corner's distance^2."""
+TALL = 2
+"""Shapes over more rows than this are cut row by row along their sides."""
+
+
+def count_up(counts: Ints) -> Ints:
+    """Return ``0 .. c0 - 1, 0 .. c1 - 1, ...`` in one array."""
+    ends = np.cumsum(counts)
+    total = int(ends[-1]) if len(ends) else 0
+    return np.arange(total) - np.repeat(ends - counts, counts)
+
+
+def stable_order(keys: Ints) -> Ints:
+    """Return the stable order of keys in 0 .. 2^32 - 1; NumPy's radix sort wants 16-bit keys."""
+    order = np.argsort(keys.astype(np.uint16), kind="stable")
+    return order[np.argsort((keys >> 16).astype(np.uint16)[order], kind="stable")]
+
+
+def blocks(total: int, size: int) -> Iterator[slice]:
+    """Yield slices of at most `size` that cover ``range(total)``: blocks that fit the cache."""
+    for start in range(0, total, size):
+        yield slice(start, min(start + size, total))
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,10 +140,6 @@ class RowSpans:
     row: Ints
     first: Ints
     last: Ints
-
-
-TALL = 2
-"""Shapes over more rows than this are cut row by row along their sides."""
 
 
 def row_spans(

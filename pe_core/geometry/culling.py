@@ -25,7 +25,7 @@ from .bins import (
     spans_of_triangles,
 )
 from .poses import cross, dot
-from .triangle_tree import TriangleTree
+from .ray_traversal import TriangleTree
 
 NEAR_MARGIN = 1e-9
 """Relative enlargement of a triangle's bounding sphere, against rounding errors."""

@@ -13,7 +13,7 @@ from ..base.arrays import Floats, Ints
 from ..base.errors import InputError
 from ..base.setting import Pair, Panel, check_settings, setting
 from ..base.values import Number
-from .indexing import count_up
+from .bins import count_up
 
 PAPER_INTERVAL_M = 0.1
 MAX_VOXELS = 2**31

@@ -21,9 +21,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arrays import Floats, Ints, Singles
-from .bins import MARGIN, SIDE_MARGIN, Raster, corner_max, corner_min, row_spans, spans_of_triangles
+from .bins import (
+    MARGIN,
+    SIDE_MARGIN,
+    Raster,
+    corner_max,
+    corner_min,
+    count_up,
+    row_spans,
+    spans_of_triangles,
+)
 from .culling import FaceLook, Targets
-from .indexing import count_up
 from .poses import cross, dot
 
 ROUNDING = 1e-6
@@ -183,21 +191,16 @@ class _Sheet:
         item, k = np.nonzero(net[edge])
         corners = self._look.tree.triangles[own[item]] - self._look.origin
         rows = np.arange(len(item))
-        return _bins_of_lines(
-            corners[rows, k], corners[rows, (k + 1) % 3], self._look, self._window
+        a = corners[rows, k]
+        b = corners[rows, (k + 1) % 3]
+        depth, u, v = self._look.face.split(np.stack([a, b, b]).transpose(2, 0, 1))
+        spans = (spans_of_triangles(depth, u), spans_of_triangles(depth, v))
+        some = np.flatnonzero((corner_max(depth) > 0.0) & self._window.touches(*spans))
+        plane = np.stack(self._look.face.split(cross(a[some], b[some]).T))
+        reach = np.maximum(dot(a[some], a[some]), dot(b[some], b[some]))
+        within = [(w[0][some], w[1][some]) for w in spans]
+        shown = row_spans(
+            self._window, (within[0], within[1]), [plane, -plane], reach, np.ones(len(some), bool)
         )
-
-
-def _bins_of_lines(a: Floats, b: Floats, look: FaceLook, raster: Raster) -> Ints:
-    """Bins that lines from corners a to b, each (L, 3), may touch."""
-    depth, u, v = look.face.split(np.stack([a, b, b]).transpose(2, 0, 1))
-    spans = (spans_of_triangles(depth, u), spans_of_triangles(depth, v))
-    some = np.flatnonzero((corner_max(depth) > 0.0) & raster.touches(*spans))
-    plane = np.stack(look.face.split(cross(a[some], b[some]).T))
-    reach = np.maximum(dot(a[some], a[some]), dot(b[some], b[some]))
-    within = [(w[0][some], w[1][some]) for w in spans]
-    shown = row_spans(
-        raster, (within[0], within[1]), [plane, -plane], reach, np.ones(len(some), bool)
-    )
-    n = shown.last - shown.first + 1
-    return np.repeat(shown.row * raster.count + shown.first, n) + count_up(n)
+        n = shown.last - shown.first + 1
+        return np.repeat(shown.row * self._window.count + shown.first, n) + count_up(n)

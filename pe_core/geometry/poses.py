@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
-from ..base.degrees import degrees_in_file
-from ..base.values import Angle, Number, vector
+from ..base.values import Angle, Number, degrees_in_file, vector
 
 FARTHEST_M = 1e4
 """Maximum magnitude of a coordinate; kernels rely on it."""

@@ -21,11 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arrays import Floats, Ints
-from .bins import FACES, Raster, RowSpans, Spans, row_spans
+from .bins import FACES, Raster, RowSpans, Spans, blocks, count_up, row_spans, stable_order
 from .culling import Ends, FaceLook, Facing, Targets, VisibleBoxes, min_distance
-from .indexing import blocks, count_up, stable_order
-from .ray_traversal import RayBoxes, RayWalk
-from .triangle_tree import TriangleTree
+from .ray_traversal import RayBoxes, RayWalk, TriangleTree
 
 MAX_BINS = 1024
 """Maximum number of bins along a side."""

@@ -19,8 +19,7 @@ from ..base.memory import require_memory
 from ..base.setting import NAMES, Pair, Panel, check_settings, required_setting, setting
 from ..base.values import WEIGHT, Number, choice
 from ..geometry.grids import PerceptionSpace
-from .box_density import voxelised
-from .boxes import Boxes, BoxReport
+from .boxes import Boxes, BoxReport, voxelised
 from .classes import (
     HIGHWAY_CLASSES,
     ROAD_CLASSES,

@@ -2,10 +2,9 @@
 
 from ..geometry.grids import PerceptionSpace
 from ..geometry.poses import Pose, rotate, rotation_matrix, rpy_from_matrix
-from .body_shape import BodyShape
-from .housing import Housing, cuts_body
+from .mesh import BodyShape
 from .objects import Objects
-from .rig import Rig, Sensor
+from .rig import Housing, Rig, Sensor, cuts_body
 from .vehicle import Vehicle
 from .vehicle_description import Reference, guessed_reference, vehicle_line
 from .vehicle_state import Motion, State

@@ -1,14 +1,15 @@
 """Scores of a rig: on all voxels, or on a sample of them."""
 
 from .evaluator import Evaluator
-from .protocol import Evaluation, RigEvaluator
 from .sampling import VoxelSample, draw
-from .scatter import Scatter
 from .score import (
+    Evaluation,
     FoundClass,
     GroundMap,
     ObjectScore,
     PartScore,
+    RigEvaluator,
+    Scatter,
     Score,
     ScoreStopped,
     SensorScore,

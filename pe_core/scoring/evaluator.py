@@ -13,13 +13,10 @@ from ..prior.prior import Prior
 from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..sensors import PerceptionModel
-from .density_cache import cached_densities
-from .grid_scorer import GridScorer
-from .memory_need import columns_bytes, require_room_for, require_room_for_samples
-from .protocol import Evaluation
+from .grid_scorer import GridScorer, columns_bytes, require_room_for, require_room_for_samples
 from .sampled_scorer import SampledScorer
-from .sampling import CENTERED, SAMPLES_OR_GRID
-from .score import Score, SummaryScore, Watch
+from .sampling import CENTERED, SAMPLES_OR_GRID, cached_densities
+from .score import Evaluation, Score, SummaryScore, Watch
 
 WORKERS = Whole(0, 1024, "threads")
 SHIFT = Number(0.0, 1.0, below=True)

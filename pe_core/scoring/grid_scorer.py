@@ -1,9 +1,13 @@
-"""Scores on every voxel of the grid."""
+"""Scores on every voxel of the grid, and the memory that a score needs.
+
+It is estimated before a score starts; too much is refused in one line. A test holds the estimates
+to measured peaks: neither is more than `FACTOR` times the other.
+"""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from functools import partial, reduce
 from operator import add
@@ -13,9 +17,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..base.arrays import Floats
+from ..base.errors import InputError
+from ..base.memory import available_bytes, size_text
 from ..base.values import rounded
+from ..geometry.bins import blocks
 from ..geometry.grids import PerceptionSpace
-from ..geometry.indexing import blocks
 from ..metric.entropy import H_BLIND, ApCurve
 from ..metric.fusion import CurveOf, Fusion, Group, PlaneFusion
 from ..metric.leave_one_out import LeaveOneOut
@@ -23,10 +29,8 @@ from ..prior.prior import ClassDensity
 from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
 from ..sensors import GridKernel, kind_of
-from ..sensors.kernels import BLOCK_PLANES, Planes
-from .density_cache import outside_masses
-from .memory_need import Grouped, grid_bytes, require_room_for
-from .protocol import Evaluation
+from ..sensors.kernels import BLOCK_PLANES, Planes, block_voxels
+from .sampling import FIRST_SAMPLES, MIN_SAMPLES, outside_masses
 from .scenarios import (
     Members,
     Scenarios,
@@ -37,6 +41,7 @@ from .scenarios import (
     parts_of,
 )
 from .score import (
+    Evaluation,
     PartScore,
     Score,
     ScoreProgress,
@@ -48,13 +53,77 @@ from .score import (
     sensor_score,
 )
 
+Grouped = Sequence[Sequence[Sensor]]
+"""Sensors whose measurements are summed, and kept, together."""
+FACTOR = 2.0
+"""Maximum ratio of an estimate and the measured memory, either way."""
+COLUMN_BYTES = 10
+"""Memory of a column and a class: the density, a copy, and arrays made of it."""
+TREE_BYTES = 300
+"""Memory of a triangle of the vehicle, once rays are cast (measured)."""
+PLANE_BYTES = 24
+"""Memory of a voxel of a thread's planes: counts, sums, precision, entropy, weights."""
+SAMPLE_BYTES = 600
+"""Memory of a sampled voxel (measured: 270 to 420 while sampling, 590 with 32 sensors)."""
+COARSER = (2, 4, 5, 10, 20)
+"""Factors of the voxel's side that a message suggests."""
 KernelKey = tuple[str, ApCurve | None]
 """A kind, and the AP curve of its own that a sensor may have."""
 MeasuredGroup = tuple[CurveOf, Planes]
 """The AP curve of some sensors, and what measures them on a run of x-planes."""
-
 PRODUCT_AT_ONCE = 1 << 18
 """Multiplications in one call of BLAS: for more it starts threads, and ours are busy already."""
+
+
+def columns_bytes(space: PerceptionSpace, classes: int) -> int:
+    """Return the memory of the prior on the ground of a space [bytes]."""
+    nx, ny, _ = space.shape
+    return nx * ny * classes * COLUMN_BYTES
+
+
+def require_room_for(space: PerceptionSpace, needed: Callable[[PerceptionSpace], int]) -> None:
+    """Refuse a score of a grid that takes more memory than there is.
+
+    `needed` returns the memory that a score of a space takes [bytes]. The message of the
+    `InputError` has how much it takes, how much there is, and what would fit.
+    """
+    there, amount = available_bytes(), needed(space)
+    if there is not None and amount > there:
+        fitting = next((s.interval for s in _coarser(space) if needed(s) <= there), None)
+        ways = [f"samples = {FIRST_SAMPLES}"]
+        ways += [] if fitting is None else [f"interval = {fitting:g}"]
+        _refuse(amount, there, f"; try {' or '.join(ways)}")
+
+
+def samples_bytes(samples: int, columns: int) -> int:
+    """Return the memory [bytes] of a sampled score; `columns` is the prior's part of it."""
+    return columns + samples * SAMPLE_BYTES
+
+
+def require_room_for_samples(samples: int, columns: int) -> None:
+    """Refuse a sample that takes more memory than there is; `columns` is the prior's part [bytes].
+
+    The message of the `InputError` says how many voxels would fit.
+    """
+    there, amount = available_bytes(), samples_bytes(samples, columns)
+    if samples and there is not None and amount > there:
+        max_samples = max(0, there - columns) // SAMPLE_BYTES
+        fitting = 1 << max(0, max_samples.bit_length() - 1)
+        _refuse(amount, there, f"; try samples = {fitting}" if fitting >= MIN_SAMPLES else "")
+
+
+def _refuse(amount: int, there: int, ways: str) -> None:
+    expected = f"what fits in the {size_text(there)} of memory that are free{ways}"
+    raise InputError("score", "memory", expected, f"about {size_text(amount)}")
+
+
+def _coarser(space: PerceptionSpace) -> Iterator[PerceptionSpace]:
+    """Yield spaces of the same bounds with larger voxels, if these fill the bounds exactly."""
+    for times in COARSER:
+        try:
+            yield PerceptionSpace(space.x, space.y, space.z, space.interval * times)
+        except InputError:  # the bounds are no whole number of such voxels
+            continue
 
 
 class Sums(NamedTuple):
@@ -171,7 +240,12 @@ class GridScorer:
         firsts = [sensors[0] for sensors in groups]
         kernels = {(s.kind, s.curve): self._kernel(s) for s in firsts}
         vehicle, classes = self._vehicle, len(self._names)
-        return grid_bytes(space, groups, kernels, vehicle, classes, self._workers)
+        total = columns_bytes(space, classes) + self._workers * block_voxels(space) * PLANE_BYTES
+        total += 0 if vehicle is None else len(vehicle.triangles) * TREE_BYTES
+        for key, kernel in kernels.items():
+            matching = [group for group in groups if (group[0].kind, group[0].curve) == key]
+            total += kernel.memory_bytes(matching, space, self._workers)
+        return total
 
     def _ready(self, rig: Rig, pool: Executor) -> dict[str, Any]:
         """Return each sensor's prepared measurement, by sensor name."""

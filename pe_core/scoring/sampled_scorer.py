@@ -18,18 +18,22 @@ from ..prior.prior import ClassDensity
 from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
 from ..sensors import MeasurementCache, Voxels
-from .density_cache import outside_masses
-from .protocol import Evaluation
-from .sampling import BLOCKS, CENTERED, VoxelSample, draw
-from .scatter import ALIKE, RULE_OF_THREE, FigureKey, Scatter, residuals, sample_digest
+from .sampling import BLOCKS, CENTERED, VoxelSample, draw, outside_masses
 from .scenarios import Scenarios, fused_early, mean_or_worst
 from .score import (
+    ALIKE,
+    RULE_OF_THREE,
+    Evaluation,
+    FigureKey,
     PartScore,
+    Scatter,
     Score,
     ScoreProgress,
     SensorScore,
     SummaryScore,
     Watch,
+    residuals,
+    sample_digest,
     sensor_score,
     zone_masks,
 )

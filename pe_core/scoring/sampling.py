@@ -1,9 +1,11 @@
-"""Voxels sampled from the prior by a scrambled Sobol' sequence.
+"""Voxels sampled from the prior by a scrambled Sobol' sequence, and the densities of its classes.
 
 The sequence is computed in integers only, so that its bits are the same on every system. It is
 scrambled as Owen proposes, by hashing (Laine and Karras 2011; the constants are Vegdahl's, as in
 Burley 2020, "Practical Hash-based Owen Scrambling"). Scrambling removes the regularity that a
 pattern of beams may be in step with; each run of 2^k points remains a low-discrepancy net.
+
+The vehicle's own volume carries no weight in eq. 9.
 """
 
 from __future__ import annotations
@@ -12,6 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
+from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,10 +23,9 @@ from ..base.arrays import Floats, Ints, read_only
 from ..base.errors import InputError
 from ..base.values import Whole
 from ..geometry.grids import PerceptionSpace
-from ..prior.prior import ClassDensity
+from ..prior.prior import ClassDensity, Prior
 
 Words = NDArray[np.uint32]
-
 BITS = 32
 WORD = (1 << BITS) - 1
 PRIMITIVE = (
@@ -40,6 +42,19 @@ DIMENSIONS = 1 + len(PRIMITIVE)
 MASKS = ((0x55555555, 1), (0x33333333, 2), (0x0F0F0F0F, 4), (0x00FF00FF, 8), (0x0000FFFF, 16))
 ODDS = (0x9E3779B9, 0x85EBCA6B, 0xC2B2AE35)
 """Constants that separate the seeds of the dimensions, and mix them (the last two: MurmurHash3)."""
+AZIMUTH, HEIGHT, RING = range(3)
+"""Use of the Sobol' sequence's dimensions. The first two fill the plane best: they sample azimuth
+and height, in which beams are spaced. The third one samples the distance."""
+BLOCKS = 16
+"""Number of runs of the sequence for the standard error; each run is a lattice."""
+MIN_SAMPLES, MAX_SAMPLES = 1024, 2**24
+"""Fewer samples are useless; more than 16.8 million need more memory than a grid score."""
+SAMPLES = Whole(MIN_SAMPLES, MAX_SAMPLES, "voxels")
+FIRST_SAMPLES = 262_144
+"""Voxels that a score of a newly made study evaluates, in a file or in Blender: seconds instead of
+minutes. A study file that does not name them is scored on all voxels."""
+CENTERED = (0.5, 0.5, 0.5)
+AT_ONCE = 1 << 16
 
 
 def scrambled_sobol(count: int, shift: Sequence[float]) -> Floats:
@@ -100,21 +115,6 @@ def _reversed(words: Words) -> Words:
     for mask, step in MASKS:
         x = ((x >> np.uint32(step)) & np.uint32(mask)) | ((x & np.uint32(mask)) << np.uint32(step))
     return x
-
-
-AZIMUTH, HEIGHT, RING = range(3)
-"""Use of the Sobol' sequence's dimensions. The first two fill the plane best: they sample azimuth
-and height, in which beams are spaced. The third one samples the distance."""
-BLOCKS = 16
-"""Number of runs of the sequence for the standard error; each run is a lattice."""
-MIN_SAMPLES, MAX_SAMPLES = 1024, 2**24
-"""Fewer samples are useless; more than 16.8 million need more memory than a grid score."""
-SAMPLES = Whole(MIN_SAMPLES, MAX_SAMPLES, "voxels")
-FIRST_SAMPLES = 262_144
-"""Voxels that a score of a newly made study evaluates, in a file or in Blender: seconds instead of
-minutes. A study file that does not name them is scored on all voxels."""
-CENTERED = (0.5, 0.5, 0.5)
-AT_ONCE = 1 << 16
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,3 +243,46 @@ def _mixed(shares: Floats, profiles: Floats) -> Floats:
 def _inverse(cumulative: Floats, values: Floats) -> Ints:
     indices = np.searchsorted(cumulative, values, side="right")
     return np.minimum(indices, len(cumulative) - 1)
+
+
+class CachedDensities(list[ClassDensity]):
+    """A read-only list of densities that allows weak references (a plain list does not)."""
+
+
+_CACHE: WeakValueDictionary[tuple[Prior, PerceptionSpace], CachedDensities] = WeakValueDictionary()
+
+
+def cached_densities(prior: Prior, space: PerceptionSpace) -> CachedDensities:
+    """Return `Prior.densities`, with its errors; cached while they are referenced elsewhere."""
+    try:
+        densities = _CACHE.get((prior, space))
+    except TypeError:  # foreign classes without a hash
+        return CachedDensities(prior.densities(space))
+    if densities is None:
+        densities = CachedDensities(prior.densities(space))
+        for density in densities:
+            read_only(density.ground)
+        _CACHE[prior, space] = densities
+    return densities
+
+
+def outside_profile(density: ClassDensity, space: PerceptionSpace, tops: Floats) -> Floats:
+    """Sum the class's height profile over voxels outside the vehicle, by column."""
+    above = np.append(np.cumsum(density.profile[::-1])[::-1], 0.0)
+    below = np.searchsorted(space.centers(2), tops.reshape(-1), side="left")
+    return above[below].reshape(tops.shape)
+
+
+def outside_masses(
+    densities: list[ClassDensity], space: PerceptionSpace, tops: Floats | None
+) -> list[float]:
+    """Return each class's mass of the prior outside the vehicle (`tops` None: no vehicle).
+
+    `InputError` when no weight is left outside.
+    """
+    if tops is None:
+        return [float(d.ground.sum()) for d in densities]
+    masses = [float((d.ground * outside_profile(d, space, tops)).sum()) for d in densities]
+    if not sum(masses) > 0.0:
+        raise InputError("prior", "weights", "some weight outside the vehicle", "none")
+    return masses

@@ -1,23 +1,128 @@
-"""The score of a rig: entropy, coverage, and the same by class, zone, sensor and object class."""
+"""The score of a rig: entropy, coverage, the same by part, its scatter; what evaluates rigs.
+
+The errors of two scores on one sample are correlated: if the sample has too many far voxels, both
+entropies are too high. Their difference is far more precise than either of them. A score therefore
+stores the residuals of its means in a few batches of the sample. Residuals of two scores on the
+same sample are subtracted by batch (paired); on different samples, their squares are added.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import hashlib
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from math import inf
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.arrays import read_only
+from ..base.arrays import Floats, read_only
+from ..base.values import DECIMALS, rounded
 from ..geometry.grids import PerceptionSpace
+from ..scene.rig import Rig
 from ..sensors import Occlusion
-from .scatter import Scatter
 
+FigureKey = tuple[str, str, str]
+"""Group ("rig", "zone", "class"), name (empty for the rig), and measure ("entropy", ...)."""
+ALIKE = 10.0**-DECIMALS
+"""Entropies no farther apart than this do not differ [nats]."""
+RULE_OF_THREE = 3.0
+"""Rule of three: if n draws are equal, at most 3 / n of all others differ, with 95 % certainty."""
 FARTHEST_M = 80.0
 """Maximum distance of lone objects: a reach of this value means "at least"."""
 POINTS = (1, 5, 20)
 """Numbers of points of all LiDARs together by which objects are counted."""
+NEAR_M, FAR_M = 10.0, 40.0
+ZONES = ("front", "rear", "left", "right", "near", "mid", "far")
+"""Half planes before, behind, left and right of the vehicle's centre, and rings round it: nearer
+than NEAR_M, farther than FAR_M, and between."""
+Watch = Callable[[float], bool]
+"""Called repeatedly with the completed share of a score, 0 to 1; returns whether to continue."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scatter:
+    """Residuals of a score's means.
+
+    Attributes
+    ----------
+    sample : str
+        Digest of the sample; scores on the same sample have the same digest.
+    residuals : mapping of FigureKey to tuple of float
+        For each figure, a weighted mean over the sample: what each batch adds to it above the mean,
+        sum_i w_i (v_i - mean) / sum w over the batch's members, (R,) in the figure's own unit. They
+        sum to 0.
+    """
+
+    sample: str
+    residuals: Mapping[FigureKey, tuple[float, ...]]
+
+    @property
+    def batches(self) -> int:
+        """How many batches the sample was divided into."""
+        return len(self.residuals["rig", "", "entropy"])
+
+    def error(self, figure: FigureKey) -> float | None:
+        """Return the standard error of a figure; None where the score has no such figure."""
+        by_batch = self.residuals.get(figure)
+        return None if by_batch is None else _standard_error(by_batch)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the residuals as plain JSON data."""
+        rows = [[*figure, list(by_batch)] for figure, by_batch in self.residuals.items()]
+        return {"sample": self.sample, "residuals": rows}
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Scatter:
+        """Return the `Scatter` from the data of `to_dict`."""
+        rows = {
+            (group, name, measure): tuple(sums) for group, name, measure, sums in data["residuals"]
+        }
+        return cls(data["sample"], rows)
+
+
+def paired_error(one: Scatter | None, other: Scatter | None, figure: FigureKey) -> float | None:
+    """Return the standard error of the difference of a figure of two scores on the same sample.
+
+    None where they are of different samples, or one lacks the figure: their errors are then
+    independent.
+    """
+    if one is None or other is None or one.sample != other.sample:
+        return None
+    a, b = one.residuals.get(figure), other.residuals.get(figure)
+    if a is None or b is None or len(a) != len(b):
+        return None
+    return _standard_error([x - y for x, y in zip(a, b, strict=True)])
+
+
+def residuals(
+    values: Floats, weights: Floats | None, batch: NDArray[np.int64], batches: int
+) -> tuple[float, ...]:
+    """Return the residuals by batch (R,) of a mean of values (N,); see `Scatter`.
+
+    `weights` None: equal ones. `batch` (N,) numbers the batch of each value.
+    """
+    shares = np.ones(len(values)) if weights is None else weights
+    mass = float(shares.sum())
+    off = shares * (values - float((shares * values).sum()) / mass)
+    return tuple(rounded(total / mass) for total in np.bincount(batch, off, batches).tolist())
+
+
+def sample_digest(parts: Iterable[NDArray[Any]]) -> str:
+    """Return a digest of the arrays that a sample consists of."""
+    digest = hashlib.sha256()
+    for part in parts:
+        digest.update(np.ascontiguousarray(part).tobytes())
+    return digest.hexdigest()[:16]
+
+
+def _standard_error(batches: Iterable[float]) -> float:
+    """Return the standard error of a mean from its residuals in independent batches."""
+    values = list(batches)
+    square = math.fsum(value * value for value in values)
+    return rounded(math.sqrt(square * len(values) / max(len(values) - 1, 1)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,13 +199,6 @@ def _found(data: Mapping[str, Any]) -> FoundClass:
     return FoundClass(**{**data, "points": points})
 
 
-NEAR_M, FAR_M = 10.0, 40.0
-
-ZONES = ("front", "rear", "left", "right", "near", "mid", "far")
-"""Half planes before, behind, left and right of the vehicle's centre, and rings round it: nearer
-than NEAR_M, farther than FAR_M, and between."""
-
-
 def zone_masks(x: NDArray[np.float64], y: NDArray[np.float64]) -> dict[str, NDArray[np.bool_]]:
     """Return, by zone, a mask of the points (x, y) [m], broadcast together, that lie in it."""
     x, y = np.broadcast_arrays(x, y)
@@ -113,10 +211,6 @@ def zone_masks(x: NDArray[np.float64], y: NDArray[np.float64]) -> dict[str, NDAr
 def column_zones(space: PerceptionSpace) -> dict[str, NDArray[np.bool_]]:
     """Return, by zone, a mask (nx, ny) of the columns of a space."""
     return zone_masks(space.centers(0)[:, None], space.centers(1)[None, :])
-
-
-Watch = Callable[[float], bool]
-"""Called repeatedly with the completed share of a score, 0 to 1; returns whether to continue."""
 
 
 class ScoreStopped(Exception):
@@ -281,3 +375,56 @@ def sensor_score(entropy: float, coverage: float, lost: float, occlusion: Occlus
     return SensorScore(
         entropy, coverage, lost, occlusion.rays, occlusion.occluded, occlusion.by_part
     )
+
+
+class Evaluation(NamedTuple):
+    """The value of a rig: its entropy, or a lower bound of it [nats]."""
+
+    entropy: float
+    is_lower_bound: bool
+
+
+class Objective(Protocol):
+    """What a search minimises: an `Evaluator`, or something that wraps one.
+
+    The same rig always has the same value.
+    """
+
+    def entropy(self, rig: Rig) -> float:
+        """Return the value of a rig; lower is better [nats]."""
+
+    def evaluate(self, rig: Rig, cutoff: float = inf) -> Evaluation:
+        """Return the value of a rig; where it is not below `cutoff`, perhaps a lower bound.
+
+        `is_lower_bound` tells the two apart. A lower bound is itself not below `cutoff`, and must
+        not be ranked.
+        """
+
+
+class RigEvaluator(Protocol):
+    """Scores rigs in one space, under one prior, on one vehicle; methods are as `Evaluator`'s.
+
+    `samples` is how many voxels or objects are evaluated; 0: all voxels.
+    """
+
+    samples: int
+
+    def score(self, rig: Rig, *, preview: bool = False, watch: Watch | None = None) -> Score:
+        """Score a rig in full."""
+
+    def summary(self, rig: Rig, *, preview: bool = False) -> SummaryScore:
+        """Score a rig as a whole, without the part by sensor."""
+
+    def entropy(self, rig: Rig, *, preview: bool = False) -> float:
+        """Return a rig's entropy [nats]."""
+
+    def evaluate(self, rig: Rig, cutoff: float = inf) -> Evaluation:
+        """Return a rig's entropy, or a lower bound that is not below `cutoff`."""
+
+    def entropies(self, rigs: Sequence[Rig]) -> list[float]:
+        """Return the entropy of each of several rigs [nats]."""
+
+    def evaluate_together(
+        self, rigs: Sequence[Rig], cutoff: float, worst: bool = False
+    ) -> Evaluation:
+        """Evaluate the mean of several rigs' entropies, or the highest, with a cutoff."""

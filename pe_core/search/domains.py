@@ -9,33 +9,158 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.errors import InputError
-from ..geometry.poses import Pose, dot, rotate, rotation_matrix, rpy_from_matrix
-from ..scene.housing import Housing
-from ..scene.rig import Sensor
-from ..scene.vehicle import Vehicle
-from .design_variable import (
-    AXES,
-    POSITION_AXES,
-    SHARE,
-    DesignVariable,
-    pose_from_values,
-    pose_values,
-    rounded,
-    variable_of,
-)
-from .mount_surface import MountSurface
+from ..base.errors import InputError, shown
+from ..geometry.poses import Pose, cross, dot, rotate, rotation_matrix, rpy_from_matrix
+from ..geometry.ray_traversal import TriangleTree
+from ..scene.rig import Housing, Sensor
+from ..scene.vehicle import Vehicle, closest_points, open_side
 from .mounts import AnyMount, SlotMount, SurfaceMount
 
+AXES = ("x", "y", "z", "roll", "pitch", "yaw")
+POSITION_AXES = AXES[:3]
+POSITION_DECIMALS = 5
+ANGLE_DECIMALS_DEG = 4
+"""Placements are rounded to 0.01 mm and 0.0001 deg, so that a file, or Blender's single precision,
+holds exactly the placement that was scored."""
+ROUNDING_M = 0.5 * 10.0**-POSITION_DECIMALS
+ROUNDING_RAD = math.radians(0.5 * 10.0**-ANGLE_DECIMALS_DEG)
+"""Rounding may move a placement at a bound so far beyond it."""
+METRE, RADIAN, SHARE = "m", "rad", "share"
+SLACK = 1.0 + 1e-9
+"""A search within a computed distance must find that distance again, in spite of rounding."""
+PROBED_FACES = 8
+"""If so many faces have the same open side, all faces are taken to have it."""
 Bounds = tuple[float, float]
-
 START_M, START_TURN = 0.003, 0.002
 """A start is on its mount if it is no farther away than a gasket is thick, and turned by at most
 0.1 deg [m, rad]."""
+ANY_ANGLE = {axis: (-math.tau, math.tau) for axis in ("roll", "pitch", "yaw")}
+
+
+def pose_values(pose: Pose) -> dict[str, float]:
+    """Return a pose by axis: x, y, z [m], roll, pitch, yaw [rad]."""
+    return dict(zip(AXES, (*pose.position, *pose.rpy), strict=True))
+
+
+def pose_from_values(values: Mapping[str, float]) -> Pose:
+    """Return the pose with coordinates by axis [m, rad], rounded as placements are."""
+    position = [round(values[a], POSITION_DECIMALS) + 0.0 for a in POSITION_AXES]
+    degrees = [round(math.degrees(values[a]), ANGLE_DECIMALS_DEG) + 0.0 for a in AXES[3:]]
+    return Pose.from_degrees(position, degrees)
+
+
+def rounded(pose: Pose) -> Pose:
+    """Return a pose, rounded as placements are."""
+    return pose_from_values(pose_values(pose))
+
+
+@dataclass(frozen=True, slots=True)
+class DesignVariable:
+    """A number that a search varies, from `low` to `high`; both belong to the range.
+
+    Its unit is "m", "rad" or "share": from 0 to 1, a share selects an element of a list and is
+    cyclic.
+    """
+
+    low: float
+    high: float
+    unit: str
+
+    def clipped(self, value: float) -> float:
+        """Return a value clipped to the range; a share is taken modulo 1."""
+        if self.unit == SHARE:
+            return value % 1.0
+        return min(max(value, self.low), self.high)
+
+
+def variable_of(axis: str, bounds: tuple[float, float]) -> DesignVariable:
+    """Return the design variable of a coordinate, with its bounds [m or rad]."""
+    return DesignVariable(*bounds, METRE if axis in POSITION_AXES else RADIAN)
+
+
+class MountSurface:
+    """The faces of a mount, which are parts of the vehicle's body or an area of their own.
+
+    `InputError` when there is no vehicle or no such part, or the parts or the area have no faces.
+    """
+
+    def __init__(self, who: str, mount: SurfaceMount, vehicle: Vehicle | None) -> None:
+        self.vehicle, self.triangles = _faces(who, mount, vehicle)
+        self._tree = TriangleTree(self.triangles)
+        self._corners = np.unique(self.triangles.reshape(-1, 3), axis=0)
+        self._outward: dict[int, Floats] = {}
+        # The side of the probed faces if all agree, as in most meshes; else 0.0.
+        probed = np.linspace(0, len(self.triangles) - 1, PROBED_FACES).astype(int)
+        sides = {self._side_of(face) for face in np.unique(probed).tolist()}
+        self._side = sides.pop() if len(sides) == 1 else 0.0
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Lowest and highest corner, each (3,) [m]."""
+        return self._corners.min(axis=0), self._corners.max(axis=0)
+
+    def closest(self, point: Floats) -> tuple[Floats, int]:
+        """Return the point (3,) of the surface that is closest to a point, and its face."""
+        away = self._corners - point
+        reach = float(np.sqrt(dot(away, away).min())) * SLACK + 1e-12
+        near = self._tree.near(point, reach)
+        feet = closest_points(point, self.triangles[near])
+        best = int(np.argmin(dot(feet - point, feet - point)))
+        return feet[best], int(near[best])
+
+    def is_nearer(self, point: Floats, distance: float) -> bool:
+        """Whether the surface is nearer to a point (3,) than a distance [m]."""
+        feet = closest_points(point, self.triangles[self._tree.near(point, distance)])
+        return bool((dot(feet - point, feet - point) < distance**2).any())
+
+    def outward(self, face: int) -> Floats:
+        """Return the unit normal (3,) of a face on its open side."""
+        if face not in self._outward:
+            side = self._side or self._side_of(face)
+            self._outward[face] = side * self._normal(face)
+        return self._outward[face]
+
+    def _normal(self, face: int) -> Floats:
+        """Return the unit normal (3,) of a face; its corners are counter-clockwise round it."""
+        corners = self.triangles[face]
+        normal = cross(corners[1] - corners[0], corners[2] - corners[0])
+        return normal / np.sqrt(dot(normal, normal))
+
+    def _side_of(self, face: int) -> float:
+        """Return 1.0 where a face's open side is that of its normal, else -1.0."""
+        middle = self.triangles[face].sum(axis=0) / 3.0
+        return open_side(self.vehicle, middle, self._normal(face))
+
+
+def _faces(who: str, mount: SurfaceMount, vehicle: Vehicle | None) -> tuple[Vehicle, Floats]:
+    """Return the vehicle and the mount's triangles that have an area."""
+    if mount.area is not None:
+        if vehicle is None:
+            raise InputError(who, "area", "a vehicle that it is an area of", "none")
+        return vehicle, _with_area(who, "area", mount.area.triangles, "the area")
+    names = () if vehicle is None else vehicle.part_names
+    for part in mount.parts:
+        if vehicle is None or part not in names:
+            expected = f"one of {', '.join(names)}" if names else "a vehicle with such a part"
+            raise InputError(who, "parts", expected, shown(part))
+    assert vehicle is not None  # a mount has at least one part
+    chosen = np.isin(vehicle.parts, [names.index(part) for part in mount.parts])
+    return vehicle, _with_area(who, "parts", vehicle.triangles[chosen], ", ".join(mount.parts))
+
+
+def _with_area(who: str, field: str, triangles: Floats, named: str) -> Floats:
+    """Return the triangles that have an area; raise `InputError` if there is none."""
+    normals = cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    proper = triangles[dot(normals, normals) > 0.0]
+    if not len(proper):
+        expected = "parts with faces" if field == "parts" else "faces"
+        raise InputError(who, field, expected, f"none in {named}")
+    return proper
 
 
 class BoxDomain:
@@ -202,9 +327,6 @@ def pose_text(pose: Pose) -> str:
 def degrees_text(angle: float) -> str:
     """Return an angle [rad] as text for messages."""
     return f"{round(math.degrees(angle), 3) + 0.0:g} deg"
-
-
-ANY_ANGLE = {axis: (-math.tau, math.tau) for axis in ("roll", "pitch", "yaw")}
 
 
 def snap_to_mount(

@@ -12,14 +12,14 @@ from functools import cached_property
 import numpy as np
 
 from ..base.arrays import Flags, Floats, Ints, read_only
-from ..geometry.indexing import count_up, stable_order
+from ..geometry.bins import count_up, stable_order
 from ..geometry.poses import dot, rotate
 from ..scene.objects import Objects
 
 NUDGE_M = np.array([1.97, 3.02, 4.98]) * 1e-8
 """A sensor is moved by this, ground frame [m]: a beam that would run exactly along a face of a box
 (the horizontal one, at the height of its roof) then runs beside it or through it, whatever the
-rounding. The ratios are those of `lidar.tie_rules`: of no beam at round angles, so that a beam
+rounding. The ratios are those of `lidar.kind`: of no beam at round angles, so that a beam
 through an edge of a box is decided as well."""
 NO_SPEED = 1e-30
 """Replaces a direction component of exactly 0, to divide by it."""

@@ -34,10 +34,7 @@ def checked_ranges(
 ) -> tuple[float, float]:
     """Return the checked minimum and maximum range [m].
 
-    Raises
-    ------
-    InputError
-        When a range breaks its rule, or the minimum is not below the maximum.
+    `InputError` when a range breaks its rule, or the minimum is not below the maximum.
     """
     far = max_rule.checked(name, "max_range", max_range)
     near = MIN_RANGE.checked(name, "min_range", min_range) + 0.0

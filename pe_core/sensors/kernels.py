@@ -99,19 +99,30 @@ class ObjectView:
     traffic: bool = False
 
 
-class GridKernel(ABC):
-    """Measures sensors of one kind on all voxels of a space, in blocks of x-planes."""
+class GridKernel:
+    """Measures sensors of one kind on all voxels of a space, in blocks of x-planes.
 
-    @abstractmethod
+    A kind has `rows`, or `planes` if it measures all planes at once.
+    """
+
     def prepare(self, sensor: Sensor) -> Any:
         """Compute what does not depend on the voxels; called in threads."""
+        return sensor
 
-    @abstractmethod
     def planes(self, groups: Sequence[Sequence[Any]], pool: Executor) -> list[Planes]:
         """Return a function of a block of planes for each group: the sum over its sensors (eq. 6).
 
         `groups` holds results of `prepare`. The functions are valid until the next call.
         """
+
+        def measured(group: Sequence[Any], planes: slice) -> VisibleRows:
+            return reduce(add, (self.rows(one, planes) for one in group))
+
+        return [partial(measured, group) for group in groups]
+
+    def rows(self, prepared: Any, planes: slice) -> VisibleRows:
+        """Measure one prepared sensor on a block of planes."""
+        raise NotImplementedError
 
     def occlusion(self, prepared: Any) -> Occlusion:
         """Return how much of a prepared sensor the vehicle occludes."""
@@ -201,21 +212,13 @@ class DefinedGrid(GridKernel):
     ) -> None:
         self._measure, self._space, self._vehicle = measure, space, vehicle
 
-    def prepare(self, sensor: Sensor) -> Sensor:
-        """Return the sensor: there is nothing to prepare."""
-        return sensor
-
-    def planes(self, groups: Sequence[Sequence[Sensor]], pool: Executor) -> list[Planes]:
-        """Return functions that measure a block by the definition."""
-        return [partial(self._sum, sensors) for sensors in groups]
-
-    def _sum(self, sensors: Sequence[Sensor], planes: slice) -> VisibleRows:
+    def rows(self, prepared: Sensor, planes: slice) -> VisibleRows:
+        """Measure a block by the definition."""
         space = self._space
         x, y, z = space.centers(0)[planes], space.centers(1), space.centers(2)
         centers = np.stack(np.meshgrid(x, y, z, indexing="ij"), axis=-1).reshape(-1, 3)
-        parts = (self._measure(s, centers, space.interval, self._vehicle) for s in sensors)
-        m = np.asarray(reduce(add, parts), dtype=float).reshape(len(x), len(y), len(z))
-        return VisibleRows(slice(0, len(y)), m)
+        m = np.asarray(self._measure(prepared, centers, space.interval, self._vehicle), dtype=float)
+        return VisibleRows(slice(0, len(y)), m.reshape(len(x), len(y), len(z)))
 
 
 class DefinedSample(SampleKernel):

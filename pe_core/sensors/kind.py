@@ -291,12 +291,12 @@ def measure(
 
     LiDAR: the number of beams that pass through the cube. A beam has to enter the cube within the
     maximum range, and before the vehicle occludes it. A cube owns its lower faces: a beam exactly
-    along a face belongs to the cube above it (`lidar.tie_rules`).
+    along a face belongs to the cube above it (`lidar.kind`).
 
     Camera: the area of the cube's image in pixels, clipped to the picture. It is 0 if a corner is
     behind the camera or in its plane, if the centre is out of range, or if the vehicle occludes
-    the centre (`camera.tie_rules`). Through a lens with distortion, the part inside the lens's
-    field counts, also if a corner is behind the camera (`camera.pixel_area`).
+    the centre (`camera.kind`). Through a lens with distortion, the part inside the lens's
+    field counts, also if a corner is behind the camera (`camera.kind`).
 
     Parameters
     ----------

@@ -15,9 +15,8 @@ from pathlib import Path
 from ..base.arrays import ReadOnlyDict
 from ..base.errors import InputError, shown
 from ..base.files import decode_text, read_bytes
-from ..base.serialization import load_toml
 from ..base.setting import OneOf, Panel, setting
-from ..base.table_reader import Table
+from ..base.table_reader import Table, load_toml
 from ..base.values import A_NAME, choice
 from ..metric.entropy import ApCurve
 from .kind import KINDS, ClassCurves, kind_named

@@ -9,10 +9,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Sequence
-from concurrent.futures import Executor
 from dataclasses import dataclass
-from functools import partial, reduce
-from operator import add
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,7 +30,6 @@ from .kernels import (
     ObjectKernel,
     ObjectView,
     Occlusion,
-    Planes,
     SampleKernel,
     VisibleGround,
     Voxels,
@@ -137,10 +134,6 @@ class FanGrid(GridKernel):
         """Cast the rays."""
         return FanSensor(sensor, self._rules.fan(sensor, self._vehicle))
 
-    def planes(self, groups: Sequence[Sequence[FanSensor]], pool: Executor) -> list[Planes]:
-        """Return functions that measure a block of planes."""
-        return [partial(self._sum, sensors) for sensors in groups]
-
     def occlusion(self, prepared: FanSensor) -> Occlusion:
         """Count rays of the field of view that end on the vehicle."""
         return self._rules.occlusion(*prepared)
@@ -151,10 +144,7 @@ class FanGrid(GridKernel):
         """Estimate the memory [bytes]."""
         return workers * min(block_voxels(space), space.shape[1] * space.shape[2]) * VOXEL_BYTES
 
-    def _sum(self, sensors: Sequence[FanSensor], planes: slice) -> VisibleRows:
-        return reduce(add, (self._rows(one, planes) for one in sensors))
-
-    def _rows(self, one: FanSensor, planes: slice) -> VisibleRows:
+    def rows(self, prepared: FanSensor, planes: slice) -> VisibleRows:
         """Measure plane by plane, only the columns that may be reached."""
         x, y, z = (self._space.centers(axis) for axis in range(3))
         columns = np.stack(np.meshgrid(x[planes], y, indexing="ij"), axis=-1)
@@ -162,7 +152,7 @@ class FanGrid(GridKernel):
         across = columns.reshape(-1, 2)
         centers = np.column_stack([across, np.full(len(across), middle)])
         balls = np.full(len(centers), half + BALL_MARGIN_M)
-        reached = self._rules.reached(one.sensor, centers, balls).reshape(columns.shape[:2])
+        reached = self._rules.reached(prepared.sensor, centers, balls).reshape(columns.shape[:2])
         rows = np.flatnonzero(reached.any(axis=0))
         n = planes.stop - planes.start
         if not len(rows):
@@ -173,7 +163,7 @@ class FanGrid(GridKernel):
         for number in range(n):
             some = np.flatnonzero(reached[number, first:last])
             flat = columns[number, first:last][some]
-            m[number, some] = self._rules.columns(one.sensor, flat, z, side, one.fan)
+            m[number, some] = self._rules.columns(prepared.sensor, flat, z, side, prepared.fan)
         return VisibleRows(slice(first, last), m)
 
 

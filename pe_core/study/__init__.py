@@ -10,21 +10,20 @@ from ..base.setting import (
     Texts,
     Toggle,
     Triple,
+    setting,
     settings_of,
+    value_in_file,
 )
-from ..base.setting_file import value_in_file
 from ..base.values import Angle, Name, Number, Whole
 from ..search import METHODS, SCHEDULED_METHOD, Robustness
 from . import requirement_file, requirement_search
-from .catalog_lookup import mounts_table
-from .condition_file import state_from_dict, state_table
-from .condition_set import Conditions, StateInWeather
 from .condition_table import ConditionScore, ConditionTable, condition_table
+from .conditions import Conditions, StateInWeather, state_from_dict, state_table
 from .file_names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW_PAGE, SEARCH, STUDY
-from .objective_setting import OBJECTIVES
+from .mounting_file import mounts_table
 from .passthrough import passthrough_of_text, passthrough_table, passthrough_text, read_passthrough
 from .setting_table import is_switch, menu_of, panel_default, setting_keys, settings_of_part
-from .study import Search, Study, vehicle_digest
+from .study import OBJECTIVES, Search, Study, vehicle_digest
 from .study_file import load_study, load_study_data, save_study, study_from_dict, study_to_dict
 
 __all__ = ["AREAS", "MESH", "METHODS", "OBJECTIVES", "OPTIMIZED", "REQUIRED", "RESULT"]
@@ -35,5 +34,6 @@ __all__ += ["Study", "Texts", "Toggle", "Triple", "Whole"]
 __all__ += ["condition_table", "is_switch", "load_study", "load_study_data", "menu_of"]
 __all__ += ["mounts_table", "panel_default", "passthrough_of_text", "passthrough_table"]
 __all__ += ["passthrough_text", "read_passthrough", "requirement_file", "requirement_search"]
-__all__ += ["save_study", "setting_keys", "settings_of", "settings_of_part", "state_from_dict"]
-__all__ += ["state_table", "study_from_dict", "study_to_dict", "value_in_file", "vehicle_digest"]
+__all__ += ["save_study", "setting", "setting_keys", "settings_of", "settings_of_part"]
+__all__ += ["state_from_dict", "state_table", "study_from_dict", "study_to_dict"]
+__all__ += ["value_in_file", "vehicle_digest"]

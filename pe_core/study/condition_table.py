@@ -1,30 +1,83 @@
-"""A rig under all conditions of a study: states by weathers, with each sensor lost.
+"""What a study's rigs are evaluated by in a search, and under all its conditions.
 
-What conditions share is computed once: each state has one evaluator, and each of its sensors is
-measured once for all weathers that only shorten its range (`sensors.measurement_cache`). A study
-that scores all voxels has its conditions scored on a sample, of which the standard error is known.
+Conditions are states by weathers; the table has each with each sensor lost, too. What they share is
+computed once: each state has one evaluator, and each of its sensors is measured once for all
+weathers that only shorten its range (`sensors.measurement_cache`). A study that scores all voxels
+has its conditions scored on a sample, of which the standard error is known.
+
+A search minimises one value. With `[optimize] objective = "expected_ap"` it is minus the expected
+AP of objects in traffic, so that bounds and cutoffs work as for entropy. With `conditions = "mean"`
+or `"worst"` it is the weighted mean of a placement's entropies in all states and weathers, or the
+highest of those with a weight. With a tolerance, each of these is the mean (or the worst) of its
+cases. Requirements wrap either.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from ..base.errors import InputError
 from ..base.values import rounded
+from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_state import State
-from ..scoring import RigEvaluator, Score
-from ..scoring.score import Watch
-from .condition_set import AS_DRAWN, CLEAR, StateInWeather
-from .objective_search import search_evaluator
-from .study import DEFAULT_SEARCH_SAMPLES, Study
+from ..scoring import Score
+from ..scoring.scenarios import mean_or_worst
+from ..scoring.score import Evaluation, Objective, RigEvaluator, Watch
+from ..scoring.targets import OBJECTS, ObjectEvaluator
+from ..scoring.targets.object_evaluator import MByName
+from ..search import objective_of
+from .conditions import AS_DRAWN, CLEAR, StateInWeather
+from .study import DEFAULT_SEARCH_SAMPLES, EXPECTED_AP, Study
 
 COVERS = 0.01
 """A part that occludes more of a sensor than as drawn, by this share of its rays, is told."""
+MEAN, WORST = "mean", "worst"
+
+
+class ExpectedApEvaluator(ObjectEvaluator):
+    """An `ObjectEvaluator` whose value of a rig is minus its expected AP; scores are the same.
+
+    Objects and the vehicle occlude and add nothing, so without occlusion the AP is no lower:
+    `evaluate` has lower bounds as for entropy.
+    """
+
+    def _value(self, rig: Rig, m: MByName) -> float:
+        return -self._sums.expected_ap(self._fused.entropies(rig, m)[0])
+
+
+def is_by_ap(study: Study) -> bool:
+    """Whether a study's search maximises the expected AP of objects in traffic."""
+    return study.search.objective == EXPECTED_AP
+
+
+def on_objects(study: Study) -> type[ObjectEvaluator]:
+    """Return what evaluates candidates of a study's search on objects."""
+    return ExpectedApEvaluator if is_by_ap(study) else ObjectEvaluator
+
+
+def searched_study(study: Study) -> Study:
+    """Return the study that a search evaluates candidates of: by expected AP, one in traffic."""
+    if not is_by_ap(study):
+        return study
+    target, targets = study.search.goals.stop.target, study.targets
+    if target is not None and not 0.0 <= target <= 1.0:
+        expected = f'an expected AP, 0 to 1, with objective = "{EXPECTED_AP}"'
+        raise InputError("optimize", "stop.target", expected, target)
+    return replace(study, targets=replace(targets, targets=OBJECTS, traffic=True), samples=0)
+
+
+def search_evaluator(
+    study: Study, samples: int | None = None, workers: int | None = None
+) -> RigEvaluator:
+    """Return the evaluator of a search's candidates; arguments are those of `Study.evaluator`."""
+    return searched_study(study).evaluator(samples, workers, on_objects(study))
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,3 +279,53 @@ def matrix(table: ConditionTable) -> np.ndarray:
     rows = [[r.entropy for r in table.rows]]
     rows += [[r.without[name] for r in table.rows] for name in table.sensors]
     return np.array(rows)
+
+
+class ConditionObjective:
+    """What a search over a study's conditions minimises, evaluated on `samples` voxels."""
+
+    def __init__(self, study: Study, samples: int, workers: int | None = None) -> None:
+        self._study, self._samples, self._workers = study, samples, workers
+        self._worst = study.search.conditions == WORST
+        self._conditions = [c for c in study.conditions.all if c.weight > 0.0]
+        self._evaluators = StateEvaluators(study, samples, workers, searching=True)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return ConditionObjective, (self._study, self._samples, self._workers)
+
+    def entropy(self, rig: Rig) -> float:
+        """Return the mean or the worst of a rig's entropies under all conditions [nats]."""
+        return self.evaluate(rig).entropy
+
+    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
+        """Return that value; of the worst a lower bound once it is not below `cutoff`."""
+        search = self._study.search
+        cases = search.tolerance.cases(rig, search.seed) if search.tolerance.is_on else [rig]
+        values, weights = list[float](), list[float]()
+        for state in dict.fromkeys(c.state for c in self._conditions):
+            own = [c for c in self._conditions if c.state == state]
+            rigs = [c.rig(case, self._study.vehicle) for c in own for case in cases]
+            found = self._evaluators.in_state(state)[0].entropies(rigs)
+            for number, condition in enumerate(own):
+                part = found[number * len(cases) : (number + 1) * len(cases)]
+                values.append(mean_or_worst(part, search.tolerance.worst))
+                weights.append(condition.weight)
+            if self._worst and max(values) >= cutoff and len(values) < len(self._conditions):
+                return Evaluation(max(values), True)
+        return Evaluation(max(values) if self._worst else weighted_mean(values, weights), False)
+
+
+def study_objective(
+    study: Study, evaluator: RigEvaluator, samples: int, workers: int | None = None
+) -> Objective:
+    """Return what a study's search minimises, without its requirements.
+
+    `InputError` when conditions are to be searched over and the study has none.
+    """
+    search = study.search
+    if search.conditions is None:
+        return objective_of(evaluator, search.tolerance, search.seed)
+    if not study.conditions:
+        expected = "[[state]] or [[weather]] with it"
+        raise InputError("optimize", "conditions", expected, "neither")
+    return ConditionObjective(study, samples, workers)

@@ -1,39 +1,36 @@
 """Mounts, pairs, groups and constraints of a search: their tables in the study file.
 
 An area of the body is in a mesh file beside the study.
+
+Housings and models of the catalogue are looked up for them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
+from .. import catalog
 from ..base.errors import InputError, shown
 from ..base.plugins import shipped
-from ..base.setting_file import read_settings, settings_table
+from ..base.setting import read_declared, read_settings, settings_table
 from ..base.table_reader import Table
 from ..base.values import A_NAME, A_PATH
 from ..geometry.poses import Pose
 from ..scene.mesh import AS_SAID, Mesh
+from ..scene.rig import Housing, Rig, SensorModel
 from ..search import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
-
-T = TypeVar("T")
 
 
 def read_mounting(table: Table, on: Mapping[str, str], folder: Path) -> Mounting:
     """Return mounts, pairs, groups and constraints of `[optimize]`.
 
-    Parameters
-    ----------
-    table : Table
-    on : mapping of sensor name to name of its mount
-    folder : Path
-        Where the study is: files of areas are named relative to it.
+    `on` has the name of the mount of each sensor that is on one. Files of areas are named relative
+    to `folder`, where the study is.
     """
     mounts = [_read_mount(each, folder) for each in table.tables("mount")]
     names = [name for name, _ in mounts]
@@ -41,8 +38,15 @@ def read_mounting(table: Table, on: Mapping[str, str], folder: Path) -> Mounting
         if names.count(name) > 1:
             raise table.error("mount", "each name once", f"{name!r} twice")
     pairs, groups = (_read_ties(table, key) for key in ("pair", "group"))
-    limits = _read_constraints(table)
-    return _made(table, lambda: Mounting(dict(mounts), on, pairs, groups, limits))
+    values, areas = read_settings(table, Constraints), table.tables("no_go")
+    no_go = [read_declared(each, NoGo, each.text("name", rule=A_NAME)) for each in areas]
+    try:
+        limits = Constraints(**values, no_go=no_go)
+        return Mounting(dict(mounts), on, pairs, groups, limits)
+    except InputError as error:
+        if error.source.startswith("sensor "):
+            raise
+        raise table.error(error.field, error.expected, error.found) from None
 
 
 def mounting_tables(mounting: Mounting) -> dict[str, Any]:
@@ -89,13 +93,15 @@ def _read_mount(table: Table, folder: Path) -> tuple[str, AnyMount]:
         expected = "parts of the vehicle or an area, or a list of slots"
         raise table.error("parts, area, slot", expected, found)
     if slots:
-        mount: AnyMount = _made(table, lambda: SlotMount(slots))
+        with table.naming():
+            mount: AnyMount = SlotMount(slots)
     else:
         file = table.text("area", None, rule=A_PATH)
         parts = table.texts("parts", ()) if file else table.texts("parts")
         area = None if file is None else _read_area(table, folder, file, parts)
         own = read_settings(table, SurfaceMount) | ({} if area is None else {"area": area})
-        mount = _made(table, lambda: SurfaceMount(() if area else parts, **own))
+        with table.naming():
+            mount = SurfaceMount(() if area else parts, **own)
     table.finish()
     return name, mount
 
@@ -109,7 +115,8 @@ def _read_area(table: Table, folder: Path, file: str, parts: tuple[str, ...]) ->
             raise table.error("parts", f"{expected} in {file}", shown(part))
     wanted = [mesh.part_names.index(part) for part in parts or mesh.part_names]
     triangles = mesh.triangles[np.isin(mesh.parts, wanted)]
-    return _made(table, lambda: MountArea(triangles, file, parts))
+    with table.naming():
+        return MountArea(triangles, file, parts)
 
 
 def _read_slot(table: Table) -> Slot:
@@ -117,7 +124,8 @@ def _read_slot(table: Table) -> Slot:
     position = table.numbers("position", 3)
     rotation = table.numbers("rotation", 3, (0.0, 0.0, 0.0))
     table.finish()
-    return _made(table, lambda: Slot(name, Pose.from_degrees(position, rotation)))
+    with table.naming():
+        return Slot(name, Pose.from_degrees(position, rotation))
 
 
 def _read_ties(table: Table, key: str) -> list[tuple[str, ...]]:
@@ -126,25 +134,6 @@ def _read_ties(table: Table, key: str) -> list[tuple[str, ...]]:
         ties.append(each.texts("sensors"))
         each.finish()
     return ties
-
-
-def _read_constraints(table: Table) -> Constraints:
-    values, areas = read_settings(table, Constraints), []
-    for each in table.tables("no_go"):
-        name, sides = each.text("name", rule=A_NAME), read_settings(each, NoGo)
-        each.finish()
-        areas.append(_made(each, partial(NoGo, name, **sides)))
-    return _made(table, lambda: Constraints(**values, no_go=areas))
-
-
-def _made(table: Table, make: Callable[[], T]) -> T:
-    """Call `make`; its errors name the table."""
-    try:
-        return make()
-    except InputError as error:
-        if error.source.startswith("sensor "):
-            raise
-        raise table.error(error.field, error.expected, error.found) from None
 
 
 def _mount_table(name: str, mount: AnyMount) -> dict[str, Any]:
@@ -164,3 +153,41 @@ def _mount_table(name: str, mount: AnyMount) -> dict[str, Any]:
     else:
         faces = {"area": area.file, "parts": list(area.parts) or None}
     return {"name": name, **faces, **settings_table(mount)}
+
+
+def housings_of(rig: Rig) -> dict[str, Housing]:
+    """Return the housings that the catalogue has, by sensor."""
+    housings = {sensor.name: catalog.housing(sensor.model.name) for sensor in rig}
+    return {name: housing for name, housing in housings.items() if housing is not None}
+
+
+def check_pairs(rig: Rig, mounting: Mounting) -> None:
+    """Refuse a pair whose sensors are of different models."""
+    models = {sensor.name: sensor.model for sensor in rig}
+    for pair in mounting.pairs:
+        one, other = (models.get(name) for name in pair)
+        if one is not None and other is not None and not same_model(one, other):
+            named = " and ".join(repr(name) for name in pair)
+            found = f"{one.name} and {other.name}"
+            raise InputError("optimize", f"pair of {named}", "sensors of one model", found)
+
+
+def mounts_table(rig: Rig, mounting: Mounting) -> dict[str, dict[str, Any]]:
+    """Return the table "mounts" of result.json: the mount of each sensor that is on one."""
+    table = {}
+    for sensor, name in mounting.on.items():
+        mount = mounting.mounts[name]
+        if isinstance(mount, SurfaceMount):
+            area = mount.area
+            parts = {"parts": list(mount.parts)}
+            faces = parts if area is None else {"area_triangles": len(area.triangles)}
+            own = {**faces, "standoff": mount.standoff, "orientation": mount.orientation}
+        else:
+            own = {"slot": mount.nearest(rig[sensor].pose.position).name}
+        table[sensor] = {"mount": name, **own}
+    return table
+
+
+def same_model(one: SensorModel, other: SensorModel) -> bool:
+    """Return whether two models have equal values, whatever their names."""
+    return one is other or catalog.to_table(one) == catalog.to_table(other)

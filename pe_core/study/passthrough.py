@@ -12,8 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..base.errors import shown
-from ..base.serialization import parse_json
-from ..base.table_reader import Table
+from ..base.table_reader import Table, parse_json
 from ..base.values import A_NAME
 from ..geometry.poses import Pose
 
@@ -23,21 +22,11 @@ FILE_NAME = re.compile(r"(camera_info/)?[^/\\\x00-\x1f]+")
 
 @dataclass(frozen=True, slots=True)
 class SourceSensor:
-    """A sensor of an imported file.
+    """A sensor of an imported file; one that was left out has no `pose`, and its name in the file.
 
-    Attributes
-    ----------
-    name : str
-        Name of the sensor in the rig; for a sensor that was left out, its name in the file.
-    kind : str
-    entry : str
-        Its entry in the file, in the file's format; empty where `files` has the entry.
-    pose : Pose or None
-        Pose at the import, in the format's frame; None for a sensor that was left out.
-    model : str
-        The model at the import, as `model_text` writes it; empty if the user chose the model.
-    is_stand_in : bool
-        Whether the model is a substitute, because the file names no model.
+    `entry` is its entry in the file's format; it is empty where the `files` have it. `pose` is that
+    at the import, in the format's frame, and `model` the model as a text; empty if the user chose
+    it. The model `is_stand_in` if the file names none.
     """
 
     name: str
@@ -52,16 +41,9 @@ class SourceSensor:
 class Passthrough:
     """Data kept of an imported file, for an export in the same format.
 
-    Attributes
-    ----------
-    format : str
-        The name of the format.
-    sensors : tuple of SourceSensor
-        All sensors in the file's order, also those that were left out.
-    files : mapping of str to str
-        Text of each file into which an export writes sensors, by file name.
-    placed : Pose or None
-        Pose of the file's origin in the ground frame.
+    `sensors` are all, in the file's order, also those that were left out. `files` has the text of
+    each file into which an export writes sensors, by name. `placed` is the pose of the file's
+    origin in the ground frame.
     """
 
     format: str
@@ -145,13 +127,6 @@ def _read_sensor(row: Table) -> SourceSensor:
         raise row.error("stand_in", "true or false", shown(stand_in))
     named = row.text("name", rule=A_NAME), row.text("kind")
     model = _text(row, "model") if "model" in row else ""
-    found = SourceSensor(*named, _read_entry(row), _read_pose(row, "pose"), model, stand_in)
-    row.finish()
-    return found
-
-
-def _read_entry(row: Table) -> str:
-    """Return an entry: the text of a JSON object, or an empty text."""
     text = _text(row, "entry") if "entry" in row else ""
     try:
         is_object = not text or isinstance(json.loads(text), dict)
@@ -159,7 +134,9 @@ def _read_entry(row: Table) -> str:
         is_object = False
     if not is_object:
         raise row.error("entry", "a JSON object", shown(text))
-    return text
+    found = SourceSensor(*named, text, _read_pose(row, "pose"), model, stand_in)
+    row.finish()
+    return found
 
 
 def _read_pose(table: Table, key: str) -> Pose | None:

@@ -7,24 +7,24 @@ A preset is a requirement of a regulation, a test or a maker, with its source. A
 from __future__ import annotations
 
 import math
+import os
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 from importlib import resources
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, TypeVar
+from typing import Any
 
-from ..base.degrees import as_in_file, degrees_in_file
 from ..base.errors import InputError, shown
-from ..base.setting import settings_of
-from ..base.setting_file import changed_settings, read_settings
+from ..base.plugins import shipped
+from ..base.setting import changed_settings, read_declared, settings_of
 from ..base.table_reader import Table
-from ..base.values import A_NAME, listed
+from ..base.values import A_NAME, A_PATH, as_in_file, degrees_in_file, listed
+from ..scene.mesh import SCALE, MeshAxes
 from ..scoring import requirements as room
-from ..scoring.requirements import BODIES, Body, Criterion, Requirement, Under, Zone
-from .requirement_body import mesh_table, read_mesh_body
+from ..scoring.requirements import BODIES, Body, Criterion, MeshShape, Requirement, Under, Zone
 
 CONFIDENCE = {"A": "the text of the standard or maker was read", "B": "a secondary source"}
 SHAPES = ("x", "y", "polygon", "ring", "path", "spots")
@@ -33,7 +33,7 @@ CUSTOM = "own"
 MAX_REQUIREMENTS = 200
 OF_FIRST = ("of", *(key for key in settings_of(Criterion) if key != "of"))
 """The order of keys is part of a study's fingerprint."""
-T = TypeVar("T")
+AXES = ("up", "forward", "scale")
 
 
 @dataclass(frozen=True)
@@ -62,10 +62,7 @@ class Preset:
     def requirement(self, name: str | None = None, **zone: Any) -> Requirement:
         """Return the requirement, perhaps under another name, with some keys of its zone replaced.
 
-        Raises
-        ------
-        InputError
-            When a key is wrong.
+        `InputError` when a key is wrong.
         """
         table = {"preset": self.id, "name": name or self.id, **({"zone": zone} if zone else {})}
         return read_requirement(Table(table, f"preset {self.id}"))
@@ -121,12 +118,10 @@ def read_requirement(table: Table, folder: Path = Path()) -> Requirement:
     base = preset(identifier, table.source, table.field("preset"))
     merged = Table(_merged(base.table, table.data), table.source, table.path)
     merged.raw("preset")
-    return replace(_read(merged, identifier, folder), original=_as_shipped(base))
-
-
-def _as_shipped(base: Preset) -> Requirement:
-    """Return the requirement of a preset as it is shipped."""
-    return _read(Table(_merged(base.table, {}), f"preset {base.id}"), base.id, Path())
+    return replace(
+        _read(merged, identifier, folder),
+        original=_read(Table(_merged(base.table, {}), f"preset {base.id}"), base.id, Path()),
+    )
 
 
 def requirement_table(requirement: Requirement) -> dict[str, Any]:
@@ -165,23 +160,15 @@ def _merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
 def _read(table: Table, identifier: str | None, folder: Path) -> Requirement:
     table.raw("preset", None)
     name = table.text("name", rule=A_NAME)
-    zone = _made_of(table.table("zone"), Zone)
-    criterion = _made_of(table.table("criterion"), Criterion)
-    under = _made_of(table.table("under"), Under)
+    zone = read_declared(table.table("zone"), Zone)
+    criterion = read_declared(table.table("criterion"), Criterion)
+    under = read_declared(table.table("under"), Under)
     headings = table.raw("headings", None)
     bodies = tuple(_with_headings(b, headings, table) for b in _read_bodies(table, folder))
     source, check = table.text("source", ""), table.text("check", "")
     table.finish()
     with table.naming():
         return Requirement(name, zone, bodies, criterion, under, identifier, source, check)
-
-
-def _made_of(table: Table, cls: type[T]) -> T:
-    """Return what a table declares; errors of several keys together name the table."""
-    values = read_settings(table, cls)
-    table.finish()
-    with table.naming():
-        return cls(**values)
 
 
 def _read_bodies(table: Table, folder: Path) -> list[Body]:
@@ -261,7 +248,8 @@ def _body_table(body: Body) -> dict[str, Any]:
     sizes: dict[str, Any] = {"size": list(body.size)}
     if body.is_round:
         sizes = {"diameter": body.size[0], "height": body.size[2]}
-    sizes = mesh_table(body) or sizes
+    if body.shape is not None:
+        sizes = {"mesh": body.shape.file, **dict(body.shape.axes)}
     more = {"low": body.low or None, "class": body.class_name}
     return {"name": body.name, **sizes} | {k: v for k, v in more.items() if v is not None}
 
@@ -273,3 +261,47 @@ def _headings(requirement: Requirement) -> list[float] | None:
         if body.headings != own:
             return [degrees_in_file(h) for h in body.headings]
     return None
+
+
+def read_mesh_body(own: Table, name: str, folder: Path) -> Body:
+    """Return a body from its table, with a mesh file relative to a folder.
+
+    `InputError` for a file that is no mesh, a body that is not closed, or one of no likely size.
+    """
+    file = own.text("mesh", rule=A_PATH)
+    up, forward = own.text("up", None), own.text("forward", None)
+    scale = own.number("scale", 1.0, rule=SCALE)
+    low, class_name = own.number("low", 0.0), own.text("class", None, rule=A_NAME)
+    own.finish()
+    path = folder / file
+    try:
+        state = os.stat(path)
+        stamp = state.st_mtime_ns, state.st_size
+    except OSError:
+        stamp = 0, 0  # the reader says what is wrong with it
+    with own.naming():
+        axes = MeshAxes(up, forward, scale, (0.0, 0.0, 0.0))
+    try:
+        shape = _shape(str(path), stamp, axes)
+    except InputError as error:
+        raise own.error("mesh", error.expected, f"{file}: {error.found}") from None
+    return Body(name, shape.size, low, class_name=class_name, shape=replace(shape, file=file))
+
+
+@lru_cache(maxsize=32)
+def _shape(path: str, stamp: tuple[int, int], axes: MeshAxes) -> MeshShape:
+    """Return the shape of a mesh file; `stamp` changes with the file."""
+    mesh = shipped("reader.mesh")(path, axes)
+    stated = (axes.up, axes.forward, axes.scale if axes.scale != 1.0 else None)
+    keys = tuple((key, value) for key, value in zip(AXES, stated, strict=True) if value is not None)
+    return MeshShape.of(path, mesh.triangles, keys)
+
+
+def mesh_files(requirements: Sequence[Requirement]) -> list[tuple[str, str]]:
+    """Return the name of each requirement that has a body from a mesh, and the mesh file."""
+    return [
+        (each.name, body.shape.file)
+        for each in requirements
+        for body in each.bodies
+        if body.shape is not None
+    ]

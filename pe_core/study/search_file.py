@@ -7,17 +7,16 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from ..base.degrees import degrees_in_file
 from ..base.errors import InputError, shown
-from ..base.setting import settings_of
-from ..base.setting_file import key_of, read_settings, settings_table
+from ..base.setting import key_of, read_declared, read_settings, settings_of, settings_table
 from ..base.table_reader import Table
+from ..base.values import A_NAME, degrees_in_file
+from ..geometry.poses import Pose
 from ..scene.rig import SensorModel
 from ..search import (
     AXES,
     DEFAULT_METHOD,
     METHODS,
-    PARTS,
     POSITION_AXES,
     SCHEDULED_METHOD,
     Choice,
@@ -27,16 +26,18 @@ from ..search import (
     Tolerance,
     checked_bounds,
 )
+from ..search.goals import Front, Goals, Start, Stop
 from ..search.tolerance import CASES, ERRORS
 from ..sensors import KINDS
-from .goals_file import goals_tables, read_goals
 from .mounting_file import mounting_tables, read_mounting
-from .objective_setting import ENTROPY
-from .study import Search
+from .study import ENTROPY, Search
 
 Bounds = tuple[float, float]
 KEYS_FIRST = ("evaluations", "seed", "samples")
 """The order of these keys is part of a study's fingerprint; keys that came later follow."""
+Read = Callable[[Table], SensorModel]
+AXES_OF_A_POSE = 6
+"""x, y, z [m], roll, pitch, yaw [deg]."""
 
 
 def read_limits(table: Table) -> dict[str, Bounds]:
@@ -71,8 +72,7 @@ def read_search(
     `free`, `limits` and `on` are free axes, bounds and mounts by sensor, from `[[sensor]]`;
     `is_choice`: the study has a choice of sensors, which is screened by a schedule.
     """
-    known = () if table.data.get("method") in tuple(PARTS) else tuple(METHODS)
-    method = table.text("method", DEFAULT_METHOD, known)
+    method = table.text("method", DEFAULT_METHOD, tuple(METHODS))
     search = Search(
         free,
         limits,
@@ -110,24 +110,20 @@ def _read_tolerance(table: Table) -> Tolerance:
         return Tolerance(**values)
 
 
-def _tolerance_keys(tolerance: Tolerance) -> dict[str, Any]:
-    """Return the keys that `_read_tolerance` reads; None for a default value."""
-    default, errors = Tolerance(), settings_table(tolerance, ERRORS)
-    is_default = errors == settings_table(default, ERRORS)
-    cases = {key: value or None for key, value in settings_table(tolerance, CASES).items()}
-    return {"tolerance": None if is_default else errors, **cases}
-
-
 def search_table(search: Search, *, is_choice: bool) -> dict[str, Any]:
     """Return the table `[optimize]` of a search; with a schedule where one is used."""
     is_scheduled = search.method == SCHEDULED_METHOD or is_choice
+    default, errors = Tolerance(), settings_table(search.tolerance, ERRORS)
+    is_default = errors == settings_table(default, ERRORS)
+    cases = {key: value or None for key, value in settings_table(search.tolerance, CASES).items()}
     return {
         "method": search.method,
         **settings_table(search, KEYS_FIRST),
         **settings_table(search),
         "objective": None if search.objective == ENTROPY else search.objective,
         **(settings_table(search.schedule) if is_scheduled else {}),
-        **_tolerance_keys(search.tolerance),
+        "tolerance": None if is_default else errors,
+        **cases,
         **goals_tables(search.goals),
         **mounting_tables(search.mounting),
     }
@@ -139,18 +135,10 @@ def in_file(name: str, value: Any) -> Any:
     return degrees_in_file(value) if angle else value
 
 
-Read = Callable[[Table], SensorModel]
-
-
 def read_selection(table: Table, model: Read) -> Selection:
-    """Return the choices and limits of `[[choice]]` and `[selection]`.
+    """Return the choices and limits of `[[choice]]` and `[selection]`, from a study's table.
 
-    Parameters
-    ----------
-    table : Table
-        Of the whole study.
-    model : callable
-        Reads the model of an option from its table.
+    `model` reads the model of an option from its table.
     """
     choices = [_read_choice(each, model) for each in table.tables("choice")]
     own = table.table("selection")
@@ -211,4 +199,41 @@ def _choice_table(
         "mount": choice.mount,
         "optional": choice.optional,
         "option": [{"model": model(o.model), **settings_table(o)} for o in choice.options],
+    }
+
+
+def read_goals(table: Table) -> Goals:
+    """Return the goals in the table `[optimize]`; an `InputError` names the key in the file."""
+    stop = read_declared(table.table("stop"), Stop)
+    front = read_declared(table.table("front"), Front)
+    starts = [_read_start(each) for each in table.tables("start")]
+    with table.naming():
+        goals = read_settings(table, Goals)
+        return Goals(stop, starts=starts, front=front, **goals)
+
+
+def _read_start(table: Table) -> Start:
+    name, placements = table.text("name", rule=A_NAME), table.table("placements")
+    poses = {}
+    for sensor in placements.names:
+        values = placements.numbers(sensor, AXES_OF_A_POSE)
+        try:
+            poses[sensor] = Pose.from_degrees(values[:3], values[3:])
+        except InputError as error:
+            raise placements.error(sensor, error.expected, error.found) from None
+    placements.finish()
+    table.finish()
+    return Start(name, poses)
+
+
+def goals_tables(goals: Goals) -> dict[str, Any]:
+    """Return the keys that `read_goals` reads; None for those at their default."""
+    default = Goals()
+    own = settings_table(goals)
+    return {
+        "stop": None if goals.stop == default.stop else settings_table(goals.stop),
+        "fixed": own.pop("fixed") or None,
+        "start": [{"name": each.name, "placements": each.numbers} for each in goals.starts] or None,
+        "front": None if goals.front == default.front else settings_table(goals.front),
+        **own,
     }

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from ..base.setting import REQUIRED, OneOf, Setting, Several, settings_of
-from ..base.setting_file import key_of
+from ..base.setting import REQUIRED, OneOf, Setting, Several, key_of, settings_of
 from ..geometry.grids import PerceptionSpace
 from ..metric.entropy import ApCurve
 from ..prior.prior import Focus
@@ -32,7 +31,7 @@ from ..search import (
 from ..search.tolerance import CASES, ERRORS
 from ..sensors import PerceptionModel
 from ..sensors.weather import Weather
-from .condition_file import BODY, OF_STATE
+from .conditions import BODY, OF_STATE
 from .study import Search, Study
 
 

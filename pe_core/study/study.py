@@ -19,8 +19,7 @@ from ..base.values import A_NAME, A_PATH, Whole
 from ..geometry.grids import PerceptionSpace
 from ..prior import HIGHWAY_CLASSES, ROAD_CLASSES
 from ..prior.prior import Prior
-from ..scene.body_shape import require_vehicle_size
-from ..scene.mesh import MeshAxes
+from ..scene.mesh import MeshAxes, require_vehicle_size
 from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference, vehicle_line
@@ -38,6 +37,7 @@ from ..scoring.sight import Sight
 from ..scoring.targets import ObjectEvaluator, TargetRule
 from ..search import (
     AXES,
+    METHODS,
     PAPER_FREE,
     DesignSpace,
     Goals,
@@ -50,15 +50,21 @@ from ..search import (
     checked_axes,
     checked_bounds,
     checked_method,
-    method_named,
 )
 from ..sensors import PerceptionModel
-from .catalog_lookup import check_pairs, housings_of
-from .condition_set import Conditions, StateInWeather
-from .objective_setting import OBJECTIVE
+from .conditions import (
+    ConditionedChecker,
+    Conditions,
+    StateInWeather,
+    check_classes,
+    mounting_cases,
+)
+from .mounting_file import check_pairs, housings_of
 from .passthrough import Passthrough
-from .requirement_check import ConditionedChecker, check_classes, mounting_cases
 
+ENTROPY, EXPECTED_AP = "entropy", "expected_ap"
+OBJECTIVES = (ENTROPY, EXPECTED_AP)
+"""What a search improves."""
 DEFAULT_SEARCH_SAMPLES = 65_536
 SEED = Whole(0, 2**63 - 1)
 """The range of whole numbers of a TOML file."""
@@ -145,7 +151,22 @@ class Search:
             ),
         ),
     )
-    objective: str = OBJECTIVE
+    objective: str = setting(
+        ENTROPY,
+        OneOf(OBJECTIVES),
+        "What a search improves: the entropy, or the expected AP of objects in traffic",
+        Panel(
+            "objective",
+            "Objective",
+            menu=(
+                ("Entropy", "Lower the entropy of the targets: voxels or objects"),
+                (
+                    "Expected AP in Traffic",
+                    "Raise the expected AP of objects that occlude each other",
+                ),
+            ),
+        ),
+    )
 
     def __post_init__(self) -> None:
         who = "optimize"
@@ -164,7 +185,7 @@ class Search:
     @property
     def level_samples(self) -> tuple[int, ...]:
         """Number of voxels of each level of the method, the coarsest first."""
-        return method_named(self.method).samples(self.samples)
+        return METHODS[self.method].samples(self.samples)
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,32 +5,35 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 from .. import catalog
 from ..base.errors import InputError, shown
 from ..base.files import decode_text, read_bytes, write_bytes
 from ..base.plugins import shipped
-from ..base.serialization import dumps, load_toml
-from ..base.setting_file import read_settings, settings_table
-from ..base.table_reader import Table
+from ..base.setting import read_declared, read_settings, settings_table
+from ..base.table_reader import Table, dumps, load_toml
 from ..base.values import A_NAME, A_PATH, ANY
 from ..geometry.grids import PerceptionSpace
 from ..geometry.poses import Pose
-from ..scene.body_shape import require_vehicle_size
-from ..scene.mesh import MeshAxes
+from ..scene.mesh import MeshAxes, require_vehicle_size
 from ..scene.rig import Rig, Sensor, SensorModel
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference
 from ..search import PAPER_FREE, checked_axes
-from .catalog_lookup import same_model
-from .condition_file import condition_tables, read_conditions
-from .metric_file import curves_table, read_curve, read_model, read_targets, targets_table
-from .mounting_file import areas_of
+from .conditions import condition_tables, read_conditions
+from .mounting_file import areas_of, same_model
 from .passthrough import passthrough_table, read_passthrough
-from .prior_file import prior_table, read_prior
-from .requirement_body import mesh_files
-from .requirement_file import read_requirements, requirement_table
+from .requirement_file import mesh_files, read_requirements, requirement_table
+from .scoring_file import (
+    curves_table,
+    prior_table,
+    read_curve,
+    read_model,
+    read_prior,
+    read_targets,
+    targets_table,
+)
 from .search_file import (
     in_file,
     read_limits,
@@ -41,7 +44,6 @@ from .search_file import (
 )
 from .study import Search, Study
 
-T = TypeVar("T")
 OWN_MODEL = "own"
 """Name of an own model in a choice that has no name."""
 
@@ -152,13 +154,13 @@ def _read_study(table: Table, folder: Path) -> Study:
     study = Study(
         Rig(mounted),
         vehicle,
-        _made_of(table.table("space"), PerceptionSpace),
+        read_declared(table.table("space"), PerceptionSpace),
         read_prior(table.table("prior"), folder),
         read_model(table.table("ap"), table.table("fusion")),
         read_search(search, free, limits, on, folder, is_choice="choice" in table),
         read_settings(table, Study)["samples"],
         *file,
-        _made_of(table.table("reference"), Reference) if "reference" in table else None,
+        read_declared(table.table("reference"), Reference) if "reference" in table else None,
         read_selection(table, lambda option: _read_intrinsics(option, OWN_MODEL, folder)),
         read_targets(table.table("metric")),
         read_passthrough(table.table("passthrough")) if "passthrough" in table else None,
@@ -170,12 +172,6 @@ def _read_study(table: Table, folder: Path) -> Study:
         study.checker()  # zones that cannot be placed are bad input, too
     study.coding()  # bounds that do not hold their start are bad input, not a late surprise
     return study
-
-
-def _made_of(table: Table, cls: type[T]) -> T:
-    made = cls(**read_settings(table, cls))
-    table.finish()
-    return made
 
 
 def _read_vehicle(table: Table, folder: Path) -> tuple[Vehicle | None, MeshFile]:
@@ -231,12 +227,17 @@ def _axes(table: Table, key: str, default: tuple[str, ...]) -> tuple[str, ...]:
 def _vehicle_table(study: Study) -> dict[str, Any] | None:
     if study.vehicle is None:
         return None
+    rotation = None if study.axes.rotation_deg is None else list(study.axes.rotation_deg)
+    scale = None if study.axes.scale == 1.0 else study.axes.scale
     return {
         "mesh": study.mesh,
         "glass": list(study.vehicle.glass),
         **({"covers": dict(study.vehicle.covers)} if study.vehicle.covers else {}),
         **settings_table(study.vehicle),
-        **axes_table(study.axes),
+        "scale": scale,
+        "rotation": rotation,
+        "up": study.axes.up,
+        "forward": study.axes.forward,
     }
 
 
@@ -299,10 +300,3 @@ def read_axes(table: Table) -> MeshAxes:
     rotation = table.numbers("rotation", 3, None)
     with table.naming():
         return MeshAxes(up, forward, scale, rotation)  # type: ignore[arg-type]  # three of them
-
-
-def axes_table(axes: MeshAxes) -> dict[str, Any]:
-    """Return the keys of [vehicle] for the axes of the mesh file."""
-    rotation = None if axes.rotation_deg is None else list(axes.rotation_deg)
-    scale = None if axes.scale == 1.0 else axes.scale
-    return {"scale": scale, "rotation": rotation, "up": axes.up, "forward": axes.forward}

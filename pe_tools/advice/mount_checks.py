@@ -15,10 +15,8 @@ from pe_core.base.errors import InputError
 from pe_core.geometry.grids import PerceptionSpace
 from pe_core.geometry.poses import Pose, dot
 from pe_core.geometry.raycast import Hits
-from pe_core.scene.housing import cuts_body
-from pe_core.scene.inside_test import is_enclosed
-from pe_core.scene.rig import Sensor
-from pe_core.scene.vehicle import Vehicle, closest_points
+from pe_core.scene.rig import Sensor, cuts_body
+from pe_core.scene.vehicle import Vehicle, closest_points, is_enclosed
 from pe_core.scoring.score import SensorScore
 from pe_core.sensors import kind_of
 from pe_tools.wording import metres

@@ -9,9 +9,9 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from pe_core.base.arrays import Floats
-from pe_core.scene.orientation import is_called
 from pe_core.scene.rig import Sensor
 from pe_core.scene.vehicle import Vehicle
+from pe_core.scene.vehicle_description import is_called
 from pe_core.sensors import KINDS
 
 MIRRORS, SKIPPED = ("mirror",), ("-",)

@@ -10,9 +10,8 @@ from typing import Any
 
 from pe_core.scene.rig import SensorModel
 from pe_core.scoring.sampling import BLOCKS
-from pe_core.scoring.scatter import FigureKey, paired_error
-from pe_core.scoring.score import PartScore, Score
-from pe_core.study.catalog_lookup import same_model
+from pe_core.scoring.score import FigureKey, PartScore, Score, paired_error
+from pe_core.study.mounting_file import same_model
 
 from .key_figures import KeyFigures
 

@@ -8,9 +8,15 @@ from functools import cached_property
 
 import numpy as np
 
-from pe_core.scene.body_shape import USUAL_SECOND_M, BodyShape, car_factor, fitting_units, is_usual
-from pe_core.scene.orientation import LONGER, ON_GROUND, across, front_by_names, wheel_center
+from pe_core.scene.mesh import USUAL_SECOND_M, BodyShape, car_factor, fitting_units, is_usual
 from pe_core.scene.vehicle import Vehicle
+from pe_core.scene.vehicle_description import (
+    LONGER,
+    ON_GROUND,
+    across,
+    front_by_names,
+    wheel_center,
+)
 
 from .advice import Advice
 

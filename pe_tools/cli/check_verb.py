@@ -9,14 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from pe_core.base import dump_json
-from pe_core.base.csv_text import csv_text
 from pe_core.base.errors import InputError
-from pe_core.base.files import require_new, write_bytes
-from pe_core.base.serialization import finite
+from pe_core.base.files import csv_text, require_new, write_bytes
+from pe_core.base.table_reader import finite
 from pe_core.scoring.requirements import Redundancy, RedundancyMap, Verdict, checkable
 from pe_core.study import Study, load_study
 from pe_core.study.requirement_file import CONFIDENCE, Preset, preset, presets
-from pe_core.study.requirement_help import suggestions
+from pe_core.study.requirement_search import suggestions
 
 from ..advice import curve_note
 from ..jobs import CheckJob

@@ -11,7 +11,7 @@ from typing import Any
 from pe_core import catalog
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
-from pe_core.base.serialization import finite
+from pe_core.base.table_reader import finite
 from pe_core.study import Study, vehicle_digest
 
 from .. import advice

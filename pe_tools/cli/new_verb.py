@@ -17,11 +17,10 @@ import numpy as np
 from pe_core import catalog
 from pe_core.base.errors import InputError
 from pe_core.base.files import require_new, write_bytes
-from pe_core.base.serialization import dumps
+from pe_core.base.table_reader import dumps
 from pe_core.scene import Pose, Rig, Sensor, Vehicle, vehicle_line
-from pe_core.scene.body_shape import BodyShape, fitting_units, require_vehicle_size
-from pe_core.scene.mesh import AXIS_NAMES
-from pe_core.scene.orientation import is_called
+from pe_core.scene.mesh import AXIS_NAMES, BodyShape, fitting_units, require_vehicle_size
+from pe_core.scene.vehicle_description import is_called
 from pe_core.scoring.sampling import FIRST_SAMPLES
 from pe_core.study import Study
 

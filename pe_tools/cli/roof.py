@@ -13,8 +13,8 @@ from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
 from pe_core.geometry.grids import PerceptionSpace
 from pe_core.scene import Housing, Pose, Rig, Sensor, Vehicle, cuts_body
-from pe_core.scene.body_shape import BodyShape
-from pe_core.scene.orientation import is_called
+from pe_core.scene.mesh import BodyShape
+from pe_core.scene.vehicle_description import is_called
 from pe_core.search import MountArea, Mounting, SurfaceMount, snap_to_mount
 from pe_core.study import Search, Study
 

@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from pe_core.base.errors import InputError
-from pe_core.base.serialization import dump_json, parse_json
-from pe_core.base.table_reader import Table
+from pe_core.base.table_reader import Table, dump_json, parse_json
 from pe_core.base.values import Number
 from pe_core.study.passthrough import json_entry
 

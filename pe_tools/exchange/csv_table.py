@@ -9,11 +9,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pe_core.base.csv_text import csv_text, unmarked
 from pe_core.base.errors import InputError
+from pe_core.base.files import csv_text, unmarked
 from pe_core.base.values import FINITE, Number, choice
 from pe_core.sensors.camera.kind import FOV_DEG
-from pe_core.sensors.camera.lens_models import LENSES
+from pe_core.sensors.camera.lens import LENSES
 from pe_core.study.passthrough import json_entry
 
 from . import foreign_values as values

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from pe_core.base.errors import InputError, shown
-from pe_core.base.serialization import dump_json, parse_json
-from pe_core.base.table_reader import Table
+from pe_core.base.table_reader import Table, dump_json, parse_json
 from pe_core.base.values import FINITE, Number, vector
 from pe_core.geometry.poses import METRES, Pose
 from pe_core.sensors.camera import FTheta

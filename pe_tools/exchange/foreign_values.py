@@ -11,8 +11,7 @@ from typing import Any
 
 from pe_core.base.errors import InputError, shown
 from pe_core.base.files import TEXT_BYTES, decode_text, read_bytes
-from pe_core.base.serialization import parse_json
-from pe_core.base.table_reader import Table
+from pe_core.base.table_reader import Table, parse_json
 from pe_core.base.values import FINITE, Number, Whole, vector
 from pe_core.geometry.poses import METRES, ROTATION, ROTATION_DEG, Pose
 from pe_core.sensors.camera.lens import COEFFICIENT as COEFFICIENT

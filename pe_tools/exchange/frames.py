@@ -18,7 +18,7 @@ import numpy as np
 
 from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
-from pe_core.base.file_stem import is_reserved
+from pe_core.base.files import is_reserved
 from pe_core.base.values import vector
 from pe_core.geometry.poses import METRES, Pose, rpy_from_matrix
 from pe_core.scene.vehicle_description import Reference

@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from pe_core.base.errors import InputError, shown
-from pe_core.base.serialization import dump_json
-from pe_core.base.table_reader import Table
+from pe_core.base.table_reader import Table, dump_json
 from pe_core.base.values import numbers, vector
 from pe_core.geometry.poses import METRES
 from pe_core.sensors.camera import BrownConrady

@@ -16,7 +16,7 @@ from typing import Any
 
 from pe_core.base.errors import InputError, shown
 from pe_core.base.files import read_bytes
-from pe_core.base.serialization import load_toml, parse_json
+from pe_core.base.table_reader import load_toml, parse_json
 from pe_core.search import EvaluatedRig, Journal
 from pe_core.study.file_names import SEARCH, STUDY
 from pe_core.study.study import Study

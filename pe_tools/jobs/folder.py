@@ -25,7 +25,7 @@ from pe_core.base.files import (
     write_bytes,
     write_synced,
 )
-from pe_core.base.serialization import dump_json, parse_json
+from pe_core.base.table_reader import dump_json, parse_json
 
 try:
     import fcntl

@@ -7,9 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pe_core.base.csv_text import csv_text
-from pe_core.base.file_stem import file_stem
-from pe_core.base.serialization import dump_json, finite
+from pe_core.base.files import csv_text, file_stem
+from pe_core.base.table_reader import dump_json, finite
 from pe_core.study.file_names import STUDY
 from pe_core.study.study import vehicle_digest
 from pe_core.study.study_file import study_to_dict

@@ -22,7 +22,7 @@ from pe_core.search import (
     pareto_front,
 )
 from pe_core.search.goals import AP, ENTROPY, PRICE
-from pe_core.study.objective_search import is_by_ap
+from pe_core.study.condition_table import is_by_ap
 from pe_core.study.requirement_search import (
     FeasibilityRule,
     FeasibleFirst,

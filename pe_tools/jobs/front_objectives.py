@@ -9,12 +9,10 @@ from itertools import pairwise
 from pe_core import catalog
 from pe_core.base.errors import InputError
 from pe_core.base.values import rounded
-from pe_core.scene.housing import hull_of
-from pe_core.scene.rig import Rig
+from pe_core.scene.rig import Rig, hull_of
 from pe_core.scoring import RigEvaluator
-from pe_core.scoring.protocol import Evaluation
 from pe_core.scoring.requirements import FARTHEST_M, Verdict
-from pe_core.scoring.score import Score
+from pe_core.scoring.score import Evaluation, Score
 from pe_core.search import objective_of
 from pe_core.search.goals import (
     AP,
@@ -28,10 +26,9 @@ from pe_core.search.goals import (
     WORST_LOSS,
 )
 from pe_core.search.tolerance import without_each
-from pe_core.study.blind_ground_search import blind_area
-from pe_core.study.objective_search import is_by_ap
-from pe_core.study.objective_setting import EXPECTED_AP
-from pe_core.study.study import Study
+from pe_core.study.condition_table import is_by_ap
+from pe_core.study.requirement_search import blind_area
+from pe_core.study.study import EXPECTED_AP, Study
 
 AUGMENTED = 0.05
 """Weight of the sum beside the maximum: it drops placements that are only weakly efficient."""

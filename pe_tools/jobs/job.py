@@ -15,8 +15,12 @@ from pe_core.scoring import RigEvaluator
 from pe_core.scoring.requirements import CheckStep, RequirementChecker, Verdict
 from pe_core.scoring.score import ObjectScore, Score, ScoreStopped
 from pe_core.search import EvaluatedRig, Robustness
-from pe_core.study.condition_table import ConditionTable, condition_table
-from pe_core.study.objective_search import is_by_ap, search_evaluator
+from pe_core.study.condition_table import (
+    ConditionTable,
+    condition_table,
+    is_by_ap,
+    search_evaluator,
+)
 from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Study
 

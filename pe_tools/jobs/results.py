@@ -14,12 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from pe_core.base.csv_text import csv_text
-from pe_core.base.files import read_bytes
-from pe_core.base.serialization import dump_json, finite, parse_json
+from pe_core.base.files import csv_text, read_bytes
+from pe_core.base.table_reader import dump_json, finite, parse_json
 from pe_core.scene.rig import Rig
 from pe_core.search import AXES
-from pe_core.study.catalog_lookup import mounts_table
 from pe_core.study.condition_table import ConditionScore, ConditionTable
 from pe_core.study.file_names import (
     AREAS,
@@ -34,9 +32,8 @@ from pe_core.study.file_names import (
     SEARCH,
     STUDY,
 )
-from pe_core.study.mounting_file import areas_of
-from pe_core.study.objective_setting import EXPECTED_AP
-from pe_core.study.study import Study
+from pe_core.study.mounting_file import areas_of, mounts_table
+from pe_core.study.study import EXPECTED_AP, Study
 from pe_core.version import __version__
 
 from .checkpoint import SearchState

@@ -21,10 +21,9 @@ from pe_core.search import (
     optimize,
     robustness,
 )
-from pe_core.study.blind_ground_search import blind_area
-from pe_core.study.condition_search import study_objective
-from pe_core.study.objective_search import is_by_ap, searched_study
+from pe_core.study.condition_table import is_by_ap, searched_study, study_objective
 from pe_core.study.requirement_search import (
+    blind_area,
     conflicts,
     constraints_of,
     feasible_first,

@@ -7,10 +7,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pe_core.study.objective_search import is_by_ap, searched_study
-from pe_core.study.objective_setting import ENTROPY, EXPECTED_AP
+from pe_core.study.condition_table import is_by_ap, searched_study
 from pe_core.study.requirement_search import INFEASIBLE, is_infeasible
-from pe_core.study.study import Study
+from pe_core.study.study import ENTROPY, EXPECTED_AP, Study
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from pe_core import catalog
-from pe_core.base.serialization import finite
+from pe_core.base.table_reader import finite
 from pe_core.study.file_names import AREAS, BOXES, MESH, STUDY
 from pe_core.study.mounting_file import areas_mesh, areas_of, with_areas_in
 from pe_core.study.study import Study, vehicle_digest

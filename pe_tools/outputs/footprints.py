@@ -17,7 +17,7 @@ import numpy as np
 from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
 from pe_core.scene import PerceptionSpace, Pose, Vehicle
-from pe_core.scoring.sight.grid_regions import outlines
+from pe_core.scoring.sight.ground_cells import outlines
 from pe_core.sensors import kind_of
 
 from ..exchange import Written

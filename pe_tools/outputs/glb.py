@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from pe_core.base.arrays import Floats, Ints
 from pe_core.scene import Reference, Vehicle
-from pe_core.scoring.sight.grid_regions import chained
+from pe_core.scoring.sight.ground_cells import chained
 from pe_core.version import __version__
 
 from ..graphics import Rgb

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from pe_core.base.csv_text import csv_text
-from pe_core.base.serialization import dump_json
+from pe_core.base.files import csv_text
+from pe_core.base.table_reader import dump_json
 from pe_core.scene.rig import Sensor
 from pe_core.scene.vehicle import Vehicle
 from pe_core.sensors import EgoMask, kind_of

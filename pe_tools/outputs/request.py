@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from pe_core.base.file_stem import file_stem
+from pe_core.base.files import file_stem
 from pe_core.base.values import LENGTH
 from pe_core.scene.rig import Sensor
 from pe_core.study import Study

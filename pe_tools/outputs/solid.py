@@ -10,7 +10,7 @@ import numpy as np
 
 from pe_core.base.arrays import Flags, Floats, Ints
 from pe_core.scene import PerceptionSpace, Rig, Sensor, Vehicle, rotate
-from pe_core.scoring.sight.grid_regions import chained
+from pe_core.scoring.sight.ground_cells import chained
 from pe_core.sensors import MeasurementCache, Voxels, kind_of
 
 NEAREST_M = 1e-3

@@ -11,9 +11,8 @@ from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig
 from pe_core.search import AXES
 from pe_core.search.goals import FULL, OFF
-from pe_core.study.objective_search import is_by_ap
-from pe_core.study.objective_setting import EXPECTED_AP
-from pe_core.study.study import Study
+from pe_core.study.condition_table import is_by_ap
+from pe_core.study.study import EXPECTED_AP, Study
 
 from .flatness import (
     FAR,

@@ -22,8 +22,8 @@ from pe_core.search import (
     pose_from_values,
     pose_values,
 )
-from pe_core.search.linkage import followers
-from pe_core.search.rules import Trial
+from pe_core.search.parametrization import followers
+from pe_core.search.search_space import Trial
 
 from .fresh_samples import STEEP_NATS, Difference, FreshSamples
 

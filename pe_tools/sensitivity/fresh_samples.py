@@ -19,7 +19,7 @@ from pe_core.base.values import rounded
 from pe_core.scene.rig import Rig
 from pe_core.scoring import Evaluator, RigEvaluator
 from pe_core.search import Objective, evaluate_all, objective_of
-from pe_core.study.objective_search import is_by_ap, on_objects, searched_study
+from pe_core.study.condition_table import is_by_ap, on_objects, searched_study
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 
 SAMPLES = 4

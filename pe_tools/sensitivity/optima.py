@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from itertools import chain, islice
 from typing import Any
 
-from pe_core.base.degrees import degrees_in_file
+from pe_core.base.values import degrees_in_file
 from pe_core.scene.rig import Rig
-from pe_core.scoring.protocol import Evaluation
+from pe_core.scoring.score import Evaluation
 from pe_core.search import Candidate, Parametrization
-from pe_core.search.design_variable import METRE, RADIAN, SHARE
+from pe_core.search.domains import METRE, RADIAN, SHARE
 from pe_core.search.search_space import SearchSpace
 from pe_core.study.requirement_search import is_infeasible
 

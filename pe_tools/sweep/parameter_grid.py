@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from pe_core.base.errors import InputError, shown
-from pe_core.base.file_stem import is_reserved
+from pe_core.base.files import is_reserved
 from pe_core.scene import Vehicle
 from pe_core.study import Study, load_study_data, study_from_dict
 

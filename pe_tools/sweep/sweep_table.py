@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pe_core.base.csv_text import csv_text
 from pe_core.base.errors import InputError
-from pe_core.base.files import read_bytes
-from pe_core.base.serialization import dump_json, finite, parse_json
+from pe_core.base.files import csv_text, read_bytes
+from pe_core.base.table_reader import dump_json, finite, parse_json
 from pe_core.study import RESULT
-from pe_core.study.objective_setting import EXPECTED_AP
+from pe_core.study.study import EXPECTED_AP
 from pe_core.version import __version__
 
 from ..jobs import FileSet, Outcome, files_of_other_runs, fingerprint, prepare_folder

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pe_core.geometry import rotate
+from pe_core.geometry.ray_traversal import TriangleTree
 from pe_core.geometry.raycast import VisibleTriangles
-from pe_core.geometry.triangle_tree import TriangleTree
 from pe_core.sensors.lidar import Lidar
 
 from .placements import Placement, vehicle

@@ -32,23 +32,6 @@ def test_a_moved_sensor_has_a_line_to_where_it_stands_now():
     assert shape.legend.classes[0][1] == "Low"
 
 
-def test_what_stands_in_the_same_place_has_neither_line_nor_name():
-    shape = ghost_sensors([sensor("roof", 0.0)], [sensor("roof", 0.0)])
-    assert not shape.labels and not joins(shape, (0.0, 0.0, 1.8), (0.0, 0.0, 1.8))
-    assert len(shape.through.points), "the ghost itself is drawn"
-
-
-def test_what_is_not_here_has_a_name_alone():
-    shape = ghost_sensors([sensor("eye", 0.0, "Camera 60 deg")], [sensor("roof", 1.5)])
-    assert [label.text for label in shape.labels] == ["eye"]
-    assert not joins(shape, (0.0, 0.0, 1.8), (1.5, 0.0, 1.8))
-
-
-def test_nothing_of_no_variant():
-    shape = ghost_sensors([], [sensor("roof", 1.5)])
-    assert not len(shape.through.points) and shape.legend is None
-
-
 def test_lines_tell_who_sees_the_place_and_from_whom_it_is_hidden():
     def told(name, m, reason):
         return advice.SensorAtPlace(name, "lidar", m, 5.0, 0.5, None, reason)

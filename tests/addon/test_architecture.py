@@ -26,12 +26,13 @@ engine:
 signals:
 choices:
 sensor_kinds: engine
+view_settings: engine
 translation_context:
 preferences: engine
 language: engine preferences translation_context
 own_catalog: engine
-properties: bridge choices engine sensor_kinds signals
-bridge: choices engine
+properties: bridge choices engine sensor_kinds signals view_settings
+bridge: choices engine view_settings
 sensor_cache: bridge
 caches: engine
 vehicle_cache: bridge caches engine
@@ -49,17 +50,17 @@ preferences_panel: engine language library own_catalog preferences sensor_kinds 
 live: bridge caches change_events choices engine language preferences sensor_cache signals
     vehicle_cache viewport worker
 search_curve: engine viewport
-overlay: caches engine viewport
+overlay: caches engine view_settings viewport
 overlay.snapshot: bridge engine live location_query overlay preferences search_curve sensor_cache
-    vehicle_cache
+    vehicle_cache view_settings
 overlay.scheduler: engine overlay overlay.snapshot sensor_cache viewport worker
 overlay.surroundings: caches engine overlay vehicle_cache viewport
 overlay.draw_handler: bridge engine overlay overlay.scheduler overlay.surroundings vehicle_cache
     viewport
 operators: bridge caches choices diagnostics engine housing language library live location_query
     overlay overlay.surroundings preferences properties result_staleness search_curve sensor_cache
-    sensor_kinds signals translation_context vehicle_cache viewport worker
-panels: choices language operators properties
+    sensor_kinds signals translation_context vehicle_cache view_settings viewport worker
+panels: choices language operators properties view_settings
 commands: bridge engine result_staleness
 wiring: bridge change_events consistency diagnostics housing live location_query operators
     overlay.draw_handler overlay.scheduler result_staleness sensor_cache signals vehicle_cache

@@ -3,7 +3,6 @@
 import bpy
 import pytest
 
-import blender_addon
 from blender_addon import change_events, signals, wiring
 from tests.addon import scenes
 
@@ -176,16 +175,6 @@ def test_what_concerns_no_score_is_not_told(car, timers, heard):
     assert heard == []
 
 
-def test_undo_is_reported(car, timers, heard):
-    for message in ("before", "after"):
-        bpy.ops.ed.undo_push(message=message)
-    timers.pass_by(10.0)
-    heard.clear()
-    bpy.ops.ed.undo()
-    timers.pass_by(10.0)
-    assert heard == [MOVED, RESTED]
-
-
 @pytest.mark.parametrize("name", ["undo_post", "redo_post", "load_post", "frame_change_post"])
 def test_what_blender_calls_after_a_step_back_or_a_load_is_reported(car, timers, heard, name):
     """Whether or not an update of the scene follows, in which objects seem to have changed."""
@@ -203,18 +192,6 @@ def test_without_a_window_there_is_no_timer(car):
     assert not any(
         map(bpy.app.timers.is_registered, (change_events.emit_moving, change_events.emit_idle))
     )
-
-
-def test_switched_off_in_the_middle_of_a_drag(car, timers, heard):
-    drag(car.objects["roof"])
-    assert timers.waiting
-    blender_addon.unregister()
-    try:
-        assert not timers.waiting and not change_events._last_counted
-        timers.pass_by(10.0)
-        assert heard == []
-    finally:
-        blender_addon.register()
 
 
 def test_a_result_is_marked_once_all_rests_and_unmarked_when_it_is_as_it_was(car, timers):

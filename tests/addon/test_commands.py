@@ -51,13 +51,6 @@ def test_explain_says_what_it_says_without_blender(blend, tmp_path):
         assert inside.returncode == outside.returncode == 0
 
 
-def test_places_that_are_none_are_one_line(blend):
-    answer = run_here(blend, "explain", "--at", "99", "0")
-    assert (answer.returncode, answer.stdout) == (1, "")
-    expected = ["pe: place: x: expected -80 to 80 m, inside the space, found 99"]
-    assert complaints(answer) == expected
-
-
 def test_a_search_that_cannot_place_is_refused_before_it_begins(car, tmp_path):
     car.objects["roof"].keyframe_insert("location", frame=1)
     path = tmp_path / "car.blend"
@@ -147,15 +140,6 @@ def test_bad_file_is_one_line_and_status_1(addon, tmp_path, name, found):
     (line,) = complaints(answer)
     assert line.startswith(f"pe: {tmp_path / name}: ") and found in line
     assert "Traceback" not in answer.stderr and not answer.stdout
-
-
-def test_error_in_the_scene_names_the_file(car, tmp_path):
-    car.objects["roof"].scale = (2.0, 2.0, 2.0)
-    path = tmp_path / "scaled.blend"
-    bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    answer = run_here(path, "score")
-    assert answer.returncode == 1
-    assert complaints(answer)[0].startswith(f"pe: {path}: sensor 'roof': scale: expected 1")
 
 
 def test_usage(blend):

@@ -8,7 +8,6 @@ import pytest
 
 import pe_core as pe
 from blender_addon import bridge, result_staleness
-from blender_addon.bridge import conditions
 from blender_addon.live import state
 from tests.addon import scenes
 from tests.engine import shapes
@@ -76,20 +75,6 @@ def test_a_frame_is_a_state_and_its_motions_are_those_of_the_hinge(car):
     pose = study.conditions.one("door open").rig(study.rig, study.vehicle)["mirror"].pose
     assert pose.position == pytest.approx(tuple(shown), abs=5e-5)
     assert car.frame_current == OPEN_FRAME  # reading shows the frame again that was shown
-
-
-def test_a_study_s_conditions_are_loaded_and_undone(car):
-    study = bridge.study_as_drawn(car)
-    weather = pe.Weather("rain", 0.3, rain_mm_h=12.5)
-    sunk = pe.State("sunk", heave=-0.05, weight=0.25)
-    wanted = pe.Conditions([sunk], [weather])
-    conditions.write_conditions(car.perception_entropy, wanted)
-    assert bridge.conditions_of(car.perception_entropy) == wanted
-    assert study.conditions == pe.Conditions()
-    car.perception_entropy.state_index = car.perception_entropy.weather_index = 0
-    bpy.ops.pe.remove_state()
-    bpy.ops.pe.remove_weather()
-    assert bridge.conditions_of(car.perception_entropy) == pe.Conditions()
 
 
 def test_a_part_that_bends_is_refused_by_name(car):

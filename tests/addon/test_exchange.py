@@ -59,14 +59,6 @@ def test_in_the_dialog_name_and_format_follow_each_other():
     assert check() and dialog.filepath == "autoware_rig"
 
 
-def test_a_camera_that_nobody_has_becomes_the_file_s_own(axled, tmp_path):
-    path = tmp_path / "objects.json"
-    bpy.ops.pe.export_rig(filepath=str(path), format="carla")
-    bpy.ops.pe.import_rig(filepath=str(path))
-    own = [row.name for row in axled.perception_entropy.own_sensors]
-    assert "eye" in own and scenes.study().rig["eye"].model.width == 3840
-
-
 def test_axles_are_found_by_wheels_and_refused_without(car):
     with pytest.raises(RuntimeError, match="parts named as wheels, front and rear"):
         bpy.ops.pe.guess_axles()
@@ -76,12 +68,6 @@ def test_axles_are_found_by_wheels_and_refused_without(car):
     assert bpy.ops.pe.guess_axles() == {"FINISHED"}
     found = scenes.study().reference
     assert (found.rear_axle_x, found.rear_axle_z, found.wheelbase) == (-1.3, 0.3, 2.8)
-
-
-def test_without_axles_their_formats_are_refused_in_one_line(car, tmp_path):
-    with pytest.raises(RuntimeError, match="rear axle's place, which is the origin of nuScenes"):
-        bpy.ops.pe.export_rig(filepath=str(tmp_path / "out"), format="nuscenes")
-    assert not (tmp_path / "out").exists()
 
 
 def test_a_bad_file_changes_nothing(car, tmp_path):

@@ -91,16 +91,16 @@ def test_the_panels_show_what_an_objective_needs_and_found(settings):
         notes = layouts.drawn(cls, **vars(layouts.Window(scene))).notes
         return [name for kind, name in notes if kind == "prop"]
 
-    assert "objective" in props(search_panels.PE_PT_search)
-    assert "scenes" in props(search_panels.PE_PT_search)
-    assert "search_samples" not in props(search_panels.PE_PT_search)
+    assert "objective" in props(search_panels.search)
+    assert "scenes" in props(search_panels.search)
+    assert "search_samples" not in props(search_panels.search)
     settings.evaluations = 2
     assert bpy.ops.pe.optimize() == {"FINISHED"}
-    shown = layouts.drawn(main.PE_PT_main, **vars(layouts.Window(scene))).texts("label")
+    shown = layouts.drawn(main.main, **vars(layouts.Window(scene))).texts("label")
     assert shown[shown.index("AP in Traffic") + 1] == settings.result_in_traffic != ""
     settings.objective = "entropy"
-    assert "scenes" not in props(search_panels.PE_PT_search)
-    assert "search_samples" in props(search_panels.PE_PT_search)
+    assert "scenes" not in props(search_panels.search)
+    assert "search_samples" in props(search_panels.search)
     assert bpy.ops.pe.score() == {"FINISHED"} and settings.result_in_traffic == ""
 
 

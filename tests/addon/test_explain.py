@@ -274,7 +274,7 @@ def test_panels_show_words_warnings_and_the_place(car):
     panels.main.draw_warnings(layout, window)
     assert "clear of the vehicle" in " ".join(layout.texts("label"))
     explain = type("Explain", (), {"layout": (shown := Layout())})
-    panels.score_details.PE_PT_explain.draw(explain, window)
+    panels.score_details.explain.draw(explain, window)
     text = " ".join(shown.texts("label"))
     assert "of where objects are is seen" in text.replace("  ", " ")
     assert "The only sensor" in text and "roof" in text

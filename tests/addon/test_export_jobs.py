@@ -1,7 +1,6 @@
 """Exports as jobs: steps with progress; stopped at any step they leave nothing behind."""
 
 import itertools
-import threading
 
 import bpy
 import pytest
@@ -68,20 +67,6 @@ def test_stopped_at_any_stage_it_leaves_nothing(job_of, tmp_path, name, stage):
             job.stop()
     assert job.stopped, "it has no such stage"
     assert job.written is None and not list(tmp_path.iterdir())
-
-
-def test_a_page_that_is_stopped_is_not_worked_on(job_of, tmp_path):
-    job, ended = job_of(tmp_path / "page.html"), threading.Event()
-
-    def make(_outcome, note):
-        note(0.5)
-        job.stop()
-        with pytest.raises(exports.ExportStopped):
-            note(0.6)
-        ended.set()
-
-    job._make, job._scored = make, False
-    assert [step.stage for step in job] and ended.wait(30.0) and job.written is None
 
 
 def test_what_was_written_is_kept_for_the_panel(small, tmp_path):

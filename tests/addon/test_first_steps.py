@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mathutils import Matrix
 
-from blender_addon import diagnostics, library
+from blender_addon import diagnostics
 from blender_addon.engine import kinds
 from blender_addon.operators import shortcuts
 from blender_addon.panels import main, sensor_menus
@@ -72,22 +72,6 @@ def test_the_example_has_no_name_so_that_saving_it_does_not_change_the_extension
     assert bpy.ops.pe.open_example() == {"FINISHED"}
     assert bpy.data.filepath == "" and vehicle().name == "Sedan"
     assert bpy.ops.pe.score.poll()
-
-
-def test_changes_of_a_named_file_are_saved_if_that_is_chosen(scene, tmp_path):
-    path = tmp_path / "mine.blend"
-    bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    scenes.add_box(bpy.context.scene.collection, "new")
-    bpy.ops.ed.undo_push(message="changed")
-    bpy.ops.pe.open_example(changes="SAVE")
-    bpy.ops.wm.open_mainfile(filepath=str(path))
-    assert "new" in bpy.data.objects
-
-
-def test_an_installation_without_the_example_says_so(scene, monkeypatch, tmp_path):
-    monkeypatch.setattr(library, "EXAMPLES", (tmp_path,))
-    with pytest.raises(RuntimeError, match="not in this installation"):
-        bpy.ops.pe.open_example()
 
 
 def points_of(names, scene):
@@ -184,7 +168,7 @@ def test_the_add_menu_has_each_kind_in_object_mode_alone(scene):
 
 def headings():
     """Return the steps that the first panel names."""
-    shown = drawn(main.PE_PT_main, **vars(Window(bpy.context.scene)))
+    shown = drawn(main.main, **vars(Window(bpy.context.scene)))
     steps = [f"{number}  {text}" for number, text in main.STEPS.items()]
     return [text for text in shown.texts("label") if text in steps], shown
 
@@ -211,12 +195,6 @@ def test_a_file_that_cannot_be_saved_is_one_line_and_stays_open(scene, tmp_path)
     with pytest.raises(RuntimeError, match="Error: Cannot save blend file") as caught:
         bpy.ops.pe.open_example(changes="SAVE")
     assert "Traceback" not in str(caught.value) and bpy.data.filepath == str(path)
-
-
-def test_a_search_without_a_sensor_is_one_line(scene):
-    with pytest.raises(RuntimeError, match="search: model: expected") as caught:
-        bpy.ops.pe.search_sensor("EXEC_DEFAULT", kind="none of these")
-    assert "Traceback" not in str(caught.value)
 
 
 @pytest.mark.parametrize("factor", [1e30, -1e30, 1e-30, 0.0, -1.0, math.nan, math.inf])

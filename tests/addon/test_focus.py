@@ -128,12 +128,6 @@ def test_classes_that_the_prior_does_not_have(scene):
         bridge.prior_from_scene(scene)
 
 
-def test_nothing_left_of_the_prior_is_one_line(car):
-    add_focus(car, "everywhere", factor=0.0)
-    with pytest.raises(RuntimeError, match="prior: focus: expected some weight left"):
-        bpy.ops.pe.score()
-
-
 def test_labelled_boxes(scene, labels):
     settings = scene.perception_entropy
     settings.prior, settings.boxes = "boxes", str(labels)
@@ -141,13 +135,6 @@ def test_labelled_boxes(scene, labels):
     prior = bridge.prior_from_scene(scene)
     assert prior == pe.Prior.from_boxes(pe.read_boxes(labels), [pe.Focus(2.0, x=(0.0, INF))])
     assert prior.class_names == ("car", "tram")
-
-
-def test_labelled_boxes_beside_the_blend_file(scene, labels):
-    settings = scene.perception_entropy
-    bpy.ops.wm.save_as_mainfile(filepath=str(labels.with_name("car.blend")))
-    settings.prior, settings.boxes = "boxes", f"//{labels.name}"
-    assert bridge.prior_from_scene(scene) == pe.Prior.from_boxes(pe.read_boxes(labels))
 
 
 @pytest.mark.parametrize(

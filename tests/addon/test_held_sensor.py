@@ -4,12 +4,11 @@ import math
 from types import SimpleNamespace
 from typing import ClassVar
 
-import bpy
 import numpy as np
 import pytest
 from mathutils import Vector
 
-from blender_addon import bridge, operators, viewport
+from blender_addon import operators, viewport
 from blender_addon.engine import catalog, graphics, pe
 from blender_addon.operators import place_sensor, placement, surface_pose
 from blender_addon.operators.surface_pose import SurfaceSpot
@@ -155,9 +154,3 @@ def test_the_shape_is_worked_out_in_the_sensor_s_own_frame(car):
     draw = graphics.drawing_of("lidar").lines
     expected = draw(sensor, placement.LENGTH_M, placement.HELD_PALETTE).points
     assert placed.points[: len(expected)] == pytest.approx(expected, abs=1e-3)
-
-
-def test_nobody_has_its_name(car):
-    scenes.add_sensor("Camera", model="Camera 60 deg", location=(0.7, 0.0, 1.6))
-    assert placement.free_name("Camera", {"Camera"}) != "Camera"
-    assert len(bridge.sensor_objects(bpy.context.scene)) == 2

@@ -29,14 +29,6 @@ def test_it_is_as_large_as_the_catalogue_says_about_the_optical_centre(name):
     assert low[:2] + high[:2] == pytest.approx([0.0, 0.0], abs=1e-9)
 
 
-def test_a_box_has_its_size_and_place_too():
-    for has_lens in (False, True):
-        points = surfaces.surface_of(BOX, has_lens).points
-        assert np.ptp(points, axis=0) == pytest.approx(BOX.size, abs=1e-9)
-        middle = (points.min(axis=0) + points.max(axis=0)) / 2.0
-        assert middle == pytest.approx(BOX.center, abs=1e-9)
-
-
 @pytest.mark.parametrize("name", MODELS)
 def test_its_surface_is_closed_and_looks_outwards(name):
     surface = model_surface(name)

@@ -80,7 +80,7 @@ def test_what_a_search_cost_is_stored_and_shown(car):
     assert settings.result_cost == expected.cost
     shown, told = expected.blind_m2, settings.result_blind
     assert all(m2 <= up <= m2 + 0.1001 for m2, up in zip(shown, told, strict=True)), "rounded up"
-    labels = " ".join(layouts.drawn(main.PE_PT_main, **vars(layouts.Window(car))).texts("label"))
+    labels = " ".join(layouts.drawn(main.main, **vars(layouts.Window(car))).texts("label"))
     assert "Blind Ground" in labels and expected.cost.split("(")[0].strip() in labels
 
 

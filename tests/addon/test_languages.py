@@ -56,7 +56,7 @@ def test_names_wrap_in_the_sidebar_in_every_language(addon, code):
 def test_the_panel_is_in_the_language_of_the_interface(addon, monkeypatch):
     """Labels are translated; a text without a translation is English."""
     monkeypatch.setattr(language, "current", lambda: "de")
-    shown = layouts.drawn(main.PE_PT_main, **vars(layouts.Window(bpy.context.scene)))
+    shown = layouts.drawn(main.main, **vars(layouts.Window(bpy.context.scene)))
     assert "Noch keine Sensoren" in shown.texts("label")
     assert language.shown("Added roof: 4 sensors") == "Added roof: 4 sensors"
 

@@ -140,18 +140,6 @@ def test_the_library_comes_and_goes_with_the_extension(enabled):
     assert libraries() == [*before, ours]
 
 
-def test_it_is_taken_away_and_brought_back_in_the_preferences(enabled):
-    before, entry = enabled
-    shown = libraries()
-    entry.preferences.show_library = False
-    assert libraries() == before
-    entry.preferences.show_library = False
-    entry.preferences.show_library = True
-    assert libraries() == shown
-    entry.preferences.show_library = True
-    assert libraries() == shown
-
-
 def test_a_library_of_that_name_that_is_not_ours_is_left_alone(enabled, tmp_path):
     others = bpy.context.preferences.filepaths.asset_libraries
     foreign = others.new(name=library.NAME, directory=str(tmp_path))

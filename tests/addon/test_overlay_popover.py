@@ -13,7 +13,7 @@ from tests.addon.layouts import Layout, drawn
 
 def offered(scene) -> list[str]:
     """Names of the settings that the popover shows."""
-    layout = drawn(overlay_popover.PE_PT_view, scene=scene)
+    layout = drawn(overlay_popover.view, scene=scene)
     return [name for kind, name in layout.notes if kind == "prop"]
 
 
@@ -36,7 +36,6 @@ def test_every_setting_of_the_view_is_offered(car):
     of_group = {p.identifier for p in view.bl_rna.properties} - {"rna_type", "name"}
     of_group -= {"ghost_key", "ground_fits"}  # by buttons: in the list of variants, Fit Colors
     assert of_group <= shown
-    assert {"beam_length", "beam_limit"} <= shown
 
 
 @pytest.mark.parametrize(("channels", "number"), [("ONE", "channel"), ("EVERY", "every")])

@@ -144,8 +144,8 @@ def test_a_heavy_vehicle_is_read_when_it_rests(rig, monkeypatch):
 
 
 def test_settings_count(rig):
-    settings, view = rig.perception_entropy, rig.perception_entropy.view
-    view.channels, settings.beam_limit, view.rings = "ALL", 100, False
+    view = rig.perception_entropy.view
+    view.channels, view.beam_limit, view.rings = "ALL", 100, False
     assert len(scenes.drawn(rig)["beams"]["roof"].lines.points) <= 100 * 4
     rig.objects["roof"].perception_entropy.show = False
     drawn = scenes.drawn(rig)

@@ -29,7 +29,7 @@ def test_no_line_is_wider_than_its_room_and_no_word_is_lost(addon, text, room, s
 
 
 def test_sections_are_root_panels_that_can_be_moved_and_pinned(addon):
-    panels = {cls.bl_idname: cls for cls in CLASSES if issubclass(cls, bpy.types.Panel)}
+    panels = {cls.__name__: cls for cls in CLASSES if issubclass(cls, bpy.types.Panel)}
     roots = {name for name, cls in panels.items() if not hasattr(cls, "bl_parent_id")}
     assert {"PE_PT_prior", "PE_PT_targets", "PE_PT_search", "PE_PT_export"} <= roots
     for cls in panels.values():
@@ -38,7 +38,7 @@ def test_sections_are_root_panels_that_can_be_moved_and_pinned(addon):
 
 def drawn_of(scene):
     """What the first panel shows, in its order."""
-    return layouts.drawn(main.PE_PT_main, **vars(layouts.Window(scene)))
+    return layouts.drawn(main.main, **vars(layouts.Window(scene)))
 
 
 def test_score_live_and_optimize_stand_first_and_late_lines_have_their_room(car):
@@ -60,7 +60,7 @@ def test_score_live_and_optimize_stand_first_and_late_lines_have_their_room(car)
     told = "roof", "clear", {"gap": 0.6}, "", "", (0.0, 0.0, 0.0)
     settings.result_warnings = (bridge.StoredWarning(*told),)
     assert len(drawn_of(car).texts("label")) == counts[0], "warnings move nothing"
-    assert main.PE_PT_warnings.poll(layouts.Window(car))
+    assert main.warnings.poll(layouts.Window(car))
 
 
 def test_many_sensors_are_a_list_that_scrolls(car):

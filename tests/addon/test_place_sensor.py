@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from mathutils import Vector
 
-from blender_addon import bridge
 from blender_addon.engine import pe
 from blender_addon.operators import placement, surface_pose
 from blender_addon.sensor_kinds import mount_of
@@ -80,21 +79,6 @@ def test_the_stand_off_is_that_of_its_kind_unless_said(bare):
     assert place("Pandar64", **spot, stand_off=0.02).location.z == pytest.approx(1.52)
     for kind in ("lidar", "camera", "another"):
         assert mount_of(kind).stand_off_m > 0.02  # clear of the body: beyond its clearance
-
-
-def test_a_stance_keeps_within_reason():
-    stance = surface_pose.Stance(0.15)
-    assert stance.changed(0.01).stand_off_m == 0.16
-    assert stance.changed(-1.0).stand_off_m == 0.0
-    assert stance.changed(9.0).stand_off_m == 2.0
-
-
-def test_it_is_one_undo_step(bare):
-    bpy.ops.ed.undo_push(message="before")
-    bpy.ops.pe.place_sensor("EXEC_DEFAULT", True, location=(0.0, 0.0, 1.5))
-    assert [obj.name for obj in bridge.sensor_objects(bpy.context.scene)] == ["LiDAR"]
-    bpy.ops.ed.undo()
-    assert not bridge.sensor_objects(bpy.context.scene)
 
 
 def test_an_unknown_model_is_refused_and_changes_nothing(bare):

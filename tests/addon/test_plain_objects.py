@@ -53,23 +53,6 @@ def test_a_camera_s_place_and_lens_by_hand(scene):
     assert (found.model.min_range, found.model.max_range) == (0.0, math.inf)
 
 
-@pytest.mark.parametrize(
-    ("fit", "size", "aspect", "across", "down"),
-    [
-        ("AUTO", (500, 1000), (1.0, 1.0), 1000 * 50 / 36, 1000 * 50 / 36),
-        ("VERTICAL", (1000, 500), (1.0, 1.0), 500 * 50 / 24, 500 * 50 / 24),
-        ("HORIZONTAL", (500, 1000), (1.0, 1.0), 500 * 50 / 36, 500 * 50 / 36),
-        ("HORIZONTAL", (1000, 500), (1.0, 2.0), 1000 * 50 / 36, 500 * 50 / 36),
-    ],
-)
-def test_the_film_is_measured_along_the_side_that_fits(scene, fit, size, aspect, across, down):
-    """A film of 36 x 24 mm, 50 mm away; pixels twice as high are half as many to the millimetre."""
-    picture(scene, *size, aspect)
-    add_camera("cam", lens=50.0, sensor_fit=fit, sensor_width=36.0, sensor_height=24.0)
-    lens = the_sensor(scene)[0].model.projection
-    assert (lens.fx, lens.fy) == pytest.approx((across, down), rel=1e-6)
-
-
 @pytest.mark.parametrize("shift", [(0.0, 0.0), (0.12, -0.07)])
 @pytest.mark.parametrize(
     ("fit", "size", "aspect"),
@@ -175,19 +158,6 @@ def test_models_that_a_file_does_not_tell_are_chosen(car, tmp_path):
     rows[0]["model"] = "No Such"
     with pytest.raises(RuntimeError, match="model: expected a name such as"):
         bpy.ops.pe.choose_models(filepath=str(path), rows=rows)
-
-
-def test_what_objects_cannot_hold_is_said_in_one_line(scene):
-    near = pe.Camera("own", 640, 480, 1.2, min_range=0.5)
-    rig = pe.Rig(
-        [
-            pe.Sensor("top", catalog.load("HDL-64E"), pe.Pose((0.0, 0.0, 2.0)), "roof"),
-            pe.Sensor("eye", near, pe.Pose((0.0, 0.0, 1.0)), curve=pe.ApCurve(0.2, 0.1)),
-        ]
-    )
-    _, lines = bridge.put_objects(scene, rig)
-    said = "left out of Blender's objects: fusion group of top; AP curve of eye"
-    assert lines == [said], "a camera has clips for its ranges"
 
 
 def test_the_command_takes_objects_in_and_puts_them_out(rigged, tmp_path, capsys):

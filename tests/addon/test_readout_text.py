@@ -28,13 +28,6 @@ def reading_of(now, before=None, label="before this move"):
     return state.LiveScore(now, reference, True, None)
 
 
-def test_the_first_reading_has_nothing_to_compare_with():
-    found = said(summary())
-    assert found.headline == "3.000 nats" and found.error == "± 0.022  exact"
-    assert (found.change, found.sense, found.against) == ("", readout_text.SAME, "")
-    assert [readout_text.text_of(line) for line in found.lines] == ["Coverage 85.0%"]
-
-
 def test_a_score_on_objects_has_its_expected_ap_beside_it():
     now, before = (replace(summary(), voxels=0, ap=ap) for ap in (0.653, 0.641))
     lines = map(readout_text.text_of, said(now).lines)
@@ -53,33 +46,6 @@ def test_a_score_on_objects_has_its_expected_ap_beside_it():
 )
 def test_what_a_score_is_of_is_said(told, line):
     assert readout_text.state_of(score_of(summary())._replace(**told)) == line
-
-
-def test_what_it_is_compared_with_is_said_also_where_nothing_changed():
-    assert said(summary(), summary()).against == "compared with before this move"
-    long = "A variant whose name is longer than a row of the read-out"
-    found = readout_text.readout_of(
-        reading_of(summary(), summary(3.1), label=long), score_of(summary())
-    )
-    assert found.against == "compared with A variant whose name is longe..."
-    rows = readout.rows_of(reading_of(summary(), summary(3.1)), "", score_of(summary()))
-    assert [text for text, _ in rows[1].words] == [
-        "± 0.022  exact",
-        "compared with before this move",
-    ]
-
-
-@pytest.mark.parametrize(
-    ("before", "change", "sense"),
-    [
-        (3.1, "0.100 better", readout_text.BETTER),
-        (2.95, "0.050 worse", readout_text.WORSE),
-        (3.0004, "no change", readout_text.SAME),
-    ],
-)
-def test_lower_is_better(before, change, sense):
-    found = said(summary(), summary(before))
-    assert (found.change, found.sense) == (change, sense)
 
 
 def test_coverage_changes_in_points():

@@ -156,7 +156,7 @@ def heard():
 
 def test_a_change_is_reported_to_those_who_listen(car, heard):
     settings = car.perception_entropy
-    settings.beam_limit = 10
+    settings.view.beam_limit = 10
     assert heard == ["picture"]
     settings.score_samples = 10
     assert heard == ["picture", "study"]
@@ -262,7 +262,7 @@ weather.Weather = sensors.Weather = Toy
 import bpy
 import blender_addon
 from blender_addon import bridge
-from blender_addon.panels.condition_panel import PE_PT_conditions
+from blender_addon.panels.condition_panel import conditions
 from pe_core import study as studies
 from pe_core.study.study_file import study_bytes
 from tests.addon import layouts, scenes
@@ -287,7 +287,7 @@ assert again.conditions == study.conditions
 row.hail = 7.0
 assert bridge.load_into(scene, study) == []
 assert bridge.study_as_drawn(scene).conditions == study.conditions
-assert ("prop", "hail") in layouts.drawn(PE_PT_conditions, **vars(layouts.Window(scene))).notes
+assert ("prop", "hail") in layouts.drawn(conditions, **vars(layouts.Window(scene))).notes
 assert "| `weather.hail` | number [m], 0 to 90, `0.0` | Size of hailstones | Hail |" in (
     settings_page().page()
 )

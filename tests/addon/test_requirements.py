@@ -17,7 +17,7 @@ from pe_core.study import requirement_file
 from pe_tools import graphics
 from tests.addon import scenes
 from tests.engine.shapes import box
-from tests.engine.test_sensor_colors import EYES, lab
+from tests.engine.test_drawn_beams import EYES, lab
 
 
 @pytest.fixture

@@ -19,13 +19,6 @@ def test_the_curve_is_a_staircase_from_the_start_to_now():
     assert curve.aside == "from 4.000"
 
 
-@pytest.mark.parametrize("points", [((1, 2.0),), ((1, 2.0), (2, 1.9999))])
-def test_next_to_nothing_does_not_look_like_progress(points):
-    curve = search_curve.curve_of(SearchProgress(points, 0, sampled=False))
-    assert all(up >= 0.98 for _, up in curve.points)
-    assert "\N{ALMOST EQUAL TO}" not in curve.title
-
-
 def test_the_best_so_far_is_shown_as_ghosts_until_the_search_ends(car):
     car.perception_entropy.view.show_ghosts = True
     sensor = bpy.data.objects["roof"]
@@ -73,23 +66,12 @@ def test_a_running_search_tells_the_view_each_time_it_finds_better(car, monkeypa
     search_curve.drop(car.name)
 
 
-def test_the_method_and_the_budget_are_the_study_s(car):
-    settings = car.perception_entropy
-    settings.property_unset("method")
-    assert scenes.study().search.method == search.DEFAULT_METHOD
-    for name in search.METHODS:
-        settings.method = name
-        assert scenes.study().search.method == name
-    settings.method, settings.evaluations = "random", 3
-    assert scenes.study().search.evaluations == 3
-
-
 def test_the_schedule_is_shown_and_written_for_the_method_that_has_it(car):
     """The candidates of one method stood beside every other, which did not use them."""
     window, settings = layouts.Window(car), car.perception_entropy
     for name in search.METHODS:
         settings.method = name
-        drawn = layouts.drawn(search_panels.PE_PT_search, **vars(window)).texts("prop")
+        drawn = layouts.drawn(search_panels.search, **vars(window)).texts("prop")
         table = pe.study_to_dict(scenes.study())["optimize"]
         has_schedule = name == search.SCHEDULED_METHOD
         assert ("candidates" in drawn) == ("candidates" in table) == has_schedule, name

@@ -66,7 +66,7 @@ def test_place_score_optimize_check_and_export(scene, tmp_path, small_pictures):
     assert bpy.ops.pe.score() == {"FINISHED"}
     start = poses()
     assert stored(scene) == without_run(pe.result_dict(finished(pe.ScoreJob(scenes.study()))))
-    labels = layouts.drawn(main.PE_PT_main, **vars(layouts.Window(scene))).texts("label")
+    labels = layouts.drawn(main.main, **vars(layouts.Window(scene))).texts("label")
     assert any("Coverage" in label for label in labels)
 
     # Optimize: what the engine finds is placed, scored and kept; undo takes the poses back.

@@ -22,11 +22,6 @@ def test_a_scene_s_search_scores_placements_as_they_stand_until_told_otherwise(s
     assert scenes.study().search.tolerance == pe.Tolerance(0.01, math.radians(0.3))
 
 
-def test_the_worst_of_one_case_is_that_case(settings):
-    settings.worst = True
-    assert scenes.study().search.tolerance == pe.Tolerance()
-
-
 def outcome(rise, loss, warnings=()):
     """Return a search's outcome with a start that stands everything."""
     study = scenes.study()

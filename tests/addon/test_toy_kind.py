@@ -17,7 +17,7 @@ from pe_core import catalog
 from pe_core import sensors as kinds
 from tests.addon import scenes
 from tests.addon.layouts import Layout, Window, drawn
-from tests.engine.toy_kind import RING, Ring
+from tests.engine.toy_kind import RING
 
 PRESET = "Parking Ring"
 
@@ -60,14 +60,6 @@ def test_its_menu_lists_its_presets(ring_kind):
     assert layout.texts("menu") == [menus.MAKER_MENUS["Own"].bl_idname]
     text = f"{PRESET}   range 12 m"
     assert drawn(menus.MAKER_MENUS["Own"], **kind).texts("operator") == [text]
-
-
-def test_the_operator_adds_it(ring_kind):
-    assert bpy.ops.pe.add_sensor(model=PRESET) == {"FINISHED"}
-    added = bpy.context.object
-    assert added.name == "Toy Ring" and added.perception_entropy.model == PRESET
-    assert added.location.z > 1.5, "not on the roof"
-    assert isinstance(scenes.study().rig[added.name].model, Ring)
 
 
 def test_the_operator_scores_it_as_the_engine_does(ring_kind, ring):
@@ -136,12 +128,6 @@ def test_an_own_sensor_of_it_is_defined_by_its_keys(ring_kind):
     row.keys = "range_m = "
     assert "keys" in row.problem, "a line that cannot be read is refused by the engine"
     bridge.remove_own_sensors()
-
-
-def test_it_has_a_typical_housing(ring_kind):
-    mesh = housing.housing_mesh(PRESET)
-    assert len(mesh.polygons) and mesh[housing.KEY] == PRESET
-    assert housing.measured_housing(PRESET) is None
 
 
 def test_without_a_picture_of_its_kind_looking_through_says_so(ring_kind, ring):

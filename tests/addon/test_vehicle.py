@@ -21,15 +21,6 @@ def bounds(vehicle):
     return [*low.tolist(), *high.tolist()]
 
 
-def test_box_as_it_is(parts):
-    scenes.add_box(parts, "box")
-    vehicle = scenes.vehicle(parts)
-    assert vehicle.part_names == ("box",)
-    assert len(vehicle.triangles) == BOX_TRIANGLES
-    assert scenes.volume(vehicle.triangles) == BOX_VOLUME
-    assert vehicle.triangles.dtype == np.float64
-
-
 def test_move_and_scale(parts):
     scenes.add_box(parts, "box", location=(10.0, 0.0, 1.0), scale=(2.0, 1.0, 0.5))
     vehicle = scenes.vehicle(parts)
@@ -57,12 +48,6 @@ def test_modifier_is_applied(parts):
     vehicle = scenes.vehicle(parts)
     assert scenes.volume(vehicle.triangles) == 3 * BOX_VOLUME
     assert bounds(vehicle) == [-1.0, -1.0, -1.0, 9.0, 1.0, 1.0]
-
-
-def test_modifier_switched_off_is_not_applied(parts):
-    box = scenes.add_box(parts, "box")
-    box.modifiers.new("array", "ARRAY").show_viewport = False
-    assert len(scenes.vehicle(parts).triangles) == BOX_TRIANGLES
 
 
 def instance_of(collection, name, **settings):

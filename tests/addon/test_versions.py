@@ -93,17 +93,3 @@ def test_an_overridden_vehicle_is_the_vehicle_and_can_be_turned(car, tmp_path):
     low, high = scenes.study().vehicle.bounds
     assert (low[0], high[0]) == pytest.approx((-2.0, 2.0), abs=1e-5)
     assert (scenes.study().vehicle.triangles != expected.vehicle.triangles).any()
-
-
-def test_variants_of_a_linked_sensor_are_reported(car, tmp_path):
-    """A sensor of another file cannot be placed: a switch says so, and changes nothing."""
-    library = tmp_path / "sensors.blend"
-    bpy.data.libraries.write(str(library), {car.objects["roof"]})
-    bpy.data.objects.remove(car.objects["roof"])
-    with bpy.data.libraries.load(str(library), link=True) as (_, wanted):
-        wanted.objects = ["roof"]
-    car.collection.objects.link(bpy.data.objects["roof"])
-    bpy.context.view_layer.update()
-    bpy.ops.pe.save_variant()
-    with pytest.raises(RuntimeError, match="expected an object that can be placed, found linked"):
-        bpy.ops.pe.switch_variant(key=car.perception_entropy.variants[0].key)

@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.blender.runner import Blender, Installed, output_of
-from tests.blender.stage import Stage
-from tests.blender.window import TOOLS
+from tests.blender.stage import TOOLS, Stage
 from tests.limits import HANG_S
 from tests.needed import unavailable
 
@@ -45,9 +44,10 @@ def installed(blender, extension_zip, tmp_path_factory) -> Installed:
         *("--command", "extension", "install-file", "-r", "user_default", "--enable", extension_zip)
     )
     # install-file gives status 0 also when it refused: only starting with it tells.
-    check = Installed(own).script(HERE / "inside_check.py")
+    installed = Installed(own, tmp_path_factory.mktemp("startup") / "startup.blend")
+    check = installed.script(HERE / "inside_check.py", installed.startup)
     assert check.returncode == 0, f"{output_of(answer)}\n{output_of(check)}"
-    return Installed(own)
+    return installed
 
 
 @pytest.fixture(scope="session")

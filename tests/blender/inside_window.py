@@ -5,20 +5,21 @@
 ``..._answer.json``   where the button is that ``button.json`` asks for, and other answers
 ``state.json``   again and again: what the scene holds
 ``copied.txt``   what was copied by Ctrl+C, which tells the button under the mouse
+``done.json``    how the Python went that ``do.py`` asked for, once
 """
 
 import json
 import math
 import sys
 import time
+import traceback
 from pathlib import Path
 
 import bpy
 from bl_ext.user_default.perception_entropy import location_query
 from bl_ext.user_default.perception_entropy.live import state
 from bl_ext.user_default.perception_entropy.operators import placement, running_job
-from bpy_extras.view3d_utils import location_3d_to_region_2d
-from mathutils import Euler, Vector
+from mathutils import Euler
 
 FOLDER = Path(sys.argv[-1])
 CATEGORY = "Perception"
@@ -63,6 +64,9 @@ def start_again(blend):
     """Load a file in place of what is shown, and lay the window out as at the start."""
 
     def load():
+        for other in bpy.context.window_manager.windows[1:]:  # a picture's, before the sidebar
+            with bpy.context.temp_override(window=other):
+                bpy.ops.wm.window_close()
         with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
             bpy.ops.wm.open_mainfile(filepath=blend)
         bpy.app.timers.register(fill_the_window, first_interval=STEP_S, persistent=True)
@@ -139,7 +143,6 @@ def report_state():
         ],
     }
     write("state.json", state)
-    report_where()
     report_copied()
     return REPORT_S
 
@@ -185,18 +188,6 @@ def pictures_shown():
 def pose_of(matrix):
     """Return a placement as x, y, z and angles."""
     return [*matrix.translation, *matrix.to_euler()]
-
-
-def report_where():
-    """Tell where a point of the scene is on the screen, once for each that is asked for."""
-    asked = FOLDER / "where.json"
-    if asked.exists():
-        window, area, _ = view3d()
-        region = next(region for region in area.regions if region.type == "WINDOW")
-        point = Vector(json.loads(asked.read_text()))
-        x, y = location_3d_to_region_2d(region, area.spaces.active.region_3d, point)
-        asked.unlink()
-        write("there.json", [round(region.x + x), round(window.height - (region.y + y))])
 
 
 def answer_of(scene):
@@ -299,9 +290,39 @@ def report_copied():
         write("copied.txt", copied)
 
 
+KEPT = {}
+"""What one piece of code keeps for the next, and for those who asked."""
+
+
+def obey():
+    """Run what is asked for, in the first 3D view's context; a file dialog may fill the window."""
+    asked = FOLDER / "do.py"
+    if not asked.exists():
+        return IDLE_S
+    code = asked.read_text()
+    asked.unlink()
+    problem = ""
+    try:
+        place = {"window": bpy.context.window_manager.windows[0]}
+        if any(area.type == "VIEW_3D" for area in place["window"].screen.areas):
+            _, area, _ = view3d()
+            region = next(each for each in area.regions if each.type == "WINDOW")
+            place |= {"area": area, "region": region}
+        with bpy.context.temp_override(**place):
+            names = {"bpy": bpy, "kept": KEPT, "start_again": start_again, **place}
+            exec(compile(code, "do.py", "exec"), names)
+        if names["redraw"]:
+            for each in place["window"].screen.areas:
+                each.tag_redraw()
+    except Exception:
+        problem = traceback.format_exc()
+    write("done.json", json.dumps({"problem": problem, "kept": KEPT}, default=str))
+    return IDLE_S
+
+
 bpy.context.preferences.view.show_splash = False
 bpy.app.timers.register(fill_the_window, first_interval=STEP_S, persistent=True)
-for report in (report_state, report_drawing, report_answers):
+for report in (report_state, report_drawing, report_answers, obey):
     bpy.app.timers.register(report, first_interval=STEP_S, persistent=True)
 for space in (bpy.types.SpaceView3D, bpy.types.SpaceFileBrowser):
     for kind in ("WINDOW", "UI") if space is bpy.types.SpaceView3D else ("WINDOW",):

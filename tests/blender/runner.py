@@ -28,9 +28,10 @@ class Blender:
 
 @dataclass(frozen=True)
 class Installed:
-    """A Blender whose user folder has the extension in it."""
+    """A Blender whose user folder has the extension in it; a file of its cube, camera and light."""
 
     blender: Blender
+    startup: Path | None = None
 
     # Nothing of a user's own settings takes part.
     START = ("--factory-startup", "--addons", ADDON)

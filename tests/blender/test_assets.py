@@ -121,14 +121,3 @@ def test_an_asset_dropped_on_the_roof_is_a_sensor_that_stands_there(stage, scree
     again = stage.do(SENSORS)["sensors"][name]
     assert again == camera, "redo brings it back as it was dropped"
     assert "Traceback" not in stage.log.read_text()
-
-
-def test_the_preferences_take_the_library_away(spent_stage):
-    stage = spent_stage
-    names = "[each.name for each in bpy.context.preferences.filepaths.asset_libraries]"
-    stage.wait_until(f"'Perception Entropy' in {names}")
-    addon = "module='bl_ext.user_default.perception_entropy'"
-    stage.do(f"bpy.ops.preferences.addon_disable({addon})")
-    stage.wait_until(f"'Perception Entropy' not in {names}")
-    stage.do(f"bpy.ops.preferences.addon_enable({addon})")
-    stage.wait_until(f"'Perception Entropy' in {names}")

@@ -12,11 +12,12 @@ from tests.limits import HANG_S
 FAST = ("--grid-samples", 4096)  # to be quick: all else is the same as on the whole grid
 IN_TRAFFIC = """
 import sys, bpy
-start, saved = sys.argv[-2:]
+start, saved, folder = sys.argv[-3:]
 bpy.ops.wm.open_mainfile(filepath=start)
 settings = bpy.context.scene.perception_entropy
 settings.targets, settings.traffic, settings.scenes = "objects", True, 8
 bpy.ops.wm.save_as_mainfile(filepath=saved)
+assert bpy.ops.pe.export_study(filepath=folder + "/study.toml") == {"FINISHED"}
 """
 NUSCENES_IN_THE_WEATHER = """
 import sys, bpy
@@ -56,12 +57,6 @@ def complaints_in(answer: subprocess.CompletedProcess[str]) -> list[str]:
     return [line for line in lines if line.strip() and not blenders.match(line)]
 
 
-def test_score_writes_its_result(installed, sedan, tmp_path):
-    answer = installed.pe(sedan, "score", *FAST, "--output", tmp_path)
-    assert answer.returncode == 0, output_of(answer)
-    assert isinstance(read(tmp_path / "result.json")["entropy"], float)
-
-
 def test_optimize_does_not_worsen(installed, sedan, tmp_path):
     answer = installed.pe(sedan, "optimize", *FAST, *SHORT, "--output", tmp_path)
     assert answer.returncode == 0, output_of(answer)
@@ -85,29 +80,35 @@ def test_wrong_usage_is_status_2(installed, sedan):
 
 
 def test_blender_and_engine_agree_to_the_last_bit(installed, sedan, tmp_path):
-    inside, outside = both_scores(installed, sedan, tmp_path)
-    assert inside["entropy"] == outside["entropy"]
+    inside = installed.pe(sedan, "score", *FAST, "--json", "--output", tmp_path / "inside")
+    assert inside.returncode == 0, output_of(inside)
+    exported = installed.pe(sedan, "export", "--output", tmp_path / "study")
+    assert exported.returncode == 0, output_of(exported)
+    (study,) = (tmp_path / "study").glob("*.toml")
+    outside = alone("score", study, *FAST, "--json")
+    assert document_in(inside.stdout)["entropy"] == outside["entropy"]
+    assert isinstance(read(tmp_path / "inside" / "result.json")["entropy"], float)
+
+
+def both_scores(installed, code, sedan, folder) -> tuple[dict, dict]:
+    """What Blender and the engine alone say of a scene that a script saves and exports."""
+    script, saved = folder / "make.py", folder / "made.blend"
+    script.write_text(code, "utf-8")
+    answer = installed.script(script, sedan, saved, folder)
+    assert answer.returncode == 0, output_of(answer)
+    inside = installed.pe(saved, "score", *FAST, "--json")
+    assert inside.returncode == 0, output_of(inside)
+    return document_in(inside.stdout), alone("score", folder / "study.toml", *FAST, "--json")
 
 
 def test_they_agree_on_objects_in_traffic(installed, sedan, tmp_path):
-    script = tmp_path / "objects.py"
-    script.write_text(IN_TRAFFIC, "utf-8")
-    saved = tmp_path / "objects.blend"
-    answer = installed.script(script, sedan, saved)
-    assert answer.returncode == 0, output_of(answer)
-    inside, outside = both_scores(installed, saved, tmp_path)
+    inside, outside = both_scores(installed, IN_TRAFFIC, sedan, tmp_path)
     assert inside["after"]["objects"]["traffic"] is True
     assert inside["after"] == outside["after"]
 
 
 def test_radars_weathers_and_states_of_nuscenes_have_the_same_bits(installed, sedan, tmp_path):
-    script, saved = tmp_path / "nuscenes.py", tmp_path / "nuscenes.blend"
-    script.write_text(NUSCENES_IN_THE_WEATHER, "utf-8")
-    answer = installed.script(script, sedan, saved, tmp_path)
-    assert answer.returncode == 0, output_of(answer)
-    study = tmp_path / "study.toml"
-    inside = installed.pe(saved, "score", *FAST, "--json")
-    scored, outside = document_in(inside.stdout), alone("score", study, *FAST, "--json")
+    scored, outside = both_scores(installed, NUSCENES_IN_THE_WEATHER, sedan, tmp_path)
     assert scored["conditions"] == outside["conditions"] and scored["after"] == outside["after"]
     rows = scored["conditions"]["rows"]
     assert len(rows) == 2 and len({row["entropy"] for row in rows}) == 2
@@ -120,14 +121,3 @@ def alone(*arguments) -> dict:
     answer = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S)
     assert answer.returncode == 0, output_of(answer)
     return document_in(answer.stdout)
-
-
-def both_scores(installed, blend, folder) -> tuple[dict, dict]:
-    """What Blender and the engine alone say of a scene, numbers as text."""
-    inside = installed.pe(blend, "score", *FAST, "--json", "--output", folder / "inside")
-    assert inside.returncode == 0, output_of(inside)
-    exported = installed.pe(blend, "export", "--output", folder / "study")
-    assert exported.returncode == 0, output_of(exported)
-
-    (study,) = (folder / "study").glob("*.toml")
-    return document_in(inside.stdout), alone("score", study, *FAST, "--json")

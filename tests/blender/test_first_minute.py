@@ -1,27 +1,12 @@
 """The first minute in a real window: an empty tab, a vehicle from what is selected, an example."""
 
-import pytest
+import shutil
 
-EMPTY = """
-import bpy
-bpy.ops.wm.read_homefile(use_factory_startup=True)
-bpy.ops.wm.save_as_mainfile(filepath={path!r})
-"""
 EFFECT_TIMEOUT_S = 120
 
 
-@pytest.fixture
-def default_scene(installed, tmp_path):
-    """Return a file with Blender's cube, camera and light."""
-    script, path = tmp_path / "empty.py", tmp_path / "empty.blend"
-    script.write_text(EMPTY.format(path=str(path)))
-    answer = installed.script(script)
-    assert path.exists(), answer.stderr
-    return path
-
-
-def test_from_an_empty_tab_to_a_vehicle_and_an_example(stage, default_scene, screenshots):
-    stage.load(default_scene)
+def test_from_an_empty_tab_to_a_vehicle_and_an_example(stage, installed, tmp_path, screenshots):
+    stage.load(shutil.copy(installed.startup, tmp_path))
     stage.rest()
     stage.photograph(screenshots / "first_empty.png")
     stage.do("bpy.data.objects['Cube'].scale = (2.2, 0.9, 0.7)")

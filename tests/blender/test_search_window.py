@@ -3,7 +3,7 @@
 import numpy as np
 from PIL import Image
 
-from tests.blender.window import HEIGHT, WIDTH
+from tests.blender.stage import HEIGHT, WIDTH
 
 START_TIMEOUT_S, BETTER_TIMEOUT_S = 60, 120
 LINE = (0.45, 0.78, 0.96)

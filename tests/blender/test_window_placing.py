@@ -1,6 +1,5 @@
 """Sensors placed with a real mouse: pointing at the car, clicking, going on, leaving."""
 
-import json
 import math
 
 import pytest
@@ -10,44 +9,19 @@ ROOF, HOOD, GROUND = (-0.4, 0.0, 1.45), (1.5, 0.0, 0.9), (0.0, -6.0, 0.0)
 """Places of the sedan, nearly, and one beside it [m]."""
 
 
-class Pointer:
-    """A mouse that is put onto places of the scene."""
-
-    def __init__(self, window):
-        self.window = window
-
-    def at(self, point):
-        """Return where a point of the scene is on the screen [px]."""
-        asked, answer = self.window.folder / "where.json", self.window.folder / "there.json"
-        answer.unlink(missing_ok=True)
-        partial = asked.with_suffix(".partial")
-        partial.write_text(json.dumps(point))
-        partial.replace(asked)
-        self.window.wait_for(answer.exists, EFFECT_TIMEOUT_S, "a place on the screen")
-        return tuple(json.loads(answer.read_text()))
-
-    def over(self, point):
-        """Move the mouse there."""
-        self.window.hover(*self.at(point))
-
-    def click(self, point):
-        """Click there."""
-        self.window.click(*self.at(point))
-
-
-@pytest.fixture
-def pointer(window):
-    return Pointer(window)
-
-
 def sensors(window):
     return set(window.state["sensors"])
 
 
-def start(window, pointer):
+def over(window, point):
+    """Move the mouse to a point of the scene."""
+    window.hover(*window.place_of(point))
+
+
+def start(window):
     """Press the button and hold a sensor over the roof, until it is there."""
     window.press_until("pe.place_sensor", lambda: window.state["placing"], "a sensor to place")
-    pointer.over(ROOF)
+    over(window, ROOF)
     held_at(window, lambda place: place is not None and place[2] > 1.4)
 
 
@@ -56,9 +30,11 @@ def held_at(window, condition):
     window.wait_for(lambda: condition(window.state["held"]), EFFECT_TIMEOUT_S, "the sensor there")
 
 
-def test_hover_shows_a_score_and_a_click_places_it_in_one_undo_step(window, pointer, screenshots):
+def test_a_click_places_what_is_held_shift_goes_on_esc_leaves_and_undo_takes_each_back(
+    window, screenshots
+):
     before = sensors(window)
-    start(window, pointer)
+    start(window)
     window.wait_for(lambda: "nats" in window.state["preview"], EFFECT_TIMEOUT_S, "a preview")
     window.screenshot(screenshots / "window_placing.png", aside=False)
     upright = window.state["held"]
@@ -83,22 +59,18 @@ def test_hover_shows_a_score_and_a_click_places_it_in_one_undo_step(window, poin
 
     window.key("ctrl+z")
     window.wait_for(lambda: sensors(window) == before, EFFECT_TIMEOUT_S, "one undo step")
-    assert "Traceback" not in window.log.read_text()
 
-
-def test_shift_goes_on_and_esc_leaves_with_nothing_more(window, pointer):
-    before = sensors(window)
-    start(window, pointer)
+    start(window)
     for number, place in enumerate((ROOF, HOOD), start=1):
         with window.holding("shift"):
-            pointer.click(place)
+            window.click(*window.place_of(place))
             window.wait_for(
                 lambda more=number: len(sensors(window)) == len(before) + more,
                 EFFECT_TIMEOUT_S,
                 "one more",
             )
         assert window.state["placing"], "Shift was to go on"
-    pointer.over(GROUND)
+    over(window, GROUND)
     held_at(window, lambda place: place is None)
     window.key("Escape")
     window.wait_for(lambda: not window.state["placing"], EFFECT_TIMEOUT_S, "the end")
@@ -125,7 +97,7 @@ def test_a_duplicate_by_shift_d_is_a_sensor_without_a_result(window):
     assert "Traceback" not in window.log.read_text()
 
 
-def test_look_through_a_camera_and_esc_comes_back(window, pointer, screenshots):
+def test_look_through_a_camera_and_esc_comes_back(window, screenshots):
     before = sensors(window)
     window.do("bpy.context.scene.perception_entropy.kind_to_add = 'camera'")
     window.press_until(

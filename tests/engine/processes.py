@@ -16,7 +16,7 @@ from tests.limits import HANG_S
 ROOT = Path(pe_core.__file__).parent.parent
 FEW_ERRORS = (
     "import dataclasses, importlib\n"
-    "found = importlib.import_module('pe_core.search.robustness')\n"
+    "found = importlib.import_module('pe_core.search.tolerance')\n"
     "found.WORKSHOP = dataclasses.replace(found.WORKSHOP, draws=2)\n"
 )
 """A search ends with the robustness of its result, which takes longer than a short search."""

@@ -96,21 +96,6 @@ def test_why_a_lidar_misses_a_place(point, reason):
 @pytest.mark.parametrize(
     ("point", "reason"),
     [
-        ((10, 0, 2.2), "between beams"),  # 5.6 degrees down from 3.25 m
-        ((10, 0, 4.2), "between beams"),
-        ((5, 0, 1.7), "out of view"),  # 16 degrees down
-        ((5, 0, 4.7), "out of view"),
-        ((10, 0, 1.4), "sees"),
-    ],
-)
-def test_a_field_of_view_reaches_from_the_lowest_channel_to_the_highest(point, reason):
-    sensor = one_beam(position=(0.0, 0.1, 3.25), elevations=(-10.0, 10.0))
-    assert ask([sensor], point).sensors[0].reason == reason
-
-
-@pytest.mark.parametrize(
-    ("point", "reason"),
-    [
         ((10, 0, 1.25), "sees"),
         ((5, 5, 1.25), "out of view"),
         ((-5, 0, 1.25), "out of view"),

@@ -12,10 +12,9 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.scoring.sight import Sight, blind_squares
+from pe_core.scoring.sight import Sight, blind_ground
 from pe_core.scoring.sight.blind_ground import body_rectangle
-from pe_core.scoring.sight.grid_regions import dilated, squares_touching
-from pe_core.scoring.sight.ground_cells import GroundCells, widened
+from pe_core.scoring.sight.ground_cells import GroundCells, dilated, squares_touching, widened
 from pe_tools.graphics import simplified
 from tests.engine import oracle, shapes
 from tests.thorough import THOROUGH, tries
@@ -156,13 +155,13 @@ class BlindMap:
         view = Sight(SPACE, pe.Prior.road(), vehicle)
         self.told = view.blind(rig, height, WITHIN_M)
         body = body_rectangle(vehicle)
-        cells = GroundCells.of(SPACE, blind_squares.STEP_M, widened(body, WITHIN_M))
-        look = blind_squares.BlindSearch.of(cells, height, vehicle, {})
+        cells = GroundCells.of(SPACE, blind_ground.STEP_M, widened(body, WITHIN_M))
+        look = blind_ground.BlindSearch.of(cells, height, vehicle, {})
         self.blind, _ = look.blind(rig, False)
         own = look.own[look.margin : -look.margin, look.margin : -look.margin]
-        self.near_own = dilated(own, squares_touching(blind_squares.PARTLY_VISIBLE))
+        self.near_own = dilated(own, squares_touching(blind_ground.PARTLY_VISIBLE))
         self.own, self.cells = own, cells
-        assert self.told.area == pytest.approx(self.blind.sum() * blind_squares.STEP_M**2)
+        assert self.told.area == pytest.approx(self.blind.sum() * blind_ground.STEP_M**2)
 
     def some_places(self, rng, count):
         """Places that are not the vehicle's; most of them along edges of what is blind."""
@@ -177,7 +176,7 @@ class BlindMap:
 
     def _at(self, flags, points):
         i, j = (
-            np.floor((w - low[0]) / blind_squares.STEP_M).astype(int)
+            np.floor((w - low[0]) / blind_ground.STEP_M).astype(int)
             for w, low in zip(points.T, (self.cells.x0, self.cells.y0), strict=True)
         )
         inside = (i >= 0) & (j >= 0) & (i < flags.shape[0]) & (j < flags.shape[1])
@@ -203,7 +202,7 @@ CASES = {
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case[0]} {case[1]:g} m")
 def test_no_unseen_body_stands_where_nothing_is_reported_and_no_edge_is_far_out(case, monkeypatch):
-    monkeypatch.setattr(blind_squares, "MIN_AREA_M2", 0.0)
+    monkeypatch.setattr(blind_ground, "MIN_AREA_M2", 0.0)
     vehicle, rig = CASES[case][0](), pe.Rig(CASES[case][1])
     height, rng = case[1], np.random.default_rng(7)
     told = BlindMap(vehicle, rig, height)

@@ -9,7 +9,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.prior import BoxReport
-from pe_core.prior.box_density import voxelised
+from pe_core.prior.boxes import voxelised
 from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
 

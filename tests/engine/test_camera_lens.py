@@ -6,11 +6,17 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.sensors.camera.lens import RINGS, field_outline, fold_angle
-from pe_core.sensors.camera.lens_models import BrownConrady, FTheta, KannalaBrandt, Pinhole
-from pe_core.sensors.camera.pixel_area import bent_pixel_area, frustum_distance
+from pe_core.sensors.camera.definition import axes_of, bent_pixel_area, frustum_distance
+from pe_core.sensors.camera.lens import (
+    RINGS,
+    BrownConrady,
+    FTheta,
+    KannalaBrandt,
+    Pinhole,
+    field_outline,
+    fold_angle,
+)
 from pe_core.sensors.camera.sample_areas import BEYOND, NEAREST_RAD, QuickLens, bent_pixel_areas
-from pe_core.sensors.camera.tie_rules import axes_of
 from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
 

@@ -8,8 +8,8 @@ import pytest
 import pe_core as pe
 from benchmarks import problems
 from pe_core.geometry.poses import dot, rotate
+from pe_core.geometry.ray_traversal import TriangleTree
 from pe_core.geometry.raycast import VisibleTriangles
-from pe_core.geometry.triangle_tree import TriangleTree
 from pe_core.sensors.camera import grid_areas
 from pe_core.sensors.camera.voxel_occlusion import VoxelOcclusion
 from tests.engine import shapes
@@ -134,15 +134,6 @@ def _cast_without_cover(space, monkeypatch):
     return count["cast"]
 
 
-def test_the_benchmark_s_rig_scores_the_same_both_ways(monkeypatch):
-    study = problems.two_lidars_two_cameras(problems.plain_study(problems.car()))
-    entropies = []
-    for many in (ALWAYS, NEVER):
-        monkeypatch.setattr(grid_areas, "MANY_RAYS", many)
-        entropies.append(pe.Evaluator(SPACE, study.prior, study.vehicle).entropy(study.rig))
-    assert entropies[0] == entropies[1]
-
-
 def shade_of(triangles, position, corners):
     """Over the whole space, with the picture's corners given."""
     offsets = [SPACE.centers(k) - position[k] for k in range(3)]
@@ -192,14 +183,6 @@ def test_a_picture_between_two_parts_of_a_mesh_hides_nothing():
     narrow = np.array([(1.0, 0.1 * i, 0.1 * j) for i in (-1, 1) for j in (-1, 1)])
     flags, _ = shade_of(np.concatenate([side, side * [1, -1, 1]]), (0.0, 0.0, 2.0), narrow)
     assert not flags.hidden.any()
-
-
-def test_little_is_left_to_ask_over_a_plain_roof():
-    flags, grid = shade_of(roof(), (0.0, 0.0, 3.05), ALL_ROUND)
-    hidden = hidden_by_rays(roof() - [0.0, 0.0, 3.05], grid).reshape(flags.hidden.shape)
-    steep = np.abs(grid[:, 2]) > np.abs(grid[:, :2]).max(axis=1)
-    assert flags.hidden.sum() > 0.8 * hidden.sum()
-    assert (flags.unsure.reshape(-1) & ~steep).sum() < 0.1 * len(grid)
 
 
 def test_a_hole_of_one_triangle_is_seen_through():

@@ -16,7 +16,12 @@ from pe_tools.jobs import CheckJob
 from tests.engine import shapes
 
 STUDY = """
-samples = 4096
+samples = 2048
+[space]
+x = [-80, 80]
+y = [-40, 40]
+z = [0, 4]
+interval = 0.2
 
 [vehicle]
 mesh = "car.npz"

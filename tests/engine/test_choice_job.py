@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
-from pe_core.search import design_space
+from pe_core.search import selection
 from pe_tools.cli.choose_verb import front_summary
 from pe_tools.jobs import design_study, front_job, write_front
 from tests.engine import mounting
@@ -88,7 +88,7 @@ def test_more_designs_are_looked_at_first_and_the_front_is_the_same(monkeypatch)
 
 def test_of_many_designs_a_local_search_looks_at_some(monkeypatch):
     monkeypatch.setattr(front_job, "ALL_SEARCHED_UP_TO", 3)
-    monkeypatch.setattr(design_space, "ALL_UP_TO", 5)
+    monkeypatch.setattr(selection, "ALL_UP_TO", 5)
     eye = mounting.can((0.5, 0.0, 1.6), "eye", model="Camera 60 deg")
     eyes = options(["Camera 30 deg", "Camera 60 deg"])
     choices = [pe.Choice(options(), ["roof"], optional=True), pe.Choice(eyes, ["eye"])]

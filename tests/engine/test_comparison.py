@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.scoring.scatter import Scatter
+from pe_core.scoring.score import Scatter
 from pe_tools import advice
 from pe_tools.advice.score_comparison import (
     BLOCKS,
@@ -198,17 +198,6 @@ def _value(score, figure):
     group, name, measure = figure
     parts = {"rig": {"": score}, "zone": score.per_zone, "class": score.per_class}
     return getattr(parts[group][name], measure)
-
-
-def test_objects_are_paired_by_scene():
-    rule, prior = pe.TargetRule("objects", scenes=24), pe.Prior.road()
-    evaluator = pe.ObjectEvaluator(shapes.small_space(), prior, targets=rule)
-    a, b = (evaluator.score(rig) for rig in PAIR)
-    for figure in (ENTROPY, COVERAGE, ("rig", "", "ap"), ("class", "car", "ap")):
-        assert 0.0 < difference_errors([a, b], figure)[0][1] < 1.0
-    own = a.scatter.error(ENTROPY)
-    assert a.scatter.batches == 24 and own == pytest.approx(a.stderr, rel=0.35)
-    assert difference_errors([a, b], ENTROPY)[0][1] < 0.9 * math.hypot(own, own)
 
 
 def test_a_gain_counts_when_it_is_clear_and_a_loss_always():

@@ -52,7 +52,7 @@ def test_nuscenes_rig_with_five_radars_in_sun_rain_and_fog(targets, tmp_path, ca
     study = replace(
         plain,
         samples=4096,
-        targets=pe.TargetRule(targets),
+        targets=pe.TargetRule(targets, scenes=48),
         conditions=Conditions(weathers=WEATHERS),
     )
     assert sum(sensor.kind == "radar" for sensor in study.rig) == 5

@@ -147,16 +147,3 @@ def test_the_result_says_which_curves_it_used(path, tmp_path, provisional, capsy
         codes = [each["code"] for each in result["warnings"]]
         assert codes.count(advice.PROVISIONAL) == (model == "scans")
         assert pe.load_study(folder / "study.toml").model.model == model
-
-
-def test_the_page_says_which_curves_it_used(path, tmp_path, provisional, capsys):
-    pages = {}
-    for model in ("paper", "scans"):
-        folder = tmp_path / f"page {model}"
-        assert main(["review", str(path), "--ap-model", model, "-o", str(folder)]) == 0
-        pages[model] = (folder / "review.html").read_text("utf-8")
-    told = "of LiDARs, fitted to detectors on simulated scans"
-    assert told in pages["scans"] and told not in pages["paper"]
-    assert "fitted to published detectors, or derived" in pages["paper"]
-    provisional_line = "the curves from scans are provisional"
-    assert provisional_line in pages["scans"] and provisional_line not in pages["paper"]

@@ -6,7 +6,7 @@ import random
 import pytest
 
 import pe_core as pe
-from pe_core.search import DesignSearch, DesignSpace, above_front, design_space, pareto_front
+from pe_core.search import DesignSearch, DesignSpace, above_front, pareto_front, selection
 
 MODELS = ("Pandar64", "Pandar40", "HDL-64E")
 EYES = ("Camera 30 deg", "Camera 60 deg")
@@ -108,7 +108,7 @@ def test_the_front_is_what_no_other_beats():
 
 def test_the_local_search_finds_the_front_of_more_designs_than_it_looks_at(monkeypatch):
     """Entropies fall with what each site has, as a true rig's: the front is that of brute force."""
-    monkeypatch.setattr(design_space, "ALL_UP_TO", 10)
+    monkeypatch.setattr(selection, "ALL_UP_TO", 10)
     rig = pe.Rig([sensor(name) for name in "abcd"])
     choices = [pe.Choice(options(MODELS, (9, 7, 4)), [name], optional=True) for name in "abcd"]
     every = designs(rig, *choices)
@@ -137,7 +137,7 @@ def test_the_local_search_finds_the_front_of_more_designs_than_it_looks_at(monke
 def test_limits_that_would_be_checked_for_ever_are_refused(monkeypatch):
     """Each of 40 sites is a cheap LiDAR, of which 20 may be, or a dear camera: none is affordable,
     which only begins to show behind billions of begun designs."""
-    monkeypatch.setattr("pe_core.search.design_space.MAX_STEPS", 500)
+    monkeypatch.setattr("pe_core.search.selection.MAX_STEPS", 500)
     names = [f"s{number}" for number in range(40)]
     rig = pe.Rig([sensor(name) for name in names])
     models = [pe.Option(pe.catalog.load(n), p) for n, p in ((MODELS[0], 1), (EYES[0], 2))]

@@ -1,19 +1,31 @@
-"""Scores: grid against definition, sample against grid, and what must hold for any rig."""
+"""Scores: grid, sample and preview against definition and each other; errors; who watches."""
 
 import math
+import threading
 from dataclasses import fields
 from itertools import pairwise, product
+from statistics import fmean, stdev
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.metric import average_precision, entropy_of, late_fusion, sigma_of
+from pe_core.metric import (
+    POINTPILLARS,
+    average_precision,
+    entropy_of,
+    late_fusion,
+    precision_of,
+    sigma_of,
+)
+from pe_core.scoring import ScoreStopped, draw
 from pe_core.sensors import Voxels, kind_of
+from pe_core.sensors.lidar.beams import RotatedBeams
+from pe_core.sensors.lidar.occlusion import ApproximateOcclusion, BeamSlopes, TopMap
+from pe_tools.cli.terminal import summary, with_error
 from tests.engine import shapes
-from tests.engine.test_preview import CAR, rig_at
-from tests.engine.test_preview import SPACE as FINE
+from tests.limits import HANG_S
 from tests.thorough import THOROUGH, pairs
 
 SPACE = shapes.small_space()
@@ -191,7 +203,7 @@ SAMPLES = 4096
 
 
 def evaluator(samples=SAMPLES):
-    return pe.Evaluator(FINE, pe.Prior.road(), CAR, samples=samples)
+    return pe.Evaluator(PREVIEW_SPACE, pe.Prior.road(), CAR, samples=samples)
 
 
 @pytest.mark.parametrize("preview", [False, True])
@@ -216,7 +228,7 @@ def test_a_summary_and_a_score_agree(preview):
 
 def test_a_summary_at_objects_has_the_ap_of_the_score():
     rule = pe.TargetRule("objects", traffic=True, scenes=8)
-    evaluator = pe.ObjectEvaluator(FINE, pe.Prior.road(), CAR, targets=rule)
+    evaluator = pe.ObjectEvaluator(PREVIEW_SPACE, pe.Prior.road(), CAR, targets=rule)
     rig = rig_at((0.0, 0.0, 1.9))
     assert evaluator.summary(rig).ap == evaluator.score(rig).objects.ap
 
@@ -292,3 +304,243 @@ def test_many_lidars_score_as_few_do():
     for sensor in mounted:
         alone = evaluator.entropy(pe.Rig([sensor]))
         assert score.per_sensor[sensor.name].entropy == pytest.approx(alone, abs=1.01e-9)
+
+
+PREVIEW_SPACE = shapes.small_space(0.25)
+CAR = shapes.box_car(2)
+
+
+def evaluator_of_preview():
+    return pe.Evaluator(PREVIEW_SPACE, pe.Prior.road(), CAR, samples=20_000)
+
+
+def rig_at(*places):
+    sensors = [
+        shapes.lidar_on_roof(position=place, name=f"lidar {n}") for n, place in enumerate(places)
+    ]
+    return pe.Rig(sensors)
+
+
+@pytest.mark.parametrize("rotation", [(0, 0, 0), (3, -8, 40)])
+@pytest.mark.parametrize("place", [(-0.43, 0.0, 1.8), (0.3, 0.2, 1.6), (1.9, 0.0, 1.4), (5, 0, 2)])
+def test_a_preview_stops_nearly_the_same_beams(place, rotation):
+    sensor = shapes.lidar_on_roof(position=place, rotation=rotation)
+    cast = pe.beam_field(sensor, CAR).ends
+    preview = ApproximateOcclusion(CAR).ends(sensor, RotatedBeams(sensor).slopes)
+    stopped = cast < 200.0
+    assert np.mean(stopped != (preview < 200.0)) < 0.01
+    both = stopped & (preview < 200.0)
+    assert both.sum() > 100 or place[0] == 5
+    assert not both.any() or np.median(np.abs(preview - cast)[both] / cast[both]) < 0.05
+
+
+@pytest.mark.parametrize("place", [(-0.43, 0.0, 1.8), (0.3, 0.2, 1.6), (1.9, 0.0, 1.4)])
+def test_a_preview_s_entropy_is_close(place):
+    own = evaluator_of_preview()
+    preview = own.entropy(rig_at(place), preview=True)
+    assert preview == pytest.approx(own.entropy(rig_at(place)), abs=0.06)
+
+
+def test_a_score_says_that_it_is_a_preview_and_the_next_is_not():
+    own, rig = evaluator_of_preview(), rig_at((0.3, 0.2, 1.6))
+    preview, exact = own.score(rig, preview=True), own.score(rig)
+    assert preview.preview and preview.to_dict()["preview"] is True
+    assert not exact.preview and "preview" not in exact.to_dict()
+    assert exact.to_dict() == evaluator_of_preview().score(rig).to_dict()
+    assert preview.entropy != exact.entropy
+
+
+def test_sensors_that_stayed_are_not_previewed():
+    own = evaluator_of_preview()
+    both, one = rig_at((0.3, 0.2, 1.6), (-1.0, 0.0, 1.7)), rig_at((0.3, 0.2, 1.6))
+    own.entropy(one)
+    first = own.score(both, preview=True)
+    assert first.preview
+    assert not own.score(both).preview
+    assert not own.score(both, preview=True).preview  # nothing has moved: it is known exactly
+
+
+def test_a_sensor_below_the_top_is_cast():
+    own, rig = evaluator_of_preview(), rig_at((2.31, 0.0, 0.6), (0.0, 0.0, 1.0))
+    score = own.score(rig, preview=True)
+    assert not score.preview
+    assert score.to_dict() == evaluator_of_preview().score(rig).to_dict()
+
+
+def test_a_roof_hides_what_is_below_its_edge():
+    """A 2 x 2 m plate seen from 0.5 m above its middle: its edge is 26.6 degrees down ahead."""
+    plate = shapes.box((-1, -1, 1.0), (1, 1, 1.1))
+    angles = np.radians(np.arange(-60.0, 30.0, 0.5))
+    beams = np.stack([np.cos(angles), 0 * angles, np.sin(angles)], axis=1)
+    ends = TopMap(plate).ends(np.array([0.0, 0.0, 1.6]), BeamSlopes.of(beams), 100.0)
+    edge = np.degrees(np.arctan2(-0.5, 1.0))
+    clear = np.degrees(angles) > edge
+    assert np.count_nonzero((ends == 100.0) != clear) <= 3
+    low = np.degrees(angles) < edge - 3
+    assert ends[low] * -np.sin(angles[low]) == pytest.approx(0.5, rel=0.05)
+
+
+STANDARD_ERROR_RIGS = {
+    "lidar": pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))]),
+    "camera": pe.Rig([shapes.camera(60.0)]),
+}
+
+
+@pytest.mark.parametrize("rig", STANDARD_ERROR_RIGS)
+def test_it_is_the_scatter_of_scores_on_other_samples(rig):
+    """120 samples of 4096 voxels: it errs high, by less than 2, and never low.
+
+    Each of its 16 runs fills space evenly by itself and the whole more so, which is why it errs
+    high: 1.4 for the LiDAR, 1.7 for the camera. Half of it would be too low, twice too high.
+    """
+    scores = []
+    for shift in np.random.default_rng(11).random((120, 3)):
+        evaluator = pe.Evaluator(SPACE, pe.Prior.road(), samples=4096, shift=tuple(shift))
+        scores.append(evaluator.score(STANDARD_ERROR_RIGS[rig]))
+    told = math.sqrt(fmean(s.stderr**2 for s in scores))
+    assert 1.0 < told / stdev(s.entropy for s in scores) < 2.0
+
+
+def test_it_is_that_of_the_mean_of_sixteen_runs():
+    """By its definition: the scatter of the runs' means, n - 1, over the root of their number."""
+    vehicle, sensor = shapes.box_car(), STANDARD_ERROR_RIGS["lidar"]["roof"]
+    evaluator = pe.Evaluator(SPACE, pe.Prior.road(), vehicle, samples=3000)
+    sample = draw(pe.Prior.road().densities(SPACE), SPACE, 3000, vehicle.top(SPACE))
+    m = pe.measure(sensor, sample.centers, SPACE.interval, vehicle)
+    entropies = entropy_of(precision_of(m, POINTPILLARS)).tolist()
+    means = [
+        fmean(h for h, own in zip(entropies, sample.run.tolist(), strict=True) if own == run)
+        for run in range(16)
+    ]
+    score = evaluator.score(STANDARD_ERROR_RIGS["lidar"])
+    assert score.entropy == pytest.approx(fmean(entropies), abs=1e-8)
+    assert score.stderr == pytest.approx(stdev(means) / 4.0, abs=1e-8)
+
+
+BLIND = shapes.lidar_on_roof(shapes.small_lidar(2, 4), (0.0, 0.0, 900.0))
+EVERYWHERE = pe.Lidar("all", np.radians(np.linspace(-89.0, 89.0, 90)), 180, 100.0)
+TINY = pe.PerceptionSpace((-0.8, 0.8), (-0.8, 0.8), (0, 1.6), 0.2)
+
+
+@pytest.mark.parametrize(
+    "rig, space, entropy",
+    [
+        (pe.Rig([BLIND]), SPACE, 16.651386624),
+        (pe.Rig([shapes.lidar_on_roof(EVERYWHERE, (0.05, 0.05, 0.85))]), TINY, -10.975632491),
+    ],
+    ids=["nothing seen", "all seen"],
+)
+def test_where_every_voxel_is_alike_it_is_half_of_what_the_rule_of_three_leaves(
+    rig, space, entropy
+):
+    """Up to 3 voxels in 2048 might be anything from 16.651 to -10.976, 95 times in 100."""
+    score = pe.Evaluator(space, pe.Prior.uniform(), samples=2048).score(rig)
+    assert score.entropy == entropy
+    assert score.stderr == pytest.approx(1.5 / 2048 * (16.651386624 + 10.975632491), abs=1e-9)
+
+
+def test_it_covers_what_a_sample_that_sees_nothing_has_missed():
+    """A camera that sees 9 of 32,000 voxels, of which no sample of 1024 need have any."""
+    camera = shapes.camera(3.0, (19.2, 0.1, 4.9), (0.0, -1.0, 0.0))
+    truth = pe.Evaluator(SPACE, pe.Prior.uniform()).score(pe.Rig([camera]))
+    assert 0.0 < truth.coverage < 1e-3
+    for shift in np.random.default_rng(3).random((20, 3)):
+        sample = pe.Evaluator(SPACE, pe.Prior.uniform(), samples=1024, shift=tuple(shift))
+        score = sample.score(pe.Rig([camera]))
+        assert abs(score.entropy - truth.entropy) <= 2.0 * score.stderr
+
+
+def test_it_falls_with_the_number_of_voxels():
+    """Sixteen times as many: a quarter by chance alone, less for points that fill space evenly."""
+    few, many = (
+        pe.Evaluator(SPACE, pe.Prior.road(), samples=n).score(STANDARD_ERROR_RIGS["lidar"]).stderr
+        for n in (2048, 32_768)
+    )
+    assert many < few / 3.0
+
+
+def test_no_sample_is_printed_as_exact():
+    """Not where nothing is seen, and not where the error is less than the last digit."""
+    study = pe.Study(pe.Rig([BLIND]), space=SPACE, samples=2048)
+    job = pe.ScoreJob(study)
+    for _ in job:
+        pass
+    assert summary(job.outcome).startswith("entropy   16.6514 +- 0.0202 nats\n")
+    assert with_error(16.6514, 2e-6) == "16.6514 +- 0.0001 nats"
+    assert with_error(16.6514, 0.0) == "16.6514 nats"
+
+
+WATCH_SPACE = pe.PerceptionSpace((-40, 40), (-10, 10), (0, 4), 0.5)  # five blocks of 32 planes
+
+
+def evaluator_of_watch(samples=0):
+    return pe.Evaluator(WATCH_SPACE, pe.Prior.road(), shapes.box_car(), samples=samples)
+
+
+def rig():
+    return pe.Rig([shapes.lidar_on_roof(), shapes.camera()])
+
+
+def test_the_share_rises_to_the_whole_and_changes_no_score():
+    told = []
+    score = evaluator_of_watch().score(rig(), watch=lambda share: told.append(share) or True)
+    assert told == pytest.approx([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
+    assert score.to_dict() == evaluator_of_watch().score(rig()).to_dict()
+
+
+def test_a_sample_tells_its_share_after_each_sensor_and_ends_when_asked():
+    """Thousands of sensors take hours: how long is known after the first few."""
+    told, some = [], evaluator_of_watch(4096)
+    score = some.score(rig(), watch=lambda share: told.append(share) or True)
+    assert len(told) == 5 and told == sorted(told) and told[0] == 0.0
+    assert told[-1] == pytest.approx(1.0)
+    moved = pe.Rig([sensor.moved(pe.Pose((0.2, 0.0, 1.9))) for sensor in rig()])
+    for calls in (1, 2, 4):
+        left = iter([True] * calls)
+        with pytest.raises(ScoreStopped):
+            some.score(moved, watch=lambda _, left=left: next(left, False))
+    assert some.score(rig()).to_dict() == score.to_dict()
+    assert some.score(moved).to_dict() == evaluator_of_watch(4096).score(moved).to_dict()
+
+
+@pytest.mark.parametrize("at", [0.0, 0.4, 1.0])
+def test_a_score_ends_when_it_is_reported_and_the_next_is_sound(at):
+    own = evaluator_of_watch()
+    told = []
+
+    def watch(share):
+        told.append(share)
+        return share < at
+
+    with pytest.raises(ScoreStopped):
+        own.score(rig(), watch=watch)
+    assert told[-1] == pytest.approx(at) and told == sorted(told)
+    assert own.score(rig()).to_dict() == evaluator_of_watch().score(rig()).to_dict()
+
+
+def test_a_stopped_job_s_thread_stops_as_well(monkeypatch):
+    """Its score is given up, and does not run on behind the program's back."""
+    started, go, done = threading.Event(), threading.Event(), threading.Event()
+    ended, whole = [], pe.Evaluator.score
+
+    def score(self, *args, **kwargs):
+        started.set()
+        go.wait(HANG_S)
+        try:
+            ended.append(whole(self, *args, **kwargs))
+        except ScoreStopped:
+            ended.append("stopped")
+            raise
+        finally:
+            done.set()
+
+    monkeypatch.setattr(pe.Evaluator, "score", score)
+    job = pe.ScoreJob(pe.Study(rig(), shapes.box_car(), WATCH_SPACE))
+    steps = iter(job)
+    next(steps)
+    next(steps)
+    assert started.wait(HANG_S)
+    job.stop()
+    assert not list(steps) and job.outcome is None
+    go.set()
+    assert done.wait(HANG_S) and ended == ["stopped"]

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import pytest
 
 import pe_core as pe
-from pe_core.sensors.camera.lens_models import Pinhole
+from pe_core.sensors.camera.lens import Pinhole
 from pe_tools.exchange import csv_table, driveworks, import_rig, rig_files, ros
 from pe_tools.exchange.lens_pictures import Picture, _squares
 from pe_tools.exchange.ros import info_name, picture_of_info, without_comments

@@ -85,17 +85,6 @@ def test_the_edge_of_an_image_stands_in_a_table_and_is_reported_elsewhere(tmp_pa
                      "ROS 2 static transforms"]  # fmt: skip
 
 
-def test_a_lens_of_the_catalogue_that_a_table_changes_is_the_table_s(tmp_path):
-    wide = pe.Sensor("eye", pe.catalog.load("PandaSet wide"), pe.Pose((0.0, 0.0, 2.0)))
-    (path,), _ = pe.export_rig(pe.Rig([wide]), "csv", tmp_path / "rig.csv")
-    assert pe.import_rig(path).rig["eye"].model is wide.model
-    path.write_text(path.read_text().replace(",929.8429,", ",940.0,"))
-    found = pe.import_rig(path)
-    assert found.rig["eye"].model.projection.fx == 940.0
-    assert found.lines == ("eye: its lens is not that of PandaSet wide in the catalogue, but the "
-                           "file's",)  # fmt: skip
-
-
 # --- files of other programs, by hand -------------------------------------------------------------
 
 LAUNCH = (

@@ -8,8 +8,8 @@ import pytest
 import pe_core as pe
 from pe_core.geometry import ray_traversal, raycast
 from pe_core.geometry.poses import cross, dot
+from pe_core.geometry.ray_traversal import TriangleTree
 from pe_core.geometry.raycast import VisibleTriangles
-from pe_core.geometry.triangle_tree import TriangleTree
 from tests.engine import shapes
 from tests.thorough import pairs, tries
 

@@ -1,22 +1,33 @@
-"""Fusion of a handful of voxels worked by hand, and what a perception model takes and refuses."""
+"""Equations 4 to 9 and fusion, worked by hand; planes against them; own curves."""
 
 import math
 import pickle
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import pe_core as pe
 from pe_core import sensors as kinds
-from pe_core.metric import POINTPILLARS, RTM3D, average_precision, entropy_of
-from pe_core.metric.fusion import (
-    Fusion,
-    PlaneFusion,
-    VisibleRows,
-    group_sum,
+from pe_core.metric import (
+    BLIND_PRECISION,
+    H_BLIND,
+    POINTPILLARS,
+    RTM3D,
+    average_precision,
+    early_fusion,
+    entropy_of,
     late_fusion,
+    perception_entropy,
+    precision_of,
+    sigma_of,
 )
+from pe_core.metric.entropy import ap_of_entropy
+from pe_core.metric.fusion import DIGITS, Fusion, PlaneFusion, VisibleRows, group_sum
+from pe_core.sensors.lidar.kernel_voxels import compact
+from pe_core.study import study_from_dict, study_to_dict
 from pe_tools.formats import ApTable, fit_ap_curve
+from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
 
 # Entropies as test_by_hand.py derives them: no, one, two, three beams; 100 pixels; fused late.
@@ -249,3 +260,248 @@ def test_voxels_taken_by_index_have_the_bits_of_those_taken_by_flags(blind, shap
     alone = fusion.tables("lidar").entropy[np.minimum(counts, fusion.saturation_count("lidar"))]
     assert np.array_equal(entropies[~flags], alone[~flags])
     assert np.array_equal(seen, (counts > 0) | (areas[0] > 0.0) | (areas[1] > 0.0))
+
+
+def test_average_precision_is_the_paper_s_line_clipped():
+    ap = average_precision([0, 1, math.e, 1000], POINTPILLARS)
+    assert ap == pytest.approx([0.001, 0.659, 0.811, 0.999])
+    assert average_precision(1e-9, RTM3D) == pytest.approx(0.001)
+
+
+def test_sigma_of_ap():
+    assert sigma_of([0.5, 0.8, 0.001]) == pytest.approx([1.0, 0.25, 999.0])
+
+
+def test_entropy_of_a_blind_and_of_a_saturated_voxel():
+    assert pytest.approx(16.651386623858684) == H_BLIND
+    assert entropy_of(precision_of(1000, POINTPILLARS)) == pytest.approx(-10.976, abs=1e-3)
+    assert entropy_of(1.0) == pytest.approx(1.0 + math.log(2.0 * math.pi))
+
+
+def test_early_fusion_sums():
+    assert early_fusion([[1, 2], [3, 4], [0, 1]]).tolist() == [4.0, 7.0]
+
+
+def test_late_fusion_of_two_equal_sensors_halves_the_variance():
+    fused = late_fusion([4.0, 4.0], "literal")
+    assert fused == pytest.approx(8.0)
+    assert entropy_of(fused) == pytest.approx(entropy_of(4.0) - math.log(2.0))
+
+
+def test_blind_sensors_change_nothing_unless_the_letter_is_asked_for():
+    blind = [BLIND_PRECISION] * 10
+    assert late_fusion(blind) == pytest.approx(BLIND_PRECISION, rel=1e-12)
+    literal = entropy_of(late_fusion(blind, "literal"))
+    assert literal == pytest.approx(H_BLIND - math.log(10.0))
+    seen = precision_of(2, POINTPILLARS)
+    assert late_fusion([seen, *blind]) == pytest.approx(float(seen), rel=1e-12)
+
+
+def test_one_sensor_is_the_paper_s_formula():
+    m = np.array([0, 1, 3, 50])
+    ap = np.clip(0.152 * np.log(np.maximum(m, 1)) + 0.659, 0.001, 0.999)
+    ap[0] = 0.001
+    expected = 2 * np.log(1 / ap - 1) + 1 + math.log(2 * math.pi)
+    for blind in ("floor", "literal"):
+        fused = late_fusion([precision_of(m, POINTPILLARS)], blind)
+        assert entropy_of(fused) == pytest.approx(expected, abs=1e-6)
+
+
+def test_perception_entropy_is_the_weighted_mean():
+    assert perception_entropy([1.0, 4.0], [3.0, 1.0]) == pytest.approx(1.75)
+
+
+@pytest.mark.parametrize("curve", [POINTPILLARS, pe.ApCurve(0.05, 0.1), pe.ApCurve(1e-4, 0.5)])
+def test_look_up_tables_equal_the_equations(curve):
+    fusion = Fusion(pe.PerceptionModel(lidar=curve))
+    m = np.array([0, 1, 2, 5, 9, 10, 11, 200, 40_000, 65_535], np.uint16)
+    plain = entropy_of(late_fusion([precision_of(m, curve)]))
+    entropies, seen = fusion.entropies([("lidar", m)])
+    np.testing.assert_allclose(entropies, plain, rtol=1e-12)
+    assert seen.tolist() == [False] + [True] * 9
+
+
+@pytest.mark.parametrize(
+    ("curve", "kind"), [(POINTPILLARS, np.uint8), (pe.ApCurve(1e-4, 0.5), np.uint16)]
+)
+def test_compact_counts_give_the_same_entropies(curve, kind):
+    fusion = Fusion(pe.PerceptionModel(lidar=curve))
+    m = np.array([[0, 1, 9, 10, 255, 256, 40_000, 65_535]], np.uint16)
+    small = compact(m, fusion.saturation_count("lidar"))
+    assert small.dtype == kind and not np.shares_memory(small, m)
+    plain, compacted = (fusion.entropies([("lidar", counts)])[0] for counts in (m, small))
+    assert plain.tolist() == compacted.tolist()
+
+
+def test_the_ap_of_an_entropy_is_the_one_it_comes_from():
+    ap = np.array([0.001, 0.5, 0.8, 0.999])
+    assert ap_of_entropy(entropy_of(sigma_of(ap) ** -2)) == pytest.approx(ap, rel=1e-9)
+
+
+SHAPE = (60, 50)
+ROUNDING = 2.0**-DIGITS
+
+
+def beams(rng, dtype=np.uint16):
+    return rng.integers(0, 13, (2, *SHAPE)).astype(dtype)
+
+
+def view(rng, rows):
+    """Areas from far below the least to more than an image, and a quarter of none."""
+    shape = (2, rows.stop - rows.start, SHAPE[1])
+    area = np.exp2(rng.uniform(-12.0, 24.0, shape)) * (rng.random(shape) < 0.75)
+    return VisibleRows(rows, area.astype(np.float32))
+
+
+def whole(measured, factor=1.0):
+    if not isinstance(measured, VisibleRows):
+        return measured.astype(float)
+    area = np.zeros((2, *SHAPE))
+    area[:, measured.rows] = measured.m * factor
+    return area
+
+
+def by_equations(groups, model, factor=1.0):
+    """Entropies with all areas times a factor."""
+    precisions = [precision_of(whole(m, factor), model.curve(kind)) for kind, m in groups]
+    return entropy_of(late_fusion(precisions, model.blind))
+
+
+def rigs():
+    rng = np.random.default_rng(3)
+    ahead, behind, none = (view(rng, slice(*r)) for r in ((5, 40), (30, 60), (0, 0)))
+    lidar, other = ("lidar", beams(rng)), ("lidar", beams(rng, np.uint8))
+    return {
+        "lidar": [lidar],
+        "camera": [("camera", ahead)],
+        "nothing in view": [("camera", none)],
+        "lidar and camera": [lidar, ("camera", ahead)],
+        "camera first": [("camera", none), ("camera", behind), other],
+        "views overlap": [lidar, ("camera", ahead), ("camera", behind)],
+        "all": [lidar, other, ("camera", ahead), ("camera", behind), ("camera", none)],
+    }
+
+
+@pytest.mark.parametrize("blind", ["floor", "literal"])
+@pytest.mark.parametrize("rig", rigs())
+def test_planes_equal_the_equations_within_the_rounding_of_areas(rig, blind):
+    groups, model = rigs()[rig], pe.PerceptionModel(blind=blind)
+    fusion = PlaneFusion(Fusion(model), SHAPE)
+    found = np.stack([fusion.entropies(groups, plane) for plane in range(2)])
+    most, least = (by_equations(groups, model, 1.0 + k * ROUNDING) for k in (-1.0, 1.0))
+    assert (found <= most + 1e-9).all() and (found >= least - 1e-9).all()
+    seen = np.stack([fusion.seen(groups, plane) for plane in range(2)])
+    assert (seen == (sum(whole(m) for _, m in groups) > 0)).all()
+
+
+def test_the_rounding_of_areas_averages_out():
+    """A plane of areas from 0.1 to 1000 px, as cameras have: the mean is off by less than 1e-5."""
+    area = np.exp2(np.random.default_rng(5).uniform(-3.3, 10.0, (1, 300, 500))).astype(np.float32)
+    fusion = PlaneFusion(Fusion(pe.PerceptionModel()), (300, 500))
+    found = fusion.entropies([("camera", VisibleRows(slice(0, 300), area))], 0)
+    plain = entropy_of(precision_of(area[0], RTM3D))
+    assert np.abs(found - plain).max() < 3e-3
+    assert abs(found.mean() - plain.mean()) < 1e-5
+
+
+@pytest.fixture(scope="module")
+def two_cameras():
+    """A LiDAR and two cameras with a common view, and m of each by the definition."""
+    cameras = [
+        shapes.camera(80.0, (0.9, side, 1.6), (0, 5, 20 * side), name)
+        for name, side in (("left", 0.5), ("right", -0.5))
+    ]
+    sensors = [shapes.lidar_on_roof(shapes.small_lidar(32, 360)), *cameras]
+    space, vehicle = pe.PerceptionSpace((-12, 12), (-8, 8), (0, 4), 0.5), shapes.box_car()
+    index = np.stack(np.unravel_index(np.arange(space.size), space.shape), axis=1)
+    centers = space.center_of(index)
+    weights = sum(
+        (d.ground[:, :, None] * d.profile).reshape(-1) for d in pe.Prior.road().densities(space)
+    )
+    weights = weights * (centers[:, 2] >= vehicle.top(space)[index[:, 0], index[:, 1]])
+    measured = {s.name: pe.measure(s, centers, space.interval, vehicle) for s in sensors}
+    return SimpleNamespace(
+        sensors=sensors, space=space, vehicle=vehicle, weights=weights, measured=measured
+    )
+
+
+@pytest.mark.parametrize("groups", [("", ""), ("one", "one")], ids=["late", "early"])
+def test_cameras_with_a_common_view_fuse_as_their_group_says(groups, two_cameras):
+    lidar, *cameras = two_cameras.sensors
+    cameras = [pe.Sensor(c.name, c.model, c.pose, g) for c, g in zip(cameras, groups, strict=True)]
+    rig = pe.Rig([lidar, *cameras])
+    grid = pe.Evaluator(two_cameras.space, pe.Prior.road(), two_cameras.vehicle).score(rig)
+    model = pe.PerceptionModel()
+    precisions = [
+        precision_of(sum(two_cameras.measured[s.name] for s in own), model.curve(own[0].kind))
+        for own in rig.groups.values()
+    ]
+    assert len(precisions) == (3 if groups[0] == "" else 2)
+    entropy = np.average(entropy_of(late_fusion(precisions)), weights=two_cameras.weights)
+    assert grid.entropy == pytest.approx(entropy, abs=1e-3)
+
+
+BETTER = pe.ApCurve(0.2, 0.8)
+SPACE = pe.PerceptionSpace((-6, 10), (-5, 5), (0, 2), 0.5)
+
+
+def rig(curve, kind_wide=False):
+    """Two LiDARs that fuse early and a camera, the LiDARs with a curve of their own."""
+    own = None if kind_wide else curve
+    lidar = shapes.small_lidar()
+    return pe.Rig(
+        [
+            pe.Sensor("a", lidar, pe.Pose((0.0, 0.0, 1.9)), None, own),
+            pe.Sensor("b", lidar, pe.Pose((1.0, 0.5, 1.9)), None, own),
+            shapes.camera(),
+        ]
+    )
+
+
+@pytest.mark.parametrize("samples", [0, 1024])
+@pytest.mark.parametrize("blind", ["floor", "literal"])
+def test_a_curve_of_all_of_a_kind_is_that_kind_s(samples, blind):
+    def score(some, **curves):
+        model = pe.PerceptionModel(blind, **curves)
+        prior, car = pe.Prior.uniform(), shapes.box_car()
+        return pe.Evaluator(SPACE, prior, car, samples=samples, model=model).score(some)
+
+    one, other = score(rig(BETTER)), score(rig(BETTER, kind_wide=True), lidar=BETTER)
+    assert one.to_dict() == other.to_dict()
+    assert one.entropy < score(rig(None)).entropy
+
+
+@pytest.mark.parametrize("samples", [0, 1024])
+def test_sensors_of_one_kind_with_two_curves_are_fused_late(samples):
+    """Of two LiDARs in one place each counts by its own curve: alone as that curve scores it."""
+    lidar, pose = shapes.small_lidar(), pe.Pose((0.0, 0.0, 1.9))
+    two = pe.Rig([pe.Sensor("a", lidar, pose, "a", BETTER), pe.Sensor("b", lidar, pose, "b")])
+    evaluator = pe.Evaluator(SPACE, pe.Prior.uniform(), None, samples=samples)
+    own = evaluator.score(two).per_sensor
+    plain = evaluator.entropy(pe.Rig([two["b"]]))
+    assert own["b"].entropy == plain
+    assert own["a"].entropy == evaluator.entropy(pe.Rig([two["a"]])) < plain
+
+
+def test_a_group_has_one_curve():
+    lidar = shapes.small_lidar()
+    with pytest.raises(pe.InputError, match="'lidar': expected one AP curve, found two"):
+        pe.Rig([pe.Sensor("a", lidar, curve=BETTER), pe.Sensor("b", lidar)])
+
+
+def test_a_study_holds_it():
+    sensor = {"name": "a", "model": "Pandar64", "position": [0, 0, 2], "ap": {"a": 0.2, "b": 0.8}}
+    study = study_from_dict({"sensor": [sensor]})
+    assert study.rig["a"].curve == BETTER
+    assert study_to_dict(study)["sensor"][0]["ap"] == {"a": 0.2, "b": 0.8}
+    with pytest.raises(pe.InputError, match=r"ap\.b"):
+        study_from_dict({"sensor": [sensor | {"ap": {"a": 0.2}}]})
+
+
+def test_curves_of_objects_are_by_kind_and_class():
+    model = pe.PerceptionModel(objects={"lidar": {"tram": BETTER}})
+    assert model.object_curve("lidar", "tram") == BETTER
+    with pytest.raises(pe.InputError, match=r"\[ap.lidar.objects.bus\]: expected a and b of 'bus'"):
+        model.object_curve("lidar", "bus")
+    with pytest.raises(pe.InputError, match=r"lidar.objects.tram: expected an ApCurve, found 5"):
+        pe.PerceptionModel(objects={"lidar": {"tram": 5}})

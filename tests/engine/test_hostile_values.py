@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.base.serialization import dumps
+from pe_core.base.table_reader import dumps
 from pe_core.study.study_file import study_from_dict
 from tests.engine import shapes
 from tests.thorough import pairs, tries

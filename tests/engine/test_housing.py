@@ -7,7 +7,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.catalog.housings import read_housing
-from pe_core.scene.housing import SEAT_M, Housing, cuts_body
+from pe_core.scene.rig import SEAT_M, Housing, cuts_body
 from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
 

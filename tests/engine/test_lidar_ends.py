@@ -6,9 +6,9 @@ import pytest
 
 import pe_core as pe
 from pe_core.sensors.lidar.beams import FixedEnds, LazyEnds, RotatedBeams
+from pe_core.sensors.lidar.definition import position_in_voxels
 from pe_core.sensors.lidar.lattice import lattice_of
 from pe_core.sensors.lidar.occlusion import occlusion_candidates
-from pe_core.sensors.lidar.tie_rules import position_in_voxels
 from pe_core.sensors.lidar.voxel_beams import (
     PlacedLidar,
     VoxelPoints,

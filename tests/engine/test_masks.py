@@ -1,22 +1,37 @@
-"""Ego masks, held to the plain definition: the ray through every pixel's middle, beam by beam."""
+"""Pictures: ego masks, ranges and surroundings, held to rays; the PNG files they go into."""
 
 import csv
 import io
 import json
 import math
+import struct
+import zlib
 
 import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core import InputError, catalog
 from pe_core.catalog import load
-from pe_core.sensors import BrownConrady, Camera, FTheta, KannalaBrandt, Lidar, kind_of
+from pe_core.scoring.requirements import BODIES
+from pe_core.sensors import (
+    BrownConrady,
+    Camera,
+    FTheta,
+    KannalaBrandt,
+    Lidar,
+    kind_of,
+    range_picture,
+)
 from pe_core.sensors.camera import picture
 from pe_core.sensors.field_of_view import FREE, OUTSIDE
 from pe_core.study import save_study
+from pe_tools import graphics
 from pe_tools.cli.verbs import main
+from pe_tools.graphics import range_colors, surroundings
+from pe_tools.graphics.surroundings import FAR_M, PAINT, STANDING
 from pe_tools.outputs import scene_files
-from tests.engine.test_png import decoded
+from tests.engine import shapes
 
 TRIANGLES = np.array(
     [  # a wall on the left of the view, a pane ahead on the right, a rod thinner than a pixel
@@ -161,3 +176,210 @@ def test_a_picture_of_too_many_pixels_is_refused_before_a_ray_is_cast(monkeypatc
     words = "wide: mask: expected at most 50,000,000 pixels or beams, found 51,000,000"
     with pytest.raises(pe.InputError, match=words):
         ego_mask(sensor, BODY)
+
+
+WALL = pe.Vehicle(
+    np.array(
+        [  # a wall across, 2 m ahead, 4 m wide, from the ground up to 3 m
+            [[2.0, -2.0, 0.0], [2.0, 2.0, 0.0], [2.0, 2.0, 3.0]],
+            [[2.0, -2.0, 0.0], [2.0, 2.0, 3.0], [2.0, -2.0, 3.0]],
+        ]
+    )
+)
+
+
+def lidar(elevations_deg, azimuths=4, max_range=50.0, fov=(-180, 180)):
+    table = {"kind": "lidar", "elevations_deg": elevations_deg, "azimuth_count": azimuths}
+    return catalog.from_table(
+        "toy", table | {"max_range_m": max_range, "horizontal_fov_deg": list(fov)}
+    )
+
+
+def test_by_hand():
+    """1 m above the ground: down 45 degrees it is sqrt 2 away, or 2 sqrt 2 to a wall 2 m ahead."""
+    sensor = pe.Sensor("toy", lidar([-45, 0]), pe.Pose((0.0, 0.0, 1.0)))
+    picture = range_picture(sensor, WALL)
+    assert np.degrees(picture.elevations) == pytest.approx([0, -45])
+    assert np.degrees(picture.azimuths) == pytest.approx([180, 90, 0, -90])
+    level, down = picture.distance
+    assert level == pytest.approx([math.inf, math.inf, 2.0, math.inf])
+    assert down == pytest.approx([math.sqrt(2)] * 4)  # the ground comes before the wall
+    assert picture.occluded.tolist() == [[False, False, True, False], [False] * 4]
+
+
+def test_beyond_its_range_is_nothing():
+    sensor = pe.Sensor("toy", lidar([-45, 0], max_range=1.4), pe.Pose((0.0, 0.0, 1.0)))
+    picture = range_picture(sensor, WALL)
+    assert np.isinf(picture.distance).all() and not picture.occluded.any()
+
+
+def test_below_the_ground_there_is_no_ground():
+    sensor = pe.Sensor("toy", lidar([-45, 0]), pe.Pose((0.0, 0.0, -1.0)))
+    assert np.isinf(range_picture(sensor, None).distance).all()
+
+
+@pytest.mark.parametrize("model", ["Hesai AT128E2X", "Velodyne VLP-16 Puck", "RoboSense RS-Bpearl"])
+def test_each_pixel_is_its_beam_s_first_hit(model):
+    """Beam by beam, from directions worked out anew, turned and tilted."""
+    sensor = pe.Sensor("it", catalog.load(model), pe.Pose((0.3, 0.2, 1.1), (0.1, 0.2, 0.4)))
+    picture, rng = range_picture(sensor, WALL), np.random.default_rng(0)
+    offsets = dict(zip(sensor.model.elevations, sensor.model.azimuth_offsets, strict=True))
+    turned = sensor.pose.ground_from_sensor
+    seen = set()
+    for row, column in rng.integers(0, picture.distance.shape, (300, 2)).tolist():
+        e = picture.elevations[row]
+        a = picture.azimuths[column] + offsets[e]
+        beam = turned @ [math.cos(e) * math.cos(a), math.cos(e) * math.sin(a), math.sin(e)]
+        body = WALL.first_hit(sensor.pose.position, beam[None]).distance[0]
+        ground = 1.1 / -beam[2] if beam[2] < 0 else math.inf
+        nearest = min(body, ground)
+        expected = nearest if nearest <= sensor.model.max_range else math.inf
+        assert picture.distance[row, column] == pytest.approx(expected, rel=1e-9)
+        assert picture.occluded[row, column] == (body <= ground and expected < math.inf)
+        seen.add((bool(picture.occluded[row, column]), expected < math.inf))
+    assert (True, True) in seen  # some met the wall
+
+
+def test_nearer_than_its_least_range_nothing_comes_back():
+    """The wall 2 m ahead stops the beam all the same; the ground sqrt 2 away is not seen."""
+    table = {"kind": "lidar", "elevations_deg": [0, -45], "azimuth_count": 4, "max_range_m": 50.0}
+    near = catalog.from_table("toy", table | {"min_range_m": 2.5})
+    picture = range_picture(pe.Sensor("toy", near, pe.Pose((0.0, 0.0, 1.0))), WALL)
+    assert np.isinf(picture.distance).all()
+    assert picture.occluded.tolist() == [[False, False, True, False], [False] * 4]
+    colors = range_colors(picture, 50.0)
+    silent, nothing = colors[0, 2], colors[0, 0]
+    assert silent[0] > silent[2] + 0.3 and np.ptp(nothing) < 0.02  # brown, and grey
+
+
+def test_things_end_beams_unless_something_is_before_them():
+    """A box ahead of the wall, one behind it, and one on the left, 5 m away."""
+    boxes = [WALL.triangles + np.array([dx, 0.0, 0.0]) for dx in (-1.0, 1.0)]
+    left = WALL.triangles[..., [1, 0, 2]] + np.array([0.0, 3.0, 0.0])
+    parts = np.repeat([0, 1, 2], 2)
+    things = pe.Vehicle(np.concatenate([*boxes, left]), parts, ["before", "behind", "left"])
+    sensor = pe.Sensor("toy", lidar([0, -45]), pe.Pose((0.0, 0.0, 1.0)))
+    picture = range_picture(sensor, WALL, things)
+    assert picture.things[0].tolist() == [-1, 2, 0, -1]  # behind, left, ahead, right
+    assert picture.distance[0] == pytest.approx([math.inf, 5.0, 1.0, math.inf])
+    assert not picture.occluded.any()
+    assert range_picture(sensor, WALL, pe.Vehicle(boxes[1])).occluded[0].tolist()[2]
+
+
+def test_colours_run_from_bright_to_dark_and_are_the_body_s_own_hue():
+    sensor = pe.Sensor("toy", lidar([-2, -10, -45]), pe.Pose((0.0, 0.0, 1.0)))
+    colors = range_colors(range_picture(sensor, WALL), 50.0)
+    lightness = colors[1:, 0] @ [0.2126, 0.7152, 0.0722]  # behind: the ground, 6 and 1.4 m away
+    assert lightness[1] > lightness[0] + 0.1
+    red, green, blue = colors[0, 2]  # ahead: the wall
+    assert red > green > blue
+
+
+def eye(position, rotation=(0, 0, 0)):
+    return pe.Pose.from_degrees(position, rotation)
+
+
+@pytest.mark.parametrize("rotation", [(0, 0, 0), (0, 35, 140), (10, -5, -90), (0, 90, 30)])
+def test_bodies_of_the_requirements_stand_at_5_10_and_20_metres(rotation):
+    """On the ground, as large as they are, ahead of where the sensor looks."""
+    found = surroundings(eye((1.0, -2.0, 1.4), rotation)).bodies
+    assert sorted(distance for _, distance, *_ in STANDING) == [5.0, 10.0, 20.0]
+    heading = math.radians(rotation[2])
+    corners = found.thin.points.reshape(len(STANDING), -1, 3)
+    for (name, distance, bearing, _), points, tag in zip(
+        STANDING, corners, found.labels, strict=True
+    ):
+        low, high = points.min(axis=0), points.max(axis=0)
+        body = BODIES[name]
+        assert (low[2], high[2]) == pytest.approx((body.low, body.low + body.size[2]))
+        away = np.array(tag.place[:2]) - (1.0, -2.0)
+        assert math.hypot(*away) == pytest.approx(distance)
+        turned = math.atan2(away[1], away[0]) - heading - math.radians(bearing)
+        assert math.remainder(turned, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-6)
+        diagonal = np.hypot(*(high - low)[:2])
+        assert diagonal <= math.sqrt(2.0) * math.hypot(*body.size[:2]) + 1e-6
+        assert f"{distance:g} m" in tag.text
+
+
+def test_none_stands_in_the_vehicle():
+    low, high = np.array([-9.0, -1.4, 0.0]), np.array([6.0, 1.4, 3.0])
+    found = surroundings(eye((0.5, 0.0, 3.1)), (low, high)).bodies
+    assert [tag.text for tag in found.labels] == ["car, 20 m", "cyclist, 10 m"]
+    assert len(surroundings(eye((0.5, 0.0, 3.1)), shapes.box_car().bounds).bodies.labels) == 3
+
+
+def test_lanes_are_three_and_a_half_metres_wide_and_the_ground_ends_at_the_horizon():
+    ground = surroundings(eye((40.0, 3.0, 1.5))).ground
+    white = (ground.faces.colors == np.float32(PAINT)).all(axis=1)
+
+    middles = np.unique(
+        (ground.faces.points[white].reshape(-1, 6, 3)[..., 1]).mean(axis=1).round(3)
+    )
+    assert middles.tolist() == [-5.25, -1.75, 1.75, 5.25], "the vehicle is in the middle lane"
+    away = np.hypot(*(ground.faces.points[~white][:, :2] - (40.0, 3.0)).T)
+    assert away.max() == pytest.approx(FAR_M)
+    lines = ground.thin.points.reshape(-1, 2, 3)
+    whole = np.isclose(lines, np.rint(lines), atol=1e-4)
+    assert whole[:, :, :2].all(axis=1).any(axis=1).all(), "a line at each metre"
+    assert ground.thin.colors[:, 3].max() > 0.5 and ground.thin.colors[:, 3].min() == 0.0
+
+
+def chunks(png):
+    """Names and contents of a file's chunks, their sums checked."""
+    assert png[:8] == b"\x89PNG\r\n\x1a\n"
+    at, found = 8, []
+    while at < len(png):
+        (size,) = struct.unpack(">I", png[at : at + 4])
+        name, data = png[at + 4 : at + 8], png[at + 8 : at + 8 + size]
+        (told,) = struct.unpack(">I", png[at + 8 + size : at + 12 + size])
+        assert told == zlib.crc32(name + data)
+        found.append((name, data))
+        at += 12 + size
+    return found
+
+
+def decoded(png):
+    """Pixels (H, W, channels) of a file of eight bits, one byte after the other."""
+    parts = dict(chunks(png))
+    width, height, depth, kind, *rest = struct.unpack(">IIBBBBB", parts[b"IHDR"])
+    assert depth == 8 and rest == [0, 0, 0]
+    n = {0: 1, 2: 3, 3: 1, 6: 4}[kind]
+    lines = np.frombuffer(zlib.decompress(parts[b"IDAT"]), np.uint8).reshape(height, -1).tolist()
+    above, rows = [0] * (width * n), []
+    for number, *line in lines:
+        row = []
+        for k, value in enumerate(line):
+            left, corner = (row[k - n], above[k - n]) if k >= n else (0, 0)
+            up = above[k]
+            guess = left + up - corner
+            nearest = min((left, up, corner), key=lambda v: abs(guess - v))
+            row.append((value + (0, left, up, (left + up) // 2, nearest)[number]) % 256)
+        rows.append(row)
+        above = row
+    return np.array(rows, np.uint8).reshape(height, width, n)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (5, 7), (5, 7, 3), (6, 4, 4)])
+def test_a_picture_is_read_back(shape):
+    """Noise and slopes, so that every filter is taken by some row."""
+    pixels = np.random.default_rng(0).integers(0, 256, shape, np.uint8)
+    slope = np.add.outer(np.arange(shape[0]) * 9, np.arange(shape[1]) * 5).astype(np.uint8)
+    for each in (
+        pixels,
+        np.broadcast_to(slope.reshape(slope.shape + (1,) * (len(shape) - 2)), shape),
+    ):
+        found = decoded(graphics.png_bytes(each))
+        np.testing.assert_array_equal(found.reshape(shape), each)
+
+
+@pytest.mark.parametrize(
+    "pixels", [np.zeros((3, 3)), np.zeros((3, 3, 2), np.uint8), np.zeros((0, 3), np.uint8)]
+)
+def test_what_is_no_picture_is_refused(pixels):
+    with pytest.raises(InputError, match="expected"):
+        graphics.png_bytes(pixels)
+
+
+def test_colours_become_whole_numbers():
+    found = graphics.as_bytes([-0.1, 0.0, 0.5, 1.0, 1.2])
+    assert found.dtype == np.uint8 and found.tolist() == [0, 0, 128, 255, 255]

@@ -7,7 +7,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.sensors import LIDAR as LIDAR_KIND
-from pe_core.sensors.camera.pixel_area import frustum_distance
+from pe_core.sensors.camera.definition import frustum_distance
 from pe_core.sensors.camera.sample_areas import pixel_areas
 from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused

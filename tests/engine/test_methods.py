@@ -6,16 +6,14 @@ import math
 from concurrent.futures import ThreadPoolExecutor
 from importlib.resources import files
 from itertools import pairwise
-from typing import ClassVar
 
 import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.search import METHODS, PARTS, Evaluation, Parametrization, pose_values
-from pe_core.search.design_variable import RADIAN
+from pe_core.search import METHODS, Evaluation, Parametrization, pose_values
 from pe_core.search.methods import Given, Question, block_descent
-from pe_core.search.methods.block_descent import Descent, corner_start, random_start
+from pe_core.search.methods.block_descent import corner_start, race
 from pe_core.search.methods.cma_es import Evolution, SymmetricCma
 from pe_core.search.methods.method import Phase
 from pe_core.search.parametrization import feasible_start
@@ -62,7 +60,7 @@ def test_algorithm_1_on_a_roof_with_a_no_go_area_takes_the_steps_it_always_took(
 
 def test_a_budget_ends_any_search():
     rig, space = mounting.space(can())
-    for method in (*METHODS, *PARTS):
+    for method in METHODS:
         recorder = Recorder(distance_to({"x": 1.0}))
         steps = list(pe.optimize(recorder, rig, space, method=method, evaluations=25))
         assert len(recorder.rigs) == steps[-1].evaluations == 25
@@ -76,6 +74,16 @@ def test_an_unknown_method_is_refused_in_one_line():
     assert "\n" not in str(error.value)
     with pytest.raises(pe.InputError, match="method"):
         pe.Search(method="annealing")
+
+
+def test_a_schedule_chooses_no_method():
+    schedule = pe.Schedule(candidates=3)
+    assert pe.Search().method == pe.Search(schedule=pe.Schedule()).method == "portfolio"
+    with pytest.raises(pe.InputError, match="method: expected 'random' named with a schedule"):
+        pe.Search(schedule=schedule)
+    with pytest.raises(pe.InputError, match="method: expected 'random' named with a schedule"):
+        rig, space = mounting.space(can())
+        next(pe.optimize(None, rig, space, 0, schedule))
 
 
 def test_on_another_level_the_best_so_far_is_evaluated_anew(monkeypatch):
@@ -106,7 +114,7 @@ def test_what_a_method_asks_follows_from_its_answers_alone():
     """Sent the same answers, it asks the same again: what a journal of answers rests on."""
     rig, space = mounting.space(can())
     coding = Parametrization(rig, space)
-    for method in (METHODS | PARTS).values():
+    for method in METHODS.values():
         asked = []
         for _ in range(2):
             given = Given(coding, coding.start, 1.0, seed=4, evaluations=60)
@@ -206,59 +214,23 @@ def answered(asking, value):
 
 
 class Racer:
-    """A descent whose entropy is its start's, less what it gains each time it goes down."""
+    """A descent whose entropy falls by a gain each time it goes on."""
 
-    log: ClassVar[list] = []
-    gain: ClassVar[dict] = {}
+    def __init__(self, name, entropy, log, gain=0.0):
+        self.name, self.entropy, self.log, self.gain = name, entropy, log, gain
 
-    def __init__(self, given, start, entropy, seed, step=None):
-        self.best, self.entropy, self.count, self.spread = start, entropy, 0, 1.0
-        self.log.append(("new", start, seed, step))
-
-    def descend(self, phase, count, finest=0.0):
+    def descend(self, phase, count):
         yield from ()
-        self.log.append(("descend", self.best))
-        self.count, self.entropy = self.count + 10, self.entropy - self.gain.get(self.best, 0.0)
+        self.log.append((self.name, count))
+        self.entropy -= self.gain
 
 
-@pytest.fixture
-def racers(monkeypatch):
-    """Descents are racers, and starts are four: worth 3, 1, 2, and 4."""
-
-    def start(name, entropy):
-        def begin(given, phase):
-            yield from ()
-            return name, entropy
-
-        return begin
-
-    starts = [start(name, entropy) for name, entropy in (("a", 3), ("b", 1), ("c", 2), ("d", 4))]
-    monkeypatch.setattr(block_descent, "STARTS", tuple(starts))
-    monkeypatch.setattr(block_descent, "Descent", Racer)
-    monkeypatch.setattr(Racer, "log", [])
-    monkeypatch.setattr(Racer, "gain", {"c": 0.6})
-    return Racer
-
-
-def test_after_each_race_the_better_half_goes_on(racers, coding):
-    """The third start gains 0.6 in each race: 3, 1, 1.4, 4 after the first, then 1 against 0.8."""
-    given = Given(coding, coding.start, 5.0, seed=7)
-    best, count = answered(block_descent._raced(given, 1000), None)
-    assert [e[1] for e in racers.log if e[0] == "descend"] == ["a", "b", "c", "d", "b", "c"]
-    assert (best.best, count) == ("c", 60.0)
-    assert [e[2] for e in racers.log if e[0] == "new"] == [[7, n] for n in range(4)]
-
-
-def test_repeats_begin_where_the_last_one_ended_wide_and_by_other_numbers_of_the_seed(
-    racers, coding
-):
-    given = Given(coding, coding.start, 5.0, seed=7)
-    answered(block_descent._repeated(given, Racer(given, "c", 1.0, [7, 2]), 1000, 25.0), None)
-    wide = block_descent.RESTART_STEP
-    assert wide == 0.25
-    assert [e for e in racers.log if e[0] == "new"][1:] == [
-        ("new", "c", [7, number], wide) for number in (4, 5, 6)
-    ]
+def test_after_each_race_the_better_half_goes_on():
+    """The third gains 0.6 in each race: 3, 1, 1.4, 4 after the first, then 1 against 0.8."""
+    log = []
+    racing = [Racer("a", 3, log), Racer("b", 1, log), Racer("c", 2, log, 0.6), Racer("d", 4, log)]
+    assert answered(race(racing, PHASE, 50.0), None).name == "c"
+    assert log == [(name, 50.0) for name in "abcdbc"]
 
 
 def test_a_corner_that_is_worse_than_the_start_is_left(coding):
@@ -268,87 +240,19 @@ def test_a_corner_that_is_worse_than_the_start_is_left(coding):
     assert entropy < 2.0 and found.vector[0] == given.parametrization.variables[0].low
 
 
-def test_anywhere_is_another_place_with_the_angles_of_the_start(coding):
-    given = Given(coding, coding.start, 3.0, seed=2)
-    found, entropy = answered(random_start(given, PHASE), lambda c: 8.5)
-    units = [unknown.unit for unknown in coding.variables]
-    for unit, value, before in zip(units, found.vector, coding.start.vector, strict=True):
-        assert (value == before) == (unit == RADIAN)
-    assert entropy == 8.5
-
-
-def test_on_another_level_the_best_is_worth_what_that_level_says(coding):
-    descent = Descent(Given(coding, coding.start, 3.0, levels=2), coding.start, 3.0, [1, 0])
-    answered(descent.reevaluate(Phase(1, 1000, 1)), lambda c: 6.0)
-    assert (descent.entropy, descent.best) == (6.0, coding.start)
-
-
-METHOD = PARTS["block-descent"]
-POSES = [(-1.0, 0.0, 1.6), (-0.5, 0.3, 1.6), (0.0, -0.3, 1.6), (0.5, 0.0, 1.6), (0.7, 0.5, 1.6)]
-
-
-def searched(landscape, rig, space, method="block-descent", evaluations=0, **options):
-    recorder = Recorder(landscape, **options)
-    steps = list(pe.optimize(recorder, rig, space, 1, method=method, evaluations=evaluations))
-    return recorder, steps
-
-
-@pytest.mark.parametrize(("method", "most_m"), [("block-descent", 0.01), ("cma-es", 0.004)])
-def test_a_smooth_valley_is_found(method, most_m):
-    rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
-    target = {"x": 0.71, "y": -0.33, "z": 1.9, "pitch": 0.1}
-    recorder, steps = searched(distance_to(target), rig, space, method, evaluations=800)
-    assert len(recorder.rigs) <= 800
-    assert math.sqrt(steps[-1].entropy) < most_m < math.sqrt(steps[0].entropy) / 100
-
-
-def test_the_best_corner_is_found_from_the_opposite_one():
-    """Hollows in the car's corners, the deepest one far from the start: descent alone stays."""
-
-    def hollows(rig):
-        x, y, _ = rig["roof"].pose.position
-        return min(
-            depth + (x - cx) ** 2 + (y - cy) ** 2
-            for depth, cx, cy in ((1.0, -2.0, -0.8), (0.9, -2.0, 0.8), (0.0, 2.0, 0.8))
-        )
-
-    rig, space = mounting.space(can((-2.0, -0.8, 1.6)))
-    _, steps = searched(hollows, rig, space)
-    assert steps[-1].entropy < 0.01
-    _, steps = searched(hollows, rig, space, evaluations=90)  # too few for a second start
-    assert steps[-1].entropy > 0.8
-
-
-def test_sensors_on_a_rack_take_the_best_slots():
-    slots = [pe.Slot(f"s{k}", pe.Pose(place)) for k, place in enumerate(POSES)]
-    rig = pe.Rig([can(POSES[0]), can(POSES[1], "b")])
-    on = {"roof": "rack", "b": "rack"}
-    rack = pe.Mounting(mounts={"rack": pe.SlotMount(slots)}, on=on)
-    space = pe.SearchSpace.on_vehicle(rig, mounting.car(), mounting=rack)
-
-    def apart(rig):
-        one, other = (pose_values(sensor.pose)["x"] for sensor in rig)
-        return abs(one - 0.7) + abs(other + 0.5)
-
-    recorder, steps = searched(apart, rig, space)
-    assert steps[-1].entropy == pytest.approx(0.0)
-    assert len(recorder.rigs) < 100  # there are 20 placements
-    coding = Parametrization(rig, space)
-    assert not any(coding.broken(rig) for rig in recorder.rigs)
-
-
 def test_the_last_placements_are_evaluated_on_all_voxels_of_the_search():
-    assert METHOD.samples(65_536) == (16_384, 65_536)
-    assert METHOD.samples(4_096) == (2_048, 4_096)
-    assert METHOD.samples(1_024) == (1_024, 1_024)
-    assert METHOD.samples(0) == (16_384, 0)
+    samples = METHODS["portfolio"].samples
+    assert [samples(count) for count in (65_536, 4_096, 1_024, 0)] == [
+        (16_384, 65_536),
+        (2_048, 4_096),
+        (1_024, 1_024),
+        (16_384, 0),
+    ]
     rig, space = mounting.space(can())
     both = [Recorder(distance_to({"x": 0.5})), Recorder(distance_to({"x": 0.6}))]
-    steps = list(pe.optimize(both, rig, space, method="block-descent", evaluations=300))
+    steps = list(pe.optimize(both, rig, space, method="portfolio", evaluations=200))
     levels = [step.level for step in steps]
-    assert levels == sorted(levels)
-    coarse = 1.0 - sum(levels) / len(levels)
-    assert coarse == pytest.approx(block_descent.FIRST_LEVEL, abs=0.1)
+    assert levels == sorted(levels) and set(levels) == {0, 1}
     assert pose_values(steps[-1].best["roof"].pose)["x"] == pytest.approx(0.6, abs=0.01)
     for before, after in pairwise(steps):
         assert after.entropy <= before.entropy or after.level > before.level
@@ -384,14 +288,3 @@ def test_a_descent_ends_where_its_last_cycle_comes_nearest_to_its_budget():
         driven(descent.descend(Phase(0, 1), share * cycle), landscape)
         cycles.append(descent.count / cycle - 1.0)
     assert cycles == [0.0, 1.0, 1.0, 2.0, 3.0, 4.0]
-
-
-def test_starts_race_twice_for_a_twentieth_of_the_budget_each():
-    """Four starts, then the better two: 4 x 0.05 + 2 x 0.05 of the budget."""
-    landscape = distance_to({"x": 0.5, "y": 0.1})
-    total = 4000
-    given = given_of(landscape, can(), evaluations=total)
-    part = block_descent._raced(given, total)
-    asked = sum(driven(part, landscape))
-    corners, random_placement = 8, 1
-    assert asked - corners - random_placement == pytest.approx(0.3 * total, rel=0.05)

@@ -184,22 +184,6 @@ def test_a_group_keeps_its_relative_pose():
     assert len(places) == 20
 
 
-def test_a_pair_of_racks():
-    """Whoever follows may lead: the right rack is the left one's mirror image, sensor by sensor."""
-    sensors = [
-        can((x, side * y, 1.6), f"{name}_{which}")
-        for name, x, y in (("front", 0.3, 0.5), ("rear", -0.3, 0.4))
-        for which, side in (("left", 1), ("right", -1))
-    ]
-    pairs = [("front_left", "front_right"), ("rear_left", "rear_right")]
-    coding = coded(*sensors, pairs=pairs, groups=[("front_left", "rear_left")], free=("x", "yaw"))
-    assert len(coding.variables) == 2
-    (rig,) = drawn(coding, 1)
-    x, y, z = rig["rear_left"].pose.position
-    assert rig["rear_right"].pose.position == (x, -y, z)
-    assert x != -0.3
-
-
 def test_frames_of_walls_and_ceilings():
     """Under a ceiling the shortest turn is one about x; rounding beyond -1 is -1."""
     below = np.array([0.0, 0.0, -1.0])

@@ -7,8 +7,8 @@ import pytest
 
 import pe_core as pe
 from pe_core.geometry.overlap import hull_box, overlaps
-from pe_core.scene.housing import Housing, hull_of
-from pe_core.scene.inside_test import is_enclosed, is_open
+from pe_core.scene.rig import Housing, hull_of
+from pe_core.scene.vehicle import is_enclosed, is_open
 from pe_core.search import Parametrization, feasible_start
 from tests.engine import mounting, shapes
 from tests.engine.mounting import BASE, CENTER, HEIGHT, ON_ROOF, RADIUS, TOP, can, roof

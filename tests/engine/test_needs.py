@@ -5,7 +5,7 @@ import tracemalloc
 import pytest
 
 import pe_core as pe
-from pe_core.scoring import memory_need
+from pe_core.scoring import grid_scorer
 from tests.engine import shapes
 
 SPACE = pe.PerceptionSpace((-24.0, 24.0), (-12.0, 12.0), (0.0, 4.0), 0.2)
@@ -32,7 +32,7 @@ def test_estimates_are_near_what_is_taken(lidars, cameras):
     finally:
         tracemalloc.stop()
     estimate = evaluator._scorer.needs([[s] for s in ours.rig], SPACE)
-    assert peak / memory_need.FACTOR <= estimate <= peak * memory_need.FACTOR
+    assert peak / grid_scorer.FACTOR <= estimate <= peak * grid_scorer.FACTOR
 
 
 @pytest.mark.parametrize(("lidars", "cameras"), [(1, 0), (6, 6)])
@@ -45,23 +45,23 @@ def test_an_estimate_of_samples_is_not_below_what_is_taken(lidars, cameras):
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
-    columns = memory_need.columns_bytes(SPACE, len(ours.prior.class_names))
-    assert peak <= memory_need.samples_bytes(samples, columns) <= peak * memory_need.FACTOR
+    columns = grid_scorer.columns_bytes(SPACE, len(ours.prior.class_names))
+    assert peak <= grid_scorer.samples_bytes(samples, columns) <= peak * grid_scorer.FACTOR
 
 
 def test_too_little_memory_is_one_line_with_what_would_fit(monkeypatch):
     ours = study(4, 1)
     evaluator = ours.evaluator(0, workers=2)
     enough = evaluator._scorer.needs([[s] for s in ours.rig], SPACE)
-    monkeypatch.setattr(memory_need, "available_bytes", lambda: enough - 1)
+    monkeypatch.setattr(grid_scorer, "available_bytes", lambda: enough - 1)
     words = (
         r"score: memory: .* in the [\d.]+ MB .*try samples = 262144 or interval = 0\.4, found about"
     )
     with pytest.raises(pe.InputError, match=words):
         evaluator.score(ours.rig)
-    monkeypatch.setattr(memory_need, "available_bytes", lambda: enough)
+    monkeypatch.setattr(grid_scorer, "available_bytes", lambda: enough)
     assert evaluator.score(ours.rig).entropy == evaluator.entropy(ours.rig)
-    monkeypatch.setattr(memory_need, "available_bytes", lambda: 1000)
+    monkeypatch.setattr(grid_scorer, "available_bytes", lambda: 1000)
     with pytest.raises(pe.InputError, match="memory"):
         evaluator.entropy(ours.rig)
     with pytest.raises(pe.InputError, match="memory"):  # before the prior is laid out
@@ -70,7 +70,7 @@ def test_too_little_memory_is_one_line_with_what_would_fit(monkeypatch):
 
 def test_too_large_a_sample_is_reported_with_one_that_fits(monkeypatch):
     ours = study(1, 0)
-    monkeypatch.setattr(memory_need, "available_bytes", lambda: 100_000_000)
+    monkeypatch.setattr(grid_scorer, "available_bytes", lambda: 100_000_000)
     words = r"score: memory: .*100\.0 MB .*try samples = 131072, found about 10\.0 GB"
     with pytest.raises(pe.InputError, match=words):
         ours.evaluator(16_777_216)

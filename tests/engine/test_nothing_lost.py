@@ -72,7 +72,7 @@ def entropy_of(path):
 SIGNALS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 
 
-@pytest.mark.parametrize("signum", SIGNALS)
+@pytest.mark.parametrize("signum", SIGNALS if THOROUGH else [signal.SIGHUP])
 def test_the_first_signal_evaluates_and_keeps_the_best(study, out, signum):
     with Command("optimize", "--no-review", study, "-o", out, *ENDLESS) as command:
         command.wait_for_better()
@@ -151,7 +151,7 @@ def test_a_full_stderr_ends_nothing(study, out):
     assert not result(out)["stopped"]
 
 
-@pytest.mark.parametrize("closed", [(1,), (2,), (0, 1, 2)])
+@pytest.mark.parametrize("closed", [(1,), (2,), (0, 1, 2)][0 if THOROUGH else 2 :])
 def test_closed_streams_end_nothing(study, out, closed):
     def close():
         for number in closed:
@@ -160,19 +160,6 @@ def test_closed_streams_end_nothing(study, out, closed):
     with Command("optimize", "--no-review", study, "-o", out, *SHORT, preexec_fn=close) as command:
         assert command.end() == 0
     assert not result(out)["stopped"]
-
-
-def test_an_answer_that_cannot_be_printed_is_kept(study, out, elsewhere):
-    with open("/dev/full", "w") as full:
-        options = {"stdout": full, "env": environment(elsewhere)}
-        with Command(
-            "optimize", "--no-review", study, "-o", out, *SHORT, "--json", **options
-        ) as command:
-            assert command.end() == 1
-    (line,) = command.complaints
-    (kept,) = elsewhere.rglob("output.txt")
-    assert "no space left on device" in line.lower() and str(kept) in line
-    assert json.loads(kept.read_text("utf-8")) == result(out)
 
 
 def test_a_folder_that_vanishes_is_made_again(study, out):

@@ -10,10 +10,9 @@ import pytest
 
 import pe_core as pe
 from pe_core.scoring import sight
-from pe_core.scoring.targets.lone_objects import RINGS, SECTORS, RingObjects
-from pe_core.scoring.targets.lone_objects import _reach as reach_of
-from pe_core.scoring.targets.lone_objects import reach as reach_by_direction
-from pe_core.scoring.targets.object_metric import ObjectSums
+from pe_core.scoring.targets.object_metric import RINGS, SECTORS, ObjectSums, RingObjects
+from pe_core.scoring.targets.object_metric import _reach as reach_of
+from pe_core.scoring.targets.object_metric import reach as reach_by_direction
 from pe_core.scoring.targets.object_sampling import SampledObjects
 from pe_core.sensors import KINDS, measure_objects
 from pe_core.sensors.kind import SIZES, derived_object_curve

@@ -115,13 +115,6 @@ def test_an_edited_study_in_a_result_folder_is_the_users(study, out, capsys):
     assert (out / "study.toml").read_text() == edited
 
 
-def test_someone_elses_result_json_makes_nothing_ours(study, out):
-    (out / "result.json").write_text('{"schema": 1, "kind": "other"}')
-    before = contents(out)
-    assert optimize(study, out) == 1
-    assert contents(out) == before
-
-
 @pytest.mark.parametrize("text", ["", "{}", "[1]", '{"perception-entropy": 1, "files": [3]}'])
 def test_a_damaged_list_is_reported(study, out, text, capsys):
     (out / LISTING).write_text(text)
@@ -230,13 +223,6 @@ def test_what_somebody_changed_of_another_run_stays(study, out):
     (out / "history.csv").write_text("mine")
     assert main(["score", str(study), "-o", str(out)]) == 0
     assert (out / "history.csv").read_text() == "mine"
-
-
-def test_a_study_newer_than_the_result_is_reported(study, out):
-    """As after a search that was killed: it had saved its best so far."""
-    assert optimize(study, out) == 0
-    pe.export_study(a_study(x=0.2), out / "study.toml")
-    assert files_of_other_runs(out) == ["study.toml"]
 
 
 @pytest.mark.parametrize("found", ["a file", "below a file", "nothing"])

@@ -22,7 +22,6 @@ FILES = {
     for folder in sorted(FOREIGN.iterdir())
 }
 CARLA = json.loads(FILES["carla"]["objects.json"])
-KIT = FILES["autoware"]["sensor_kit_calibration.yaml"]
 
 
 LEFT_OUT = {
@@ -136,23 +135,6 @@ def test_a_kit_that_is_there_keeps_its_text_without_the_study_s_help(tmp_path):
         assert again[name].pose.position == pytest.approx(rig[name].pose.position, abs=1e-9)
 
 
-def test_a_comment_that_names_a_model_is_one_and_stays_true(tmp_path):
-    """Kits that are written say so; a comment of the maker's is none, and stays."""
-    kit = written(tmp_path / "kit", "autoware")
-    file = kit / "sensor_kit_calibration.yaml"
-    file.write_text(KIT.replace("the one on the roof", "Hesai QT128C2X"))
-    found = import_rig(kit, None, AXLE)
-    assert found.rig["hesai_top"].model.name == "Hesai QT128C2X"
-    assert "hesai_top" not in found.to_choose and "hesai_left" in found.to_choose
-    for model in ("Hesai OT128 (Pandar128E4X)", "Velodyne VLP-16 Puck"):
-        top = pe.Sensor("hesai_top", pe.catalog.load(model), found.rig["hesai_top"].pose)
-        pe.export_rig(pe.Rig([top]), "autoware", kit, AXLE, replace=True)
-        assert f"  hesai_top_base_link:   # {model}\n" in file.read_text()
-    own = pe.Sensor("hesai_top", pe.Lidar("own", [0.0], 36, 30.0), top.pose)
-    pe.export_rig(pe.Rig([own]), "autoware", kit, AXLE, replace=True)
-    assert "  hesai_top_base_link:\n" in file.read_text()
-
-
 def test_a_lens_of_a_kit_is_written_when_it_is_another(tmp_path):
     kit = written(tmp_path / "kit", "autoware")
     info = (
@@ -202,15 +184,6 @@ def test_carla_s_horizontal_fov_is_the_lidar_s(tmp_path):
     (row,) = json.loads((tmp_path / "objects.json").read_text())["objects"][0]["sensors"]
     assert row["horizontal_fov"] == pytest.approx(120.0)
     assert row["points_per_second"] / 10 == 501 * 32
-
-
-def test_other_formats_have_no_part_in_it(tmp_path):
-    found = import_rig(written(tmp_path / "in", "nuscenes"), None, AXLE)
-    _, lines = pe.export_rig(
-        found.rig, "driveworks", tmp_path / "rig.json", AXLE, passthrough=found.passthrough
-    )
-    rows = json.loads((tmp_path / "rig.json").read_text())["rig"]["sensors"]
-    assert rows[1]["name"] == "LIDAR_TOP" and not any("came in" in line for line in lines)
 
 
 def test_osi_s_radars_keep_their_ids_and_all_else(tmp_path):

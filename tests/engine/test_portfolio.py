@@ -10,9 +10,9 @@ import pe_core as pe
 from pe_core.search import Evaluation, Parametrization, pose_values
 from pe_core.search.methods import portfolio
 from pe_core.search.methods import portfolio_surrogate as surrogate
-from pe_core.search.methods.block_descent import PLACEMENTS_PER_START, race
+from pe_core.search.methods.block_descent import race
 from pe_core.search.methods.method import Given, Phase
-from pe_core.search.methods.portfolio import Incumbent, Survey
+from pe_core.search.methods.portfolio import PLACEMENTS_PER_START, Incumbent, Survey
 from pe_core.search.methods.portfolio_linear import LinearDescent
 from pe_core.search.methods.portfolio_steps import BATCH, MultiscaleDescent
 from pe_core.search.methods.portfolio_surrogate import CubicModel, History, SurrogateDescent

@@ -1,4 +1,4 @@
-"""The prior: normalised, boxes on the ground, focus weights, and the samples drawn from it."""
+"""The prior: normalised, against numerical integrals, focus, and the samples drawn from it."""
 
 import math
 from dataclasses import replace
@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.scoring.density_cache import outside_masses
-from pe_core.scoring.sampling import draw, scrambled_sobol
+from pe_core.prior.classes import sampled_positions
+from pe_core.scoring.sampling import draw, outside_masses, scrambled_sobol
 from tests.engine import shapes
 
 SPACE = shapes.small_space()
@@ -139,3 +139,105 @@ def test_voxels_come_nearest_first_and_know_their_run():
     sample = draw(pe.Prior.road().densities(SPACE), SPACE, 16_000)
     assert (np.diff(np.hypot(sample.centers[:, 0], sample.centers[:, 1])) > -1e-9).all()
     assert np.bincount(sample.run).tolist() == [1000] * 16
+
+
+DENSITY_SPACE = pe.PerceptionSpace((-60.0, 60.0), (-30.0, 30.0), (0.0, 5.0), 0.5)
+FINE = 4000
+"""Points to a box of the numerical integrals."""
+
+
+def centre_density(cls, x, y):
+    """``exp(-|x| / L) * mean over lanes of (w Laplace(y) + (1 - w) N(y))``, as documented."""
+    along = np.exp(-np.abs(x) / cls.decay_x)
+    across = np.zeros_like(y)
+    for lane in cls.lanes:
+        d = y - lane
+        laplace = np.exp(-np.abs(d) / cls.laplace_y) / (2.0 * cls.laplace_y)
+        normal = np.exp(-0.5 * (d / cls.gauss_y) ** 2) / (cls.gauss_y * math.sqrt(2.0 * math.pi))
+        across += (cls.laplace_share * laplace + (1.0 - cls.laplace_share) * normal) / len(
+            cls.lanes
+        )
+    return along, across
+
+
+def covering(density, middles, size):
+    """Integral of a density of centres over those whose box of that size holds each middle."""
+    steps = (np.arange(FINE) + 0.5) / FINE - 0.5
+    return np.array([density(m + size * steps).mean() * size for m in middles])
+
+
+def expected_ground(cls):
+    length, width, _ = cls.size
+    none = np.zeros(1)
+    along = covering(lambda x: centre_density(cls, x, none)[0], DENSITY_SPACE.centers(0), length)
+    across = covering(lambda y: centre_density(cls, none, y)[1], DENSITY_SPACE.centers(1), width)
+    ground = np.outer(along, across)
+    return ground / ground.sum()
+
+
+@pytest.mark.parametrize("prior", ["road", "highway"])
+def test_ground_and_heights_of_every_class(prior):
+    """Height: the share of objects taller than a voxel's centre, heights scattering normally."""
+    prior = getattr(pe.Prior, prior)()
+    total = sum(c.share for c in prior.classes)
+    heights = np.linspace(-8.0, 8.0, 40_001)  # in spreads
+    weights = np.exp(-0.5 * heights**2)
+    for cls, density in zip(prior.classes, prior.densities(DENSITY_SPACE), strict=True):
+        expected = expected_ground(cls) * cls.share / total
+        np.testing.assert_allclose(density.ground, expected, rtol=2e-4, atol=1e-11)
+        tall = cls.size[2] + cls.height_spread * heights
+        profile = np.array([weights[tall > z].sum() for z in DENSITY_SPACE.centers(2)])
+        np.testing.assert_allclose(density.profile, profile / profile.sum(), atol=2e-4)
+
+
+def test_a_road_s_car_by_hand():
+    """Beyond half a car's length the mass falls as exp(-x / 39.4): over 20 m to exp(-0.50761)."""
+    ground = pe.Prior.road().densities(DENSITY_SPACE)[0].ground
+    along = ground.sum(axis=1)
+    i, j = 120 + 20, 120 + 60  # centres at 10.25 and 30.25 m ahead
+    assert along[j] / along[i] == pytest.approx(math.exp(-20.0 / 39.4), rel=1e-9)
+    assert along[j] == pytest.approx(along[239 - j], rel=1e-9)  # as often behind as ahead
+
+
+def test_lopsided_lanes_stay_where_they_are():
+    """y is to the left: a lane at +10 m is met at +10 m, one named twice twice as often."""
+    cls = pe.ObjectClass("x", (4.0, 2.0, 1.5), 0.2, 30.0, 1.0, 0.5, 0.0, (10.0, 10.0, -20.0))
+    across = pe.Prior("road", (cls,)).densities(DENSITY_SPACE)[0].ground.sum(axis=0)
+    y = DENSITY_SPACE.centers(1)
+    assert across[abs(y - 10.0) < 4.0].sum() == pytest.approx(2 / 3, abs=1e-6)
+    assert across[abs(y + 20.0) < 4.0].sum() == pytest.approx(1 / 3, abs=1e-6)
+
+
+def test_focus_regions_are_where_they_are_said():
+    """A region of 3 x 2 voxels ahead on the right counts three times; its edge is no part of it."""
+    space = pe.PerceptionSpace((0.0, 4.0), (-2.0, 2.0), (0.0, 1.0), 0.5)
+    focus = pe.Focus(3.0, (1.0, 2.5), (-1.5, -0.5))
+    (density,) = pe.Prior.uniform([focus]).densities(space)
+    expected = np.ones((8, 8))
+    expected[2:5, 1:3] = 3.0
+    np.testing.assert_allclose(density.ground, expected / (64 + 6 * 2), rtol=1e-12)
+    on_centres = pe.Focus(3.0, (1.25, 2.25), (-9.0, 9.0))
+    (density,) = pe.Prior.uniform([on_centres]).densities(space)
+    factor = density.ground[:, 0] / density.ground[0, 0]
+    assert factor.tolist() == pytest.approx([1, 1, 1, 3, 1, 1, 1, 1])
+
+
+def test_sampled_positions_reach_both_ends_of_the_space():
+    """The lowest and the highest number below 1 are the space's corners, 1/2 its middle in x."""
+    u = np.array([0.0, 0.5, np.nextafter(1.0, 0.0)])
+    x, y = sampled_positions(pe.Prior.road().classes[0], DENSITY_SPACE, u, u)
+    assert x == pytest.approx([-60.0, 0.0, 60.0], abs=1e-6)
+    assert y[[0, 2]] == pytest.approx([-30.0, 30.0], abs=1e-6)
+
+
+def test_focus_regions_at_positions_are_those_on_the_grid():
+    """One position inside, one beyond each of the four edges, and one on an edge."""
+    focus = pe.Focus(3.0, (1.0, 2.5), (-1.5, -0.5))
+    x = np.array([2.0, 0.5, 3.0, 2.0, 2.0, 2.5])
+    y = np.array([-1.0, -1.0, -1.0, -2.0, 0.0, -1.0])
+    assert pe.Prior.uniform([focus]).focus_at("any", x, y).tolist() == [3, 1, 1, 1, 1, 1]
+
+
+def test_densities_are_of_classes_that_the_prior_has():
+    with pytest.raises(pe.InputError, match=r"prior: density: expected one of car.*found 'bus'"):
+        pe.Prior("road", pe.Prior.road().classes, density={"bus": 1.0})

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
-from pe_core.base.serialization import dumps
+from pe_core.base.table_reader import dumps
 from pe_core.study.study_file import study_from_dict, study_to_dict
 
 SENSOR = '[[sensor]]\nname = "roof"\nmodel = "Pandar64"\nposition = [0, 0, 1.8]\n'

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.sensors.camera.tie_rules import NUDGE as CAMERA_NUDGE
-from pe_core.sensors.lidar.tie_rules import NUDGE as LIDAR_NUDGE
+from pe_core.sensors.camera.definition import NUDGE as CAMERA_NUDGE
+from pe_core.sensors.lidar.definition import NUDGE as LIDAR_NUDGE
 from tests.engine import kernels
 from tests.engine.kernels import FLAT, every_voxel
 from tests.engine.random_rigs import RIGS, free_scene, round_scene

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.base.degrees import as_in_file
-from pe_core.base.serialization import dumps
-from pe_core.base.table_reader import Table
+from pe_core.base.table_reader import Table, dumps
+from pe_core.base.values import as_in_file
 from pe_core.scoring.requirements import (
     BODIES,
     Body,

@@ -22,12 +22,12 @@ from pe_core.scoring.requirements import (
 )
 from pe_core.scoring.sight import BLIND_TO_M
 from pe_core.search import Goals
-from pe_core.study.requirement_help import suggestions
 from pe_core.study.requirement_search import (
     INFEASIBLE,
     conflicts,
     constraints_of,
     feasible_first,
+    suggestions,
 )
 from pe_tools import advice
 from pe_tools.jobs import result_dict
@@ -178,7 +178,7 @@ def test_shortfalls_are_zero_exactly_where_a_verdict_says_met():
     assert kept is evaluator and objective.entropy(own.rig) > INFEASIBLE
 
 
-def tilted(blind_ground, method="cma-es"):
+def tilted(blind_ground, method="portfolio"):
     """A LiDAR at the front, tilted down: level it sees farther, and less of the near ground."""
     van = pe.Vehicle(shapes.box((-2.5, -1.0, 0.25), (2.5, 1.0, 2.0)), clearance=0.0)
     pose = pe.Pose.from_degrees((2.6, 0.0, 1.0), (0.0, 15.0, 0.0))
@@ -191,7 +191,7 @@ def tilted(blind_ground, method="cma-es"):
     return pe.Study(rig, van, space, samples=1024, search=search)
 
 
-@pytest.mark.parametrize("method", ["portfolio", "block-descent", "cma-es", "random"])
+@pytest.mark.parametrize("method", ["portfolio", "random"])
 def test_a_search_that_keeps_blind_ground_ends_with_no_more_of_it(method):
     """Without the key the same search pays its gain with blind ground, and says so."""
     free, kept = (finished(pe.OptimizeJob(tilted(keep, method), 1)) for keep in (None, "keep"))

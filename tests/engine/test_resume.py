@@ -11,7 +11,7 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
-from pe_core.search import METHODS, PARTS, Journal, evaluate_all
+from pe_core.search import METHODS, Journal, evaluate_all
 from pe_core.study import SEARCH
 from pe_tools import jobs
 from pe_tools.cli.verbs import main
@@ -62,7 +62,7 @@ def outcome_of(job, steps=None):
     return job.outcome
 
 
-@pytest.mark.parametrize("method", [*METHODS, *PARTS])
+@pytest.mark.parametrize("method", METHODS)
 def test_every_method_goes_on_to_the_bits_of_an_unbroken_search(method):
     study = a_study(method)
     whole = outcome_of(pe.OptimizeJob(study, 1))

@@ -8,8 +8,7 @@ import pytest
 import pe_core as pe
 from pe_core.base.values import rounded
 from pe_core.scoring import draw
-from pe_core.scoring.density_cache import outside_masses, outside_profile
-from pe_core.scoring.sampling import scrambled_sobol
+from pe_core.scoring.sampling import outside_masses, outside_profile, scrambled_sobol
 from pe_core.scoring.score import ZONES, column_zones, zone_masks
 from tests.engine import shapes
 
@@ -159,16 +158,6 @@ def test_a_sample_is_drawn_where_the_prior_lies_and_knows_the_classes():
     assert (sample.centers == sample.index + 0.5).all()
     assert (np.diff(i) >= 0).all()  # nearest first
     assert np.bincount(sample.run).tolist() == [256] * 16
-
-
-@pytest.mark.parametrize("away", [1.0, 2.0, 30.0])
-def test_a_space_that_begins_away_from_the_vehicle_is_drawn_from_alike(away):
-    """The same three columns, in rings that do not begin with that of the origin."""
-    space = pe.PerceptionSpace((away, away + 3.0), (0.0, 1.0), (0.0, 4.0), 1.0)
-    boxes = [(name, x + away, *rest) for name, x, *rest in BOXES]
-    sample = draw(pe.Prior.from_boxes(boxes).densities(space), space, 4096)
-    assert np.bincount(sample.index[:, 0]).tolist() == pytest.approx([1024, 1024, 2048], abs=8)
-    assert (sample.centers[:, 0] == sample.index[:, 0] + 0.5 + away).all()
 
 
 def test_a_voxel_of_two_classes_is_each_s_by_its_share():

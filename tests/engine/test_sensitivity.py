@@ -33,7 +33,7 @@ def study(sensitivity="full", **search):
     limits = {"roof": {"z": (1.6, TOP_M)}}
     goals = Goals(sensitivity=sensitivity)
     given = {"free": {"roof": ("z", "pitch")}, "limits": limits, "goals": goals} | search
-    settings = pe.Search(samples=2048, method="cma-es", evaluations=30, **given)
+    settings = pe.Search(samples=2048, evaluations=30, **given)
     return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=settings, samples=2048)
 
 

@@ -8,10 +8,23 @@ import pytest
 import pe_core as pe
 from pe_core.geometry.grids import GroundGrid
 from pe_core.scoring.sight import Sight
-from pe_core.scoring.sight.blind_ground import NARROW_M, SIDES, blind_ground, shown_end, shown_start
-from pe_core.scoring.sight.blind_squares import BODY_M, TOO_FAR_M
-from pe_core.scoring.sight.grid_regions import closed, gauss, opened, outlines, without_specks
-from pe_core.scoring.sight.ground_cells import GroundCells
+from pe_core.scoring.sight.blind_ground import (
+    BODY_M,
+    NARROW_M,
+    SIDES,
+    TOO_FAR_M,
+    blind_ground,
+    shown_end,
+    shown_start,
+)
+from pe_core.scoring.sight.ground_cells import (
+    GroundCells,
+    closed,
+    gauss,
+    opened,
+    outlines,
+    without_specks,
+)
 from pe_core.sensors import CAMERA, GroundView
 from pe_core.sensors.kernels import DefinedGround
 from tests.engine import shapes

@@ -8,8 +8,8 @@ from pe_core import sensors as kinds
 from pe_core.metric.entropy import H_BLIND, entropy_of, precision_of
 from pe_core.metric.fusion import late_fusion
 from pe_core.scoring.sight import Sight
-from pe_core.scoring.sight.grid_regions import gauss
-from pe_core.scoring.sight.voxel_sets import SPREAD_M
+from pe_core.scoring.sight.ground_cells import gauss
+from pe_core.scoring.sight.visibility import SPREAD_M
 from pe_core.sensors.lidar.beams import LazyEnds
 from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused

@@ -16,8 +16,8 @@ from pe_core.study import (
     study_from_dict,
     study_to_dict,
 )
-from pe_core.study.condition_file import read_conditions, state_table
-from pe_core.study.condition_search import study_objective
+from pe_core.study.condition_table import study_objective
+from pe_core.study.conditions import read_conditions, state_table
 from pe_tools.jobs import conditions_csv
 from pe_tools.page.markup import render
 from pe_tools.page.sections.score import table_values

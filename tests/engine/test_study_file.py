@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.base.serialization import dumps
+from pe_core.base.table_reader import dumps
 from pe_core.study.study_file import study_from_dict, study_to_dict
 from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
@@ -139,7 +139,7 @@ BAD = [
     ("sensor", "[space]\n"),
     ("rig: sensor name", MINIMAL + MINIMAL),
     ("space.x", MINIMAL + "[space]\nx = [3, 3]\n"),
-    ("space: interval", MINIMAL + "[space]\ninterval = 0.3\n"),
+    ("space.interval", MINIMAL + "[space]\ninterval = 0.3\n"),
     ("prior.model", MINIMAL + '[prior]\nmodel = "city"\n'),
     ("prior.focus[0].factor", MINIMAL + "[[prior.focus]]\nx = [0, 1]\n"),
     ("ap.lidar.a", MINIMAL + "[ap.lidar]\na = 0\n"),
@@ -150,7 +150,7 @@ BAD = [
     ("optimize.seed", MINIMAL + "[optimize]\nseed = -1\n"),
     ("optimize.candidates", MINIMAL + f"[optimize]\n{RANDOM}candidates = 0\n"),
     ("optimize.candidates", MINIMAL + "[optimize]\ncandidates = 9\n"),
-    ("optimize.decay", MINIMAL + '[optimize]\nmethod = "cma-es"\ndecay = 0.5\n'),
+    ("optimize.decay", MINIMAL + '[optimize]\nmethod = "portfolio"\ndecay = 0.5\n'),
     ("optimize.seed", MINIMAL + "[optimize]\nseed = true\n"),
     ("samples", "samples = 2.5\n" + MINIMAL),
 ]

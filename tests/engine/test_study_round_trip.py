@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 import pe_core as pe
-from pe_core.base.serialization import dumps
+from pe_core.base.table_reader import dumps
 from pe_core.search import AXES
 from pe_core.study.study_file import study_from_dict, study_to_dict
 from tests.engine import shapes

@@ -16,7 +16,7 @@ from threading import Thread
 import pytest
 
 import pe_core as pe
-from pe_core.base.file_stem import is_reserved
+from pe_core.base.files import is_reserved
 from pe_core.search import Journal
 from pe_core.study import SEARCH
 from pe_tools import jobs
@@ -138,7 +138,7 @@ def test_sweeps_that_cannot_be_are_one_line(study, out, more, complaint, capsys,
     assert line.startswith(f"pe: {complaint}"), line
 
 
-@pytest.mark.parametrize("greeting", [b"", b"\0" * 64, b"SSH-2.0-OpenSSH_9.2\r\n" * 9])
+@pytest.mark.parametrize("greeting", [b"", b"SSH-2.0-OpenSSH_9.2\r\n" * 9])
 def test_a_peer_that_is_no_scheduler_ends_in_time(greeting, study, out, capsys, monkeypatch):
     """It accepts the connection and says nothing, or something else."""
     pytest.importorskip("distributed", reason="of the extra cluster")
@@ -317,9 +317,7 @@ def replace_seed(study, seed):
 
 
 @pytest.mark.skipif(sys.platform != "linux" or os.geteuid() != 0, reason="only root may mount")
-@pytest.mark.parametrize(
-    ("size", "done"), [("size=64k", 2), ("size=128k", 5), ("nr_inodes=4", 0), ("nr_inodes=13", 1)]
-)
+@pytest.mark.parametrize(("size", "done"), [("size=64k", 2), ("nr_inodes=4", 0)])
 def test_a_small_disk_that_fills(study, out, tmp_path, capfd, size, done):
     """No run is said to be done without its results, and no result is lost."""
     other = tmp_path / "temporary"

@@ -90,7 +90,8 @@ def test_one_group_of_two_is_fused_early(ring_kind):
 
 
 def test_a_sample_is_as_good_as_the_grid_beside_lidar_and_camera(ring_kind):
-    rig = pe.Rig([ring(), shapes.lidar_on_roof(), shapes.camera()])
+    lidar = shapes.lidar_on_roof(shapes.small_lidar(32, 360))
+    rig = pe.Rig([ring(), lidar, shapes.camera()])
     grid = pe.Evaluator(SPACE, pe.Prior.road(), shapes.box_car()).score(rig)
     sample = pe.Evaluator(SPACE, pe.Prior.road(), shapes.box_car(), samples=60_000).score(rig)
     assert sample.entropy == pytest.approx(grid.entropy, abs=0.08)
@@ -192,7 +193,7 @@ def test_it_goes_through_other_programs_files(ring_kind, tmp_path):
     away = pe.Sensor(
         "away", Ring("long", 7.5), pe.Pose.from_degrees((2, 1, 0.5), (0, 5, 30)), "all"
     )
-    rig = pe.Rig([away, shapes.lidar_on_roof(), shapes.camera()])
+    rig = pe.Rig([away, shapes.lidar_on_roof(shapes.small_lidar()), shapes.camera()])
     told = {}
     for name in RIG_FORMATS:
         _, told[name] = pe.export_rig(rig, name, tmp_path / name, pe.Reference(-1.3, 0.3))

@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from pe_core.base import degrees, values
+from pe_core.base import values
 from pe_core.base.errors import InputError, shown
 
 HUGE = 10**400
@@ -160,16 +160,16 @@ def test_degrees_in_a_file_give_back_every_bit():
     rng = np.random.default_rng(0)
     scales = 10.0 ** rng.integers(-9, 2, 20_000)
     angles = rng.uniform(-1, 1, 20_000) * scales
-    held = degrees.all_as_in_file(angles)
+    held = values.all_as_in_file(angles)
     assert (np.abs(held - angles) <= np.spacing(np.abs(angles))).all()
     for angle, own in zip(held.tolist(), angles.tolist(), strict=True):
-        assert bits(math.radians(degrees.degrees_in_file(angle))) == bits(angle)
-        assert bits(degrees.as_in_file(own)) == bits(angle)
+        assert bits(math.radians(values.degrees_in_file(angle))) == bits(angle)
+        assert bits(values.as_in_file(own)) == bits(angle)
 
 
 def test_angles_that_come_from_degrees_are_never_changed():
     for tenths in range(-3600, 3601):
         angle = math.radians(tenths / 10)
-        assert bits(degrees.as_in_file(angle)) == bits(angle + 0.0)
-        assert degrees.degrees_in_file(angle) == tenths / 10
-    assert bits(degrees.as_in_file(-0.0)) == bits(0.0)
+        assert bits(values.as_in_file(angle)) == bits(angle + 0.0)
+        assert values.degrees_in_file(angle) == tenths / 10
+    assert bits(values.as_in_file(-0.0)) == bits(0.0)

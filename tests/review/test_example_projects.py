@@ -103,12 +103,3 @@ def test_what_was_decided_sees_more_than_the_first(name):
 def test_the_command_says_what_the_page_says_of_requirements(path):
     met, _, total = kept(path.parent.name)[path.stem]["met"].partition(" of ")
     assert main(["check", str(path)]) == (0 if met == total else 3)
-
-
-@pytest.mark.parametrize("name", PROJECTS)
-def test_what_was_decided_is_a_study_of_the_last_one_s_problem(name):
-    last, decided = (pe.load_study(path) for path in EXAMPLES.studies_of(name)[-2:])
-    assert decided.requirements == last.requirements
-    assert [sensor.model for sensor in decided.rig] == [sensor.model for sensor in last.rig]
-    assert decided.search.requirements == "keep"
-    assert decided.rig != last.rig

@@ -24,7 +24,7 @@ from pe_tools.page.pictures.ground_plan import (
 from pe_tools.page.pictures.sight_plans import reach_text, side_text
 from pe_tools.page.pictures.svg import Canvas, path_of
 from pe_tools.page.sections.visibility import visibility
-from tests.engine.test_png import decoded
+from tests.engine.test_masks import decoded
 from tests.review.conftest import box, html_of
 
 

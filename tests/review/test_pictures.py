@@ -10,14 +10,13 @@ from pe_tools.page.pictures import vehicle_picture as picture_module
 from pe_tools.page.pictures.painted_mesh import Paint, PaintedMesh, corner_normals, painted_vehicle
 from pe_tools.page.pictures.picture_file import DrawnPixels, text_width, tile_of
 from pe_tools.page.pictures.ray_scene import GROUND, SKY, RayCamera, RayScene, Viewpoint
-from pe_tools.page.pictures.rendering import render
 from pe_tools.page.pictures.vehicle_picture import (
     RADIUS,
     default_view,
     spread_apart,
     vehicle_picture,
 )
-from tests.engine.test_png import decoded
+from tests.engine.test_masks import decoded
 from tests.review.conftest import box
 
 SIZE = (96, 54)
@@ -110,15 +109,6 @@ def test_glass_is_looked_through_by_a_camera_alone():
     for from_sensor, part in ((False, 0), (True, 1)):
         camera = RayCamera(eye, 1, 1, lambda *_: ahead, 0.1, from_sensor)
         assert solids.first_hits(camera, ahead).part.tolist() == [part]
-
-
-def test_every_pixel_has_a_colour(car):
-    solids = RayScene([painted_vehicle(car[0])])
-    from pe_tools.page.pictures.vehicle_picture import _studio
-
-    picture = render(default_view(*car).camera(33, 21), solids, _studio(car[0].bounds))
-    assert picture.shape == (21, 33, 3) and np.isfinite(picture).all()
-    assert picture.min() >= 0.0 and picture.max() <= 1.0
 
 
 def test_numbers_stand_apart_and_in_the_picture():

@@ -3,15 +3,15 @@
 import dataclasses
 
 import pytest
+from pe_tools.page.sections.sensor_details import sensor_details
 
 import pe_core as pe
 from pe_core import catalog
 from pe_tools import graphics
-from pe_tools.page import ReportContext, page_bytes
+from pe_tools.page import ReportContext
 from pe_tools.page.pictures.sensor_views import field_figure
 from pe_tools.page.scene3d import scene_data
-from tests.review.conftest import outcome_of, small_study
-from tests.review.test_page import Elements
+from tests.review.conftest import html_of, outcome_of, small_study
 
 
 @pytest.fixture(scope="module")
@@ -25,9 +25,7 @@ def parking():
 
 
 def test_a_page_shows_them(parking):
-    text = page_bytes([parking]).decode()
-    elements = Elements(text)
-    assert not elements.open and len(elements.ids) == len(set(elements.ids))
+    text = html_of(sensor_details, parking)
     for sensor in list(parking.rig)[-2:]:
         drawing, _ = field_figure(sensor, parking.vehicle)
         assert drawing in text

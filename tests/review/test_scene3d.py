@@ -11,7 +11,6 @@ import pe_core as pe
 from pe_tools import graphics
 from pe_tools.page.scene3d import SCRIPTS, THREE, scene_data, scripts, view
 from pe_tools.page.scene3d.packed_data import (
-    housing_data,
     packed_points,
     packed_primitives,
     vehicle_data,
@@ -73,16 +72,6 @@ def test_the_vehicle_has_all_triangles_by_part(scored):
     assert len(points(found)) == 8, "corners that meet are one"
 
 
-def test_a_large_vehicle_is_simplified_and_that_is_said(scored, monkeypatch):
-    monkeypatch.setattr("pe_tools.page.scene3d.packed_data.MAX_TRIANGLES", 1000)
-    around = np.linspace(0.0, 2.0 * np.pi, 1001)
-    rim = np.stack([np.cos(around), np.sin(around), np.ones(1001)], axis=1)
-    cone = np.stack([rim[:-1], rim[1:], np.zeros((1000, 3))], axis=1)
-    whole = pe.Vehicle(np.concatenate([cone, 1.001 * cone]))
-    found = vehicle_data(whole, (whole, 0.25))
-    assert found["all"] == 2000 and found["shown"] <= 1000 and found["error"] > 0.25
-
-
 def test_sensors_stand_where_they_do_with_their_layers(data, scored):
     for sensor, found in zip(scored.rig, data["sensors"], strict=True):
         assert found["name"] == sensor.name and found["at"] == list(sensor.pose.position)
@@ -95,13 +84,6 @@ def test_sensors_stand_where_they_do_with_their_layers(data, scored):
     np.testing.assert_allclose(start, np.tile(lidar["at"], (len(start), 1)), atol=1e-3)
     ground = points(lidar["layers"]["ground"]["lines"])
     np.testing.assert_allclose(ground[:, 2], 0.0, atol=1e-3)
-
-
-def test_housings_are_those_of_the_catalogue():
-    housing = pe.catalog.housing("Velodyne VLP-16 Puck")
-    found = housing_data("Velodyne VLP-16 Puck")
-    assert found["shape"] == "cylinder" and found["size"] == list(housing.size)
-    np.testing.assert_array_equal(found["center"], housing.center)
 
 
 def test_maps_are_those_of_the_engine(data, scored):

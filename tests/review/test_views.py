@@ -24,7 +24,7 @@ from pe_tools.page.pictures.sensor_views import camera_picture, lidar_picture, r
 from pe_tools.page.pictures.svg import LabelledPicture, stacked
 from pe_tools.page.sections.visibility import sensor_details
 from pe_tools.wording import percent
-from tests.engine.test_png import decoded
+from tests.engine.test_masks import decoded
 from tests.review.conftest import box, html_of
 
 SMALL = Camera("small", 128, 72, math.radians(60.0))

@@ -18,7 +18,6 @@ from studies.detectors.after_search.plan import (
 )
 from studies.detectors.after_search.searches import PLACEMENTS, searched_placements, study_of
 from studies.detectors.analysis import HOLDS, OPEN, REFUTED
-from studies.detectors.casting import Caster
 from studies.detectors.findings import answer_after_search
 from studies.detectors.placements import SHUTTLE
 from studies.detectors.plan import AFTER_SEARCH, PLAIN, full_plan
@@ -99,14 +98,6 @@ def test_a_short_search_is_kept_and_its_runs_are_gone_on_with_by_resume_alone(tm
     with pytest.raises(InputError, match="plan"):
         changed = replace(plan, study=replace(plan.study, digest="other"))
         searched_placements(changed, tmp_path)
-
-
-def test_its_lidars_are_cast(tmp_path):
-    plan = quick_after_search_plan()
-    (start,) = searched_placements(plan, tmp_path)
-    assert len(start.poses) == 4
-    voxels = Caster(plan.study, start, PLAIN).voxels("test", 0)
-    assert voxels.counts.sum() > 5000 and voxels.beams.sum() > 100
 
 
 def test_runs_come_seed_by_seed():

@@ -14,8 +14,8 @@ import pytest
 
 from benchmarks.embree import Embree
 from pe_core import InputError
+from pe_core.geometry.ray_traversal import TriangleTree
 from pe_core.geometry.raycast import VisibleTriangles
-from pe_core.geometry.triangle_tree import TriangleTree
 from studies.detectors import runs as of_runs
 from studies.detectors import shapes
 from studies.detectors.after_search.plan import full_after_search_plan

@@ -5,7 +5,6 @@ import math
 import re
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 from studies.published import correlations, scores
@@ -18,7 +17,7 @@ from studies.published.correlations import (
 )
 from studies.published.findings import placements_for
 from studies.published.published import CLEAN, DEGREES, RADIANS, paper_of, papers
-from studies.published.scores import BASE, BODY_M, body_of, box_triangles, variants
+from studies.published.scores import BASE, box_triangles, variants
 from studies.published.tasks import QUICK, plan
 from tests.studies.conftest import ROOT, numbers, study
 
@@ -60,14 +59,6 @@ def test_every_comparison_has_all_its_placements():
     assert {len(c.placements) for c in found} == {8, 5}
     assert len({c.condition for c in found}) == 7
     assert {len(c.placements) for c in comparisons(icra)} == {8, 4}
-
-
-def test_the_box_is_closed_and_stands_on_the_ground():
-    triangles = body_of("box").triangles
-    assert triangles.min(axis=(0, 1)).tolist() == pytest.approx([-BODY_M[0] / 2, -BODY_M[1] / 2, 0])
-    across = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    volume = (across * triangles[:, 0]).sum() / 6.0
-    assert volume == pytest.approx(math.prod(BODY_M))
 
 
 def test_a_box_is_turned_counter_clockwise():

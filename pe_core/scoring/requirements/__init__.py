@@ -4,12 +4,18 @@ from .bodies import BODIES, Body
 from .checker import CheckStep, RequirementChecker, checkable
 from .criteria import Criterion, Requirement, Under, checked_requirements
 from .definition import body_met, sees
-from .margins import FARTHEST_M, margin_of
 from .mesh_shape import MeshShape
 from .planes import VehiclePlanes
-from .reasons import Reason, part_in_the_way
 from .redundancy import Redundancy, RedundancyMap
-from .verdict import Samples, Verdict, VerdictSummary
+from .verdict import (
+    FARTHEST_M,
+    Reason,
+    Samples,
+    Verdict,
+    VerdictSummary,
+    margin_of,
+    part_in_the_way,
+)
 from .zones import PlacedZone, Zone, signed_distance
 
 __all__ = ["BODIES", "FARTHEST_M", "Body", "CheckStep", "Criterion", "MeshShape", "PlacedZone"]

@@ -121,7 +121,13 @@ class Body:
             center = [0.0, 0.0, self.low + height / 2.0]
             return np.array([center]), np.array([[length, width, height]])
         if self.is_ring:
-            return _rim(self.size[0], self.low, height)
+            diameter = self.size[0]
+            side = min(height, diameter / 4.0)
+            # the outer corners of a box lie on the circle: (r + s/2)^2 + (s/2)^2 = (d/2)^2
+            away = math.sqrt(diameter**2 / 4.0 - side**2 / 4.0) - side / 2.0
+            turns = np.array([(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)])
+            centers = np.column_stack([away * turns, np.full(RING_CELLS, self.low + height / 2.0)])
+            return centers, np.tile([side, side, height], (RING_CELLS, 1))
         along, across = (self._divided(axis) for axis in (0, 1))
         k, i, j = np.nonzero(cell_plan(self.bands, *self.columns))
         z = self.low + (k + 0.5) * height / self.bands
@@ -209,16 +215,6 @@ def cell_plan(bands: int, along: int, across: int) -> Flags:
 def post_bands(bands: int) -> list[int]:
     """Return the bands that have posts: the lowest, the highest, and each `POST_EVERY`-th."""
     return sorted({*range(0, bands, POST_EVERY), bands - 1})
-
-
-def _rim(diameter: float, low: float, height: float) -> tuple[Floats, Floats]:
-    """Return small boxes inside the rim of a ring: ahead, left, behind, right."""
-    side = min(height, diameter / 4.0)
-    # the outer corners of a box lie on the circle: (r + s/2)^2 + (s/2)^2 = (d/2)^2
-    away = math.sqrt(diameter**2 / 4.0 - side**2 / 4.0) - side / 2.0
-    turns = np.array([(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)])
-    centers = np.column_stack([away * turns, np.full(RING_CELLS, low + height / 2.0)])
-    return centers, np.tile([side, side, height], (RING_CELLS, 1))
 
 
 _ALONG = (0.0, math.pi / 2.0)

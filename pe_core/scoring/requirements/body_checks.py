@@ -24,8 +24,7 @@ from ..targets.object_metric import FusedObjects
 from .bodies import Body
 from .criteria import Criterion, Requirement, levels_of
 from .definition import body_has_enough, parts_of, placed, visible_share
-from .reasons import columns_of
-from .verdict import Samples, ZoneResult
+from .verdict import Samples, ZoneResult, columns_of
 
 CountsBySensor = Mapping[str, Floats]
 NOTHING = np.zeros(0)

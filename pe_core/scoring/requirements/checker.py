@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from threading import RLock
 from typing import Any, NamedTuple
 
+import numpy as np
+
+from ...base.arrays import Floats
 from ...base.errors import InputError
 from ...geometry.grids import PerceptionSpace
 from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
 from ...scene.vehicle_description import Reference
 from ...sensors import PerceptionModel
-from .body_checks import BodyChecks, SceneCaches
+from .body_checks import BodyChecks, SceneCaches, counted
 from .criteria import Requirement, checked_requirements
 from .definition import cautious
 from .ground import GroundCheck
 from .planes import VehiclePlanes
-from .shortfall import shortfall
-from .verdict import Samples, Verdict, body_verdict
+from .verdict import Samples, Verdict, ZoneResult, body_verdict
 from .zone_growth import ZoneGrowth, boxes_of
 from .zones import INSIDE_M, PlacedZone
 
@@ -30,6 +33,8 @@ COARSE = 2.0
 """Factor of the step of a preview."""
 PREVIEW_OBJECTS = 1_000
 """A zone with fewer boxes keeps its step in a preview."""
+SHARE_WEIGHT, LACKING_WEIGHT, AWAY_WEIGHT = 0.45, 0.45, 0.1
+"""Weights of the samples that fail, of sensors and kinds that lack, and of the angle."""
 
 
 class CheckStep(NamedTuple):
@@ -274,3 +279,37 @@ def check_extent(requirement: Requirement, zone: PlacedZone, space: PerceptionSp
         if zone.kind == "area" and min(body.size[:2]) > min(x1 - x0, y1 - y0) + INSIDE_M:
             found = f"{body.name}, {min(body.size[:2]):g} m, in {x1 - x0:g} x {y1 - y0:g} m"
             raise InputError(who, "body", "a body that is not larger than the zone", found)
+
+
+def shortfall(requirement: Requirement, samples: Samples, result: ZoneResult, rig: Rig) -> float:
+    """Return 0 where a requirement is met, else how far it is off, above 0 to 1."""
+    criterion, inside = requirement.criterion, samples.inside
+    share = float(result.passed[inside].mean())
+    if share >= criterion.zone_share:
+        return 0.0
+    counts, kinds = counted(rig, result.seen, criterion, [s.name for s in rig])
+    spare = int(requirement.under.one_lost)
+    wanted = criterion.sensors + spare + criterion.kinds
+    has = np.minimum(counts, criterion.sensors + spare) + np.minimum(kinds, criterion.kinds)
+    lacks = 1.0 - float(has.mean()) / wanted
+    fails = 1.0 - share / criterion.zone_share
+    away = _turned_away(requirement, samples.points[~result.passed & inside], rig)
+    return SHARE_WEIGHT * fails + LACKING_WEIGHT * lacks + AWAY_WEIGHT * away
+
+
+def _turned_away(requirement: Requirement, points: Floats, rig: Rig) -> float:
+    """Return the mean angle between points (N, 2) and the nearest boresight, 1 for 180 deg."""
+    sensors = [s for s in rig if requirement.criterion.counts(s.kind)]
+    if not sensors or not len(points):
+        return 1.0
+    body, cosines = requirement.bodies[0], []
+    places = np.column_stack([points, np.full(len(points), body.low + body.size[2] / 2.0)])
+    for sensor in sensors:
+        x, y, z = (places - np.asarray(sensor.pose.position)).T
+        ahead = sensor.pose.ground_from_sensor[:, 0]
+        length = np.sqrt(x * x + y * y + z * z)
+        along = ahead[0] * x + ahead[1] * y + ahead[2] * z
+        cosines.append(along / np.maximum(length, INSIDE_M))
+    nearest = np.clip(np.max(cosines, axis=0), -1.0, 1.0)
+    angles = [math.acos(c) for c in nearest.tolist()]  # the same bits in all builds
+    return sum(angles) / len(angles) / math.pi

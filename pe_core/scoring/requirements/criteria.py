@@ -126,11 +126,6 @@ class Criterion:
         """Whether the criterion is on blind ground, not on test bodies."""
         return self.blind_m2 is not None or self.blind_out is not None
 
-    @property
-    def asks_for_parts(self) -> bool:
-        """Whether only sensors count whose rays end on bodies."""
-        return self.share is not None or self.per_degree is not None
-
     def counts(self, kind: str) -> bool:
         """Whether sensors of a kind can meet the criterion."""
         if self.of and kind not in self.of:
@@ -138,7 +133,7 @@ class Criterion:
         own = kind_named(kind, "criterion", "of")
         if self.is_of_ground:
             return own.lowest_m <= self.blind_height
-        return own.shows_parts or not self.asks_for_parts
+        return own.shows_parts or not (self.share is not None or self.per_degree is not None)
 
     def check_rig(self, rig: Rig, who: str) -> None:
         """Raise `InputError` where the rig has not the kinds that are asked for."""

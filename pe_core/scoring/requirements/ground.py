@@ -1,6 +1,6 @@
 """Requirements on blind ground: how much of a zone's ground is blind, and how far out.
 
-Blind squares are those of `sight.blind_squares`: never too few, edges at most 0.15 m too far out.
+Blind squares are those of `sight.blind_ground`: never too few, edges at most 0.15 m too far out.
 What each sensor marks is cached by sensor, so a moved sensor and a lost one cost only their own.
 """
 
@@ -17,13 +17,11 @@ from ...base.arrays import Flags, Floats
 from ...geometry.grids import PerceptionSpace
 from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
-from ..sight.blind_ground import body_rectangle
-from ..sight.blind_squares import STEP_M, BlindSearch, blind_squares
+from ..sight.blind_ground import STEP_M, BlindSearch, blind_squares, body_rectangle
 from ..sight.ground_cells import GroundCells
 from .body_checks import SceneCaches
 from .criteria import Criterion, Requirement
-from .margins import growth, rounded_down
-from .verdict import GroundFigures, Samples, Verdict
+from .verdict import GroundFigures, Samples, Verdict, growth, rounded_down
 from .zones import INSIDE_M, PlacedZone, signed_distance
 
 FAR_OFF_M = 10.0
@@ -118,7 +116,11 @@ class GroundCheck:
         """Return how far the zone could grow [m] or has to shrink, and whether it could more."""
         criterion, looked, step = self.requirement.criterion, 0.0, self._own.cells.step
         for grown in (self._zone.grow, *growth(self._zone)):
-            ground = self._grown_ground(grown)
+            if grown not in self._grown:
+                low, high = self._zone.bounds
+                count = math.prod(((high - low + 2.0 * grown) / STEP_M).tolist())
+                self._grown[grown] = _ZoneGround(self, grown) if count <= MAX_CELLS else None
+            ground = self._grown[grown]
             if ground is None:
                 break
             blinds = self._blinds(ground, ground.marks(rig, False))
@@ -130,14 +132,6 @@ class GroundCheck:
                 return (max(margin, 0.0) if met else min(margin, -step)), False
             looked = grown
         return (rounded_down(looked), True) if met else (-step, False)
-
-    def _grown_ground(self, grown: float) -> _ZoneGround | None:
-        """Return the ground of the zone grown by some metres; None where it is too large."""
-        if grown not in self._grown:
-            low, high = self._zone.bounds
-            count = math.prod(((high - low + 2.0 * grown) / STEP_M).tolist())
-            self._grown[grown] = _ZoneGround(self, grown) if count <= MAX_CELLS else None
-        return self._grown[grown]
 
     def _figures(self, blind: Flags, counted: Sequence[Flags]) -> GroundFigures:
         """Return the blind ground in figures, and what of it is to spare in the worst case."""

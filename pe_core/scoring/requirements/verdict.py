@@ -1,26 +1,137 @@
-"""Verdicts: whether a requirement is met, by which margin, where it is worst, and what hides it."""
+"""Verdicts: whether a requirement is met, by which margin, where it is worst, and what hides it.
+
+Margins say how far a zone could grow before a requirement fails, or would have to shrink. They err
+to the safe side: a step is taken off, and they are rounded down to the centimetre.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.arrays import Flags, Floats
-from ...scene.rig import Rig
+from ...base.arrays import Flags, Floats, Ints
+from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
+from ...sensors import kind_of
 from ..sight.ground_cells import GroundCells
-from .criteria import Requirement
-from .margins import margin_of
-from .reasons import IN_PART, NO_COUNT, TOO_FEW, Reason, columns_of, why_not, worst_sample
+from .bodies import Body
+from .criteria import Requirement, levels_of
 from .zones import INSIDE_M, PlacedZone
 
+DECIMALS = 2
+"""Margins are rounded to the centimetre, to the safe side."""
+FARTHEST_M = 10.0
+"""Zones are grown no farther than this."""
+OCCLUDED, TOO_FEW, IN_PART, NO_COUNT = "occluded", "too few", "in part", "not counted"
+"""Codes of reasons, beside those of `Kind.missed`. In part: a share has to be visible, and less may
+be. Not counted: the criterion leaves out sensors of this kind."""
+CUBE_M = 0.1
+"""Side of the cubes by which it is told why a sensor does not see a body."""
 LINES = ("path", "spots")
 """Kinds of zones without an inside: one that fails does not shrink."""
+
+
+def growth(zone: PlacedZone) -> Iterator[float]:
+    """Yield how far a zone is grown, time after time [m]: each twice as far as the one before."""
+    grown = zone.grow
+    while grown < FARTHEST_M:
+        grown = min(2.0 * grown, FARTHEST_M)
+        yield grown
+
+
+def margin_of(
+    distance: Floats, passed: Flags, wanted: float, step: float, looked: float
+) -> tuple[float, bool]:
+    """Return how far a zone could grow [m] before it fails, and whether it could grow farther.
+
+    A zone that is grown by d has all samples with a distance of at most d. Negative: how far a zone
+    that fails would have to shrink. Between two samples nothing is known, so a step is taken off,
+    and figures are rounded down.
+
+    The `distance` (N,) of samples to the zone is negative inside [m]; a share of `wanted` of them
+    has to be `passed` (N,). Samples are a `step` apart, and reach as far as was `looked` [m].
+    """
+    order = np.argsort(distance, kind="stable")
+    away, ok = distance[order], passed[order]
+    share = np.cumsum(ok) / np.arange(1, len(ok) + 1)
+    last = np.append(away[1:] - away[:-1] > INSIDE_M, True)  # the last sample at its distance
+    away, share = away[last], share[last]
+    fails = share < wanted
+    grown = away > INSIDE_M
+    inner = away[~grown]
+    if len(inner) and not fails[~grown][-1]:
+        first = np.flatnonzero(fails & grown)
+        if not len(first):
+            return rounded_down(looked), True
+        return max(0.0, rounded_down(float(away[first[0]]) - step)), False
+    met = np.flatnonzero(~fails & ~grown)
+    inward = float(away[met[-1]]) if len(met) else float(inner[0]) - step
+    return min(rounded_down(inward), -rounded_down(step)), False
+
+
+def rounded_down(value: float) -> float:
+    """Round down to the centimetre."""
+    return math.floor(value * 10**DECIMALS + 1e-6) / 10**DECIMALS
+
+
+class Reason(NamedTuple):
+    """Why a sensor does not see a body: a code, and the part of the vehicle that occludes it."""
+
+    code: str
+    part: str = ""
+
+
+def worst_sample(points: Floats, distance: Floats, counts: Ints, among: Flags) -> int:
+    """Return the sample that the fewest sensors see; of equal ones that deepest in the zone."""
+    some = np.flatnonzero(among)
+    fewest = counts[some].min(axis=1)
+    x, y = points[some].T
+    order = np.lexsort((y, x, distance[some], fewest))
+    return int(some[order[0]])
+
+
+def columns_of(requirement: Requirement) -> list[Body]:
+    """Return the body of each column of what sensors see, the heights of the zone too."""
+    levels = levels_of(requirement)
+    return [body for body in requirement.bodies for _ in range(levels) for _ in body.headings]
+
+
+def why_not(sensor: Sensor, body: Body, foot: tuple[float, ...], vehicle: Vehicle | None) -> Reason:
+    """Return why a sensor does not see a body.
+
+    Cubes along the middle of the body, from its foot to its top, are asked for: the part that most
+    of the rays end on to cubes that the sensor would see without the vehicle.
+    """
+    kind = kind_of(sensor)
+    x, y, z = foot
+    count = max(1, math.ceil(body.size[2] / CUBE_M - 1e-9))
+    heights = np.linspace(CUBE_M / 2.0, max(body.size[2] - CUBE_M / 2.0, CUBE_M / 2.0), count)
+    centers = np.column_stack([np.full(count, x), np.full(count, y), z + body.low + heights])
+    in_view = kind.measure(sensor, centers, CUBE_M, None) > 0.0
+    if not in_view.any():
+        return Reason(kind.missed(sensor, centers[count // 2], CUBE_M))
+    rays = [kind.rays_to(sensor, center, CUBE_M) for center in centers[in_view]]
+    directions, lengths = (np.concatenate([ray[k] for ray in rays]) for k in (0, 1))
+    part = None if vehicle is None else part_in_the_way(sensor, vehicle, directions, lengths)
+    return Reason(TOO_FEW) if part is None else Reason(OCCLUDED, part)
+
+
+def part_in_the_way(
+    sensor: Sensor, vehicle: Vehicle, directions: Floats, lengths: Floats
+) -> str | None:
+    """Return the part that most of a sensor's rays (N, 3) of `lengths` (N,) [m] end on, or None."""
+    if not len(directions):
+        return None
+    glass = sensor.model.sees_through_glass
+    hits = vehicle.first_hit(sensor.pose.position, directions, glass)
+    parts = np.asarray(vehicle.parts)[hits.face[hits.distance < lengths]]
+    return str(vehicle.part_names[int(np.bincount(parts).argmax())]) if len(parts) else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,15 +156,8 @@ class Samples:
 class ZoneResult:
     """Which samples (N,) of a zone pass.
 
-    Attributes
-    ----------
-    passed : (N,) bool
-        Under all that the requirement has to survive.
-    whole : (N,) bool
-        With the rig as it stands.
-    without : mapping of sensor to (N,) bool
-        Without each sensor.
-    seen : mapping of sensor to (N, bodies * headings) bool
+    `passed`: under all that the requirement has to survive; `whole`: with the rig as it stands;
+    `without`: without each sensor. `seen` (N, bodies * headings) is by sensor, too.
     """
 
     passed: Flags
@@ -64,17 +168,10 @@ class ZoneResult:
 
 @dataclass(frozen=True, eq=False)
 class GroundFigures:
-    """Blind ground of a zone.
+    """Blind ground of a zone: `blind_m2` of it is blind [m2], to `blind_out` from the vehicle [m].
 
-    Attributes
-    ----------
-    blind_m2, blind_out : float
-        How much of it is blind [m2], and how far from the vehicle's rectangle that ends [m].
-    spare_m2, spare_out : float or None
-        By how much both limits could shrink, in the worst case that counts; negative: by how much
-        they are passed. None where there is no such limit.
-    blind : (NX, NY) bool
-        The blind squares of `cells`.
+    Both limits could shrink by `spare_m2` and `spare_out` in the worst case that counts; negative:
+    they are passed by so much; None where there is no such limit. `blind` (NX, NY) are the squares.
     """
 
     blind_m2: float

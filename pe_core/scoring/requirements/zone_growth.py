@@ -19,9 +19,7 @@ from ...scene.rig import Rig, Sensor
 from ...sensors import PerceptionModel
 from .body_checks import BodyChecks, SceneCaches, counted
 from .criteria import Requirement, levels_of
-from .margins import growth, margin_of
-from .reasons import columns_of
-from .verdict import Samples, ZoneResult
+from .verdict import Samples, ZoneResult, columns_of, growth, margin_of
 from .zones import INSIDE_M
 
 MAX_GROWN = 30_000

@@ -1,7 +1,7 @@
 """Visibility by location: the ground map, blind ground round the vehicle, reach."""
 
 from .blind_ground import BLIND_TO_M, BlindGround, BlindSpot, shown_end, shown_start
-from .grid_regions import outlines
+from .ground_cells import outlines
 from .reach import Reach, ends_with_space, reach_line
 from .sight import Sight
 from .visibility import GroundSight, VisibleShares

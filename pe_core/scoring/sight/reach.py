@@ -7,7 +7,7 @@ and over the neighbouring bearings with half its weight each. So neither the rin
 the single voxels that its far beams meet end the reach.
 
 In a study on objects, reach is that of lone objects by eighths of the circle, the same that the
-score reports (`targets.lone_objects`), so that maps, views and tables show the same metres.
+score reports (`targets.object_metric`), so that maps, views and tables show the same metres.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from ...prior.prior import ClassDensity
 from ...scene.rig import Rig
 from ..sampling import CENTERED, scrambled_sobol
 from ..score import FARTHEST_M
-from ..targets.lone_objects import SECTORS, LoneObjects
+from ..targets.object_metric import SECTORS, LoneObjects
 
 RING_M = 1.0
 SMOOTHED_M = 5.0

@@ -20,15 +20,29 @@ from ...scene.vehicle import Vehicle
 from ...sensors import PerceptionModel
 from ..sampling import VoxelSample, draw
 from ..scenarios import fused_early
-from ..targets.lone_objects import LoneObjects
-from ..targets.object_sampling import sample_objects
-from ..targets.target_rule import TargetRule
-from .blind_ground import BlindGround, area_of, blind_ground, body_rectangle
-from .blind_squares import STEP_M, BlindSearch, fine_enough
+from ..targets.object_metric import LoneObjects
+from ..targets.object_sampling import TargetRule, sample_objects
+from .blind_ground import (
+    STEP_M,
+    BlindGround,
+    BlindSearch,
+    area_of,
+    blind_ground,
+    body_rectangle,
+    fine_enough,
+)
 from .ground_cells import GroundCells, widened
 from .reach import AP, BEARINGS, Reach, Spokes, density_of, object_reach
-from .visibility import GroundSight, VisibleShares, ground_sight, visible_shares
-from .voxel_sets import VoxelSetCache, by_prior, in_layer, layer_at
+from .visibility import (
+    GroundSight,
+    VisibleShares,
+    VoxelSetCache,
+    by_prior,
+    ground_sight,
+    in_layer,
+    layer_at,
+    visible_shares,
+)
 
 ORIGIN = ((0.0, 0.0), (0.0, 0.0))
 SAMPLES = 65_536

@@ -1,20 +1,261 @@
-"""What is visible: the map of the ground, and shares of the prior by sensor and zone."""
+"""What is visible: the map of the ground, and shares of the prior by sensor and zone.
+
+A cell of the ground is represented by a set of voxels; what each sensor measures on them is
+cached.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Floats, Ints, read_only
+from ...base.errors import InputError
+from ...base.values import FINITE
+from ...geometry.bins import blocks
+from ...geometry.grids import PerceptionSpace
 from ...metric.fusion import Fusion
+from ...prior.prior import ClassDensity
 from ...scene.rig import Rig
+from ...scene.vehicle import Vehicle
+from ...sensors import MeasurementCache, Voxels
 from ..sampling import VoxelSample
 from ..scenarios import fused_early
 from ..score import zone_masks
-from .voxel_sets import VoxelsByCell
+from .ground_cells import ROUNDING, GroundCells, closed, gauss, without_specks
+
+AT_ONCE = 1 << 17
+SPREAD_M = 0.7
+"""Standard deviation of the Gaussian filter: less than the size of objects."""
+CLOSED = 1.5
+"""Radius of the disc of the morphological closing, in standard deviations of the filter."""
+GRAIN_M2 = 12.0
+"""Visible pieces smaller than this are taken for sampling noise."""
+EMPTY_WEIGHT = 1e-9
+"""Weight of a column without mass, as a share of the largest: it counts only among such columns."""
+MAX_VOXELS = 4_000_000
+"""How many voxels all cached sets have together, at most: some 100 bytes each."""
+
+
+@dataclass(frozen=True, eq=False)
+class VoxelsByCell:
+    """Voxels by cell: `index` (cells * K, 3), and their weights in the cell's mean, (cells, K).
+
+    A voxel in the vehicle's own volume has no weight; a cell with only such voxels is the
+    vehicle's. With a `spread` [m], means are smoothed over the cells by a Gaussian filter, and
+    flags by morphology: see `by_prior`.
+    """
+
+    cells: GroundCells
+    index: Ints
+    weights: Floats
+    spread: float = 0.0
+
+    def mean(self, values: NDArray) -> Floats:
+        """Return the means (NX, NY) of values of voxels; NaN where the vehicle is."""
+        sums = self._smoothed((values.reshape(self.weights.shape) * self.weights).sum(axis=1))
+        return sums / self._total
+
+    def any(self, flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Whether a flag is set for any of a cell's voxels outside the vehicle, (NX, NY)."""
+        outside = flags.reshape(self.weights.shape) & (self.weights > 0.0)
+        cells = outside.any(axis=1).reshape(self.cells.shape)
+        if not self.spread:
+            return cells
+        # without holes and pieces that are too small to be distinguished from sampling noise
+        filled = closed(cells, CLOSED * self.spread / self.cells.step)
+        min_cells = GRAIN_M2 / self.cells.step**2
+        return without_specks(~without_specks(~filled, min_cells), min_cells)
+
+    @cached_property
+    def _total(self) -> Floats:
+        """Return the weights of cells; NaN for the vehicle's."""
+        total = self._smoothed(self.weights.sum(axis=1))
+        return np.where(self.vehicle, np.nan, total)
+
+    @cached_property
+    def vehicle(self) -> NDArray[np.bool_]:
+        """(NX, NY) cells that are the vehicle's own volume."""
+        return ~(self.weights > 0.0).any(axis=1).reshape(self.cells.shape)
+
+    def _smoothed(self, sums: Floats) -> Floats:
+        """Smooth sums over neighbouring cells."""
+        cells: Floats = sums.reshape(self.cells.shape)
+        return gauss(cells, self.spread / self.cells.step) if self.spread else cells
+
+
+def in_layer(
+    cells: GroundCells, space: PerceptionSpace, tops: Floats | None, layer: int
+) -> VoxelsByCell:
+    """Choose voxels of one layer, numbered from the lowest."""
+    x, y, _ = cells.points(space.interval, over_height=False)
+    i, j = _columns(space, x, y)
+    weights = np.ones(x.shape)
+    if tops is not None:
+        weights[space.centers(2)[layer] < tops[i, j]] = 0.0
+    index = np.stack([i, j, np.full_like(i, layer)], axis=-1).reshape(-1, 3)
+    return VoxelsByCell(cells, index, weights)
+
+
+def layer_at(space: PerceptionSpace, height: float) -> int:
+    """Return the number of the layer of voxels that holds a height [m].
+
+    `InputError` when it is not in the space.
+    """
+    height = FINITE.checked("sight", "height", height)
+    layer = math.floor((height - space.z[0]) / space.interval + ROUNDING)
+    if not 0 <= layer < space.shape[2]:
+        expected = f"a height in the space, z = [{space.z[0]:g}, {space.z[1]:g}]"
+        raise InputError("sight", "height", expected, f"{height:g}")
+    return layer
+
+
+def by_prior(
+    cells: GroundCells, space: PerceptionSpace, tops: Floats | None, densities: list[ClassDensity]
+) -> VoxelsByCell:
+    """Choose voxels over height as the prior has it there, outside the vehicle (eq. 9).
+
+    The height of a voxel is sampled from the mix of the classes' profiles in its column, and its
+    weight is the prior's mass there, so a cell's mean is the prior's. In a column without objects
+    the mix is that of the whole space, and all such columns have the same weight.
+
+    Far away, the beams of a LiDAR are farther apart than voxels: whether one passes through the
+    sampled voxel or through the next one is random, and would show as noise in the map. So means
+    are smoothed over `SPREAD_M`, and a cell is visible to a sensor unless it is in a disc of radius
+    `CLOSED` times that without any visible cell; pieces smaller than `GRAIN_M2` are dropped.
+    """
+    x, y, share = cells.points(space.interval, over_height=True)
+    i, j = _columns(space, x, y)
+    first = np.zeros_like(i)
+    if tops is not None:
+        first = np.searchsorted(space.centers(2), tops[i, j].reshape(-1)).reshape(i.shape)
+    columns = _WeightByColumn(densities)
+    k, mass = np.empty(i.size, np.int64), np.empty(i.size)
+    for some in blocks(i.size, AT_ONCE):
+        at, beside, above = (w.reshape(-1)[some] for w in (i, j, first))
+        k[some], mass[some] = columns.sampled(at, beside, above, share.reshape(-1)[some])
+    weights = mass.reshape(i.shape)
+    nobody = ~(weights > 0.0).any(axis=1)
+    weights[nobody] = (first[nobody] < space.shape[2]) * EMPTY_WEIGHT * weights.max()
+    index = np.stack([i.reshape(-1), j.reshape(-1), k], axis=-1)
+    return VoxelsByCell(cells, index, weights, SPREAD_M)
+
+
+class _WeightByColumn:
+    """The distribution of heights in columns, by the prior's mix of classes."""
+
+    def __init__(self, densities: list[ClassDensity]) -> None:
+        self._grounds = [d.ground for d in densities]
+        self._below = [np.concatenate([[0.0], np.cumsum(d.profile)]) for d in densities]
+        self._everywhere = np.array([g.sum() for g in self._grounds])
+
+    def sampled(self, i: Ints, j: Ints, first: Ints, share: Floats) -> tuple[Ints, Floats]:
+        """Return heights (V,) from `first` on with a share of the mass below, and the mass (V,)."""
+        mix = np.stack([ground[i, j] for ground in self._grounds])  # (C, V)
+        empty = mix.sum(axis=0) <= 0.0
+        mix[:, empty] = self._everywhere[:, None]
+        last = len(self._below[0]) - 2
+        under, whole = self._upto(mix, first), self._upto(mix, np.full_like(first, last + 1))
+        wanted = under + share * (whole - under)
+        low, high = np.minimum(first, last), np.full_like(first, last)
+        for _ in range(max(1, last + 1).bit_length()):
+            middle = (low + high) // 2
+            above = self._upto(mix, middle + 1) > wanted
+            high, low = np.where(above, middle, high), np.where(above, low, middle + 1)
+            low = np.minimum(low, high)
+        return low, np.where(empty, 0.0, whole - under)
+
+    def _upto(self, mix: Floats, k: Ints) -> Floats:
+        """Return the mass below height k of each column."""
+        total = np.zeros(mix.shape[1])
+        for share, below in zip(mix, self._below, strict=True):
+            total += share * below[k]
+        return total
+
+
+def _columns(space: PerceptionSpace, x: Floats, y: Floats) -> tuple[Ints, Ints]:
+    """Return the columns (i, j) that contain points of the space [m]."""
+    columns = []
+    for w, low, count in ((x, space.x[0], space.shape[0]), (y, space.y[0], space.shape[1])):
+        whole = np.floor((w - low) / space.interval).astype(np.int64)
+        columns.append(np.clip(whole, 0, count - 1))
+    return columns[0], columns[1]
+
+
+class HasSize(Protocol):
+    """Something that can be cached."""
+
+    @property
+    def size(self) -> int:
+        """Its size, in voxels."""
+
+
+class HasVoxels(Protocol):
+    """A set of voxels of the space."""
+
+    @property
+    def index(self) -> NDArray[np.int64]:
+        """Indices of the voxels, (V, 3)."""
+
+
+P = TypeVar("P", bound=HasVoxels)
+
+K = TypeVar("K", bound=HasSize)
+
+
+class MeasuredVoxels(Generic[P]):
+    """A set of voxels, and the sensors measured on them."""
+
+    def __init__(self, voxels: P, sensors: MeasurementCache) -> None:
+        self.voxels, self._sensors = voxels, sensors
+
+    @property
+    def size(self) -> int:
+        """Number of voxels."""
+        return len(self.voxels.index)
+
+    def measured(self, rig: Rig, preview: bool) -> tuple[dict[str, NDArray], bool]:
+        """Return m of the rig's sensors by name, (V,) each, and whether any is approximate."""
+        self._sensors.measure(rig, preview)
+        return self._sensors.m, any(m.approximate for m in self._sensors.last.values())
+
+
+class VoxelSetCache:
+    """A cache of voxel sets: those that were used last, up to `MAX_VOXELS`."""
+
+    def __init__(self, space: PerceptionSpace, vehicle: Vehicle | None, fusion: Fusion) -> None:
+        self._space, self._vehicle, self._fusion = space, vehicle, fusion
+        self.kernel_cache: dict[str, Any] = {}  # by kind: beams are cast once for all voxel sets
+        self._sets: dict[Hashable, Any] = {}  # least recently used first
+
+    def voxels(self, key: Hashable, choose: Callable[[], P]) -> MeasuredVoxels[P]:
+        """Return the voxel set with a key, from the cache or newly chosen."""
+
+        def measurable() -> MeasuredVoxels[P]:
+            chosen = choose()
+            voxels = Voxels(self._space, chosen.index, self._space.center_of(chosen.index))
+            count = self._fusion.saturation_count
+            sensors = MeasurementCache(voxels, self._vehicle, count, self.kernel_cache)
+            return MeasuredVoxels(chosen, sensors)
+
+        return self.cached(key, measurable)
+
+    def cached(self, key: Hashable, make: Callable[[], K]) -> K:
+        """Return the value with a key, from the cache or newly made."""
+        value: K = self._sets.pop(key, None) or make()
+        self._sets[key] = value
+        room = MAX_VOXELS
+        for other in reversed(tuple(self._sets)):
+            room -= self._sets[other].size
+            if room < 0 and other != key:
+                del self._sets[other]
+        return value
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,13 +352,8 @@ def visible_shares(
 ) -> VisibleShares:
     """Aggregate measurements over a sample of the prior.
 
-    Parameters
-    ----------
-    sample : VoxelSample
-    m : mapping of (V,) array
-        Measurement of each sensor, by name.
-    rises : mapping of (V,) float
-        Rise of the entropy of each voxel without the sensor [nats], by name.
+    By sensor, `m` (V,) is its measurement, and `rises` (V,) how much the entropy of each voxel
+    rises without it [nats].
     """
     sees = {name: of_one > 0 for name, of_one in m.items()}
     number = np.sum(list(sees.values()), axis=0, dtype=np.int64)

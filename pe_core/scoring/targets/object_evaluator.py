@@ -18,13 +18,10 @@ from ...prior.prior import Prior
 from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...sensors import ObjectMeasurementCache, PerceptionModel, kind_of
-from ..protocol import Evaluation
 from ..scenarios import Scenarios, mean_or_worst
-from ..score import ObjectScore, Score, ScoreProgress, SensorScore, SummaryScore, Watch
-from .lone_objects import LoneObjects
-from .object_metric import FusedObjects, ObjectSums
-from .object_sampling import CENTERED, SampledObjects, sample_objects
-from .target_rule import OBJECTS, TargetRule
+from ..score import Evaluation, ObjectScore, Score, ScoreProgress, SensorScore, SummaryScore, Watch
+from .object_metric import FusedObjects, LoneObjects, ObjectSums
+from .object_sampling import CENTERED, OBJECTS, SampledObjects, TargetRule, sample_objects
 
 MByName = Mapping[str, Floats]
 """m of sensors on the objects, (N,) each, by name."""

@@ -1,4 +1,7 @@
-"""The objects that rigs are scored on: sampled from the prior and placed in scenes."""
+"""What a study scores rigs on: the voxels of the paper, or objects sampled from its prior.
+
+Objects are placed in scenes.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,8 @@ import numpy as np
 from ...base.arrays import Floats, Ints, read_only
 from ...base.errors import InputError
 from ...base.memory import require_memory
+from ...base.setting import FLAG, OneOf, Panel, check_settings, setting
+from ...base.values import Whole
 from ...geometry.grids import PerceptionSpace
 from ...prior.prior import Prior
 from ...scene.objects import Objects
@@ -26,13 +31,66 @@ from .scene_layout import (
     place_boxes,
     vehicle_rectangle,
 )
-from .target_rule import TargetRule
 
+VOXELS, OBJECTS = "voxels", "objects"
+TARGETS = (VOXELS, OBJECTS)
+MENU = (
+    ("Voxels", "How well each voxel is measured: perception entropy, as in the paper"),
+    ("Objects", "How well objects of the prior are detected: expected AP, and range"),
+)
+"""How Blender's panel shows `TARGETS`."""
+SCENES = 256
+"""The default; it gives a standard error of about 0.1 nats on the road."""
+COUNT = Whole(8, 20_000, "scenes")
+"""More would take minutes and gigabytes for a standard error below 0.01 nats."""
 OBJECT_BYTES = 1500
 """Memory of an object while scenes are sampled and sensors are measured on it."""
 CENTERED = 0.5
 CLASS_STEP = math.sqrt(2.0) - 1.0
 """Difference between the scrambles of two classes, modulo 1."""
+
+
+@dataclass(frozen=True, slots=True)
+class TargetRule:
+    """The targets of a score, and how objects are placed.
+
+    Raises
+    ------
+    InputError
+        When a value is not valid, or traffic is requested for voxels.
+    """
+
+    targets: str = setting(
+        VOXELS,
+        OneOf(TARGETS),
+        "What a rig is scored on: all voxels, or objects of the prior",
+        Panel("targets", "Targets", menu=MENU),
+        scored=True,
+    )
+    traffic: bool = setting(
+        False,
+        FLAG,
+        "Objects of a scene occlude each other from every sensor",
+        Panel("traffic", "Traffic", when="targets=objects"),
+        scored=True,
+    )
+    scenes: int = setting(
+        SCENES,
+        COUNT,
+        "Number of scenes with objects; the expected score is their mean",
+        Panel("scenes", "Scenes", soft_max=4096, when="targets=objects"),
+        scored=True,
+    )
+
+    def __post_init__(self) -> None:
+        check_settings(self, "metric")
+        if self.traffic and not self.are_objects:
+            raise InputError("metric", "traffic", f"targets = {OBJECTS!r} with it", self.targets)
+
+    @property
+    def are_objects(self) -> bool:
+        """Whether objects are scored, not voxels."""
+        return self.targets == OBJECTS
 
 
 @dataclass(frozen=True, slots=True, eq=False)

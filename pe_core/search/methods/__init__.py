@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...base.errors import InputError
 from ...base.values import choice
-from . import block_descent, cma_es, portfolio, random_search
+from . import portfolio, random_search
 from .method import Given, Method, Question
 
 METHODS: dict[str, Method] = {
@@ -21,23 +21,8 @@ METHODS: dict[str, Method] = {
     ),
 }
 """What menus list."""
-PARTS: dict[str, Method] = {
-    "block-descent": Method(
-        "Block Descent",
-        "One sensor at a time by CMA-ES, from several starts, on ever more voxels",
-        block_descent.ask,
-        block_descent.samples,
-    ),
-    "cma-es": Method("CMA-ES", "Covariance matrix adaptation of all sensors at once", cma_es.ask),
-}
-"""Parts of the portfolio. A study may name one, too: research compares them with the whole."""
 DEFAULT_METHOD, SCHEDULED_METHOD = "portfolio", "random"
 """The method of a search that names none, and the only one with a schedule."""
-
-
-def method_named(name: str) -> Method:
-    """Return a method, or a part of the portfolio."""
-    return PARTS[name] if name in PARTS else METHODS[name]
 
 
 def checked_method(source: str, name: object, scheduled: bool = False) -> str:
@@ -50,17 +35,15 @@ def checked_method(source: str, name: object, scheduled: bool = False) -> str:
         raise InputError(source, "method", expected, "none named")
     if name is None:
         return DEFAULT_METHOD
-    return str(name) if name in PARTS else choice(source, "method", name, tuple(METHODS))
+    return choice(source, "method", name, tuple(METHODS))
 
 
 __all__ = [
     "DEFAULT_METHOD",
     "METHODS",
-    "PARTS",
     "SCHEDULED_METHOD",
     "Given",
     "Method",
     "Question",
     "checked_method",
-    "method_named",
 ]

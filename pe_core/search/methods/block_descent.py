@@ -1,9 +1,8 @@
-"""Block descent: CMA-ES on one sensor at a time, from several starts, multi-level.
+"""Block descent, a part of the portfolio: CMA-ES on one sensor at a time, from several starts.
 
 While one sensor moves, the others stay at the incumbent. A sensor that does not move need not be
 measured again, and a few design variables at a time take few candidates. A few rounds on few voxels
-choose the start to continue from, and the last rounds are evaluated on as many voxels as the study
-sets: a search on a sample overestimates its own result, more so with fewer voxels.
+choose the start to continue from.
 """
 
 from __future__ import annotations
@@ -13,18 +12,10 @@ from itertools import product
 
 import numpy as np
 
-from ..design_variable import METRE, RADIAN, SHARE
+from ..domains import METRE, SHARE
 from ..parametrization import Candidate
 from .cma_es import STEP, Evolution
-from .method import (
-    Evaluated,
-    Given,
-    Incumbent,
-    MethodPart,
-    Phase,
-    QuestionStream,
-    sampled_candidate,
-)
+from .method import Evaluated, Given, Incumbent, MethodPart, Phase
 
 MAX_SLOTS = 16
 """Slots evaluated in one turn; of a longer list, so many are sampled."""
@@ -72,12 +63,6 @@ class SlotTurn:
         return self._parametrization.candidate(vector)
 
 
-def given_start(given: Given, _phase: Phase) -> MethodPart[tuple[Candidate, float]]:
-    """Return the start of the search, which is evaluated already."""
-    yield from ()
-    return given.start, given.entropy
-
-
 def corner_start(given: Given, phase: Phase) -> MethodPart[tuple[Candidate, float]]:
     """Move each sensor to the best corner of its bounds; return the placement and its entropy."""
     best, entropy = given.start, given.entropy
@@ -89,19 +74,6 @@ def corner_start(given: Given, phase: Phase) -> MethodPart[tuple[Candidate, floa
             if values[lowest] < entropy:
                 best, entropy = corners[lowest], values[lowest]
     return best, entropy
-
-
-def random_start(given: Given, phase: Phase) -> MethodPart[tuple[Candidate, float]]:
-    """Return a random placement with the angles of the start, and its entropy."""
-    rng = np.random.default_rng([given.seed, len(given.parametrization.variables)])
-
-    def sample() -> list[float]:
-        values = zip(given.parametrization.variables, given.start.vector, strict=True)
-        return [v if u.unit == RADIAN else rng.uniform(u.low, u.high) for u, v in values]
-
-    candidate = sampled_candidate(given.parametrization, sample) or given.start
-    [entropy] = yield from phase.evaluate([candidate])
-    return candidate, entropy
 
 
 def _corners(given: Given, base: Candidate, block: range) -> Iterator[Candidate]:
@@ -117,8 +89,6 @@ def _corners(given: Given, base: Candidate, block: range) -> Iterator[Candidate]
         yield given.parametrization.candidate(vector)
 
 
-STARTS = (given_start, corner_start, given_start, random_start)
-"""The given start twice: descents with other random numbers may end elsewhere."""
 GENERATIONS = 3
 """Generations of one sensor, before it is the next one's turn."""
 
@@ -165,10 +135,6 @@ class Descent(Incumbent):
             for _ in range(GENERATIONS if isinstance(turn, Evolution) else 1):
                 self.told((yield from turn.evaluate(base, phase)))
 
-    def reevaluate(self, phase: Phase) -> MethodPart[None]:
-        """Evaluate the incumbent on another level."""
-        [self.entropy] = yield from phase.evaluate([self.best])
-
 
 def _turn(
     given: Given, block: range, start: Candidate, seed: list[int], step: float
@@ -178,61 +144,11 @@ def _turn(
     return Evolution(given, block, start, seed, step)
 
 
-COARSENING, MIN_SAMPLES = 4, 2048
-"""The first level evaluates a fourth of the voxels, but at least so many."""
-BELOW_GRID = 65_536
-"""Where the last level is the grid, the first level is as if the last had so many voxels."""
-RACES, RACE_SHARE = 2, 0.05
-"""Races, and the share of the budget for each start in each race."""
-PLACEMENTS_PER_START = 80
-"""Placements for each sensor that a start takes: a smaller budget means fewer starts."""
-FIRST_LEVEL = 0.4
-"""Share of the budget after which the first level ends."""
-PER_SENSOR, PER_PAIR = 110, 100
-"""Placements without a given budget: so many for each sensor that moves, and so many more for each
-ordered pair of them: the more sensors, the more often each has to give way to the others."""
+RACES = 2
+"""Races of several starts; after each, the better half goes on."""
 RESTART_STEP, FINEST = 0.25, 0.02
 """A descent ends when its spread is below `FINEST`: 2 cm and 0.6 deg. The next one begins where it
 ended, with steps of 25 cm and 7.5 deg."""
-
-
-def samples(last: int) -> tuple[int, ...]:
-    """Return how many voxels each level evaluates."""
-    count = last or BELOW_GRID
-    return max(count // COARSENING, min(MIN_SAMPLES, count)), last
-
-
-def ask(given: Given) -> QuestionStream:
-    """Search from several starts, then from the best of them, level by level."""
-    count = len(given.parametrization.blocks)
-    total = given.evaluations or (PER_SENSOR + PER_PAIR * count) * count
-    best, done = yield from _raced(given, total)
-    if given.levels > 1:
-        yield from best.descend(Phase(1, total), FIRST_LEVEL * total - done)
-        yield from best.reevaluate(Phase(2, total, 1))
-        done = max(done, FIRST_LEVEL * total)
-    yield from _repeated(given, best, total, total - done)
-
-
-def _repeated(given: Given, best: Descent, total: int, left: float) -> MethodPart[None]:
-    """Descend on the last level, with restarts, until the budget is spent."""
-    number = len(STARTS)
-    while left > 0.0:
-        best = Descent(given, best.best, best.entropy, [given.seed, number], RESTART_STEP)
-        yield from best.descend(Phase(2, total, given.levels - 1), left, FINEST)
-        if best.count == 0 or best.spread == 0.0:
-            return  # nothing can move, or all placements were evaluated
-        left, number = left - best.count, number + 1
-
-
-def _raced(given: Given, total: int) -> MethodPart[tuple[Descent, float]]:
-    """Race several starts; return the best descent, and how many placements all of them took."""
-    phase, starts = Phase(0, total), []
-    count = total // (PLACEMENTS_PER_START * len(given.parametrization.blocks))
-    for number in range(min(len(STARTS), count) or 1):
-        start = yield from STARTS[number](given, phase)
-        starts.append(Descent(given, *start, [given.seed, number]))
-    return (yield from race(starts, phase, RACE_SHARE * total)), float(sum(d.count for d in starts))
 
 
 def race(racing: list[Descent], phase: Phase, count: float) -> MethodPart[Descent]:

@@ -1,4 +1,4 @@
-"""CMA-ES: covariance matrix adaptation over all design variables, or over some of them."""
+"""CMA-ES, a part of the portfolio: covariance matrix adaptation over some design variables."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import numpy as np
 
 from ...base.arrays import Floats
 from .._vendor.cmaes._cma import CMA
-from ..design_variable import METRE, RADIAN, SHARE
+from ..domains import METRE, RADIAN, SHARE
 from ..parametrization import Candidate
-from .method import Evaluated, Given, MethodPart, Phase, QuestionStream, sampled_candidate
+from .method import Evaluated, Given, MethodPart, Phase, sampled_candidate
 
 SCALE = {METRE: 1.0, RADIAN: math.radians(30.0), SHARE: 1.0}
 """The scale of each unit: the first reach of Algorithm 1, and all of a list."""
@@ -98,19 +98,3 @@ class Evolution:
 
         candidate = sampled_candidate(self._parametrization, sample)
         return candidate, point / self._scale
-
-
-FINEST = 0.003
-"""The search ends when its spread is below this: 3 mm and 0.1 deg."""
-PER_VARIABLE = 200
-"""Placements for each design variable where no budget is given."""
-
-
-def ask(given: Given) -> QuestionStream:
-    """Evaluate generations until the spread is small or the budget is spent."""
-    count = len(given.parametrization.variables)
-    evolution = Evolution(given, range(count), given.start, [given.seed])
-    total, done, number = given.evaluations or PER_VARIABLE * count, 0, 0
-    while done < total and evolution.spread > FINEST:
-        evaluated = yield from evolution.evaluate(given.start, Phase(number, total))
-        done, number = done + len(evaluated) or total, number + 1

@@ -24,7 +24,7 @@ from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from ...scoring.protocol import Evaluation
+from ...scoring.score import Evaluation
 from ..parametrization import Candidate, Parametrization
 from ..search_space import Schedule
 

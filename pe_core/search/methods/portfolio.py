@@ -17,22 +17,9 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..design_variable import SHARE, DesignVariable
+from ..domains import SHARE, DesignVariable
 from ..parametrization import Candidate
-from .block_descent import (
-    FINEST,
-    FIRST_LEVEL,
-    PLACEMENTS_PER_START,
-    RACE_SHARE,
-    RESTART_STEP,
-    STARTS,
-    Descent,
-    SlotTurn,
-    corner_start,
-    given_start,
-    race,
-)
-from .block_descent import samples as samples
+from .block_descent import FINEST, RESTART_STEP, Descent, SlotTurn, corner_start, race
 from .method import Given, Incumbent, MethodPart, Phase, QuestionStream, sampled_candidate
 from .portfolio_linear import LinearDescent
 from .portfolio_steps import MultiscaleDescent
@@ -41,6 +28,14 @@ from .portfolio_surrogate import History, SurrogateDescent
 FEW, PER_SENSOR = (0, 400, 950, 1275), 400
 """Placements where no budget is given: for none to three sensors that move, and for each of
 more."""
+COARSENING, MIN_SAMPLES = 4, 2048
+"""The first level evaluates a fourth of the voxels, but at least so many."""
+BELOW_GRID = 65_536
+"""Where the last level is the grid, the first level is as if the last had so many voxels."""
+RACING, PLACEMENTS_PER_START = 4, 80
+"""Starts that race, and placements for each sensor that each takes: a smaller budget has none."""
+RACE_SHARE, FIRST_LEVEL = 0.05, 0.4
+"""Shares of the budget: for each start in each race, and after which the first level ends."""
 SURVEYS, SURVEYED = 2, 6
 """Surveys before the first descent, and places that each of them tries for each sensor,"""
 SURVEY_SHARE = 0.3
@@ -188,6 +183,16 @@ def _evaluate(
         incumbent.told(zip(moved, values, strict=True))
 
 
+def samples(last: int) -> tuple[int, ...]:
+    """Return how many voxels each level evaluates.
+
+    The last level has as many as the study sets: a search on a sample overestimates its own result,
+    more so with fewer voxels.
+    """
+    count = last or BELOW_GRID
+    return max(count // COARSENING, min(MIN_SAMPLES, count)), last
+
+
 def ask(given: Given) -> QuestionStream:
     """Survey on few voxels; then descend on all voxels of the search until the budget is spent."""
     history = History(given.start, given.entropy)
@@ -197,7 +202,7 @@ def ask(given: Given) -> QuestionStream:
 def _searched(given: Given, history: History) -> QuestionStream:
     sensors = len(given.parametrization.blocks)
     total = given.evaluations or budget(sensors)
-    large = total >= len(STARTS) * PLACEMENTS_PER_START * sensors
+    large = total >= RACING * PLACEMENTS_PER_START * sensors
     incumbent, survey = Incumbent(given.start, given.entropy), Survey(given, exact=not large)
     steps = MultiscaleDescent(given, [given.seed, sensors, 1])
     moves = any(v.low < v.high for v in given.parametrization.variables)
@@ -243,7 +248,9 @@ def _race(given: Given, incumbent: Incumbent, total: int) -> MethodPart[None]:
     surveyed = replace(given, start=incumbent.best, entropy=incumbent.entropy)
     racing = []
     for number, place in enumerate((given, given, surveyed, surveyed)):
-        start = yield from (corner_start if number % 2 else given_start)(place, phase)
+        start = place.start, place.entropy
+        if number % 2:
+            start = yield from corner_start(place, phase)
         racing.append(Descent(place, *start, [given.seed, number]))
     best = yield from race(racing, phase, RACE_SHARE * total)
     done = incumbent.count + sum(descent.count for descent in racing)
@@ -261,7 +268,7 @@ def _settle(
     left = phase.total - incumbent.count
     count = float(left)
     if left > LAST_STEPS * len(given.parametrization.blocks):
-        seed = [given.seed, len(STARTS) + number]
+        seed = [given.seed, RACING + number]
         yield from _block_descent(given, incumbent, phase, seed, RACED_BLOCK_SHARE)
         count = STEP_SHARE * left
     yield from steps.descend(incumbent, phase, count)

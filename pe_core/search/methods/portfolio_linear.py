@@ -17,7 +17,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...base.arrays import Floats
-from ..design_variable import SHARE
+from ..domains import SHARE
 from ..parametrization import Candidate, Vector
 from .method import Given, Incumbent, MethodPart, Phase
 

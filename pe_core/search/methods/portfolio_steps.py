@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..design_variable import SHARE
+from ..domains import SHARE
 from ..parametrization import Candidate
 from .method import Given, Incumbent, MethodPart, Phase, sampled_candidate
 

@@ -18,7 +18,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...base.arrays import Floats
-from ..design_variable import SHARE
+from ..domains import SHARE
 from ..parametrization import Candidate
 from .method import MAX_SAMPLED, Given, Incumbent, MethodPart, Phase, QuestionStream
 from .portfolio_linear import UnitRanges

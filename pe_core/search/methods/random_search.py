@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..design_variable import METRE, RADIAN, SHARE
+from ..domains import METRE, RADIAN, SHARE
 from ..parametrization import Candidate
 from .method import Given, Question, QuestionStream, sampled_candidate
 

@@ -20,17 +20,27 @@ from typing import NamedTuple
 import numpy as np
 
 from ...base.arrays import Floats, Ints, Singles
+from ...geometry.bins import count_up
 from ...geometry.grids import PerceptionSpace
-from ...geometry.indexing import count_up
 from ...geometry.poses import Pose, dot
 from ...metric.fusion import VisibleRows
 from ...scene.vehicle import VisibleMesh
-from .definition import cut_to_range, hidden, is_ranged
+from .definition import (
+    BALL,
+    MARGIN,
+    NUDGE,
+    aims_at,
+    axes_of,
+    clipped_pixel_area,
+    cut_to_range,
+    hidden,
+    in_sensor_frame,
+    is_ranged,
+    offsets_of,
+)
 from .model import Camera
 from .picture import BORDER, PictureBins
-from .pixel_area import BALL, clipped_pixel_area, in_sensor_frame
 from .sample_areas import NEAR_SIDES, Sorter, edge_areas
-from .tie_rules import MARGIN, NUDGE, aims_at, axes_of, offsets_of
 from .voxel_occlusion import VoxelOcclusion, distance_along, positions_of, span
 
 HalfSpace = tuple[Floats, float]

@@ -10,9 +10,6 @@ block is tested, then all squares of the blocks along the edge.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import Executor
-from functools import partial, reduce
-from operator import add
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -33,21 +30,27 @@ from ..kernels import (
     ObjectKernel,
     ObjectView,
     Occlusion,
-    Planes,
     SampleKernel,
     VisibleGround,
     Voxels,
     block_voxels,
     heights_of_post,
 )
-from .definition import hidden, is_ranged, out_of_range
+from .definition import (
+    IN_FRONT,
+    aims_at,
+    axes_of,
+    frustum_distance,
+    hidden,
+    in_sensor_frame,
+    is_ranged,
+    out_of_range,
+)
 from .grid_areas import BentPlanes, CameraPlanes
 from .model import Camera
 from .object_definition import BoxImages, along_camera, box_images, visible_share
 from .picture import PictureBins, picture_occlusion
-from .pixel_area import frustum_distance, in_sensor_frame
 from .sample_areas import bent_pixel_areas, pixel_areas
-from .tie_rules import IN_FRONT, aims_at, axes_of
 
 SEEN_BYTES = 2
 """Memory of a voxel, averaged over visible and invisible ones (measured)."""
@@ -88,9 +91,9 @@ class CameraGrid(GridKernel):
         """Estimate the memory for the areas of the rows that each group sees [bytes]."""
         return len(groups) * workers * block_voxels(space) * SEEN_BYTES
 
-    def planes(self, groups: Sequence[Sequence[ReadyCamera]], pool: Executor) -> list[Planes]:
-        """Return functions that measure a group's planes on request."""
-        return [partial(_areas, cameras) for cameras in groups]
+    def rows(self, prepared: ReadyCamera, planes: slice) -> VisibleRows:
+        """Measure areas on a block of planes."""
+        return prepared.view.areas(planes)
 
 
 class CameraSample(SampleKernel):
@@ -117,10 +120,6 @@ class CameraSample(SampleKernel):
         seen = _seen(vehicle, sensor)
         areas = pixel_areas if camera.projection.is_straight else bent_pixel_areas
         return areas(camera, sensor.pose, self._centers, side, seen)
-
-
-def _areas(cameras: Sequence[ReadyCamera], planes: slice) -> VisibleRows:
-    return reduce(add, (camera.view.areas(planes) for camera in cameras))
 
 
 def _seen(vehicle: Vehicle | None, sensor: Sensor) -> VisibleMesh | None:
@@ -158,13 +157,10 @@ class PostVisibility:
     def __init__(self, sensor: Sensor, view: GroundView) -> None:
         self._camera, self._view = cast(Camera, sensor.model), view
         self._position, self._axes = np.asarray(sensor.pose.position), axes_of(sensor.pose)
-        self._seen: VisibleMesh | None = None
+        self._seen = _seen(view.vehicle, sensor)
         self._shadow: PictureBins | None = None
-        if view.vehicle is not None:
-            glass = self._camera.sees_through_glass
-            self._seen = view.vehicle.seen_from(sensor.pose.position, glass)
-            if self._camera.projection.is_straight:
-                self._shadow = PictureBins(self._camera, self._axes, self._seen.seen.triangles)
+        if self._seen is not None and self._camera.projection.is_straight:
+            self._shadow = PictureBins(self._camera, self._axes, self._seen.seen.triangles)
 
     def sees(self, squares: Ints) -> Flags:
         """Whether a point of each post (N,) in the middle of its square is visible."""
@@ -257,9 +253,8 @@ class CameraObjects(ObjectKernel):
         self, sensor: Sensor, axes: Floats, boxes: PlacedBoxes, which: Ints, images: BoxImages
     ) -> Floats:
         """Visible share of the images of boxes `which`."""
-        view, camera, seen = self._view, cast(Camera, sensor.model), None
-        if view.vehicle is not None:
-            seen = view.vehicle.seen_from(sensor.pose.position, camera.sees_through_glass)
+        view, camera = self._view, cast(Camera, sensor.model)
+        seen = _seen(view.vehicle, sensor)
         image = images.some(shown := np.flatnonzero(images.area > 0.0))
         by_vehicle = np.full(len(image.area), seen is not None)
         if seen is not None and camera.projection.is_straight:

@@ -10,9 +10,8 @@ from typing import Any, cast
 import numpy as np
 
 from ...base.arrays import Floats
-from ...base.degrees import degrees_in_file
 from ...base.errors import InputError, shown
-from ...base.values import Number, choice, listed
+from ...base.values import Number, choice, degrees_in_file, listed
 from ...metric.entropy import RTM3D
 from ...scene.objects import Objects
 from ...scene.rig import Sensor
@@ -20,15 +19,13 @@ from ..boxes import PlacedBoxes
 from ..field_of_view import NEAREST, limited
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, Kind, derived_object_curves
 from ..weather import camera_range
-from .definition import count_pixels, is_ranged, out_of_range
+from .definition import axes_of, count_pixels, is_ranged, out_of_range
 from .kernels import CameraGrid, CameraGround, CameraObjects, CameraSample
-from .lens import COEFFICIENT, FOCAL, PLACE, Lens
+from .lens import COEFFICIENT, FOCAL, LENSES, PLACE, FTheta, Lens, Pinhole
 from .lens import FOV as LENS_FOV
-from .lens_models import LENSES, FTheta, Pinhole
 from .model import FOV, PIXELS, Camera
 from .object_definition import box_images, count_object_pixels
 from .picture import picture_mask, picture_patch, picture_rays
-from .tie_rules import axes_of
 
 LENS_KEYS = frozenset({"fx", "fy", "cx", "cy", "distortion", "fov_deg"})
 KEYS = frozenset({"width", "height", "hfov_deg", "min_range_m", "max_range_m"}) | LENS_KEYS
@@ -69,10 +66,7 @@ def write(model: Camera) -> dict[str, Any]:
 def read_lens(name: str, table: Mapping[str, Any]) -> Lens:
     """Build a lens from a camera's table.
 
-    Raises
-    ------
-    InputError
-        When a number is missing or not possible, or there is no such model.
+    `InputError` when a number is missing or not possible, or there is no such model.
     """
     own = table.get("distortion", {})
     if not isinstance(own, Mapping):
@@ -155,14 +149,14 @@ def figures(camera: Camera) -> list[str]:
 def image_widths(sensor: Sensor, objects: Objects) -> Floats:
     """Measure how wide (N,) the images are in the picture, whatever hides them [px]."""
     boxes = PlacedBoxes.of(objects, sensor.pose.position)
-    found = box_images(cast(Camera, sensor.model), axes_of(sensor.pose), boxes)
+    found = box_images(cast("Camera", sensor.model), axes_of(sensor.pose), boxes)
     return np.maximum(found.high - found.low, 0.0)[:, 0]
 
 
 def missed(sensor: Sensor, center: Floats, side: float) -> str:
     """Return one of: out of range, out of view."""
     offset = np.asarray(center)[None] - np.asarray(sensor.pose.position)
-    out = out_of_range(cast(Camera, sensor.model), offset)[0]
+    out = out_of_range(cast("Camera", sensor.model), offset)[0]
     return OUT_OF_RANGE if out else OUT_OF_VIEW
 
 

@@ -14,8 +14,7 @@ from ...base.errors import InputError
 from ...base.values import A_NAME, Angle, Number, Whole
 from ...scene.rig import SensorModel
 from ..field_of_view import NEAREST, SHORTEST_RANGE_M, checked_ranges
-from .lens import Lens, field_outline, reaching
-from .lens_models import Pinhole
+from .lens import Lens, Pinhole, field_outline, reaching
 
 PIXELS = Whole(1, 1_000_000, "pixels")
 FOV = Angle(0.001, 180.0, below=True)

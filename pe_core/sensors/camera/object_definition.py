@@ -1,6 +1,6 @@
 """The measurement of objects by a camera, by definition: the visible area of each box's image.
 
-As for a cube (`pixel_area`), the image is the union of the faces that face the camera. The part of
+As for a cube (`kind`), the image is the union of the faces that face the camera. The part of
 a face inside the picture follows from Green's theorem, edge by edge. A face that reaches behind a
 pinhole camera is cut at the camera's plane. Through a lens with distortion, edges are split into
 straight pieces. If a face contains the direction opposite to the view, the outline is that of the
@@ -27,24 +27,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Flags, Floats, Ints
-from ...geometry.indexing import blocks
+from ...geometry.bins import blocks
 from ...geometry.poses import dot, rotate
 from ...scene.objects import Objects
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
 from ..boxes import BoxRays, PlacedBoxes, Rivals, behind_others
-from .definition import out_of_range
-from .model import Camera
-from .pixel_area import (
+from .definition import (
     QUAD,
     RIGHT_BEHIND,
     ROUNDING_PX,
     ImagePoints,
     aperture_of,
+    axes_of,
     clamped_integral,
+    out_of_range,
     round_a_face,
 )
-from .tie_rules import axes_of
+from .model import Camera
 
 ImagedFaces = tuple[Ints, Floats, ImagePoints]
 """Boxes (P,), the area (P,) of a face of each, and points (P, K) that bound its image [px]."""
@@ -83,7 +83,7 @@ class BoxImages:
 def box_images(camera: Camera, axes: Floats, boxes: PlacedBoxes) -> BoxImages:
     """Return the images of boxes; a box that contains the camera has no area.
 
-    `axes` (3, 3) rotate from the camera's frame to the ground frame (`tie_rules.axes_of`).
+    `axes` (3, 3) rotate from the camera's frame to the ground frame (`definition.axes_of`).
     """
     faces = _straight_faces if camera.projection.is_straight else _bent_faces
     count, size = len(boxes.offsets), np.array([camera.width, camera.height], dtype=float)

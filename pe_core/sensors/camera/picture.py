@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Floats, Ints
-from ...geometry.bins import Raster, corner_max, corner_min, spans_of_triangles
-from ...geometry.indexing import count_up
+from ...geometry.bins import Raster, corner_max, corner_min, count_up, spans_of_triangles
 from ...geometry.poses import dot, rotate
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
@@ -108,7 +107,7 @@ BORDER = 1.05
 class PictureBins:
     """Bins of a picture, CELLS by CELLS, with a flag where a triangle of the vehicle may be.
 
-    `axes` (3, 3) rotate from the camera's frame to the ground frame (`tie_rules.axes_of`);
+    `axes` (3, 3) rotate from the camera's frame to the ground frame (`definition.axes_of`);
     `triangles` (F, 3, 3) are corners relative to the camera, ground axes [m].
     """
 

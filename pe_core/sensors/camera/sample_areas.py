@@ -23,19 +23,23 @@ from numpy.typing import NDArray
 from ...base.arrays import Floats
 from ...geometry.poses import Pose, dot
 from ...scene.vehicle import VisibleMesh
-from .definition import hidden, is_ranged, out_of_range
-from .lens import Lens
-from .lens_models import BrownConrady
-from .model import Camera
-from .pixel_area import (
+from .definition import (
     BALL,
+    MARGIN,
+    aims_at,
+    axes_of,
     bent_pixel_area,
     clipped_pixel_area,
     frustum_distance,
+    hidden,
     in_sensor_frame,
     in_view,
+    is_ranged,
+    offsets_of,
+    out_of_range,
 )
-from .tie_rules import MARGIN, aims_at, axes_of, offsets_of
+from .lens import BrownConrady, Lens
+from .model import Camera
 
 Array = NDArray[np.floating]
 ENTRIES = 1 << 15

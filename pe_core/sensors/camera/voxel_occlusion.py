@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Floats, Ints
-from ...geometry.bins import FACES, CubeFace, Raster
+from ...geometry.bins import FACES, CubeFace, Raster, count_up
 from ...geometry.culling import Ends, FaceLook
-from ...geometry.indexing import count_up
 from ...geometry.occlusion_map import OcclusionMap
 from ...scene.vehicle import VisibleMesh
 
@@ -133,21 +132,16 @@ def _cover(look: FaceLook, ends: Ends, view: Ends, offsets: list[Floats]) -> Occ
     u, v = ((max(a[0], b[0]), min(a[1], b[1])) for a, b in zip(ends, view, strict=True))
     if u[0] >= u[1] or v[0] >= v[1]:
         return None
-    voxels = _voxels_within(look.face, (u, v), offsets)
-    side = 2 ** int(np.log2(np.sqrt(voxels / VOXELS_A_BIN) + 1.0))
-    return OcclusionMap(look, Raster(u, v, int(np.clip(side, MIN_BINS, MAX_BINS))))
-
-
-def _voxels_within(face: CubeFace, ends: Ends, offsets: list[Floats]) -> float:
-    """Approximate number of voxels in a rectangle of a face."""
-    depth = face.sign * offsets[face.axes[0]]
+    depth = look.face.sign * offsets[look.face.axes[0]]
     depth = depth[depth > 0.0]
     count = np.ones(len(depth))
-    for axis, (low, high) in zip(face.axes[1:], ends, strict=True):
+    for axis, (low, high) in zip(look.face.axes[1:], (u, v), strict=True):
         w = offsets[axis]
         extent = np.clip(high * depth, w[0], w[-1]) - np.clip(low * depth, w[0], w[-1])
         count *= extent * (len(w) / max(w[-1] - w[0], 1e-9)) if len(w) > 1 else 1.0
-    return float(count.sum())
+    voxels = float(count.sum())
+    side = 2 ** int(np.log2(np.sqrt(voxels / VOXELS_A_BIN) + 1.0))
+    return OcclusionMap(look, Raster(u, v, int(np.clip(side, MIN_BINS, MAX_BINS))))
 
 
 class FaceOcclusion:

@@ -21,11 +21,10 @@ from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
 from ..field_of_view import count_by_part
 from ..kernels import Occlusion
-from .definition import beam_directions
+from .definition import beam_directions, without_zeros
 from .lattice import lattice_of
 from .model import lidar_of
 from .occlusion import ApproximateOcclusion, BeamSlopes, occlusion_candidates
-from .tie_rules import without_zeros
 
 
 @dataclass(frozen=True)
@@ -110,7 +109,7 @@ class RotatedBeams:
     def components(self, beams: Ints) -> list[Floats]:
         """Return the directions of beams (N,) as three arrays (N,), one an axis, without zeros.
 
-        This is the form in which kernels divide by them (`tie_rules.without_zeros`).
+        This is the form in which kernels divide by them (`definition.without_zeros`).
         """
         if "directions" in vars(self):
             return [np.take(w, beams) for w in self._components]

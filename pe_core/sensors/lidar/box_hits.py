@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Flags, Floats, Ints
-from ...geometry.indexing import blocks, count_up, stable_order
+from ...geometry.bins import blocks, count_up, stable_order
 from ...geometry.poses import rotate
 from ...scene.rig import Sensor
 from ..boxes import PlacedBoxes

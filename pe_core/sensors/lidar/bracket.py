@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Floats, Singles
-from ...geometry.indexing import blocks
+from ...geometry.bins import blocks
 
 Counts = NDArray[np.int32]
 

@@ -15,9 +15,8 @@ from ...scene.vehicle import Vehicle
 from ..field_of_view import EgoMask, ViewPatch, grid_faces
 from ..kind import BETWEEN_BEAMS, OUT_OF_RANGE, OUT_OF_VIEW
 from .beams import beam_field
-from .definition import BALL, beam_directions, cube_crossing
+from .definition import BALL, beam_directions, cube_crossing, offsets_in_voxels
 from .model import Lidar, lidar_of
-from .tie_rules import offsets_in_voxels
 
 MIN_EXTENT = math.radians(0.2)
 """A field of view without height or width, as of a single channel, is drawn with this one [rad]."""

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from ...base.arrays import Floats, Ints
 from ...geometry.grids import PerceptionSpace
-from .tie_rules import position_in_voxels, without_zeros
+from .definition import position_in_voxels, without_zeros
 
 Fixed = NDArray[np.uint64]
 SaturatingCounts = NDArray[np.uint16]
@@ -231,7 +231,7 @@ def _fixed_points(origin: Floats, along: Floats) -> Fixed:
     """Origin (2, 1) plus `along` (2, B) in fixed point, raised by the padding; rounded down.
 
     The origin's whole part is added last, so that a beam that begins a nudge from a voxel's corner
-    (`tie_rules`) crosses the first plane in the cell of the definition.
+    (`kind`) crosses the first plane in the cell of the definition.
     """
     whole = np.floor(origin)
     points = np.clip((origin - whole) + along, -MAX_ADVANCE, MAX_ADVANCE)

@@ -218,7 +218,10 @@ def _count_sorted(
 def _bits(tester: BoxTester, fan: FanBeams, runs: ChannelRuns) -> tuple[Bits, Bits]:
     """Bits (R, W) of the beams that hit a run's box, and of those beyond the minimum range."""
     words = -(-len(fan.first) // WORD)
-    bits = _bits_between(runs.low, runs.high, words)
+    first = np.arange(words) * WORD
+    ends = (np.clip(n[:, None] - first, 0, WORD) for n in (runs.low.astype(np.int64), runs.high))
+    below_low, below_high = (LOW_BITS[n] for n in ends)
+    bits = below_high & ~below_low
     if fan.occlusion is not None:
         bits &= ~_packed(fan.occlusion.flags, words)[runs.column]
     tested = np.flatnonzero(~fan.decided(runs)[0])
@@ -230,14 +233,6 @@ def _bits(tester: BoxTester, fan: FanBeams, runs: ChannelRuns) -> tuple[Bits, Bi
         flags[hits.run[some], hits.channel[some]] = True
         target[tested] = _packed(flags, words)
     return bits, countable
-
-
-def _bits_between(low: NDArray, high: NDArray, words: int) -> Bits:
-    """Words (R, W) with the bits from `low` to below `high` set."""
-    first = np.arange(words) * WORD
-    ends = (np.clip(n[:, None] - first, 0, WORD) for n in (low.astype(np.int64), high))
-    below_low, below_high = (LOW_BITS[n] for n in ends)
-    return below_high & ~below_low
 
 
 def _packed(flags: Flags, words: int) -> Bits:

@@ -9,19 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from ...base.degrees import degrees_in_file
 from ...base.errors import InputError, shown
 from ...base.plugins import shipped
-from ...base.values import A_PATH, Number, listed, vector
+from ...base.values import A_PATH, Number, degrees_in_file, listed, vector
 from ...metric.entropy import POINTPILLARS, ApCurve
 from ..field_of_view import NEAREST, limited
 from ..kind import Kind, derived_object_curves
 from ..weather import lidar_range
 from .definition import count_beams, count_on_objects, count_on_parts
 from .field_of_view import beam_patch, beams_to, reason_missed, revolution_mask, sample_beams
-from .kernel_ground import LidarGround
 from .kernel_objects import LidarObjects
-from .kernel_voxels import LidarGrid, LidarSample
+from .kernel_voxels import LidarGrid, LidarGround, LidarSample
 from .model import RANGE, STEPS, Lidar
 
 FITTED = {
@@ -91,29 +89,23 @@ def _channels(
 ) -> tuple[np.ndarray, np.ndarray | None]:
     """Elevations (C,) and, if the table has them, azimuth offsets (C,) [rad]."""
     if "angles" in table:
-        return _channels_of_file(name, table, folder)
+        file = A_PATH.checked(name, "angles", table["angles"])
+        for key in ("elevations_deg", "azimuth_offsets_deg"):
+            if key in table:
+                raise InputError(name, "angles", f"either a file of angles or {key}", "both")
+        try:
+            channels = shipped("reader.angles")(folder / file)
+        except InputError as error:  # a study replaces the source; the field keeps the file's name
+            field = f"angles: {error.source}: {error.field}"
+            raise InputError(name, field, error.expected, error.found) from None
+        return (
+            np.array([math.radians(c.elevation_deg) for c in channels]),
+            np.array([math.radians(c.azimuth_offset_deg) for c in channels]),
+        )
     elevations = _radians(name, table, "elevations_deg")
     if "azimuth_offsets_deg" not in table:
         return elevations, None
     return elevations, _radians(name, table, "azimuth_offsets_deg")
-
-
-def _channels_of_file(
-    name: str, table: Mapping[str, Any], folder: Path
-) -> tuple[np.ndarray, np.ndarray]:
-    file = A_PATH.checked(name, "angles", table["angles"])
-    for key in ("elevations_deg", "azimuth_offsets_deg"):
-        if key in table:
-            raise InputError(name, "angles", f"either a file of angles or {key}", "both")
-    try:
-        channels = shipped("reader.angles")(folder / file)
-    except InputError as error:  # a study replaces the source; the field keeps the file's name
-        field = f"angles: {error.source}: {error.field}"
-        raise InputError(name, field, error.expected, error.found) from None
-    return (
-        np.array([math.radians(c.elevation_deg) for c in channels]),
-        np.array([math.radians(c.azimuth_offset_deg) for c in channels]),
-    )
 
 
 def _radians(name: str, table: Mapping[str, Any], key: str) -> np.ndarray:

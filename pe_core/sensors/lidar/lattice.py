@@ -16,7 +16,7 @@ from functools import lru_cache
 import numpy as np
 
 from ...base.arrays import Floats, Ints
-from ...geometry.indexing import count_up
+from ...geometry.bins import count_up
 from .bracket import Bracket, SlopeBounds
 from .model import Lidar
 from .upright import SlopeCounts

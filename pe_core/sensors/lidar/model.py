@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...base.arrays import Floats, read_only
-from ...base.degrees import all_as_in_file
 from ...base.errors import InputError, shown
-from ...base.values import A_NAME, Angle, Number, Whole, numbers, pair
+from ...base.values import A_NAME, Angle, Number, Whole, all_as_in_file, numbers, pair
 from ...scene.rig import Sensor, SensorModel
 from ..field_of_view import NEAREST, SHORTEST_RANGE_M, checked_ranges
 
@@ -175,7 +174,7 @@ class Lidar(SensorModel):
 
 def lidar_of(sensor: Sensor) -> Lidar:
     """Return the model of a sensor that is a LiDAR."""
-    return cast(Lidar, sensor.model)
+    return cast("Lidar", sensor.model)
 
 
 def _angles(name: str, key: str, values: ArrayLike, limit_deg: float) -> Floats:

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Flags, Floats, Singles
-from ...geometry.indexing import blocks
+from ...geometry.bins import blocks
 
 Indices = NDArray[np.intp]
 Small = NDArray[np.int16]
@@ -257,7 +257,7 @@ class Upright:
         that have them, those with the most azimuths first.
 
         `corners` are the cubes' lower corners, whole numbers: three arrays (V,), one an axis;
-        `position` (3,) is the sensor's in the same frame (`tie_rules.position_in_voxels`). Returns
+        `position` (3,) is the sensor's in the same frame (`definition.position_in_voxels`). Returns
         the counts (V,), and flags (V,) of unsure ones, which are to be found in another way.
         """
         total = len(corners[0])

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Floats, Ints, Singles
-from ...geometry.indexing import blocks
+from ...geometry.bins import blocks
 from ...geometry.poses import rotate
 from .bracket import Bracket, bracket
 from .lattice import windows_of
@@ -75,7 +75,7 @@ class PlacedLidar:
     """A LiDAR among the voxels of a grid.
 
     `position` (3,) is seen from the grid's lowest corner, in voxel sides
-    (`tie_rules.position_in_voxels`); `side` is a voxel's side [m].
+    (`definition.position_in_voxels`); `side` is a voxel's side [m].
     """
 
     lattice: Lattice

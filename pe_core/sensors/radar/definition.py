@@ -26,7 +26,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ...base.arrays import Flags, Floats, Ints
-from ...geometry.indexing import blocks
+from ...geometry.bins import blocks
 from ...geometry.poses import dot
 from ...scene.objects import Objects
 from ...scene.rig import Sensor

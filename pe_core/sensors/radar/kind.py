@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Floats
-from ...base.degrees import degrees_in_file
 from ...base.errors import InputError, shown
-from ...base.values import Number, listed
+from ...base.values import Number, degrees_in_file, listed
 from ...metric.entropy import ApCurve
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
@@ -59,13 +58,22 @@ OWN = (
     *("cover_loss_db", "attenuation_db_km"),
 )
 """Keys that are fields of the model."""
-MODE_KEYS = frozenset(
-    {
-        *("name", "azimuth_deg", "range_m", "elevation_deg", "elevation_scale"),
-        *("range_resolution_m", "azimuth_resolution_deg", "elevation_resolution_deg"),
-        *("min_range_m", "max_range_m", "bandwidth_mhz"),
-    }
-)
+MODE_FIELDS = {
+    "name": "name",
+    "azimuth_deg": "azimuths",
+    "range_m": "ranges",
+    "elevation_deg": "elevations",
+    "min_range_m": "min_range",
+    "max_range_m": "max_range",
+    "elevation_scale": "scales",
+    "range_resolution_m": "range_resolution",
+    "bandwidth_mhz": "bandwidth_mhz",
+    "azimuth_resolution_deg": "azimuth_resolution",
+    "elevation_resolution_deg": "elevation_resolution",
+}
+"""Fields of a mode by key, in the order of a file."""
+ASCENDING = ("azimuth_deg", "elevation_deg")
+"""Keys of lists of angles."""
 KEYS = frozenset({"mode", "rcs_dbsm", *OWN})
 DEGREES = Number(cap=1e6, unit="degrees", noun="angle")
 
@@ -73,10 +81,7 @@ DEGREES = Number(cap=1e6, unit="degrees", noun="angle")
 def read(name: str, table: Mapping[str, Any], folder: Path) -> Radar:
     """Build a radar from its table; `mode` is a list of tables, one for each scan of a frame.
 
-    Raises
-    ------
-    InputError
-        When a key is missing or unknown, or a figure is impossible.
+    `InputError` when a key is missing or unknown, or a figure is impossible.
     """
     modes = listed(table.get("mode"), 100)
     if not modes:
@@ -88,43 +93,32 @@ def read(name: str, table: Mapping[str, Any], folder: Path) -> Radar:
 
 
 def _mode(name: str, table: Any, number: int) -> RadarMode:
+    who = f"mode {number + 1}"
     if not isinstance(table, Mapping):
-        raise InputError(name, f"mode {number + 1}", "a table", shown(table))
+        raise InputError(name, who, "a table", shown(table))
     for key in table:
-        if key not in MODE_KEYS:
-            expected = f"one of {', '.join(sorted(MODE_KEYS))}"
-            raise InputError(name, f"mode {number + 1}: {key}", expected, "an unknown key")
+        if key not in MODE_FIELDS:
+            expected = f"one of {', '.join(sorted(MODE_FIELDS))}"
+            raise InputError(name, f"{who}: {key}", expected, "an unknown key")
+    values: dict[str, Any] = dict.fromkeys(("azimuths", "ranges", "elevations"))
+    values |= {"name": who, "scales": 1.0}
     try:
-        return RadarMode(
-            table.get("name", f"mode {number + 1}"),
-            _radians("azimuth_deg", table),
-            table.get("range_m"),  # type: ignore[arg-type]  # checked by the model
-            _radians("elevation_deg", table),
-            table.get("elevation_scale", 1.0),
-            table.get("range_resolution_m"),
-            _radian("azimuth_resolution_deg", table),
-            _radian("elevation_resolution_deg", table),
-            table.get("min_range_m", 0.0),
-            table.get("max_range_m"),
-            table.get("bandwidth_mhz"),
-        )
+        own = {MODE_FIELDS[key]: _in_radians(key, value) for key, value in table.items()}
+        return RadarMode(**values | own)
     except InputError as error:  # name the radar as well
         raise InputError(
             name, f"{error.source}: {error.field}", error.expected, error.found
         ) from None
 
 
-def _radians(key: str, table: Mapping[str, Any]) -> Any:
-    values = listed(table.get(key))
-    if values is None:
-        return table.get(key)
-    return [math.radians(DEGREES.checked("mode", key, value)) for value in values]
-
-
-def _radian(key: str, table: Mapping[str, Any]) -> float | None:
-    if table.get(key) is None:
-        return None
-    return math.radians(DEGREES.checked("mode", key, table[key]))
+def _in_radians(key: str, value: Any) -> Any:
+    """Return a value of a mode's key with its angles in radians; the model checks the others."""
+    items = listed(value)
+    if not key.endswith("_deg") or value is None or (key in ASCENDING and items is None):
+        return value
+    if key in ASCENDING:
+        return [math.radians(DEGREES.checked("mode", key, item)) for item in items or ()]
+    return math.radians(DEGREES.checked("mode", key, value))
 
 
 def write(model: Radar) -> dict[str, Any]:
@@ -139,29 +133,19 @@ def write(model: Radar) -> dict[str, Any]:
 
 
 def _mode_table(mode: RadarMode) -> dict[str, Any]:
-    table: dict[str, Any] = {
-        "name": mode.name,
-        "azimuth_deg": [degrees_in_file(a) for a in mode.azimuths.tolist()],
-        "range_m": _shortest(mode.ranges.tolist()),
-        "elevation_deg": [degrees_in_file(a) for a in mode.elevations.tolist()],
-        "min_range_m": mode.min_range,
-        "max_range_m": mode.max_range,
-    }
-    if any(scale != 1.0 for scale in mode.scales.tolist()):
-        table["elevation_scale"] = _shortest(mode.scales.tolist())
-    if mode.range_resolution is not None:
-        table["range_resolution_m"] = mode.range_resolution
-    if mode.bandwidth_mhz is not None:
-        table["bandwidth_mhz"] = mode.bandwidth_mhz
-    for key in ("azimuth_resolution", "elevation_resolution"):
-        if (angle := getattr(mode, key)) is not None:
-            table[f"{key}_deg"] = degrees_in_file(angle)
+    table: dict[str, Any] = {}
+    for key, field in MODE_FIELDS.items():
+        value = getattr(mode, field)
+        numbers = value.tolist() if isinstance(value, np.ndarray) else value
+        if key in ASCENDING:
+            table[key] = [degrees_in_file(angle) for angle in numbers]
+        elif isinstance(numbers, list):  # one number in place of equal ones
+            table[key] = numbers[0] if len(set(numbers)) == 1 else numbers
+        elif value is not None:
+            table[key] = degrees_in_file(value) if key.endswith("_deg") else value
+    if table["elevation_scale"] == 1.0:
+        del table["elevation_scale"]
     return table
-
-
-def _shortest(values: list[float]) -> float | list[float]:
-    """Return one number in place of a list of equal ones."""
-    return values[0] if len(set(values)) == 1 else values
 
 
 def figures(model: Radar) -> list[str]:

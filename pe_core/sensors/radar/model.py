@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...base.arrays import Floats, read_only
-from ...base.degrees import all_as_in_file
 from ...base.errors import InputError, shown
-from ...base.values import A_NAME, Angle, Number, Whole, numbers
+from ...base.values import A_NAME, Angle, Number, Whole, all_as_in_file, numbers
 from ...scene.rig import Sensor, SensorModel
 from ..field_of_view import LIGHT_M_S, MIN_RANGE, SHORTEST_RANGE_M
 from ..ray_fan import AngleWindow
@@ -233,7 +232,7 @@ class Radar(SensorModel):
     @property
     def max_range(self) -> float:
         """Maximum range of all modes [m]."""
-        return max(cast(float, mode.max_range) for mode in self.modes)
+        return max(cast("float", mode.max_range) for mode in self.modes)
 
     @cached_property
     def window(self) -> AngleWindow:
@@ -254,7 +253,7 @@ class Radar(SensorModel):
 
 def radar_of(sensor: Sensor) -> Radar:
     """Return the model of a sensor that is a radar."""
-    return cast(Radar, sensor.model)
+    return cast("Radar", sensor.model)
 
 
 def _interpolated(at: Floats, angles: Floats, values: Floats) -> Floats:

@@ -1,6 +1,5 @@
 """Ultrasonic sensors: whether an echo comes back."""
 
-from .definition import Ultrasonic
-from .kind import ULTRASONIC
+from .kind import ULTRASONIC, Ultrasonic
 
 __all__ = ["ULTRASONIC", "Ultrasonic"]

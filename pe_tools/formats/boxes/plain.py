@@ -7,8 +7,7 @@ import re
 from collections.abc import Sequence
 from functools import lru_cache
 
-from pe_core.base.csv_text import csv_text, unmarked
-from pe_core.base.files import MAX_QUOTE, parse_number
+from pe_core.base.files import MAX_QUOTE, csv_text, parse_number, unmarked
 from pe_core.prior.boxes import COLUMNS, Boxes, degrees_of
 
 from ..csv_rows import csv_rows

@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError, shown
 from pe_core.geometry.poses import Pose, rotate
-from pe_core.scene.body_shape import BodyShape
-from pe_core.scene.mesh import Mesh, MeshAxes
-from pe_core.scene.orientation import along, front_by_names, hood_end, up_of
+from pe_core.scene.mesh import BodyShape, Mesh, MeshAxes
+from pe_core.scene.vehicle_description import along, front_by_names, hood_end, up_of
 
 BLENDER_S_FRONT = "-y"
 """Forward axis if z is up and the body is along y: Blender's front view shows the front so."""

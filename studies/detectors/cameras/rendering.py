@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pe_core.geometry.triangle_tree import TriangleTree
+from pe_core.geometry.ray_traversal import TriangleTree
 from pe_core.sensors.camera.picture import picture_rays
 
 from ..casting import RegionPictures, beams_on_objects, first_hits, region_objects

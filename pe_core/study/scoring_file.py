@@ -1,4 +1,4 @@
-"""The table [prior] of a study: read as a `Prior`, and written."""
+"""The tables [metric], [ap], [fusion] and [prior] of a study: what a score is of."""
 
 from __future__ import annotations
 
@@ -8,25 +8,77 @@ from pathlib import Path
 from typing import Any
 
 from ..base.plugins import shipped
-from ..base.setting_file import read_settings, settings_table
+from ..base.setting import read_declared, read_settings, settings_table
 from ..base.table_reader import REQUIRED, Table
 from ..base.values import A_NAME, A_PATH, vector
+from ..metric.entropy import ApCurve
 from ..prior.boxes import ORIGIN
 from ..prior.classes import FIELDS, SHIPPED, ObjectClass
 from ..prior.prior import FROM_BOXES, MODELS, Densities, Focus, Prior, checked_densities
+from ..scoring.targets import TargetRule
+from ..sensors import BLIND_RULES, KINDS, PerceptionModel
 from .file_names import BOXES
 
+CLASSES = "objects"
+"""The table of a kind's curves by class, in [ap.KIND]."""
 DEFAULT_MODEL = "road"
 OF_OBJECTS = dict.fromkeys(("length_spread", "width_spread", "any_heading"), 0.0)
 """Settings of a class that matter only for objects, with defaults that a file leaves out."""
 OPTIONAL = {"lanes": (0.0,), "share": 1.0, **OF_OBJECTS}
 """Optional keys of an own class."""
+NOT_NUMBERS = ("name", "size", "lanes")
+
+
+def read_targets(table: Table) -> TargetRule:
+    """Return whether voxels or objects are scored, from [metric]."""
+    return read_declared(table, TargetRule)
+
+
+def targets_table(targets: TargetRule) -> dict[str, Any] | None:
+    """Return the table [metric]; None for the voxels of the paper."""
+    if targets == TargetRule():
+        return None
+    return settings_table(targets)
+
+
+def read_model(curves: Table, fusion: Table) -> PerceptionModel:
+    """Return the perception model: AP curves of voxels and objects, the rule for blind sensors."""
+    default = PerceptionModel()
+    tables = {kind: curves.table(kind) for kind in KINDS}
+    objects = {}
+    for kind, table in tables.items():
+        own = table.table(CLASSES)
+        objects[kind] = {name: read_curve(own.table(name)) for name in own.names}
+    by_kind = {kind: read_curve(table, default.curve(kind)) for kind, table in tables.items()}
+    blind = fusion.text("blind", default.blind, BLIND_RULES)
+    chosen = read_settings(curves, PerceptionModel)["model"]
+    model = PerceptionModel(blind, objects=objects, model=chosen, **by_kind)
+    curves.finish()
+    fusion.finish()
+    return model
+
+
+def curves_table(model: PerceptionModel) -> dict[str, Any]:
+    """Return the table [ap]: all curves by kind, and the model and classes that are not default."""
+    named = settings_table(model) if model.model != PerceptionModel().model else {}
+    return named | {
+        kind: {
+            **settings_table(curve),
+            CLASSES: {n: settings_table(c) for n, c in model.objects.get(kind, {}).items()} or None,
+        }
+        for kind, curve in model.curves.items()
+    }
+
+
+def read_curve(table: Table, default: ApCurve | None = None) -> ApCurve:
+    """Return an AP curve from its table; keys that are absent are those of the default."""
+    return read_declared(table, ApCurve, default=default)
 
 
 def read_prior(table: Table, folder: Path) -> Prior:
     """Read a prior; the path of its boxes is relative to `folder`."""
     prior = _read_boxes(table, folder) if FROM_BOXES in table else _read_model(table)
-    prior = replace(prior, focus=tuple(_read_focus(t) for t in table.tables("focus")))
+    prior = replace(prior, focus=tuple(read_declared(t, Focus) for t in table.tables("focus")))
     if "density" in table:
         prior = replace(prior, density=_read_density(table.table("density"), prior))
     table.finish()
@@ -106,9 +158,6 @@ def _read_class(table: Table, shipped: Sequence[ObjectClass]) -> ObjectClass:
         return ObjectClass(name=name, size=(size[0], size[1], size[2]), lanes=lanes, **values)
 
 
-NOT_NUMBERS = ("name", "size", "lanes")
-
-
 def _read_lanes(table: Table, default: tuple[float, ...]) -> tuple[float, ...]:
     value = table.raw("lanes", default)
     return table.numbers("lanes", len(value) if isinstance(value, list) else 1, default)
@@ -126,9 +175,3 @@ def _names(shipped: Sequence[ObjectClass], classes: Sequence[ObjectClass]) -> li
     """Return names in the default order: the shipped classes first, then new ones."""
     names = [c.name for c in shipped]
     return names + [c.name for c in classes if c.name not in names]
-
-
-def _read_focus(table: Table) -> Focus:
-    focus = Focus(**read_settings(table, Focus))
-    table.finish()
-    return focus

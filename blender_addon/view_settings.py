@@ -1,0 +1,249 @@
+"""Settings of the 3D view: each is declared once, for Blender, requests and the popover.
+
+A layer's settings stand below its switch, `show_` and its name. See `pe_core.base.setting`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from .engine import graphics, studies
+
+DEFAULT_CLASS = "pedestrian"
+AVERAGE = "AVERAGE"
+REDUNDANCY = "REDUNDANCY"
+"""Quantity of the ground map: what one lost sensor leaves, or how many kinds see a place."""
+COUNTED = (graphics.SENSORS, REDUNDANCY)
+"""Quantities that are numbers of sensors or kinds: they have no range of colours."""
+RANGES = {"ENTROPY": "entropy_range", "COVERAGE": "coverage_range"}
+"""The setting that holds a fixed range of colours, by quantity."""
+SENSORS_LEFT, KINDS, KINDS_LEFT = "SENSORS_LEFT", "KINDS", "KINDS_LEFT"
+FITTED, WHOLE, FIXED = "FITTED", "WHOLE", "FIXED"
+"""The range of values that the colours of the ground map cover."""
+SELECTED, ALL, RIG = "SELECTED", "ALL", "RIG"
+BY_STATE, BY_SENSOR, BY_CHANNEL = "STATE", "SENSOR", "CHANNEL"
+EVERY_NTH = "EVERY"
+HEIGHTS_M = {AVERAGE: None, "H0": 0.0, "H50": 0.5, "H100": 1.0, "H150": 1.5}
+MIN_LENGTH_M = 0.1
+
+OPACITY, SHARE, ENTROPY = studies.Number(0.05, 1.0), studies.Number(0.0, 1.0), studies.Number()
+METRES, LENGTH = studies.Number(0.5, unit="m"), studies.Number(MIN_LENGTH_M, unit="m")
+BODY, COUNT, KEY = studies.Number(0.01, 5.0, unit="m"), studies.Whole(1), studies.Whole(0)
+
+
+def _switch(default: bool, label: str, text: str) -> bool:
+    return studies.setting(default, studies.Toggle(), text, studies.Panel("", label))
+
+
+def _value(default: Any, rule: Any, label: str, text: str, **panel: Any) -> Any:
+    return studies.setting(default, rule, text, studies.Panel("", label, **panel))
+
+
+def _menu(default: str, label: str, text: str, *items: tuple[str, str, str], when: str = "") -> str:
+    """Return a setting of one of several texts, each with its label and its meaning."""
+    panel = studies.Panel("", label, menu=tuple(item[1:] for item in items), when=when)
+    return studies.setting(default, studies.OneOf(tuple(item[0] for item in items)), text, panel)
+
+
+@dataclass(frozen=True, slots=True)
+class ViewSettings:
+    """What the 3D view draws; `layers` are the names of those that are switched on."""
+
+    show_ground: bool = _switch(True, "Ground Map", "Colour the ground by how well sensors see it")
+    ground_quantity: str = _menu(
+        "ENTROPY",
+        "Show",
+        "Quantity that the colours of the ground show",
+        ("SENSORS", "Sensors", "Number of sensors that see a location: none, 1, 2, 3 or more"),
+        ("COVERAGE", "Coverage", "Share of a location that is visible to a sensor"),
+        ("ENTROPY", "Entropy", "Uncertainty of a detector in nats; lower is better"),
+        (REDUNDANCY, "Redundancy", "What is left when any one sensor is lost, or kinds"),
+    )
+    redundancy_of: str = _menu(
+        SENSORS_LEFT,
+        "Redundancy",
+        "What the redundancy map shows",
+        (SENSORS_LEFT, "Sensors Left", "The fewest sensors when any one is lost"),
+        (KINDS, "Kinds", "How many kinds of sensors see the test body"),
+        (KINDS_LEFT, "Kinds Left", "The fewest kinds when any one sensor is lost"),
+        when="ground_quantity=REDUNDANCY",
+    )
+    redundancy_height: float = _value(
+        0.8, BODY, "Body Height",
+        "Height of the test body: a cylinder 0.3 m wide that stands alone",
+        when="ground_quantity=REDUNDANCY",
+    )  # fmt: skip
+    ground_height: str = _menu(
+        AVERAGE,
+        "Height",
+        "Height above the ground that is evaluated",
+        (AVERAGE, "Average", "All heights, by how likely an object is there: as scored"),
+        ("H0", "Ground", "The voxels that stand on the ground"),
+        ("H50", "0.5 m", "As high as a bumper or a cone"),
+        ("H100", "1 m", "As high as a bonnet"),
+        ("H150", "1.5 m", "As high as heads and roofs"),
+        when="ground_quantity!=REDUNDANCY",
+    )
+    ground_opacity: float = _value(0.35, OPACITY, "Opacity", "Opacity of the map's colours")
+    ground_range: str = _menu(
+        FITTED,
+        "Range",
+        "Range of values of the ground map's colours; the bright end is good",
+        (FITTED, "Fitted", "Colours are spread over what this scene shows: all but the lowest and "
+         "the highest 2 % of its places. Kept from the first score on, until it is fitted again"),
+        (WHOLE, "Whole", "From what nobody sees to what is seen best: the same colours in every "
+         "scene, and on review pages"),
+        (FIXED, "Fixed", "Between two values that you set"),
+    )  # fmt: skip
+    ground_fits: int = _value(0, KEY, "Fits", "How often the range of the colours was fitted again")
+    entropy_range: tuple[float, float] = _value(
+        (16.7, -11.0), studies.Pair(ENTROPY), "Entropy",
+        "Entropy at the dark and at the bright end [nats]", precision=1,
+    )  # fmt: skip
+    coverage_range: tuple[float, float] = _value(
+        (0.0, 1.0), studies.Pair(SHARE), "Coverage",
+        "Coverage at the dark and at the bright end, 0 to 1", precision=2,
+    )  # fmt: skip
+    ground_difference: bool = _switch(
+        False,
+        "Difference",
+        "Show where the rig is better (blue) or worse (orange) than the rig that Live is compared "
+        "with: before the last move, pinned sensors, or a variant",
+    )
+    show_blind: bool = _switch(
+        True,
+        "Blind Ground",
+        "Outline the ground round the vehicle that no sensor sees, with its extent on each side",
+    )
+    blind_height: str = _menu(
+        "H50",
+        "Height",
+        "Height of an object on the ground; ground where it is invisible is blind",
+        ("H0", "Flat", "What lies flat on the ground: the gaps between a LiDAR's rings are blind"),
+        ("H50", "0.5 m", "A cone, a crouching child, a low wall"),
+        ("H100", "1 m", "A child"),
+        ("H150", "1.5 m", "A car, a grown person"),
+    )
+    show_reach: bool = _switch(
+        False,
+        "Reach",
+        "Draw the distance up to which objects of a class are found: average precision of at least "
+        "0.5",
+    )
+    reach_class: str = _value(DEFAULT_CLASS, studies.Name(), "Class", "Class of the objects")
+    reach_of: str = _menu(
+        RIG,
+        "Of",
+        "Sensors whose reach is drawn",
+        (RIG, "Rig", "All sensors together"),
+        (SELECTED, "Selected", "All together, and each selected sensor alone"),
+        (ALL, "All", "All together, and each sensor alone"),
+    )
+    show_requirements: bool = _switch(
+        True,
+        "Requirements",
+        "Draw the zones of requirements: filled where they are met, hatched where they are not",
+    )
+    show_mounts: bool = _switch(
+        True, "Mounts", "Tint the surfaces of mounts; no-go areas and bounds are boxes"
+    )
+    show_focus: bool = _switch(
+        True, "Focus", "Outline the regions with a higher or lower weight than in the prior"
+    )
+    show_frustums: bool = _switch(
+        True, "Camera Views", "Draw the cameras' fields of view, true to lens and pitch"
+    )
+    footprints: bool = _switch(
+        True,
+        "On the Ground",
+        "Draw the ground in a camera's field of view, up to the range or the horizon",
+    )
+    view_range: float = _value(
+        12.0, METRES, "Range", "Drawn length of a camera's view on the ground",
+        soft_max=100.0, when="footprints",
+    )  # fmt: skip
+    show_beams: bool = _switch(
+        True,
+        "Beams",
+        "Draw a sample of LiDAR beams, with the true share of beams that end on the vehicle",
+    )
+    beams_of: str = _menu(
+        SELECTED,
+        "Of",
+        "Sensors whose beams are drawn",
+        (SELECTED, "Selected", "Beams of selected sensors"),
+        (ALL, "All", "Beams of all sensors"),
+    )
+    channels: str = _menu(
+        "FEW",
+        "Channels",
+        "Channels whose beams are drawn",
+        ("FEW", "Few", "A few channels from the highest to the lowest"),
+        ("ONE", "One", "A single channel"),
+        (EVERY_NTH, "Every nth", "Every nth channel"),
+        ("ALL", "All", "All channels"),
+    )
+    channel: int = _value(
+        1, COUNT, "Channel", "Number of the channel; the lowest is 1", when="channels=ONE"
+    )
+    every: int = _value(4, COUNT, "Every", "2: every second channel", when="channels=EVERY")
+    beam_colors: str = _menu(
+        BY_SENSOR,
+        "Color By",
+        "Quantity that the colours of beams show",
+        (BY_STATE, "Free or Occluded", "Blue beams are free, orange beams end on the vehicle"),
+        (BY_SENSOR, "Sensor", "Each sensor has a colour of its own, as in the list; orange beams "
+         "end on the vehicle"),
+        (BY_CHANNEL, "Channel", "From the lowest channel, dark, to the highest, bright"),
+    )  # fmt: skip
+    beam_length: float = _value(
+        8.0, LENGTH, "Length", "Drawn length of beams that hit nothing", soft_max=200.0
+    )
+    beam_limit: int = _value(
+        5_000, COUNT, "Maximum",
+        "Maximum number of drawn beams, evenly chosen; more beams make the view slow",
+        soft_max=200_000,
+    )  # fmt: skip
+    rings: bool = _switch(True, "On the Ground", "Draw the rings in which channels meet the ground")
+    show_heat: bool = _switch(
+        False, "Occluded Beams", "Colour the vehicle where it occludes beams, by their number"
+    )
+    show_axles: bool = _switch(
+        True,
+        "Axles",
+        "Show the axles, if they are known, and the axes on the ground under the rear axle: the "
+        "origin of other programs",
+    )
+    show_front: bool = _switch(
+        True,
+        "Front",
+        "Show with an arrow where the front of the vehicle is, until there is a sensor",
+    )
+    show_ghosts: bool = _switch(
+        True, "Other Variant", "Show the variant whose ghost is switched on in the list of variants"
+    )
+    ghost_key: int = _value(0, KEY, "Ghost", "Key of the variant that is shown; 0: none")
+    show_place: bool = _switch(True, "Queried Location", "Mark the queried location")
+    show_labels: bool = _switch(True, "Names", "Write each sensor's name beside it")
+    show_inset: bool = _switch(
+        False, "Picture in View", "Show what the selected sensor sees in a corner of the 3D view"
+    )
+    show_legend: bool = _switch(True, "Legend", "Explain the colours in the lower right corner")
+    layers: frozenset[str] = frozenset()
+    palette: graphics.Palette = graphics.VIEWPORT
+
+    @property
+    def ground_height_m(self) -> float | None:
+        """Height of the ground map [m]; None: the average of all heights."""
+        return HEIGHTS_M[self.ground_height]
+
+    @property
+    def blind_height_m(self) -> float:
+        """Height of an object on blind ground [m]."""
+        return HEIGHTS_M[self.blind_height] or 0.0
+
+    @property
+    def channel_number(self) -> int:
+        """The number that `channels` asks for: the channel's, or of every nth its step."""
+        return self.every if self.channels == EVERY_NTH else self.channel

@@ -1,0 +1,177 @@
+"""The example vehicles, the sedan and the shuttle bus, as they are shipped."""
+
+import json
+import re
+import shlex
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from blender_addon.engine import search
+from pe_core.geometry.poses import rotation_matrix
+from pe_core.sensors import kind_of
+from tests.addon import scenes
+from tests.addon.command_line import run_here
+
+TOOLS = scenes.ASSETS.parent / "tools"
+sys.path.insert(0, str(TOOLS))
+import demo_scene  # noqa: E402
+
+CORNERS_M = [(x, y) for x in (3.03, -3.03) for y in (1.01, -1.01)]
+OUTSIDE_THE_SHELL = ("wheel", "plate", "roof_pod")
+ROOF_M = 1.45
+
+
+@pytest.fixture(scope="module")
+def shipped(registered):
+    """The studies of both, evaluated on few voxels: a file is opened once."""
+    return {n: replace(scenes.shipped_study(n), samples=16_384) for n in ("sedan", "bus")}
+
+
+@pytest.fixture
+def sedan(shipped):
+    return shipped["sedan"]
+
+
+@pytest.fixture
+def bus(shipped):
+    return shipped["bus"]
+
+
+@pytest.mark.parametrize("name", ["sedan", "bus"])
+def test_the_mesh_file_holds_the_blend_file_s_triangles_and_the_readme_lists_the_glass(
+    shipped, name
+):
+    vehicle, mesh = shipped[name].vehicle, pe.read_mesh(scenes.ASSETS / f"{name}.npz")
+    assert mesh.triangles.tobytes() == vehicle.triangles.tobytes()
+    assert np.array_equal(mesh.parts, vehicle.parts)
+    assert mesh.part_names == vehicle.part_names
+    listed = ", ".join(f'"{part}"' for part in vehicle.glass)
+    assert f"`glass = [{listed}]`" in (scenes.ASSETS / "README.md").read_text()
+
+
+def around(count=3600):
+    """Level directions all around."""
+    azimuth = 2.0 * np.pi * (np.arange(count) + 0.5) / count
+    return np.column_stack([np.cos(azimuth), np.sin(azimuth), np.zeros(count)])
+
+
+def in_view(camera, yaw_deg, pitch_deg, count=15):
+    """Directions through a camera's whole picture."""
+    right, down = np.meshgrid(*[np.linspace(-1.0, 1.0, count)] * 2)
+    width = np.tan(camera.hfov / 2.0)
+    height = width * camera.height / camera.width
+    rays = np.stack([np.ones_like(right), -right * width, -down * height], axis=-1).reshape(-1, 3)
+    turn = rotation_matrix(0.0, np.radians(pitch_deg), np.radians(yaw_deg))
+    return rays @ turn.T / np.linalg.norm(rays, axis=1, keepdims=True)
+
+
+def test_the_bus_has_its_size_and_parts(bus):
+    low, high = bus.vehicle.bounds
+    assert low == pytest.approx([-3.03, -1.01, 0.0], abs=1e-3)
+    assert high == pytest.approx([3.03, 1.01, 2.60], abs=1e-3)
+    assert 5_000 < len(bus.vehicle.triangles) < 16_000
+    assert {"door_front", "roof", "bumper_rear", "wheel_front_left"} <= set(bus.vehicle.part_names)
+    assert {"windshield", "rear_window", "door_windows"} <= set(bus.vehicle.glass)
+
+
+def test_body_glass_and_lamps_are_one_closed_shell(bus):
+    names = bus.vehicle.part_names
+    skin = [i for i, name in enumerate(names) if not name.startswith(OUTSIDE_THE_SHELL)]
+    triangles = bus.vehicle.triangles[np.isin(bus.vehicle.parts, skin)]
+    assert scenes.open_edges(triangles) == 0
+    assert scenes.sharpest_fold(triangles) > -0.8
+    assert scenes.volume(triangles) > 20.0
+
+
+@pytest.mark.parametrize("corner", CORNERS_M)
+@pytest.mark.parametrize("height", [0.84, 1.16])
+def test_a_lidar_at_each_corner_sees_three_quarters_of_the_way_around(bus, corner, height):
+    hits = bus.vehicle.first_hit((*corner, height), around())
+    outwards = around() @ np.array([*np.sign(corner), 0.0]) > 0.0
+    assert np.isinf(hits.distance).mean() == pytest.approx(0.75, abs=0.02)
+    assert np.isinf(hits.distance[outwards]).all()
+
+
+@pytest.mark.parametrize(
+    ("model", "position", "yaw", "pitch", "pane"),
+    [
+        ("Camera 30 deg", (2.90, 0.0, 1.66), 0.0, 1.4, "windshield"),
+        ("Camera 60 deg", (-2.90, 0.0, 1.52), 180.0, 7.2, "rear_window"),
+    ],
+)
+def test_a_camera_behind_the_glass_sees_out_and_a_lidar_does_not(
+    bus, model, position, yaw, pitch, pane
+):
+    rays = in_view(pe.catalog.load(model), yaw, pitch)
+    assert np.isinf(bus.vehicle.first_hit(position, rays, through_glass=True).distance).all()
+    hits = bus.vehicle.first_hit(position, rays)
+    assert set(bus.vehicle.parts[hits.face]) == {bus.vehicle.part_names.index(pane)}
+
+
+def test_the_bus_carries_the_two_lidars_of_the_paper(bus):
+    poses = {s.name: (s.model.name, s.pose.position, s.pose.rotation_deg) for s in bus.rig}
+    assert poses == {
+        "lidar_front_right": ("Pandar40", (3.03, -1.01, 1.16), (0.0, -0.3, 0.0)),
+        "lidar_rear_left": ("Pandar40", (-3.03, 1.01, 0.85), (0.0, 3.2, 0.0)),
+    }
+
+
+def test_two_lidars_on_a_diagonal_score_better_than_one(bus):
+    evaluator = bus.evaluator()
+    both = evaluator.entropy(bus.rig)
+    for sensor in bus.rig:
+        assert both < evaluator.entropy(pe.Rig([sensor])) - 0.3
+
+
+def test_the_sedan_has_its_size_and_parts(sedan):
+    low, high = sedan.vehicle.bounds
+    assert low[[0, 2]] == pytest.approx([-2.35, 0.0], abs=2e-3)
+    assert high[[0, 2]] == pytest.approx([2.35, ROOF_M], abs=2e-3)
+    body = sedan.vehicle.parts == sedan.vehicle.part_names.index("body")
+    assert np.ptp(sedan.vehicle.triangles[body][..., 1]) == pytest.approx(1.85, abs=2e-3)
+    assert {"hood", "roof", "windshield", "wheel_front_left"} <= set(sedan.vehicle.part_names)
+    assert "windshield" in sedan.vehicle.glass
+
+
+def test_pandar64_scores_better_than_hdl64e_in_its_place(sedan):
+    (sensor,) = sedan.rig
+    assert sensor.model.name == "Pandar64"
+    other = pe.Rig([replace(sensor, model=pe.catalog.load("HDL-64E"))])
+    evaluator = sedan.evaluator()
+    assert evaluator.entropy(sedan.rig) < evaluator.entropy(other) - 1.0
+
+
+def test_the_demo_searches_by_default_for_a_lidar_and_a_camera(addon, tmp_path):
+    """And ends with what was moved, what that is worth and costs, and the page to open."""
+    demo_scene.make(start := tmp_path / "start.blend")
+    rig = scenes.study().rig
+    assert {kind_of(sensor).name for sensor in rig} == {"camera", "lidar"}
+    script = (TOOLS / "demo.sh").read_text("utf-8")
+    options = shlex.split(re.search(r"OPTIONS=\((.*?)\)", script, re.DOTALL)[1])
+    few = ("--evaluations", "5", "--samples", "1024", "--grid-samples", "1024", "--workers", "1")
+    more = ("--no-review", "--output", tmp_path)
+    answer = run_here(start, "optimize", *options, *few, *more)
+    assert answer.returncode == 0, answer.stderr
+    result = json.loads((tmp_path / "result.json").read_text("utf-8"))
+    assert result["method"] == search.DEFAULT_METHOD
+    (tmp_path / "review.html").touch()
+    command = [sys.executable, TOOLS / "show_result.py", tmp_path]
+    moved, better, opened = subprocess.check_output(command, text=True).splitlines()
+    assert all(sensor.name in moved for sensor in rig)
+    assert result["cost"] in better
+    assert opened.split()[1] == str(tmp_path / "review.html")
+
+
+def test_the_best_height_lies_above_the_roof_unprompted(sedan):
+    few = {"samples": 4096, "schedule": pe.Schedule(candidates=12), "method": "random"}
+    job = pe.OptimizeJob(replace(sedan, search=replace(sedan.search, **few), samples=4096), 1)
+    for _ in job:
+        pass
+    outcome = job.outcome
+    assert outcome.after.entropy < outcome.before.entropy
+    assert outcome.study.rig.sensors[0].pose.position[2] >= ROOF_M

@@ -100,13 +100,13 @@ def ask_place(
     ----------
     rig, space, prior, vehicle
     point : (2,) or (3,) float
-        x, y and optionally z in the ground frame [m]; z is 0 if it is missing or None. A point
-        outside the space raises `InputError`.
+        Ground frame [m]; z is 0 if it is missing or None. One outside the space raises
+        `InputError`.
     model : PerceptionModel, optional
         AP curves and fusion rule; the paper's by default.
     densities : sequence of ClassDensity, optional
-        ``prior.densities(space)`` if the caller has it already: computing it takes longer than the
-        rest of the query.
+        ``prior.densities(space)`` if the caller has it: that takes longer than the rest of the
+        query.
     """
     model, side = model or PerceptionModel(), space.interval
     values = listed(point, 3) or []

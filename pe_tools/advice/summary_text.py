@@ -46,13 +46,12 @@ def words(
     ----------
     score : Score
     rig, vehicle : Rig, Vehicle, optional
-        The rig and the vehicle that were scored. With both, the share of its picture that a camera
-        loses to the vehicle is described, too.
+        Those that were scored. With both, also what a camera loses to the vehicle.
     seen : Outlook, optional
-        Outlook of the same rig. It adds the coverage by several sensors, expected AP, reach, blind
-        ground, and the zones that each sensor sees best.
+        Of the same rig. It adds the coverage by several sensors, expected AP, reach, blind ground,
+        and the zones that each sensor sees best.
     warnings : sequence of Advice
-        Warnings about the same rig. They explain why a sensor sees nothing.
+        About the same rig. They explain why a sensor sees nothing.
     """
     lines = [*rig_words(score, seen, rig, warnings)]
     alone = len(score.per_sensor) == 1

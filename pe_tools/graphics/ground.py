@@ -104,7 +104,7 @@ def ground_map(
 
     Parameters
     ----------
-    seen : GroundSight or AsScored
+    seen : GroundSight
     quantity : str
         A key of `QUANTITIES`, or `SENSORS`.
     opacity : float
@@ -113,8 +113,8 @@ def ground_map(
     where : str, optional
         Text of the legend about heights.
     bounds : (float, float), optional
-        Values of the dark and the bright end of the colours (`fitted_bounds`); by default those of
-        what nobody sees and of what is seen best. The bright end is the better one.
+        Values of the dark and the bright end of the colours (`fitted_bounds`), the better one
+        bright.
     """
     where = where or _where(seen.height)
     if quantity == SENSORS:

@@ -47,24 +47,18 @@ def simplified(
     Parameters
     ----------
     vehicle : Vehicle
-        Its parts, glass and clearance are kept.
     triangles : int
-        1000 or more.
+        1000 or more, else `InputError`.
     quick : bool
         Take the first size of cubes that leaves at least half as many: half the time, for previews.
 
     Returns
     -------
     vehicle : Vehicle
-        The same object if it has no more triangles. No part is lost, even if that needs more
-        triangles.
+        With the same parts, glass and clearance; the same object if it has no more triangles. No
+        part is lost, even if that needs more triangles.
     error_m : float
         No point of either surface is farther from the other one than this [m].
-
-    Raises
-    ------
-    InputError
-        When the number of triangles is no whole number from 1000 on.
     """
     wanted = TRIANGLES.checked("simplify", "triangles", triangles)
     if len(vehicle.triangles) <= wanted:

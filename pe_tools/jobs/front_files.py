@@ -63,14 +63,8 @@ def write_front(
     """Write front.json, front.csv and a study for each design of the front; return the JSON data.
 
     The studies are in the folder `designs`, each with its best placement; they share one mesh.
-    Studies of an earlier run are removed from there if nobody has changed them.
-
-    Parameters
-    ----------
-    chosen : TradeOff
-    folder : path
-    host : mapping of str to str, optional
-        Versions of the host program by name.
+    Studies of an earlier run are removed from there if nobody has changed them. `host` has versions
+    of the host program by name.
 
     Raises
     ------

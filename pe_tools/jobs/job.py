@@ -89,16 +89,11 @@ class Outcome:
     start, study : Study
         The given study, and the study with the best placement.
     before, after : Score
-        Scores of the two. They are the same object if the job only scores, or if the search found
-        nothing better.
+        Of the two; the same object if the job only scores, or if the search found nothing better.
     history : tuple of HistoryRow
         Every placement that became the best, the start first.
-    evaluations : int
-        Number of rigs evaluated by the search.
-    stopped : bool
-        Whether the search was stopped early.
-    seconds : float
-        Duration of the job [s].
+    evaluations, stopped, seconds
+        Rigs evaluated by the search, whether it was stopped early, and how long the job took [s].
     warnings : tuple of Advice
         Warnings about `study`.
     inputs : dict
@@ -106,14 +101,14 @@ class Outcome:
     evaluated : tuple of EvaluatedRig
         Journal of the search, from which a stopped search resumes.
     robustness : Robustness or None
-        Of a search: how the entropy of start and result changes under mounting errors and failures;
-        None, as all that is analysed after a search, where it was stopped before.
+        How the entropy of start and result changes under mounting errors and failures; None, as all
+        that is analysed after a search, where it was stopped before.
     verdicts : tuple of Verdict
         On the requirements of `study`, in its order.
     conditions : ConditionTable or None
         Of `study`, where it has states or weathers.
     sensitivity : Sensitivity or None
-        Of a search: how sure it is of its result; None where it was too short or has it off.
+        How sure a search is of its result; None where it was too short or has it off.
     starts : tuple of StartEnd
         Where each start of a search ended, if it had several.
     stop_reason : str
@@ -167,7 +162,6 @@ class Progress:
     Attributes
     ----------
     stage : str
-        What the job does.
     fraction : float
         Completed part of the stage, 0 to 1.
     entropy : float or None

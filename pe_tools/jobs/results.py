@@ -155,8 +155,7 @@ def write_outcome(
 
     Parameters
     ----------
-    outcome : Outcome
-    folder : path
+    outcome, folder
     host : dict of str, optional
         Versions of the host program by name.
     later : collection of str
@@ -165,8 +164,8 @@ def write_outcome(
     Raises
     ------
     InputError
-        The folder cannot be written, or one of these files in it was not written by this program.
-        The folder then stays unchanged.
+        The folder cannot be written, or one of these files in it was not written by this program;
+        it then stays unchanged.
     """
     folder, data = prepare_folder(folder), result_dict(outcome, host)
     writers = study_writers(outcome.study, STUDY)

@@ -83,9 +83,8 @@ class OptimizeJob(Job):
 
     Parameters
     ----------
-    study : Study
-    workers : int, optional
-        Number of threads and processes; all processors by default.
+    study, workers
+        As of `Job`.
     before : Score, optional
         Score of the study's rig, if the caller has it already: it is not computed again.
     journal : Journal, optional

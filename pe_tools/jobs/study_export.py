@@ -31,7 +31,7 @@ def export_study(study: Study, path: str | Path, *, replace_study: bool = False)
     ----------
     study : Study
     path : path
-        Path of the study file; mesh, areas and boxes are named after it.
+        Of the study file; mesh, areas and boxes are named after it.
     replace_study : bool
         Whether the user has agreed to replace the file at `path`, even one that this program did
         not write. This does not apply to the files beside it.
@@ -39,8 +39,8 @@ def export_study(study: Study, path: str | Path, *, replace_study: bool = False)
     Raises
     ------
     InputError
-        A file exists that this program did not write or that was changed since, or a file cannot
-        be written. No file is written then.
+        A file exists that this program did not write or that was changed since, or a file cannot be
+        written. No file is written then.
     """
     path = Path(path)
     with FileSet(path.parent, (path.name,) if replace_study else ()) as files:

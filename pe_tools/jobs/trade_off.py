@@ -109,20 +109,18 @@ class Design:
 
     Attributes
     ----------
-    name : str
-    price : float
-    models : mapping of sensor name to SensorModel or None
-        Models of the sensors that the study lets choose; None for a sensor that is left out.
+    name, price, models
+        `models` are those of the sensors that the study lets choose; None for one that is left out.
     study : Study
         The design as a study, with the best placement found and without choices.
     entropy : float
-        Entropy of that placement [nats]: that of the score, or, for a design that was only
-        screened, that of the search; NaN after a screening by expected AP.
+        Of that placement [nats]: that of the score, or, for a design that was only screened, that
+        of the search; NaN after a screening by expected AP.
     score : Score, optional
-        Score without a ground map; None for a design that was only screened.
+        Without a ground map; None for a design that was only screened, which has no verdicts
+        either.
     warnings : tuple of Advice
     verdicts : tuple of Verdict
-        On the study's requirements; none for a design that was only screened.
     figures : mapping of str to float
         Its objectives by name, on a front of several. By expected AP: price, AP, and the entropy.
     """
@@ -171,14 +169,12 @@ class TradeOff:
         All evaluated designs with a feasible placement, cheapest first.
     front : tuple of Design
         Designs that no other design beats in both price and entropy (or AP), cheapest first. Only
-        designs that were searched are compared, if there are any; if the search keeps
-        requirements, only those of them that break the fewest.
+        designs that were searched are compared, if there are any; if the search keeps requirements,
+        only those of them that break the fewest.
     refused : mapping of name to str
-        Names of designs without a feasible placement, and the reason.
-    is_complete : bool
-        Whether all designs within the limits were evaluated.
-    stopped : bool
-        Whether the job was stopped early.
+        Why designs have no feasible placement.
+    is_complete, stopped : bool
+        Whether all designs within the limits were evaluated, and whether the job was stopped early.
     seconds : float
     objectives : tuple of str
         Of a front of several objectives; none: it is that of price and entropy.

@@ -42,11 +42,9 @@ class SceneOutput:
     name, title : str
         Name in commands, and title in the user interface.
     file : str
-        Name of its file, or of its folder if it has several files.
+        Name of its file, or of its folder if it `has_several` files.
     write : callable
         Function of a request; returns bytes by file name, and messages.
-    has_several : bool
-        Whether it is a folder of files.
     has_range : bool
         Whether the output depends on `range_m` of the request.
     """

@@ -54,16 +54,11 @@ def page_bytes(
     Parameters
     ----------
     contexts : sequence of ReportContext
+        One to six, else `InputError`.
     progress : callable, optional
         Called before each section with the share of sections that are done, 0 to 1. An exception
         that it raises ends the work.
     about : About
-        Title, author, date and revision.
-
-    Raises
-    ------
-    InputError
-        When there is no study, or more than six.
     """
     contexts = keyed_contexts(contexts)
     steps = [
@@ -104,13 +99,11 @@ def write_page(
 
     Parameters
     ----------
-    contexts : sequence of ReportContext
-    folder : path
-    name : str
+    contexts, about
+        As of `page_bytes`.
+    folder, name
     replace : bool
         Whether an existing page is replaced, whoever wrote it.
-    about : About
-        Title, author, date and revision.
 
     Raises
     ------

@@ -30,7 +30,7 @@ class ReportContext:
     name : str
         Name of the study as readers see it; any text.
     outcome : Outcome
-        Result of a job: of a score, or of a search with the study before and after it.
+        Of a score, or of a search with the study before and after it.
     key : str
         A letter that identifies the study on its page: ids of elements end in it.
     command : str
@@ -132,18 +132,9 @@ MAX_LETTERS = 200
 class About:
     """Title, author, date and revision at the head of the page; empty ones are left out.
 
-    Parameters
-    ----------
-    title : str
-        Heading in place of the studies' names, which then stand below it.
-    author, revision : str
-    date : str
-        Any text ("2026-05-04", "May 2026"); "today" is the day of the run.
-
-    Raises
-    ------
-    InputError
-        When a text is longer than 200 letters.
+    The `title` is a heading in place of the studies' names, which then stand below it. The `date`
+    is any text ("2026-05-04", "May 2026"); "today" is the day of the run. A text of more than 200
+    letters raises `InputError`.
     """
 
     title: str = ""

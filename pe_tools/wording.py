@@ -61,11 +61,6 @@ def warning_text(code: str, part: str | None, values: Mapping[str, Any]) -> str:
     return WARNINGS[code](part, **values) if code in WARNINGS else code.replace("_", " ")
 
 
-def _fragile(_part: str | None, rise: float, position: float, angle: float, tolerant: bool) -> str:
-    more = "" if tolerant else "; a search with a tolerance looks for one that is less fragile"
-    return f"{off_by(position, angle)} (1 sigma) it is {rise:.2f} nats worse on average{more}"
-
-
 def _requirement(_part: str | None, name: str, against: Sequence[str] | None) -> str:
     text = f"{name} is not met; no placement was found that keeps all requirements"
     if against is None:
@@ -73,16 +68,6 @@ def _requirement(_part: str | None, name: str, against: Sequence[str] | None) ->
     if not against:
         return f"{text}, though none stands against it: a longer search may"
     return f"{text}: a short search met it only by breaking {', '.join(against)}"
-
-
-def _provisional(_part: str | None, runs: int, planned: int) -> str:
-    done = f"{runs} of {planned} runs of their study are done"
-    return f"the curves from scans are provisional: {done}"
-
-
-def _below_ground(part: str | None, state: str, depth: float, parts: int) -> str:
-    more = f" and {parts - 1} more parts" if parts > 1 else ""
-    return f"state {state!r} drives {part!r}{more} through the ground, {depth:.2f} m deep"
 
 
 def _housing(_part: str | None, size: Sequence[float], parts: Sequence[str]) -> str:
@@ -121,12 +106,6 @@ def _faces(_part: str | None, turn: float, length: float, width: float, is_named
     return f"it faces {side} by its parts' names; forward is +x: turn it by {turn:g} deg"
 
 
-def _height(_part: str | None, bottom: float) -> str:
-    if bottom < 0.0:
-        return f"it stands {metres(-bottom)} deep in the ground, z = 0"
-    return f"it floats {metres(bottom)} above the ground, z = 0"
-
-
 def _not_centred(_part: str | None, axis: str, off: float) -> str:
     if axis == "x":
         return f"not centred: its middle is {metres(abs(off))} off the origin, at x = {off:.1f} m"
@@ -134,25 +113,21 @@ def _not_centred(_part: str | None, axis: str, off: float) -> str:
     return f"not centred: its axis is {side}; mirror images of sensors would be off the vehicle"
 
 
-def _driver(part: str | None, paths: Sequence[str], is_allowed: bool) -> str:
-    why = "" if is_allowed else ": Python in drivers is not allowed in this file"
-    whose = f"{part}: " if part else ""
-    return f"{whose}the driver of its {', '.join(paths)} did not run{why}"
-
-
-def _hidden_vehicle(_part: str | None, collection: str, how: str, is_whole: bool) -> str:
-    if is_whole:
-        return f"the vehicle collection {collection} is {how}: nothing of it is scored"
-    return f"the vehicle's collection {collection} is {how}: it is not scored"
-
-
 PARTS_NAMED = 3
 """So many parts of the vehicle are named in a warning."""
 WARNINGS: Mapping[str, Callable[..., str]] = {
-    "fragile": _fragile,
+    "fragile": lambda _, rise, position, angle, tolerant: (
+        f"{off_by(position, angle)} (1 sigma) it is {rise:.2f} nats worse on average"
+        + ("" if tolerant else "; a search with a tolerance looks for one that is less fragile")
+    ),
     "requirement": _requirement,
-    "provisional": _provisional,
-    "below_ground": _below_ground,
+    "provisional": lambda _, runs, planned: (
+        f"the curves from scans are provisional: {runs} of {planned} runs of their study are done"
+    ),
+    "below_ground": lambda part, state, depth, parts: (
+        f"state {state!r} drives {part!r}{f' and {parts - 1} more parts' if parts > 1 else ''} "
+        f"through the ground, {depth:.2f} m deep"
+    ),
     "covered": lambda part, state, share: (
         f"in state {state!r}, {part!r} covers {share:.0%} of what it sees, beyond that as drawn"
     ),
@@ -183,12 +158,23 @@ WARNINGS: Mapping[str, Callable[..., str]] = {
     ),
     "on_roof": lambda _: "its wheels are on top: does it lie on its roof?",
     "faces": _faces,
-    "height": _height,
+    "height": lambda _, bottom: (
+        f"it stands {metres(-bottom)} deep in the ground, z = 0"
+        if bottom < 0.0
+        else f"it floats {metres(bottom)} above the ground, z = 0"
+    ),
     "not_centred": _not_centred,
     "missing": lambda _, names, path: f"{', '.join(names)} is missing: there is no {path}",
-    "driver": _driver,
+    "driver": lambda part, paths, is_allowed: (
+        f"{f'{part}: ' if part else ''}the driver of its {', '.join(paths)} did not run"
+        + ("" if is_allowed else ": Python in drivers is not allowed in this file")
+    ),
     "units": lambda _: "one unit is not one metre in this scene: nothing can be scored",
-    "hidden_vehicle": _hidden_vehicle,
+    "hidden_vehicle": lambda _, collection, how, is_whole: (
+        f"the vehicle collection {collection} is {how}: nothing of it is scored"
+        if is_whole
+        else f"the vehicle's collection {collection} is {how}: it is not scored"
+    ),
     "refused": lambda _, field, found, expected: f"its {field} is {found}; expected {expected}",
 }
 """How warnings are said, by code: of the part of the vehicle and the warning's values."""

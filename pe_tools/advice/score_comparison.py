@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import permutations
 from statistics import NormalDist
 from typing import Any
 
@@ -54,15 +55,11 @@ def difference_errors(scores: Sequence[Score], figure: FigureKey) -> tuple[tuple
     grid, and for reach, which is not sampled. The result (N, N) has the unit of the figure.
     """
     errors = [_error(score, figure) for score in scores]
-
-    def of_pair(i: int, j: int) -> float:
-        if i == j:
-            return 0.0
+    found = [[0.0] * len(scores) for _ in scores]
+    for i, j in permutations(range(len(scores)), 2):
         paired = paired_error(scores[i].scatter, scores[j].scatter, figure)
-        return math.hypot(errors[i], errors[j]) if paired is None else paired
-
-    numbers = range(len(scores))
-    return tuple(tuple(of_pair(i, j) for j in numbers) for i in numbers)
+        found[i][j] = math.hypot(errors[i], errors[j]) if paired is None else paired
+    return tuple(map(tuple, found))
 
 
 def _error(score: Score, figure: FigureKey) -> float:
@@ -72,11 +69,9 @@ def _error(score: Score, figure: FigureKey) -> float:
     if figure == ("rig", "", "entropy"):
         return score.stderr
     stored = None if score.scatter is None else score.scatter.error(figure)
-    return _bound(score, figure) if stored is None else stored
-
-
-def _bound(score: Score, figure: FigureKey) -> float:
-    """Return a standard error that the scatter lacks: that of the objects, or an upper bound."""
+    if stored is not None:
+        return stored
+    # The scatter lacks it: it is that of the objects, or an upper bound.
     group, name, measure = figure
     objects = score.objects
     found_class = None if objects is None or group != "class" else objects.per_class.get(name)

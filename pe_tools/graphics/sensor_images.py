@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import cast
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -89,10 +88,9 @@ def hidden_lines(
     return Primitives.of(np.stack([start, ends], axis=1), color)
 
 
-@dataclass(frozen=True, slots=True)
-class Lobe:
-    """One mode of a sensor: arcs of directions (3, N, 3), sensor frame, lowest first, and ranges.
-    `ranges` (3, N) are in metres, without a limit by the drawing."""
+class Lobe(NamedTuple):
+    """One mode of a sensor: arcs of directions (3, N, 3), sensor frame, lowest first, and their
+    ranges (3, N) [m], without a limit by the drawing."""
 
     directions: Floats
     ranges: Floats

@@ -74,14 +74,6 @@ def copy_script() -> tuple[str, ...]:
 
 def reproduction(context: ReportContext) -> dict[str, Any]:
     """Return versions, digests and the study itself; after a search also the best placement."""
-    score = context.after
-    error = f", standard error {score.stderr:.4f} nats"
-    if score.objects is not None:
-        samples = f"{advice.objects_looked_at(score.objects)}{error}"
-    else:
-        whole = "a sample of " if score.stderr else "all "
-        samples = f"{whole}{score.voxels:,} voxels, of {context.study.space.interval:g} m"
-        samples += error if score.stderr else ""
     files = {("The study", "study"): context.start}
     if context.was_searched:
         files = {
@@ -94,7 +86,7 @@ def reproduction(context: ReportContext) -> dict[str, Any]:
             "Python, NumPy": f"{platform.python_version()}, {np.__version__}",
             **context.versions,
         },
-        "samples": samples,
+        "samples_text": advice.objects_looked_at,
         "study_digest": jobs.fingerprint(context.start),
         "vehicle_digest": studies.vehicle_digest(context.vehicle),
         "files": [(*names, jobs.study_text(study)) for names, study in files.items()],

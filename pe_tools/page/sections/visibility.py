@@ -91,25 +91,14 @@ def redundancy(context: ReportContext) -> dict[str, Any] | None:
         "Kinds": ("of sensors that see the test body", seen.kinds),
         "Kinds left": ("the fewest when any one sensor is lost", seen.kinds_left),
     }
+    drawn = []
+    for name, (about, values) in maps.items():
+        alt = f"Map of {name.lower()}, {context.name}"
+        drawn.append((name, about, count_map(values, bounds, study.vehicle, alt)))
     counts = [(f"{n} or more", (n, 1)) for n in range(1, len(seen.by_sensor) + 1)]
     counts += [(f"{n} kinds", (1, n)) for n in range(2, int(seen.kinds.max(initial=0)) + 1)]
-    return {
-        "error": "",
-        "height_m": HEIGHT_M,
-        "within_m": WITHIN_M,
-        "maps": [
-            (
-                name,
-                about,
-                count_map(values, bounds, study.vehicle, f"Map of {name.lower()}, {context.name}"),
-            )
-            for name, (about, values) in maps.items()
-        ],
-        "shares": [
-            (text, percent(seen.share(*least), 1), percent(seen.share(*least, one_lost=True), 1))
-            for text, least in counts
-        ],
-    }
+    sizes = {"error": "", "height_m": HEIGHT_M, "within_m": WITHIN_M}
+    return {**sizes, "maps": drawn, "counts": counts, "share": seen.share}
 
 
 def requirement_verdicts(context: ReportContext) -> dict[str, Any] | None:

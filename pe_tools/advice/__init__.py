@@ -3,55 +3,34 @@
 Nothing here computes a score; results of `pe_core` are checked, compared and described.
 """
 
-from pe_core.scoring.sight import BLIND_TO_M as BLIND_TO_M
-from pe_tools.wording import joined as joined
-from pe_tools.wording import percent as percent
+from pe_core.scoring.sight import BLIND_TO_M
+from pe_tools.wording import joined, percent
 
-from ..wording import off_by as off_by
-from .advice import FRAGILE as FRAGILE
-from .advice import PROVISIONAL as PROVISIONAL
-from .advice import UNMET as UNMET
-from .advice import Advice as Advice
-from .advice import fragile as fragile
-from .advice import unmet as unmet
-from .key_figures import KeyFigures as KeyFigures
-from .key_figures import SensorRow as SensorRow
-from .key_figures import key_figures as key_figures
-from .key_figures import loss_text as loss_text
-from .key_figures import sensor_rows as sensor_rows
-from .key_figures import sensor_table as sensor_table
-from .location import AskedPlace as AskedPlace
-from .location import SensorAtPlace as SensorAtPlace
-from .location import ask_place as ask_place
-from .mount_checks import check_mirror_image as check_mirror_image
-from .mount_checks import occluded_shares as occluded_shares
-from .mounting_places import place_name as place_name
-from .mounting_places import plain_name as plain_name
-from .mounting_places import sensor_labels as sensor_labels
-from .ranking import Notation as Notation
-from .ranking import costs_nothing as costs_nothing
-from .ranking import ranking as ranking
-from .ranking import search_cost as search_cost
-from .ranking import win_words as win_words
-from .score_comparison import OTHER_HARDWARE as OTHER_HARDWARE
-from .score_comparison import ComparedRow as ComparedRow
-from .score_comparison import compare as compare
-from .score_comparison import compare_figures as compare_figures
-from .score_comparison import hardware_note as hardware_note
-from .summary import Outlook as Outlook
-from .summary import class_of as class_of
-from .summary import lone_reach as lone_reach
-from .summary import object_words as object_words
-from .summary import objects_looked_at as objects_looked_at
-from .summary import outlook as outlook
-from .summary_text import WHERE as WHERE
-from .summary_text import occluded_words as occluded_words
-from .summary_text import rig_words as rig_words
-from .summary_text import sensor_words as sensor_words
-from .summary_text import words as words
-from .warnings import condition_warnings as condition_warnings
-from .warnings import curve_note as curve_note
-from .warnings import curve_warnings as curve_warnings
-from .warnings import hidden_sensors as hidden_sensors
-from .warnings import hidden_words as hidden_words
-from .warnings import warnings as warnings
+from ..wording import off_by
+from .advice import FRAGILE, PROVISIONAL, UNMET, Advice, fragile, unmet
+from .key_figures import KeyFigures, SensorRow, key_figures, loss_text, sensor_rows, sensor_table
+from .location import AskedPlace, SensorAtPlace, ask_place
+from .mount_checks import check_mirror_image, occluded_shares
+from .mounting_places import place_name, plain_name, sensor_labels
+from .ranking import Notation, costs_nothing, ranking, search_cost, win_words
+from .score_comparison import OTHER_HARDWARE, ComparedRow, compare, compare_figures, hardware_note
+from .summary import Outlook, class_of, lone_reach, object_words, objects_looked_at, outlook
+from .summary_text import WHERE, occluded_words, rig_words, sensor_words, words
+from .warnings import (
+    condition_warnings,
+    curve_note,
+    curve_warnings,
+    hidden_sensors,
+    hidden_words,
+    warnings,
+)
+
+__all__ = ["BLIND_TO_M", "FRAGILE", "OTHER_HARDWARE", "PROVISIONAL", "UNMET", "WHERE", "Advice"]
+__all__ += ["AskedPlace", "ComparedRow", "KeyFigures", "Notation", "Outlook", "SensorAtPlace"]
+__all__ += ["SensorRow", "ask_place", "check_mirror_image", "class_of", "compare"]
+__all__ += ["compare_figures", "condition_warnings", "costs_nothing", "curve_note"]
+__all__ += ["curve_warnings", "fragile", "hardware_note", "hidden_sensors", "hidden_words"]
+__all__ += ["joined", "key_figures", "lone_reach", "loss_text", "object_words", "objects_looked_at"]
+__all__ += ["occluded_shares", "occluded_words", "off_by", "outlook", "percent", "place_name"]
+__all__ += ["plain_name", "ranking", "rig_words", "search_cost", "sensor_labels", "sensor_rows"]
+__all__ += ["sensor_table", "sensor_words", "unmet", "warnings", "win_words", "words"]

@@ -26,7 +26,7 @@ from pe_tools.jobs import front_dict, front_job, result_dict
 from pe_tools.jobs.results import history_csv
 from pe_tools.page import ReportContext
 from pe_tools.page.build import outcome_of_folder
-from pe_tools.page.sections.search import sensitivity as sensitivity_section
+from pe_tools.page.sections.score import sensitivity as sensitivity_section
 from pe_tools.sensitivity import sensitivity_from_dict
 from pe_tools.sensitivity.fresh_samples import GOLDEN, SAMPLES, FreshSamples
 from tests.engine import shapes

@@ -9,11 +9,15 @@ import pytest
 
 import pe_core as pe
 from pe_tools import graphics
-from pe_tools.page.scene3d import SCRIPTS, THREE, scene_data, scripts, view
-from pe_tools.page.scene3d.packed_data import (
+from pe_tools.page.scene3d import (
+    SCRIPTS,
+    THREE,
     packed_points,
     packed_primitives,
+    scene_data,
+    scripts,
     vehicle_data,
+    view,
 )
 from tests.review.conftest import html_of
 

@@ -16,8 +16,16 @@ from .. import scene3d
 from ..markup import render
 from ..report_context import ReportContext
 from .comparison import bill_of_materials, comparison
-from .score import by_class_and_zone, conditions, objects, overview, sensor_loss, warnings_and_text
-from .search import search_history, sensitivity
+from .score import (
+    by_class_and_zone,
+    conditions,
+    objects,
+    overview,
+    search_history,
+    sensitivity,
+    sensor_loss,
+    warnings_and_text,
+)
 from .traceability import assumptions, copy_script, reproduction
 from .visibility import dimensions, redundancy, requirement_verdicts, sensor_details, visibility
 

@@ -3,7 +3,6 @@
 import dataclasses
 
 import pytest
-from pe_tools.page.sections.sensor_details import sensor_details
 
 import pe_core as pe
 from pe_core import catalog
@@ -11,6 +10,7 @@ from pe_tools import graphics
 from pe_tools.page import ReportContext
 from pe_tools.page.pictures.sensor_views import field_figure
 from pe_tools.page.scene3d import scene_data
+from pe_tools.page.sections.visibility import sensor_details
 from tests.review.conftest import html_of, outcome_of, small_study
 
 

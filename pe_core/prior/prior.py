@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.errors import InputError, shown
-from ..base.memory import require_memory
+from ..base.errors import InputError, require_memory, shown
 from ..base.setting import NAMES, Pair, Panel, check_settings, required_setting, setting
 from ..base.values import WEIGHT, Number, choice
 from ..geometry.grids import PerceptionSpace

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pe_core import catalog
-from pe_core.base.errors import InputError, shown
-from pe_core.base.memory import report_memory_errors
+from pe_core.base.errors import InputError, report_memory_errors, shown
 from pe_core.base.values import A_NAME
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig, Sensor, SensorModel

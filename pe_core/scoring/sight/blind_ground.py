@@ -58,7 +58,7 @@ BODY_M = 0.3
 """Diameter of the test body: that of the cylinders of FMVSS 111 and UN regulation 158, less than a
 small child is wide."""
 STEP_M = 0.05
-"""Side of the squares, and the largest: with larger ones no body would be certainly visible."""
+"""Side of the squares: with those of more than 0.1 m no body would be certainly visible."""
 TOO_FAR_M = 3 * STEP_M
 """Edges of blind ground are at most so far outside of it, with squares of `STEP_M`."""
 MIN_AREA_M2 = 0.18

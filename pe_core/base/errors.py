@@ -63,6 +63,10 @@ class InputError(ValueError):
         """Return the same error with another source, such as the file of the value."""
         return InputError(source, self.field, self.expected, self.found)
 
+    def within(self, source: object, of: str = "") -> InputError:
+        """Return the same error with another source; `of`, else its own, goes before the field."""
+        return InputError(source, f"{of or self.source}: {self.field}", self.expected, self.found)
+
 
 def shown(value: object) -> str:
     """Return a value as messages quote it: like `repr`, but short, and it never fails."""

@@ -132,7 +132,7 @@ def study_from_dict(data: Any, source: str = "study", folder: Path | None = None
     try:
         study = _read_study(table, folder or Path())
     except InputError as error:
-        raise error if error.source == source else _named(error, source) from None
+        raise error if error.source == source else error.within(source) from None
     table.finish()
     return study
 
@@ -164,11 +164,6 @@ def _check_beside(path: Path, field: str, needed: bool, file: str | None) -> Non
     if needed and not (file and os.path.exists(path.parent / file)):
         expected = "a file beside the study (pe.export_study writes it)"
         raise InputError(path, field, expected, shown(file) if file else "none")
-
-
-def _named(error: InputError, source: str) -> InputError:
-    """Return an error with the study's file as its source."""
-    return InputError(source, f"{error.source}: {error.field}", error.expected, error.found)
 
 
 def _read_study(table: Table, folder: Path) -> Study:

@@ -97,8 +97,7 @@ def import_rig(
     except InputError as error:  # about a lens, a pose or a model: of the imported file
         if Path(error.source).is_relative_to(path if path.is_dir() else path.parent):
             raise
-        field = f"{error.source}: {error.field}"
-        raise InputError(path, field, error.expected, error.found) from None
+        raise error.within(path) from None
 
 
 def _imported(

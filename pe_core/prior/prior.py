@@ -81,16 +81,9 @@ ALONG = Number(infinite=True, unit="m")
 
 @dataclass(frozen=True, slots=True)
 class Focus:
-    """A factor of the focus weight w(s, c): a region, or some classes, count more or less.
+    """A factor of the focus weight w(s, c): a region [m], or some classes, count more or less.
 
-    Parameters
-    ----------
-    factor : float
-        At least 0. In overlapping regions the factors multiply.
-    x, y : (low, high) float
-        Region of the ground [m]; infinite by default.
-    classes : sequence of str, optional
-        Which classes; all by default.
+    By default a region is infinite.
     """
 
     factor: float = required_setting(

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
-from bpy.props import (
-    BoolProperty,
-    EnumProperty,
-    FloatProperty,
-    FloatVectorProperty,
-    StringProperty,
-)
 
 from . import library, own_catalog, signals
 from .engine import catalog, graphics
 from .language import draw_label
 from .preferences import COLORS, LIVE_BUDGET_MS, stored
+from .properties import fields
 from .sensor_kinds import mount_of
 from .translation_context import CONTEXT
 
@@ -30,17 +26,14 @@ def load_catalog(preferences: bpy.types.AddonPreferences, _context: bpy.types.Co
     signals.study_changed.emit()
 
 
-def _model(kind: str, label: str) -> StringProperty:
+def _model(kind: str, label: str) -> Any:
     """Return the property of the usual model of a kind."""
 
     def suggestions(_owner: object, _context: bpy.types.Context, typed: str) -> list[str]:
         return [name for name in catalog.names(kind) if typed.lower() in name.lower()]
 
-    return StringProperty(
-        name=label,
-        description="Model that Add and Place put on the vehicle; empty: the extension's choice",
-        search=suggestions,
-    )
+    about = "Model that Add and Place put on the vehicle; empty: the extension's choice"
+    return fields.text(label, about, search=suggestions)
 
 
 def redraw(_preferences: bpy.types.AddonPreferences, _context: bpy.types.Context) -> None:
@@ -48,18 +41,10 @@ def redraw(_preferences: bpy.types.AddonPreferences, _context: bpy.types.Context
     signals.view_changed.emit()
 
 
-def _color(name: str, description: str, default: graphics.Rgba) -> FloatVectorProperty:
+def _color(label: str, about: str, default: graphics.Rgba) -> Any:
     """Return the property of a colour of the overlay."""
-    return FloatVectorProperty(
-        name=name,
-        description=description,
-        default=default,
-        size=4,
-        min=0.0,
-        max=1.0,
-        subtype="COLOR_GAMMA",
-        update=redraw,
-    )
+    options = {"default": default, "subtype": "COLOR_GAMMA", "update": redraw}
+    return fields.numbers(label, about, 4, min=0.0, max=1.0, **options)
 
 
 NAMES_SHARE = 0.4
@@ -71,43 +56,41 @@ class PE_Preferences(bpy.types.AddonPreferences):
 
     bl_idname = __package__
 
-    show_library: BoolProperty(
-        name="Sensors in the Asset Browser",
-        description="A library of LiDARs and cameras: drag one onto the vehicle",
-        default=True,
+    show_library: fields.switch(
+        "Sensors in the Asset Browser",
+        "A library of LiDARs and cameras: drag one onto the vehicle",
+        True,
         update=show_or_hide,
     )
-
     lidar_model: _model("lidar", "LiDAR")
     camera_model: _model("camera", "Camera")
     radar_model: _model("radar", "Radar")
     ultrasonic_model: _model("ultrasonic", "Ultrasonic")
-    own_catalog: StringProperty(
-        name="Own Catalogue",
-        description="File of sensors of your own, for all files: tables as in a study, by name"
-        " (.toml)",
+    own_catalog: fields.text(
+        "Own Catalogue",
+        "File of sensors of your own, for all files: tables as in a study, by name (.toml)",
         subtype="FILE_PATH",
         update=load_catalog,
     )
-    results_folder: StringProperty(
-        name="Folder of Results",
-        description="Folder that the file dialogs of exports open in; empty: the .blend file's",
+    results_folder: fields.text(
+        "Folder of Results",
+        "Folder that the file dialogs of exports open in; empty: the .blend file's",
         subtype="DIR_PATH",
     )
-    live_budget_ms: FloatProperty(
-        name="Live Budget [ms]",
-        description="While a sensor moves, its score is exact where that takes no longer than this,"
-        " and a preview where it does; 0: always a preview",
-        default=LIVE_BUDGET_MS,
+    live_budget_ms: fields.number(
+        "Live Budget [ms]",
+        "While a sensor moves, its score is exact where that takes no longer than this, and a "
+        "preview where it does; 0: always a preview",
+        LIVE_BUDGET_MS,
         min=0.0,
         soft_max=200.0,
         precision=0,
         step=500,
     )
-    length_unit: EnumProperty(
-        name="Lengths in Texts",
-        description="Unit of lengths in the read-out, in warnings and in reports",
-        items=(
+    length_unit: fields.menu(
+        "Lengths in Texts",
+        "Unit of lengths in the read-out, in warnings and in reports",
+        (
             ("M", "Metres", "Lengths in metres: 0.35 m"),
             ("MM", "Millimetres", "Lengths up to 100 m with decimals in millimetres: 350 mm"),
         ),

@@ -15,7 +15,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from .engine import graphics, kinds, pe
+from .engine import graphics, kinds, pe, studies
 
 Pixels = NDArray[np.float32]
 """(H, W, 4) sRGB, the top row first."""
@@ -23,6 +23,8 @@ Pixels = NDArray[np.float32]
 DEFAULT_MODEL = "Pandar64"
 GAP_DEG = 30.0
 """A LiDAR whose horizontal field of view leaves out no more than this measures all around."""
+LONGEST_LINE = 4096
+"""Letters of a line with the keys of a table."""
 PIXELS_PER_DEG = 3
 """Of a picture of ranges: a full circle then fits into the editor that is made of the 3D view."""
 
@@ -44,6 +46,64 @@ class Mount:
     outward: bool
     display: str
     size_m: float
+
+
+def _figure(default: Any, rule: Any, label: str, text: str, **panel: Any) -> Any:
+    return studies.setting(default, rule, text, studies.Panel("", label, **panel), scored=True)
+
+
+METRES, PIXELS, LINE = (
+    studies.Number(0.0, unit="m"),
+    studies.Whole(1),
+    studies.Name(max_length=LONGEST_LINE),
+)
+ELEVATION, AZIMUTH = studies.Number(-90.0, 90.0), studies.Number(-360.0, 360.0)
+
+
+@dataclass(frozen=True, slots=True)
+class OwnLidar:
+    """Figures of an own LiDAR, whose channels are evenly spread over the field of view."""
+
+    channels: int = _figure(32, studies.Whole(1, 2048), "Channels", "Number of channels")
+    elevations: tuple[float, float] = _figure(
+        (-25.0, 15.0), studies.Pair(ELEVATION), "Elevation °",
+        "Lowest and highest channel in degrees above the horizon",
+    )  # fmt: skip
+    azimuths: tuple[float, float] = _figure(
+        (-180.0, 180.0), studies.Pair(AZIMUTH), "Azimuth °",
+        "Begin and end in degrees; positive is left",
+    )  # fmt: skip
+    azimuth_step: float = _figure(
+        0.2, studies.Number(0.001, 360.0), "Azimuth Step °",
+        "Angle between two beams of a channel in degrees", precision=3,
+    )  # fmt: skip
+    min_range: float = _figure(0.0, METRES, "From", "Minimum distance at which a beam counts")
+    max_range: float = _figure(
+        200.0, METRES, "Range", "Maximum distance at which a beam counts", min=0.01
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class OwnCamera:
+    """Figures of an own camera."""
+
+    width: int = _figure(1920, PIXELS, "Width", "Horizontal number of pixels")
+    height: int = _figure(1080, PIXELS, "Height", "Vertical number of pixels")
+    hfov: float = _figure(
+        90.0, studies.Number(0.001, 179.9), "Field of View °", "Horizontal field of view in degrees"
+    )
+    lens: str = _figure(
+        "", LINE, "Lens",
+        "Instead of the field of view, with the keys of a study: fx = 930, cx = 965, cy = 530, "
+        'distortion = { model = "brown-conrady", k1 = -0.16 }. Also min_range_m and max_range_m',
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class OwnTable:
+    """A kind without fields in the panel."""
+
+    keys: str = _figure("", LINE, "Keys", "The keys of its table in a study")
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,9 +180,7 @@ ROWS = {
         _lidar_housing,
         _lidar_mount,
         own_about="Beams of channels that are evenly spread",
-        own_fields=(
-            *("channels", "elevations", "azimuths", "azimuth_step", "min_range", "max_range"),
-        ),
+        own_fields=tuple(studies.settings_of(OwnLidar)),
         pixels=range_pixels,
         legend="near is bright, far is dark by metres; orange: occluded by the vehicle; "
         "grey: nothing in range",
@@ -131,7 +189,7 @@ ROWS = {
         Mount("Camera 90 deg", 0.05, True, 1.5, True, "ARROWS", 0.25),
         lambda _model: SMALL_BOX,
         own_about="A pinhole camera with square pixels, or one with a lens of its own",
-        own_fields=("width", "height", "hfov", "lens"),
+        own_fields=tuple(studies.settings_of(OwnCamera)),
         has_lens=True,
         camera=lambda model: model,
     ),

@@ -1,4 +1,4 @@
-"""Settings of the 3D view: each is declared once, for Blender, requests and the popover.
+"""Settings of the 3D view and of the live score, each declared once.
 
 A layer's settings stand below its switch, `show_` and its name. See `pe_core.base.setting`.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from .choices import BEFORE_MOVE, PINNED
 from .engine import graphics, studies
 
 DEFAULT_CLASS = "pedestrian"
@@ -247,3 +248,26 @@ class ViewSettings:
     def channel_number(self) -> int:
         """The number that `channels` asks for: the channel's, or of every nth its step."""
         return self.every if self.channels == EVERY_NTH else self.channel
+
+
+@dataclass(frozen=True, slots=True)
+class LiveSettings:
+    """The live score of a scene."""
+
+    on: bool = _switch(
+        False,
+        "Live",
+        "Update a score while a sensor moves: a preview at once, an exact score when the scene is "
+        "idle, on a sample of voxels. Score evaluates all voxels",
+    )
+    against: int = _value(
+        BEFORE_MOVE, studies.Whole(PINNED), "Compared With",
+        "Reference of the live score: 0, the sensors before the last move; -1, the pinned sensors; "
+        "otherwise the key of a variant",
+    )  # fmt: skip
+    figures: bool = _switch(
+        True,
+        "Blind Ground, Reach, AP",
+        "Add blind ground, reach ahead and AP when the scene is idle, for the height and the class "
+        "that the 3D view shows",
+    )

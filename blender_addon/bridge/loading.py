@@ -74,6 +74,7 @@ def record_of_study(study: pe.Study) -> SceneRecord:
     if study.vehicle is None:
         raise pe.InputError("study", "vehicle.mesh", "a vehicle", "none")
     mounting = study.search.mounting
+    goals = replace(study.search.goals, fixed=())
     return SceneRecord(
         source="study",
         sensors=_sensor_records(study),
@@ -83,7 +84,7 @@ def record_of_study(study: pe.Study) -> SceneRecord:
         model=study.model,
         targets=study.targets,
         samples=study.samples,
-        search=_without_sensors(study.search),
+        search=replace(study.search, free={}, limits={}, mounting=pe.Mounting(), goals=goals),
         mounts=mounting.mounts,
         constraints=mounting.constraints,
         selection=replace(study.selection, choices=()),
@@ -110,12 +111,6 @@ def differences(
         if _faces(mount) != _faces(held_mounts.get(name)):
             keys.append(f"area of mount {name!r}")
     return keys
-
-
-def _without_sensors(settings: pe.Search) -> pe.Search:
-    """Return the settings of a search without what they say about sensors."""
-    goals = replace(settings.goals, fixed=())
-    return replace(settings, free={}, limits={}, mounting=pe.Mounting(), goals=goals)
 
 
 def _faces(mount: search.AnyMount | None) -> object:

@@ -171,7 +171,7 @@ def of_scene(error: pe.InputError) -> pe.InputError:
     """Return an engine's error with the source "scene"; its own source moves to the field."""
     if error.source == "scene":
         return error
-    return pe.InputError("scene", f"{error.source}: {error.field}", error.expected, error.found)
+    return error.within("scene")
 
 
 def painted_area(vehicle: Collection, depsgraph: Depsgraph, mount: PropertyGroup) -> np.ndarray:

@@ -14,8 +14,9 @@ from bpy.types import PropertyGroup, Scene
 
 from ..choices import free_name
 from ..engine import catalog, pe
+from ..sensor_kinds import OwnCamera, OwnLidar
 from .rig import sensor_objects
-from .scene_settings import as_typed, pair_as_typed
+from .scene_settings import values_of
 
 _added: dict[str, dict[str, Any]] = {}
 """Tables that this add-on has added to the catalogue, by name."""
@@ -58,17 +59,20 @@ def table_of(row: PropertyGroup) -> dict[str, Any]:
 
 
 def _camera_table(row: PropertyGroup) -> dict[str, Any]:
-    size, lens = {"width": row.width, "height": row.height}, read_line(row.lens, "distortion")
-    return size | ({} if LENS_KEYS & set(lens) else {"hfov_deg": as_typed(row.hfov)}) | lens
+    own = OwnCamera(**values_of(row, OwnCamera))
+    size, lens = {"width": own.width, "height": own.height}, read_line(own.lens, "distortion")
+    return size | ({} if LENS_KEYS & set(lens) else {"hfov_deg": own.hfov}) | lens
 
 
 def _lidar_table(row: PropertyGroup) -> dict[str, Any]:
-    min_range = {"min_range_m": as_typed(row.min_range)} if row.min_range > 0.0 else {}
-    return min_range | {
-        "elevations_deg": _elevations(row),
-        "azimuth_step_deg": as_typed(row.azimuth_step),
-        "max_range_m": as_typed(row.max_range),
-        "horizontal_fov_deg": list(pair_as_typed(row.azimuths)),
+    own = OwnLidar(**values_of(row, OwnLidar))
+    low, high = own.elevations
+    steps = max(own.channels - 1, 1)
+    return ({"min_range_m": own.min_range} if own.min_range > 0.0 else {}) | {
+        "elevations_deg": [round(low + (high - low) * n / steps, 6) for n in range(own.channels)],
+        "azimuth_step_deg": own.azimuth_step,
+        "max_range_m": own.max_range,
+        "horizontal_fov_deg": list(own.azimuths),
     }
 
 
@@ -113,13 +117,6 @@ def own_sensors_signature(scene: Scene) -> list[object]:
         return []
     used = {obj.perception_entropy.model for obj in sensor_objects(scene)}
     return [(name, table_of(rows[name])) for name in sorted(used & rows.keys())]
-
-
-def _elevations(row: PropertyGroup) -> list[float]:
-    """Return elevations of evenly spread channels, lowest first [deg]."""
-    low, high = pair_as_typed(row.elevations)
-    steps = max(row.channels - 1, 1)
-    return [round(low + (high - low) * n / steps, 6) for n in range(row.channels)]
 
 
 def _follow_name(scene: Scene, row: PropertyGroup) -> None:

@@ -97,8 +97,7 @@ def _checked(prior: pe.Prior, number: int, row: PropertyGroup) -> list[pe.Focus]
         _check_classes(prior, row)
         return list(_focus_of(row))
     except pe.InputError as error:
-        field = f"focus {number} ({row.name}): {error.field}"
-        raise pe.InputError("scene", field, error.expected, error.found) from None
+        raise error.within("scene", f"focus {number} ({row.name})") from None
 
 
 def _focus_of(row: PropertyGroup) -> Iterator[pe.Focus]:

@@ -32,18 +32,12 @@ def requirements_of(settings: PropertyGroup) -> tuple[Requirement, ...]:
 
     `InputError` when a row's table is wrong, or two rows have one name.
     """
-    found = [requirement_of(row) for row in settings.requirements if row.enabled]
+    found = [
+        _read(row.name, _loaded(row.name, row.table))
+        for row in settings.requirements
+        if row.enabled
+    ]
     return requirements.checked_requirements(found)
-
-
-def requirement_of(row: PropertyGroup) -> Requirement:
-    """Return the requirement of a row; `InputError` where its table is wrong."""
-    return _read(row.name, table_of_row(row))
-
-
-def table_of_row(row: PropertyGroup) -> TableData:
-    """Return a row's table, without its name; `InputError` where the text is no table."""
-    return _loaded(row.name, row.table)
 
 
 def _loaded(name: str, text_of_row: str) -> TableData:

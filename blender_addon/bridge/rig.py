@@ -55,8 +55,7 @@ def sensor_from_object(obj: Object, depsgraph: Depsgraph) -> pe.Sensor:
         fusion, color = settings.fusion or None, color_of(obj)
         return pe.Sensor(obj.name, model, pose, fusion, curve_of(settings), color)
     except pe.InputError as error:
-        field = f"sensor {obj.name!r}: {error.field}"
-        raise pe.InputError("scene", field, error.expected, error.found) from None
+        raise error.within("scene", f"sensor {obj.name!r}") from None
 
 
 def color_of(obj: Object) -> str | None:

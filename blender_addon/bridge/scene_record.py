@@ -146,7 +146,9 @@ def record_of_scene(
         targets=targets_of(settings),
         samples=values_of(settings, pe.Study)["samples"],
         search=with_starts(search_of(settings, is_choice=is_choice), scene),
-        selection=selection_limits(settings) if is_choice else pe.Selection(),
+        selection=pe.Selection(**values_of(settings, pe.Selection))
+        if is_choice
+        else pe.Selection(),
         reference=reference_of(settings),
         passthrough=studies.passthrough_of_text(settings.passthrough, "scene"),
         requirements=requirements_of(settings),
@@ -241,11 +243,6 @@ def selection_of(records: Sequence[SensorRecord], limits: pe.Selection) -> pe.Se
     return replace(limits, choices=choices) if choices else pe.Selection()
 
 
-def selection_limits(settings: PropertyGroup) -> pe.Selection:
-    """Return a scene's limits on all sensors that are chosen, without the choices."""
-    return pe.Selection(**values_of(settings, pe.Selection))
-
-
 def write_options(settings: PropertyGroup, record: SensorRecord) -> None:
     """Write the model options of a record to a sensor of the scene."""
     settings.options.clear()
@@ -260,8 +257,7 @@ def _choice(record: SensorRecord) -> pe.Choice:
         options = [pe.Option(catalog.load(o.model), _price(o)) for o in record.options]
         return pe.Choice(options, [record.name], None, record.may_be_left_out)
     except pe.InputError as error:
-        field = f"sensor {record.name!r}: {error.field}"
-        raise pe.InputError("scene", field, error.expected, error.found) from None
+        raise error.within("scene", f"sensor {record.name!r}") from None
 
 
 def _price(option: ModelOption) -> float:

@@ -62,7 +62,7 @@ def _in_panel(cls: Any, names: Iterable[str] = ()) -> Iterator[tuple[str, studie
     declared = studies.settings_of(cls)
     for name in names or declared:
         if (panel := declared[name].panel) is not None:
-            yield panel.property, declared[name]
+            yield panel.property or name, declared[name]
 
 
 def value_of_property(setting: studies.Setting, value: Any) -> Any:
@@ -112,7 +112,7 @@ def space_of(settings: PropertyGroup) -> pe.PerceptionSpace:
     try:
         return pe.PerceptionSpace(**values_of(settings, pe.PerceptionSpace))
     except pe.InputError as error:
-        raise pe.InputError("scene", f"space: {error.field}", error.expected, error.found) from None
+        raise error.within("scene", "space") from None
 
 
 def perception_of(settings: PropertyGroup) -> pe.PerceptionModel:
@@ -141,15 +141,6 @@ def targets_of(settings: PropertyGroup) -> pe.TargetRule:
     return pe.TargetRule(**values_of(settings, pe.TargetRule))
 
 
-def tolerance_of(settings: PropertyGroup) -> pe.Tolerance:
-    """Return mounting errors and failures; the worst case counts only where there are several."""
-    values = values_of(settings, pe.Tolerance)
-    if not settings.mounting_errors:
-        values |= {"position": 0.0, "angle": 0.0}
-    several = values["position"] > 0.0 or values["angle"] > 0.0 or values["failures"]
-    return pe.Tolerance(**values | {"worst": values["worst"] and several})
-
-
 def search_of(settings: PropertyGroup, *, is_choice: bool) -> pe.Search:
     """Return the settings of a scene's search, without its sensors and mounts.
 
@@ -157,25 +148,21 @@ def search_of(settings: PropertyGroup, *, is_choice: bool) -> pe.Search:
     """
     is_scheduled = is_choice or settings.method == search.SCHEDULED_METHOD
     schedule = pe.Schedule(**values_of(settings, pe.Schedule)) if is_scheduled else pe.Schedule()
+    values = values_of(settings, pe.Tolerance)
+    if not settings.mounting_errors:
+        values |= {"position": 0.0, "angle": 0.0}
+    several = values["position"] > 0.0 or values["angle"] > 0.0 or values["failures"]
     return pe.Search(
         schedule=schedule,
         method=settings.method,
-        tolerance=tolerance_of(settings),
-        goals=goals_of(settings),
+        tolerance=pe.Tolerance(**values | {"worst": values["worst"] and several}),
+        goals=search.Goals(
+            search.Stop(**values_of(settings, search.Stop)),
+            starts=search.Start.of_text(settings.start_poses),
+            front=search.Front(**values_of(settings, search.Front)),
+            **values_of(settings, search.Goals),
+        ),
         **values_of(settings, pe.Search),
-    )
-
-
-def goals_of(settings: PropertyGroup) -> search.Goals:
-    """Return when a scene's searches stop, further starts, objectives, and the analysis.
-
-    `InputError` when only one objective is chosen.
-    """
-    return search.Goals(
-        search.Stop(**values_of(settings, search.Stop)),
-        starts=search.Start.of_text(settings.start_poses),
-        front=search.Front(**values_of(settings, search.Front)),
-        **values_of(settings, search.Goals),
     )
 
 

@@ -128,7 +128,7 @@ def record_of_object(obj: Object, depsgraph: Depsgraph, layer: ViewLayer) -> Sen
         pose = pose_of(obj, depsgraph) if visible else _hidden_pose(obj)
         curve = curve_of(settings)
     except pe.InputError as error:
-        raise _of_sensor("scene", obj.name, error) from None
+        raise error.within("scene", f"sensor {obj.name!r}") from None
     return SensorRecord(
         name=obj.name,
         model=settings.model,
@@ -272,7 +272,7 @@ def sensor_of(record: SensorRecord, source: str = "variant") -> pe.Sensor:
         fusion, color = record.fusion or None, record.color
         return pe.Sensor(record.name, model, record.pose, fusion, record.curve, color)
     except pe.InputError as error:
-        raise _of_sensor(source, record.name, error) from None
+        raise error.within(source, f"sensor {record.name!r}") from None
 
 
 def bounds_of(record: SensorRecord) -> dict[str, tuple[float, float]]:
@@ -292,8 +292,3 @@ def bounds_by_axis(
                 bounds = math.radians(bounds[0]), math.radians(bounds[1])
             limits[axis] = bounds
     return limits
-
-
-def _of_sensor(source: str, name: str, error: pe.InputError) -> pe.InputError:
-    """Return an error that names the sensor of the scene or the variant."""
-    return pe.InputError(source, f"sensor {name!r}: {error.field}", error.expected, error.found)

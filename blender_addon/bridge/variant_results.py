@@ -133,8 +133,7 @@ def check_choosable(scene: Scene, study: pe.Study) -> None:
     try:
         pe.FrontJob(study)
     except pe.InputError as error:
-        field = f"{error.source}: {error.field}"
-        raise pe.InputError("scene", field, error.expected, error.found) from None
+        raise error.within("scene") from None
     if any(study.search.free.values()) or study.search.mounting.on:
         check_placeable(scene, study)
 
@@ -232,17 +231,12 @@ def restore_result(
     if not variant.has_result or variant.signature != now.surroundings:
         return None
     study = study_of_variant(scene, variant, depsgraph)
-    score = whole_score_of(variant)
+    figures = json.loads(variant.score_json)
+    per_sensor = {name: pe.SensorScore(**row) for name, row in figures["per_sensor"].items()}
+    score = replace(score_from_dict(figures), per_sensor=per_sensor)
     if set(score.per_sensor) != {sensor.name for sensor in study.rig}:
         return None  # an object has another name than the sensor that was scored
     warnings = scene_advice(scene)
     outcome = pe.Outcome("score", study, study, score, score, warnings=warnings)
     store_outcome(scene, outcome, now.text)
     return outcome
-
-
-def whole_score_of(variant: Variant) -> pe.Score:
-    """Return a variant's stored score with the scores of its sensors."""
-    figures = json.loads(variant.score_json)
-    per_sensor = {name: pe.SensorScore(**row) for name, row in figures["per_sensor"].items()}
-    return replace(score_from_dict(figures), per_sensor=per_sensor)

@@ -30,21 +30,6 @@ def view_camera(obj: Object) -> Object | None:
     return next(views, None)
 
 
-def make_view_camera(obj: Object, model: pe.Camera) -> Object:
-    """Return a sensor's view camera with the model's lens; create it if it does not exist."""
-    view = view_camera(obj)
-    if view is None:
-        name = f"{obj.name} view"
-        view = bpy.data.objects.new(name, bpy.data.cameras.new(name))
-        view.perception_entropy.is_view = True
-        view.parent, view.matrix_local = obj, CAMERA_FROM_SENSOR
-        view.data.display_size, view.hide_select = SIZE_M, True
-        for collection in obj.users_collection:
-            collection.objects.link(view)
-    set_lens(view.data, model)
-    return view
-
-
 def shown_fov(model: pe.Camera) -> float:
     """Return the horizontal field of view [rad] of the pinhole that shows a camera's whole view.
 
@@ -73,7 +58,16 @@ def set_lens(camera: bpy.types.Camera, model: pe.Camera) -> None:
 
 def look_through(scene: Scene, obj: Object, model: pe.Camera) -> Object:
     """Make a sensor's view camera the scene's camera; the previous settings are stored."""
-    view = make_view_camera(obj, model)
+    view = view_camera(obj)
+    if view is None:
+        name = f"{obj.name} view"
+        view = bpy.data.objects.new(name, bpy.data.cameras.new(name))
+        view.perception_entropy.is_view = True
+        view.parent, view.matrix_local = obj, CAMERA_FROM_SENSOR
+        view.data.display_size, view.hide_select = SIZE_M, True
+        for collection in obj.users_collection:
+            collection.objects.link(view)
+    set_lens(view.data, model)
     if not scene.perception_entropy.before_look:
         scene.perception_entropy.before_look = json.dumps(_settings(scene))
     render = scene.render

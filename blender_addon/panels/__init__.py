@@ -3,6 +3,10 @@
 Panels appear in the order of CLASSES; a parent is registered before its children.
 """
 
+from collections.abc import Callable
+
+import bpy
+
 from . import (
     condition_panel,
     main,
@@ -38,17 +42,25 @@ CLASSES = (
 )
 
 
+PLACES: tuple[tuple[str, Callable[..., None]], ...] = (
+    ("VIEW3D_HT_header", overlay_popover.draw_in_header),
+    ("TOPBAR_MT_file_export", main.draw_export),
+    ("TOPBAR_MT_file_import", main.draw_import),
+    ("VIEW3D_MT_add", sensor_menus.draw_add_menu),
+    ("VIEW3D_MT_object", menus.draw_object_menu),
+    ("VIEW3D_MT_object_context_menu", menus.draw_context_menu),
+    ("OUTLINER_MT_object", menus.draw_context_menu),
+)
+"""Blender's own menus and headers by name, and what is added to them."""
+
+
 def register() -> None:
-    """Add icons, and entries in Blender's own headers and menus."""
-    overlay_popover.register()
-    main.register()
-    sensor_menus.register()
-    menus.register()
+    """Add the entries to Blender's own menus."""
+    for name, draw in PLACES:
+        getattr(bpy.types, name).append(draw)
 
 
 def unregister() -> None:
-    """Remove them."""
-    menus.unregister()
-    sensor_menus.unregister()
-    main.unregister()
-    overlay_popover.unregister()
+    """Remove the entries from Blender's own menus."""
+    for name, draw in reversed(PLACES):
+        getattr(bpy.types, name).remove(draw)

@@ -4,10 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
-import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
-from .layout import columns, draw_declared, draw_properties, draw_sentence, panel, row_list
+from .layout import (
+    columns,
+    draw_declared,
+    draw_list,
+    draw_properties,
+    draw_sentence,
+    panel,
+    row_list,
+)
 
 
 @row_list("PE_UL_states")
@@ -27,7 +34,8 @@ def weathers_rows(_context: Context, layout: UILayout, _settings: Any, item: Any
 @panel("Conditions", bl_ui_units_x=17)
 def conditions(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """States of the vehicle and weathers in which the rig is scored, too"""
-    _draw_list(layout, settings, states_rows, "state", "pe.add_state")
+    names, buttons = ("states", "state_index"), ("pe.add_state", "pe.remove_state")
+    draw_list(layout, states_rows, settings, names, buttons)
     if settings.states:
         row = layout.row(align=True)
         row.operator("pe.show_state", text="Show as Drawn", icon="LOOP_BACK").index = -1
@@ -35,7 +43,8 @@ def conditions(layout: UILayout, settings: PropertyGroup, context: Context) -> N
         draw_properties(layout, settings, ("drawn_frame",))
     else:
         draw_sentence(layout, context, "Pose the vehicle at another frame, then add the frame")
-    _draw_list(layout, settings, weathers_rows, "weather", None)
+    names, buttons = ("weathers", "weather_index"), ("pe.add_weather", "pe.remove_weather")
+    draw_list(layout, weathers_rows, settings, names, buttons, menu="weather")
     if settings.weather_index < len(settings.weathers):
         draw_declared(layout, settings.weathers[settings.weather_index], "weather")
     if settings.states or settings.weathers:
@@ -53,25 +62,6 @@ def _draw_row(layout: UILayout, item: PropertyGroup) -> UILayout:
     name.prop(item, "name", text="", emboss=False)
     weight.prop(item, "weight", text="")
     return row
-
-
-def _draw_list(
-    layout: UILayout,
-    settings: PropertyGroup,
-    of: type[bpy.types.UIList],
-    name: str,
-    add: str | None,
-) -> None:
-    row = layout.row()
-    row.use_property_split = False
-    lists = (settings, f"{name}s", settings, f"{name}_index")
-    row.template_list(of.__name__, "", *lists, rows=3)
-    buttons = row.column(align=True)
-    if add is not None:
-        buttons.operator(add, text="", icon="ADD")
-    else:
-        buttons.operator_menu_enum("pe.add_weather", "weather", text="", icon="ADD")
-    buttons.operator(f"pe.remove_{name}", text="", icon="REMOVE")
 
 
 CLASSES = (states_rows, weathers_rows, conditions)

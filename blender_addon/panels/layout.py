@@ -147,16 +147,23 @@ def draw_list(
     names: tuple[str, str],
     buttons: tuple[str, str],
     rows: int = 3,
+    menu: str = "",
 ) -> UILayout:
     """Draw a list with the buttons Add and Remove beside it; return the column of buttons.
 
-    `names` are the properties of the rows and of the selected row's index, `buttons` the operators.
+    `names` are the properties of the rows and of the selected row's index, `buttons` the operators;
+    `menu` is the property of the first that a menu asks for.
     """
     row = layout.row()
+    row.use_property_split = False
     row.template_list(kind.__name__, "", settings, names[0], settings, names[1], rows=rows)
     column = row.column(align=True)
-    for operator, icon in zip(buttons, ("ADD", "REMOVE"), strict=True):
-        column.operator(operator, text="", icon=icon)
+    add, remove = buttons
+    if menu:
+        column.operator_menu_enum(add, menu, text="", icon="ADD")
+    else:
+        column.operator(add, text="", icon="ADD")
+    column.operator(remove, text="", icon="REMOVE")
     return column
 
 

@@ -159,27 +159,6 @@ def draw_figure(layout: UILayout, name: str, value: str, sense: int = SAME) -> N
         right.label(text=value, icon_value=sense_icon(sense), translate=False)
 
 
-def draw_vehicle_line(layout: UILayout, context: Context) -> None:
-    """Draw a line on the vehicle below its field."""
-    settings = context.scene.perception_entropy
-    if settings.vehicle is not None and settings.vehicle_line:
-        draw_sentence(layout, context, settings.vehicle_line)
-
-
-def draw_warnings(layout: UILayout, context: Context) -> None:
-    """Draw the warnings: those of the vehicle, then those of each sensor."""
-    warnings = list(context.scene.perception_entropy.result_warnings)
-    for subject in dict.fromkeys(["", *(warning.subject for warning in warnings)]):
-        own = [warning for warning in warnings if warning.subject == subject]
-        if not own:
-            continue
-        box = layout.box().column(align=True)
-        if subject:
-            box.operator("pe.select_sensor", text=subject, translate=False).name = subject
-        for warning in own:
-            draw_warning(box, context, warning)
-
-
 STEPS = {1: "Choose the vehicle", 2: "Add a sensor"}
 """The way from an empty tab to *Score*."""
 
@@ -215,7 +194,8 @@ def draw_vehicle(layout: UILayout, context: Context) -> None:
         column = layout.column(align=True)
         column.operator("pe.use_selected", icon="RESTRICT_SELECT_OFF")
         column.operator("pe.open_example", icon="FILE_BLEND")
-    draw_vehicle_line(layout, context)
+    if settings.vehicle is not None and settings.vehicle_line:
+        draw_sentence(layout, context, settings.vehicle_line)
     if step == 2:
         asked, button = columns(layout, 0.5)
         draw_label(asked, "Front at the arrow?")
@@ -243,9 +223,18 @@ def main(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     poll=lambda context: bool(context.scene.perception_entropy.result_warnings),
     count="result_warnings",
 )
-def warnings(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
+def warnings(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """What is wrong with the vehicle and the sensors, and buttons that correct it"""
-    draw_warnings(layout, context)
+    found = settings.result_warnings
+    for subject in dict.fromkeys(["", *(warning.subject for warning in found)]):
+        own = [warning for warning in found if warning.subject == subject]
+        if not own:
+            continue
+        box = layout.box().column(align=True)
+        if subject:
+            box.operator("pe.select_sensor", text=subject, translate=False).name = subject
+        for warning in own:
+            draw_warning(box, context, warning)
 
 
 def draw_add(layout: UILayout, settings: PropertyGroup) -> None:
@@ -262,7 +251,7 @@ def draw_add(layout: UILayout, settings: PropertyGroup) -> None:
 
 
 @panel("Export and Import")
-def export(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
+def export(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
     """Files to take away, and rigs of other programs"""
     layout.operator("pe.export_study", icon="EXPORT")
     layout.operator("pe.import_study", icon="IMPORT")
@@ -275,11 +264,6 @@ def export(layout: UILayout, _settings: PropertyGroup, context: Context) -> None
     row.operator("pe.sensors_to_objects", text="To Objects", icon="OUTLINER_OB_CAMERA")
     row.operator("pe.sensors_from_objects", text="From Objects", icon="OUTLINER_OB_EMPTY")
     layout.operator_menu_enum("pe.export_scene", "output", text="Export Scene", icon="SCENE_DATA")
-    draw_axles(layout, context.scene.perception_entropy)
-
-
-def draw_axles(layout: UILayout, settings: PropertyGroup) -> None:
-    """Draw the positions of the axles, and the button that finds them."""
     row = layout.row()
     row.prop(settings, "axles_known", text="Axles")
     row.operator("pe.guess_axles", text="From Wheels", icon="VIEWZOOM")
@@ -303,18 +287,6 @@ def draw_import(menu: bpy.types.Menu, _context: Context) -> None:
     menu.layout.operator("pe.import_rig", text="Rig of Sensors (Perception Entropy)")
     text = "Cameras and Empties as Sensors (Perception Entropy)"
     menu.layout.operator("pe.sensors_from_objects", text=shown(text), translate=False)
-
-
-def register() -> None:
-    """Add the entries to Blender's own menus."""
-    bpy.types.TOPBAR_MT_file_export.append(draw_export)
-    bpy.types.TOPBAR_MT_file_import.append(draw_import)
-
-
-def unregister() -> None:
-    """Remove the entries from Blender's own menus."""
-    bpy.types.TOPBAR_MT_file_import.remove(draw_import)
-    bpy.types.TOPBAR_MT_file_export.remove(draw_export)
 
 
 CLASSES = (main,)

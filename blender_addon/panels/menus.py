@@ -63,24 +63,4 @@ def draw_context_menu(menu: bpy.types.Menu, context: Context) -> None:
         layout.operator("pe.place_sensor", icon="RESTRICT_SELECT_OFF")
 
 
-PLACES = (
-    ("VIEW3D_MT_object", draw_object_menu),
-    ("VIEW3D_MT_object_context_menu", draw_context_menu),
-    ("OUTLINER_MT_object", draw_context_menu),
-)
-"""Blender's menus by name, and what is added to them."""
-
-
-def register() -> None:
-    """Add the entries."""
-    for name, draw in PLACES:
-        getattr(bpy.types, name).append(draw)
-
-
-def unregister() -> None:
-    """Remove the entries."""
-    for name, draw in reversed(PLACES):
-        getattr(bpy.types, name).remove(draw)
-
-
 CLASSES = (PE_MT_object,)

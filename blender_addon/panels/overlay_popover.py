@@ -120,14 +120,4 @@ EXPANDED = {"ground_quantity", "blind_height", "reach_of", "beams_of", "channels
 """Menus whose entries are buttons beside each other."""
 
 
-def register() -> None:
-    """Put the button into the header of 3D views."""
-    bpy.types.VIEW3D_HT_header.append(draw_in_header)
-
-
-def unregister() -> None:
-    """Remove the button from the header."""
-    bpy.types.VIEW3D_HT_header.remove(draw_in_header)
-
-
 CLASSES = (view,)

@@ -68,7 +68,14 @@ def own_sensors_rows(_context: Context, layout: UILayout, _settings: Any, item: 
 @panel("Advanced")
 def advanced(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Settings that are rarely changed: own sensors, AP curves, space, clearance"""
-    draw_own_sensors(layout, context)
+    draw_label(layout, "Own Sensors")
+    names, buttons = ("own_sensors", "own_index"), ("pe.add_own_sensor", "pe.remove_own_sensor")
+    draw_list(layout, own_sensors_rows, settings, names, buttons, rows=2, menu="kind")
+    if settings.own_index < len(settings.own_sensors):
+        sensor = settings.own_sensors[settings.own_index]
+        draw_properties(layout.column(), sensor, ("kind", *own_fields(sensor.kind)))
+        if sensor.problem:
+            draw_sentence(layout, context, sensor.problem, icon="ERROR")
     draw_label(layout, "AP = a ln m + b")
     if not settings.curves:
         layout.operator("pe.own_curves")
@@ -83,23 +90,6 @@ def advanced(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
     draw_label(column, "Space and Voxels")
     draw_declared(column, settings, "space")
     draw_declared(column, settings, "vehicle")
-
-
-def draw_own_sensors(layout: UILayout, context: Context) -> None:
-    """Draw the file's own sensors, and the figures of the one that is selected."""
-    settings = context.scene.perception_entropy
-    draw_label(layout, "Own Sensors")
-    row = layout.row()
-    name = own_sensors_rows.__name__
-    row.template_list(name, "", settings, "own_sensors", settings, "own_index", rows=2)
-    buttons = row.column(align=True)
-    buttons.operator_menu_enum("pe.add_own_sensor", "kind", text="", icon="ADD")
-    buttons.operator("pe.remove_own_sensor", text="", icon="REMOVE")
-    if settings.own_index < len(settings.own_sensors):
-        sensor = settings.own_sensors[settings.own_index]
-        draw_properties(layout.column(), sensor, ("kind", *own_fields(sensor.kind)))
-        if sensor.problem:
-            draw_sentence(layout, context, sensor.problem, icon="ERROR")
 
 
 CLASSES = (prior, targets, focus_rows, focus)

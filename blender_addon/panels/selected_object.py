@@ -41,7 +41,11 @@ def sensor(layout: UILayout, _settings: PropertyGroup, context: Context) -> None
     layout.prop(settings, "stays")
     column = layout.column()
     column.active = not settings.stays
-    draw_free(column, settings)
+    row = column.row(align=True)
+    for index, label in enumerate(AXIS_LABELS):
+        part = row.row(align=True)
+        part.active = index >= len("xyz") or not settings.mount
+        part.prop(settings, "free", index=index, text=shown(label), translate=False, toggle=True)
 
 
 def draw_pose(layout: UILayout, context: Context, obj: Object) -> None:
@@ -75,15 +79,6 @@ def draw_mirror(layout: UILayout, obj: Object) -> None:
     row.operator("pe.mirror_sensor", icon="MOD_MIRROR").name = obj.name
     linked = row.operator("pe.mirror_sensor", text="Mirror Linked", icon="LINKED")
     linked.name, linked.linked = obj.name, True
-
-
-def draw_free(layout: UILayout, settings: PropertyGroup) -> None:
-    """Draw a switch for each axis; x, y and z are dimmed where a mount gives the position."""
-    row = layout.row(align=True)
-    for index, label in enumerate(AXIS_LABELS):
-        part = row.row(align=True)
-        part.active = index >= len("xyz") or not settings.mount
-        part.prop(settings, "free", index=index, text=shown(label), translate=False, toggle=True)
 
 
 @panel("Bounds", parent="PE_PT_sensor")

@@ -78,14 +78,4 @@ def draw_add_menu(menu: bpy.types.Menu, context: Context) -> None:
         menu.layout.menu(PE_MT_add.bl_idname, icon="OUTLINER_OB_CAMERA")
 
 
-def register() -> None:
-    """Add the entry to Blender's menu."""
-    bpy.types.VIEW3D_MT_add.append(draw_add_menu)
-
-
-def unregister() -> None:
-    """Remove the entry from Blender's menu."""
-    bpy.types.VIEW3D_MT_add.remove(draw_add_menu)
-
-
 CLASSES = (*MAKER_MENUS.values(), PE_MT_add_sensor, PE_MT_add)

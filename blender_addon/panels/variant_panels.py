@@ -43,7 +43,7 @@ def variants_rows(_context: Context, layout: UILayout, settings: Any, item: Any)
 
 
 @panel("Variants", closed=False, count="variants")
-def variants(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
+def variants(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
     """Designs for this vehicle: save, switch, compare"""
     if not settings.variants:
         layout.operator("pe.save_variant", icon="ADD")
@@ -54,8 +54,7 @@ def variants(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
     buttons.separator()
     buttons.operator("pe.duplicate_variant", text="", icon="DUPLICATE")
     draw_state(layout, settings)
-    row = selected(context.scene.perception_entropy)
-    layout.prop(row, "note", text="", icon="TEXT", placeholder="Note")
+    layout.prop(selected(settings), "note", text="", icon="TEXT", placeholder="Note")
 
 
 class PE_MT_known_rigs(bpy.types.Menu):
@@ -76,10 +75,7 @@ def selected(settings: PropertyGroup) -> PropertyGroup:
 
 def draw_state(layout: UILayout, settings: PropertyGroup) -> None:
     """Draw the buttons of the scene's variant, always in the same place."""
-    active = (
-        settings.variants[min(settings.variant_index, len(settings.variants) - 1)].key
-        == settings.variant_key
-    )
+    active = selected(settings).key == settings.variant_key
     row = layout.row(align=True)
     there = row.row(align=True)
     there.enabled = settings.variant_changed or not active
@@ -100,7 +96,11 @@ def selection(layout: UILayout, settings: PropertyGroup, context: Context) -> No
         draw_options(layout, obj)
     else:
         draw_label(layout, "Select a sensor to choose models for it", "INFO")
-    draw_limits(layout.column(), settings)
+    limits = layout.column()
+    # Candidates of the screening; the method that has them, too, shows them beside itself.
+    own = () if settings.method == RANDOM else ("candidates",)
+    draw_properties(limits, settings, (*own, "currency"))
+    draw_declared(limits, settings, "selection", ("currency",))
     layout.operator("pe.choose_sensors", icon="VIEWZOOM")
     if settings.front:
         draw_front(layout, settings, context)
@@ -119,14 +119,6 @@ def draw_options(layout: UILayout, obj: Object) -> None:
     column.operator("pe.add_option", icon="ADD")
     if settings.options:
         layout.prop(settings, "may_be_left_out")
-
-
-def draw_limits(layout: UILayout, settings: PropertyGroup) -> None:
-    """Draw the limits of every design; 0 means no limit."""
-    # Candidates of the screening; the method that has them, too, shows them beside itself.
-    own = () if settings.method == RANDOM else ("candidates",)
-    draw_properties(layout, settings, (*own, "currency"))
-    draw_declared(layout, settings, "selection", ("currency",))
 
 
 def draw_front(layout: UILayout, settings: PropertyGroup, context: Context) -> None:

@@ -12,7 +12,6 @@ from ..bridge import SensorFigures, StoredWarning, figures_of_sensor
 from ..sensor_kinds import DEFAULT_MODEL
 from ..view_settings import ViewSettings
 from .callbacks import model_suggestions
-from .condition import PE_State, PE_Weather
 from .declared import ROWS, DeclaredRow, declared_rows, rows_of
 from .list_rows import (
     DEFAULT_REGION,
@@ -22,9 +21,11 @@ from .list_rows import (
     PE_MountSettings,
     PE_OwnSensorSettings,
     PE_SensorOption,
+    PE_State,
+    PE_Variant,
+    PE_Weather,
 )
 from .requirement import PE_Requirement
-from .results import PE_Variant
 from .scene import PE_SceneSettings
 from .sensor import AXIS_LABELS, FREE_BY_DEFAULT, PE_ObjectSettings
 from .view import PE_LiveSettings, PE_ViewSettings

@@ -1,22 +1,24 @@
-"""Rows of lists that a user edits: focus weights, AP curves, own sensors, offered models, mounts.
+"""Rows of lists that a user edits: focus weights, AP curves, own sensors, mounts, variants ...
 
 Lists belong to the scene, those of offered models to a sensor.
 """
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 from bpy.types import Collection, Context, Material, Object, PropertyGroup
 
 from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, ON_SLOTS, ON_SURFACE, REGION_ITEMS, free_name
-from ..engine import pe
-from ..sensor_kinds import own_kinds
+from ..engine import geometry, kinds, pe
+from ..sensor_kinds import OwnCamera, OwnLidar, OwnTable, own_kinds
 from .callbacks import changed, model_suggestions, redraw
 from .declared import group_of
-from .fields import menu, number, numbers, pointer, rows, switch, text, whole
+from .fields import menu, pointer, rows, switch, text, whole
 
 DEFAULT_REGION = "front"
+MAX_NAME_LENGTH = 60
 
 OBJECT_CLASSES = tuple(
     (name, name.capitalize(), f"Weigh {name}s") for name in pe.Prior.road().class_names
@@ -55,83 +57,18 @@ class PE_CurveSettings(ApCurveFields, PropertyGroup):
     )
 
 
-class PE_OwnSensorSettings(PropertyGroup):
+OwnLidarFields: Any = group_of(
+    OwnLidar,
+    own={"elevations": {"min": -90.0, "max": 90.0}, "azimuths": {"min": -360.0, "max": 360.0}},
+)
+OwnCameraFields: Any = group_of(OwnCamera)
+OwnTableFields: Any = group_of(OwnTable)
+
+
+class PE_OwnSensorSettings(OwnLidarFields, OwnCameraFields, OwnTableFields, PropertyGroup):
     """A sensor of the user's own; the row has the name of its model."""
 
     kind: menu("Kind", "Kind of the sensor", own_kinds, update=changed)
-    channels: whole(
-        "Channels",
-        "Number of channels, evenly spread over the field of view",
-        32,
-        min=1,
-        max=2048,
-        update=changed,
-    )
-    elevations: numbers(
-        "Elevation °",
-        "Lowest and highest channel in degrees above the horizon",
-        2,
-        default=(-25.0, 15.0),
-        min=-90.0,
-        max=90.0,
-        update=changed,
-    )
-    azimuths: numbers(
-        "Azimuth °",
-        "Begin and end in degrees; positive is left",
-        2,
-        default=(-180.0, 180.0),
-        min=-360.0,
-        max=360.0,
-        update=changed,
-    )
-    azimuth_step: number(
-        "Azimuth Step °",
-        "Angle between two beams of a channel in degrees",
-        0.2,
-        min=0.001,
-        max=360.0,
-        precision=3,
-        update=changed,
-    )
-    max_range: number(
-        "Range",
-        "Maximum distance at which a beam counts",
-        200.0,
-        min=0.01,
-        unit="LENGTH",
-        update=changed,
-    )
-    min_range: number(
-        "From",
-        "Minimum distance at which a beam counts",
-        0.0,
-        min=0.0,
-        unit="LENGTH",
-        update=changed,
-    )
-    width: whole("Width", "Horizontal number of pixels", 1920, min=1, update=changed)
-    height: whole("Height", "Vertical number of pixels", 1080, min=1, update=changed)
-    hfov: number(
-        "Field of View °",
-        "Horizontal field of view in degrees",
-        90.0,
-        min=0.001,
-        max=179.9,
-        update=changed,
-    )
-    lens: text(
-        "Lens",
-        "Instead of the field of view, with the keys of a study: fx = 930, cx = 965, cy"
-        ' = 530, distortion = { model = "brown-conrady", k1 = -0.16 }. Also min_range_m'
-        " and max_range_m",
-        update=changed,
-    )
-    keys: text(
-        "Keys",
-        "For a kind without fields in the panel: the keys of its table in a study",
-        update=changed,
-    )
     problem: text("Problem", "Why the sensor cannot be used; empty if it can")
     known_as: text("Known As", "Last known name")
 
@@ -147,8 +84,6 @@ class PE_SensorOption(OptionFields, PropertyGroup):
     )
 
 
-MAX_NAME_LENGTH = 60
-
 KINDS = (
     (ON_SURFACE, "Surface", "The sensor moves on faces of the vehicle"),
     (ON_SLOTS, "Slots", "The sensor takes the place of one of a collection's empties"),
@@ -162,19 +97,29 @@ FACES = (
 )  # fmt: skip
 
 
-def _keep_apart(mount: PE_MountSettings, _context: Context) -> None:
+def _free_name(row: PropertyGroup, rows: Any, usual: str) -> bool:
+    """Give a row of a list a name that no other row has; return whether it had one already."""
+    name = free_name(row.name.strip() or usual, {other.name for other in rows if other != row})
+    if name == row.name:
+        return True
+    row.name = name  # which calls its callback again
+    return False
+
+
+def _mount_renamed(mount: PE_MountSettings, _context: Context) -> None:
     """Update callback of a mount's name: names are unique, and sensors follow a new name."""
     scene = mount.id_data
-    rows = scene.perception_entropy.mounts
-    taken = {row.name for row in rows if row != mount}
-    name = free_name(mount.name.strip() or "Mount", taken)
-    if name != mount.name:
-        mount.name = name  # which calls this again
+    if not _free_name(mount, scene.perception_entropy.mounts, "Mount"):
         return
     for obj in scene.objects:
         if mount.known_as and obj.perception_entropy.mount == mount.known_as:
-            obj.perception_entropy.mount = name
-    mount.known_as = name
+            obj.perception_entropy.mount = mount.name
+    mount.known_as = mount.name
+
+
+def _variant_renamed(variant: PE_Variant, _context: Context) -> None:
+    """Update callback of a variant's name: names are unique and not empty."""
+    _free_name(variant, variant.id_data.perception_entropy.variants, "Variant")
 
 
 def groups_of_vehicle(mount: PE_MountSettings, _context: Context, _typed: str) -> list[str]:
@@ -197,7 +142,7 @@ class PE_MountSettings(SurfaceMountFields, PropertyGroup):
         "Name",
         "Name of the mount. Double-click to change it",
         maxlen=MAX_NAME_LENGTH,
-        update=_keep_apart,
+        update=_mount_renamed,
     )
     known_as: text("Known As", "Last known name")
     kind: menu("Kind", "Surface or slots", KINDS, update=redraw)
@@ -219,3 +164,50 @@ class PE_MountSettings(SurfaceMountFields, PropertyGroup):
         Collection,
         update=redraw,
     )
+
+
+StateFields: Any = group_of(geometry.State)
+WeatherFields: Any = group_of(kinds.Weather)
+
+
+class PE_State(StateFields, PropertyGroup):
+    """A state of the vehicle: a frame of the scene, and the motions that were read there."""
+
+    enabled: switch("Used", "Score this state, too", True, update=changed)
+    frame: whole("Frame", "Frame of the scene that shows this state", -1, min=-1)
+    table: text("Motions", "Motions as JSON", update=changed)
+
+
+class PE_Weather(WeatherFields, PropertyGroup):
+    """A weather. At most one of rain, snow and fog is above 0."""
+
+    enabled: switch("Used", "Score this weather, too", True, update=changed)
+
+
+class PE_Variant(PropertyGroup):
+    """A variant: the records of all sensors, and the result of scoring them."""
+
+    name: text(
+        "Name",
+        "Name of the variant. Double-click to change it",
+        maxlen=MAX_NAME_LENGTH,
+        update=_variant_renamed,
+    )
+    key: whole("Key", "Identifies the variant, also after a change of its name")
+    note: text("Note", "Note about the variant")
+    sensors: text("Sensors", "All sensors, as JSON")
+    score_json: text("Score", "The full score: zones, classes, sensors")
+    figures_json: text("Figures", "Blind ground, reach ahead and expected AP")
+    figures_of: text("Figures Of", "Vehicle, prior, settings, height and class of the figures")
+    signature: text("Signature", "Vehicle, prior and settings of the score")
+    stale: switch("Stale", "Vehicle, prior or settings have changed since the variant was scored")
+
+    @property
+    def has_result(self) -> bool:
+        """Whether the variant has a score."""
+        return bool(self.score_json)
+
+    @property
+    def entropy(self) -> float:
+        """Perception entropy of the score [nats]."""
+        return float(json.loads(self.score_json)["entropy"])

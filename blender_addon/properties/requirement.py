@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from bpy.props import EnumProperty, FloatProperty, StringProperty
+from bpy.props import FloatProperty, StringProperty
 from bpy.types import Context, PropertyGroup
 
 from .. import bridge, signals
@@ -189,14 +189,14 @@ class PE_Requirement(Declared, X, Y, Ring, Height, PropertyGroup):
     enabled: switch("Checked", "Hold the rig to this requirement", True, update=changed)
     table: text("Table", "The requirement as JSON", update=changed)
     problem: text("Problem", "Why a change was not made")
-    asks: EnumProperty(
-        name="Asks For",
-        description="What is asked for in the zone",
+    asks: menu(
+        "Asks For",
+        "What is asked for in the zone",
         **_choice(ASKS, fields.asked_for, fields.ask_for),
     )
-    body: EnumProperty(
-        name="Body",
-        description="What stands at each sample of the zone",
+    body: menu(
+        "Body",
+        "What stands at each sample of the zone",
         **_choice(BODIES, fields.body_choice, fields.choose_body),
     )
     bodies: text(
@@ -229,14 +229,14 @@ class PE_Requirement(Declared, X, Y, Ring, Height, PropertyGroup):
         "A closed mesh (.glb, .stl, .obj, .ply, .npz) in place of a box; empty: none",
         **_view(_shown_file, _set_file),
     )
-    body_up: EnumProperty(
-        name="Up",
-        description="The file's axis that points up",
+    body_up: menu(
+        "Up",
+        "The file's axis that points up",
         **_choice(AXES, *fields.own_text("up", fields.AS_IN_FILE)),
     )
-    body_forward: EnumProperty(
-        name="Forward",
-        description="The file's axis that points along the heading of the body",
+    body_forward: menu(
+        "Forward",
+        "The file's axis that points along the heading of the body",
         **_choice(AXES, *fields.own_text("forward", fields.AS_IN_FILE)),
     )
     body_scale: number(
@@ -262,11 +262,7 @@ class PE_Requirement(Declared, X, Y, Ring, Height, PropertyGroup):
         "Headings at which bodies stand, in degrees: 0, 90; empty: those of the body",
         **_view(fields.headings_text, fields.set_headings),
     )
-    shape: EnumProperty(
-        name="Zone",
-        description="Shape of the zone",
-        **_choice(SHAPES, fields.shape_of, fields.reshape),
-    )
+    shape: menu("Zone", "Shape of the zone", **_choice(SHAPES, fields.shape_of, fields.reshape))
     corners: text(
         "Corners",
         "x, y of each corner or spot, separated by semicolons: front + 1, left; "

@@ -19,12 +19,18 @@ from .callbacks import (
     select_object_by_index,
     selected_object_index,
 )
-from .condition import PE_State, PE_Weather
 from .declared import scene_group
 from .fields import menu, pointer, rows, switch, text, whole
-from .list_rows import PE_CurveSettings, PE_FocusSettings, PE_MountSettings, PE_OwnSensorSettings
+from .list_rows import (
+    PE_CurveSettings,
+    PE_FocusSettings,
+    PE_MountSettings,
+    PE_OwnSensorSettings,
+    PE_State,
+    PE_Variant,
+    PE_Weather,
+)
 from .requirement import PE_Requirement
-from .results import PE_Variant
 from .view import PE_LiveSettings, PE_ViewSettings
 
 METHODS = tuple(

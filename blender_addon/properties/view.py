@@ -7,12 +7,12 @@ from typing import Any
 
 from bpy.types import Context, PropertyGroup
 
-from ..choices import BEFORE_MOVE, NO_ANCHOR, PINNED
+from ..choices import NO_ANCHOR
 from ..engine import catalog, pe
-from ..view_settings import ViewSettings
+from ..view_settings import LiveSettings, ViewSettings
 from .callbacks import redraw, switched
 from .declared import group_of
-from .fields import menu, switch, whole
+from .fields import menu
 
 
 def classes_of(_view: PropertyGroup, context: Context, _typed: str) -> list[str]:
@@ -51,30 +51,12 @@ ANCHORS = (
 """Of known rigs; a file holds a number that stays a rig's whatever others there are."""
 
 
-class PE_LiveSettings(PropertyGroup):
+LiveFields: Any = group_of(LiveSettings, update=switched)
+
+
+class PE_LiveSettings(LiveFields, PropertyGroup):
     """The live score of a scene."""
 
-    on: switch(
-        "Live",
-        "Update a score while a sensor moves: a preview at once, an exact score when "
-        "the scene is idle, on a sample of voxels. Score evaluates all voxels",
-        update=switched,
-    )
-    against: whole(
-        "Compared With",
-        "Reference of the live score: 0, the sensors before the last move; -1, the "
-        "pinned sensors; otherwise the key of a variant",
-        BEFORE_MOVE,
-        min=PINNED,
-        update=switched,
-    )
-    figures: switch(
-        "Blind Ground, Reach, AP",
-        "Add blind ground, reach ahead and AP when the scene is idle, for the height "
-        "and the class that the 3D view shows",
-        True,
-        update=switched,
-    )
     anchor: menu(
         "Known Rig",
         "A known rig, scaled to this vehicle and scored under the same prior, for "

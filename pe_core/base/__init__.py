@@ -1,8 +1,8 @@
 """Values and files: checks of input values, files read and written whole, TOML, JSON, XML, YAML."""
 
 from .arrays import Flags, Floats, Ints, Singles
+from .errors import available_bytes, require_memory
 from .files import csv_text, decode_text, named_path, read_bytes, require_new, write_bytes
-from .memory import available_bytes, require_memory
 from .table_reader import Table, dump_json, dumps, parse_json
 from .values import Name, Number
 

@@ -20,8 +20,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from .errors import InputError
-from .memory import require_memory, size_text
+from .errors import InputError, require_memory, size_text
 
 MESH_BYTES = 2 << 30
 LABEL_BYTES = 2 << 30

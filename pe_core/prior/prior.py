@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.errors import InputError, shown
-from ..base.memory import require_memory
+from ..base.errors import InputError, require_memory, shown
 from ..base.setting import NAMES, Pair, Panel, check_settings, required_setting, setting
 from ..base.values import WEIGHT, Number, choice
 from ..geometry.grids import PerceptionSpace
@@ -82,16 +81,9 @@ ALONG = Number(infinite=True, unit="m")
 
 @dataclass(frozen=True, slots=True)
 class Focus:
-    """A factor of the focus weight w(s, c): a region, or some classes, count more or less.
+    """A factor of the focus weight w(s, c): a region [m], or some classes, count more or less.
 
-    Parameters
-    ----------
-    factor : float
-        At least 0. In overlapping regions the factors multiply.
-    x, y : (low, high) float
-        Region of the ground [m]; infinite by default.
-    classes : sequence of str, optional
-        Which classes; all by default.
+    By default a region is infinite.
     """
 
     factor: float = required_setting(

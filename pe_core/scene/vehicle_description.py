@@ -194,16 +194,7 @@ def _field(name: str, label: str, **options: Any) -> Panel:
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """Axles of a vehicle, in the ground frame.
-
-    Parameters
-    ----------
-    rear_axle_x, rear_axle_z : float
-        Middle of the rear axle [m]: x forward of the origin, z above the ground.
-    wheelbase : float, optional
-        Distance from the rear axle to the front axle [m].
-    front_overhang, rear_overhang : float, optional
-        From the front axle to the foremost point; from the rear axle to the rearmost point [m].
+    """Axles of a vehicle, in the ground frame, and its overhangs, as its fields say [m].
 
     Raises
     ------

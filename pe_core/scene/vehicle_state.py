@@ -36,20 +36,9 @@ GROUND_M = 0.01
 
 @dataclass(frozen=True)
 class Motion:
-    """A rigid motion of parts: ``p' = R (p - about) + about + move``.
+    """A rigid motion of parts: ``p' = R (p - about) + about + move``, lengths in metres.
 
-    Parameters
-    ----------
-    parts : sequence of str
-        Names of the vehicle's parts; ``*`` stands for any letters.
-    rotation : (3,) float
-        Roll, pitch, yaw [rad]; ``R = Rz(yaw) Ry(pitch) Rx(roll)``, axes of the ground frame.
-    about : (3,) float
-        A point that the rotation leaves where it is: the hinge, the hitch [m].
-    move : (3,) float
-        A translation after it [m].
-    sensors : sequence of str, optional
-        Sensors that move with the parts; by default those that stand on them.
+    R is ``Rz(yaw) Ry(pitch) Rx(roll)``, of `rotation` [rad]; `about` is a hinge, or the hitch.
 
     Raises
     ------
@@ -91,24 +80,10 @@ class Motion:
 
 @dataclass(frozen=True)
 class State:
-    """A state of the vehicle, and how much it counts.
+    """A state of the vehicle, with a name that is unique in a study, and how much it counts.
 
-    Parameters
-    ----------
-    name : str
-        Unique in a study.
-    motions : sequence of Motion
-        In this order; without any, the vehicle as it is drawn.
-    weight : float
-        Its part in the weighted mean over states.
-    heave, roll, pitch : float
-        Of the body on its springs, after the motions: up [m], to the right and nose down [rad].
-    about : (3,) float
-        A point that roll and pitch leave where it is [m].
-    unsprung : sequence of str
-        Parts that stay on the ground then: wheels, axles, a trailer.
-    frame : int, optional
-        Frame of a Blender scene that shows the state.
+    The motions are in this order; without any, the vehicle is as it is drawn. After them the
+    body on its springs is raised [m], leans to the right and goes nose down [rad].
 
     Raises
     ------

@@ -17,14 +17,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.errors import InputError
-from ..base.memory import available_bytes, size_text
+from ..base.errors import InputError, available_bytes, size_text
 from ..base.values import rounded
 from ..geometry.bins import blocks
 from ..geometry.grids import PerceptionSpace
 from ..metric.entropy import H_BLIND, ApCurve
-from ..metric.fusion import CurveOf, Fusion, Group, PlaneFusion
-from ..metric.leave_one_out import LeaveOneOut
+from ..metric.fusion import CurveOf, Fusion, Group, LeaveOneOut, PlaneFusion
 from ..prior.prior import ClassDensity
 from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle

@@ -42,18 +42,10 @@ OVER = 200
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """When a search ends before its budget does; each that is set may end it.
+    """When a search ends before its budget does; each field that is set may end it.
 
-    Parameters
-    ----------
-    target : float, optional
-        The figure to reach, on all voxels of the search: an entropy [nats], or an expected AP.
-    seconds : float, optional
-        Time of the search, without the scores before and after it. The result then depends on the
-        machine; `evaluations` of the result repeats it.
-    gain : float, optional
-        The search ends when its last `over` placements gained less than this [nats, or AP].
-    over : int
+    The target is reached on all voxels of the search. The time is that of the search, without
+    the scores before and after it; `evaluations` of the result repeats a search that it ended.
     """
 
     target: float | None = setting(
@@ -116,14 +108,7 @@ class Stop:
 
 @dataclass(frozen=True, slots=True)
 class Front:
-    """Several objectives, and how many placements of their Pareto front are looked for.
-
-    Parameters
-    ----------
-    objectives : sequence of str
-        Names of `OBJECTIVES`: at least two, or none.
-    points : int
-    """
+    """Objectives, names of `OBJECTIVES`, and the number of points of their Pareto front."""
 
     KNOWN: ClassVar[Mapping[str, tuple[str, str]]] = OBJECTIVES
 
@@ -206,21 +191,10 @@ class Start:
 
 @dataclass(frozen=True, slots=True)
 class Goals:
-    """What is asked of a search besides its method.
+    """What is asked of a search besides its method, as its fields say.
 
-    Parameters
-    ----------
-    stop : Stop
-    fixed : sequence of str
-        Sensors that stay where they are, whatever axes and mounts they have. Those that follow them
-        stay, too.
-    starts : sequence of Start
-        The search also starts from these; all starts share its budget.
-    front : Front
-    sensitivity : {"full", "off"}, optional
-        The analysis of the result: all of it, none, or what an eighth of the evaluations allows.
-    blind_ground : {"keep"}, optional
-        Placements with no more blind ground than the start's are better than all others.
+    It also starts from `starts`; all starts share its budget. What is fixed stays, whatever
+    axes and mounts it has.
     """
 
     stop: Stop = field(default_factory=Stop)

@@ -177,21 +177,7 @@ class NoGo:
 
 @dataclass(frozen=True, slots=True)
 class Constraints:
-    """The constraints on every placement of a search.
-
-    Parameters
-    ----------
-    max_height : float, optional
-        Maximum height of a sensor's housing above the ground [m].
-    max_width : float, optional
-        Maximum overall width: no housing is farther than half of it from y = 0 [m].
-    min_distance : float
-        Minimum distance between any two sensors' origins [m].
-    clear_housings : bool
-        Housings are inside neither the body nor another sensor's housing. Sensors on a surface are
-        not checked against the body.
-    no_go : sequence of NoGo
-    """
+    """The constraints on every placement of a search, as its fields say; lengths are in metres."""
 
     max_height: float | None = setting(
         None,

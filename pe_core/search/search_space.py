@@ -181,16 +181,8 @@ def _shown(axis: str, value: float) -> str:
 class Schedule:
     """Neighbourhoods and candidates of Algorithm 1; the paper's by default.
 
-    Parameters
-    ----------
-    candidates : int
-        Placements tried in each round.
-    reach_m, reach_rad : float
-        Half width of the first neighbourhood.
-    floor_m, floor_rad : float
-        The search ends when a neighbourhood is at or below this.
-    decay : float
-        k: each neighbourhood is this times the one before.
+    `reach_m` and `reach_rad` are half widths of the first neighbourhood. Each is `decay` (k)
+    times the one before, until one is at or below `floor_m` and `floor_rad`.
 
     Raises
     ------

@@ -110,19 +110,10 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """All choices of a study, and the limits of every design.
+    """All choices of a study, and the limits of every design, as its fields say.
 
-    Parameters
-    ----------
-    choices : sequence of Choice
-    max_price : float, optional
-        Limit of a design's price: the sum over the chosen sensors.
-    max_sensors : int, optional
-        Limit of the number of sensors, including those that are not chosen.
-    max_of_kind : mapping of kind to int
-        The same for a kind ("lidar", "camera"); a kind that is not named has no limit.
-    currency : str
-        The currency of prices in texts.
+    `max_of_kind` limits the number of sensors of a kind ("lidar", "camera"), including those
+    that are not chosen; a kind that is not named has no limit.
     """
 
     choices: Sequence[Choice] = ()

@@ -48,17 +48,8 @@ SEARCHED, FRESH = 0, 1
 class Tolerance:
     """Mounting errors and failures that a candidate is evaluated with; by default, none.
 
-    Parameters
-    ----------
-    position, angle : float
-        Mounting errors of each sensor, 1 sigma of each coordinate: along x, y and z of the ground
-        frame [m]; of roll, pitch and yaw in the sensor's own frame [rad].
-    draws : int
-        How many times errors are drawn for all sensors; an even number.
-    failures : bool
-        Score the mean over the failures of each single sensor.
-    worst : bool
-        Score the worst of all these cases instead of their mean.
+    Its fields say what they mean. Errors are 1 sigma of each coordinate: along x, y and z of
+    the ground frame [m]; of roll, pitch and yaw in the sensor's own frame [rad].
 
     Raises
     ------

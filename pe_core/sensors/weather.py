@@ -50,25 +50,12 @@ to which lamps are said to reach [IIHS]."""
 
 @dataclass(frozen=True, slots=True)
 class Weather:
-    """A weather, and how much it counts.
+    """A weather, with a name that is unique in a study, and how much it counts.
 
-    Parameters
-    ----------
-    name : str
-        Unique in a study.
-    weight : float
-        Its part in the weighted mean over weathers.
-    rain_mm_h, snow_mm_h : float
-        Rate of rain, or of snow as water [mm/h].
-    fog_mor_m : float, optional
-        Meteorological optical range [m]: where a contrast has fallen to 5 %. At most one of rain,
-        snow and fog: a measured visibility holds all that is in the air.
-    night : bool
-        Passive cameras see what the vehicle's headlamps light.
-    lit_m : float, optional
-        At night, the distance to which objects are lit in clear air [m], in place of the lamps'.
-    reflectivity : float
-        Of targets, relative to that for which sensors state their range: wet clothes 0.5.
+    Its fields say what they mean. At most one of rain, snow and fog is given: a measured
+    visibility, where a contrast has fallen to 5 %, holds all that is in the air. At night
+    passive cameras see what the vehicle's headlamps light, or as far as `lit_m` in clear air.
+    Wet clothes have a reflectivity of 0.5.
 
     Raises
     ------

@@ -22,9 +22,19 @@ from .conditions import Conditions, StateInWeather, state_from_dict, state_table
 from .file_names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW_PAGE, SEARCH, STUDY
 from .mounting_file import mounts_table
 from .passthrough import passthrough_of_text, passthrough_table, passthrough_text, read_passthrough
-from .setting_table import is_switch, menu_of, panel_default, setting_keys, settings_of_part
 from .study import OBJECTIVES, Search, Study, vehicle_digest
-from .study_file import load_study, load_study_data, save_study, study_from_dict, study_to_dict
+from .study_file import (
+    is_switch,
+    load_study,
+    load_study_data,
+    menu_of,
+    panel_default,
+    save_study,
+    setting_keys,
+    settings_of_part,
+    study_from_dict,
+    study_to_dict,
+)
 
 __all__ = ["AREAS", "MESH", "METHODS", "OBJECTIVES", "OPTIMIZED", "REQUIRED", "RESULT"]
 __all__ += ["REVIEW_PAGE", "SCHEDULED_METHOD", "SEARCH", "STUDY"]

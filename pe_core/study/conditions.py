@@ -144,9 +144,7 @@ def read_conditions(table: Table) -> Conditions:
     try:
         return Conditions(states, weathers)
     except InputError as error:
-        raise InputError(
-            table.source, f"{error.source}: {error.field}", error.expected, error.found
-        ) from None
+        raise error.within(table.source) from None
 
 
 def condition_tables(conditions: Conditions) -> dict[str, Any]:

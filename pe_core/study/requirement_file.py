@@ -68,9 +68,16 @@ class Preset:
         return read_requirement(Table(table, f"preset {self.id}"))
 
 
+@cache
 def presets() -> Mapping[str, Preset]:
     """Return the presets that are shipped, by identifier."""
-    return _shipped()
+    text = resources.files(room.__package__ or room.__name__).joinpath("presets.toml")
+    rows = tomllib.loads(text.read_text("utf-8"))["preset"]
+    made = {}
+    for row in rows:
+        own = {k: v for k, v in row.items() if k not in ("id", "confidence")}
+        made[row["id"]] = Preset(row["id"], row["confidence"], MappingProxyType(own))
+    return MappingProxyType(made)
 
 
 def preset(identifier: str, source: str = "presets", field: str = "preset") -> Preset:
@@ -79,17 +86,6 @@ def preset(identifier: str, source: str = "presets", field: str = "preset") -> P
     if found is None:
         raise InputError(source, field, "a preset (pe requirements lists them)", shown(identifier))
     return found
-
-
-@cache
-def _shipped() -> Mapping[str, Preset]:
-    text = resources.files(room.__package__ or room.__name__).joinpath("presets.toml")
-    rows = tomllib.loads(text.read_text("utf-8"))["preset"]
-    made = {}
-    for row in rows:
-        own = {k: v for k, v in row.items() if k not in ("id", "confidence")}
-        made[row["id"]] = Preset(row["id"], row["confidence"], MappingProxyType(own))
-    return MappingProxyType(made)
 
 
 def read_requirements(table: Table, folder: Path = Path()) -> tuple[Requirement, ...]:

@@ -1,9 +1,11 @@
-"""The study file: TOML to `Study` and back."""
+"""The study file: TOML to `Study` and back; all its settings by table, for panel and docs."""
 
 from __future__ import annotations
 
+import functools
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,17 +13,48 @@ from .. import catalog
 from ..base.errors import InputError, shown
 from ..base.files import decode_text, read_bytes, write_bytes
 from ..base.plugins import shipped
-from ..base.setting import read_declared, read_settings, settings_table
+from ..base.setting import (
+    REQUIRED,
+    OneOf,
+    Setting,
+    Several,
+    key_of,
+    read_declared,
+    read_settings,
+    settings_of,
+    settings_table,
+)
 from ..base.table_reader import Table, dumps, load_toml
 from ..base.values import A_NAME, A_PATH, ANY
 from ..geometry.grids import PerceptionSpace
 from ..geometry.poses import Pose
+from ..metric.entropy import ApCurve
+from ..prior.prior import Focus
 from ..scene.mesh import MeshAxes, require_vehicle_size
 from ..scene.rig import Rig, Sensor, SensorModel
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference
-from ..search import PAPER_FREE, checked_axes
-from .conditions import condition_tables, read_conditions
+from ..scene.vehicle_state import Motion, State
+from ..scoring.requirements import Criterion, Under, Zone
+from ..scoring.targets import TargetRule
+from ..search import (
+    PAPER_FREE,
+    Constraints,
+    Front,
+    Goals,
+    NoGo,
+    Option,
+    Schedule,
+    Selection,
+    Stop,
+    SurfaceMount,
+    Tolerance,
+    checked_axes,
+)
+from ..search.tolerance import CASES, ERRORS
+from ..sensors import PerceptionModel
+from ..sensors.weather import Weather
+from .conditions import BODY, OF_STATE, condition_tables, read_conditions
 from .mounting_file import areas_of, same_model
 from .passthrough import passthrough_table, read_passthrough
 from .requirement_file import mesh_files, read_requirements, requirement_table
@@ -46,6 +79,7 @@ from .study import Search, Study
 
 OWN_MODEL = "own"
 """Name of an own model in a choice that has no name."""
+AXES_KEYS = ("scale", "rotation", "up", "forward")
 
 
 def load_study(path: str | Path) -> Study:
@@ -98,7 +132,7 @@ def study_from_dict(data: Any, source: str = "study", folder: Path | None = None
     try:
         study = _read_study(table, folder or Path())
     except InputError as error:
-        raise error if error.source == source else _named(error, source) from None
+        raise error if error.source == source else error.within(source) from None
     table.finish()
     return study
 
@@ -130,11 +164,6 @@ def _check_beside(path: Path, field: str, needed: bool, file: str | None) -> Non
     if needed and not (file and os.path.exists(path.parent / file)):
         expected = "a file beside the study (pe.export_study writes it)"
         raise InputError(path, field, expected, shown(file) if file else "none")
-
-
-def _named(error: InputError, source: str) -> InputError:
-    """Return an error with the study's file as its source."""
-    return InputError(source, f"{error.source}: {error.field}", error.expected, error.found)
 
 
 def _read_study(table: Table, folder: Path) -> Study:
@@ -282,9 +311,6 @@ def _without_none(value: Any) -> Any:
     return value
 
 
-AXES_KEYS = ("scale", "rotation", "up", "forward")
-
-
 class MeshFile(NamedTuple):
     """A vehicle's mesh file, its axes by the study, and the axes that were used, in words."""
 
@@ -300,3 +326,101 @@ def read_axes(table: Table) -> MeshAxes:
     rotation = table.numbers("rotation", 3, None)
     with table.naming():
         return MeshAxes(up, forward, scale, rotation)  # type: ignore[arg-type]  # three of them
+
+
+@dataclass(frozen=True, slots=True)
+class StudyTable:
+    """A table of the study file, and the dataclass whose settings stand in it.
+
+    `names` are those of the settings, where the table has not all of the dataclass's. Of `rows`
+    there are several in a study: each is a row, or an object, of a Blender scene, not the scene.
+    `part` is the part of Blender's panel with these settings; that of the table if it is empty.
+    """
+
+    table: str
+    cls: type
+    names: tuple[str, ...] = ()
+    rows: bool = False
+    part: str = ""
+
+    @property
+    def settings(self) -> list[Setting]:
+        """The settings of the table, in their order."""
+        settings = settings_of(self.cls)
+        return [settings[name] for name in self.names or settings]
+
+
+SECTIONS = (
+    StudyTable("", Study, part="score"),
+    StudyTable("space", PerceptionSpace),
+    StudyTable("vehicle", Vehicle),
+    StudyTable("metric", TargetRule),
+    StudyTable("ap", PerceptionModel),
+    StudyTable("reference", Reference),
+    StudyTable("optimize", Search, part="search"),
+    StudyTable("optimize", Schedule, part="schedule"),
+    StudyTable("optimize", Constraints, part="constraints"),
+    StudyTable("optimize", Tolerance, CASES, part="cases"),
+    StudyTable("optimize", Goals, part="goals"),
+    StudyTable("optimize.tolerance", Tolerance, ERRORS),
+    StudyTable("optimize.stop", Stop),
+    StudyTable("optimize.front", Front),
+    StudyTable("selection", Selection),
+    StudyTable("optimize.mount", SurfaceMount, rows=True),
+    StudyTable("optimize.no_go", NoGo, rows=True),
+    StudyTable("choice.option", Option, rows=True),
+    StudyTable("prior.focus", Focus, rows=True),
+    StudyTable("ap.KIND", ApCurve, rows=True),
+    StudyTable("requirement.zone", Zone, rows=True),
+    StudyTable("requirement.criterion", Criterion, rows=True),
+    StudyTable("requirement.under", Under, rows=True),
+    StudyTable("weather", Weather, rows=True),
+    StudyTable("state", State, OF_STATE, rows=True),
+    StudyTable("state.body", State, BODY, rows=True),
+    StudyTable("state.move", Motion, rows=True),
+)
+
+
+class Key(NamedTuple):
+    """A key of the study file, and its setting."""
+
+    name: str
+    setting: Setting
+
+
+def setting_keys(*, of_scene: bool = False) -> Iterator[Key]:
+    """Yield settings by their key in the file: ``optimize.seed``; all, or those of a scene."""
+    for section in SECTIONS:
+        for setting in () if of_scene and section.rows else section.settings:
+            yield Key(".".join(filter(None, (section.table, key_of(setting.name)))), setting)
+
+
+@functools.cache
+def settings_of_part(part: str) -> tuple[Setting, ...]:
+    """Return the settings of a part of Blender's panel, in their order."""
+    sections = [each for each in SECTIONS if part == (each.part or each.table)]
+    own = (setting for each in sections for setting in each.settings)
+    return tuple(setting for setting in own if setting.panel is not None)
+
+
+def panel_default(setting: Setting) -> Any:
+    """Return the value that a setting has in a new scene, as the panel shows it."""
+    assert setting.panel is not None
+    default = setting.default if setting.panel.default is None else setting.panel.default
+    if default is REQUIRED:
+        return None
+    return default if default is not None else 0
+
+
+def is_switch(setting: Setting) -> bool:
+    """Whether an optional text is shown as a switch: it has one value, or is absent."""
+    return setting.is_optional and isinstance(setting.rule, OneOf) and len(setting.rule.among) == 1
+
+
+def menu_of(setting: Setting) -> tuple[tuple[str, str, str], ...]:
+    """Return text, label and meaning of each entry of a setting's menu."""
+    panel, rule = setting.panel, setting.rule
+    assert panel is not None and isinstance(rule, OneOf | Several)
+    rows = zip(rule.among, panel.menu, strict=True)
+    absent = () if panel.absent is None else (panel.absent,)
+    return (*absent, *((text, label, about) for text, (label, about) in rows))

@@ -82,8 +82,7 @@ def check(args: argparse.Namespace) -> Answer:
     except InputError as error:
         if not error.source.startswith("requirement "):
             raise
-        field = f"{error.source}: {error.field}"
-        raise InputError(args.study, field, error.expected, error.found) from None
+        raise error.within(args.study) from None
 
 
 def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] = ()) -> Answer:

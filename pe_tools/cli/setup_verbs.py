@@ -18,9 +18,8 @@ from typing import Any
 import numpy as np
 
 from pe_core.base import dump_json
-from pe_core.base.errors import InputError
+from pe_core.base.errors import InputError, available_bytes, size_text
 from pe_core.base.files import reason_of
-from pe_core.base.memory import available_bytes, size_text
 from pe_core.base.plugins import EXTRAS, optional_package
 from pe_core.version import __version__
 

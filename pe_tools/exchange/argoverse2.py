@@ -13,9 +13,8 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from pe_core.base.errors import InputError
+from pe_core.base.errors import InputError, size_text
 from pe_core.base.files import read_bytes
-from pe_core.base.memory import size_text
 from pe_core.base.plugins import install_hint
 from pe_core.base.table_reader import Table
 from pe_core.base.values import vector

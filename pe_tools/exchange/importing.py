@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pe_core import catalog
-from pe_core.base.errors import InputError, shown
-from pe_core.base.memory import report_memory_errors
+from pe_core.base.errors import InputError, report_memory_errors, shown
 from pe_core.base.values import A_NAME
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig, Sensor, SensorModel
@@ -98,8 +97,7 @@ def import_rig(
     except InputError as error:  # about a lens, a pose or a model: of the imported file
         if Path(error.source).is_relative_to(path if path.is_dir() else path.parent):
             raise
-        field = f"{error.source}: {error.field}"
-        raise InputError(path, field, error.expected, error.found) from None
+        raise error.within(path) from None
 
 
 def _imported(

@@ -26,13 +26,13 @@ engine:
 signals:
 choices:
 sensor_kinds: engine
-view_settings: engine
+view_settings: choices engine
 translation_context:
 preferences: engine
 language: engine preferences translation_context
 own_catalog: engine
 properties: bridge choices engine sensor_kinds signals view_settings
-bridge: choices engine view_settings
+bridge: choices engine sensor_kinds view_settings
 sensor_cache: bridge
 caches: engine
 vehicle_cache: bridge caches engine
@@ -45,8 +45,8 @@ diagnostics: bridge engine sensor_cache signals vehicle_cache viewport worker
 location_query: bridge engine sensor_cache signals vehicle_cache worker
 housing: engine sensor_cache sensor_kinds
 library: preferences
-preferences_panel: engine language library own_catalog preferences sensor_kinds signals
-    translation_context
+preferences_panel: engine language library own_catalog preferences properties sensor_kinds
+    signals translation_context
 live: bridge caches change_events choices engine language preferences sensor_cache signals
     vehicle_cache viewport worker
 search_curve: engine viewport

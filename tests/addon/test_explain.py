@@ -10,7 +10,7 @@ from blender_addon import bridge, diagnostics, location_query, panels
 from blender_addon.engine import advice, pe
 from tests.addon import scenes
 from tests.addon.command_line import run_here
-from tests.addon.layouts import Layout, Window
+from tests.addon.layouts import Layout, Window, drawn
 
 
 def told(scene):
@@ -246,7 +246,7 @@ def test_warnings_of_before_a_move_say_so_until_it_is_looked_over(car, monkeypat
     window = Window(car, car.objects["roof"])
 
     def line():
-        panels.main.draw_warnings(shown := Layout(), window)
+        shown = drawn(panels.main.warnings, **vars(window))
         return " ".join(shown.texts("label"))
 
     assert "Before this move" not in line()
@@ -270,8 +270,8 @@ def test_panels_show_words_warnings_and_the_place(car):
     bpy.context.view_layer.update()
     bpy.ops.pe.score()
     bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0))
-    window, layout = Window(car, car.objects["roof"]), Layout()
-    panels.main.draw_warnings(layout, window)
+    window = Window(car, car.objects["roof"])
+    layout = drawn(panels.main.warnings, **vars(window))
     assert "clear of the vehicle" in " ".join(layout.texts("label"))
     explain = type("Explain", (), {"layout": (shown := Layout())})
     panels.score_details.explain.draw(explain, window)

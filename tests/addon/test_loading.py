@@ -10,7 +10,7 @@ import pytest
 import pe_core as pe
 from blender_addon import bridge
 from blender_addon.engine import studies
-from pe_core.study.setting_table import SECTIONS
+from pe_core.study.study_file import SECTIONS
 from tests.addon import scenes
 
 CORNERS = scenes.ASSETS / "examples" / "four_corners" / "study.toml"

@@ -10,8 +10,14 @@ from pathlib import Path
 
 import pytest
 
-from pe_core.base import files, memory
-from pe_core.base.errors import InputError
+from pe_core.base import errors, files
+from pe_core.base.errors import (
+    InputError,
+    available_bytes,
+    report_memory_errors,
+    require_memory,
+    size_text,
+)
 from pe_core.base.files import (
     csv_text,
     file_stem,
@@ -22,7 +28,6 @@ from pe_core.base.files import (
     write_all_bytes,
     write_bytes,
 )
-from pe_core.base.memory import available_bytes, report_memory_errors, require_memory, size_text
 
 resource = pytest.importorskip("resource")
 
@@ -110,20 +115,20 @@ def test_the_least_of_all_limits_counts(monkeypatch, tmp_path):
     (tmp_path / "meminfo").write_text("MemTotal: 9000 kB\nMemAvailable:    5000 kB\n")
     (tmp_path / "v2").write_text("max\n")
     (tmp_path / "v1").write_text("4000000\n")
-    monkeypatch.setattr(memory, "MEMINFO", tmp_path / "meminfo")
-    monkeypatch.setattr(memory, "GROUP_LIMITS", (tmp_path / "v2", tmp_path / "none"))
+    monkeypatch.setattr(errors, "MEMINFO", tmp_path / "meminfo")
+    monkeypatch.setattr(errors, "GROUP_LIMITS", (tmp_path / "v2", tmp_path / "none"))
     assert available_bytes() == 5_120_000
-    monkeypatch.setattr(memory, "GROUP_LIMITS", (tmp_path / "v2", tmp_path / "v1"))
+    monkeypatch.setattr(errors, "GROUP_LIMITS", (tmp_path / "v2", tmp_path / "v1"))
     assert available_bytes() == 4_000_000
     (tmp_path / "statm").write_text("100 50 20\n")
-    monkeypatch.setattr(memory, "STATM", tmp_path / "statm")
+    monkeypatch.setattr(errors, "STATM", tmp_path / "statm")
     most = 101 * resource.getpagesize()
     monkeypatch.setattr(resource, "getrlimit", lambda _: (most, most))
     assert available_bytes() == resource.getpagesize()
 
 
 def test_work_that_fits_is_let_through_and_other_work_refused(monkeypatch):
-    monkeypatch.setattr(memory, "available_bytes", lambda: 1_500_000)
+    monkeypatch.setattr(errors, "available_bytes", lambda: 1_500_000)
     require_memory("car.npz", "triangles", 1_500_000)
     message = (
         "car.npz: triangles: expected what fits in the 1.5 MB of memory that are free, "
@@ -132,7 +137,7 @@ def test_work_that_fits_is_let_through_and_other_work_refused(monkeypatch):
     with pytest.raises(InputError) as caught:
         require_memory("car.npz", "triangles", 1_600_000)
     assert str(caught.value) == message
-    monkeypatch.setattr(memory, "available_bytes", lambda: None)
+    monkeypatch.setattr(errors, "available_bytes", lambda: None)
     require_memory("car.npz", "triangles", 10**18)
 
 

@@ -23,7 +23,7 @@ from pe_core.sensors import (
     kind_of,
     range_picture,
 )
-from pe_core.sensors.camera import picture
+from pe_core.sensors.camera import model as camera_model
 from pe_core.sensors.field_of_view import FREE, OUTSIDE
 from pe_core.study import save_study
 from pe_tools import graphics
@@ -67,7 +67,7 @@ def mounted(model, rpy=(0.1, 0.05, 0.2)):
 @pytest.mark.parametrize("lens", LENSES)
 def test_each_pixel_is_the_ray_through_its_middle(lens, monkeypatch):
     """One ray at a time, from first hits; rows are also cast some at a time."""
-    monkeypatch.setattr(picture, "RAYS_AT_ONCE", 64 * 7)
+    monkeypatch.setattr(camera_model, "RAYS_AT_ONCE", 64 * 7)
     sensor = mounted(camera(lens))
     parts = ego_mask(sensor, BODY).parts
     axes, lens = sensor.pose.ground_from_sensor, sensor.model.projection

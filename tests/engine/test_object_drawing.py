@@ -172,7 +172,7 @@ def test_scenes_of_labelled_boxes_are_drawn_from_them():
     ],
 )
 def test_what_cannot_stand_is_reported_in_one_line(prior, told, monkeypatch):
-    monkeypatch.setattr("pe_core.base.memory.available_bytes", lambda: 10**9)
+    monkeypatch.setattr("pe_core.base.errors.available_bytes", lambda: 10**9)
     if isinstance(prior, dict):
         prior = pe.Prior("road", ROAD.classes, density=prior)
     with pytest.raises(pe.InputError, match=told) as error:
@@ -212,7 +212,7 @@ def test_which_scenes_have_one_more_of_a_class_says_nothing_of_another_class(shi
 
 
 def test_boxes_need_memory_before_they_are_laid_out(monkeypatch):
-    monkeypatch.setattr("pe_core.base.memory.available_bytes", lambda: 100)
+    monkeypatch.setattr("pe_core.base.errors.available_bytes", lambda: 100)
     with pytest.raises(pe.InputError, match="prior: boxes: expected what fits in"):
         drawn(pe.Prior.from_boxes(BOXES), targets=TargetRule("objects"))
 

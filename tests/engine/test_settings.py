@@ -10,7 +10,7 @@ import pytest
 import pe_core as pe
 from pe_core.base.setting import REQUIRED, check_settings, settings_of
 from pe_core.study import setting_keys
-from pe_core.study.setting_table import SECTIONS
+from pe_core.study.study_file import SECTIONS
 
 ROOT = Path(__file__).resolve().parents[2]
 SETTINGS = dict(setting_keys())

@@ -82,9 +82,16 @@ class KnownRig:
         return tuple(sensors)
 
 
+@cache
 def known_rigs() -> Mapping[str, KnownRig]:
-    """Return all rigs by key."""
-    return _shipped()
+    """Return all rigs by key: those of real vehicles, then the paper's, each by title."""
+    files = [f for f in resources.files(__package__).iterdir() if f.name.endswith(".toml")]
+    rigs = (
+        _from_table(f.name.removesuffix(".toml"), tomllib.loads(f.read_text("utf-8")))
+        for f in files
+    )
+    in_order = sorted(rigs, key=lambda rig: (rig.key.startswith(PAPER), rig.title.lower()))
+    return MappingProxyType({rig.key: rig for rig in in_order})
 
 
 def known_rig(key: str) -> KnownRig:
@@ -95,24 +102,9 @@ def known_rig(key: str) -> KnownRig:
     InputError
         When there is no rig of that key.
     """
-    if key not in _shipped():
-        raise InputError("catalogue", "rig", f"one of {', '.join(_shipped())}", shown(key))
-    return _shipped()[key]
-
-
-@cache
-def _shipped() -> Mapping[str, KnownRig]:
-    files = [f for f in resources.files(__package__).iterdir() if f.name.endswith(".toml")]
-    rigs = (
-        _from_table(f.name.removesuffix(".toml"), tomllib.loads(f.read_text("utf-8")))
-        for f in files
-    )
-    return MappingProxyType({rig.key: rig for rig in sorted(rigs, key=_order)})
-
-
-def _order(rig: KnownRig) -> tuple[bool, str]:
-    """Sort key: rigs of real vehicles come first, then the paper's; each by title."""
-    return rig.key.startswith(PAPER), rig.title.lower()
+    if key not in known_rigs():
+        raise InputError("catalogue", "rig", f"one of {', '.join(known_rigs())}", shown(key))
+    return known_rigs()[key]
 
 
 def _from_table(key: str, table: Mapping[str, Any]) -> KnownRig:

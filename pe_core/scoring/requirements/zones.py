@@ -79,30 +79,10 @@ class CornersRule:
 
 @dataclass(frozen=True)
 class Zone:
-    """Where a requirement has to hold. It has exactly one shape.
+    """Where a requirement has to hold: exactly one shape.
 
-    Parameters
-    ----------
-    x, y : (low, high), optional
-        A rectangle: places along x and y, numbers [m] or planes with offsets.
-    polygon : sequence of (x, y), optional
-        Corners of an area.
-    ring : (from, to), optional
-        All ground at these distances from the vehicle's outline [m].
-    path : sequence of (x, y), optional
-        Corners of a line along which a body moves.
-    spots : sequence of (x, y), optional
-        Single places.
-    z : (low, high)
-        Heights of the foot of the body above the ground [m]; bodies stand on the ground.
-    step : float
-        Largest distance of two samples [m].
-    below : float, optional
-        The planes leave out what of the vehicle is higher [m].
-    near_side : {"left", "right"}
-        The side of the kerb, for the planes near and off.
-    eyes : float, optional
-        x of the driver's eyes [m].
+    Its fields say what they mean. Places are numbers [m], or planes of the vehicle with
+    offsets. Bodies stand on the ground.
 
     Raises
     ------

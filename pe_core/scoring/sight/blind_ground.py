@@ -33,7 +33,6 @@ from ...scene.vehicle import Vehicle
 from ...sensors import GroundView, VisibleGroundCache
 from .ground_cells import (
     ROUNDING,
-    STEP,
     GroundCells,
     Rectangle,
     dilated,
@@ -58,8 +57,8 @@ SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
 BODY_M = 0.3
 """Diameter of the test body: that of the cylinders of FMVSS 111 and UN regulation 158, less than a
 small child is wide."""
-STEP_M, MAX_STEP_M = 0.05, 0.1
-"""Side of the squares, and the largest: with larger ones no body would be certainly visible."""
+STEP_M = 0.05
+"""Side of the squares: with those of more than 0.1 m no body would be certainly visible."""
 TOO_FAR_M = 3 * STEP_M
 """Edges of blind ground are at most so far outside of it, with squares of `STEP_M`."""
 MIN_AREA_M2 = 0.18
@@ -257,12 +256,6 @@ class BlindSearch:
         blind = blind_squares(marked & ~self.own, self.own, self.cells.step)
         inner = tuple(slice(self.margin, n - self.margin) for n in blind.shape)
         return np.ascontiguousarray(blind[inner]), approximate
-
-
-def fine_enough(step: float) -> float:
-    """Return a square's side [m], divided into equal parts of at most `MAX_STEP_M`."""
-    step = STEP.checked("sight", "step", step)
-    return step / math.ceil(step / MAX_STEP_M - ROUNDING)
 
 
 def blind_squares(marked: Flags, covered: Flags, step: float) -> Flags:

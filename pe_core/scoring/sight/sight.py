@@ -29,7 +29,6 @@ from .blind_ground import (
     area_of,
     blind_ground,
     body_rectangle,
-    fine_enough,
 )
 from .ground_cells import GroundCells, widened
 from .reach import AP, BEARINGS, Reach, Spokes, density_of, object_reach
@@ -45,6 +44,8 @@ from .visibility import (
 )
 
 ORIGIN = ((0.0, 0.0), (0.0, 0.0))
+WITHIN_M = 10.0
+"""How far from the body blind ground is looked for, unless one says otherwise [m]."""
 SAMPLES = 65_536
 """Number of voxels for the AP by class."""
 
@@ -135,12 +136,7 @@ class Sight:
             return ground_sight(measured.voxels, rig, m, self._fusion, height, approximate)
 
     def blind(
-        self,
-        rig: Rig,
-        height: float = 0.0,
-        within: float = 10.0,
-        step: float = STEP_M,
-        preview: bool = False,
+        self, rig: Rig, height: float = 0.0, within: float = WITHIN_M, preview: bool = False
     ) -> BlindGround:
         """Return the ground round the vehicle where a body is invisible to all sensors.
 
@@ -154,34 +150,29 @@ class Sight:
             Height of the body [m]; 0 or less: flat on the ground.
         within : float
             How far from the rectangle of the vehicle's body the ground is evaluated [m].
-        step : float
-            Side of the squares [m]; squares wider than 0.1 m are divided.
         preview : bool
             As in `ground`.
 
         Raises
         ------
         InputError
-            When the height is not in the space, the step is not positive or gives too many cells,
-            or no cell is within.
+            When the height is not in the space, or no square is within, or too many are.
         """
         body = body_rectangle(self.vehicle)
-        cells, blind, approximate = self._blind_cells(rig, height, within, step, preview)
+        cells, blind, approximate = self._blind_cells(rig, height, within, preview)
         return blind_ground(cells, blind, body, float(height), float(within), approximate)
 
-    def blind_area(
-        self, rig: Rig, height: float = 0.0, within: float = 10.0, step: float = STEP_M
-    ) -> float:
+    def blind_area(self, rig: Rig, height: float = 0.0) -> float:
         """Return the area of `blind` [m2], without its outlines: quicker."""
-        cells, blind, _ = self._blind_cells(rig, height, within, step, False)
+        cells, blind, _ = self._blind_cells(rig, height, WITHIN_M, False)
         return area_of(cells, blind)
 
     def _blind_cells(
-        self, rig: Rig, height: float, within: float, step: float, preview: bool
+        self, rig: Rig, height: float, within: float, preview: bool
     ) -> tuple[GroundCells, NDArray[np.bool_], bool]:
         """Return cells, which of them (NX, NY) are blind, and whether they are approximate."""
         area = widened(body_rectangle(self.vehicle), within)
-        cells = GroundCells.of(self.space, fine_enough(step), area)
+        cells = GroundCells.of(self.space, STEP_M, area)
         layer_at(self.space, height)  # raises InputError for a height that is not in the space
         with self._lock:
             search = self._voxel_sets.cached(
@@ -242,7 +233,7 @@ class Sight:
                 class_name, min_ap, spokes.bearings, whole, alone, spokes.limit, approximate
             )
 
-    def expected_ap(self, rig: Rig, *, preview: bool = False) -> dict[str, float]:
+    def expected_ap(self, rig: Rig) -> dict[str, float]:
         """Return the expected AP of the fused rig by class: the prior's mean over voxels.
 
         It is computed on a sample of the prior, as a sampled score.
@@ -250,8 +241,6 @@ class Sight:
         Parameters
         ----------
         rig : Rig
-        preview : bool
-            As in `ground`.
 
         Returns
         -------
@@ -260,7 +249,7 @@ class Sight:
         """
         with self._lock:
             measured = self._voxel_sets.voxels("prior", self._sampled)
-            m, _ = measured.measured(rig, preview)
+            m, _ = measured.measured(rig, False)
             ap = self._ap(rig, m, list(m))
             likely = measured.voxels.classes
             masses = likely.sum(axis=0)
@@ -270,14 +259,14 @@ class Sight:
                 if mass > 0.0
             }
 
-    def shares(self, rig: Rig, *, preview: bool = False) -> VisibleShares:
+    def shares(self, rig: Rig) -> VisibleShares:
         """Return the visible shares of the prior, and how much each sensor's failure costs by zone.
 
-        Computed on a sample of the prior, as `expected_ap`; `preview` as in `ground`.
+        Computed on a sample of the prior, as `expected_ap`.
         """
         with self._lock:
             measured = self._voxel_sets.voxels("prior", self._sampled)
-            m, _ = measured.measured(rig, preview)
+            m, _ = measured.measured(rig, False)
             return visible_shares(measured.voxels, m, self._rises(rig, m))
 
     @property

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.arrays import Floats, Ints, read_only
-from ...base.errors import InputError
-from ...base.memory import require_memory
+from ...base.errors import InputError, require_memory
 from ...base.setting import FLAG, OneOf, Panel, check_settings, setting
 from ...base.values import Whole
 from ...geometry.grids import PerceptionSpace

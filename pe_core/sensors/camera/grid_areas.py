@@ -38,8 +38,7 @@ from .definition import (
     is_ranged,
     offsets_of,
 )
-from .model import Camera
-from .picture import BORDER, PictureBins
+from .model import BORDER, Camera, PictureBins
 from .sample_areas import NEAR_SIDES, Sorter, edge_areas
 from .voxel_occlusion import VoxelOcclusion, distance_along, positions_of, span
 

@@ -47,9 +47,8 @@ from .definition import (
     out_of_range,
 )
 from .grid_areas import BentPlanes, CameraPlanes
-from .model import Camera
+from .model import Camera, PictureBins, picture_occlusion
 from .object_definition import BoxImages, along_camera, box_images, visible_share
-from .picture import PictureBins, picture_occlusion
 from .sample_areas import bent_pixel_areas, pixel_areas
 
 SEEN_BYTES = 2

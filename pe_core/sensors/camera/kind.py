@@ -23,9 +23,8 @@ from .definition import axes_of, count_pixels, is_ranged, out_of_range
 from .kernels import CameraGrid, CameraGround, CameraObjects, CameraSample
 from .lens import COEFFICIENT, FOCAL, LENSES, PLACE, FTheta, Lens, Pinhole
 from .lens import FOV as LENS_FOV
-from .model import FOV, PIXELS, Camera
+from .model import FOV, PIXELS, Camera, picture_mask, picture_patch, picture_rays
 from .object_definition import box_images, count_object_pixels
-from .picture import picture_mask, picture_patch, picture_rays
 
 LENS_KEYS = frozenset({"fx", "fy", "cx", "cy", "distortion", "fov_deg"})
 KEYS = frozenset({"width", "height", "hfov_deg", "min_range_m", "max_range_m"}) | LENS_KEYS

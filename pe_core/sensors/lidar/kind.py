@@ -96,8 +96,7 @@ def _channels(
         try:
             channels = shipped("reader.angles")(folder / file)
         except InputError as error:  # a study replaces the source; the field keeps the file's name
-            field = f"angles: {error.source}: {error.field}"
-            raise InputError(name, field, error.expected, error.found) from None
+            raise error.within(name, f"angles: {error.source}") from None
         return (
             np.array([math.radians(c.elevation_deg) for c in channels]),
             np.array([math.radians(c.azimuth_offset_deg) for c in channels]),

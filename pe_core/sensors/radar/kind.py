@@ -106,9 +106,7 @@ def _mode(name: str, table: Any, number: int) -> RadarMode:
         own = {MODE_FIELDS[key]: _in_radians(key, value) for key, value in table.items()}
         return RadarMode(**values | own)
     except InputError as error:  # name the radar as well
-        raise InputError(
-            name, f"{error.source}: {error.field}", error.expected, error.found
-        ) from None
+        raise error.within(name) from None
 
 
 def _in_radians(key: str, value: Any) -> Any:

@@ -6,9 +6,8 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-from pe_core.base.errors import InputError
+from pe_core.base.errors import InputError, report_memory_errors, require_memory, size_text
 from pe_core.base.files import LABEL_BYTES, decode_text, quoted, read_bytes, write_bytes
-from pe_core.base.memory import report_memory_errors, require_memory, size_text
 from pe_core.prior.boxes import Boxes
 
 from .kitti import looks_like_kitti, read_kitti

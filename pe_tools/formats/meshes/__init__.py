@@ -9,9 +9,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from pe_core.base.errors import InputError
+from pe_core.base.errors import InputError, report_memory_errors
 from pe_core.base.files import MESH_BYTES, read_bytes, write_bytes
-from pe_core.base.memory import report_memory_errors
 from pe_core.base.plugins import find_plugin
 from pe_core.scene.mesh import Mesh as Mesh
 from pe_core.scene.mesh import MeshAxes as MeshAxes

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pe_core.base.arrays import Floats
-from pe_core.base.errors import InputError
-from pe_core.base.memory import require_memory
+from pe_core.base.errors import InputError, require_memory
 from pe_core.geometry.poses import rotate
 from pe_core.scene.mesh import Mesh
 

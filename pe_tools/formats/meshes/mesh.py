@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pe_core.base.arrays import Floats
-from pe_core.base.errors import InputError, shown
-from pe_core.base.memory import require_memory
+from pe_core.base.errors import InputError, require_memory, shown
 from pe_core.base.plugins import call_plugin, install_hint, plugin_name, required_plugin
 from pe_core.base.values import A_NAME, MAX_NAME
 from pe_core.scene.mesh import Mesh

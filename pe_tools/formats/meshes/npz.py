@@ -12,8 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.lib import format as npy
 
-from pe_core.base.errors import InputError
-from pe_core.base.memory import size_text
+from pe_core.base.errors import InputError, size_text
 from pe_core.scene.mesh import Mesh
 
 from .mesh import make_mesh, require_labels, require_room

@@ -9,9 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pe_core.base.errors import InputError
+from pe_core.base.errors import InputError, require_memory
 from pe_core.base.files import decode_text
-from pe_core.base.memory import require_memory
 from pe_core.scene.mesh import Mesh
 
 from .mesh import TEXT_UNFOLDS, fan, fan_size, gathered, make_mesh, require_room

@@ -7,9 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from pe_core.base.errors import InputError
+from pe_core.base.errors import InputError, require_memory
 from pe_core.base.files import decode_text
-from pe_core.base.memory import require_memory
 from pe_core.scene.mesh import Mesh
 
 from .mesh import TEXT_UNFOLDS, make_mesh, require_room

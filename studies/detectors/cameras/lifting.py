@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pe_core.geometry import rotate, rotation_matrix
 from pe_core.scene.rig import Sensor
-from pe_core.sensors.camera.picture import picture_rays
+from pe_core.sensors.camera.model import picture_rays
 
 from ..batches import STRIDE
 from ..placements import Placement, pose_of

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pe_core.geometry.ray_traversal import TriangleTree
-from pe_core.sensors.camera.picture import picture_rays
+from pe_core.sensors.camera.model import picture_rays
 
 from ..casting import RegionPictures, beams_on_objects, first_hits, region_objects
 from ..placements import Placement, vehicle

@@ -9,6 +9,7 @@ from . import (
     commands,
     consistency,
     diagnostics,
+    engine_process,
     language,
     library,
     live,
@@ -21,7 +22,6 @@ from . import (
     sensor_cache,
     vehicle_cache,
     wiring,
-    worker,
 )
 from .overlay import draw_handler as overlay
 from .translation_context import in_own_context
@@ -66,7 +66,7 @@ def unregister() -> None:
 def stop() -> None:
     """End what runs, remove what `start` added, and drop what is kept between two calls."""
     operators.unregister()
-    worker.unregister()
+    engine_process.stop()
     wiring.unregister()
     preferences_panel.unregister()
     library.unregister()

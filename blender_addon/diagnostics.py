@@ -1,4 +1,4 @@
-"""Warnings about the scene, and a score explained in words: both computed beside the window.
+"""Warnings about the scene, and a score explained in words: both by the engine's process.
 
 Checks run some time after the scene became idle, so that they do not slow down further moves. How
 far a rig sees is computed after a score.
@@ -8,14 +8,21 @@ from __future__ import annotations
 
 import bpy
 
-from . import bridge, sensor_cache, signals, vehicle_cache, viewport
-from .engine import advice, geometry, pe
-from .worker import background_worker
+from . import (
+    analysis_calls,
+    bridge,
+    engine_process,
+    sensor_cache,
+    signals,
+    vehicle_cache,
+    viewport,
+)
+from .engine import advice, pe
 
 IDLE_DELAY_S = 1.0
 """How long the scene has to be idle until the checks run."""
 WARNINGS, EXPLANATION = "warnings", "words"
-"""Topics of the background worker."""
+"""Topics of requests."""
 
 
 _outdated = False
@@ -56,10 +63,6 @@ def run_checks() -> None:
     except pe.InputError:  # a score reports it
         space = pe.PerceptionSpace()
 
-    def work() -> tuple[str, tuple[pe.Advice, ...]]:
-        line = "" if vehicle is None else geometry.vehicle_line(vehicle)
-        return line, advice.warnings(sensors, vehicle, space, pe.Prior.uniform())
-
     def deliver(found: tuple[str, tuple[pe.Advice, ...]]) -> None:
         if name in bpy.data.scenes:
             line, warnings = found
@@ -70,7 +73,8 @@ def run_checks() -> None:
             _mark_outdated(not bpy.app.background and bpy.app.timers.is_registered(run_checks))
             signals.view_changed.emit()
 
-    background_worker.ask(WARNINGS, work, deliver, lambda _: None)
+    given = sensors, vehicle, space
+    engine_process.ask(WARNINGS, analysis_calls.warnings, given, deliver, lambda _: None)
 
 
 def _mark_outdated(behind: bool) -> None:
@@ -87,13 +91,10 @@ def explain_score(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) -
         return
     study, score, name = outcome.study, outcome.after, scene.name
 
-    def work() -> advice.Outlook:
-        return advice.outlook(study.sight(), study.rig)
-
     def deliver(seen: advice.Outlook) -> None:
         scene = bpy.data.scenes.get(name)
         if scene is not None and scene.perception_entropy.result_signature == signature:
             bridge.store_text(scene, study, score, seen)
             signals.view_changed.emit()
 
-    background_worker.ask(EXPLANATION, work, deliver, lambda _: None)
+    engine_process.ask(EXPLANATION, analysis_calls.outlook, (study,), deliver, lambda _: None)

@@ -1,19 +1,56 @@
 """The one door to the engine and to the tools around it.
 
-Everything else in the add-on takes them from here. In Blender's extension both packages lie inside
-the add-on: the build turns these imports into relative ones.
+Everything else in the add-on takes them from here. A room is imported when it is first asked for,
+as the engine's process needs few of them. In Blender's extension both packages lie inside the
+add-on: the build turns these imports into relative ones.
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING
+
 import pe_core as pe
-from pe_core import base as text
-from pe_core import catalog, scoring, search
-from pe_core import scene as geometry
-from pe_core import sensors as kinds
-from pe_core import study as studies
+import pe_tools as tools
 from pe_core.base import Flags, Floats, Ints, Singles
-from pe_core.scoring import requirements, sight
-from pe_tools import advice, exchange, graphics, jobs, outputs, page, wording
-from pe_tools import cli as app
+
+if TYPE_CHECKING:
+    from pe_core import base as text
+    from pe_core import catalog, scoring, search
+    from pe_core import scene as geometry
+    from pe_core import sensors as kinds
+    from pe_core import study as studies
+    from pe_core.scoring import requirements, sight
+    from pe_tools import advice, engine_process, exchange, graphics, jobs, outputs, page, wording
+    from pe_tools import cli as app
+
+ROOMS = {
+    "advice": (tools, "advice"),
+    "app": (tools, "cli"),
+    "catalog": (pe, "catalog"),
+    "engine_process": (tools, "engine_process"),
+    "exchange": (tools, "exchange"),
+    "geometry": (pe, "scene"),
+    "graphics": (tools, "graphics"),
+    "jobs": (tools, "jobs"),
+    "kinds": (pe, "sensors"),
+    "outputs": (tools, "outputs"),
+    "page": (tools, "page"),
+    "requirements": (pe, "scoring.requirements"),
+    "scoring": (pe, "scoring"),
+    "search": (pe, "search"),
+    "sight": (pe, "scoring.sight"),
+    "studies": (pe, "study"),
+    "text": (pe, "base"),
+    "wording": (tools, "wording"),
+}
+"""Where the rooms are, by the names that they have in the add-on."""
+
+
+def __getattr__(name: str) -> object:
+    if name not in ROOMS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    package, room = ROOMS[name]
+    return import_module(f"{package.__name__}.{room}")
+
 
 __all__ = [
     "Flags",
@@ -23,6 +60,7 @@ __all__ = [
     "advice",
     "app",
     "catalog",
+    "engine_process",
     "exchange",
     "geometry",
     "graphics",

@@ -10,9 +10,8 @@ from typing import NamedTuple
 
 import bpy
 
-from . import bridge, sensor_cache, signals, vehicle_cache
+from . import bridge, engine_process, sensor_cache, signals, vehicle_cache
 from .engine import advice, pe
-from .worker import background_worker
 
 TOPIC = "place"
 QueriedPoint = tuple[float, float, float]
@@ -31,7 +30,7 @@ _answers: dict[str, LocationAnswer] = {}
 
 
 def query(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, point: QueriedPoint) -> None:
-    """Query which sensors see a point; the background worker delivers the answer."""
+    """Query which sensors see a point; the answer is delivered when it is there."""
     name = scene.name
     vehicle = vehicle_cache.shared.read(scene, depsgraph).vehicle
     sensors = bridge.possible_sensors(sensor_cache.sensors(scene), depsgraph)
@@ -44,15 +43,14 @@ def query(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, point: Queried
         store_answer(name, LocationAnswer(point, (str(error),)))
         return
 
-    def work() -> advice.AskedPlace:
-        return advice.ask_place(rig, space, prior, vehicle, point, model)
-
     def deliver(place: advice.AskedPlace) -> None:
         store_answer(name, LocationAnswer(point, place.text, place))
 
-    background_worker.ask(
-        TOPIC, work, deliver, lambda error: store_answer(name, LocationAnswer(point, (str(error),)))
-    )
+    def fail(error: Exception) -> None:
+        store_answer(name, LocationAnswer(point, (str(error),)))
+
+    given = rig, space, prior, vehicle, point, model
+    engine_process.ask(TOPIC, advice.ask_place, given, deliver, fail)
 
 
 def store_answer(scene_name: str, answer: LocationAnswer) -> None:
@@ -68,7 +66,7 @@ def answer(scene: bpy.types.Scene) -> LocationAnswer | None:
 
 def discard(scene: bpy.types.Scene) -> None:
     """Discard the query and its answer."""
-    background_worker.drop(TOPIC)
+    engine_process.drop(TOPIC)
     if _answers.pop(scene.name, None) is not None:
         signals.view_changed.emit()
 
@@ -82,5 +80,5 @@ def query_again() -> None:
 
 def clear(*_: object) -> None:
     """Discard all queries: another file is opened, whose scenes may have the same names."""
-    background_worker.drop(TOPIC)
+    engine_process.drop(TOPIC)
     _answers.clear()

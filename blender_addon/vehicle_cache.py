@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import bpy
 
-from . import bridge, caches
+from . import bridge
 from .engine import pe
 
 
@@ -150,6 +150,5 @@ def invalidate(*_: object) -> None:
 
 
 def clear(*_: object) -> None:
-    """Before another file is opened: drop all vehicles, and what is kept of them."""
+    """Before another file is opened: drop all vehicles."""
     shared.clear()
-    caches.clear()

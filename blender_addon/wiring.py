@@ -18,6 +18,7 @@ from . import (
     change_events,
     consistency,
     diagnostics,
+    engine_process,
     housing,
     location_query,
     result_staleness,
@@ -61,6 +62,7 @@ EVENTS: dict[str, tuple[Function, ...]] = {
         result_staleness.clear,
         location_query.clear,
         scheduler.clear,
+        engine_process.stop,
     ),
     "load_post": (
         sensor_cache.invalidate,

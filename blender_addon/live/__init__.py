@@ -1,8 +1,8 @@
 """The live score: it follows every move of a sensor.
 
 `state` holds what is known of each scene, `session` requests scores and says what they are compared
-with, `evaluation` makes them, `background_figures` computes the figures below it,
-`readout_text` puts all of it into text, and `readout` draws that in a corner of the 3D view.
+with, `background_figures` requests the figures below them, `readout_text` puts all of it into text,
+and `readout` draws that in a corner of the 3D view.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Stop drawing, and drop everything; the worker has ended before."""
+    """Stop drawing, and drop everything."""
     sense_icons.unregister()
     readout.unregister()
     session.unregister()

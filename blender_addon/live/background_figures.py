@@ -1,7 +1,6 @@
 """Key figures below a live score: blind ground, reach, expected AP, and a known rig's score.
 
-They are requested from the background worker once the scene is idle, so that nothing that follows
-the mouse waits for them. Figures of a rig are computed once.
+They are requested once the scene is idle. Figures of a rig are computed once.
 """
 
 from __future__ import annotations
@@ -12,29 +11,23 @@ from functools import partial
 
 import bpy
 
-from .. import bridge, signals, worker
-from ..caches import RecentCache
+from .. import analysis_calls, bridge, engine_process, signals
 from ..choices import NO_ANCHOR
-from ..engine import advice, catalog, pe, sight
-from .evaluation import EvaluatorCache
+from ..engine import advice, catalog, pe, text
+from ..engine_calls import Problem, ScoreRequest, rig_key
 from .readout_text import ReadoutLine, figure_lines, known_rig_line
 from .state import (
     Baseline,
     FigureRequest,
     KnownRigScore,
     LiveScore,
-    Problem,
-    ScoreRequest,
     ShownFigures,
     live_state,
-    rig_key,
     states,
 )
 
-figure_cache: RecentCache[advice.KeyFigures] = RecentCache(24)
+figure_cache: text.RecentCache[advice.KeyFigures] = text.RecentCache(24)
 """By problem, rule and rig: those of the last moves, and what they are compared with."""
-_sight_cache: RecentCache[sight.Sight] = RecentCache()
-"""By the problem's key."""
 
 
 def rule_of(scene: bpy.types.Scene, prior: pe.Prior) -> bridge.FigureRule | None:
@@ -49,8 +42,10 @@ def request(scene: bpy.types.Scene, score: ScoreRequest, baseline: Baseline | No
     rigs = [score.rig, *([baseline.rig] if baseline is not None and baseline.rig else [])]
     missing = [rig for rig in rigs if figure_cache.get(_key(problem, rule, rig)) is None]
     if rule is not None and missing:
-        work = partial(_compute, problem, rule, missing)
-        worker.background_worker.ask(f"live figures of {name}", work, _notify, _failed)
+        given = problem, rule.height, rule.class_name, missing
+        deliver = partial(_keep, problem, rule, missing)
+        topic = f"live figures of {name}"
+        engine_process.ask(topic, analysis_calls.key_figures, given, deliver, _failed)
     _request_known_rig(name, problem, scene.perception_entropy.live.anchor)
 
 
@@ -94,7 +89,7 @@ def lines_below(
 def cancel(scene_name: str) -> None:
     """Drop the requests of a scene."""
     for topic in ("figures", "anchor"):
-        worker.background_worker.drop(f"live {topic} of {scene_name}")
+        engine_process.drop(f"live {topic} of {scene_name}")
 
 
 def clear() -> None:
@@ -108,14 +103,15 @@ def _key(problem: Problem, rule: bridge.FigureRule | None, rig: pe.Rig) -> Hasha
     return problem.key, rule, rig_key(rig)
 
 
-def _compute(problem: Problem, rule: bridge.FigureRule, rigs: list[pe.Rig]) -> None:
-    """On the worker's thread: compute the figures of rigs."""
-    place = problem.space, problem.prior, problem.vehicle
-    look = _sight_cache.made(problem.key, lambda: sight.Sight(*place, model=problem.model))
-    voxels = not problem.targets.are_objects
-    for rig in rigs:
-        figures = advice.key_figures(look, rig, rule.height, rule.class_name, of_voxels=voxels)
-        figure_cache.put(_key(problem, rule, rig), figures)
+def _keep(
+    problem: Problem,
+    rule: bridge.FigureRule,
+    rigs: list[pe.Rig],
+    figures: list[advice.KeyFigures],
+) -> None:
+    for rig, found in zip(rigs, figures, strict=True):
+        figure_cache.put(_key(problem, rule, rig), found)
+    signals.live_score_changed.emit()
 
 
 def _request_known_rig(name: str, problem: Problem, chosen: str) -> None:
@@ -126,15 +122,9 @@ def _request_known_rig(name: str, problem: Problem, chosen: str) -> None:
     elif state.known_rig is None or state.known_rig.key != key:
         rig = catalog.known_rig(chosen)
         state.known_rig = KnownRigScore(key, rig.title)
-        work = partial(_score_known_rig, problem, rig)
-        deliver = partial(_deliver_known_rig, name, key)
-        worker.background_worker.ask(f"live anchor of {name}", work, deliver, _failed)
-
-
-def _score_known_rig(problem: Problem, known_rig: catalog.KnownRig) -> pe.SummaryScore:
-    """On the worker's thread: score a known rig, by an evaluator of its own."""
-    rig = catalog.rig_on(known_rig, problem.vehicle)
-    return EvaluatorCache().summary("", ScoreRequest(problem, rig, preview=False))
+        deliver, topic = partial(_deliver_known_rig, name, key), f"live anchor of {name}"
+        given = problem, rig
+        engine_process.ask(topic, analysis_calls.known_rig_score, given, deliver, _failed)
 
 
 def _deliver_known_rig(name: str, key: Hashable, summary: pe.SummaryScore) -> None:
@@ -142,10 +132,6 @@ def _deliver_known_rig(name: str, key: Hashable, summary: pe.SummaryScore) -> No
     if state.known_rig is not None and state.known_rig.key == key:
         state.known_rig = replace(state.known_rig, summary=summary)
         signals.live_score_changed.emit()
-
-
-def _notify(_result: None) -> None:
-    signals.live_score_changed.emit()
 
 
 def _failed(error: Exception) -> None:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import bpy
 
-from .. import viewport, worker
+from .. import engine_process, viewport
 from ..language import shown as in_language
 from ..viewport import FAINT, INK, PLATE, SMALL, Rgba
 from . import background_figures
@@ -38,7 +38,7 @@ SENSE_COLORS = {sense: (*color, 1.0) for sense, color in SENSES.items()}
 ARROWS = {BETTER: "\N{DOWNWARDS ARROW}", WORSE: "\N{UPWARDS ARROW}"}
 PLATE_NAME = "live"
 VIEW_TOPICS = "overlay "
-"""How the worker's topics begin whose results the 3D view shows of sensors."""
+"""How topics begin whose results the 3D view shows of sensors."""
 
 
 class TextRow(NamedTuple):
@@ -72,7 +72,7 @@ def draw() -> None:
     box = None
     if scene.perception_entropy.live.on and overlays and viewport.is_lower_left(context):
         state, shown = live_state(scene.name), shown_score(scene)
-        if shown is not None and shown.exact and worker.background_worker.awaits(VIEW_TOPICS):
+        if shown is not None and shown.exact and engine_process.busy(VIEW_TOPICS):
             shown = shown._replace(view_outdated=True)
         exact, figures = shown is not None and shown.exact, []
         if state.score is not None:

@@ -4,39 +4,37 @@ A move is scored exactly where that is quick enough: by the last exact score, an
 preferences. Otherwise its score is a preview.
 
 A request is read inside Blender's own update, which costs a fraction of a millisecond, and scored
-on the interactive worker's thread at once, while Blender draws; only the latest request waits. The
-score is stored on the main thread between two redraws: panel and read-out show the same one.
+by the engine's process at once, while Blender draws; only the latest request waits. The score is
+stored between two redraws: panel and read-out show the same one.
 """
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from functools import partial
 
 import bpy
 
-from .. import bridge, change_events, preferences, signals, vehicle_cache, worker
+from .. import (
+    bridge,
+    change_events,
+    engine_calls,
+    engine_process,
+    preferences,
+    sensor_cache,
+    signals,
+    vehicle_cache,
+)
 from ..choices import BEFORE_MOVE, PINNED
 from ..engine import pe
+from ..engine_calls import Problem, ScoredRig, ScoreRequest, rig_key
 from . import background_figures
-from .evaluation import EvaluatorCache, read_request
-from .state import (
-    Baseline,
-    LastRead,
-    LiveScore,
-    LiveState,
-    ScoreRequest,
-    live_state,
-    rig_key,
-    states,
-)
+from .state import Baseline, LastRead, LiveScore, LiveState, live_state, states
 
 VEHICLE_MOVES = "The vehicle is moving: scored again when it stops"
+TOPIC = "live score of "
 MOVING = "TRANSFORM_OT_"
 """How the names of Blender's operators begin that move things."""
-
-_evaluators = EvaluatorCache()
 
 
 def follow_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
@@ -77,7 +75,7 @@ def on_idle() -> None:
 
 
 def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, moving: bool) -> None:
-    """Read a scene, and have it scored by the interactive worker."""
+    """Read a scene, and have it scored."""
     name, state = scene.name, live_state(scene.name)
     number = state.next_request()
     try:
@@ -94,31 +92,51 @@ def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, mov
     counts = change_events.change_count(), vehicle_cache.shared.version
     state.last_read = LastRead(*counts, request.prior_key, request.rig, request.problem.key)
     baseline = baseline_of(scene, request)
-    job = partial(score_in_thread, name, request, number, baseline)
-    deliver, fail = partial(show_score, name), partial(report_failure, name)
-    worker.interactive_worker.ask(name, job, deliver, fail)
+    needed = None if baseline is None or moving or baseline.summary else baseline.rig
+    deliver = partial(take_score, name, request, number, baseline)
+    fail = partial(report_failure, name)
+    given, lane = (name, request, needed), engine_process.FOLLOWS_MOUSE
+    engine_process.ask(TOPIC + name, engine_calls.live_score, given, deliver, fail, lane=lane)
     if not moving:
         background_figures.request(scene, request, baseline)
 
 
-def score_in_thread(
-    name: str, request: ScoreRequest, number: int, baseline: Baseline | None
-) -> LiveScore:
-    """On the worker's thread: score a request."""
-    idle, state, problem = not request.moving, live_state(name), request.problem.key
-    if idle and baseline is not None and baseline.summary is None and baseline.rig is not None:
-        baseline.summary = _evaluators.summary(name, replace(request, rig=baseline.rig))
-    begun = time.perf_counter()
-    summary = _evaluators.summary(name, request)
+def read_request(
+    scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, moving: bool
+) -> ScoreRequest:
+    """Read what the score needs of a scene; the vehicle only if it has changed.
+
+    `InputError` when something in the scene is wrong: one line.
+    """
+    bridge.check_scene(scene)
+    rig = bridge.rig_from_objects(sensor_cache.sensors(scene), depsgraph)
+    state, prior_key = live_state(scene.name), bridge.prior_key(scene)
+    if state.prior is None or state.prior[0] != prior_key:
+        state.prior = prior_key, bridge.prior_from_scene(scene)
+    prior = state.prior[1]
+    vehicle, vehicle_key = vehicle_cache.shared.read(scene, depsgraph)
+    if vehicle is None:
+        collection = scene.perception_entropy.vehicle
+        vehicle = bridge.vehicle_from_collection(collection, depsgraph)  # raises the reason
+    settings = scene.perception_entropy
+    space, model = bridge.space_of(settings), bridge.perception_of(settings)
+    targets = bridge.targets_of(settings)
+    problem_key = prior_key, vehicle_key, space, model, targets
+    problem = Problem(problem_key, prior, vehicle, space, model, targets)
+    return ScoreRequest(problem, rig, moving, (prior_key, space, model, targets), moving)
+
+
+def take_score(
+    name: str, request: ScoreRequest, number: int, baseline: Baseline | None, scored: ScoredRig
+) -> None:
+    """Store a score that the engine made, and have it drawn."""
+    state, problem = live_state(name), request.problem.key
+    if baseline is not None and scored.baseline is not None:
+        baseline.summary = scored.baseline
     if not request.preview:
-        state.note_cost(problem, request.rig, time.perf_counter() - begun)
-    scored = request.rig, number, problem, idle
-    return LiveScore(summary, baseline, not request.preview, *scored)
-
-
-def show_score(name: str, score: LiveScore) -> None:
-    """Store a new score, and have it drawn."""
-    live_state(name).put(score)
+        state.note_cost(problem, request.rig, scored.seconds)
+    given = request.rig, number, problem, not request.moving
+    state.put(LiveScore(scored.summary, baseline, not request.preview, *given))
     signals.live_score_changed.emit()
 
 
@@ -138,7 +156,7 @@ def show_note(name: str, line: str) -> None:
 
 def cancel(name: str) -> None:
     """Drop the request of a scene; one that is in progress will not be shown."""
-    worker.interactive_worker.drop(name)
+    engine_process.drop(TOPIC + name)
 
 
 def on_toggled() -> None:
@@ -183,9 +201,8 @@ def _moving_operator() -> int:
 
 
 def unregister() -> None:
-    """Drop everything; the thread has ended."""
+    """Drop everything."""
     clear()
-    _evaluators.clear()
 
 
 MOVE_LABEL, PINNED_LABEL = "before this move", "pinned sensors"

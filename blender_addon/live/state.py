@@ -1,7 +1,6 @@
 """What is known of the live score, one state a scene: plain data, dropped with the file.
 
-A state is made when its scene is first asked for. It holds no object of Blender's. It is written on
-the main thread, but for `exact_cost`.
+A state is made when its scene is first asked for. It holds no object of Blender's.
 """
 
 from __future__ import annotations
@@ -16,35 +15,7 @@ import bpy
 from .. import bridge
 from ..choices import BEFORE_MOVE
 from ..engine import advice, pe
-
-DEFAULT_SPACE, VOXELS = pe.PerceptionSpace(), pe.TargetRule()
-
-
-def rig_key(rig: pe.Rig) -> Hashable:
-    """Return plain values that identify a rig; the catalogue has one object a model."""
-    return tuple((s.name, id(s.model), s.pose, s.group, s.curve) for s in rig)
-
-
-class Problem(NamedTuple):
-    """What an evaluator is made for; `key` identifies it by plain values."""
-
-    key: Hashable
-    prior: pe.Prior
-    vehicle: pe.Vehicle | None
-    space: pe.PerceptionSpace = DEFAULT_SPACE
-    model: pe.PerceptionModel | None = None
-    targets: pe.TargetRule = VOXELS
-
-
-@dataclass(frozen=True)
-class ScoreRequest:
-    """A rig to be scored; approximately, as a preview, where `preview`; `moving`: not idle."""
-
-    problem: Problem
-    rig: pe.Rig
-    preview: bool
-    prior_key: Hashable = None
-    moving: bool = False
+from ..engine_calls import ScoreRequest, rig_key
 
 
 @dataclass(slots=True, eq=False)

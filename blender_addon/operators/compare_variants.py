@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from textwrap import wrap
 from typing import Any, NamedTuple
 
@@ -13,11 +12,10 @@ from .. import bridge, result_staleness
 from ..engine import advice, pe
 from ..language import draw_label, shown
 from ..live import SAME, sense_icon
+from ..own_jobs import ComparedVariant, CompareJob, PendingVariant
 from .declared import INTERNAL, OperatorResult, Told, operator
 from .jobs import JobRow, Task
 
-FIGURES_SHARE = 0.1
-"""About which share of a score's time its key figures take."""
 LABEL_PX, COLUMN_PX = 190, 140
 MIN_WIDTH_PX, LETTER_PX = 560, 7
 """Smallest width of the table, and width of a letter of the sentences above it."""
@@ -34,66 +32,6 @@ KEY_FIGURES = ("blind", "reach", "ap")
 FORMATS = {"entropy": ".3f", "coverage": ".1%", "ap": ".3f", "reach": ".1f", "blind": ".1f"}
 """Formats of the figures by measure."""
 WHOLE_RIG = "Everywhere"
-
-
-class PendingVariant(NamedTuple):
-    """A variant without a valid score, or without figures of the present height and class."""
-
-    name: str
-    study: pe.Study
-    unscored: bool
-
-
-class ComparedVariant(NamedTuple):
-    """The results of a variant; `score` is None where it has a valid one already."""
-
-    score: pe.Score | None
-    figures: advice.KeyFigures
-
-
-class CompareJob:
-    """A job of several studies, one after the other: their scores and key figures, by key."""
-
-    def __init__(self, lacking: dict[int, PendingVariant], rule: bridge.FigureRule) -> None:
-        self.lacking, self.rule = lacking, rule
-        self.stopped = self.dropped = False
-        self.outcome: dict[int, ComparedVariant] | None = None
-
-    def stop(self) -> None:
-        """Stop the job; completed results are kept."""
-        self.stopped = True
-
-    def drop(self) -> None:
-        """Stop the job and discard all results."""
-        self.stopped = self.dropped = True
-
-    def __iter__(self) -> Iterator[pe.Progress]:
-        compared: dict[int, ComparedVariant] = {}
-        for key, (name, study, unscored) in self.lacking.items():
-            score = None
-            if unscored:
-                job = pe.ScoreJob(study)
-                for step in job:
-                    if self.stopped:
-                        job.stop()
-                    yield self._progress(name, len(compared), step)
-                if job.outcome is None:
-                    break
-                score = job.outcome.after
-            if self.stopped and score is None:
-                break
-            looking = pe.Progress("seeing", 1.0 - FIGURES_SHARE)
-            yield self._progress(name, len(compared), looking)
-            compared[key] = ComparedVariant(score, self._figures(study))
-        self.outcome = None if self.dropped else compared or None
-
-    def _progress(self, name: str, done: int, step: pe.Progress) -> pe.Progress:
-        share = (done + step.fraction) / len(self.lacking)
-        return replace(step, stage=f"scoring {name}", fraction=min(share, 1.0))
-
-    def _figures(self, study: pe.Study) -> advice.KeyFigures:
-        voxels = not study.targets.are_objects
-        return advice.key_figures(study.sight(), study.rig, *self.rule, of_voxels=voxels)
 
 
 def compare_task(context: bpy.types.Context) -> Task | None:
@@ -128,7 +66,7 @@ def compare_task(context: bpy.types.Context) -> Task | None:
         scored = sum(variant.score is not None for variant in found.values())
         return Told(f"{scored} scored, {len(found)} compared", tuple(map(str, refused)))
 
-    return Task(CompareJob(pending, rule), finish)
+    return Task(CompareJob(pending, (rule.height, rule.class_name)), finish, "compared")
 
 
 def open_table() -> None:

@@ -1,6 +1,6 @@
 """Exports: the study, the scene and the rig for other programs, the review picture and page.
 
-What takes long is a job, prepared on a thread and written as one set of files at the end. A file
+What takes long is a job, whose files are written as one set at the end. A file
 dialog's operator ends with it: the job then runs in an operator of its own. The names of the files
 written last are kept here for the panel: they are not part of the .blend file.
 """
@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import contextlib
 import shlex
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Sequence
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +18,9 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from .. import bridge, viewport
-from ..engine import app, exchange, jobs, outputs, page, pe
+from .. import bridge, own_jobs, viewport
+from ..engine import app, exchange, outputs, page, pe
+from ..own_jobs import ExportJob, WrittenFiles
 from . import running_job
 from .declared import (
     INTERNAL,
@@ -33,78 +34,6 @@ from .declared import (
     operator,
 )
 from .jobs import JobRow, Task
-
-
-@dataclass(frozen=True, slots=True)
-class WrittenFiles:
-    """Files that an export wrote, and warnings about them."""
-
-    paths: tuple[Path, ...]
-    lines: tuple[str, ...] = ()
-
-    @property
-    def text(self) -> str:
-        """One line that names the written files."""
-        return f"Wrote {', '.join(path.name for path in self.paths)}"
-
-    @property
-    def folder(self) -> Path:
-        """The folder of the first file."""
-        return self.paths[0].parent
-
-
-class ExportStopped(Exception):
-    """The user stopped the export; raised on the thread to end its work."""
-
-
-OnProgress = Callable[[float], None]
-SCORED_SHARE = 0.25
-"""About which share of an export is done after the score."""
-
-
-class ExportJob(pe.Job):
-    """Makes files on a thread, then writes them; a stopped job writes nothing.
-
-    `stage` is what it does. `make` gets an outcome, None if the study is not `scored` first, and a
-    callback for the progress, 0 to 1; `write` writes what it returns.
-    """
-
-    def __init__(
-        self,
-        study: pe.Study,
-        stage: str,
-        make: Callable[[Any, OnProgress], Any],
-        write: Callable[[Any], WrittenFiles],
-        scored: bool = False,
-    ) -> None:
-        super().__init__(study)
-        self._stage, self._make, self._write, self._scored = stage, make, write, scored
-        self.written: WrittenFiles | None = None
-
-    def __iter__(self) -> Iterator[pe.Progress]:
-        score, begin = pe.ScoreJob(self.study), SCORED_SHARE if self._scored else 0.0
-        for step in score if self._scored else ():
-            if self.stopped:
-                score.drop()
-            yield pe.Progress("scoring", SCORED_SHARE * step.fraction)
-        if self.stopped:
-            return
-
-        def work(watch: Callable[[float], bool]) -> Any:
-            def note(share: float) -> None:
-                if not watch(begin + (1.0 - begin) * share):
-                    raise ExportStopped
-
-            return self._make(score.outcome, note)
-
-        made = yield from self._beside(work, pe.Progress(self._stage, begin))
-        if made is not None and not self.stopped:
-            self.written = self._write(made)
-
-    def stop(self) -> None:
-        """End at once, and write nothing."""
-        self.drop()
-
 
 last: WrittenFiles | None = None
 """The files written last in this session."""
@@ -246,23 +175,7 @@ def export_scene(
     study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
     replace = replace or not row.has_several  # of one file the dialog has confirmed it
 
-    def write(made: tuple[dict[str, bytes], list[str]]) -> WrittenFiles:
-        files, lines = made
-        paths = exchange.write_files(files, path, inside=row.has_several, replace=replace)
-        return WrittenFiles(tuple(paths), tuple(lines))
-
-    stage, reach = f"exporting {row.title}", range_m or None
-    job = ExportJob(study, stage, lambda *_: outputs.scene_files(study, row.name, reach), write)
-    return run(job, asked_in_window)
-
-
-def _write_one(path: Path) -> Callable[[bytes], WrittenFiles]:
-    def write(made: bytes) -> WrittenFiles:
-        with jobs.FileSet(path.parent, (path.name,)) as files:  # the dialog has confirmed it
-            files.add(path.name, made)
-        return WrittenFiles((path,))
-
-    return write
+    return run(own_jobs.scene_job(study, row.name, path, range_m or None, replace), asked_in_window)
 
 
 @operator("Render Review", unless=_unless_running, **dialog(".png"))
@@ -272,10 +185,7 @@ def render_review(context: bpy.types.Context, filepath: str, asked_in_window: bo
     study = bridge.study_as_drawn(context.scene)
     pe.prepare_folder(path.parent)  # fail before the work, not after
 
-    def make(outcome: pe.Outcome, _watch: OnProgress) -> bytes:
-        return page.picture_file(outcome.study, outcome)
-
-    return run(ExportJob(study, "picture", make, _write_one(path), scored=True), asked_in_window)
+    return run(own_jobs.picture_job(study, path), asked_in_window)
 
 
 @operator(
@@ -307,10 +217,7 @@ def export_review(
     }
     pe.prepare_folder(path.parent)  # fail before the work, not after
 
-    def make(outcome: pe.Outcome, watch: OnProgress) -> bytes:
-        return page.page_bytes([page.ReportContext(path.stem, outcome, **facts)], watch, about)
-
-    return run(ExportJob(study, "page", make, _write_one(path), scored=True), asked_in_window)
+    return run(own_jobs.page_job(study, path, about, facts), asked_in_window)
 
 
 def headless_command(path: Path, about: page.About) -> str:

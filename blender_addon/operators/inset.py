@@ -1,7 +1,7 @@
 """The picture of the selected sensor in a corner of the 3D view, while the view stays as it is.
 
 Blender's viewport renders the picture of a camera from the camera's pose. It is rendered again when
-the scene has changed, not when the view is turned. The background worker computes the picture of a
+the scene has changed, not when the view is turned. The engine's process computes the picture of a
 LiDAR's ranges. Blender's camera has no distortion: for a lens with distortion, the picture is the
 pinhole view of *Look Through*.
 """
@@ -17,11 +17,10 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from .. import bridge, vehicle_cache, viewport
+from .. import bridge, engine_process, vehicle_cache, viewport
 from ..engine import catalog, pe
 from ..overlay import surroundings
 from ..sensor_kinds import Pixels, row_of
-from ..worker import background_worker
 from . import sensor_pictures
 from .sensor_pictures import PictureView
 
@@ -232,7 +231,7 @@ def _draw_ranges(context: bpy.types.Context, sensor: pe.Sensor) -> viewport.Plat
 
 
 def request_ranges() -> None:
-    """Timer: request the picture of the active sensor from the background worker."""
+    """Timer: request the picture of the active sensor ."""
     scene, obj = bpy.context.scene, bpy.context.view_layer.objects.active
     if obj is None or not obj.perception_entropy.is_sensor:
         return
@@ -251,9 +250,10 @@ def request_ranges() -> None:
         _ranges = (sensor.name, sensor.model.name), sensor_pictures.PixelImage(pixels)
         viewport.redraw_editors()
 
-    background_worker.ask(
+    engine_process.ask(
         TOPIC,
-        lambda: pixels_of(sensor, vehicle),
+        pixels_of,
+        (sensor, vehicle),
         deliver,
         lambda _error: None,  # Look Through says why
     )

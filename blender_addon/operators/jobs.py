@@ -1,4 +1,4 @@
-"""Jobs: one operator, a row a job. The worker runs it; without a window it runs at once.
+"""Jobs: one operator, a row a job. The engine's process runs it; without a window it runs at once.
 
 A row says what to make from the scene and what to do with the result. Esc stops a job, which keeps
 the best so far; Esc once more discards all changes.
@@ -6,7 +6,7 @@ the best so far; Esc once more discards all changes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -14,13 +14,13 @@ import bpy
 
 from .. import (
     bridge,
-    caches,
     diagnostics,
+    engine_calls,
     result_staleness,
     signals,
     vehicle_cache,
 )
-from ..engine import advice, jobs, pe, requirements
+from ..engine import advice, jobs, pe
 from ..language import shown
 from ..live import FinishedScore, live_state
 from . import running_job
@@ -42,18 +42,20 @@ from .declared import (
     report_error,
 )
 
+DISCARDED = "Discarded: nothing was changed"
+
 
 class Task(NamedTuple):
     """A job that was read from a scene.
 
-    `finish` writes its result to the scene, `progressed` what it has found so far. `outcome` is the
-    job's attribute of the result; None while there is nothing to keep.
+    `finish` writes its result to the scene, `progressed` what it has found so far: it gets the job.
+    `outcome` is the job's attribute of the result; None while there is nothing to keep.
     """
 
     job: Any
     finish: Callable[[bpy.types.Scene, Any], Answer]
     outcome: str = "outcome"
-    progressed: Callable[[bpy.types.Scene], None] | None = None
+    progressed: Callable[[bpy.types.Scene, Any], None] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,12 +90,10 @@ class JobRow:
         declared(type(f"PE_OT_{self.name}", (JobOperator, bpy.types.Operator), given))
         return self
 
-    def finish(self, scene: bpy.types.Scene | None, task: Task) -> Answer:
-        """Write the result to the scene; undo takes it back in one step."""
-        found = getattr(task.job, task.outcome)
+    def finish(self, scene: bpy.types.Scene | None, task: Task, found: Any, job: Any) -> Answer:
+        """Write what a job found to the scene; undo takes it back in one step."""
         if found is None:
-            dropped = "Discarded: nothing was changed"
-            raise Stopped(dropped if task.job.dropped else self.unfinished)
+            raise Stopped(DISCARDED if job.dropped else self.unfinished)
         if not self.of_scene:
             return task.finish(bpy.context.scene, found)
         if scene is None:
@@ -124,14 +124,17 @@ class JobOperator(OperatorMixin):
         """Run the job to its end, as scripts and Blender without a window do."""
         try:
             task = self.row.read(context)
-            for _ in task.job if task else ():
+            if task is None:
+                return report_answer(self, None)
+            for _ in task.job:
                 pass
-            return report_answer(self, self.row.finish(context.scene, task) if task else None)
+            found = getattr(task.job, task.outcome)
+            return report_answer(self, self.row.finish(context.scene, task, found, task.job))
         except (Refused, *USER_ERRORS) as error:
             return report_error(self, error)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
-        """Start the job, which the worker runs."""
+        """Start the job, which the engine's process runs."""
         if bpy.app.background:
             return self.execute(context)
         try:
@@ -141,7 +144,7 @@ class JobOperator(OperatorMixin):
         if task is None:
             return self._show()
         self.task = task
-        running_job.begin(context, task.job).show(context)
+        running_job.begin(context, task.job, task.outcome).show(context)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -161,15 +164,15 @@ class JobOperator(OperatorMixin):
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
         scene = bpy.data.scenes.get(running.scene_name)
+        if self.task.progressed is not None and scene is not None:
+            self.task.progressed(scene, running.seen)
         if not running.ended:
-            if self.task.progressed is not None and scene is not None:
-                self.task.progressed(scene)
             running.show_soon(context)
             return {"PASS_THROUGH"}
         try:
             if running.error is not None:
                 raise running.error
-            report_answer(self, self.row.finish(scene, self.task))
+            report_answer(self, self.row.finish(scene, self.task, running.found, running.seen))
             return self._show()
         except (Refused, *USER_ERRORS) as error:
             return report_error(self, error)
@@ -209,7 +212,7 @@ def of_study(make: Make) -> Callable[[bpy.types.Context], Task]:
             sensors = bridge.sensor_objects(scene)
             study = bridge.study_from_scene(scene, depsgraph, vehicle, sensors)
             task = make(scene, study, result_staleness.fingerprint(scene, depsgraph, sensors))
-            task.job.as_drawn = caches.checker_of_study
+            task.job.as_drawn = engine_calls.checker_of_study
             task.job.notes = bridge.missing_data(scene, sensors)  # what the scene lacks
             return task
 
@@ -326,29 +329,30 @@ def check_task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerpri
         raise pe.InputError("scene", "requirements", "at least one", "none")
     tables = {*bridge.requirements_key(scene.perception_entropy)}
     bridge.store_verdicts(scene.perception_entropy, ())
-    job, stored = jobs.CheckJob(study, fitting=True), [0]
+    count = 0
 
-    def progressed(scene: bpy.types.Scene) -> None:
-        if len(job.verdicts) > stored[0]:
-            settings, stored[0] = scene.perception_entropy, len(job.verdicts)
-            same = {name for name, _ in tables & {*bridge.requirements_key(settings)}}
-            found = [each for each in job.verdicts if each.name in same]
-            bridge.store_verdicts(settings, found, job.unchecked)
+    def store(scene: bpy.types.Scene, found: jobs.CheckJob | jobs.Checked) -> None:
+        nonlocal count
+        count, settings = len(found.verdicts), scene.perception_entropy
+        same = {name for name, _ in tables & {*bridge.requirements_key(settings)}}
+        kept = [each for each in found.verdicts if each.name in same]
+        bridge.store_verdicts(settings, kept, found.unchecked)
 
-    def finish(scene: bpy.types.Scene, verdicts: Sequence[requirements.Verdict]) -> Told:
-        if job.dropped:
-            raise Stopped("Discarded: nothing was changed")
-        stored[0] = -1
-        progressed(scene)
-        met = sum(verdict.met for verdict in verdicts)
-        missed = [verdict.name for verdict in verdicts if not verdict.met]
-        unchecked = [*job.unchecked, *job.missing]
+    def progressed(scene: bpy.types.Scene, job: jobs.CheckJob) -> None:
+        if len(job.verdicts) > count:
+            store(scene, job)
+
+    def finish(scene: bpy.types.Scene, found: jobs.Checked) -> Told:
+        store(scene, found)
+        missed = [verdict.name for verdict in found.verdicts if not verdict.met]
+        unchecked = [*found.unchecked, *found.missing]
         more = f"; not met: {', '.join(missed)}" if missed else ""
         more += f"; not checked: {', '.join(unchecked)}" if unchecked else ""
-        text = f"{met} of {len(verdicts)} requirements are met{more}"
+        met, of = len(found.verdicts) - len(missed), len(found.verdicts)
+        text = f"{met} of {of} requirements are met{more}"
         return Told(text, level="WARNING" if missed or unchecked else "INFO")
 
-    return Task(job, finish, "verdicts", progressed)
+    return Task(jobs.CheckJob(study, fitting=True), finish, "checked", progressed)
 
 
 SCORE = JobRow(

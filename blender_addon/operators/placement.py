@@ -1,16 +1,15 @@
 """The sensor that is being placed by pointing: its pose under the mouse, its picture, its score.
 
 Its state is in this module, not in the scene: the file does not change before it is placed. The
-picture is drawn from arrays and lines of text. The interactive worker computes the score on a small
-sample.
+picture is drawn from arrays and lines of text. The engine computes the score on a small sample.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, NamedTuple
+from itertools import count
+from typing import Any
 
 import bpy
 import gpu
@@ -18,12 +17,12 @@ import numpy as np
 from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 
-from .. import bridge, viewport
+from .. import bridge, engine_calls, engine_process, viewport
 from ..choices import free_name
 from ..engine import graphics, kinds, pe
+from ..engine_calls import Gain
 from ..language import draw_label
 from ..sensor_kinds import mount_for
-from ..worker import interactive_worker
 from . import running_job
 from .surface_pose import (
     MAX_STAND_OFF_M,
@@ -46,8 +45,9 @@ TEXT_PX, TEXT_GAP, PAD_PX = 12, 1.5, 6
 TEXT_AT = (26, -12)
 """Where text begins beside the mouse [px]."""
 PLATE = (0.08, 0.08, 0.08, 0.78)
-TOPIC = "place"
-SAMPLES = 16_384
+TOPIC = "held sensor"
+_numbers = count()
+"""Of studies that sensors are held in."""
 
 
 class HeldSensor:
@@ -71,7 +71,7 @@ class HeldSensor:
         vehicle = context.scene.perception_entropy.vehicle
         self._parts = parts_of(vehicle, depsgraph)
         self._middle = vehicle_center(vehicle)
-        self._gain = self._gain_in(context.scene, depsgraph)
+        self._scored = self._scored_in(context.scene, depsgraph)
         self._workspace = context.workspace.name
         self._handlers.show((self._draw, "POST_VIEW"), (self._draw_text, "POST_PIXEL"))
         self.show_keys()
@@ -122,7 +122,7 @@ class HeldSensor:
     def more(self, context: bpy.types.Context) -> None:
         """Hold another sensor of the same model; its score includes the sensor just placed."""
         scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
-        self._gain, self.score = self._gain_in(scene, depsgraph), ""
+        self._scored, self.score = self._scored_in(scene, depsgraph), ""
         self.put(None)
 
     def show_keys(self) -> None:
@@ -134,7 +134,7 @@ class HeldSensor:
     def end(self) -> None:
         """Remove the picture, the status text and the score."""
         self._handlers.hide()
-        interactive_worker.drop(TOPIC)
+        engine_process.drop(TOPIC)
         for workspace in bpy.data.workspaces:
             workspace.status_text_set(None)
         viewport.redraw_editors()
@@ -149,12 +149,14 @@ class HeldSensor:
             stem = graphics.Primitives.of([spot.point, pose.position], STEM_COLOR)
             self.lines = graphics.Primitives.joined([moved_to(self._shape[0], pose), stem])
             self._faces = moved_to(self._shape[1], pose)
-            if (gain := self._gain) is not None:
-                interactive_worker.ask(TOPIC, lambda: gain(pose), self._tell, self._tell)
+            if self._scored is not None:
+                given, lane = (*self._scored, pose), engine_process.FOLLOWS_MOUSE
+                tell = self._tell, self._tell
+                engine_process.ask(TOPIC, engine_calls.gain, given, *tell, lane=lane)
         self._write()
 
     def _tell(self, gain: Gain | Exception) -> None:
-        """Show the score that the worker found, or why there is none."""
+        """Show the score that the engine found, or why there is none."""
         if isinstance(gain, Exception) and not isinstance(gain, pe.InputError | MemoryError):
             raise gain
         self.score = str(gain) if isinstance(gain, Gain) else f"no score: {gain}"
@@ -171,15 +173,16 @@ class HeldSensor:
             self.text = self.model.name, where, self.score
         viewport.redraw_editors()
 
-    def _gain_in(
+    def _scored_in(
         self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
-    ) -> Callable[[pe.Pose], Gain] | None:
-        """Return what scores it in a scene; None, with the error as text, if that has no study."""
+    ) -> tuple[int, pe.Study, str] | None:
+        """Return what it is scored in: a number, the study, its name; None, with the error as text,
+        if the scene has no study."""
         sensors = bridge.possible_sensors(bridge.sensor_objects(scene), depsgraph)
         name = free_name(self.kind.label, {sensor.name for sensor in sensors})
         try:
             rig = pe.Rig([*sensors, pe.Sensor(name, self.model)])
-            return gain_of(bridge.study_of_rig(scene, depsgraph, rig), name)
+            return next(_numbers), bridge.study_of_rig(scene, depsgraph, rig), name
         except (pe.InputError, MemoryError) as error:
             self.score = f"no score: {error}"
             return None
@@ -218,41 +221,6 @@ class HeldSensor:
         viewport.fill_box((left - pad, low, left + width + pad, top + row), PLATE)
         for number, line in enumerate(self.text):
             viewport.draw_text(line, left, top - number * row, size, viewport.INK)
-
-
-class Gain(NamedTuple):
-    """Entropy [nats] and coverage without (None if it is the only one) and with a sensor."""
-
-    before: float | None
-    after: float
-    coverage: float
-
-    def __str__(self) -> str:
-        """Return the gain as one line of text."""
-        seen = f"coverage {self.coverage:.1%}"
-        if self.before is None:
-            return f"{self.after:.3f} nats, {seen}"
-        change = self.after - self.before
-        return f"{self.before:.3f} to {self.after:.3f} nats ({change:+.3f}), {seen}"
-
-
-def gain_of(study: pe.Study, name: str) -> Callable[[pe.Pose], Gain]:
-    """Return what scores one sensor of a study at a pose, together with the others.
-
-    These are measured only the first time.
-    """
-    others = [each for each in study.rig if each.name != name]
-    made: list[tuple[pe.RigEvaluator, float | None]] = []
-
-    def gain(pose: pe.Pose) -> Gain:
-        if not made:
-            evaluator = study.evaluator(samples=SAMPLES)
-            made.append((evaluator, evaluator.entropy(pe.Rig(others)) if others else None))
-        evaluator, before = made[0]
-        score = evaluator.score(pe.Rig([*others, study.rig[name].moved(pose)]), preview=True)
-        return Gain(before, score.entropy, score.coverage)
-
-    return gain
 
 
 current: HeldSensor | None = None

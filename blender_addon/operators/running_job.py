@@ -11,10 +11,9 @@ from typing import Any, cast
 
 import bpy
 
-from .. import search_curve, signals, viewport
+from .. import engine_process, search_curve, signals, viewport
 from ..engine import jobs, pe
 from ..language import draw_label, shown
-from ..worker import job_worker
 
 TOPIC = "job"
 TICK_S = 0.05
@@ -33,16 +32,17 @@ NOTICE_S = 6.0
 """How long that is shown."""
 
 
-class RunningJob:
-    """A job that the job worker runs, with the progress that it made."""
+class RunningJob(jobs.WatchedJob):
+    """A job that the engine's process runs, with the progress that it made."""
 
-    def __init__(self, context: bpy.types.Context, job: pe.Job) -> None:
-        self.job = job
+    def __init__(self, context: bpy.types.Context, job: pe.Job, outcome: str) -> None:
+        super().__init__(job)
+        self.outcome = outcome
         self.scene_name = context.scene.name
-        self.progress = pe.Progress("starting", 0.0)
         self.ended = False
+        self.found: Any = None
         self.error: Exception | None = None
-        self._shown = self._seen = 0.0
+        self._shown = self._looked = 0.0
         self._best: tuple[tuple[int, float], ...] = ()
         self._notice_until = 0.0
         manager = context.window_manager
@@ -50,33 +50,35 @@ class RunningJob:
         manager.progress_begin(0.0, 1.0)
 
     def start(self) -> None:
-        """Have the worker run the job; `ended` says that it has, `error` what it failed with."""
-        job_worker.ask(TOPIC, self._run, self._note_end, self._note_end)
+        """Have the job run; `ended` says that it has, `found` its result, `error` its failure."""
+        given, take = (self.job, self.outcome), (self._take, self._fail)
+        lane = engine_process.JOB
+        engine_process.ask(TOPIC, jobs.JobRun, given, *take, step=self.note, lane=lane)
 
-    def _run(self) -> None:
-        """On the worker's thread: run the job to its end."""
-        for progress in self.job:
-            self.progress = progress
+    def _take(self, found: Any) -> None:
+        self.ended, self.found = True, found
 
-    def _note_end(self, error: Exception | None) -> None:
+    def _fail(self, error: Exception) -> None:
         self.ended, self.error = True, error
 
     def stop(self) -> None:
         """Stop the job and keep the best so far; called again, keep nothing."""
-        if self.job.stopped:
-            self.job.drop()
-        self.job.stop()
+        if self.seen.stopped:
+            self.seen.drop()
+            self._take(None)  # the window waits for nothing
+        self.seen.stop()
+        engine_process.cancel(TOPIC)
 
     @property
     def text(self) -> str:
         """The stage, the progress, and the best entropy so far: approximate, if on a sample."""
-        if self.job.dropped:
+        if self.seen.dropped:
             return "Stopping"
         stage = f"{self.progress.stage.capitalize()} {self.progress.fraction:.0%}"
         entropy, figure = self.progress.entropy, self.progress.figure
         if entropy is None:
             return stage
-        if self.progress.stage == "optimizing" and (curve := getattr(self.job, "curve", ())):
+        if self.progress.stage == "optimizing" and (curve := getattr(self.seen, "curve", ())):
             entropy = curve[-1][1]  # as the 3D view shows it, from all starts
         sampled = self.progress.stage == "optimizing" and self.job.study.search.samples
         if figure.higher_is_better:
@@ -96,7 +98,7 @@ class RunningJob:
     @property
     def on_escape(self) -> str:
         """What Esc does now."""
-        return "Discard All Changes" if self.job.stopped else "Stop"
+        return "Discard All Changes" if self.seen.stopped else "Stop"
 
     def show_soon(self, context: bpy.types.Context) -> None:
         """Draw the progress again, if some time has passed since the last time."""
@@ -115,17 +117,17 @@ class RunningJob:
 
     def _show_search(self) -> None:
         """Show the curve of a search and the best placement in the 3D view, not too often."""
-        curve = getattr(self.job, "curve", ())
+        curve = getattr(self.seen, "curve", ())
         better = curve[-1:] != self._best
         wait = BEST_EVERY_S if better else CURVE_EVERY_S
-        if not curve or time.monotonic() - self._seen < wait:
+        if not curve or time.monotonic() - self._looked < wait:
             return
-        self._seen, self._best = time.monotonic(), curve[-1:]
+        self._looked, self._best = time.monotonic(), curve[-1:]
         figure = jobs.searched_figure(self.job.study)
         points = tuple((evaluation, figure.to_figure(value)) for evaluation, value in curve)
-        sensors = tuple(cast(Any, self.job).best.rig) if len(curve) > 1 else ()
+        sensors = tuple(cast(Any, self.seen).best.rig) if len(curve) > 1 else ()
         sampled = bool(self.job.study.search.samples)
-        count = cast(Any, self.job).evaluations  # a job with a history searches
+        count = cast(Any, self.seen).evaluations  # a job with a history searches
         seen = search_curve.SearchProgress(
             points, count, sensors, sampled or figure.higher_is_better, figure.higher_is_better
         )
@@ -136,9 +138,7 @@ class RunningJob:
 
     def end(self, context: bpy.types.Context) -> None:
         """Remove everything that shows the job, however it ended; drop one that still runs."""
-        if not self.ended:
-            self.job.drop()
-        job_worker.drop(TOPIC)
+        engine_process.drop(TOPIC)
         search_curve.drop(self.scene_name)
         signals.view_changed.emit()
         context.window_manager.event_timer_remove(self._timer)
@@ -153,10 +153,10 @@ class RunningJob:
 current: RunningJob | None = None
 
 
-def begin(context: bpy.types.Context, job: pe.Job) -> RunningJob:
-    """Run the job beside the window from now on."""
+def begin(context: bpy.types.Context, job: pe.Job, outcome: str) -> RunningJob:
+    """Have the engine run the job from now on; `outcome` is its attribute of the result."""
     global current
-    current = RunningJob(context, job)
+    current = RunningJob(context, job, outcome)
     current.start()
     return current
 
@@ -172,7 +172,6 @@ def end(context: bpy.types.Context) -> None:
 def unregister() -> None:
     """End a running job and remove what shows it: its operator is about to be removed."""
     if current is not None:
-        current.job.drop()
         _send_events(bpy.context.window_manager)
     end(bpy.context)
 

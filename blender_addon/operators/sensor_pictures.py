@@ -11,10 +11,9 @@ import numpy as np
 from gpu_extras.presets import draw_texture_2d
 from mathutils import Matrix
 
-from .. import viewport
+from .. import engine_process, viewport
 from ..engine import graphics, pe
 from ..sensor_kinds import PIXELS_PER_DEG, Pixels, row_of
-from ..worker import background_worker
 
 TITLE_PX, PAD_PX = 20.0, 6.0
 TITLE_PLATE, INK = (0.08, 0.08, 0.08, 0.78), (0.92, 0.92, 0.92, 1.0)
@@ -135,7 +134,7 @@ def image_name(sensor: str) -> str:
 
 
 def request_image(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> None:
-    """Have the picture of a sensor's kind made on a thread, and put into the sensor's image."""
+    """Have the picture of a sensor's kind made, and put into the sensor's image."""
     image_of(sensor.name)
     pixels = row_of(sensor.kind).pixels
     assert pixels is not None  # asked for those kinds alone
@@ -144,9 +143,10 @@ def request_image(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> None:
         store_image(sensor.name, made)
         show_image(sensor.name)
 
-    background_worker.ask(
+    engine_process.ask(
         RANGE_TOPIC,
-        lambda: pixels(sensor, vehicle),
+        pixels,
+        (sensor, vehicle),
         deliver,
         lambda error: print(f"perception entropy: no picture of {sensor.name}: {error}"),
     )

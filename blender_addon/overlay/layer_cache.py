@@ -9,8 +9,8 @@ from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from .. import caches
-from ..engine import graphics, pe, requirements, sight
+from .. import engine_calls
+from ..engine import graphics, pe, requirements, sight, text
 from .request import SceneSensor, ViewRequest
 
 Sight = sight.Sight  # a cache has a method `sight`
@@ -62,6 +62,8 @@ shown = LayerStore()
 
 T = TypeVar("T")
 
+MAX_TRIANGLES = 50_000
+"""A vehicle of more is simplified for drawing: a picture shows no more detail."""
 STEPS_M, WITHIN_M = {False: 0.5, True: 1.0}, 20.0
 """Distance of the places of redundancy maps by whether something moves, and their extent [m]."""
 MAX_KEPT = {"casts": 24, "compared": 2, "scale": 16}
@@ -72,7 +74,7 @@ class LayerCache:
     """Caches expensive results by plain keys; never used by two threads at once."""
 
     def __init__(self) -> None:
-        self._kept: dict[str, caches.RecentCache[Any]] = {}
+        self._kept: dict[str, text.RecentCache[Any]] = {}
         self._met: dict[Hashable, tuple[dict[str, bool], dict[str, bool]]] = {}
 
     def cast(self, request: ViewRequest, of: SceneSensor) -> graphics.Cast:
@@ -84,7 +86,9 @@ class LayerCache:
     def body(self, request: ViewRequest) -> pe.Vehicle | None:
         """Return the vehicle, simplified where it has very many triangles."""
         vehicle = request.vehicle
-        return None if vehicle is None else caches.simplified(vehicle)
+        if vehicle is None or len(vehicle.triangles) <= MAX_TRIANGLES:
+            return vehicle
+        return self._keep("body", request.body_key, lambda: _simplified(vehicle))
 
     def sight(self, request: ViewRequest) -> Sight:
         """Return the `Sight` that computes the visibility of rigs."""
@@ -149,8 +153,13 @@ class LayerCache:
     def _keep(self, sort: str, key: Hashable, make: Callable[[], T]) -> T:
         """Return the cached value of a key, or make it; the least recently used one is dropped."""
         most = MAX_KEPT.get(sort, 1)
-        found: T = self._kept.setdefault(sort, caches.RecentCache(most)).made(key, make)
+        found: T = self._kept.setdefault(sort, text.RecentCache(most)).made(key, make)
         return found
+
+
+def _simplified(vehicle: pe.Vehicle) -> pe.Vehicle:
+    """Return a vehicle of `MAX_TRIANGLES`, which takes seconds for millions of triangles."""
+    return graphics.simplified(vehicle, MAX_TRIANGLES, quick=True)[0]
 
 
 def _checker(request: ViewRequest) -> tuple[requirements.RequirementChecker, dict[str, str]]:
@@ -158,4 +167,4 @@ def _checker(request: ViewRequest) -> tuple[requirements.RequirementChecker, dic
     around = rig, request.vehicle, request.reference, request.space
     placed, unplaced = requirements.checkable(request.requirements, *around)
     given = request.vehicle, request.model, request.reference, request.space
-    return caches.checker(placed, *given), unplaced
+    return engine_calls.checker(placed, *given), unplaced

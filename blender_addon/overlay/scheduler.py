@@ -1,4 +1,4 @@
-"""Schedules layers that are out of date: the background worker makes them again.
+"""Schedules layers that are out of date: the engine's process makes them again.
 
 Handlers and signals note changes; a timer then reads the scene and requests the layers whose keys
 have changed. Results are stored in `layer_cache.shown`, and the views are redrawn. Without a window
@@ -8,13 +8,12 @@ there is no timer, and `update` does everything at once.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping
-from dataclasses import replace
 
 import bpy
 
-from .. import sensor_cache, viewport, worker
-from ..engine import pe
-from .layer_cache import LayerCache, ShownLayer, shown
+from .. import analysis_calls, engine_process, sensor_cache, viewport
+from ..engine import graphics, pe
+from .layer_cache import ShownLayer, shown
 from .layers import LAYERS, Layer
 from .request import ViewRequest
 from .snapshot import SnapshotReader
@@ -24,7 +23,6 @@ BATCH_S = 0.12
 """How long a finished layer waits for others that were requested with it."""
 
 _reader = SnapshotReader()
-_layer_cache = LayerCache()
 _requested: dict[tuple[str, str], tuple[Mapping[str, Hashable], bool]] = {}
 """The keys of the last request of each scene and layer: nothing is requested twice."""
 _selection: dict[str, tuple[str, ...]] = {}
@@ -92,11 +90,9 @@ def note_selection(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> No
 def clear(*_: object) -> None:
     """Drop everything that belongs to the file that was open."""
     for scene, layer in tuple(_requested):
-        worker.background_worker.drop(_topic(scene, layer))
+        engine_process.drop(_topic(scene, layer))
     for each in (_requested, _selection, shown, _reader):
         each.clear()
-    global _layer_cache
-    _layer_cache = LayerCache()  # work in progress keeps the old one
 
 
 def _update_now() -> None:
@@ -119,7 +115,7 @@ def _request(scene: str, layer: Layer, request: ViewRequest) -> None:
     """Request one layer, if it is out of date."""
     keys = layer.keys(request) if layer.name in request.view.layers else {}
     if not keys:
-        worker.background_worker.drop(_topic(scene, layer.name))
+        engine_process.drop(_topic(scene, layer.name))
         if _requested.pop((scene, layer.name), None) is not None:
             shown.drop(scene, layer.name)
             viewport.redraw_editors()
@@ -134,9 +130,11 @@ def _request(scene: str, layer: Layer, request: ViewRequest) -> None:
     if _requested.get((scene, layer.name)) == (keys, rough):
         return
     _requested[scene, layer.name] = keys, rough
-    cache = _layer_cache
+    missing = [name for name in keys if name not in wanted]
 
-    def deliver(items: dict[str, ShownLayer]) -> None:
+    def deliver(shapes: list[graphics.LayerShape]) -> None:
+        made = dict(zip(missing, shapes, strict=True))
+        items = {n: wanted.get(n) or ShownLayer(key, made[n], rough) for n, key in keys.items()}
         shown.put(scene, layer.name, items)
         _redraw_together()
 
@@ -146,33 +144,14 @@ def _request(scene: str, layer: Layer, request: ViewRequest) -> None:
         if not isinstance(problem, pe.InputError):  # a score reports what is wrong with the scene
             raise problem
 
-    worker.background_worker.ask(
-        _topic(scene, layer.name),
-        lambda: _compute(layer, replace(request, moving=rough), keys, wanted, cache),
-        deliver,
-        fail,
-    )
-
-
-def _compute(
-    layer: Layer,
-    request: ViewRequest,
-    keys: Mapping[str, Hashable],
-    have: Mapping[str, ShownLayer],
-    cache: LayerCache,
-) -> dict[str, ShownLayer]:
-    """On the worker's thread: return shapes by name; reusable ones stay the same objects."""
-    rough = request.moving
-    return {
-        name: have.get(name) or ShownLayer(key, layer.shape(request, cache, name), rough)
-        for name, key in keys.items()
-    }
+    given = request, layer.name, rough, missing
+    engine_process.ask(_topic(scene, layer.name), analysis_calls.layer_shapes, given, deliver, fail)
 
 
 def _redraw_together() -> None:
     """Redraw once for layers that finish one after the other: a frame may take longer than all of
     them. Late layers are not waited for."""
-    if not any(worker.background_worker.busy(_topic(*layer)) for layer in _requested):
+    if not any(engine_process.busy(_topic(*layer)) for layer in _requested):
         _redraw_now()
     elif not bpy.app.timers.is_registered(_redraw_now):
         bpy.app.timers.register(_redraw_now, first_interval=BATCH_S)

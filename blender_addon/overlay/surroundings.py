@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 import gpu
 
 from .. import vehicle_cache
-from ..caches import RecentCache
-from ..engine import graphics, pe
+from ..engine import graphics, pe, text
 from ..viewport import DrawRegion
 from .batches import Batches
 
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
 MAX_EYES = 4
 """Poses whose surroundings are kept on the graphics card."""
 LINE_PX = 1.0
-_kept: RecentCache[tuple[graphics.Surroundings, Batches, Batches]] = RecentCache(MAX_EYES)
+_kept: text.RecentCache[tuple[graphics.Surroundings, Batches, Batches]] = text.RecentCache(MAX_EYES)
 
 
 def clear() -> None:

@@ -3,6 +3,7 @@
 from .arrays import Flags, Floats, Ints, Singles
 from .errors import available_bytes, require_memory
 from .files import csv_text, decode_text, named_path, read_bytes, require_new, write_bytes
+from .recent_cache import RecentCache
 from .table_reader import Table, dump_json, dumps, parse_json
 from .values import Name, Number
 
@@ -12,6 +13,7 @@ __all__ = [
     "Ints",
     "Name",
     "Number",
+    "RecentCache",
     "Singles",
     "Table",
     "available_bytes",

@@ -38,6 +38,7 @@ __all__ = [
     "KnownSensor",
     "add",
     "add_file",
+    "added",
     "entries",
     "from_table",
     "housing",
@@ -47,6 +48,7 @@ __all__ = [
     "matching",
     "names",
     "remove",
+    "replace_added",
     "rig_on",
     "scan_above_base",
     "to_table",
@@ -163,6 +165,20 @@ def remove(name: str) -> None:
     """Remove a preset that was added with `add`, if there is one of that name."""
     if _added.pop(name, None) is not None:
         _loaded.pop(name, None)
+
+
+def added() -> dict[str, SensorModel]:
+    """Return the sensors that were added, by name."""
+    return {name: _loaded[name] for name in _added}
+
+
+def replace_added(models: Mapping[str, SensorModel]) -> None:
+    """Have these sensors in place of all that were added: those of another process."""
+    for name in tuple(_added):
+        remove(name)
+    for name, model in models.items():
+        _loaded[name] = model
+        _added[name] = Entry(name, OWN, read_only_data(to_table(model)))
 
 
 def load(name: str) -> SensorModel:

@@ -54,6 +54,10 @@ class Journal:
     def __init__(self, entries: Iterable[EvaluatedRig] = (), source: str = "journal") -> None:
         self._entries, self._position, self._source = list(entries), 0, source
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle the entries: a search that begins anew replays them."""
+        return Journal, (self.entries, self._source)
+
     @property
     def entries(self) -> tuple[EvaluatedRig, ...]:
         """All entries so far; may be read while another thread searches."""

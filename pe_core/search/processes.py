@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 import multiprocessing
-import multiprocessing.connection
 import os
-import signal
-import sys
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
-from contextlib import contextmanager, suppress
-from importlib import import_module
-from multiprocessing import resource_tracker
-from types import ModuleType
+from contextlib import suppress
 from typing import Any, TypeVar
 
 from ..base.errors import InputError
-from ..base.files import finish_writing
+from ..base.spawning import (
+    beginning,
+    belong_to_parent,
+    packages_around,
+    signals_blocked,
+    without_main,
+)
 from .payload import Unreadable, keep_freed_memory, receive, send_payload
 
 T = TypeVar("T")
@@ -27,24 +27,6 @@ START_S = 60.0
 """Processes that are not up after this time never will be."""
 SHORT_S = 2.0
 """A search that ends within this time needs no processes: starting them takes as long."""
-TERMINAL_SIGNALS = ("SIGINT", "SIGHUP")
-"""Signals that a terminal sends to all processes at once; Windows has no SIGHUP.
-
-SIGTERM is not among them: a pool in which one process died ends the others by it, and waits until
-they are gone."""
-
-INITIALIZER = """
-import sys, types
-for name, folder in {packages!r}:
-    if name not in sys.modules:
-        sys.modules[name] = types.ModuleType(name)
-        sys.modules[name].__path__ = [folder]
-from importlib import import_module
-import_module({here!r}).begin_worker(*payload)
-"""
-"""The first code that a worker process runs. Packages that contain the engine, as the add-on does
-inside Blender, are not run in it: empty packages stand for them. It is text, because nothing can be
-imported yet."""
 
 
 class Processes(Executor):
@@ -62,11 +44,12 @@ class Processes(Executor):
 
     def _new_pool(self) -> ProcessPoolExecutor:
         context = multiprocessing.get_context("spawn")
-        initializer = INITIALIZER.format(packages=_packages_around(), here=__name__)
-        with _signals_blocked():
-            names = {"payload": self._payload or ()}
+        begun = beginning(__name__, "begin_worker", packages_around())
+        with signals_blocked():
             try:
-                return ProcessPoolExecutor(self._count, context, exec, (initializer, names))
+                return ProcessPoolExecutor(
+                    self._count, context, exec, (begun, {"arguments": self._payload or ()})
+                )
             except (ImportError, NotImplementedError, OSError) as error:
                 expected = "semaphores of the system, which Linux keeps in /dev/shm"
                 raise InputError("workers", "process", expected, _why(error)) from None
@@ -82,7 +65,7 @@ class Processes(Executor):
 
     def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
         """Call a function in a process; start new processes if the pool is broken."""
-        with self._lock, _without_main(), _signals_blocked():
+        with self._lock, without_main(), signals_blocked():
             try:
                 return self._pool.submit(fn, *args, **kwargs)
             except BrokenExecutor:
@@ -175,83 +158,4 @@ def begin_worker(key: str = "", data: bytes = b"") -> None:
     """In a worker: keep the payload, leave signals to the parent process, and end with it."""
     receive(key, data)
     keep_freed_memory()
-    if hasattr(signal, "pthread_sigmask"):  # blocked until now: see `_signals_blocked`
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGTERM])
-    for name in TERMINAL_SIGNALS:
-        if hasattr(signal, name):
-            signal.signal(getattr(signal, name), signal.SIG_IGN)
-
-    def end_with_parent() -> None:
-        parent = multiprocessing.parent_process()
-        assert parent is not None
-        multiprocessing.connection.wait([parent.sentinel])
-        finish_writing()
-        os._exit(1)
-
-    threading.Thread(target=end_with_parent, daemon=True).start()
-
-
-def _packages_around() -> list[tuple[str, str]]:
-    """Names of the packages that contain the engine, outermost first, and the folder of each."""
-    names = __name__.split(".")[:-3]  # the engine, its room, and this module come last
-    packages = []
-    for number in range(1, len(names) + 1):
-        inner = import_module(".".join(__name__.split(".")[: number + 1]))
-        packages.append((".".join(names[:number]), os.path.dirname(inner.__path__[0])))
-    return packages
-
-
-@contextmanager
-def _without_main() -> Iterator[None]:
-    """Hide the main script from processes that start: they would run it, outside Blender."""
-    main = sys.modules["__main__"]
-    sys.modules["__main__"] = ModuleType("__main__")
-    try:
-        yield
-    finally:
-        sys.modules["__main__"] = main
-
-
-@contextmanager
-def _signals_blocked() -> Iterator[None]:
-    """Hold SIGTERM and `TERMINAL_SIGNALS` back here, and block them in processes started meanwhile.
-
-    A handler that raises in the middle of `submit` would leave a lock of the pool taken, for which
-    its thread then waits for ever. A terminal sends its signals to all processes at once, also to
-    one that does not ignore them yet: a worker would end in the middle of an import, with a
-    traceback. The process that tracks semaphores is started here, too: it ignores all but SIGHUP.
-    """
-    names = ("SIGTERM", *TERMINAL_SIGNALS)
-    numbers = {getattr(signal, name) for name in names if hasattr(signal, name)}
-    with _handlers_held(numbers):
-        if not hasattr(signal, "pthread_sigmask"):  # Windows blocks no signals
-            yield
-            return
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, numbers)
-        try:
-            resource_tracker.ensure_running()
-            signal.pthread_sigmask(signal.SIG_BLOCK, numbers)  # ensure_running has unblocked SIGINT
-            yield
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-@contextmanager
-def _handlers_held(numbers: Iterable[int]) -> Iterator[None]:
-    """Call Python's handlers of signals after the block.
-
-    To block signals is not enough: another thread then gets them, and Python calls their handlers
-    in the main thread all the same; in other threads never.
-    """
-    here = threading.current_thread() is threading.main_thread()
-    before = {n: signal.getsignal(n) for n in numbers if here and callable(signal.getsignal(n))}
-    came: list[int] = []
-    try:
-        for number in before:
-            signal.signal(number, lambda number, _: came.append(number))
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-        for number in came:
-            signal.raise_signal(number)
+    belong_to_parent()

@@ -1,5 +1,6 @@
 """Jobs that score and optimize studies, their checkpoints, and the files of their results."""
 
+from .check_job import Checked as Checked
 from .check_job import CheckJob as CheckJob
 from .checkpoint import FRONT_SEARCH as FRONT_SEARCH
 from .checkpoint import SAVE_EVERY_S as SAVE_EVERY_S
@@ -52,3 +53,6 @@ from .study_export import study_writers as study_writers
 from .trade_off import Design as Design
 from .trade_off import TradeOff as TradeOff
 from .trade_off import design_study as design_study
+from .watched_job import JobRun as JobRun
+from .watched_job import JobStep as JobStep
+from .watched_job import WatchedJob as WatchedJob

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from typing import NamedTuple
 
 from pe_core.scoring.requirements import CheckStep, Verdict, checkable
 from pe_core.study.study import Study
 
 from .job import Job, Progress, begun
+
+
+class Checked(NamedTuple):
+    """Verdicts of a check; why requirements were left out, and those it was stopped before."""
+
+    verdicts: list[Verdict]
+    unchecked: Mapping[str, str]
+    missing: tuple[str, ...]
 
 
 class CheckJob(Job):
@@ -20,6 +29,8 @@ class CheckJob(Job):
     stopped.
     """
 
+    shown = ("verdicts", "unchecked")
+
     def __init__(self, study: Study, *, fitting: bool = False) -> None:
         super().__init__(study)
         self._fitting = fitting
@@ -27,6 +38,11 @@ class CheckJob(Job):
         self.unchecked: dict[str, str] = {}
         self.complete = False
         self._progress = Progress("checking", 0.0)
+
+    @property
+    def checked(self) -> Checked:
+        """What is known so far."""
+        return Checked(self.verdicts, self.unchecked, self.missing)
 
     @property
     def missing(self) -> tuple[str, ...]:

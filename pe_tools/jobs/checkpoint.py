@@ -197,6 +197,10 @@ class FrontJournals:
         self._known = {name: tuple(entries) for name, entries in (known or {}).items()}
         self._journals: dict[str, Journal] = {}
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle the entries: searches that begin anew continue them."""
+        return FrontJournals, (self.entries(),)
+
     def begin(self, name: str) -> Journal:
         """Return the journal of a search that begins; it continues a known one."""
         self._journals[name] = Journal(self._known.get(name, ()), FRONT_SEARCH)

@@ -98,6 +98,8 @@ class FrontJob(Job):
         Of all searches; those of an interrupted job may be set before this one begins.
     """
 
+    shown, kept = ("evaluations",), ("journals",)
+
     def __init__(self, study: Study, workers: int | None = None) -> None:
         super().__init__(study, workers)
         front = study.search.goals.front

@@ -224,6 +224,11 @@ class Job:
         Number of threads and processes; all processors by default.
     """
 
+    shown: tuple[str, ...] = ()
+    """Attributes that a driver looks at while the job runs."""
+    kept: tuple[str, ...] = ()
+    """Attributes that a new job of the same study resumes from."""
+
     def __init__(self, study: Study, workers: int | None = None) -> None:
         self.study, self.workers = study, workers
         self.outcome: Outcome | None = None

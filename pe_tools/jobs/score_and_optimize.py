@@ -53,6 +53,10 @@ class _Scored(NamedTuple):
         )
 
 
+def _nothing() -> None:
+    """Nothing evaluates candidates before the search; a name, as a job may be pickled."""
+
+
 class ScoreJob(Job):
     """Scores the rig of a study without changing it."""
 
@@ -102,6 +106,7 @@ class OptimizeJob(Job):
         Why the search ended before its budget did, by a rule of the study; empty otherwise.
     """
 
+    shown, kept = ("history", "_ended", "evaluations"), ("journal",)
     analyses = True
     """Whether the result is analysed after the search."""
 
@@ -122,7 +127,7 @@ class OptimizeJob(Job):
         self._ended: list[HistoryRow] = []
         self.stop_reason = ""
         self._archive = Archive()
-        self._helpers: ExecutorSource = lambda: None
+        self._helpers: ExecutorSource = _nothing
         self._first: HistoryRow | None = None
         self._progress = Progress("preparing", 0.0)
 

@@ -6,9 +6,9 @@ import bpy
 import pytest
 
 import pe_core as pe
-from blender_addon import bridge
+from blender_addon import bridge, engine_calls
 from blender_addon.engine import catalog
-from blender_addon.live import evaluation
+from blender_addon.live import session
 from tests.addon import scenes
 
 
@@ -157,12 +157,12 @@ def test_a_removed_one_is_refused_in_one_line(full):
 
 def test_the_live_score_is_of_the_same_study(full):
     """What follows the hand is of the scene's own space and curves, as the score is."""
-    study, wish = scenes.study(), evaluation.read_request(full, scenes.depsgraph(), moving=False)
+    study, wish = scenes.study(), session.read_request(full, scenes.depsgraph(), moving=False)
     problem = wish.problem
     assert (problem.space, problem.model) == (study.space, study.model)
     assert problem.vehicle.clearance == 0.05
-    own = study.evaluator(samples=evaluation.SAMPLES)
-    assert evaluation.EvaluatorCache().summary("it", wish).entropy == own.entropy(study.rig)
+    own = study.evaluator(samples=engine_calls.SAMPLES)
+    assert engine_calls.live_score("it", wish, None).summary.entropy == own.entropy(study.rig)
     full.perception_entropy.space_x = (-20.0, 30.0)
-    changed = evaluation.read_request(full, scenes.depsgraph(), moving=False)
+    changed = session.read_request(full, scenes.depsgraph(), moving=False)
     assert changed.problem.key != problem.key

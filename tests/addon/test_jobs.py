@@ -7,6 +7,7 @@ import bpy
 import pytest
 
 from blender_addon import bridge, result_staleness
+from blender_addon.engine import jobs as pe_jobs
 from blender_addon.engine import pe, text
 from blender_addon.live import state
 from blender_addon.operators import declared, jobs, running_job
@@ -86,7 +87,8 @@ def test_what_a_search_cost_is_stored_and_shown(car):
 
 def test_stopped_before_a_score_is_complete_changes_nothing(car):
     with pytest.raises(declared.Stopped):
-        jobs.OPTIMIZE.finish(car, jobs.OPTIMIZE.read(Window(car)))
+        task = jobs.OPTIMIZE.read(Window(car))
+        jobs.OPTIMIZE.finish(car, task, None, task.job)
     assert not car.perception_entropy.has_result
 
 
@@ -115,25 +117,29 @@ class Manager:
     event_timer_add = event_timer_remove = progress_begin = progress_end = lambda *_, **__: None
 
 
-def test_the_worker_runs_a_job_and_tells_how_it_ended(car):
-    context = SimpleNamespace(scene=car, window_manager=Manager(), window=None)
-
-    def broken():
+class Broken(pe.ScoreJob):
+    def __iter__(self):
         yield pe.Progress("scoring", 0.5)
         raise pe.InputError("job", "work", "none", "any")
 
+
+def test_a_job_that_the_engine_runs_tells_how_it_ended(car):
+    context = SimpleNamespace(scene=car, window_manager=Manager(), window=None)
     job = pe.OptimizeJob(scenes.study())
-    running = running_job.RunningJob(context, job)
+    running = running_job.RunningJob(context, job, "outcome")
     assert not running.ended
-    running.start()  # without a window the worker does it at once
-    assert running.ended and running.error is None and job.outcome is not None
-    running = running_job.RunningJob(context, broken())
+    running.start()  # without a window it is done at once
+    assert running.ended and running.error is None and running.found is job.outcome
+    assert running.seen.curve == job.curve and running.seen.best.rig == job.best.rig
+    running = running_job.RunningJob(context, Broken(scenes.study()), "outcome")
     running.start()
     assert running.ended and isinstance(running.error, pe.InputError)
     assert running.progress.fraction == 0.5
-    job = pe.OptimizeJob(scenes.study())
-    running_job.RunningJob(context, job).end(context)  # its window or file was closed
-    assert job.dropped
+    running = running_job.RunningJob(context, job, "outcome")
+    running.stop()
+    assert running.seen.stopped and not running.ended
+    running.stop()
+    assert running.seen.dropped and running.ended, "the window waits for nothing"
 
 
 def test_result_goes_stale_and_comes_back(car):
@@ -176,7 +182,7 @@ def finished_after(car, row, change):
     bpy.context.view_layer.update()
     for _ in steps:
         pass
-    row.finish(car, task)
+    row.finish(car, task, getattr(task.job, task.outcome), task.job)
 
 
 CHANGES = {
@@ -274,13 +280,13 @@ def test_a_sensor_that_something_holds_is_reported_before_the_work(car, hold, mo
 def test_a_second_stop_leaves_all_as_it_was(car):
     before = scenes.study().rig["roof"].pose
     task = jobs.OPTIMIZE.read(Window(car))
-    shown = SimpleNamespace(job=task.job)
-    for progress in task.job:
-        if progress.evaluations >= 8:
-            running_job.RunningJob.stop(shown)
-            running_job.RunningJob.stop(shown)
+    run = pe_jobs.JobRun(task.job)
+    for step in run:
+        if step.progress.evaluations >= 8:
+            run.cancel()
+            run.cancel()
     with pytest.raises(declared.Stopped):
-        jobs.OPTIMIZE.finish(car, task)
+        jobs.OPTIMIZE.finish(car, task, task.job.outcome, task.job)
     assert scenes.study().rig["roof"].pose == before and not car.perception_entropy.has_result
 
 

@@ -1,26 +1,25 @@
 """The live score: previews while the hand moves, exact once it rests, and nothing left behind."""
 
-import threading
+import math
 from dataclasses import replace
-from functools import partial
 
 import bpy
-import numpy as np
 import pytest
 
 import blender_addon
 from blender_addon import (
+    analysis_calls,
     bridge,
-    caches,
     change_events,
+    engine_calls,
+    engine_process,
     preferences,
     result_staleness,
     signals,
-    worker,
 )
 from blender_addon.choices import BEFORE_MOVE, PINNED
-from blender_addon.engine import advice, catalog, pe
-from blender_addon.live import background_figures, evaluation, readout, readout_text, session, state
+from blender_addon.engine import advice, catalog
+from blender_addon.live import readout, readout_text, session, state
 from blender_addon.live.state import ShownFigures
 from tests.addon import scenes
 
@@ -44,7 +43,7 @@ class Window:
 def live(monkeypatch, car):
     """The car with a second sensor, in a window, the live score switched on."""
     scenes.add_sensor("front", model="Camera 60 deg", location=(1.9, 0.0, 1.2))
-    monkeypatch.setattr(evaluation, "SAMPLES", SAMPLES)
+    monkeypatch.setattr(engine_calls, "SAMPLES", SAMPLES)
     monkeypatch.setattr(preferences, "LIVE_BUDGET_MS", 0.0)  # but where it is tested
     for module in (change_events, session):
         monkeypatch.setattr(module, "bpy", Window)
@@ -100,7 +99,7 @@ def test_a_drag_is_previewed_exact_at_rest_and_compared_with_where_it_began(live
         drag(roof)
         assert reading(live).before == second
     rest()
-    monkeypatch.setattr(worker.interactive_worker, "ask", lambda *_: None)  # a machine that is busy
+    monkeypatch.setattr(engine_process, "ask", lambda *_, **__: None)  # a machine that is busy
     drag(roof)
     assert reading(live).exact and not is_exact(live), "of before the move"
     rest()
@@ -125,7 +124,7 @@ def test_moves_are_exact_where_the_budget_allows_it(live, monkeypatch):
     assert reading(live).summary.preview
     live.perception_entropy.prior = "highway"  # another problem: its cost is not known
     rest()
-    assert of_scene.exact_cost.seconds == np.inf
+    assert of_scene.exact_cost.seconds == math.inf
 
 
 def test_a_stored_result_is_not_shown_while_something_moves(live, monkeypatch):
@@ -310,9 +309,7 @@ def test_a_known_rig_is_scored_on_this_vehicle_once(live, monkeypatch):
     now = reading(live).summary.entropy
     by = f"{abs(now - there):.3f} {'worse' if now > there else 'better'}"
     assert lines(live) == [f"KITTI here: {there:.3f} nats; this is {by}"]
-    monkeypatch.setattr(
-        background_figures, "_score_known_rig", lambda *_: pytest.fail("scored again")
-    )
+    monkeypatch.setattr(analysis_calls, "known_rig_score", lambda *_: pytest.fail("scored again"))
     drag(live.objects["roof"])
     rest()
     assert lines(live)[0].startswith(f"KITTI here: {there:.3f} nats")
@@ -333,7 +330,7 @@ def test_only_what_moved_is_measured_and_the_vehicle_is_not_read(live, monkeypat
 
 def evaluator_of(scene):
     """The evaluator that is kept for a scene."""
-    ((_, evaluator),) = session._evaluators._kept[scene.name]._kept
+    ((_, evaluator),) = engine_calls._evaluators[scene.name]._kept
     return evaluator
 
 
@@ -343,7 +340,7 @@ def kernels(scene):
 
 
 def test_what_is_no_sensor_asks_for_nothing(live, monkeypatch):
-    monkeypatch.setattr(worker.interactive_worker, "ask", lambda *_: pytest.fail("asked"))
+    monkeypatch.setattr(engine_process, "ask", lambda *_, **__: pytest.fail("asked"))
     lamp = bpy.data.objects.new("lamp", None)
     live.collection.objects.link(lamp)
     drag(lamp)
@@ -423,7 +420,7 @@ def test_another_file_in_the_middle_of_a_drag(live):
 def test_switched_off_it_forgets_and_follows_no_more(live, monkeypatch):
     live.perception_entropy.live.on = False
     assert state.live_state(live.name).last_read is None and reading(live) is None
-    monkeypatch.setattr(worker.interactive_worker, "ask", lambda *_: pytest.fail("asked"))
+    monkeypatch.setattr(engine_process, "ask", lambda *_, **__: pytest.fail("asked"))
     drag(live.objects["roof"])
     rest()
     assert reading(live) is None
@@ -446,50 +443,22 @@ def test_of_two_scenes_each_has_its_own(live):
 
 
 def test_the_extension_disabled_in_the_middle_of_a_drag(live):
-    before = threading.active_count()
     drag(live.objects["roof"])
     blender_addon.unregister()
     try:
         assert not state.states
-        assert not session._evaluators._kept and not readout._handlers.shown
+        assert not engine_calls._evaluators and not readout._handlers.shown
         assert session.follow_update not in bpy.app.handlers.depsgraph_update_post
         assert session.on_idle not in signals.idle.listeners
-        assert threading.active_count() <= before
     finally:
         blender_addon.register()
-
-
-def test_what_is_dropped_while_it_is_worked_out_is_never_shown(live):
-    wish = evaluation.read_request(live, bpy.context.evaluated_depsgraph_get(), moving=False)
-    state.live_state(live.name).switch_off()
-    began, goes_on = threading.Event(), threading.Event()
-
-    def work():
-        began.set()
-        goes_on.wait(10.0)
-        return session.score_in_thread(live.name, wish, 1, None)
-
-    thread = worker.Worker()
-    with pytest.MonkeyPatch.context() as window:
-        window.setattr(worker, "bpy", Window)
-        for dropped in (True, False):
-            thread.ask("score", work, partial(session.show_score, live.name), pytest.fail)
-            assert began.wait(10.0)
-            assert reading(live) is None, "a thread stores nothing: a redraw may be under way"
-            if dropped:
-                thread.drop("score")
-            goes_on.set()
-            while thread.busy():
-                thread._deliver_all()
-            assert (reading(live) is None) == dropped
-        thread.stop()
 
 
 def test_a_mistake_of_ours_is_shown_and_told(live, monkeypatch):
     def broken(*_):
         raise ValueError("odd")
 
-    monkeypatch.setattr(session, "score_in_thread", broken)
+    monkeypatch.setattr(engine_calls, "live_score", broken)
     with pytest.raises(ValueError, match="odd"):
         rest()
     assert state.live_state(live.name).note == "Not scored: ValueError('odd')"
@@ -499,22 +468,3 @@ def test_without_a_window_nothing_follows(car):
     car.perception_entropy.live.on = True
     drag(car.objects["roof"])
     assert reading(car) is None
-
-
-def test_a_simple_body_is_made_once(monkeypatch):
-    whole = pe.Vehicle(np.random.default_rng(1).random((9000, 3, 3)))
-    made, simplified = [], caches.graphics.simplified
-
-    def watched(vehicle, most, *, quick):
-        made.append(len(vehicle.triangles))
-        return simplified(vehicle, most, quick=quick)
-
-    monkeypatch.setattr(caches.graphics, "simplified", watched)
-    caches.clear()
-    assert caches.simplified(whole) is whole and not made
-    monkeypatch.setattr(caches, "MAX_TRIANGLES", 4000)
-    first = caches.simplified(whole)
-    assert caches.simplified(whole) is first and made == [9000]
-    assert len(first.triangles) <= 4000
-    caches.clear()
-    assert caches.simplified(whole) is not first

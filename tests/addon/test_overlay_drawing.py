@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import bpy
 import pytest
 
-from blender_addon import bridge, vehicle_cache, worker
+from blender_addon import bridge, engine_process, vehicle_cache
 from blender_addon.engine import graphics, pe, sight
 from blender_addon.overlay import draw_handler, scheduler, surroundings
 from blender_addon.overlay.layer_cache import shown
@@ -80,7 +80,7 @@ def test_nothing_is_read_cast_or_worked_out_while_drawing(window, rig, monkeypat
         *((sight.Sight, each) for each in ("ground", "blind", "reach")),
         (vehicle_cache.shared, "read"),
         (graphics, "cast"),
-        (worker.background_worker, "ask"),
+        (engine_process, "ask"),
         (scheduler, "update"),
     ):
         monkeypatch.setattr(owner, name, lambda *_, **__: pytest.fail(forbidden))

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import bridge, signals, vehicle_cache
+from blender_addon import analysis_calls, bridge, signals, vehicle_cache
 from blender_addon.engine import graphics, sight
 from blender_addon.live import state
 from blender_addon.overlay import draw_handler, ground_layers, layers, scheduler
@@ -38,7 +38,7 @@ def worked(monkeypatch):
             layer.name, layer.label, layer.keys, shape, layer.line_px, layer.rough
         )
 
-    monkeypatch.setattr(scheduler, "LAYERS", tuple(map(watched, layers.LAYERS)))
+    monkeypatch.setattr(analysis_calls, "LAYERS", tuple(map(watched, layers.LAYERS)))
     return done
 
 
@@ -96,9 +96,7 @@ def test_what_is_shown_of_before_a_change_is_marked_until_it_is_worked_out(rig, 
     scenes.drawn(rig)
     item = shown.items(rig.name, "blind")[""]
     assert not scheduler.is_preview(rig.name, "blind", "", item)
-    monkeypatch.setattr(
-        scheduler.worker.background_worker, "ask", lambda *_: None
-    )  # a machine that is busy
+    monkeypatch.setattr(scheduler.engine_process, "ask", lambda *_: None)  # it is busy
     rig.objects["roof"].location.x += 0.1
     bpy.context.view_layer.update()
     scheduler.on_idle()

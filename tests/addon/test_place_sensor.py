@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from mathutils import Vector
 
+from blender_addon import engine_calls
 from blender_addon.engine import pe
-from blender_addon.operators import placement, surface_pose
+from blender_addon.operators import surface_pose
 from blender_addon.sensor_kinds import mount_of
 from tests.addon import scenes
 
@@ -118,10 +119,10 @@ def test_its_preview_is_the_score_with_it_beside_that_without(bare):
     scenes.add_sensor("roof", location=(-0.43, 0.0, 1.8))
     scenes.add_sensor("front", model="Camera 60 deg", location=(0.65, 0.0, 1.55))
     study = scenes.study()
-    evaluator = study.evaluator(samples=placement.SAMPLES)
+    evaluator = study.evaluator(samples=engine_calls.HELD_SAMPLES)
     before = evaluator.entropy(pe.Rig([study.rig["roof"]]))
     after = evaluator.score(study.rig)
-    gain = placement.gain_of(study, "front")(study.rig["front"].pose)
+    gain = engine_calls.gain(1, study, "front", study.rig["front"].pose)
     assert gain == (before, after.entropy, after.coverage)
     assert gain.after < gain.before and f"({after.entropy - before:+.3f})" in str(gain)
 
@@ -129,5 +130,5 @@ def test_its_preview_is_the_score_with_it_beside_that_without(bare):
 def test_the_first_sensor_has_nothing_to_be_compared_with(bare):
     scenes.add_sensor("roof", location=(-0.43, 0.0, 1.8))
     study = scenes.study()
-    gain = placement.gain_of(study, "roof")(study.rig["roof"].pose)
+    gain = engine_calls.gain(2, study, "roof", study.rig["roof"].pose)
     assert gain.before is None and " to " not in str(gain)

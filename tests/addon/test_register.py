@@ -1,30 +1,28 @@
 """Registering, unregistering, and what is left behind: nothing."""
 
+import operator
 import subprocess
 import sys
-import threading
 from pathlib import Path
 from typing import ClassVar
 
 import bpy
+import psutil
 import pytest
 
 import blender_addon
 from blender_addon import (
-    bridge,
     change_events,
     commands,
+    engine_process,
     sensor_cache,
     signals,
     viewport,
     wiring,
-    worker,
 )
-from blender_addon.engine import pe
 from blender_addon.live import state
 from blender_addon.operators import running_job
 from blender_addon.overlay import draw_handler, scheduler
-from tests.addon.scenes import depsgraph
 from tests.thorough import tries
 
 ROOT = Path(blender_addon.__file__).parents[1]
@@ -90,30 +88,26 @@ def view3d(monkeypatch):
     return View3D
 
 
-@pytest.fixture
-def workers(monkeypatch):
-    """Return the workers, which take Blender to have a window, with its own timers."""
+def test_rounds_leave_no_process_timer_or_read_out_behind(unregistered, monkeypatch):
+    """Blender is taken to have a window, with its own timers."""
     app = type("App", (), {"background": False, "timers": bpy.app.timers})
-    monkeypatch.setattr(worker, "bpy", type("Bpy", (), {"app": app}))
-    return worker.background_worker, worker.interactive_worker
-
-
-def test_rounds_leave_no_thread_timer_or_read_out_behind(unregistered, monkeypatch, workers):
+    monkeypatch.setattr(engine_process, "bpy", type("Bpy", (), {"app": app}))
     monkeypatch.setattr(viewport, "VIEW", View3D)
-    threads, drawn = threading.active_count(), len(View3D.handles)
+    drawn, pids = len(View3D.handles), []
     for _ in range(ROUNDS):
         blender_addon.register()
         # two of the overlay, one of the read-out and of the search curve
         assert len(View3D.handles) == drawn + 4
-        for each in workers:  # asked a moment before it is switched off
-            each.ask("work", lambda: None, lambda _: None, lambda _: None)
-            assert bpy.app.timers.is_registered(each._timer)
+        # asked a moment before it is switched off
+        engine_process.ask("work", operator.add, (1, 2), pytest.fail, pytest.fail)
+        assert bpy.app.timers.is_registered(engine_process.deliver_all)
+        pids.append(engine_process._engine.pid)
         state.live_state("Scene").note = "a line"
-        assert threading.active_count() == threads + len(workers)
         blender_addon.unregister()
-        assert threading.active_count() == threads and len(View3D.handles) == drawn
-        assert not any(bpy.app.timers.is_registered(each._timer) for each in workers)
-        assert not any(each.busy() for each in workers) and not state.live_state("Scene").note
+        assert not bpy.app.timers.is_registered(engine_process.deliver_all)
+        assert not engine_process.busy() and engine_process._engine.pid is None
+        assert len(View3D.handles) == drawn and not state.live_state("Scene").note
+    assert not any(map(psutil.pid_exists, pids)) and len(set(pids)) == ROUNDS
 
 
 def test_rounds_leave_nothing_behind(unregistered, view3d):
@@ -224,22 +218,22 @@ def test_every_class_and_property_is_described(addon):
 
 def test_a_job_ends_with_the_extension(car, monkeypatch):
     """Nothing of it shows any more, and after enabling again a new one can begin."""
-    shown, work = [], pe.OptimizeJob(bridge.study_from_scene(car, depsgraph()))
+    shown = []
 
     class Shown(running_job.RunningJob):
         """A job without a window to show it in."""
 
-        def __init__(self, job):
-            self.job = job
+        def __init__(self):
+            pass
 
         def end(self, context):
             shown.append(context)
 
-    monkeypatch.setattr(running_job, "current", Shown(work))
+    monkeypatch.setattr(running_job, "current", Shown())
     assert not bpy.ops.pe.score.poll()
     blender_addon.unregister()
     try:
-        assert running_job.current is None and work.dropped and len(shown) == 1
+        assert running_job.current is None and len(shown) == 1
     finally:
         blender_addon.register()
     assert bpy.ops.pe.score.poll() and bpy.ops.pe.optimize.poll()

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from blender_addon import bridge, caches
+from blender_addon import analysis_calls, bridge
 from blender_addon.operators import jobs
 from blender_addon.operators import requirements as operators
 from blender_addon.overlay.requirement_zones import FILL_ALPHA, MET, NOT_MET
@@ -350,7 +350,7 @@ def test_view_check_and_score_measure_nothing_twice(held, first, monkeypatch):
         return again(self, sensor)
 
     monkeypatch.setattr(ObjectMeasurementCache, "measure_again", noted)
-    caches.clear()
+    analysis_calls.clear()
     acts = {"view": lambda: scenes.drawn(held), "check": bpy.ops.pe.check_requirements}
     acts[first]()
     assert measured

@@ -6,8 +6,8 @@ import bpy
 import pytest
 
 import pe_core as pe
-from blender_addon import bridge, result_staleness
-from blender_addon.live import evaluation
+from blender_addon import bridge, engine_calls, result_staleness
+from blender_addon.live import session
 from pe_tools import advice
 from pe_tools.jobs import ScoreJob
 from tests.addon import scenes
@@ -55,7 +55,7 @@ def test_the_panel_scores_objects_as_the_command_line_does(settings, tmp_path):
 
 def test_the_live_score_follows_on_the_same_targets(settings):
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    wish = evaluation.read_request(bpy.context.scene, depsgraph, moving=True)
-    summary = evaluation.EvaluatorCache().summary("scene", wish)
+    wish = session.read_request(bpy.context.scene, depsgraph, moving=True)
+    summary = engine_calls.live_score("scene", wish, None).summary
     study = scenes.study()
     assert summary.entropy == study.evaluator().entropy(study.rig) and summary.voxels == 0

@@ -302,11 +302,11 @@ def test_comparing_tells_blind_ground_reach_and_ap_for_the_height_and_class_show
 def test_a_comparison_that_is_stopped_keeps_what_is_complete(ideas):
     bpy.ops.pe.duplicate_variant()
     both = {k: compare_variants.PendingVariant(str(k), scenes.study(), True) for k in (1, 2)}
-    job = compare_variants.CompareJob(both, bridge.FigureRule(0.5, "car"))
+    job = compare_variants.CompareJob(both, (0.5, "car"))
     for step in job:
         if step.stage == "scoring 2":
             job.stop()
-    assert set(job.outcome) == {1}
+    assert set(job.compared) == {1}
 
 
 def unknown(variant):

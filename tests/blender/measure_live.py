@@ -1,10 +1,11 @@
-"""How long it takes from a move of the mouse to the live score, in a real window.
+"""What the add-on costs Blender's window, measured in a real one.
 
-    python -m tests.blender.measure_live [--suite sid]
+    python -m tests.blender.measure_live [--suite sid] [--triangles 1000000] [CHECKOUT ...]
 
-One Pandar64 of four sensors on the sedan is dragged by a real mouse. Times are taken inside
-Blender: from its handler, which tells of a move, to the score being there, to the read-out that
-shows it being drawn. No test: a busy machine only makes it slower.
+A Pandar64 of four sensors on the sedan is moved step by step, with *Live*, map, beams and blind
+ground on; first with the extension disabled, for Blender's own time. Then requirements are checked
+and a search is stopped, while a timer looks how long the window stands still. Each checkout is
+measured in turn; without one, this. No test: a busy machine only makes it slower.
 """
 
 from __future__ import annotations
@@ -14,18 +15,21 @@ import statistics
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
+from typing import Any
+
+import psutil
 
 from tests.blender.runner import Blender, Installed
 from tests.blender.stage import Stage
 
 ROOT = Path(__file__).resolve().parents[2]
-MOVES, PAUSE_S = 60, 0.1
+NAME = "bl_ext.user_default.perception_entropy"
+STEPS, DONE_S = 40, 900
 SET_UP = """
-from bl_ext.user_default.perception_entropy import signals
-settings = window.scene.perception_entropy
+settings, view = window.scene.perception_entropy, window.scene.perception_entropy.view
 for model, name, place, turn in (
     ("Camera 60 deg", "cam_front", (0.5, 0.0, 1.45), 0.0),
     ("Pandar40", "lidar_bumper", (2.35, 0.0, 0.6), 0.0),
@@ -34,62 +38,84 @@ for model, name, place, turn in (
     bpy.ops.pe.add_sensor(model=model)
     made = bpy.context.object
     made.name, made.location, made.rotation_euler.z = name, place, turn
-roof = window.scene.objects["roof_lidar"]
-for each in window.scene.objects:
-    each.select_set(each == roof, view_layer=window.view_layer)
-window.view_layer.objects.active = roof
-settings.live.on = True
+view.show_ground = view.show_beams = view.show_blind = True
+settings.live.on = settings.show_overlay = True
+bpy.ops.pe.add_requirement(preset="ALL")
 """
-STAMPS = """
+FINE = """
+body = next(each for each in settings.vehicle.all_objects if each.type == "MESH")
+cuts = body.modifiers.new("fine", "SUBSURF")
+cuts.subdivision_type = "SIMPLE"
+while len(body.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.polygons) * 2 < {count}:
+    cuts.levels += 1
+    bpy.context.view_layer.update()
+"""
+WALK = """
 import time
-from bl_ext.user_default.perception_entropy.live import readout, session, state
-STAMPS = kept["stamps"] = []
-ask, work, lines = session.request_score, session.score_in_thread, readout.draw_rows
+roof, steps = window.scene.objects["roof_lidar"], []
+kept["steps"] = steps
 
-def asked(*given, **options):
-    STAMPS.append(("asked", time.perf_counter()))
-    ask(*given, **options)
-    STAMPS.append(("read", time.perf_counter()))
-
-def worked(*given):
-    cpu = time.thread_time()
-    found = work(*given)
-    STAMPS.append(("there", time.perf_counter()))
-    STAMPS.append(("cpu", time.thread_time() - cpu))
-    return found
-
-def drawn(*given):
-    STAMPS.append(("drawn", time.perf_counter()))
+def step(roof=roof, steps=steps, window=window, bpy=bpy, time=time):
     begun = time.perf_counter()
-    lines(*given)
-    STAMPS.append(("lines", time.perf_counter() - begun))
+    roof.location.x += 0.01 if len(steps) % 20 < 10 else -0.01
+    window.view_layer.update()
+    moved = time.perf_counter()
+    with bpy.context.temp_override(window=window):
+        bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
+    steps.append((begun, moved, time.perf_counter()))
+    return 0.1 if len(steps) < {steps} else None
 
-session.request_score, session.score_in_thread, readout.draw_rows = asked, worked, drawn
+bpy.app.timers.register(step)
 """
-RESTED = "(r := __import__('bl_ext.user_default.perception_entropy.live', fromlist=['state'])"
-RESTED += ".state.live_state(window.scene.name).score) and r.exact"
+SCORES = """
+import time
+from {name}.live import state
+scores, put = [], state.LiveState.put
+kept["scores"] = scores
+
+def noted(self, score, put=put, scores=scores, time=time):
+    put(self, score)
+    scores.append(time.perf_counter())
+
+state.LiveState.put = noted
+"""
+PULSE = """
+import time
+pulse = [time.perf_counter()]
+kept["pulse"] = pulse
+
+def beat(pulse=pulse, time=time):
+    pulse.append(time.perf_counter())
+    return 0.01
+
+bpy.app.timers.register(beat)
+kept["stopped"] = None
+"""
+RUNNING = f"__import__('{NAME}.operators.running_job', fromlist=['*']).current"
+SCORE = f"__import__('{NAME}.live.state', fromlist=['*']).live_state(window.scene.name).score"
 
 
 def main() -> int:
     """Measure, and print a line a figure."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--suite", default="trixie")
+    parser.add_argument("--triangles", type=int, default=0, help="of the body, about")
+    parser.add_argument("checkouts", nargs="*", type=Path, default=[ROOT])
     chosen = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        installed = install(chosen.suite, Path(folder))
-        for overlay in (False, True):
-            stamps = measured(installed, Path(tempfile.mkdtemp(dir=folder)), overlay)
-            print(f"overlay {'on' if overlay else 'off'}")
-            for name, values in figures(stamps).items():
-                print(f"  {name:38s} {told(values)}")
+    for checkout in chosen.checkouts:
+        with tempfile.TemporaryDirectory() as folder:
+            installed = install(chosen.suite, checkout.resolve(), Path(folder))
+            print(checkout)
+            for name, figure in measured(installed, Path(folder), chosen.triangles).items():
+                print(f"  {name:34s} {figure}")
     return 0
 
 
-def install(suite: str, folder: Path) -> Installed:
-    """Build the extension and install it into a user folder of its own."""
+def install(suite: str, checkout: Path, folder: Path) -> Installed:
+    """Build the extension of a checkout and install it into a user folder of its own."""
     finder = [sys.executable, ROOT / "tools" / "real_blender.py", "--suite", suite]
-    blender = Blender(said_by(finder)).with_resources(folder)
-    built = said_by([sys.executable, ROOT / "tools" / "build_extension.py"])
+    blender = Blender(said_by(finder)).with_resources(folder / "user")
+    built = said_by([sys.executable, checkout / "tools" / "build_extension.py"])
     command = ("--command", "extension", "install-file", "-r", "user_default", "--enable", built)
     blender.run(*command)
     return Installed(blender)
@@ -101,61 +127,102 @@ def said_by(command: Sequence[object]) -> str:
     return answer.stdout.strip()
 
 
-def measured(installed: Installed, folder: Path, overlay: bool) -> list[tuple[str, float]]:
-    """Drag the roof's LiDAR; return what was stamped meanwhile."""
-    stage = Stage(folder)
+def measured(installed: Installed, folder: Path, triangles: int) -> dict[str, str]:
+    """Return the figures of one extension."""
+    screen = folder / "screen"
+    screen.mkdir()
+    stage, found = Stage(screen), dict[str, str]()
     try:
         stage.open(installed, ROOT / "blend_assets" / "sedan.blend")
-        stage.do(SET_UP)
-        stage.do(f"window.scene.perception_entropy.show_overlay = {overlay}")
-        stage.wait_until(RESTED)
-        stage.do(STAMPS)
-        stage.point_at_view()
-        stage.key("g")
-        for number in range(MOVES):
-            stage.mouse("mousemove_relative", "--", 3 if number % 20 < 10 else -3, 0)
-            time.sleep(PAUSE_S)
-        stage.mouse("click", 1)
-        stage.rest(3.0)
-        return [tuple(each) for each in stage.do("pass")["stamps"]]
+        stage.do(SET_UP + (FINE.format(count=triangles) if triangles else ""))
+        stage.wait_until(f"{SCORE} and {SCORE}.exact", DONE_S)
+        stage.do("window.scene.perception_entropy.show_overlay = False")
+        stage.do(f"import addon_utils; addon_utils.disable({NAME!r})")
+        own = walked(stage)
+        stage.do(
+            f"import addon_utils; addon_utils.enable({NAME!r})\n{SET_UP.partition('view.')[0]}"
+        )
+        stage.do("settings = window.scene.perception_entropy\nsettings.show_overlay = True")
+        stage.do("window.scene.perception_entropy.live.on = True")
+        stage.do("".join(f"window.scene.perception_entropy.view.show_{n} = True\n" for n in LAYERS))
+        stage.wait_until(f"{SCORE} and {SCORE}.exact", DONE_S)
+        stage.do(SCORES.format(name=NAME))
+        ours = walked(stage)
+        scores = stage.do("pass")["scores"]
+        found["Blender's own redraw"] = told([end - moved for _, moved, end in own])
+        found["redraw with the extension"] = told([end - moved for _, moved, end in ours])
+        found["move, Blender's own"] = told([moved - begun for begun, moved, _ in own])
+        found["move with the extension"] = told([moved - begun for begun, moved, _ in ours])
+        after = [min((s for s in scores if s > moved), default=None) for _, moved, _ in ours]
+        late = [s - step[1] for s, step in zip(after, ours, strict=True) if s is not None]
+        found["move to its score"] = told(late)
+        stage.do(PULSE)
+        stage.do("bpy.ops.pe.check_requirements('INVOKE_DEFAULT')")
+        stage.wait_until(f"{RUNNING} is None", DONE_S)
+        found["window still in a check, longest"] = longest(stage)
+        stage.do(PULSE)
+        stage.do("bpy.ops.pe.optimize('INVOKE_DEFAULT')")
+        stage.wait_until(f"{RUNNING} and {RUNNING}.progress.evaluations > 20", DONE_S)
+        found["window still in a search, longest"] = longest(stage)
+        found["memory, with processes"] = memory(stage)
+        stage.do(
+            f"import time; kept['esc'] = time.perf_counter(); {RUNNING}.stop(); {RUNNING}.stop()"
+        )
+        stage.do(WAIT_END)
+        stage.wait_until("kept['ended']", DONE_S)
+        kept = stage.do("pass")
+        found["Esc twice to the window's own"] = f"{1e3 * (kept['ended'] - kept['esc']):.0f} ms"
     finally:
         stage.close()
+    return found
 
 
-def figures(stamps: list[tuple[str, float]]) -> dict[str, list[float]]:
-    """Milliseconds of each kind."""
-    at = {name: [t for what, t in stamps if what == name] for name in ("asked", "read", "there")}
-    drawn = [t for what, t in stamps if what == "drawn"]
-    ends = [*at["asked"][1:], float("inf")]
-    there = [
-        (t, min((u for u in at["there"] if t < u < end), default=None))
-        for t, end in zip(at["asked"], ends, strict=True)
-    ]
-    shown = [
-        min((u for u in drawn if u > found), default=None) - t
-        for t, found in there
-        if found is not None and drawn and drawn[-1] > found
-    ]
-    return {
-        "read in Blender's own turn": spans(at["asked"], at["read"]),
-        "handler to score": [1e3 * (u - t) for t, u in there if u is not None],
-        "handler to read-out drawn with it": [1e3 * each for each in shown],
-        "work of the thread alone": [1e3 * t for what, t in stamps if what == "cpu"],
-        "drawing the read-out": [1e3 * t for what, t in stamps if what == "lines"],
-    }
+LAYERS = ("ground", "beams", "blind")
+WAIT_END = f"""
+import time
+kept["ended"] = None
+
+def look(kept=kept, time=time):
+    if {RUNNING} is None:
+        kept["ended"] = time.perf_counter()
+        return None
+    return 0.005
+
+bpy.app.timers.register(look)
+"""
 
 
-def spans(begun: list[float], ended: list[float]) -> list[float]:
-    return [1e3 * (end - start) for start, end in zip(begun, ended, strict=True)]
+def walked(stage: Stage) -> list[list[float]]:
+    """Move the sensor step by step; return when each began, was read, and was drawn."""
+    stage.do(WALK.format(steps=STEPS))
+    stage.wait_until(f"len(kept['steps']) >= {STEPS}", DONE_S)
+    steps: list[list[float]] = stage.do("pass")["steps"]
+    return steps[2:]
 
 
-def told(values: list[float]) -> str:
+def longest(stage: Stage) -> str:
+    """Return the longest time between two beats of the window's timer."""
+    pulse = stage.do("pass")["pulse"]
+    gaps = sorted(b - a for a, b in pairwise(pulse))
+    return f"{1e3 * gaps[-1]:7.0f} ms, 90 % {1e3 * gaps[int(0.9 * len(gaps))]:.0f} ms"
+
+
+def memory(stage: Stage) -> str:
+    """Return the memory of Blender and of the processes that it has started."""
+    found: list[Any] = []
+    for each in psutil.process_iter(["name", "memory_info", "cmdline"]):
+        line = " ".join(each.info["cmdline"] or ())
+        if "blender" in (each.info["name"] or "") or "spawn_main" in line:
+            found.append(f"{each.info['memory_info'].rss / 2**20:.0f} MB")
+    return ", ".join(found)
+
+
+def told(values: Sequence[float]) -> str:
     """Minimum, median and 9th decile in a line."""
     if not values:
         return "none"
-    high = sorted(values)[int(0.9 * len(values))]
-    least, middle = min(values), statistics.median(values)
-    return f"min {least:7.1f}  median {middle:7.1f}  90 % {high:7.1f} ms  ({len(values)})"
+    least, middle, high = min(values), statistics.median(values), sorted(values)[-len(values) // 10]
+    return f"min {1e3 * least:7.1f}  median {1e3 * middle:7.1f}  90 % {1e3 * high:7.1f} ms"
 
 
 if __name__ == "__main__":

@@ -1,0 +1,65 @@
+"""What the engine's process finds out for panels and views: figures, warnings, shapes of layers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from . import engine_calls
+from .engine import advice, catalog, geometry, graphics, pe, sight, text
+from .engine_calls import Problem
+from .overlay.layer_cache import LayerCache
+from .overlay.layers import LAYERS
+from .overlay.request import ViewRequest
+
+_sight: text.RecentCache[sight.Sight] = text.RecentCache()
+"""By the problem's key."""
+
+
+def key_figures(
+    problem: Problem, height: float, class_name: str, rigs: Sequence[pe.Rig]
+) -> list[advice.KeyFigures]:
+    """Return blind ground, reach and expected AP of rigs."""
+    place = problem.space, problem.prior, problem.vehicle
+    look = _sight.made(problem.key, lambda: sight.Sight(*place, model=problem.model))
+    voxels = not problem.targets.are_objects
+    return [advice.key_figures(look, rig, height, class_name, of_voxels=voxels) for rig in rigs]
+
+
+def known_rig_score(problem: Problem, known_rig: catalog.KnownRig) -> pe.SummaryScore:
+    """Return the live score of a known rig on this vehicle, by an evaluator of its own."""
+    rig = catalog.rig_on(known_rig, problem.vehicle)
+    return engine_calls.make_evaluator(problem).summary(rig, preview=False)
+
+
+def warnings(
+    sensors: list[pe.Sensor], vehicle: pe.Vehicle | None, space: pe.PerceptionSpace
+) -> tuple[str, tuple[pe.Advice, ...]]:
+    """Return a line about the vehicle, and the warnings about sensors on it."""
+    line = "" if vehicle is None else geometry.vehicle_line(vehicle)
+    return line, advice.warnings(sensors, vehicle, space, pe.Prior.uniform())
+
+
+def outlook(study: pe.Study) -> advice.Outlook:
+    """Return how far a study's rig sees."""
+    return advice.outlook(study.sight(), study.rig)
+
+
+_layers = LayerCache()
+
+
+def layer_shapes(
+    request: ViewRequest, layer: str, rough: bool, names: Sequence[str]
+) -> list[graphics.LayerShape]:
+    """Return the shapes of a layer by these names; approximate ones where `rough`."""
+    make = next(each.shape for each in LAYERS if each.name == layer)
+    request = replace(request, moving=rough)
+    return [make(request, _layers, name) for name in names]
+
+
+def clear() -> None:
+    """Drop all that is kept: where the engine has no process, another file is opened."""
+    global _layers
+    _layers = LayerCache()
+    _sight.clear()
+    engine_calls.clear()

@@ -1,0 +1,76 @@
+"""The engine's process of this Blender: results are delivered by a timer, on the main thread.
+
+There Blender's data may be read and written. Without a window there is no timer: requests are
+called here and at once. The process ends with the file, with the add-on, and with Blender.
+"""
+
+from __future__ import annotations
+
+import atexit
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+
+from . import analysis_calls
+from .engine import catalog, engine_process, kinds, pe
+from .overlay.request import ViewRequest
+
+FOLLOWS_MOUSE, BEHIND, JOB = engine_process.FOLLOWS_MOUSE, engine_process.BEHIND, "job"
+"""Lanes: what follows the mouse waits for nothing else, and a job keeps nothing waiting."""
+POLL_S = 0.005
+"""How often the timer looks for results, while one is awaited."""
+MAX_MODELS = 256
+
+
+def _shared_types() -> dict[type, int]:
+    """Return types of objects that are sent once, and how many of each the process keeps."""
+    models = {kind.model: MAX_MODELS for kind in kinds.KINDS.values()}
+    return {pe.Vehicle: 2, pe.Prior: 4, ViewRequest: 2, **models}
+
+
+def _setup() -> engine_process.Call:
+    """Return what the process has to know besides: own sensors."""
+    return catalog.replace_added, (catalog.added(),)
+
+
+_PACKAGES = (__package__, f"{__package__}.overlay", f"{__package__}.operators")
+_engine = engine_process.EngineProcess(_shared_types, _setup, _PACKAGES)
+
+
+def ask(
+    topic: str,
+    function: Callable[..., Any],
+    arguments: tuple[Any, ...],
+    deliver: Callable[[Any], None],
+    fail: Callable[[Exception], None],
+    *,
+    step: Callable[[Any], None] | None = None,
+    lane: str = BEHIND,
+) -> None:
+    """Have a function of a module without Blender called: see `EngineProcess.ask`."""
+    if bpy.app.background:
+        engine_process.call_here(function, arguments, deliver, fail, step)
+        return
+    _engine.ask(topic, function, arguments, deliver, fail, step=step, lane=lane)
+    if not bpy.app.timers.is_registered(deliver_all):
+        bpy.app.timers.register(deliver_all, first_interval=POLL_S, persistent=True)
+
+
+def deliver_all() -> float | None:
+    """Timer: deliver results; it ends when none is awaited."""
+    return POLL_S if _engine.deliver_all() else None
+
+
+cancel, drop, busy = _engine.cancel, _engine.drop, _engine.busy
+
+
+def stop(*_: object) -> None:
+    """Drop all requests, and end the process: another file is opened, or the add-on disabled."""
+    if bpy.app.timers.is_registered(deliver_all):
+        bpy.app.timers.unregister(deliver_all)
+    _engine.stop()
+    analysis_calls.clear()
+
+
+atexit.register(_engine.stop)  # before multiprocessing's own, which waits for processes

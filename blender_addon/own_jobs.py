@@ -1,0 +1,186 @@
+"""Jobs of the add-on's own, which the engine's process runs: exports, and scores of variants."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from .engine import advice, exchange, jobs, outputs, page, pe
+
+OnProgress = Callable[[float], None]
+SCORED_SHARE = 0.25
+"""About which share of an export is done after the score."""
+FIGURES_SHARE = 0.1
+"""About which share of a score's time its key figures take."""
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenFiles:
+    """Files that an export wrote, and warnings about them."""
+
+    paths: tuple[Path, ...]
+    lines: tuple[str, ...] = ()
+
+    @property
+    def text(self) -> str:
+        """One line that names the written files."""
+        return f"Wrote {', '.join(path.name for path in self.paths)}"
+
+    @property
+    def folder(self) -> Path:
+        """The folder of the first file."""
+        return self.paths[0].parent
+
+
+class ExportStopped(Exception):
+    """The user stopped the export; raised on the thread to end its work."""
+
+
+class ExportJob(pe.Job):
+    """Makes files on a thread, then writes them; a stopped job writes nothing.
+
+    `stage` is what it does. `make` gets an outcome, None if the study is not `scored` first, and a
+    callback for the progress, 0 to 1; `write` writes what it returns.
+    """
+
+    def __init__(
+        self,
+        study: pe.Study,
+        stage: str,
+        make: Callable[[Any, OnProgress], Any],
+        write: Callable[[Any], WrittenFiles],
+        scored: bool = False,
+    ) -> None:
+        super().__init__(study)
+        self._stage, self._make, self._write, self._scored = stage, make, write, scored
+        self.written: WrittenFiles | None = None
+
+    def __iter__(self) -> Iterator[pe.Progress]:
+        score, begin = pe.ScoreJob(self.study), SCORED_SHARE if self._scored else 0.0
+        for step in score if self._scored else ():
+            if self.stopped:
+                score.drop()
+            yield pe.Progress("scoring", SCORED_SHARE * step.fraction)
+        if self.stopped:
+            return
+
+        def work(watch: Callable[[float], bool]) -> Any:
+            def note(share: float) -> None:
+                if not watch(begin + (1.0 - begin) * share):
+                    raise ExportStopped
+
+            return self._make(score.outcome, note)
+
+        made = yield from self._beside(work, pe.Progress(self._stage, begin))
+        if made is not None and not self.stopped:
+            self.written = self._write(made)
+
+    def stop(self) -> None:
+        """End at once, and write nothing."""
+        self.drop()
+
+
+def scene_job(
+    study: pe.Study, output: str, path: Path, reach: float | None, replace: bool
+) -> ExportJob:
+    """Return the job that writes vehicle, sensors and fields of view as an output."""
+    row = outputs.scene_output(output)
+    make = partial(_scene_files, study, output, reach)
+    write = partial(_write_scene, path, row.has_several, replace)
+    return ExportJob(study, f"exporting {row.title}", make, write)
+
+
+def _scene_files(
+    study: pe.Study, output: str, reach: float | None, _outcome: None, _watch: OnProgress
+) -> tuple[Mapping[str, bytes], list[str]]:
+    return outputs.scene_files(study, output, reach)
+
+
+def _write_scene(
+    path: Path, inside: bool, replace: bool, made: tuple[Mapping[str, bytes], list[str]]
+) -> WrittenFiles:
+    files, lines = made
+    paths = exchange.write_files(files, path, inside=inside, replace=replace)
+    return WrittenFiles(tuple(paths), tuple(lines))
+
+
+def picture_job(study: pe.Study, path: Path) -> ExportJob:
+    """Return the job that scores a study and writes a picture of its rig."""
+    return ExportJob(study, "picture", _picture, partial(_write_one, path), scored=True)
+
+
+def _picture(outcome: pe.Outcome, _watch: OnProgress) -> bytes:
+    return page.picture_file(outcome.study, outcome)
+
+
+def page_job(study: pe.Study, path: Path, about: page.About, facts: dict[str, Any]) -> ExportJob:
+    """Return the job that scores a study and writes its review page."""
+    make = partial(_page, path.stem, about, facts)
+    return ExportJob(study, "page", make, partial(_write_one, path), scored=True)
+
+
+def _page(
+    title: str, about: page.About, facts: dict[str, Any], outcome: pe.Outcome, watch: OnProgress
+) -> bytes:
+    return page.page_bytes([page.ReportContext(title, outcome, **facts)], watch, about)
+
+
+def _write_one(path: Path, made: bytes) -> WrittenFiles:
+    with jobs.FileSet(path.parent, (path.name,)) as files:  # the dialog has confirmed it
+        files.add(path.name, made)
+    return WrittenFiles((path,))
+
+
+class PendingVariant(NamedTuple):
+    """A variant without a valid score, or without figures of the present height and class."""
+
+    name: str
+    study: pe.Study
+    unscored: bool
+
+
+class ComparedVariant(NamedTuple):
+    """The results of a variant; `score` is None where it has a valid one already."""
+
+    score: pe.Score | None
+    figures: advice.KeyFigures
+
+
+class CompareJob(pe.Job):
+    """A job of several studies, one after the other: their scores and key figures, by key."""
+
+    def __init__(self, lacking: dict[int, PendingVariant], rule: tuple[float, str]) -> None:
+        super().__init__(next(iter(lacking.values())).study)
+        self.lacking, self.rule = lacking, rule
+        self.compared: dict[int, ComparedVariant] | None = None
+
+    def __iter__(self) -> Iterator[pe.Progress]:
+        compared: dict[int, ComparedVariant] = {}
+        for key, (name, study, unscored) in self.lacking.items():
+            score = None
+            if unscored:
+                job = pe.ScoreJob(study)
+                for step in job:
+                    if self.stopped:
+                        job.stop()
+                    yield self._progress(name, len(compared), step)
+                if job.outcome is None:
+                    break
+                score = job.outcome.after
+            if self.stopped and score is None:
+                break
+            looking = pe.Progress("seeing", 1.0 - FIGURES_SHARE)
+            yield self._progress(name, len(compared), looking)
+            compared[key] = ComparedVariant(score, self._figures(study))
+        self.compared = None if self.dropped else compared or None
+
+    def _progress(self, name: str, done: int, step: pe.Progress) -> pe.Progress:
+        share = (done + step.fraction) / len(self.lacking)
+        return replace(step, stage=f"scoring {name}", fraction=min(share, 1.0))
+
+    def _figures(self, study: pe.Study) -> advice.KeyFigures:
+        voxels = not study.targets.are_objects
+        return advice.key_figures(study.sight(), study.rig, *self.rule, of_voxels=voxels)

@@ -1,0 +1,282 @@
+"""The engine's process as the window's side sees it: no call waits for the engine.
+
+The process starts at the first request. Where it is killed it is started anew, and what it was
+asked is asked once more.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import pickle
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any
+
+from pe_core.base.spawning import (
+    beginning,
+    packages_around,
+    pipe_errors,
+    signals_blocked,
+    without_main,
+)
+
+from .messages import CANCEL, FAILED, FORGET, SET_UP, STEP, Request, packed, unpacked
+
+FOLLOWS_MOUSE, BEHIND = "mouse", "behind"
+"""Lanes: one that never waits for what takes long, and one for all else."""
+END_S = 1.0
+"""A process that has not ended by itself after this time is killed."""
+Take = Callable[[Any], None]
+Call = tuple[Callable[..., Any], tuple[Any, ...]]
+
+
+class EngineEnded(RuntimeError):
+    """The engine's process ended twice in the middle of the same request."""
+
+    def __init__(self) -> None:
+        super().__init__("The engine's process was ended from outside, twice")
+
+
+@dataclass(slots=True, eq=False)
+class _Awaited:
+    """A request without an answer, and what becomes of the answer."""
+
+    number: int
+    lane: str
+    call: Call
+    deliver: Take
+    fail: Take
+    step: Take | None
+    shared: dict[int, object] = field(default_factory=dict)
+    again: bool = False
+
+
+class _SharedObjects:
+    """The objects that the engine has, by number; of each type those that were used last."""
+
+    def __init__(self, most: Mapping[type, int]) -> None:
+        self._most, self._last = most, 0
+        self._known: dict[type, dict[int, tuple[int, object]]] = {kind: {} for kind in most}
+
+    def call(self, each: _Awaited) -> tuple[bytes, dict[int, bytes]]:
+        """Return a call, pickled, and the shared objects in it that the engine does not have.
+
+        Raises whatever its function and arguments raise where they cannot be pickled.
+        """
+        new: dict[int, bytes] = {}
+
+        def number_of(part: object, inside: object = None) -> int | None:
+            known = self._known.get(type(part))
+            if known is None or part is inside:
+                return None
+            entry = known.pop(id(part), None)
+            if entry is None:
+                self._last += 1
+                entry = self._last, part
+                new[entry[0]] = packed(part, lambda inner: number_of(inner, part))
+            known[id(part)] = entry  # held, so that no other object gets its `id`
+            each.shared[entry[0]] = part
+            return entry[0]
+
+        try:
+            data = packed(each.call, number_of)
+        except Exception:
+            for known in self._known.values():  # the engine never got them
+                for key in [key for key, (number, _) in known.items() if number in each.shared]:
+                    del known[key]
+            raise
+        return data, dict(sorted(new.items(), reverse=True))  # what is inside comes first
+
+    def forgotten(self) -> list[int]:
+        """Forget what was used longest ago; return its numbers."""
+        numbers = []
+        for kind, known in self._known.items():
+            for key in list(known)[: -self._most[kind]]:
+                numbers.append(known.pop(key)[0])
+        return numbers
+
+
+class EngineProcess:
+    """The engine's process: the latest request of each topic.
+
+    Parameters
+    ----------
+    shared : callable
+        Returns types of objects that are sent once, and how many of each the engine keeps. Such an
+        object must not change. It is called when the process starts.
+    setup : callable
+        Returns a function and its arguments, which the engine calls before a request where they are
+        others than before the last one.
+    packages : sequence of str
+        Packages of the caller whose first lines the engine must not run.
+    """
+
+    def __init__(
+        self,
+        shared: Callable[[], Mapping[type, int]],
+        setup: Callable[[], Call] = lambda: (tuple, ()),
+        packages: Sequence[str] = (),
+    ) -> None:
+        self._shared_types, self._setup, self._packages = shared, setup, packages
+        self._set_up: Call | None = None
+        self._process: Any = None
+        self._connection: Any = None
+        self._awaited: dict[str, list[_Awaited]] = {}
+        self._number = 0
+        self._shared = _SharedObjects({})
+
+    def ask(
+        self,
+        topic: str,
+        function: Callable[..., Any],
+        arguments: tuple[Any, ...],
+        deliver: Take,
+        fail: Take,
+        *,
+        step: Take | None = None,
+        lane: str = BEHIND,
+    ) -> None:
+        """Have the engine call a function of a module; `deliver` takes its result.
+
+        A request of the topic that has not begun is dropped; the result of one in progress is
+        delivered all the same: it is the latest there is. `fail` takes what the function raised.
+        A function that returns an iterator is a job: `step` takes what it yields, `deliver` what it
+        returns.
+        """
+        self._number += 1
+        each = _Awaited(self._number, lane, (function, arguments), deliver, fail, step)
+        self._awaited.setdefault(topic, []).append(each)
+        self._send_request(topic, each)
+
+    def cancel(self, topic: str) -> None:
+        """Call `cancel` of a topic's job; its result is delivered all the same."""
+        if topic in self._awaited:
+            self._send((CANCEL, (topic, False)))
+
+    def drop(self, topic: str) -> None:
+        """Drop the requests of a topic: nothing of them is delivered any more."""
+        if self._awaited.pop(topic, None):
+            self._send((CANCEL, (topic, True)))
+
+    def busy(self, beginning: str = "") -> bool:
+        """Whether a result is awaited, of a topic that begins so."""
+        return any(topic.startswith(beginning) for topic in self._awaited)
+
+    @property
+    def pid(self) -> int | None:
+        """Number of the process; None where there is none."""
+        return None if self._process is None else self._process.pid
+
+    def deliver_all(self) -> bool:
+        """Deliver what has come; return whether more is awaited."""
+        try:
+            while self._connection is not None and self._connection.poll():
+                number, topic, kind = pickle.loads(self._connection.recv_bytes())
+                self._deliver(number, topic, kind, self._connection.recv_bytes())
+        except (EOFError, OSError):
+            self._ask_again()
+        return bool(self._awaited)
+
+    def stop(self) -> None:
+        """Drop everything, and end the process."""
+        self._awaited.clear()
+        if self._process is not None:
+            self._connection.close()  # for the process the sign to end
+            self._process.join(END_S)
+            if self._process.is_alive():
+                self._process.kill()
+            self._forget_process()
+
+    def _deliver(self, number: int, topic: str, kind: str, data: bytes) -> None:
+        waiting = self._awaited.get(topic, [])
+        each = next((each for each in waiting if each.number == number), None)
+        if each is None:  # dropped
+            return
+        content = unpacked(data, each.shared.__getitem__)
+        if kind == STEP:
+            if each.step is not None:
+                each.step(content)
+            return
+        later = [other for other in waiting if other.number > number]
+        if later:
+            self._awaited[topic] = later
+        else:
+            del self._awaited[topic]
+        (each.fail if kind == FAILED else each.deliver)(content)
+
+    def _ask_again(self) -> None:
+        """The process was killed: start another, and ask it what this one was asked last."""
+        self._forget_process()
+        for topic, waiting in list(self._awaited.items()):
+            latest = waiting[-1]
+            if latest.again:
+                del self._awaited[topic]
+                latest.fail(EngineEnded())
+            else:
+                latest.again = True
+                self._awaited[topic] = [latest]
+                self._send_request(topic, latest)
+
+    def _forget_process(self) -> None:
+        self._connection.close()
+        self._process.join()
+        self._process = self._connection = None
+
+    def _send_request(self, topic: str, each: _Awaited) -> None:
+        if self._process is None:
+            self._start()
+        if self._set_up != (wanted := self._setup()):
+            self._set_up = wanted
+            self._send((SET_UP, wanted))
+        try:
+            call, new = self._shared.call(each)
+        except Exception as error:
+            del self._awaited[topic]  # of what was asked before nothing is wanted any more
+            each.fail(error)
+            return
+        self._send(Request(each.number, topic, each.lane, call, new))
+        if numbers := self._shared.forgotten():
+            self._send((FORGET, numbers))
+
+    def _send(self, message: object) -> None:
+        # Where the process was killed, `deliver_all` finds that out.
+        with suppress(OSError), pipe_errors():
+            self._connection.send_bytes(pickle.dumps(message, pickle.HIGHEST_PROTOCOL))
+
+    def _start(self) -> None:
+        context = multiprocessing.get_context("spawn")
+        self._connection, there = context.Pipe()
+        self._shared, self._set_up = _SharedObjects(self._shared_types()), None
+        own = [(name, sys.modules[name].__path__[0]) for name in self._packages]
+        module = f"{__package__}.server"
+        code = beginning(module, "serve", [*packages_around(), *own])
+        with without_main(), signals_blocked():
+            self._process = context.Process(target=exec, args=(code, {"arguments": (there,)}))
+            self._process.start()
+        there.close()
+
+
+def call_here(
+    function: Callable[..., Any],
+    arguments: tuple[Any, ...],
+    deliver: Take,
+    fail: Take,
+    step: Take | None = None,
+) -> None:
+    """Call a function here and now, as the engine's process would."""
+    try:
+        result = function(*arguments)
+        while isinstance(result, Iterator):
+            try:
+                found = next(result)
+            except StopIteration as end:
+                result = end.value
+            else:
+                if step is not None:
+                    step(found)
+    except Exception as error:  # whatever it is, `fail` has to know
+        fail(error)
+    else:
+        deliver(result)

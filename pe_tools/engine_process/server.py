@@ -1,0 +1,173 @@
+"""In the engine's process: runs requests, the latest of each topic, and sends back results.
+
+Requests of one lane run one after the other, those of different lanes side by side: what follows
+the mouse never waits for a map. The process ends when the other side is gone.
+"""
+
+from __future__ import annotations
+
+import pickle
+import threading
+import traceback
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from typing import Any
+
+from pe_core.base.spawning import belong_to_parent, end_process
+
+from .messages import CANCEL, DONE, FAILED, FORGET, STEP, Request, packed, unpacked
+
+
+@dataclass(slots=True)
+class _Call:
+    """A request as it is run: a job can be cancelled, before it begins as well.
+
+    `numbers` are those of the shared objects of the request, by their `id`.
+    """
+
+    number: int
+    topic: str
+    function: Callable[..., Any]
+    arguments: tuple[Any, ...]
+    numbers: Mapping[int, int]
+    running: Any = None
+    cancels: int = 0
+
+    def cancel(self) -> None:
+        """Have a job end at its next step."""
+        self.cancels += 1
+        if hasattr(self.running, "cancel"):
+            self.running.cancel()
+
+    def steps(self) -> Iterator[tuple[str, Any]]:
+        """Run it; yield the steps of a job, and the result."""
+        found = self.function(*self.arguments)
+        if not isinstance(found, Iterator):
+            yield DONE, found
+            return
+        self.running = found
+        for _ in range(self.cancels):
+            self.cancel()
+        while True:
+            try:
+                step = next(found)
+            except StopIteration as end:
+                yield DONE, end.value
+                return
+            yield STEP, step
+
+
+class _Lane(threading.Thread):
+    """Runs the calls of a lane; of each topic the latest, the one that waits longest first."""
+
+    def __init__(self, send: Callable[[_Call, str, Any], None]) -> None:
+        super().__init__(daemon=True)
+        self._send, self._changed = send, threading.Condition()
+        self._waiting: dict[str, _Call] = {}
+        self._running: _Call | None = None
+
+    def put(self, call: _Call) -> None:
+        """Take a call; one of its topic that has not begun is dropped."""
+        with self._changed:
+            self._waiting.pop(call.topic, None)
+            self._waiting[call.topic] = call
+            self._changed.notify()
+
+    def cancel(self, topic: str, drop: bool) -> None:
+        """Have a topic's calls end at their next step; with `drop`, one that waits never begins."""
+        with self._changed:
+            if drop:
+                self._waiting.pop(topic, None)
+            for call in (self._waiting.get(topic), self._running):
+                if call is not None and call.topic == topic:
+                    call.cancel()
+
+    def run(self) -> None:
+        """Run calls until the process ends."""
+        while True:
+            with self._changed:
+                self._running = None
+                self._changed.wait_for(lambda: self._waiting)
+                call = self._running = self._waiting.pop(next(iter(self._waiting)))
+            try:
+                for kind, content in call.steps():
+                    self._send(call, kind, content)
+            except BaseException as error:  # the other side has to know, whatever it is
+                self._send(call, FAILED, error)
+
+
+class _Server:
+    """This side of the connection."""
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection, self._sending = connection, threading.Lock()
+        self._shared: dict[int, Any] = {}
+        self._lanes: dict[str, _Lane] = {}
+
+    def serve(self) -> None:
+        """Take messages until the other side is gone."""
+        while True:
+            try:
+                message = pickle.loads(self._connection.recv_bytes())
+            except (EOFError, OSError):
+                return
+            if isinstance(message, Request):
+                self._begin(message)
+                continue
+            kind, content = message
+            if kind == CANCEL:
+                for lane in self._lanes.values():
+                    lane.cancel(*content)
+            elif kind == FORGET:
+                for number in content:
+                    self._shared.pop(number, None)
+            else:
+                function, arguments = content
+                try:
+                    function(*arguments)
+                except Exception:  # requests that need it tell what is missing
+                    traceback.print_exc()
+
+    def _begin(self, request: Request) -> None:
+        used: dict[int, int] = {}
+
+        def shared(number: int) -> Any:
+            used[id(self._shared[number])] = number
+            return self._shared[number]
+
+        named = _Call(request.number, request.topic, tuple, (), used)
+        try:
+            for number, data in request.shared.items():
+                self._shared[number] = unpacked(data, shared)
+            named.function, named.arguments = unpacked(request.call, shared)
+        except Exception as error:  # a class that is not known here, too little memory
+            self._send(named, FAILED, error)
+            return
+        if request.lane not in self._lanes:
+            self._lanes[request.lane] = _Lane(self._send)
+            self._lanes[request.lane].start()
+        self._lanes[request.lane].put(named)
+
+    def _send(self, call: _Call, kind: str, content: Any) -> None:
+        """Send an answer; objects that came with the request go back as their numbers."""
+        if kind == FAILED:
+            content.add_note("".join(traceback.format_exception(content)))
+        try:
+            data = packed(content, lambda part: call.numbers.get(id(part)))
+        except Exception as error:  # an error or a result that cannot be pickled
+            kind, data = FAILED, packed(RuntimeError(f"{content!r}: {error}"), lambda _: None)
+        header = pickle.dumps((call.number, call.topic, kind))
+        try:
+            with self._sending:
+                self._connection.send_bytes(header)
+                self._connection.send_bytes(data)
+        except OSError:
+            end_process()
+
+
+def serve(connection: Connection) -> None:
+    """Serve the other side of a connection; the process ends when that is gone."""
+    belong_to_parent()
+    _Server(connection).serve()
+    end_process()

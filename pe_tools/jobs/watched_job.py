@@ -1,0 +1,78 @@
+"""A job that the engine's process runs, and the copy of it that the window looks at."""
+
+from __future__ import annotations
+
+import copy
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from .job import Job, Progress
+
+KEEP_S = 2.0
+"""How often what a killed job would resume from is sent."""
+
+
+@dataclass(frozen=True, slots=True)
+class JobStep:
+    """Progress of a job, and those of its attributes that have changed.
+
+    `shown` are those that its driver looks at, `kept` those that a job like it would resume from.
+    """
+
+    progress: Progress
+    shown: Mapping[str, Any]
+    kept: Mapping[str, Any]
+
+
+class JobRun:
+    """In the engine's process: runs a job; yields a `JobStep` for each of its steps.
+
+    It returns the attribute `outcome` of the job.
+    """
+
+    def __init__(self, job: Job, outcome: str = "outcome") -> None:
+        self._job, self._outcome, self._steps = job, outcome, iter(job)
+        self._seen: object = None
+        self._kept_at = time.monotonic()
+
+    def __iter__(self) -> Iterator[JobStep]:
+        return self
+
+    def __next__(self) -> JobStep:
+        try:
+            progress = next(self._steps)
+        except StopIteration:
+            raise StopIteration(getattr(self._job, self._outcome)) from None
+        shown = {name: getattr(self._job, name) for name in self._job.shown}
+        state = [len(each) if hasattr(each, "__len__") else each for each in shown.values()]
+        if state == self._seen:
+            shown = {}
+        self._seen, kept = state, {}
+        if time.monotonic() - self._kept_at > KEEP_S:
+            self._kept_at = time.monotonic()
+            kept = {name: getattr(self._job, name) for name in self._job.kept}
+        return JobStep(progress, shown, kept)
+
+    def cancel(self) -> None:
+        """Stop the job; called again, drop it."""
+        (self._job.drop if self._job.stopped else self._job.stop)()
+
+
+class WatchedJob:
+    """In the window's process: a job that runs elsewhere, as far as it is known here.
+
+    `job` is never run here: with what was kept of it, it can be sent again. `seen` is a copy of it
+    with the attributes that the running job has.
+    """
+
+    def __init__(self, job: Job) -> None:
+        self.job, self.seen = job, copy.copy(job)
+        self.progress = Progress("starting", 0.0)
+
+    def note(self, step: JobStep) -> None:
+        """Take a step of the running job."""
+        self.progress = step.progress
+        vars(self.seen).update(step.shown)
+        vars(self.job).update(step.kept)

@@ -1,0 +1,244 @@
+"""The engine in a process of its own: requests are answered, whatever happens to the process."""
+
+import math
+import os
+import pickle
+import signal
+import sys
+import time
+from operator import itemgetter
+
+import psutil
+import pytest
+
+import pe_core as pe
+from pe_tools.engine_process import FOLLOWS_MOUSE, EngineEnded, EngineProcess, call_here
+from pe_tools.jobs import JobRun, OptimizeJob, WatchedJob
+from tests.engine import shapes
+from tests.limits import HANG_S
+
+
+def own_sensors():
+    return pe.catalog.replace_added, (pe.catalog.added(),)
+
+
+@pytest.fixture
+def engine():
+    made = EngineProcess(lambda: {pe.Vehicle: 2, pe.Lidar: 9}, own_sensors)
+    yield made
+    made.stop()
+
+
+def settled(engine):
+    for _ in range(200 * HANG_S):
+        if not engine.deliver_all():
+            return
+        time.sleep(0.005)
+    pytest.fail("an answer is awaited")
+
+
+def ask(engine, topic, function, *arguments, **options):
+    got = []
+    engine.ask(topic, function, arguments, got.append, got.append, **options)
+    return got
+
+
+def killed(engine):
+    psutil.Process(engine.pid).kill()
+
+
+def test_the_latest_of_a_topic_is_answered_and_lanes_do_not_wait_for_each_other(engine):
+    first = ask(engine, "busy", time.sleep, 0.5)
+    score = [ask(engine, "score", math.factorial, n) for n in range(5)]
+    beside = ask(engine, "beside", math.factorial, 5, lane=FOLLOWS_MOUSE)
+    while not beside:
+        engine.deliver_all()
+    assert beside == [120] and not first and engine.busy("bu") and not engine.busy("beside")
+    settled(engine)
+    assert first == [None] and score == [[], [], [], [], [24]]
+    dropped = ask(engine, "dropped", time.sleep, 0.1)
+    engine.drop("dropped")
+    assert not engine.busy()
+    settled(engine)
+    error = ask(engine, "wrong", math.sqrt, -1.0)
+    settled(engine)
+    assert not dropped and isinstance(error[0], ValueError) and "server.py" in error[0].__notes__[0]
+
+
+def test_what_cannot_be_sent_fails_at_once_and_harms_nothing(engine):
+    car = shapes.box_car()
+    error = ask(engine, "odd", itemgetter(0), [car, lambda: None])
+    assert isinstance(error[0], Exception) and not engine.busy("odd")
+    fine = ask(engine, "fine", itemgetter(0), [car])
+    settled(engine)
+    assert fine == [car]
+    answer = ask(engine, "answer", getattr, sys, "stdin")  # arguments are pickled by name
+    settled(engine)
+    assert isinstance(answer[0], Exception)
+
+
+def test_a_vehicle_is_sent_once_and_comes_back_as_the_same_object(engine):
+    car, sent = shapes.box_car(), []
+    send = EngineProcess._send
+
+    class Counted(EngineProcess):
+        def _send(self, message):
+            sent.append(len(pickle.dumps(message)))
+            send(self, message)
+
+    engine.__class__ = Counted
+    for _ in range(2):
+        got = ask(engine, "car", itemgetter(0), [car, car])
+        settled(engine)
+        assert got[0] is car
+    assert sent[-1] < 500 < len(pickle.dumps(car)) < sent[1]
+    others = [shapes.box_car() for _ in range(3)]  # more than are kept
+    for each in (*others, car, *others):
+        got = ask(engine, "car", itemgetter(0), [each])
+        settled(engine)
+        assert got[0] is each
+
+
+def test_own_sensors_are_known_there(engine):
+    pe.catalog.add("Mine", {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 60})
+    try:
+        got = ask(engine, "load", pe.catalog.load, "Mine")
+        settled(engine)
+        assert pe.catalog.to_table(got[0]) == pe.catalog.to_table(pe.catalog.load("Mine"))
+    finally:
+        pe.catalog.remove("Mine")
+    gone = ask(engine, "load", pe.catalog.load, "Mine")
+    settled(engine)
+    assert isinstance(gone[0], pe.InputError)
+
+
+def test_a_killed_process_is_asked_again_once_then_it_is_told(engine):
+    got = ask(engine, "sleep", time.sleep, 0.3)
+    pid = engine.pid
+    killed(engine)
+    settled(engine)
+    assert got == [None] and engine.pid != pid
+    got = ask(engine, "sleep", time.sleep, 60)
+    for _ in range(2):
+        killed(engine)
+        while (
+            psutil.pid_exists(engine.pid or 0) and psutil.Process(engine.pid).status() == "zombie"
+        ):
+            engine.deliver_all()
+    settled(engine)
+    assert isinstance(got[0], EngineEnded)
+    again = ask(engine, "add", math.factorial, 3)
+    settled(engine)
+    assert again == [6]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits memory of another process")
+def test_too_little_memory_is_an_answer(engine):
+    ask(engine, "up", math.factorial, 3)
+    settled(engine)
+    limit = psutil.Process(engine.pid).memory_info().vms + (64 << 20)
+    psutil.Process(engine.pid).rlimit(psutil.RLIMIT_AS, (limit, limit))
+    got = ask(engine, "large", bytes, 1 << 30)
+    settled(engine)
+    assert isinstance(got[0], MemoryError)
+
+
+def small_search():
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90))])
+    search = pe.Search(
+        {"roof": ("x", "z")}, {}, 3, 1024, pe.Schedule(candidates=2), method="random"
+    )
+    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search)
+
+
+def poses(study):
+    return [sensor.pose for sensor in study.rig]
+
+
+def run(engine, watched, step=None):
+    def note(found):
+        watched.note(found)
+        if step is not None:
+            step()
+
+    return ask(engine, "job", JobRun, watched.job, step=note)
+
+
+def test_a_search_there_has_the_bits_of_one_here(engine):
+    study, here = small_search(), OptimizeJob(small_search())
+    list(here)
+    watched = WatchedJob(OptimizeJob(study))
+    got = run(engine, watched)
+    settled(engine)
+    (outcome,) = got
+    assert outcome.evaluated == here.outcome.evaluated
+    assert outcome.after.entropy == here.outcome.after.entropy
+    assert outcome.study.vehicle is study.vehicle, "the mesh is not sent back"
+    assert watched.seen.curve == here.curve
+    assert poses(watched.seen.best) == poses(here.best)
+    assert watched.seen.best.rig["roof"].model is study.rig["roof"].model
+    assert watched.seen.evaluations == here.evaluations and watched.job.evaluations == 0
+
+
+def test_a_search_whose_process_is_killed_goes_on_where_it_was(engine, monkeypatch):
+    here = OptimizeJob(small_search())
+    list(here)
+    monkeypatch.setattr("pe_tools.jobs.watched_job.KEEP_S", 0.0)
+    watched, kills, known = WatchedJob(OptimizeJob(small_search())), [], []
+
+    def step():
+        known.append(len(watched.job.journal.entries))
+        if watched.seen.evaluations >= 4 and not kills:
+            kills.append(engine.pid)
+            killed(engine)
+
+    got = run(engine, watched, step)
+    settled(engine)
+    assert kills and got[0].evaluated == here.outcome.evaluated
+    assert got[0].after.entropy == here.outcome.after.entropy
+
+
+def test_a_stopped_search_keeps_the_best_and_a_dropped_one_nothing(engine):
+    for presses in (1, 2):
+        watched = WatchedJob(OptimizeJob(small_search()))
+        pressed = []
+
+        def step(watched=watched, pressed=pressed, presses=presses):
+            if watched.seen.evaluations >= 2 and not pressed:
+                pressed.append(presses)
+                for _ in range(presses):
+                    engine.cancel("job")
+
+        got = run(engine, watched, step)
+        settled(engine)
+        assert pressed
+        assert (got[0] is None) if presses == 2 else got[0].stopped
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+def test_nothing_is_left_when_this_side_is_killed(tmp_path):
+    """Neither the process, nor the workers of a search that it runs."""
+    script = tmp_path / "window.py"
+    script.write_text(
+        "import sys, time\n"
+        "from tests.engine.test_engine_process import *\n"
+        "engine = EngineProcess(lambda: {pe.Vehicle: 2}, own_sensors)\n"
+        "engine.ask('sleep', time.sleep, (600,), print, print)\n"
+        "print(engine.pid, flush=True)\n"
+        "time.sleep(600)\n"
+    )
+    env = {**os.environ, "PYTHONPATH": os.getcwd()}
+    window = psutil.Popen([sys.executable, script], stdout=-1, env=env)
+    child = psutil.Process(int(window.stdout.readline()))
+    window.send_signal(signal.SIGKILL)
+    window.wait()
+    child.wait(HANG_S)
+
+
+def test_without_a_process_the_same_functions_are_called_here():
+    got = []
+    call_here(math.factorial, (4,), got.append, got.append)
+    call_here(math.sqrt, (-1.0,), got.append, got.append)
+    steps = []
+    call_here(JobRun, (OptimizeJob(small_search()),), got.append, got.append, steps.append)
+    assert got[0] == 24 and isinstance(got[1], ValueError) and got[2].kind == "optimize" and steps

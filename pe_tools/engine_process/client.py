@@ -14,6 +14,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
+from pe_core.base.errors import InputError
 from pe_core.base.spawning import (
     beginning,
     packages_around,
@@ -32,11 +33,11 @@ Take = Callable[[Any], None]
 Call = tuple[Callable[..., Any], tuple[Any, ...]]
 
 
-class EngineEnded(RuntimeError):
+class EngineEnded(InputError):
     """The engine's process ended twice in the middle of the same request."""
 
     def __init__(self) -> None:
-        super().__init__("The engine's process was ended from outside, twice")
+        super().__init__("engine", "process", "one that runs until it answers", "one ended twice")
 
 
 @dataclass(slots=True, eq=False)

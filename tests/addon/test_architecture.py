@@ -216,6 +216,12 @@ def test_the_engine_comes_through_its_door():
     assert late == ["engine"]
 
 
+def test_nothing_has_a_thread():
+    """What computes runs in the engine's process."""
+    threads = {"threading", "_thread", "concurrent", "queue", "asyncio", "multiprocessing"}
+    assert not [name for name in FILES if packages_imported(name) & threads]
+
+
 def rooms():
     """The engine's modules that the door has, by the name they have there."""
     return {name: getattr(engine, name) for name in (*engine.ROOMS, "pe")}

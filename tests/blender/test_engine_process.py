@@ -52,6 +52,8 @@ def test_killed_in_a_drag_and_in_a_search_it_goes_on(stage, installed, tmp_path)
     wait_for_evaluations(stage, 30)
     stage.rest(2.5)  # what it goes on with is sent every two seconds
     engine_of(stage).kill()
+    threads = stage.do("import threading; kept['threads'] = threading.active_count()")
+    assert threads["threads"] == 1, "Blender has none of ours"
     stage.wait_until(f"{RUNNING} is None and {SETTINGS}.has_result")
     found = stage.do(f"kept['found'] = ({SETTINGS}.result_entropy, {SETTINGS}.result_words)")
     answer = installed.pe(begun, "optimize", "--json", "--output", tmp_path / "out")

@@ -98,6 +98,7 @@ from .variant_results import (
     figures_of,
     figures_signature,
     hardware_note,
+    keep_rig,
     restore_result,
     same_score,
     score_of,

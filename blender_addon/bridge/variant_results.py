@@ -74,6 +74,11 @@ def store_search(scene: Scene, outcome: pe.Outcome, surroundings: str) -> int:
     return after
 
 
+def keep_rig(scene: Scene, name: str, rig: pe.Rig) -> None:
+    """Keep the poses of a rig as a variant without a score."""
+    find_or_add_variant(scene, name, _moved(records_of_scene(scene), rig))
+
+
 def _moved(records: Sequence[SensorRecord], rig: pe.Rig) -> tuple[SensorRecord, ...]:
     """Return records with the poses of a rig."""
     poses = {sensor.name: sensor.pose for sensor in rig}

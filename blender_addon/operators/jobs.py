@@ -20,7 +20,7 @@ from .. import (
     signals,
     vehicle_cache,
 )
-from ..engine import advice, jobs, pe
+from ..engine import advice, engine_process, jobs, pe
 from ..language import shown
 from ..live import FinishedScore, live_state
 from . import running_job
@@ -49,13 +49,15 @@ class Task(NamedTuple):
     """A job that was read from a scene.
 
     `finish` writes its result to the scene, `progressed` what it has found so far: it gets the job.
-    `outcome` is the job's attribute of the result; None while there is nothing to keep.
+    `outcome` is the job's attribute of the result; None while there is nothing to keep. `rescue`
+    keeps what a job had found whose process ended twice.
     """
 
     job: Any
     finish: Callable[[bpy.types.Scene, Any], Answer]
     outcome: str = "outcome"
     progressed: Callable[[bpy.types.Scene, Any], None] | None = None
+    rescue: Callable[[bpy.types.Scene, Any], None] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,6 +173,9 @@ class JobOperator(OperatorMixin):
             return {"PASS_THROUGH"}
         try:
             if running.error is not None:
+                ended = isinstance(running.error, engine_process.EngineEnded)
+                if ended and scene is not None and self.task.rescue is not None:
+                    self.task.rescue(scene, running.seen)
                 raise running.error
             report_answer(self, self.row.finish(scene, self.task, running.found, running.seen))
             return self._show()
@@ -264,7 +269,11 @@ def optimize_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerp
         line = f"Sensors that were removed meanwhile are not placed: {', '.join(gone)}"
         return Told(line, level="WARNING")
 
-    return Task(job, finish)
+    def rescue(scene: bpy.types.Scene, job: pe.OptimizeJob) -> None:
+        if job.best is not study:
+            bridge.keep_rig(scene, "Best so far", job.best.rig)
+
+    return Task(job, finish, rescue=rescue)
 
 
 def store_search(

@@ -28,7 +28,7 @@ from .messages import CANCEL, FAILED, FORGET, SET_UP, STEP, Request, packed, unp
 FOLLOWS_MOUSE, BEHIND = "mouse", "behind"
 """Lanes: one that never waits for what takes long, and one for all else."""
 END_S = 1.0
-"""A process that has not ended by itself after this time is killed."""
+"""A process that has not ended by itself after this time is killed; one that begins, at once."""
 Take = Callable[[Any], None]
 Call = tuple[Callable[..., Any], tuple[Any, ...]]
 
@@ -125,7 +125,7 @@ class EngineProcess:
         self._process: Any = None
         self._connection: Any = None
         self._awaited: dict[str, list[_Awaited]] = {}
-        self._number = 0
+        self._number, self._is_up = 0, False
         self._shared = _SharedObjects({})
 
     def ask(
@@ -175,6 +175,7 @@ class EngineProcess:
         try:
             while self._connection is not None and self._connection.poll():
                 number, topic, kind = pickle.loads(self._connection.recv_bytes())
+                self._is_up = True
                 self._deliver(number, topic, kind, self._connection.recv_bytes())
         except (EOFError, OSError):
             self._ask_again()
@@ -185,7 +186,7 @@ class EngineProcess:
         self._awaited.clear()
         if self._process is not None:
             self._connection.close()  # for the process the sign to end
-            self._process.join(END_S)
+            self._process.join(END_S if self._is_up else 0.0)
             if self._process.is_alive():
                 self._process.kill()
             self._forget_process()
@@ -250,6 +251,7 @@ class EngineProcess:
         context = multiprocessing.get_context("spawn")
         self._connection, there = context.Pipe()
         self._shared, self._set_up = _SharedObjects(self._shared_types()), None
+        self._is_up = False
         own = [(name, sys.modules[name].__path__[0]) for name in self._packages]
         module = f"{__package__}.server"
         code = beginning(module, "serve", [*packages_around(), *own])

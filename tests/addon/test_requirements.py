@@ -315,9 +315,9 @@ def check_by_hand(scene, after_a_step):
     """Step a check as a window does; return what it reports."""
     task = jobs.CHECK.read(bpy.context)
     for _ in task.job:
-        task.progressed(scene)
+        task.progressed(scene, task.job)
         after_a_step(task.job)
-    return jobs.CHECK.finish(scene, task)
+    return jobs.CHECK.finish(scene, task, task.job.checked, task.job)
 
 
 def test_verdicts_come_row_by_row_and_esc_keeps_those_that_are_found(held):

@@ -12,7 +12,7 @@ from blender_addon import engine
 
 ROOT = Path(blender_addon.__file__).parent
 PACKAGE = "blender_addon"
-CALLS = {"analysis_calls", "engine_calls", "own_jobs", "sensor_kinds"}
+CALLS = {"analysis_calls", "engine_calls", "own_jobs", "sensor_kinds", "view_settings"}
 """What the engine's process runs."""
 ARRAYS = CALLS | {
     f"overlay.{name}"

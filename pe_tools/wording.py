@@ -45,6 +45,20 @@ def joined(texts: Sequence[str]) -> str:
     return f"{', '.join(texts[:-1])} and {texts[-1]}"
 
 
+def aligned(table: Sequence[Sequence[str]], texts: int | None = None) -> list[str]:
+    """Return rows of cells as lines: the first `texts` columns (default: all) to the left.
+
+    Other columns are to the right.
+    """
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    lines = []
+    for cells in table:
+        each = enumerate(zip(cells, widths, strict=True))
+        padded = (c.ljust(w) if texts is None or k < texts else c.rjust(w) for k, (c, w) in each)
+        lines.append("  ".join(padded).rstrip())
+    return lines
+
+
 def off_by(position: float, angle: float) -> str:
     """Describe mounting errors [m, rad], 1 sigma: "mounted 1 cm and 0.3 deg off"."""
     turned = f"{math.degrees(angle):.2g} deg"

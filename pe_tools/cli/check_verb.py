@@ -19,7 +19,7 @@ from pe_core.study.requirement_search import suggestions
 
 from ..advice import curve_note
 from ..jobs import CheckJob
-from ..wording import margin_text, reason_text, unseen_text
+from ..wording import aligned, margin_text, reason_text, unseen_text
 from .command import add_curve_option, with_curves
 from .interrupts import stop_at_first
 from .run_job import drive, print_vehicle
@@ -163,12 +163,7 @@ def with_presets(study: Study, names: Sequence[str]) -> tuple[Study, dict[str, s
 def verdict_lines(verdicts: Sequence[Verdict], unchecked: dict[str, str]) -> list[str]:
     """Return verdicts as a table, with a line about each that is not met, and a summary."""
     rows = [("", "requirement", "after", "margin", "share", "what breaks or occludes it")]
-    rows += [_row(v) for v in verdicts]
-    widths = [max(len(row[k]) for row in rows) for k in range(5)]
-    lines = [
-        "  ".join([*(c.ljust(w) for c, w in zip(row, widths, strict=False)), row[5]]).rstrip()
-        for row in rows
-    ]
+    lines = aligned([*rows, *(_row(v) for v in verdicts)])
     lines += [f"{name}: not checked: {reason}" for name, reason in unchecked.items()]
     more = f", {len(unchecked)} not checked" if unchecked else ""
     lines.append(f"{sum(v.met for v in verdicts)} of {len(verdicts)} met{more}")

@@ -20,7 +20,7 @@ from .. import jobs
 from .executors import evaluated_by
 from .interrupts import Interrupted, stop_at_first
 from .progress_line import Reporter
-from .run_job import write_somewhere
+from .run_job import tell_boxes, write_somewhere
 from .terminal import BAD_INPUT, DONE, Answer, tell
 
 
@@ -153,6 +153,7 @@ def choose(
         for draw in plots:
             draw(data, folder)
 
+    tell_boxes(job.study)
     with evaluated_by(job, scheduler), stop_at_first(job.stop) as received:
         _drive(job, output, host)
         found = job.trade_off

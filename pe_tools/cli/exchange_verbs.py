@@ -26,6 +26,7 @@ from ..exchange import (
 )
 from ..formats import read_mesh
 from ..outputs import OF_EXAMPLE, export_scene, output_files, scene_output, scene_outputs
+from ..wording import aligned
 from .terminal import DONE, Answer, tell
 
 
@@ -50,7 +51,7 @@ def show_rigs(args: argparse.Namespace) -> Answer:
         rows = [["NAME", "SENSORS", "RIG", "VEHICLE"]]
         for each in catalog.known_rigs().values():
             rows.append([each.key, str(len(each.sensors)), each.title, each.vehicle])
-        return "\n".join(_columns(rows)), DONE
+        return "\n".join(aligned(rows)), DONE
     rig = catalog.known_rig(args.name)
     if args.output is None:
         return "\n".join(_described(rig)), DONE
@@ -85,14 +86,7 @@ def _described(rig: KnownRig) -> list[str]:
         place = ", ".join(f"{v:.3f}" for v in each.pose.position)
         turn = ", ".join(f"{v:.3f}" for v in each.pose.rotation_deg)
         rows.append([each.name, each.model, place, turn])
-    return lines + _columns(rows)
-
-
-def _columns(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Return rows as lines with aligned columns."""
-    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
-    padded = ([cell.ljust(width) for cell, width in zip(row, widths, strict=True)] for row in rows)
-    return ["  ".join(cells).rstrip() for cells in padded]
+    return lines + aligned(rows)
 
 
 FILE_NAMES = {**FILES, **output_files()}

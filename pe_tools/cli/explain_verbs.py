@@ -17,6 +17,7 @@ from pe_core.study import Study, vehicle_digest
 from .. import advice
 from ..advice import ComparedRow
 from ..jobs import Outcome, ScoreJob
+from ..wording import aligned
 from .command import add_score_options
 from .interrupts import Interrupted, stop_at_first
 from .run_job import drive, print_vehicle
@@ -47,12 +48,7 @@ def comparison(names: Sequence[str], rows: Sequence[ComparedRow]) -> list[str]:
         if own:
             table.append([title, *[""] * len(heads)])
         table += [[f"  {r.name or 'all'}", *(_cell(r, k) for k in range(len(heads)))] for r in own]
-    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-    lines = []
-    for first, *cells in table:
-        figures = (cell.rjust(width) for cell, width in zip(cells, widths[1:], strict=True))
-        lines.append("  ".join([first.ljust(widths[0]), *figures]).rstrip())
-    return [*lines, f"{BEST} best; in brackets the difference to {heads[0]}"]
+    return [*aligned(table, 1), f"{BEST} best; in brackets the difference to {heads[0]}"]
 
 
 def _cell(row: ComparedRow, k: int) -> str:

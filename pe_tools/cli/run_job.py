@@ -119,6 +119,7 @@ def carry_out(
     be written to `output` go to a fallback folder; its path is printed on stderr, and the status is
     1.
     """
+    tell_boxes(job.study)
     print_vehicle(job.study)
     with evaluated_by(job, scheduler), stop_at_first(job.stop) as received:
         outcome = drive(job, output)
@@ -130,6 +131,23 @@ def carry_out(
             status, data = keep(outcome, output, host, more)
         text = dump_json(data) if as_json else summary(outcome)
         return text, status or received.status(DONE)
+
+
+def refuse_own_folder(study: Path, output: Path) -> None:
+    """Raise `InputError` when the results would replace the study that is read."""
+    try:
+        is_same = (output / STUDY).samefile(study)
+    except (OSError, ValueError):
+        return
+    if is_same:
+        found = f"the study's folder: {STUDY} would be overwritten"
+        raise InputError(study, "output", "another folder than the study's folder", found)
+
+
+def tell_boxes(study: Study) -> None:
+    """Print a line about labelled boxes: what is used of them."""
+    if (report := study.prior.report(study.space)) is not None:
+        tell(str(report))
 
 
 def print_vehicle(study: Study) -> None:

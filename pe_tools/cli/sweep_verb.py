@@ -12,7 +12,7 @@ from typing import Any
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
-from pe_core.study import SEARCH, STUDY
+from pe_core.study import SEARCH
 
 from .. import jobs
 from ..advice import curve_note, hardware_note
@@ -24,7 +24,7 @@ from .command import add_score_options, add_search_options, with_options
 from .executors import workplace
 from .interrupts import Interrupted, Received, stop_at_first
 from .progress_line import Reporter
-from .run_job import folder_or_fallback
+from .run_job import folder_or_fallback, refuse_own_folder
 from .terminal import is_terminal, one_line, show, tell
 
 
@@ -50,7 +50,9 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
     settings = read_settings(args.set)
     runs = sweep_runs(files, settings, lambda study: with_options(study, args))
     folder = jobs.prepare_folder(args.output, [table.SWEEP_CSV, table.SWEEP_JSON])
-    _refuse_folders(runs, files, folder, kind)
+    for run in runs:  # before the work
+        refuse_own_folder(Path(files[run.study_name]), folder / run.name)
+        jobs.check_files(folder / run.name, jobs.result_names(run.study, kind))
     with ExitStack() as places:
         work = _SweepVerb(runs, kind, folder, places)
         received = work.run(args)
@@ -69,18 +71,6 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
     text = dump_json(work.data) if args.json else "\n".join(lines)
     whole = work.count(DONE) == len(rows) and not work.failed_to_write
     return text, terminal.DONE if whole else terminal.BAD_INPUT
-
-
-def _refuse_folders(
-    runs: Sequence[SweepRun], files: Mapping[str, str | Path], folder: Path, kind: str
-) -> None:
-    """Raise `InputError`, before the work, if results would replace files of the user."""
-    for run in runs:
-        at, study = folder / run.name, Path(files[run.study_name])
-        if (at / STUDY).exists() and (at / STUDY).samefile(study):
-            expected, found = "another folder than the study's folder", "the study's folder"
-            raise InputError(study, "output", expected, found)
-        jobs.check_files(at, jobs.result_names(run.study, kind))
 
 
 class _SweepVerb:

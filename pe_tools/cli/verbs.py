@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from pe_core.base.errors import InputError
 from pe_core.base.plugins import call_plugin, find_plugins, load_plugin, plugin_name
 from pe_core.search.payload import keep_freed_memory
-from pe_core.study import STUDY, Study, load_study
+from pe_core.study import Study, load_study
 from pe_core.version import __version__
 
 from ..jobs import FrontJob, front_study, has_front, prepare_folder, result_names
@@ -29,7 +29,14 @@ from .exchange_verbs import (
 )
 from .explain_verbs import add_compare_options, add_explain_options, compare, explain, named_by_file
 from .new_verb import add_new_verb
-from .run_job import add_page_option, begun_search, carry_out, job_and_folder, with_pages
+from .run_job import (
+    add_page_option,
+    begun_search,
+    carry_out,
+    job_and_folder,
+    refuse_own_folder,
+    with_pages,
+)
 from .setup_verbs import add_setup_verbs
 from .sweep_verb import add_sweep_options, sweep
 from .terminal import Answer, open_missing_streams, tell
@@ -126,7 +133,6 @@ def _run_job(args: argparse.Namespace) -> Answer:
     if given is not None and args.kind == "optimize" and has_front(given):
         front = FrontJob(given, args.workers)
         folder = resumed(front, args)
-        _print_boxes(given)
         output = None if folder is None else Path(folder)
         return choose(front, output, as_json=args.json, scheduler=args.scheduler)
     begun = begun_search(args)
@@ -137,34 +143,12 @@ def _run_job(args: argparse.Namespace) -> Answer:
     (job, name), more = job_and_folder(study, args, begun), with_pages(args)
     if name is not None:
         if args.study is not None:
-            _refuse_to_replace(Path(args.study), Path(name))
+            refuse_own_folder(Path(args.study), Path(name))
         more_names = more.names if more else ()
         prepare_folder(name, [*result_names(study, args.kind), *more_names])
-    _print_boxes(study)
     output = None if name is None else Path(name)
     scheduler = getattr(args, "scheduler", None)
     return carry_out(job, output, as_json=args.json, more=more, scheduler=scheduler)
-
-
-def _print_boxes(study: Study) -> None:
-    if (report := study.prior.report(study.space)) is not None:
-        tell(str(report))
-
-
-def _refuse_to_replace(study: Path, output: Path) -> None:
-    """Raise `InputError` when the results would replace the study that is read."""
-    try:
-        same = (output / STUDY).samefile(study)
-    except (OSError, ValueError):
-        return
-    if same:
-        found = f"the study's folder: {STUDY} would be overwritten"
-        raise InputError(study, "output", "another folder than the study's folder", found)
-
-
-def _compare(args: argparse.Namespace) -> Answer:
-    files = named_by_file(args.studies)
-    return compare({n: with_options(load_study(path), args) for n, path in files.items()}, args)
 
 
 VERBS = (
@@ -196,7 +180,13 @@ VERBS = (
         "score several studies and put them side by side",
         add_compare_options,
         SOME,
-        _compare,
+        lambda args: compare(
+            {
+                name: with_options(load_study(path), args)
+                for name, path in named_by_file(args.studies).items()
+            },
+            args,
+        ),
     ),
     Verb(
         "export",

@@ -19,10 +19,11 @@ from pe_core.base.plugins import install_hint
 from pe_core.base.table_reader import Table
 from pe_core.base.values import vector
 from pe_core.geometry.poses import METRES
+from pe_core.sensors.camera import Pinhole
 
 from .foreign_values import COEFFICIENT, FOCAL, PIXELS, PRINCIPAL_POINT, Export, FileTexts
 from .frames import BODY_FROM_OPTICAL, from_quaternion, pose_of, product, quaternion
-from .lens_pictures import pinhole_picture
+from .lens_pictures import Picture
 from .portable import PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
@@ -100,7 +101,7 @@ def _sensor(path: Path, row: Table, cameras: Mapping[str, Table]) -> PortableSen
     size = intrinsics.whole("width_px", rule=PIXELS), intrinsics.whole("height_px", rule=PIXELS)
     rules = FOCAL, FOCAL, PRINCIPAL_POINT, PRINCIPAL_POINT
     fx, fy, cx, cy = (intrinsics.number(k, rule=rule) for k, rule in zip(LENS, rules, strict=True))
-    picture = pinhole_picture(fx, fy, cx, cy, size)
+    picture = Picture(Pinhole(fx, fy, cx, cy), size)
     note = NO_BEND if any(intrinsics.number(key, 0.0, COEFFICIENT) for key in BENT) else ""
     pose = pose_of(product(rotation, BODY_FROM_OPTICAL.T), position)
     return PortableSensor(name, pose, CAMERA, None, picture, told=note)

@@ -15,13 +15,13 @@ from pe_core.base.errors import InputError, shown
 from pe_core.base.table_reader import Table, dump_json, parse_json
 from pe_core.base.values import FINITE, Number, vector
 from pe_core.geometry.poses import METRES, Pose
-from pe_core.sensors.camera import FTheta
+from pe_core.sensors.camera import FTheta, Pinhole
 from pe_core.study.passthrough import json_entry
 
 from . import foreign_values as values
 from .foreign_values import Export, FileTexts, json_of, json_rows, plain_number, pose_from
 from .frames import composed, shifted
-from .lens_pictures import Picture, pinhole_picture
+from .lens_pictures import Picture
 from .passthrough import entry_row
 from .portable import ORIGIN, PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
@@ -189,7 +189,7 @@ def read_properties(properties: Table) -> tuple[Picture | None, str]:
     if not all(key in properties for key in FOCAL_KEYS):
         return None, ""
     fx, fy = (number(name, values.FOCAL) for name in FOCAL_KEYS)
-    return pinhole_picture(fx, fy, cx, cy, (width, height)), ""
+    return Picture(Pinhole(fx, fy, cx, cy), (width, height)), ""
 
 
 def _rising(properties: Table, key: str) -> list[float]:

@@ -11,11 +11,11 @@ from xml.etree.ElementTree import Element, SubElement
 
 from pe_core.base.errors import InputError
 from pe_core.base.values import SHARE, Number
-from pe_core.sensors.camera import BrownConrady
+from pe_core.sensors.camera import BrownConrady, Pinhole
 
 from . import foreign_values as values
 from .foreign_values import Figures, plain_number
-from .lens_pictures import Picture, Size, picture_of_fov, pinhole_picture
+from .lens_pictures import Picture, Size, picture_of_fov
 from .portable import Scan
 
 BENT = ("k1", "k2", "k3", "p1", "p2")
@@ -84,7 +84,7 @@ def picture_in(sensor: Figures) -> Picture | None:
         principal_point = [center[0] * width, center[1] * height]
     cx, cy = principal_point or picture.center
     if not any(distortion):
-        return pinhole_picture(fx, fy, cx, cy, (width, height))
+        return Picture(Pinhole(fx, fy, cx, cy), (width, height))
     bent = dict(zip(BENT, distortion, strict=True))
     return Picture(BrownConrady(fx, fy, cx, cy, None, **bent), (width, height))
 

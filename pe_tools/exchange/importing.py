@@ -156,17 +156,15 @@ def _kept(
 def _with_model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> Modelled:
     """Return a sensor with its kind resolved, its model, and a message about the model."""
     sensor = replace(sensor, kind=sensor.kind or kind_by_name(sensor.name))
-    model, line = _model(sensor, chosen, row)
+    model, line = (catalog.load(chosen), "") if chosen is not None else _model(sensor, row)
     return row.settled(replace(sensor, model=model.name)), model, line
 
 
-def _model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> tuple[SensorModel, str]:
-    """Return the chosen model, the catalogue's, one of the file's figures, or a stand-in.
+def _model(sensor: PortableSensor, row: RigFormat) -> tuple[SensorModel, str]:
+    """Return the catalogue's model, one of the file's figures, or a stand-in, with a message.
 
     A camera that the catalogue has with another lens gets the file's lens.
     """
-    if chosen is not None:
-        return catalog.load(chosen), ""
     normalized = NO_WORD.sub("", (sensor.model or "").lower())
     names = {NO_WORD.sub("", name.lower()): name for name in catalog.names(sensor.kind)}
     if normalized and normalized in names:

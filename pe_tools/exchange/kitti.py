@@ -16,10 +16,11 @@ from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
 from pe_core.base.values import Number
 from pe_core.geometry.poses import Pose
+from pe_core.sensors.camera import Pinhole
 
 from .foreign_values import Export, FileTexts, figures, spaced, text_of
 from .frames import BODY_FROM_OPTICAL, checked_rotation, pose_of, product, turned
-from .lens_pictures import pinhole_picture
+from .lens_pictures import Picture
 from .portable import PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
@@ -71,7 +72,7 @@ def _seen(axes: Floats, origin: Sequence[float], position: Sequence[float]) -> t
 
 def _projection(sensor: PortableSensor, origin: Sequence[float], axes: Floats) -> Floats:
     """Return P = K [I | -t], (3, 4); t is the position in the first camera's optical frame [m]."""
-    p = sensor.picture or pinhole_picture(1.0, 1.0, 0.0, 0.0)
+    p = sensor.picture or Picture(Pinhole(1.0, 1.0, 0.0, 0.0))
     cx, cy = p.center
     x, y, z = _seen(axes, origin, sensor.pose.position)
     return np.array(
@@ -101,7 +102,7 @@ def read(path: Path) -> PortableRig:
         position = (-(float(p[0, 3]) + cx * z) / fx, -(float(p[1, 3]) + cy * z) / fy, z)
         offset = [a - b for a, b in zip(position, shift, strict=True)]
         pose = pose_of(product(rotation.T, BODY_FROM_OPTICAL.T), turned(rotation.T, offset))
-        picture = pinhole_picture(fx, fy, cx, cy)
+        picture = Picture(Pinhole(fx, fy, cx, cy))
         sensors.append(PortableSensor(f"camera_{key[1:]}", pose, CAMERA, None, picture))
     return tuple(sensors)
 

@@ -60,24 +60,17 @@ KeptPicture = Callable[[Picture], Picture]
 """Function that reduces intrinsics to what a format can express."""
 
 
-def pinhole_picture(
-    fx: float, fy: float, cx: float, cy: float, size: Size | None = None
-) -> Picture:
-    """Return a pinhole's picture."""
-    return Picture(Pinhole(fx, fy, cx, cy), size)
-
-
 def picture_of_fov(fov: float, size: Size, fov_down: float | None = None) -> Picture:
     """Return a centred pinhole's picture by its field of view [rad]."""
     width, height = size
     fx = width / (2.0 * math.tan(fov / 2.0))
     fy = fx if fov_down is None else height / (2.0 * math.tan(fov_down / 2.0))
-    return pinhole_picture(fx, fy, width / 2.0, height / 2.0, size)
+    return Picture(Pinhole(fx, fy, width / 2.0, height / 2.0), size)
 
 
 def straight(p: Picture) -> Picture:
     """Return the pinhole with the same focal lengths on the axis and principal point."""
-    return p if p.lens.is_straight else pinhole_picture(p.fx, p.fy, *p.center, p.size)
+    return p if p.lens.is_straight else Picture(Pinhole(p.fx, p.fy, *p.center), p.size)
 
 
 def centred(p: Picture) -> Picture:
@@ -85,14 +78,14 @@ def centred(p: Picture) -> Picture:
     if p.size is None:
         return straight(p)
     width, height = p.size
-    return pinhole_picture(p.fx, p.fy, width / 2.0, height / 2.0, p.size)
+    return Picture(Pinhole(p.fx, p.fy, width / 2.0, height / 2.0), p.size)
 
 
 def square(p: Picture) -> Picture:
     """Return the centred pinhole with square pixels and the same horizontal focal length."""
     if p.size is None:
         return straight(p)
-    return pinhole_picture(p.fx, p.fx, p.size[0] / 2.0, p.size[1] / 2.0, p.size)
+    return Picture(Pinhole(p.fx, p.fx, p.size[0] / 2.0, p.size[1] / 2.0), p.size)
 
 
 def opencv(p: Picture) -> Picture:
@@ -168,7 +161,14 @@ def with_fourth(
     lens = picture.lens
     square = _squares(math.hypot(lens.cx / lens.fx, lens.cy / lens.fy), radial)
     wanted = 1.0 + _power_sum(square, radial)
-    top, bottom = _quotient(square, wanted)
+    # With a numerator and a denominator of three terms each, the equation is linear after
+    # multiplication by the denominator: least squares.
+    last = float(square[-1])
+    powers = np.stack([(square / last) ** n for n in (1, 2, 3)], axis=1)
+    system = np.hstack([powers, -wanted[:, None] * powers])
+    solution = np.linalg.lstsq(system, wanted - 1.0, rcond=None)[0]
+    scale = np.array([last, last**2, last**3])
+    top, bottom = solution[:3] / scale, solution[3:] / scale
     fitted = (1.0 + _power_sum(square, top)) / (1.0 + _power_sum(square, bottom))
     error_px = float(np.abs((fitted - wanted) * np.sqrt(square)).max()) * max(lens.fx, lens.fy)
     values = *top[:2], *tangential, top[2], *bottom
@@ -189,16 +189,3 @@ def _squares(corner: float, radial: tuple[float, ...]) -> Floats:
 def _power_sum(square: Floats, values: tuple[float, ...] | Floats) -> Floats:
     """Return the sum of values[n - 1] * square**n, n from 1."""
     return np.asarray(sum(value * square**n for n, value in enumerate(values, 1)))
-
-
-def _quotient(square: Floats, wanted: Floats) -> tuple[Floats, Floats]:
-    """Return three coefficients of the numerator and three of the denominator (least squares).
-
-    The equation is linear after multiplication by the denominator.
-    """
-    last = float(square[-1])
-    powers = np.stack([(square / last) ** n for n in (1, 2, 3)], axis=1)
-    system = np.hstack([powers, -wanted[:, None] * powers])
-    coefficients = np.linalg.lstsq(system, wanted - 1.0, rcond=None)[0]
-    scale = np.array([last, last**2, last**3])
-    return coefficients[:3] / scale, coefficients[3:] / scale

@@ -15,7 +15,7 @@ from pe_core.base.errors import InputError, shown
 from pe_core.base.table_reader import Table, dump_json
 from pe_core.base.values import numbers, vector
 from pe_core.geometry.poses import METRES
-from pe_core.sensors.camera import BrownConrady
+from pe_core.sensors.camera import BrownConrady, Pinhole
 from pe_core.study.passthrough import json_entry
 
 from .foreign_values import Export, FileTexts, json_of, json_rows
@@ -27,7 +27,7 @@ from .frames import (
     product,
     quaternion,
 )
-from .lens_pictures import Picture, pinhole_picture, with_fourth
+from .lens_pictures import Picture, with_fourth
 from .passthrough import entry_row
 from .portable import PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
@@ -111,7 +111,7 @@ def _sensor(path: Path, row: Table, sensor_row: Table) -> PortableSensor:
         if matrix is None or matrix.shape != (3, 3):
             raise row.error("camera_intrinsic", "a 3 x 3 matrix, or []", shown(value))
         fx, fy, cx, cy = (float(matrix[k]) for k in ((0, 0), (1, 1), (0, 2), (1, 2)))
-        picture = pinhole_picture(fx, fy, cx, cy)
+        picture = Picture(Pinhole(fx, fy, cx, cy))
         if row.raw("camera_distortion", []):
             picture, note = _bent(row, picture)
     entry = json_entry({CALIBRATED: row.data, SENSORS: sensor_row.data})

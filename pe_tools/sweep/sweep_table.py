@@ -15,13 +15,14 @@ from pe_core.study.study import EXPECTED_AP
 from pe_core.version import __version__
 
 from ..jobs import FileSet, Outcome, files_of_other_runs, fingerprint, prepare_folder
+from ..wording import aligned
 from .sweep_runner import SweepRun
 
 SWEEP_CSV, SWEEP_JSON = "sweep.csv", "sweep.json"
 WAITING, BEGUN, DONE, FAILED = "waiting", "begun", "done", "failed"
 ELSEWHERE, UNWRITTEN = "elsewhere", "not written"
 """The status of a run whose results are not in its folder but in another, or in none."""
-BEST, GAP = "*", "  "
+BEST = "*"
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,17 +110,7 @@ def table_lines(rows: Sequence[SweepRow], kind: str) -> list[str]:
         best = BEST if row.ap is not None and row.ap == highest else " "
         aps = [_figure(row.ap_before), f"{_figure(row.ap)}{best}"] * (highest is not None)
         table.append([*named, *before, entropy, coverage, *aps])
-    return _aligned(table, texts)
-
-
-def _aligned(table: list[list[str]], texts: int) -> list[str]:
-    """Return the lines of a table: texts left-aligned, then figures right-aligned."""
-    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-    lines = []
-    for cells in table:
-        each = enumerate(zip(cells, widths, strict=True))
-        lines.append(GAP.join(c.ljust(w) if k < texts else c.rjust(w) for k, (c, w) in each))
-    return [line.rstrip() for line in lines]
+    return aligned(table, texts)
 
 
 def _figure(value: float | None) -> str:

@@ -48,7 +48,7 @@ ROOMS = {
         "sensitivity": {"wording"},
         "jobs": {"wording", "formats", "advice", "sensitivity"},
         "outputs": {"exchange", "graphics"},
-        "sweep": {"jobs"},
+        "sweep": {"wording", "jobs"},
         "cli": {
             "wording",
             "formats",

@@ -29,22 +29,24 @@ class Reporter:
         self._first: tuple[float, float] | None = None
         """Time and fraction of the stage at its first progress: what is prepared before counts as
         none."""
-        self._estimated = False
+        self._told = False
 
     def report(self, progress: Progress) -> None:
         """Show the progress for a new stage, or if the last report is old enough."""
         now, new_stage = time.monotonic(), progress.stage != self._stage
         if new_stage:
-            self._stage, self._began, self._first, self._estimated = (
-                progress.stage,
-                now,
-                None,
-                False,
-            )
+            self._stage, self._began, self._first, self._told = progress.stage, now, None, False
         if self._first is None and progress.fraction > 0.0:
             self._first = now, progress.fraction
-        left_s = self._left_s(progress, now)
-        self._estimate(left_s, now)
+        left_s: float | None = None  # as long as the stage's progress does not show it
+        if self._first is not None and progress.fraction > self._first[1]:
+            passed_s, done = now - self._first[0], progress.fraction - self._first[1]
+            left_s = passed_s * (1.0 - progress.fraction) / done
+            if not self._told and passed_s >= ESTIMATE_AFTER_S:
+                self._told = True
+                if left_s > LONG_S:
+                    self.clear()
+                    self._write(f"{self._stage}: about {duration_text(left_s)} left\n")
         if now - self._reported < self._pause_s and not new_stage:
             return
         self._reported = now
@@ -61,23 +63,6 @@ class Reporter:
         """Remove an incomplete line."""
         if self._on_terminal:
             self._write(CLEAR)
-
-    def _left_s(self, progress: Progress, now: float) -> float | None:
-        """Return how long the stage still takes [s]; None before its progress shows it."""
-        if self._first is None or progress.fraction <= self._first[1]:
-            return None
-        passed_s, done = now - self._first[0], progress.fraction - self._first[1]
-        return passed_s * (1.0 - progress.fraction) / done
-
-    def _estimate(self, left_s: float | None, now: float) -> None:
-        """Tell once how much time a stage still takes, if that is long."""
-        if left_s is None or self._estimated or self._first is None:
-            return
-        if now - self._first[0] >= ESTIMATE_AFTER_S:
-            self._estimated = True
-            if left_s > LONG_S:
-                self.clear()
-                self._write(f"{self._stage}: about {duration_text(left_s)} left\n")
 
     def _write(self, text: str) -> None:
         if show(text, self._stream) is not None:

@@ -33,7 +33,7 @@ def printable(text: str, encoding: str | None = "utf-8") -> str:
     meaning.
     """
     if not text.isascii() or not text.replace("\n", "").isprintable():
-        text = "".join(c if c == "\n" or _is_harmless(c, encoding) else _escape(c) for c in text)
+        return "".join(c if c == "\n" else _shown(c, encoding or "utf-8") for c in text)
     return text
 
 
@@ -56,7 +56,9 @@ def show(text: str, stream: TextIO | None) -> OSError | ValueError | None:
         stream.write(text)
         stream.flush()
     except (OSError, ValueError) as error:
-        _silence(stream)
+        # To the null device, so that flushing the stream's buffer at exit does not fail.
+        with suppress(OSError, ValueError), open(os.devnull, "w") as nowhere:
+            os.dup2(nowhere.fileno(), stream.fileno())
         return error
     return None
 
@@ -81,28 +83,12 @@ def open_missing_streams() -> None:
             os.open(os.devnull, os.O_RDWR)  # takes the lowest free descriptor: this one
 
 
-def _silence(stream: TextIO) -> None:
-    """Redirect a stream to the null device, so that flushing its buffer at exit does not fail."""
-    with suppress(OSError, ValueError):
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        try:
-            os.dup2(nowhere, stream.fileno())
-        finally:
-            os.close(nowhere)
-
-
-def _is_harmless(character: str, encoding: str | None) -> bool:
-    if unicodedata.category(character) in ESCAPED:
-        return False
-    try:
-        character.encode(encoding or "utf-8")
-    except (UnicodeEncodeError, LookupError):
-        return False
-    return True
-
-
-def _escape(character: str) -> str:
-    """Return a character as JSON writes it: beyond 16 bits as two."""
+def _shown(character: str, encoding: str) -> str:
+    """Return a character; one that a terminal or a stream cannot show as JSON writes it."""
+    with suppress(UnicodeEncodeError, LookupError):
+        if unicodedata.category(character) not in ESCAPED and character.encode(encoding):
+            return character
+    # Beyond 16 bits these are two.
     units = character.encode("utf-16-be", "surrogatepass")
     return "".join(f"\\u{units[i]:02x}{units[i + 1]:02x}" for i in range(0, len(units), 2))
 

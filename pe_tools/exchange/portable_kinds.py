@@ -45,17 +45,10 @@ OwnModel = tuple[SensorModel, str]
 class PortableKind:
     """How the exchange model expresses the sensors of a kind.
 
-    Attributes
-    ----------
-    figures : callable
-        From a model to the fields of `PortableSensor` that describe it.
-    model : callable
-        From a sensor and the usual image size of its format to the model of its figures; None for
-        a sensor without figures of the kind.
-    stand_in : str or None
-        Catalogue name of the model that stands in where a file names none.
-    name_parts : tuple of str
-        Parts of a name that identify the kind, if a file does not state it.
+    `figures` returns the fields of `PortableSensor` that describe a model. `model` returns the
+    model of a sensor's figures, by the usual image size of the format; None without figures of the
+    kind. `stand_in` is the catalogue name of the model that stands in where a file names none,
+    `name_parts` are parts of a name that identify the kind, if a file does not state it.
     """
 
     figures: Callable[[Any], Mapping[str, Any]]

@@ -141,7 +141,6 @@ def read(path: Path) -> PortableRig:
         raise InputError(path, "link", "links of sensors", "none")
     origin = _origin_of(in_root)
     poses = {name: frames.seen_from(in_root[origin], pose) for name, pose in in_root.items()}
-    sensors = [_sensor(path, name, poses, blocks.get(name)) for name in names]
     is_ours = next(robot.iter("perception_entropy"), None) is not None
     result = []
     place, under = f"the robot's root, {next(iter(in_root))}", "on the ground under"
@@ -149,10 +148,10 @@ def read(path: Path) -> PortableRig:
         place, under = f"{ON_GROUND}, which is on the ground", "under"
     middle = "the middle of the vehicle, --at says where it is"
     line = "" if is_ours else f"taken in {place}; if that is not {under} {middle}"
-    for sensor in sensors:
-        entry = ""
+    for name in names:
+        sensor, entry = _sensor(path, name, poses, blocks.get(name)), ""
         if sensor.kind is not None and not has_model(sensor):  # of unknown kind
-            own = [b for b in robot.iter("gazebo") if b.get("reference") == sensor.name]
+            own = [b for b in robot.iter("gazebo") if b.get("reference") == name]
             texts = [tostring(block, "unicode").strip() for block in own]
             entry = pose_entry(sensor, gazebo=texts)
         result.append(replace(sensor, told=line, entry=entry))

@@ -71,7 +71,7 @@ def read_kitti(source: str, lines: Sequence[tuple[int, str]]) -> Labels:
         if name in CLASSES:
             labels.add(where, CLASSES[name], row, CAMERA)
         else:
-            labels.leave_unknown(cells[0])
+            labels.count_left_out(f"of unknown class {quoted(cells[0])}")
     return labels
 
 

@@ -49,11 +49,7 @@ class Labels:
         self.rows.append(row)
         self.origins.append(origin)
 
-    def leave_unknown(self, name: str) -> None:
-        """Count a box of an unknown class."""
-        self.count_left_out(f"of unknown class {quoted(name)}", 1)
-
-    def count_left_out(self, reason: str, count: int) -> None:
+    def count_left_out(self, reason: str, count: int = 1) -> None:
         """Count boxes that are left out; beyond `MAX_REASONS`, reasons are counted together."""
         is_listed = reason in self.left_out or len(self.left_out) < MAX_REASONS
         self.left_out[reason if is_listed else OTHER_CLASSES] += count

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from pe_core.base.errors import InputError, shown
-from pe_core.base.files import MAX_QUOTE
+from pe_core.base.files import MAX_QUOTE, quoted
 from pe_core.base.values import real
 
 from .labels import BoxNumbers, Labels
@@ -55,7 +55,7 @@ def read_nuscenes(source: str, data: Any) -> Labels:
         if class_name := _class_of(name):
             labels.add(where, class_name, row)
         else:
-            labels.leave_unknown(name)
+            labels.count_left_out(f"of unknown class {quoted(name)}")
     return labels
 
 

@@ -73,7 +73,9 @@ def _check_nodes(source: str, root: Any) -> None:
     open_nodes: set[Any] = set()
     while waiting:
         node, is_left = waiting.pop()
-        inner = [*_nodes(node), *_instanced(node, named)]
+        urls = (each.get("url") or "" for each in node if _tag(each) == "instance_node")
+        instanced = (named.get(url.removeprefix("#")) for url in urls)
+        inner = [*_nodes(node), *(target for target in instanced if target is not None)]
         if is_left:
             open_nodes.discard(node)
             counts[node] = 1 + sum(counts.get(child, 0) for child in inner)
@@ -86,14 +88,6 @@ def _check_nodes(source: str, root: Any) -> None:
             open_nodes.add(node)
             waiting.append((node, True))
             waiting += [(child, False) for child in inner if child not in counts]
-
-
-def _instanced(node: Any, named: dict[str, Any]) -> Iterator[Any]:
-    for child in node:
-        if _tag(child) == "instance_node":
-            target = named.get((child.get("url") or "").removeprefix("#"))
-            if target is not None:
-                yield target
 
 
 def _nodes(element: Any) -> list[Any]:

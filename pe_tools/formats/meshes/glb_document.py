@@ -117,7 +117,13 @@ def placed_meshes(document: Document) -> Iterator[tuple[str, Any, NDArray[np.flo
     ):
         if count > most:
             raise document.error(field, f"at most {most:,}{more}", f"{count:,}")
-    waiting = [(index, np.eye(4)) for index in reversed(_roots(document))]
+    scenes, indices = document.root.get("scenes"), range(len(nodes))
+    if scenes:
+        roots = list(document.item("scenes", document.root.get("scene", 0)).get("nodes", []))
+    else:  # all nodes count, beginning with those that have no parent
+        children = {c for n in indices for c in document.item("nodes", n).get("children", [])}
+        roots = [n for n in indices if n not in children]
+    waiting = [(index, np.eye(4)) for index in reversed(roots)]
     seen: set[int] = set()
     while waiting:
         index, above = waiting.pop()
@@ -139,15 +145,6 @@ def placed_meshes(document: Document) -> Iterator[tuple[str, Any, NDArray[np.flo
             names = node.get("name"), mesh.get("name")
             named = (name for name in names if isinstance(name, str) and name)
             yield next(named, f"node {index}"), node["mesh"], world
-
-
-def _roots(document: Document) -> list[Any]:
-    if document.root.get("scenes"):
-        return list(document.item("scenes", document.root.get("scene", 0)).get("nodes", []))
-    # Without scenes all nodes count, beginning with those that have no parent.
-    nodes = range(len(document.root.get("nodes", [])))
-    children = {c for n in nodes for c in document.item("nodes", n).get("children", [])}
-    return [n for n in nodes if n not in children]
 
 
 def _local(document: Document, field: str, node: Item) -> NDArray[np.float64]:

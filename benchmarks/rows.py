@@ -31,6 +31,7 @@ from .problems import (
     two_lidars,
     two_lidars_two_cameras,
 )
+from .process_rows import answer_to_a_move, mesh_sent, request_of_a_move
 from .requirement_rows import (
     nine_presets,
     nine_presets_preview,
@@ -253,6 +254,9 @@ ROWS: dict[str, Callable[[], Timing]] = {
         redundancy_map,
         four_states_in_three_weathers,
         simplify,
+        request_of_a_move,
+        answer_to_a_move,
+        mesh_sent,
         candidate,
         candidates_in_processes,
         candidates_in_traffic,

@@ -210,9 +210,13 @@ def required_setting(
     return field(metadata={_KEY: (rule, text, panel, scored)})
 
 
-@functools.cache
 def settings_of(cls: Any) -> dict[str, Setting]:
     """Return the settings that a dataclass declares, by name, in their order."""
+    return _declared(cls)
+
+
+@functools.cache
+def _declared(cls: Any) -> dict[str, Setting]:
     return {
         each.name: Setting(each.name, each.default, *each.metadata[_KEY])
         for each in fields(cls)

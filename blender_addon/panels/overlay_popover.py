@@ -26,9 +26,10 @@ def view(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
     view = settings.view
     for name in LAYERS:
         column.prop(view, f"show_{name}")
-        choices = column.column(align=True)
-        choices.active = getattr(view, f"show_{name}")
-        _draw_rows(_indented(choices), settings, CHOICES.get(name, ()))
+        if name in CHOICES:
+            choices = column.column(align=True)
+            choices.active = getattr(view, f"show_{name}")
+            _draw_rows(_indented(choices), settings, CHOICES[name])
     row = column.row()
     row.prop(view, "show_labels")
     row.prop(view, "show_legend")
@@ -47,8 +48,9 @@ def _draw_rows(
                 _draw_colors(layout, settings)
             elif is_asked(view, VIEW_ROWS[name].when):
                 kind = view.bl_rna.properties[name].type
-                form = {"text": ""} if kind in ("ENUM", "STRING") else {"slider": name in SLIDERS}
-                cells.prop(view, name, expand=name in EXPANDED, **form)
+                is_named = name in EXPANDED or kind not in ("ENUM", "STRING")
+                form = {} if is_named else {"text": ""}  # no text: none on the buttons, either
+                cells.prop(view, name, expand=name in EXPANDED, slider=name in SLIDERS, **form)
 
 
 def _draw_colors(layout: UILayout, settings: OverlaySettings) -> None:

@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import pe_core as pe
+import pe_tools as pt
 
 from .experiment_searches_told import EXPERIMENTS, METHODS, SUMMARY, write_summary
 from .run_files import restore, run_once
@@ -66,7 +67,7 @@ def run(experiment: str, method: str, seed: int, most: float = float("inf")) -> 
     """Search from the paper's placement; return what was found, and the curve of the best."""
     study = pe.load_study(STUDIES / f"{experiment}.toml")
     search = replace(study.search, method=method, seed=seed, samples=SAMPLES)
-    job, bests = pe.OptimizeJob(replace(study, search=search)), []
+    job, bests = pt.OptimizeJob(replace(study, search=search)), []
     load = os.getloadavg()[0]
     searching, ended, begun = None, 0.0, _processor_s()
     for progress in job:

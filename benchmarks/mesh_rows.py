@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-import pe_core as pe
+import pe_tools as pt
 from tests.engine.mesh_files import glb_file, gltf, ply_header
 
 from .timing import Timing, best_of_processor, peak_mb
@@ -79,8 +79,8 @@ def _row(
         path = folder / f"mesh.{suffix}"
         for file, content in {path.name: data, **(beside or {})}.items():
             (folder / file).write_bytes(content)
-        count = len(pe.read_mesh(path).triangles)
-        ours = best_of_processor(lambda: pe.read_mesh(path))
+        count = len(pt.read_mesh(path).triangles)
+        ours = best_of_processor(lambda: pt.read_mesh(path))
         seconds = best_of_processor(lambda: theirs(folder))
     work = f"read {count:,} triangles, .{suffix} of {len(data) / 1e6:.0f} MB, processor time"
     return Timing(work, ours, peak_mb(), yardstick, seconds)

@@ -23,6 +23,7 @@ from statistics import median
 from typing import Any
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.study import requirement_file
 
 from .requirement_rows import NINE as BENCHED
@@ -90,7 +91,7 @@ def run(seed: int) -> Json:
     """Search from the start with a seed; return what was found, and what it took."""
     study = shuttle()
     began, used = time.monotonic(), _processor_s()
-    job = pe.OptimizeJob(replace(study, search=replace(study.search, seed=seed)))
+    job = pt.OptimizeJob(replace(study, search=replace(study.search, seed=seed)))
     first = None
     for _ in job:
         if first is None and job.history and job.history[-1].entropy < 100.0:
@@ -105,7 +106,7 @@ def run(seed: int) -> Json:
         "entropy": outcome.after.entropy,
         "wall_s": time.monotonic() - began,
         "processor_s": _processor_s() - used,
-        "placements": pe.result_dict(outcome)["placements"]["after"],
+        "placements": pt.result_dict(outcome)["placements"]["after"],
     }
 
 

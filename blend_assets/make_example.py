@@ -22,7 +22,7 @@ from export_mesh import mesh_of_scene  # noqa: E402
 
 import blender_addon  # noqa: E402
 from blender_addon import bridge  # noqa: E402
-from blender_addon.engine import pe  # noqa: E402
+from blender_addon.engine import formats, pe  # noqa: E402
 
 FOLDER = HERE.parent / "examples"
 VEHICLES = {
@@ -55,7 +55,7 @@ def open_vehicle(name: str) -> None:
 def write_vehicle(name: str) -> None:
     """Write the mesh of an example's studies."""
     (FOLDER / name).mkdir(parents=True, exist_ok=True)
-    pe.write_mesh(FOLDER / name / "vehicle.npz", mesh_of_scene())
+    formats.write_mesh(FOLDER / name / "vehicle.npz", mesh_of_scene())
 
 
 def write_blend(name: str) -> None:

@@ -21,7 +21,7 @@ from blend_file import save  # noqa: E402
 
 import blender_addon  # noqa: E402
 from blender_addon import bridge  # noqa: E402
-from blender_addon.engine import pe  # noqa: E402
+from blender_addon.engine import formats, pe  # noqa: E402
 
 FOLDER = HERE / "examples" / "four_corners"
 LIDAR, CAMERA = "Velodyne VLP-16 Puck", "Camera 120 deg"
@@ -122,7 +122,7 @@ def write_study() -> None:
     mounts = study.search.mounting.mounts
     areas = [mount.area.triangles for mount in mounts.values()]
     parts = np.repeat(np.arange(len(areas), dtype=np.int32), [len(area) for area in areas])
-    pe.write_mesh(FOLDER / "areas.npz", pe.Mesh(np.concatenate(areas), parts, tuple(mounts)))
+    formats.write_mesh(FOLDER / "areas.npz", pe.Mesh(np.concatenate(areas), parts, tuple(mounts)))
     pe.save_study(study.with_mesh("../../bus.npz"), FOLDER / "study.toml")
 
 

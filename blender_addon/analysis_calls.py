@@ -34,7 +34,7 @@ def known_rig_score(problem: Problem, known_rig: catalog.KnownRig) -> pe.Summary
 
 def warnings(
     sensors: list[pe.Sensor], vehicle: pe.Vehicle | None, space: pe.PerceptionSpace
-) -> tuple[str, tuple[pe.Advice, ...]]:
+) -> tuple[str, tuple[advice.Advice, ...]]:
     """Return a line about the vehicle, and the warnings about sensors on it."""
     line = "" if vehicle is None else geometry.vehicle_line(vehicle)
     return line, advice.warnings(sensors, vehicle, space, pe.Prior.uniform())

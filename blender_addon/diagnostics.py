@@ -17,7 +17,7 @@ from . import (
     vehicle_cache,
     viewport,
 )
-from .engine import advice, pe
+from .engine import advice, jobs, pe
 
 IDLE_DELAY_S = 1.0
 """How long the scene has to be idle until the checks run."""
@@ -63,7 +63,7 @@ def run_checks() -> None:
     except pe.InputError:  # a score reports it
         space = pe.PerceptionSpace()
 
-    def deliver(found: tuple[str, tuple[pe.Advice, ...]]) -> None:
+    def deliver(found: tuple[str, tuple[advice.Advice, ...]]) -> None:
         if name in bpy.data.scenes:
             line, warnings = found
             settings = bpy.data.scenes[name].perception_entropy
@@ -85,7 +85,7 @@ def _mark_outdated(behind: bool) -> None:
         viewport.redraw_editors()
 
 
-def explain_score(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) -> None:
+def explain_score(scene: bpy.types.Scene, outcome: jobs.Outcome, signature: str) -> None:
     """Explain a result in words, in the background; do nothing without a window."""
     if bpy.app.background:
         return

@@ -19,7 +19,17 @@ if TYPE_CHECKING:
     from pe_core import sensors as kinds
     from pe_core import study as studies
     from pe_core.scoring import requirements, sight
-    from pe_tools import advice, engine_process, exchange, graphics, jobs, outputs, page, wording
+    from pe_tools import (
+        advice,
+        engine_process,
+        exchange,
+        formats,
+        graphics,
+        jobs,
+        outputs,
+        page,
+        wording,
+    )
     from pe_tools import cli as app
 
 ROOMS = {
@@ -28,6 +38,7 @@ ROOMS = {
     "catalog": (pe, "catalog"),
     "engine_process": (tools, "engine_process"),
     "exchange": (tools, "exchange"),
+    "formats": (tools, "formats"),
     "geometry": (pe, "scene"),
     "graphics": (tools, "graphics"),
     "jobs": (tools, "jobs"),
@@ -62,6 +73,7 @@ __all__ = [
     "catalog",
     "engine_process",
     "exchange",
+    "formats",
     "geometry",
     "graphics",
     "jobs",

@@ -39,7 +39,7 @@ class ExportStopped(Exception):
     """The user stopped the export; raised on the thread to end its work."""
 
 
-class ExportJob(pe.Job):
+class ExportJob(jobs.Job):
     """Makes files on a thread, then writes them; a stopped job writes nothing.
 
     `stage` is what it does. `make` gets an outcome, None if the study is not `scored` first, and a
@@ -58,12 +58,12 @@ class ExportJob(pe.Job):
         self._stage, self._make, self._write, self._scored = stage, make, write, scored
         self.written: WrittenFiles | None = None
 
-    def __iter__(self) -> Iterator[pe.Progress]:
-        score, begin = pe.ScoreJob(self.study), SCORED_SHARE if self._scored else 0.0
+    def __iter__(self) -> Iterator[jobs.Progress]:
+        score, begin = jobs.ScoreJob(self.study), SCORED_SHARE if self._scored else 0.0
         for step in score if self._scored else ():
             if self.stopped:
                 score.drop()
-            yield pe.Progress("scoring", SCORED_SHARE * step.fraction)
+            yield jobs.Progress("scoring", SCORED_SHARE * step.fraction)
         if self.stopped:
             return
 
@@ -74,7 +74,7 @@ class ExportJob(pe.Job):
 
             return self._make(score.outcome, note)
 
-        made = yield from self._beside(work, pe.Progress(self._stage, begin))
+        made = yield from self._beside(work, jobs.Progress(self._stage, begin))
         if made is not None and not self.stopped:
             self.written = self._write(made)
 
@@ -112,7 +112,7 @@ def picture_job(study: pe.Study, path: Path) -> ExportJob:
     return ExportJob(study, "picture", _picture, partial(_write_one, path), scored=True)
 
 
-def _picture(outcome: pe.Outcome, _watch: OnProgress) -> bytes:
+def _picture(outcome: jobs.Outcome, _watch: OnProgress) -> bytes:
     return page.picture_file(outcome.study, outcome)
 
 
@@ -123,7 +123,7 @@ def page_job(study: pe.Study, path: Path, about: page.About, facts: dict[str, An
 
 
 def _page(
-    title: str, about: page.About, facts: dict[str, Any], outcome: pe.Outcome, watch: OnProgress
+    title: str, about: page.About, facts: dict[str, Any], outcome: jobs.Outcome, watch: OnProgress
 ) -> bytes:
     return page.page_bytes([page.ReportContext(title, outcome, **facts)], watch, about)
 
@@ -149,7 +149,7 @@ class ComparedVariant(NamedTuple):
     figures: advice.KeyFigures
 
 
-class CompareJob(pe.Job):
+class CompareJob(jobs.Job):
     """A job of several studies, one after the other: their scores and key figures, by key."""
 
     def __init__(self, lacking: dict[int, PendingVariant], rule: tuple[float, str]) -> None:
@@ -157,12 +157,12 @@ class CompareJob(pe.Job):
         self.lacking, self.rule = lacking, rule
         self.compared: dict[int, ComparedVariant] | None = None
 
-    def __iter__(self) -> Iterator[pe.Progress]:
+    def __iter__(self) -> Iterator[jobs.Progress]:
         compared: dict[int, ComparedVariant] = {}
         for key, (name, study, unscored) in self.lacking.items():
             score = None
             if unscored:
-                job = pe.ScoreJob(study)
+                job = jobs.ScoreJob(study)
                 for step in job:
                     if self.stopped:
                         job.stop()
@@ -172,12 +172,12 @@ class CompareJob(pe.Job):
                 score = job.outcome.after
             if self.stopped and score is None:
                 break
-            looking = pe.Progress("seeing", 1.0 - FIGURES_SHARE)
+            looking = jobs.Progress("seeing", 1.0 - FIGURES_SHARE)
             yield self._progress(name, len(compared), looking)
             compared[key] = ComparedVariant(score, self._figures(study))
         self.compared = None if self.dropped else compared or None
 
-    def _progress(self, name: str, done: int, step: pe.Progress) -> pe.Progress:
+    def _progress(self, name: str, done: int, step: jobs.Progress) -> jobs.Progress:
         share = (done + step.fraction) / len(self.lacking)
         return replace(step, stage=f"scoring {name}", fraction=min(share, 1.0))
 

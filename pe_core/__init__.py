@@ -3,34 +3,39 @@
 The metric is from Ma, Liu and Li, "Perception Entropy: A Metric for Multiple Sensors Configuration
 Evaluation and Design", ICRA 2021. Lower is better.
 
-The names in `pe_core.public` and in `pe_tools.public` are here too. They are loaded when one is
-first asked for: NumPy takes a while, and the command has to answer Ctrl-C meanwhile.
+The names in `pe_core.public` are here too. They are loaded when one is first asked for: NumPy takes
+a while, and the command has to answer Ctrl-C meanwhile.
 """
 
+import sys
+from collections.abc import Callable
 from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # a checker knows these names, and no others
-    from pe_tools.public import *  # noqa: F403
-
     from .public import *  # noqa: F403
-else:
-    _PUBLIC = (f"{__name__}.public", f"{__name__.removesuffix('pe_core')}pe_tools.public")
 
-    def __getattr__(name: str) -> object:
-        if not name.startswith("__") and find_spec(f"{__name__}.{name}"):
-            return import_module(f".{name}", __name__)
+
+def _lazy_names(package: str) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
+    """Return `__getattr__` and `__dir__` of a package that shows the names of its `public`."""
+
+    def get(name: str) -> object:
+        if not name.startswith("__") and find_spec(f"{package}.{name}"):
+            return import_module(f".{name}", package)
+        public = import_module(".public", package)
         if name == "__all__":
-            return sorted(_names())
-        for module in map(import_module, _PUBLIC):
-            if name in module.__all__:
-                value = globals()[name] = getattr(module, name)
-                return value
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+            return sorted(public.__all__)
+        if name not in public.__all__:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        value = vars(sys.modules[package])[name] = getattr(public, name)
+        return value
 
-    def _names() -> set[str]:
-        return {name for module in map(import_module, _PUBLIC) for name in module.__all__}
+    def names() -> list[str]:
+        return sorted({*vars(sys.modules[package]), *import_module(".public", package).__all__})
 
-    def __dir__() -> list[str]:
-        return sorted({*globals(), *_names()})
+    return get, names
+
+
+if not TYPE_CHECKING:
+    __getattr__, __dir__ = _lazy_names(__name__)

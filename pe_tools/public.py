@@ -1,4 +1,4 @@
-"""The names of the tools that other programs use: `pe_core` shows them, too."""
+"""The names of the tools that other programs use."""
 
 from . import advice
 from .advice import Advice

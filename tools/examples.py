@@ -27,7 +27,8 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tools")]
 import release  # noqa: E402
 
 import pe_core as pe  # noqa: E402
-from pe_core import advice  # noqa: E402
+import pe_tools as pt  # noqa: E402
+from pe_tools import advice  # noqa: E402
 from pe_tools.page import ReportContext, page_bytes  # noqa: E402
 from pe_tools.page.document import STYLES  # noqa: E402
 from pe_tools.page.pictures.sight_plans import requirement_plan  # noqa: E402
@@ -56,7 +57,7 @@ class Result:
 
     name: str
     study: pe.Study
-    outcome: pe.Outcome
+    outcome: pt.Outcome
     verdicts: tuple[pe.requirements.Verdict, ...]
 
     @property
@@ -78,7 +79,7 @@ def studies_of(name: str) -> list[Path]:
 def scored(path: Path) -> Result:
     """Score a study and hold it to its requirements."""
     study = pe.load_study(path)
-    return Result(path.stem, study, outcome_of(pe.ScoreJob(study)), verdicts_of(study))
+    return Result(path.stem, study, outcome_of(pt.ScoreJob(study)), verdicts_of(study))
 
 
 def verdicts_of(study: pe.Study) -> tuple[pe.requirements.Verdict, ...]:
@@ -86,17 +87,17 @@ def verdicts_of(study: pe.Study) -> tuple[pe.requirements.Verdict, ...]:
     return tuple(study.checker().check(study.rig))
 
 
-def outcome_of(job: pe.Job) -> pe.Outcome:
+def outcome_of(job: pt.Job) -> pt.Outcome:
     """Drive a job to its end."""
     for _ in job:
         pass
     return job.outcome
 
 
-def decide(name: str) -> pe.Outcome:
+def decide(name: str) -> pt.Outcome:
     """Search from the last study, and write what is decided."""
     last = pe.load_study(tried(name)[-1])
-    outcome = outcome_of(pe.OptimizeJob(last, workers=1))
+    outcome = outcome_of(pt.OptimizeJob(last, workers=1))
     write_decided(name, outcome.study)
     return outcome
 
@@ -144,7 +145,7 @@ def in_states(result: Result) -> Iterator[Result]:
             rig=state.rig(study.rig, study.vehicle),
             conditions=type(study.conditions)(),
         )
-        outcome = outcome_of(pe.ScoreJob(moved))
+        outcome = outcome_of(pt.ScoreJob(moved))
         yield Result(f"{result.name}, {state.name}", moved, outcome, verdicts_of(moved))
 
 

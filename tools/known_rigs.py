@@ -15,6 +15,7 @@ if str(ROOT) not in sys.path:  # run as a script
     sys.path.insert(0, str(ROOT))
 
 import pe_core as pe  # noqa: E402
+import pe_tools as pt  # noqa: E402
 from pe_core import catalog  # noqa: E402
 from pe_tools.cli import study_of_rig  # noqa: E402
 
@@ -69,7 +70,7 @@ def vehicle_of(rig: catalog.KnownRig) -> str:
 
 def read_vehicle(name: str) -> pe.Vehicle:
     """Return an example vehicle."""
-    mesh = pe.read_mesh(ROOT / "blend_assets" / f"{name}.npz")
+    mesh = pt.read_mesh(ROOT / "blend_assets" / f"{name}.npz")
     return pe.Vehicle(mesh.triangles, mesh.parts, mesh.part_names, VEHICLES[name])
 
 
@@ -85,7 +86,7 @@ def scored(key: str, samples: int = SAMPLES) -> ScoredRig:
 
 
 def _score(study: pe.Study) -> pe.Score:
-    job = pe.ScoreJob(study)
+    job = pt.ScoreJob(study)
     for _ in job:
         pass
     return job.outcome.after

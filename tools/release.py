@@ -170,7 +170,7 @@ def try_wheel(wheel: Path, extra: str = "") -> None:
         said = run(binaries / "pe", "--version", cwd=Path(scratch))
         if agreed_version() not in said:
             raise BuildError(f"the installed command says {said.strip()!r}")
-        options = ("--grid-samples", "4096", "-o", "scored")
+        options = ("--samples", "4096", "-o", "scored")
         run(binaries / "pe", "score", EXAMPLE, *options, cwd=Path(scratch))
 
 

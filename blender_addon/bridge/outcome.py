@@ -21,7 +21,7 @@ MARKING = (MISSING, DRIVER)
 """Codes of warnings that mark a result: what was scored is not what was meant."""
 
 
-def store_outcome(scene: Scene, outcome: pe.Outcome, signature: str) -> None:
+def store_outcome(scene: Scene, outcome: jobs.Outcome, signature: str) -> None:
     """Store an outcome in the scene: figures for display, and result.json in full.
 
     `signature` is the scene's signature at the time when it was read: the scene may have changed
@@ -58,7 +58,7 @@ def store_outcome(scene: Scene, outcome: pe.Outcome, signature: str) -> None:
         },
     )
     store(settings, "result_shown", shown)
-    result = pe.result_dict(outcome, blender_version())
+    result = jobs.result_dict(outcome, blender_version())
     result["after"] = score_to_dict(after)
     settings.result_json, settings.result_signature = json.dumps(result), signature
     store_warnings(settings, outcome.warnings)
@@ -110,7 +110,7 @@ def _parts(score: pe.Score) -> Iterator[ResultPart]:
         yield row
 
 
-def store_warnings(settings: PropertyGroup, warnings: Sequence[pe.Advice]) -> None:
+def store_warnings(settings: PropertyGroup, warnings: Sequence[advice.Advice]) -> None:
     """Store the warnings about a scene's sensors and vehicle, for the panel."""
     rows = []
     for each in warnings:
@@ -126,7 +126,7 @@ def blender_version() -> dict[str, str]:
     return {"blender": bpy.app.version_string}
 
 
-def _in_traffic_text(outcome: pe.Outcome) -> str:
+def _in_traffic_text(outcome: jobs.Outcome) -> str:
     """Return the expected AP that a search by it began and ended with; empty for others."""
     if outcome.in_traffic is None:
         return ""

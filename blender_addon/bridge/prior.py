@@ -10,7 +10,7 @@ import bpy
 from bpy.types import PropertyGroup, Scene
 
 from ..choices import CUSTOM, FROM_BOXES, HIGHWAY, REGIONS, ROAD, UNIFORM, FocusArea
-from ..engine import pe
+from ..engine import formats, pe
 from .scene_settings import as_typed
 
 MODELS = {ROAD: pe.Prior.road, HIGHWAY: pe.Prior.highway, UNIFORM: pe.Prior.uniform}
@@ -85,7 +85,7 @@ def _by_region(weights: Sequence[pe.Focus]) -> Iterator[tuple[str, pe.Focus]]:
 def _prior_from_boxes(path: str) -> pe.Prior:
     if not path:
         raise pe.InputError("scene", "boxes", "a file of labelled boxes", "none chosen")
-    prior = pe.Prior.from_boxes(pe.read_boxes(bpy.path.abspath(path)))
+    prior = pe.Prior.from_boxes(formats.read_boxes(bpy.path.abspath(path)))
     # The name they get beside a study is part of what is reported, where they lie here is not.
     boxes = prior.boxes
     return prior if boxes is None else replace(prior, boxes=replace(boxes, file=None))

@@ -12,7 +12,7 @@ from typing import Any
 import bpy
 from bpy.types import ID, LayerCollection, Object, Scene
 
-from ..engine import pe
+from ..engine import advice, pe
 from .mounting import followers_of
 from .rig import sensor_from_object, sensor_objects, view_layer_of
 from .transform_constraints import AXIS_LABELS, free_axes, holders, locked_axes
@@ -23,14 +23,16 @@ HIDDEN = "hidden_vehicle"
 """Codes of warnings, beside those of the engine."""
 
 
-def scene_advice(scene: Scene) -> tuple[pe.Advice, ...]:
+def scene_advice(scene: Scene) -> tuple[advice.Advice, ...]:
     """Return warnings about a scene: missing data, units, and sensors that cannot be scored."""
     sensors = sensor_objects(scene)
     warnings = (*missing_data(scene, sensors), *_units(scene), *_hidden_vehicle(scene))
     return (*warnings, *_refused(scene, sensors))
 
 
-def missing_data(scene: Scene, sensors: Sequence[Object] | None = None) -> tuple[pe.Advice, ...]:
+def missing_data(
+    scene: Scene, sensors: Sequence[Object] | None = None
+) -> tuple[advice.Advice, ...]:
     """Return warnings about data of lost libraries and about drivers that did not run.
 
     `sensors` are the scene's sensors, if the caller has already read them.
@@ -40,14 +42,14 @@ def missing_data(scene: Scene, sensors: Sequence[Object] | None = None) -> tuple
     return (*_lost_data(blocks), *_failed_drivers(blocks, set(mounted)))
 
 
-def _lost_data(blocks: Iterable[ID]) -> Iterator[pe.Advice]:
+def _lost_data(blocks: Iterable[ID]) -> Iterator[advice.Advice]:
     """Yield a warning for each lost library: its path, and the data that is missing."""
     lost: dict[str, list[str]] = {}
     for block in blocks:
         if block.is_missing:
             lost.setdefault(block.library.filepath, []).append(block.name)
     for path, names in lost.items():
-        yield pe.Advice(None, MISSING, {"names": sorted(set(names)), "path": path})
+        yield advice.Advice(None, MISSING, {"names": sorted(set(names)), "path": path})
 
 
 def _scored_data(scene: Scene, sensors: Sequence[Object]) -> Iterator[ID]:
@@ -73,7 +75,7 @@ def _scored_data(scene: Scene, sensors: Sequence[Object]) -> Iterator[ID]:
             yield obj.data
 
 
-def _failed_drivers(blocks: Iterable[Any], sensors: Collection[Object]) -> Iterator[pe.Advice]:
+def _failed_drivers(blocks: Iterable[Any], sensors: Collection[Object]) -> Iterator[advice.Advice]:
     """Yield a warning for each object with a driver that did not run."""
     for block in blocks:
         drivers = getattr(block.animation_data, "drivers", ()) if _animatable(block) else ()
@@ -81,20 +83,20 @@ def _failed_drivers(blocks: Iterable[Any], sensors: Collection[Object]) -> Itera
         if failed:
             values = {"paths": failed, "is_allowed": not bpy.app.autoexec_fail}
             subject, part = (block.name, None) if block in sensors else (None, block.name)
-            yield pe.Advice(subject, DRIVER, values, part)
+            yield advice.Advice(subject, DRIVER, values, part)
 
 
 def _animatable(block: ID) -> bool:
     return getattr(block, "animation_data", None) is not None
 
 
-def _units(scene: Scene) -> Iterator[pe.Advice]:
+def _units(scene: Scene) -> Iterator[advice.Advice]:
     units = scene.unit_settings
     if units.system == "IMPERIAL" or abs(units.scale_length - 1.0) > 1e-6:
-        yield pe.Advice(None, UNITS, fix="metric_units")
+        yield advice.Advice(None, UNITS, fix="metric_units")
 
 
-def _hidden_vehicle(scene: Scene) -> Iterator[pe.Advice]:
+def _hidden_vehicle(scene: Scene) -> Iterator[advice.Advice]:
     """Yield warnings about collections of the vehicle that are excluded or hidden."""
     vehicle, layer = scene.perception_entropy.vehicle, view_layer_of(scene)
     if vehicle is None:
@@ -102,14 +104,14 @@ def _hidden_vehicle(scene: Scene) -> Iterator[pe.Advice]:
     layers = layers_of(layer.layer_collection, vehicle)
     if not layers:
         values = {"collection": vehicle.name, "how": "not in this scene", "is_whole": True}
-        yield pe.Advice(None, HIDDEN, values)
+        yield advice.Advice(None, HIDDEN, values)
     elif how := hidden_how(layers[0]):
         values = {"collection": vehicle.name, "how": how, "is_whole": True}
-        yield pe.Advice(None, HIDDEN, values, fix="show_vehicle")
+        yield advice.Advice(None, HIDDEN, values, fix="show_vehicle")
     else:
         for child in _hidden_children(layers[0]):
             values = {"collection": child.name, "how": hidden_how(child), "is_whole": False}
-            yield pe.Advice(None, HIDDEN, values)
+            yield advice.Advice(None, HIDDEN, values)
 
 
 def _hidden_children(layer: LayerCollection) -> Iterator[LayerCollection]:
@@ -121,7 +123,7 @@ def _hidden_children(layer: LayerCollection) -> Iterator[LayerCollection]:
             yield child
 
 
-def _refused(scene: Scene, sensors: Sequence[Object]) -> Iterator[pe.Advice]:
+def _refused(scene: Scene, sensors: Sequence[Object]) -> Iterator[advice.Advice]:
     """Yield a warning for each sensor that cannot be scored."""
     layer = view_layer_of(scene)
     for obj in sensors:
@@ -133,7 +135,7 @@ def _refused(scene: Scene, sensors: Sequence[Object]) -> Iterator[pe.Advice]:
             field = error.field.rpartition(": ")[2]
             values = {"field": field, "found": error.found, "expected": error.expected}
             fix = "apply_scale" if field == "scale" else None
-            yield pe.Advice(obj.name, REFUSED, values, fix=fix)
+            yield advice.Advice(obj.name, REFUSED, values, fix=fix)
 
 
 def check_placeable(scene: Scene, study: pe.Study) -> None:

@@ -56,7 +56,7 @@ def _scored_values(sensor: pe.Sensor) -> tuple[object, ...]:
     return sensor.name, id(sensor.model), sensor.fusion, sensor.pose, sensor.curve
 
 
-def store_search(scene: Scene, outcome: pe.Outcome, surroundings: str) -> int:
+def store_search(scene: Scene, outcome: jobs.Outcome, surroundings: str) -> int:
     """Store the start and the result of a search as variants; return the key of the result.
 
     The start becomes the active variant, as the sensors have not been moved yet.
@@ -136,14 +136,14 @@ def check_choosable(scene: Scene, study: pe.Study) -> None:
         expected = "a sensor with models to choose from (panel Sensor Choices)"
         raise pe.InputError("scene", "choices", expected, "none")
     try:
-        pe.FrontJob(study)
+        jobs.FrontJob(study)
     except pe.InputError as error:
         raise error.within("scene") from None
     if any(study.search.free.values()) or study.search.mounting.on:
         check_placeable(scene, study)
 
 
-def store_front(scene: Scene, trade_off: pe.TradeOff, surroundings: str) -> None:
+def store_front(scene: Scene, trade_off: jobs.TradeOff, surroundings: str) -> None:
     """Store each design of a Pareto front as a variant, and the scene's sensors as another one."""
     records, settings = records_of_scene(scene), scene.perception_entropy
     before = find_or_add_variant(scene, BEFORE, records).key
@@ -171,7 +171,7 @@ def store_front(scene: Scene, trade_off: pe.TradeOff, surroundings: str) -> None
     mark_active(scene, before)
 
 
-def _designed(now: Sequence[SensorRecord], design: pe.Design) -> tuple[SensorRecord, ...]:
+def _designed(now: Sequence[SensorRecord], design: jobs.Design) -> tuple[SensorRecord, ...]:
     """Return the scene's sensors with the models of a design, without those it leaves out."""
     taken: Mapping[str, pe.Sensor] = {sensor.name: sensor for sensor in design.study.rig}
     gone = {name for name, model in design.models.items() if model is None}
@@ -187,7 +187,7 @@ def _with_choice(record: SensorRecord, sensor: pe.Sensor) -> SensorRecord:
     return replace(record, model=model, fusion=fusion, pose=sensor.pose, curve=sensor.curve)
 
 
-def _note(design: pe.Design, currency: str) -> str:
+def _note(design: jobs.Design, currency: str) -> str:
     return f"{design.price:,.10g} {currency}".strip()
 
 
@@ -225,7 +225,7 @@ def figures_of(variant: Variant, signature: str) -> advice.KeyFigures | None:
 
 def restore_result(
     scene: Scene, variant: Variant, now: Fingerprint, depsgraph: Depsgraph
-) -> pe.Outcome | None:
+) -> jobs.Outcome | None:
     """Show the stored score of the variant that was applied to the scene.
 
     Returns
@@ -242,6 +242,6 @@ def restore_result(
     if set(score.per_sensor) != {sensor.name for sensor in study.rig}:
         return None  # an object has another name than the sensor that was scored
     warnings = scene_advice(scene)
-    outcome = pe.Outcome("score", study, study, score, score, warnings=warnings)
+    outcome = jobs.Outcome("score", study, study, score, score, warnings=warnings)
     store_outcome(scene, outcome, now.text)
     return outcome

@@ -60,7 +60,7 @@ BLEND_BEGIN, BLEND_END = b"\x28\xb5\x2f\xfd", b"\xb1\xea\x92\x8f"
 """Of a complete compressed .blend file (zstd with its seek table)."""
 
 
-def write_optimized(outcome: pe.Outcome, data: dict, folder: Path) -> None:
+def write_optimized(outcome: jobs.Outcome, data: dict, folder: Path) -> None:
     """Write the optimized scene beside the results of a search."""
     scene = bpy.context.scene
     bridge.place_rig(scene, outcome.study.rig)
@@ -70,7 +70,7 @@ def write_optimized(outcome: pe.Outcome, data: dict, folder: Path) -> None:
     jobs.add_to_result(data, folder, {OPTIMIZED: save_copy})
 
 
-def write_front(found: pe.TradeOff, folder: Path) -> None:
+def write_front(found: jobs.TradeOff, folder: Path) -> None:
     """Write the scene with the designs of a front as variants."""
     scene = bpy.context.scene
     bridge.store_front(scene, found, result_staleness.fingerprint(scene).surroundings)

@@ -49,7 +49,7 @@ def import_objects(args: argparse.Namespace) -> app.Answer:
             study = pe.Study(rig, reference=reference)
         else:
             study = bridge.study_of_rig(scene, bpy.context.evaluated_depsgraph_get(), rig)
-    pe.export_study(study, output, replace_study=args.replace)
+    jobs.export_study(study, output, replace_study=args.replace)
     for line in lines:
         app.tell(line)
     return f"wrote {output}: {len(found)} sensor{'s' if len(found) > 1 else ''}", app.DONE
@@ -76,7 +76,7 @@ def run_job(args: argparse.Namespace) -> app.Answer:
             bridge.check_placeable(bpy.context.scene, study)
     job, name = app.job_and_folder(study, args, app.begun_search(args))
 
-    def leave(outcome: pe.Outcome, data: dict, folder: Path) -> None:
+    def leave(outcome: jobs.Outcome, data: dict, folder: Path) -> None:
         with quiet_blender():
             write_optimized(outcome, data, folder)
 
@@ -84,7 +84,7 @@ def run_job(args: argparse.Namespace) -> app.Answer:
     output = None
     if name is not None:
         names = [*(more.names if more else ()), *jobs.result_names(study, kind)]
-        output = pe.prepare_folder(name, names)
+        output = jobs.prepare_folder(name, names)
     job.notes = bridge.missing_data(bpy.context.scene)
     return app.carry_out(
         job,
@@ -101,11 +101,11 @@ def choose_sensors(study: pe.Study, args: argparse.Namespace) -> app.Answer:
     scene, output = bpy.context.scene, None
     with from_file():
         bridge.check_choosable(scene, study)
-    job, host = pe.FrontJob(study, args.workers), bridge.blender_version()
+    job, host = jobs.FrontJob(study, args.workers), bridge.blender_version()
     if (folder := app.resumed(job, args)) is not None:
-        output = pe.prepare_folder(folder, [OPTIMIZED])
+        output = jobs.prepare_folder(folder, [OPTIMIZED])
 
-    def leave(found: pe.TradeOff, folder: Path) -> None:
+    def leave(found: jobs.TradeOff, folder: Path) -> None:
         with quiet_blender():
             write_front(found, folder)
 
@@ -120,8 +120,8 @@ def export_study(args: argparse.Namespace) -> app.Answer:
         return export_objects(study, args)
     if args.to is not None or Path(args.output).suffix in app.SUFFIXES:
         return app.export(study, args)
-    path = pe.prepare_folder(args.output) / studies.STUDY
-    pe.export_study(study, path)
+    path = jobs.prepare_folder(args.output) / studies.STUDY
+    jobs.export_study(study, path)
     return str(path), app.DONE
 
 
@@ -177,11 +177,11 @@ STUDIES = "studies"
 def sweep_scene(args: argparse.Namespace) -> app.Answer:
     """Write the studies to the sweep's folder, and sweep them as the command ``pe`` would."""
     by_name = _chosen_studies(args.variants)
-    folder = pe.prepare_folder(Path(args.output) / STUDIES)
+    folder = jobs.prepare_folder(Path(args.output) / STUDIES)
     files = {}
     for number, (name, study) in enumerate(by_name.items()):
         files[name] = folder / f"{number}.toml"
-        pe.export_study(study, files[name])
+        jobs.export_study(study, files[name])
     return app.sweep(files, args)
 
 

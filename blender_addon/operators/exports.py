@@ -19,7 +19,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
 from .. import bridge, own_jobs, viewport
-from ..engine import app, exchange, outputs, page, pe
+from ..engine import app, exchange, jobs, outputs, page, pe
 from ..own_jobs import ExportJob, WrittenFiles
 from . import running_job
 from .declared import (
@@ -135,7 +135,7 @@ def export_study(context: bpy.types.Context, filepath: str) -> Told:
     """Write a study (.toml) and the vehicle's mesh (.npz) beside it"""
     path = chosen_file(filepath)
     study = bridge.study_as_drawn(context.scene)
-    pe.export_study(study, path, replace_study=True)  # the file dialog has confirmed it
+    jobs.export_study(study, path, replace_study=True)  # the file dialog has confirmed it
     return told_of(WrittenFiles((path,)))
 
 
@@ -183,7 +183,7 @@ def render_review(context: bpy.types.Context, filepath: str, asked_in_window: bo
     """Score the present sensors and write a picture of the rig (.png)"""
     path = chosen_file(filepath)
     study = bridge.study_as_drawn(context.scene)
-    pe.prepare_folder(path.parent)  # fail before the work, not after
+    jobs.prepare_folder(path.parent)  # fail before the work, not after
 
     return run(own_jobs.picture_job(study, path), asked_in_window)
 
@@ -215,7 +215,7 @@ def export_review(
         "command": headless_command(path, about),
         "versions": bridge.blender_version(),
     }
-    pe.prepare_folder(path.parent)  # fail before the work, not after
+    jobs.prepare_folder(path.parent)  # fail before the work, not after
 
     return run(own_jobs.page_job(study, path, about, facts), asked_in_window)
 
@@ -284,7 +284,7 @@ def export_rig(
     replace = replace or not (row.beside or len(row.files) > 1)  # of one file the dialog has asked
     wanted = study.rig, name, path, study.reference
     paths: Sequence[Path]
-    paths, lines = pe.export_rig(*wanted, passthrough=study.passthrough, replace=replace)
+    paths, lines = exchange.export_rig(*wanted, passthrough=study.passthrough, replace=replace)
     return told_of(WrittenFiles(tuple(paths), tuple(lines)))
 
 

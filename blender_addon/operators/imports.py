@@ -287,7 +287,7 @@ def read_rig(
     several = [row.files for row in exchange.RIG_FORMATS.values() if len(row.files) > 1]
     place = path.parent if any(path.name in files for files in several) else path
     reference = bridge.reference_of(scene.perception_entropy)
-    return pe.import_rig(place, None if name == BY_NAME else name, reference, chosen)
+    return exchange.import_rig(place, None if name == BY_NAME else name, reference, chosen)
 
 
 def place_rig(scene: bpy.types.Scene, path: Path, found: exchange.ImportedRig) -> Told:

@@ -237,7 +237,7 @@ def cached_score(
     return finished.score
 
 
-def store_result(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) -> None:
+def store_result(scene: bpy.types.Scene, outcome: jobs.Outcome, signature: str) -> None:
     """Store a result in the scene; keep its score for the views and for the next search."""
     bridge.store_outcome(scene, outcome, signature)
     live_state(scene.name).finished = FinishedScore(signature, outcome.study, outcome.after)
@@ -248,28 +248,28 @@ def store_result(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) ->
 def score_task(_scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> Task:
     """Score the sensors, also where a score is cached: the button was pressed."""
 
-    def finish(scene: bpy.types.Scene, outcome: pe.Outcome) -> str:
+    def finish(scene: bpy.types.Scene, outcome: jobs.Outcome) -> str:
         store_result(scene, outcome, taken.text)
         bridge.store_variant_scores(scene, outcome.study.rig, outcome.after, taken.surroundings)
         score = outcome.after
         return f"Perception entropy {score.entropy:.4f} nats, coverage {score.coverage:.1%}"
 
-    return Task(pe.ScoreJob(study), finish)
+    return Task(jobs.ScoreJob(study), finish)
 
 
 def optimize_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> Task:
     """Search, if that is possible; the score of the start is not made again if it is cached."""
     bridge.check_placeable(scene, study)
-    job = pe.OptimizeJob(study, before=cached_score(scene, study, taken))
+    job = jobs.OptimizeJob(study, before=cached_score(scene, study, taken))
 
-    def finish(scene: bpy.types.Scene, outcome: pe.Outcome) -> Told:
+    def finish(scene: bpy.types.Scene, outcome: jobs.Outcome) -> Told:
         gone = store_search(scene, outcome, taken)
         if not gone:
             return Told(search_line(outcome))
         line = f"Sensors that were removed meanwhile are not placed: {', '.join(gone)}"
         return Told(line, level="WARNING")
 
-    def rescue(scene: bpy.types.Scene, job: pe.OptimizeJob) -> None:
+    def rescue(scene: bpy.types.Scene, job: jobs.OptimizeJob) -> None:
         if job.best is not study:
             bridge.keep_rig(scene, "Best so far", job.best.rig)
 
@@ -277,7 +277,7 @@ def optimize_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerp
 
 
 def store_search(
-    scene: bpy.types.Scene, outcome: pe.Outcome, taken: bridge.Fingerprint
+    scene: bpy.types.Scene, outcome: jobs.Outcome, taken: bridge.Fingerprint
 ) -> list[str]:
     """Keep the best rig as a variant, then move the sensors; return names of removed ones.
 
@@ -304,7 +304,7 @@ def costs_nothing(settings: bpy.types.PropertyGroup) -> bool:
     return advice.costs_nothing(settings.result_cost)
 
 
-def search_line(outcome: pe.Outcome) -> str:
+def search_line(outcome: jobs.Outcome) -> str:
     """Return the result of a search in a line."""
     before, after = outcome.before.entropy, outcome.after.entropy
     best = "best so far, stopped early" if outcome.stopped else f"{outcome.evaluations} tried"
@@ -319,13 +319,13 @@ def front_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprin
     """Search for a front, if there is something to choose; keep it as variants."""
     bridge.check_choosable(scene, study)
 
-    def finish(scene: bpy.types.Scene, found: pe.TradeOff) -> str:
+    def finish(scene: bpy.types.Scene, found: jobs.TradeOff) -> str:
         bridge.store_front(scene, found, taken.surroundings)
         signals.view_changed.emit()
         early = ", stopped early" if found.stopped else ""
         return f"{len(found.front)} designs on the Pareto front, kept as variants{early}"
 
-    return Task(pe.FrontJob(study), finish, "trade_off")
+    return Task(jobs.FrontJob(study), finish, "trade_off")
 
 
 def check_task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> Task:

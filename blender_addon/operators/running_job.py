@@ -12,7 +12,7 @@ from typing import Any, cast
 import bpy
 
 from .. import engine_process, search_curve, signals, viewport
-from ..engine import jobs, pe
+from ..engine import jobs
 from ..language import draw_label, shown
 
 TOPIC = "job"
@@ -35,7 +35,7 @@ NOTICE_S = 6.0
 class RunningJob(jobs.WatchedJob):
     """A job that the engine's process runs, with the progress that it made."""
 
-    def __init__(self, context: bpy.types.Context, job: pe.Job, outcome: str) -> None:
+    def __init__(self, context: bpy.types.Context, job: jobs.Job, outcome: str) -> None:
         super().__init__(job)
         self.outcome = outcome
         self.scene_name = context.scene.name
@@ -153,7 +153,7 @@ class RunningJob(jobs.WatchedJob):
 current: RunningJob | None = None
 
 
-def begin(context: bpy.types.Context, job: pe.Job, outcome: str) -> RunningJob:
+def begin(context: bpy.types.Context, job: jobs.Job, outcome: str) -> RunningJob:
     """Have the engine run the job from now on; `outcome` is its attribute of the result."""
     global current
     current = RunningJob(context, job, outcome)

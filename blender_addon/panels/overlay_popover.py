@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import bpy
 from bpy.types import Context, PropertyGroup
@@ -49,7 +49,9 @@ def _draw_rows(
             elif is_asked(view, VIEW_ROWS[name].when):
                 kind = view.bl_rna.properties[name].type
                 is_named = name in EXPANDED or kind not in ("ENUM", "STRING")
-                form = {} if is_named else {"text": ""}  # no text: none on the buttons, either
+                form: dict[str, Any] = (
+                    {} if is_named else {"text": ""}
+                )  # no text: none on the buttons, either
                 cells.prop(view, name, expand=name in EXPANDED, slider=name in SLIDERS, **form)
 
 

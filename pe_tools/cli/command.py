@@ -84,7 +84,7 @@ def add_search_options(parser: argparse.ArgumentParser) -> None:
     options = (
         ("--seed", LAST_SEED, "seed of the search"),
         ("--candidates", MAX_VOXELS, "of the method random: placements tried in a round"),
-        ("--samples", MAX_VOXELS, "voxels a candidate is evaluated on (0: all)"),
+        ("--search-samples", MAX_VOXELS, "voxels a candidate is evaluated on (0: all)"),
         ("--evaluations", MAX_VOXELS, "placements evaluated at most (0: as the method says)"),
     )
     about = f"how to search: one of {', '.join(METHODS)}"
@@ -115,7 +115,7 @@ def add_score_options(parser: argparse.ArgumentParser, workers: str = "threads")
     """Add the options of scoring a study to a parser."""
     voxels, count = count_up_to(MAX_VOXELS), count_up_to(MAX_WORKERS)
     about = "voxels a score looks at (0: all)"
-    parser.add_argument("--grid-samples", type=voxels, metavar="N", help=about)
+    parser.add_argument("--samples", type=voxels, metavar="N", help=about)
     add_curve_option(parser)
     parser.add_argument("--state", metavar="NAME", help="a state of the study, in place of all")
     parser.add_argument("--weather", metavar="NAME", help="a weather of the study, in place of all")
@@ -162,14 +162,16 @@ def _number(text: str) -> float:
 
 def with_options(study: Study, args: argparse.Namespace) -> Study:
     """Return the study with the changes of the command line's options."""
-    if args.grid_samples is not None:
-        study = replace(study, samples=args.grid_samples)
+    if args.samples is not None:
+        study = replace(study, samples=args.samples)
     study = with_curves(study, args)
     state, weather = getattr(args, "state", None), getattr(args, "weather", None)
     if state or weather:
         study = study.under(study.conditions.one(state, weather))
     search = study.search
-    for name in ("method", "objective", "seed", "samples", "evaluations"):
+    if (samples := getattr(args, "search_samples", None)) is not None:
+        search = replace(search, samples=samples)
+    for name in ("method", "objective", "seed", "evaluations"):
         if (value := getattr(args, name, None)) is not None:
             search = replace(search, **{name: value})
     own, has_schedule = study.search, search.method == SCHEDULED_METHOD or study.selection.choices
@@ -254,7 +256,7 @@ def run(main: Callable[[], Answer], out: TextIO | None = None) -> int:
     except (MemoryError, RuntimeError) as error:
         if isinstance(error, RuntimeError) and str(error) != NO_THREAD:
             raise
-        tell("not enough memory: close other programs, or ask for fewer voxels (--grid-samples)")
+        tell("not enough memory: close other programs, or ask for fewer voxels (--samples)")
         return BAD_INPUT
     except BrokenPipeError as error:  # from a stream that a verb writes to directly
         tell(str(error))

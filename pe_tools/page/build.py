@@ -18,8 +18,8 @@ from pe_core import search
 from pe_core import study as studies
 from pe_core.search.goals import HIGHER_IS_BETTER, OBJECTIVES
 
+from .. import advice, jobs
 from .. import cli as app
-from .. import jobs
 from ..sensitivity import sensitivity_from_dict
 from .document import PAGE, html_file, page_bytes, write_page
 from .markup import capitalized, render
@@ -43,7 +43,7 @@ def review(args: argparse.Namespace) -> app.Answer:
     files = app.named_by_file(paths)
     folders = {name: Path(path) for name, path in files.items() if Path(path).is_dir()}
 
-    def score(study: pe.Study) -> pe.Outcome:
+    def score(study: pe.Study) -> jobs.Outcome:
         return app.scored(app.with_options(study, args), args.workers)
 
     def context_of(name: str, study: pe.Study) -> ReportContext:
@@ -90,13 +90,13 @@ def _write(
     requested = {name: app.with_options(study, args) for name, study in by_name.items()}
     app.refuse_different(requested)
     about = About(args.title, args.author, args.date, args.revision)
-    pe.prepare_folder(args.output, () if args.replace else (PAGE,))
+    jobs.prepare_folder(args.output, () if args.replace else (PAGE,))
     contexts = [context_of(name, study) for name, study in requested.items()]
     path = write_page(contexts, args.output, replace=args.replace, about=about)
     return str(path), app.DONE
 
 
-def write_search_page(outcome: pe.Outcome, data: dict[str, Any], folder: Path) -> None:
+def write_search_page(outcome: jobs.Outcome, data: dict[str, Any], folder: Path) -> None:
     """Write the page of a search beside its results."""
     host = {k: v for k, v in data["run"]["versions"].items() if k not in OWN_VERSIONS}
     command = str(data["run"].get("command", ""))
@@ -105,7 +105,9 @@ def write_search_page(outcome: pe.Outcome, data: dict[str, Any], folder: Path) -
     jobs.add_to_result(data, folder, {PAGE: page_bytes([context])})
 
 
-def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> pe.Outcome | None:
+def outcome_of_folder(
+    folder: Path, score: Callable[[pe.Study], jobs.Outcome]
+) -> jobs.Outcome | None:
     """Return the outcome of the search in a folder; None if the folder contains no search.
 
     Start and end are scored again, because result.json does not contain all of a score; the history
@@ -148,7 +150,7 @@ def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> 
             in_traffic = from_dict(table["before"]), from_dict(table["after"])
         reason = str(result.get("stop_reason") or "")
         warnings = tuple(
-            replace(pe.Advice(**table), amount=tuple(table["amount"]))
+            replace(advice.Advice(**table), amount=tuple(table["amount"]))
             for table in result["warnings"]
         )
         blind = result["blind_ground_m2"]
@@ -161,7 +163,7 @@ def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> 
     first = score(start)
     last = first if best.rig == start.rig else score(best)
     scores = first.after, last.after
-    return pe.Outcome(
+    return jobs.Outcome(
         "optimize",
         *(start, best, *scores, tuple(history), evaluations, stopped, 0.0, warnings),
         inputs=checkpoint.inputs,

@@ -111,7 +111,7 @@ def write_page(
         When the folder cannot be written, or contains a page that this program did not write or
         that was changed since.
     """
-    folder = pe.prepare_folder(folder, () if replace else (name,))
+    folder = jobs.prepare_folder(folder, () if replace else (name,))
     with jobs.FileSet(folder, (name,) if replace else ()) as files:
         files.add(name, page_bytes(contexts, about=about))
     return folder / name

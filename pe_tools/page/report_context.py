@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import pe_core as pe
 from pe_core.scoring.sight import GroundSight
 
-from .. import advice, graphics
+from .. import advice, graphics, jobs
 
 T = TypeVar("T")
 MAX_TRIANGLES = 200_000
@@ -44,7 +44,7 @@ class ReportContext:
     """
 
     name: str
-    outcome: pe.Outcome
+    outcome: jobs.Outcome
     key: str = "a"
     command: str = ""
     versions: Mapping[str, str] = field(default_factory=dict)

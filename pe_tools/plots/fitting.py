@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pe_core import catalog, prepare_folder
+from pe_core import catalog
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
 from pe_tools.formats import CurveFit, fit_ap_curve, m_by_range, study_snippet
 
 from ..cli import DONE, Answer, tell
 from ..formats import read_ap_table
-from ..jobs import FileSet
+from ..jobs import FileSet, prepare_folder
 from .plotting import (
     BLUE,
     EXTRA,

@@ -10,8 +10,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pe_core as pe
-from pe_core import InputError, prepare_folder
+from pe_core import InputError
 from pe_core.base import dump_json, write_bytes
+from pe_tools import prepare_folder
 from pe_tools.cli import DONE, Answer, count_up_to, noted_when_interrupted
 
 from ..command import main, page_parser

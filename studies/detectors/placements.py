@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core import catalog
 from pe_core.geometry import Pose, rotate, rotation_matrix
 from pe_core.scene.rig import SensorModel
@@ -103,7 +104,7 @@ def vehicle(name: str) -> pe.Vehicle:
         boxes = [box_triangles(center, size, 0.0) for center, size in SHUTTLE_BOXES.values()]
         parts = np.repeat(np.arange(len(boxes)), [len(b) for b in boxes]).astype(np.int32)
         return pe.Vehicle(np.concatenate(boxes), parts, tuple(SHUTTLE_BOXES))
-    mesh = pe.read_mesh(STUDIES.parent / f"{name}.npz")
+    mesh = pt.read_mesh(STUDIES.parent / f"{name}.npz")
     return pe.Vehicle(mesh.triangles, mesh.parts, mesh.part_names)
 
 

@@ -14,6 +14,7 @@ from typing import cast
 import numpy as np
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.metric import H_BLIND
 from pe_core.scoring import VoxelSample, draw
 from pe_tools.formats import fit_ap_curve, read_ap_table
@@ -234,7 +235,7 @@ def search(
     settings = replace(
         study.search, method="random", seed=seed, samples=search_samples, schedule=schedule
     )
-    job = pe.OptimizeJob(replace(study, search=settings, samples=samples), workers=1)
+    job = pt.OptimizeJob(replace(study, search=settings, samples=samples), workers=1)
     job.analyses = False
     for _ in job:
         pass

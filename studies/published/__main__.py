@@ -6,8 +6,8 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from pe_core import prepare_folder
 from pe_core.base import dump_json, write_bytes
+from pe_tools import prepare_folder
 from pe_tools.cli import DONE, Answer
 
 from ..command import main, page_parser

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.metric import POINTPILLARS
 from pe_core.sensors import derived_object_curves
 
@@ -90,7 +91,7 @@ def body_of(name: str) -> pe.Vehicle | None:
     if name == "none":
         return None
     if name == "sedan":
-        mesh = pe.read_mesh(STUDIES.parent / "sedan.npz")
+        mesh = pt.read_mesh(STUDIES.parent / "sedan.npz")
         return pe.Vehicle(mesh.triangles, mesh.parts, mesh.part_names)
     half = BODY_M[2] / 2.0
     return pe.Vehicle(box_triangles((0.0, 0.0, half), BODY_M, 0.0))

@@ -39,7 +39,7 @@ def test_explain_says_what_it_says_without_blender(blend, tmp_path):
     assert run_here(blend, "export", "-o", tmp_path / "study").returncode == 0
     study = tmp_path / "study" / "study.toml"
     for asked in (
-        ("--grid-samples", "4096"),
+        ("--samples", "4096"),
         ("--at", "8", "2"),
         ("--at", "8", "2", "1", "--json"),
     ):

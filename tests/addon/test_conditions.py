@@ -106,7 +106,7 @@ def idle():
 def scored_with_a_state(scene):
     """A scored scene with a variant and a state; what is stored of it."""
     settings = scene.perception_entropy
-    settings.grid_samples = 4096
+    settings.score_samples = 4096
     add_open_state(scene)
     assert bpy.ops.pe.score() == {"FINISHED"}
     assert bpy.ops.pe.save_variant() == {"FINISHED"}

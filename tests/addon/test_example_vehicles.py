@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from blender_addon.engine import search
 from pe_core.geometry.poses import rotation_matrix
 from pe_core.sensors import kind_of
@@ -46,7 +47,7 @@ def bus(shipped):
 def test_the_mesh_file_holds_the_blend_file_s_triangles_and_the_readme_lists_the_glass(
     shipped, name
 ):
-    vehicle, mesh = shipped[name].vehicle, pe.read_mesh(scenes.ASSETS / f"{name}.npz")
+    vehicle, mesh = shipped[name].vehicle, pt.read_mesh(scenes.ASSETS / f"{name}.npz")
     assert mesh.triangles.tobytes() == vehicle.triangles.tobytes()
     assert np.array_equal(mesh.parts, vehicle.parts)
     assert mesh.part_names == vehicle.part_names
@@ -153,7 +154,7 @@ def test_the_demo_searches_by_default_for_a_lidar_and_a_camera(addon, tmp_path):
     assert {kind_of(sensor).name for sensor in rig} == {"camera", "lidar"}
     script = (TOOLS / "demo.sh").read_text("utf-8")
     options = shlex.split(re.search(r"OPTIONS=\((.*?)\)", script, re.DOTALL)[1])
-    few = ("--evaluations", "5", "--samples", "1024", "--grid-samples", "1024", "--workers", "1")
+    few = ("--evaluations", "5", "--search-samples", "1024", "--samples", "1024", "--workers", "1")
     more = ("--no-review", "--output", tmp_path)
     answer = run_here(start, "optimize", *options, *few, *more)
     assert answer.returncode == 0, answer.stderr
@@ -169,7 +170,7 @@ def test_the_demo_searches_by_default_for_a_lidar_and_a_camera(addon, tmp_path):
 
 def test_the_best_height_lies_above_the_roof_unprompted(sedan):
     few = {"samples": 4096, "schedule": pe.Schedule(candidates=12), "method": "random"}
-    job = pe.OptimizeJob(replace(sedan, search=replace(sedan.search, **few), samples=4096), 1)
+    job = pt.OptimizeJob(replace(sedan, search=replace(sedan.search, **few), samples=4096), 1)
     for _ in job:
         pass
     outcome = job.outcome

@@ -6,6 +6,7 @@ import bpy
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from blender_addon import bridge, search_curve
 from blender_addon.operators import compare_variants
 from blender_addon.operators.running_job import RunningJob
@@ -40,7 +41,7 @@ def test_a_job_the_command_lines_and_the_panel_find_the_same_bits(settings, tmp_
     settings = bpy.context.scene.perception_entropy
     study.mkdir()
     assert bpy.ops.pe.export_study(filepath=str(study / "study.toml")) == {"FINISHED"}
-    job = pe.OptimizeJob(pe.load_study(study / "study.toml"))
+    job = pt.OptimizeJob(pe.load_study(study / "study.toml"))
     list(job)
     answer = pe_here("optimize", "--no-review", study / "study.toml", *OPTIONS, "-o", outside)
     assert answer.returncode == 0, answer.stderr
@@ -63,7 +64,7 @@ def test_a_job_the_command_lines_and_the_panel_find_the_same_bits(settings, tmp_
 
 
 def test_the_curve_of_a_running_search_is_an_ap_that_rises(settings, monkeypatch):
-    job = pe.OptimizeJob(scenes.study(), 1)
+    job = pt.OptimizeJob(scenes.study(), 1)
     scene = bpy.context.scene
     context = type("Context", (), {"scene": scene, "window_manager": Manager(), "window": None})
     running = RunningJob(context, job)
@@ -115,7 +116,7 @@ def test_choices_by_ap_are_variants_with_their_figures(settings):
     assert settings.front_note == "" and settings.front_told == "Pareto front of price, ap"
     settings.objective = "entropy"
     assert bpy.ops.pe.choose_sensors() == {"FINISHED"}
-    assert len(settings.front) == 2 and settings.front_note == pe.advice.OTHER_HARDWARE
+    assert len(settings.front) == 2 and settings.front_note == pt.advice.OTHER_HARDWARE
 
 
 def test_variants_with_other_hardware_are_compared_with_a_note(settings):
@@ -130,5 +131,5 @@ def test_variants_with_other_hardware_are_compared_with_a_note(settings):
     bpy.ops.pe.save_variant()
     bpy.ops.pe.compare_variants()
     assert len(compare_variants.compared_variants(scene)) == 3
-    assert compare_variants.hardware_note(scene) == pe.advice.OTHER_HARDWARE
+    assert compare_variants.hardware_note(scene) == pt.advice.OTHER_HARDWARE
     assert bridge.hardware_note([]) == ""

@@ -128,7 +128,7 @@ def test_the_table_has_every_sensor_of_the_score(car):
     for number, place in enumerate(places):
         scenes.add_sensor(f"cam_{number}", model="Camera 60 deg", location=place)
     scenes.add_sensor("zz_last", location=(0.0, 0.0, 0.9))  # in the body: it sees nothing
-    car.perception_entropy.grid_samples = 4096
+    car.perception_entropy.score_samples = 4096
     bpy.context.view_layer.update()
     bpy.ops.pe.score()
     study = scenes.study()
@@ -225,7 +225,7 @@ def test_a_lost_library_is_reported_by_name_and_marks_the_result(car, tmp_path):
 
 def test_a_lost_library_is_reported_without_a_window(car, tmp_path):
     path, _ = lost_roof(tmp_path)
-    answer = run_here(path, "score", "--grid-samples", "4096")
+    answer = run_here(path, "score", "--samples", "4096")
     assert answer.returncode == 0
     assert "cabin is missing" in answer.stdout + answer.stderr
 

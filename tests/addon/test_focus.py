@@ -6,7 +6,7 @@ import bpy
 import pytest
 
 from blender_addon import bridge, choices, result_staleness
-from blender_addon.engine import pe
+from blender_addon.engine import formats, pe
 from tests.addon import scenes
 
 INF = math.inf
@@ -133,7 +133,7 @@ def test_labelled_boxes(scene, labels):
     settings.prior, settings.boxes = "boxes", str(labels)
     add_focus(scene, "front")
     prior = bridge.prior_from_scene(scene)
-    assert prior == pe.Prior.from_boxes(pe.read_boxes(labels), [pe.Focus(2.0, x=(0.0, INF))])
+    assert prior == pe.Prior.from_boxes(formats.read_boxes(labels), [pe.Focus(2.0, x=(0.0, INF))])
     assert prior.class_names == ("car", "tram")
 
 

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import bpy
 import pytest
 
+import pe_tools as pt
 from blender_addon import bridge, result_staleness
 from blender_addon.engine import jobs as pe_jobs
 from blender_addon.engine import pe, text
@@ -31,7 +32,7 @@ def stored(scene) -> dict:
 
 
 def data_of(outcome) -> dict:
-    data = json.loads(text.dump_json(pe.result_dict(outcome)))
+    data = json.loads(text.dump_json(pt.result_dict(outcome)))
     del data["run"]
     return data
 
@@ -75,7 +76,7 @@ def test_warnings_are_stored_as_the_result_has_them(car):
 
 
 def test_what_a_search_cost_is_stored_and_shown(car):
-    expected = finished(pe.OptimizeJob(scenes.study()))
+    expected = finished(pt.OptimizeJob(scenes.study()))
     assert bpy.ops.pe.optimize() == {"FINISHED"}
     settings = car.perception_entropy
     assert settings.result_cost == expected.cost
@@ -117,15 +118,15 @@ class Manager:
     event_timer_add = event_timer_remove = progress_begin = progress_end = lambda *_, **__: None
 
 
-class Broken(pe.ScoreJob):
+class Broken(pt.ScoreJob):
     def __iter__(self):
-        yield pe.Progress("scoring", 0.5)
+        yield pt.Progress("scoring", 0.5)
         raise pe.InputError("job", "work", "none", "any")
 
 
 def test_a_job_that_the_engine_runs_tells_how_it_ended(car):
     context = SimpleNamespace(scene=car, window_manager=Manager(), window=None)
-    job = pe.OptimizeJob(scenes.study())
+    job = pt.OptimizeJob(scenes.study())
     running = running_job.RunningJob(context, job, "outcome")
     assert not running.ended
     running.start()  # without a window it is done at once
@@ -226,7 +227,7 @@ def test_the_start_of_a_search_is_not_scored_again_when_it_is_known(car, monkeyp
     known = state.live_state(car.name).finished.score
     made = []
     monkeypatch.setattr(
-        jobs.pe, "OptimizeJob", lambda study, before: made.append(before) or SimpleNamespace()
+        jobs.jobs, "OptimizeJob", lambda study, before: made.append(before) or SimpleNamespace()
     )
     jobs.OPTIMIZE.read(Window(car))
     assert made == [known]
@@ -268,7 +269,7 @@ def constrain(sensor):
 def test_a_sensor_that_something_holds_is_reported_before_the_work(car, hold, monkeypatch):
     sensor = car.objects["roof"]
     hold(sensor)
-    monkeypatch.setattr(jobs.pe, "OptimizeJob", lambda *_, **__: pytest.fail("begun"))
+    monkeypatch.setattr(jobs.jobs, "OptimizeJob", lambda *_, **__: pytest.fail("begun"))
     with pytest.raises(RuntimeError, match="sensor 'roof': placement: expected an object that can"):
         bpy.ops.pe.optimize()
     sensor.perception_entropy.free = (False,) * 6

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from blender_addon import bridge
 from blender_addon.engine import studies
 from pe_core.study.study_file import SECTIONS
@@ -22,7 +23,7 @@ def load(study):
 
 
 def history(study):
-    job = pe.OptimizeJob(study, 1)
+    job = pt.OptimizeJob(study, 1)
     list(job)
     rows = [(row.entropy, [s.pose for s in row.rig]) for row in job.history]
     return rows, job.outcome.after.entropy

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from blender_addon import bridge
 from blender_addon.commands import main
 from pe_tools.cli.verbs import main as pe_main
@@ -19,7 +20,7 @@ from tests.addon import scenes
 BASE_M, MODEL = 0.04, "Pandar64"
 CORNERS = scenes.ASSETS / "examples" / "four_corners"
 FAST = (
-    *("--grid-samples", "1024", "--samples", "1024", "--method", "random", "--candidates", "1"),
+    *("--samples", "1024", "--search-samples", "1024", "--method", "random", "--candidates", "1"),
     *("--workers", "1"),
 )
 
@@ -72,7 +73,7 @@ def test_the_four_corners_of_the_file_and_of_the_study_are_one(addon, tmp_path):
     assert there.search.requirements == "keep"
     bpy.context.scene.perception_entropy.keep_requirements = False
     study = tmp_path / "study.toml"
-    pe.export_study(replace(there, search=replace(there.search, requirements=None)), study)
+    pt.export_study(replace(there, search=replace(there.search, requirements=None)), study)
     out = tmp_path / "blender"
     assert main(["optimize", "--no-review", "-o", str(out), *FAST], "pe", io.StringIO()) == 0
     with contextlib.redirect_stdout(io.StringIO()):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from blender_addon import bridge
-from blender_addon.engine import catalog, pe
+from blender_addon.engine import catalog, exchange, pe
 from tests.addon import scenes
 from tests.addon.command_line import run_here
 
@@ -150,8 +150,8 @@ def test_models_that_a_file_does_not_tell_are_chosen(car, tmp_path):
     """What the dialog of an import sets: a row a sensor, and their models."""
     rig = scenes.study().rig
     path = tmp_path / "rig.launch.xml"
-    pe.export_rig(rig, "ros", path)
-    assert pe.import_rig(path).to_choose == ("roof",)
+    exchange.export_rig(rig, "ros", path)
+    assert exchange.import_rig(path).to_choose == ("roof",)
     rows = [{"name": "", "sensor": "roof", "kind": "lidar", "model": "HDL-64E"}]
     assert bpy.ops.pe.choose_models(filepath=str(path), rows=rows) == {"FINISHED"}
     assert scenes.study().rig["roof"].model.name == "HDL-64E"

@@ -27,7 +27,7 @@ def parked(car):
     radar.rotation_euler.z = math.radians(165.0)
     wing = scenes.add_sensor("rear wing", "Camera 60 deg", location=(1.2, 0.97, 0.9))
     wing.rotation_euler.z = math.radians(170.0)
-    car.perception_entropy.grid_samples = 4096
+    car.perception_entropy.score_samples = 4096
     bpy.context.view_layer.update()
     return car
 

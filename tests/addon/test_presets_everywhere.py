@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 import pytest
 
-import pe_core as pe
+import pe_tools as pt
 from blender_addon import bridge
 from pe_core.study import requirement_file
 from tests.addon import scenes
@@ -72,7 +72,7 @@ def vehicle(request, addon, tmp_path):
 def test_all_presets_have_the_same_bits_everywhere(vehicle, tmp_path):
     blend, study = tmp_path / "car.blend", tmp_path / "study.toml"
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
-    pe.export_study(scenes.study(), study)
+    pt.export_study(scenes.study(), study)
     headless = run_here(blend, "check", "--preset", "all", "--json")
     alone = pe_here("check", study, "--preset", "all", "--json")
     assert headless.returncode == alone.returncode == 3, headless.stderr + alone.stderr

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from blender_addon import analysis_calls, bridge
 from blender_addon.operators import jobs
 from blender_addon.operators import requirements as operators
@@ -108,7 +109,7 @@ def test_a_body_from_a_mesh_is_that_of_the_study_file_to_the_bit(held, tmp_path)
         [box([0.0, 0.0, 0.0], [30.0, 20.0, 45.0]), box([5.0, 5.0, 45.0], [15.0, 15.0, 70.0])]
     )[:, :, [0, 2, 1]][:, ::-1]  # y is up; centimetres
     parts = np.zeros(len(triangles), np.int32)
-    pe.write_mesh(tmp_path / "dog.obj", pe.Mesh(triangles, parts, ("dog",)))
+    pt.write_mesh(tmp_path / "dog.obj", pe.Mesh(triangles, parts, ("dog",)))
     row = rows(held)[1]
     row.body = "own"
     fields = {"body_mesh": "//dog.obj", "body_up": "+y", "body_forward": "-x"}
@@ -123,7 +124,7 @@ def test_a_body_from_a_mesh_is_that_of_the_study_file_to_the_bit(held, tmp_path)
     assert body.size == pytest.approx((0.3, 0.2, 0.7)) and row.body == "own"
     folder = tmp_path / "elsewhere"
     folder.mkdir()
-    pe.export_study(scenes.study(), folder / "study.toml")
+    pt.export_study(scenes.study(), folder / "study.toml")
     study, verdicts = pe.load_study(folder / "study.toml"), scenes.study().verdicts()
     assert study.requirements[1].bodies[0].shape == body.shape
     assert [v.to_dict() for v in study.verdicts()] == [v.to_dict() for v in verdicts]
@@ -146,7 +147,7 @@ def test_the_file_browser_sets_the_mesh_file_beside_the_blender_file(held, tmp_p
     folder.mkdir()
     triangles = box([-0.2, -0.2, 0.0], [0.2, 0.2, 0.7])
     body = pe.Mesh(triangles, np.zeros(len(triangles), np.int32), ("dog",))
-    pe.write_mesh(folder / "dog.obj", body)
+    pt.write_mesh(folder / "dog.obj", body)
     held.perception_entropy.requirement_index = 1
     row = rows(held)[1]
     assert bpy.ops.pe.open_body_mesh(filepath=str(folder / "dog.obj")) == {"FINISHED"}
@@ -190,7 +191,7 @@ def test_states_and_weathers_of_a_requirement_are_those_of_the_study_file(held, 
     study = scenes.study()
     assert study.requirements[1].under.states == (state.name,)
     assert study.requirements[1].under.weathers == ("*",)
-    pe.export_study(study, tmp_path / "study.toml")
+    pt.export_study(study, tmp_path / "study.toml")
     again = pe.load_study(tmp_path / "study.toml")
     assert again.requirements == study.requirements
     bpy.ops.pe.check_requirements()

@@ -29,12 +29,12 @@ def test_headless_blender_writes_the_page_of_the_command_line(car, tmp_path, sma
     scenes.add_sensor("front", model="Camera 60 deg")
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "study.blend"))
     bpy.ops.pe.export_study(filepath=str(tmp_path / "study.toml"))
-    arguments = ["--grid-samples", "1024", "-o", str(tmp_path / "inside")]
+    arguments = ["--samples", "1024", "-o", str(tmp_path / "inside")]
     said = io.StringIO()
     assert commands.main(["review", *arguments], commands.IN_BLENDER, said) == 0
     inside = (tmp_path / "inside" / page.PAGE).read_text("utf-8")
     assert said.getvalue() == f"{tmp_path / 'inside' / page.PAGE}\n"
-    assert "<pre>blender -b study.blend --command pe review --grid-samples 1024 -o" in inside
+    assert "<pre>blender -b study.blend --command pe review --samples 1024 -o" in inside
     from pe_tools.cli.verbs import main
 
     outside = [str(tmp_path / "study.toml"), *arguments[:2], "-o", str(tmp_path / "outside")]

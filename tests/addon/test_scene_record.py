@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from blender_addon import bridge
 from blender_addon.engine import studies
 from pe_core.scoring.sampling import FIRST_SAMPLES
@@ -205,7 +206,7 @@ def test_a_variant_s_study_is_that_of_the_scene_once_it_is_applied(rich):
 
 def test_an_imported_study_becomes_the_record_of_the_scene_that_holds_it(rich, tmp_path):
     exported = scenes.study()
-    pe.export_study(exported, tmp_path / "study.toml")
+    pt.export_study(exported, tmp_path / "study.toml")
     study = pe.load_study(tmp_path / "study.toml")
     assert differences(exported, study) == []
     imported = bridge.study_of(bridge.record_of_study(study))

@@ -4,7 +4,7 @@ import bpy
 import pytest
 
 from blender_addon import search_curve
-from blender_addon.engine import pe, search
+from blender_addon.engine import jobs, pe, search
 from blender_addon.operators.running_job import RunningJob
 from blender_addon.panels import search_panels
 from blender_addon.search_curve import SearchProgress, searches
@@ -48,9 +48,8 @@ class Manager:
 
 
 def test_a_running_search_tells_the_view_each_time_it_finds_better(car, monkeypatch):
-    from blender_addon.engine import pe
 
-    job = pe.OptimizeJob(scenes.study())
+    job = jobs.OptimizeJob(scenes.study())
     context = type("Context", (), {"scene": car, "window_manager": Manager(), "window": None})
     running = RunningJob(context, job)
     monkeypatch.setattr("blender_addon.operators.running_job.BEST_EVERY_S", 0.0)

@@ -5,7 +5,7 @@ import json
 import bpy
 import pytest
 
-from blender_addon.engine import pe
+from blender_addon.engine import jobs, pe
 from tests.addon import scenes
 
 CAN, LARGE = "Velodyne VLP-16 Puck", "Pandar64"
@@ -57,7 +57,7 @@ def test_a_scene_without_models_to_choose_from_has_no_selection(car):
 
 def test_each_design_of_the_front_is_a_variant_and_nothing_moves(offered):
     """Scores of the variants are the engine's, and switching puts the model there."""
-    job = pe.FrontJob(scenes.study())
+    job = jobs.FrontJob(scenes.study())
     list(job)
     assert bpy.ops.pe.choose_sensors() == {"FINISHED"}
     settings = offered.perception_entropy
@@ -134,13 +134,13 @@ def test_a_study_s_choices_come_back_from_its_file(offered, tmp_path):
     """Export and import: the same study; one without choices takes them away."""
     offered.perception_entropy.max_sensors = 3
     study = scenes.study()
-    pe.export_study(study, tmp_path / "car.toml")
+    jobs.export_study(study, tmp_path / "car.toml")
     offered.objects["roof"].perception_entropy.options.clear()
     assert bpy.ops.pe.import_study(filepath=str(tmp_path / "car.toml")) == {"FINISHED"}
     again = scenes.study()
     assert pe.study_to_dict(again)["choice"] == pe.study_to_dict(study)["choice"]
     assert pe.study_to_dict(again)["selection"] == {"max_sensors": 3, "currency": "EUR"}
-    pe.write_front(front_of(study), tmp_path)
+    jobs.write_front(front_of(study), tmp_path)
     design = next((tmp_path / "designs").glob("velodyne*.toml"))
     assert bpy.ops.pe.import_study(filepath=str(design)) == {"FINISHED"}
     assert not scenes.study().selection.choices
@@ -148,6 +148,6 @@ def test_a_study_s_choices_come_back_from_its_file(offered, tmp_path):
 
 
 def front_of(study):
-    job = pe.FrontJob(study)
+    job = jobs.FrontJob(study)
     list(job)
     return job.trade_off

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from blender_addon import bridge, consistency, result_staleness
-from blender_addon.engine import exchange, outputs, page, pe, text
+from blender_addon.engine import exchange, jobs, outputs, page, pe, text
 from blender_addon.operators import compare_variants
 from blender_addon.panels import main
 from tests.addon import layouts, scenes
@@ -65,20 +65,20 @@ def test_place_score_optimize_check_and_export(scene, tmp_path, small_pictures):
     # Score: the engine's own result, to the bit.
     assert bpy.ops.pe.score() == {"FINISHED"}
     start = poses()
-    assert stored(scene) == without_run(pe.result_dict(finished(pe.ScoreJob(scenes.study()))))
+    assert stored(scene) == without_run(jobs.result_dict(finished(jobs.ScoreJob(scenes.study()))))
     labels = layouts.drawn(main.main, **vars(layouts.Window(scene))).texts("label")
     assert any("Coverage" in label for label in labels)
 
     # Optimize: what the engine finds is placed, scored and kept; undo takes the poses back.
     first = settings.result_entropy
-    expected = finished(pe.OptimizeJob(scenes.study()))
+    expected = finished(jobs.OptimizeJob(scenes.study()))
     bpy.ops.ed.undo_push(message="before")
     assert bpy.ops.pe.optimize("EXEC_DEFAULT", True) == {"FINISHED"}
     found = poses()
     assert found == {s.name: (s.pose, s.model) for s in expected.study.rig} != start
     assert found["eye_left"] == start["eye_left"], "it was held"
-    assert stored(scene) == without_run(pe.result_dict(expected))
-    assert finished(pe.ScoreJob(scenes.study())).after == expected.after
+    assert stored(scene) == without_run(jobs.result_dict(expected))
+    assert finished(jobs.ScoreJob(scenes.study())).after == expected.after
     bpy.ops.ed.undo()
     scene, settings = bpy.context.scene, bpy.context.scene.perception_entropy
     assert poses() == start and settings.result_entropy == first
@@ -97,14 +97,14 @@ def test_place_score_optimize_check_and_export(scene, tmp_path, small_pictures):
     study, glb, review = (tmp_path / name for name in ("car.toml", "car.glb", "car.html"))
     assert bpy.ops.pe.export_study(filepath=str(study)) == {"FINISHED"}
     loaded = pe.load_study(study)
-    assert finished(pe.ScoreJob(loaded)).after == finished(pe.ScoreJob(scenes.study())).after
+    assert finished(jobs.ScoreJob(loaded)).after == finished(jobs.ScoreJob(scenes.study())).after
     assert bpy.ops.pe.export_scene(filepath=str(glb), output="gltf") == {"FINISHED"}
     assert glb.read_bytes() == outputs.scene_files(scenes.study(), "gltf", None)[0]["scene.glb"]
     assert bpy.ops.pe.export_review(filepath=str(review)) == {"FINISHED"}
     assert "</html>" in review.read_text("utf-8")
     picture = tmp_path / "car.png"
     assert bpy.ops.pe.render_review(filepath=str(picture)) == {"FINISHED"}
-    job = pe.ScoreJob(scenes.study())
+    job = jobs.ScoreJob(scenes.study())
     assert picture.read_bytes() == page.picture_file(job.study, finished(job))
     blend = tmp_path / "car.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
@@ -210,7 +210,7 @@ def test_mount_bound_tie_and_search(car, tmp_path):
 
     # The search keeps to all of it; the study's file gives the same search.
     bpy.ops.pe.export_study(filepath=str(tmp_path / "car.toml"))
-    there = pe.OptimizeJob(pe.load_study(tmp_path / "car.toml"))
+    there = jobs.OptimizeJob(pe.load_study(tmp_path / "car.toml"))
     outcome = finished(there)
     assert bpy.ops.pe.optimize() == {"FINISHED"}
     consistency.repair_scenes()

@@ -5,6 +5,7 @@ import math
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from blender_addon import bridge
 from pe_core import search
 from pe_tools import advice
@@ -31,7 +32,7 @@ def outcome(rise, loss, warnings=()):
     after = search.RigRobustness(2.0, 2.0 + rise, 3.0, 0.01, failed)
     found = search.Robustness(pe.Tolerance(0.01, 0.005), 1024, before, after)
     both = study, study, score, score
-    return pe.Outcome("optimize", *both, warnings=warnings, robustness=found)
+    return pt.Outcome("optimize", *both, warnings=warnings, robustness=found)
 
 
 def test_what_a_search_tells_of_it_is_stored_for_the_panel(settings, car):
@@ -50,7 +51,7 @@ def test_a_score_takes_away_what_a_search_told(settings, car):
     settings.score_samples = 1024
     bridge.store_outcome(car, outcome(0.25, 1.5), "signature")
     study = scenes.study()
-    job = pe.ScoreJob(study)
+    job = pt.ScoreJob(study)
     list(job)
     bridge.store_outcome(car, job.outcome, "signature")
     assert settings.result_mounted_off == settings.result_sensor_lost == ""

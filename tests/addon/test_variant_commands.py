@@ -9,7 +9,7 @@ from blender_addon.engine import pe
 from tests.addon import scenes
 from tests.addon.command_line import complaints, run_here
 
-FEW = ("--grid-samples", "4096")
+FEW = ("--samples", "4096")
 
 
 @pytest.fixture
@@ -82,7 +82,7 @@ def test_an_unknown_variant_is_reported(blend):
 
 
 def test_a_search_keeps_its_start_and_its_result_in_the_file_that_it_leaves(blend, tmp_path):
-    fast = (*FEW, "--samples", "4096", "--method", "random", "--candidates", "2")
+    fast = (*FEW, "--search-samples", "4096", "--method", "random", "--candidates", "2")
     out = tmp_path / "out"
     answer = run_here(blend, "optimize", "--no-review", *fast, "-o", out)
     assert answer.returncode == 0, answer.stderr

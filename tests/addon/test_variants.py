@@ -9,7 +9,7 @@ import pytest
 
 from blender_addon import bridge, result_staleness
 from blender_addon.bridge import apply_variant
-from blender_addon.engine import pe
+from blender_addon.engine import advice
 from blender_addon.operators import compare_variants
 from tests.addon import scenes
 
@@ -286,9 +286,9 @@ def test_comparing_tells_blind_ground_reach_and_ap_for_the_height_and_class_show
         assert compare_variants.pending_variants(ideas)
         bpy.ops.pe.compare_variants()
         assert not compare_variants.pending_variants(ideas) and first.score_json != kept
-        own = pe.advice.key_figures(study.sight(), study.rig, height, name)
+        own = advice.key_figures(study.sight(), study.rig, height, name)
         names, table = compare_variants.comparison_of(ideas)
-        assert table[-3:] == pe.advice.compare_figures({"Variant": own})
+        assert table[-3:] == advice.compare_figures({"Variant": own})
     assert [column[2][0] for column in compare_variants.columns_of(names, table)] == [
         "    1 m tall, within 10 m",
         f"{own.blind_m2:.1f}",

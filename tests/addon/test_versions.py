@@ -22,7 +22,7 @@ def test_a_newer_file_is_reported_in_one_line_and_keeps_its_version(car, tmp_pat
     scene = bpy.context.scene
     assert scene.perception_entropy.version == choices.VERSION + 6
     assert "newer version" in bridge.newer_version_message(scene)
-    answer = run_here(path, "score", "--grid-samples", "4096")
+    answer = run_here(path, "score", "--samples", "4096")
     assert answer.returncode == 0
     told = [line for line in answer.stderr.splitlines() if "newer version" in line]
     assert len(told) == 1 and answer.stdout

@@ -9,7 +9,7 @@ from pathlib import Path
 from tests.blender.runner import output_of
 from tests.limits import HANG_S
 
-FAST = ("--grid-samples", 4096)  # to be quick: all else is the same as on the whole grid
+FAST = ("--samples", 4096)  # to be quick: all else is the same as on the whole grid
 IN_TRAFFIC = """
 import sys, bpy
 start, saved, folder = sys.argv[-3:]
@@ -36,7 +36,7 @@ assert bpy.ops.pe.add_weather(weather="FOG") == {"FINISHED"}
 bpy.ops.wm.save_as_mainfile(filepath=saved)  # with the hood open
 assert bpy.ops.pe.export_study(filepath=folder + "/study.toml") == {"FINISHED"}
 """
-SHORT = ("--samples", 4096, "--method", "random", "--candidates", 10)
+SHORT = ("--search-samples", 4096, "--method", "random", "--candidates", 10)
 
 
 def document_in(stdout: str) -> dict:

@@ -18,13 +18,14 @@ from pathlib import Path
 from typing import Any
 
 import pe_core as pe
+import pe_tools as pt
 from pe_tools.formats import read_ap_table
 from pe_tools.formats.angles import read_angles
 
 ROOM_BYTES = 400 << 20
 READERS: dict[str, Callable[[Path], Any]] = {
-    "mesh": pe.read_mesh,
-    "boxes": pe.read_boxes,
+    "mesh": pt.read_mesh,
+    "boxes": pt.read_boxes,
     "angles": read_angles,
     "table": read_ap_table,
     "study": pe.load_study,

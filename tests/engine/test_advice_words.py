@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.base.errors import plural
 from pe_core.scoring import FoundClass
 from pe_core.scoring.targets.object_metric import SECTORS
@@ -163,11 +164,11 @@ def test_warnings_are_in_the_result_and_below_the_summary():
 
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(), (1.5, 0.0, 0.5))])
     study = pe.Study(rig, shapes.box_car(), shapes.small_space(), samples=1024)
-    job = pe.ScoreJob(study)
+    job = pt.ScoreJob(study)
     assert list(job)[-1].stage == "done"
     told = job.outcome.warnings
     assert [(each.subject, each.code) for each in told] == [("roof", "inside")]
-    assert pe.result_dict(job.outcome)["warnings"] == [
+    assert pt.result_dict(job.outcome)["warnings"] == [
         {
             "subject": "roof",
             "code": "inside",
@@ -186,7 +187,7 @@ def test_a_search_warns_of_the_placement_it_found():
     bounds = {"roof": {"z": (0.5, 1.6)}}
     search = pe.Search({"roof": ("z",)}, bounds, 0, 1024, pe.Schedule(8), method="random")
     study = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search, samples=1024)
-    job = pe.OptimizeJob(study, 1)
+    job = pt.OptimizeJob(study, 1)
     assert list(job) and job.outcome.study.rig["roof"].pose.position[2] > 0.95
     told = [each.code for each in job.outcome.warnings]
     assert told == [advice.FRAGILE], "it is in the body no more; a few beams are easily off"
@@ -237,7 +238,7 @@ def test_the_summary_says_what_was_evaluated():
     study = pe.Study(pe.Rig([shapes.lidar_on_roof()]), targets=pe.TargetRule("objects", scenes=64))
     own = pe.SensorScore(3.0, 0.5, 1.0, 0, 0, {})
     score = replace(scored(), per_sensor={"roof": own})
-    text = summary(pe.Outcome("optimize", study, study, score, score, evaluations=7))
+    text = summary(pt.Outcome("optimize", study, study, score, score, evaluations=7))
     assert "expected AP 0.33" in text and "on 80 objects in 8 scenes, in traffic" in text
     assert "7 placements evaluated on 32, then 64 scenes of objects" in text
 
@@ -279,7 +280,7 @@ RIG = pe.Rig([shapes.lidar_on_roof(), dataclasses.replace(shapes.camera(60.0), n
 def test_what_is_reported_of_it(stopped, coverage, warned, stderr, lines):
     own = {"roof": sensor_score(0.6), INSIDE: sensor_score(coverage, stopped)}
     score = pe.Score(2.0, 0.6, stderr, {}, {}, own, 9)
-    warnings = [pe.Advice(INSIDE, code) for code in warned]
+    warnings = [pt.Advice(INSIDE, code) for code in warned]
     assert advice.hidden_words(advice.hidden_sensors(RIG, score, warnings)) == lines
     assert advice.words(score, RIG, warnings=warnings)[: len(lines)] == lines
     assert not advice.words(score)[0].startswith("camera")
@@ -305,7 +306,7 @@ def test_a_camera_inside_the_body_is_named_by_the_summary():
     inside = dataclasses.replace(shapes.camera(60.0, (0.0, 0.0, 0.9)), name=INSIDE)
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(8, 90)), inside])
     study = pe.Study(rig, shapes.box_car(), shapes.small_space(1.0))
-    job = pe.ScoreJob(study)
+    job = pt.ScoreJob(study)
     for _ in job:
         pass
     line = f"ATTENTION: {INSIDE} (inside the body, 100% of its picture occluded) sees nothing"

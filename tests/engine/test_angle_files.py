@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core import catalog
 from pe_core.study.study_file import study_from_dict, study_to_dict
 from pe_tools.formats.angles import read_angles
@@ -210,7 +211,7 @@ def test_a_saved_study_stands_alone_with_the_same_beams_to_the_bit(write, tmp_pa
     folder = write(text, "unit.dat").parent
     first = study_from_dict(study("unit.dat"), folder=folder)
     (tmp_path / "elsewhere").mkdir()
-    pe.export_study(first, tmp_path / "elsewhere" / "copy.toml")
+    pt.export_study(first, tmp_path / "elsewhere" / "copy.toml")
     (folder / "unit.dat").unlink()
     copy = pe.load_study(tmp_path / "elsewhere" / "copy.toml")
     assert np.array_equal(copy.rig["own"].model.directions, first.rig["own"].model.directions)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.base import errors
 from pe_tools.formats.boxes.kitti import CAMERA
 from tests.engine import shapes
@@ -60,7 +61,7 @@ def row(table, index):
 
 
 def test_plain_csv(write):
-    table = pe.read_boxes(write(CSV))
+    table = pt.read_boxes(write(CSV))
     assert list(table.names) == ["car", "tram"] and table.classes == ("car", "tram")
     assert row(table, 0) == pytest.approx([10, 2, 0.75, 4.5, 1.8, 1.5, 90])
     assert row(table, 1) == pytest.approx([-20.5, -3, 1.8, 15, 2.5, 3.6, -45])
@@ -88,11 +89,11 @@ def test_plain_csv(write):
     ],
 )
 def test_csv_as_it_is_met(write, text):
-    assert pe.read_boxes(write(text)) == pe.read_boxes(write(CSV, "plain"))
+    assert pt.read_boxes(write(text)) == pt.read_boxes(write(CSV, "plain"))
 
 
 def test_kitti_is_turned_from_the_camera_to_the_ground(write):
-    table = pe.read_boxes(write(KITTI))
+    table = pt.read_boxes(write(KITTI))
     assert list(table.names) == ["car", "pedestrian", "car"]
     x, y, z = CAMERA
     assert row(table, 0) == pytest.approx([10 + x, 2 + y, -1.65 + 0.75 + z, 4.5, 1.8, 1.5, 0])
@@ -107,7 +108,7 @@ def test_kitti_is_turned_from_the_camera_to_the_ground(write):
 
 def test_the_report_names_what_is_left_out(write):
     path = write(KITTI)
-    report = pe.Prior.from_boxes(pe.read_boxes(path)).report(
+    report = pe.Prior.from_boxes(pt.read_boxes(path)).report(
         pe.PerceptionSpace((-20, 25), (-10, 10), (0, 5))
     )
     assert str(report) == (
@@ -118,16 +119,16 @@ def test_the_report_names_what_is_left_out(write):
 
 def test_kitti_tracking_has_frame_and_id_in_front(write):
     lines = [f"{i} {7 - i} {line}" for i, line in enumerate(KITTI.splitlines())]
-    tracking = pe.read_boxes(write("\n".join(lines)))
-    assert tracking == pe.read_boxes(write(KITTI, "object"))
-    assert tracking.left_out == pe.read_boxes(write(KITTI, "object")).left_out
+    tracking = pt.read_boxes(write("\n".join(lines)))
+    assert tracking == pt.read_boxes(write(KITTI, "object"))
+    assert tracking.left_out == pt.read_boxes(write(KITTI, "object")).left_out
 
 
 def test_the_origin_of_labels_can_be_said(write):
     path = write(KITTI)
-    at = pe.Prior.from_boxes(pe.read_boxes(path, (1.5, 0.5, 1.6))).boxes
+    at = pe.Prior.from_boxes(pt.read_boxes(path, (1.5, 0.5, 1.6))).boxes
     assert row(at, 0)[:3] == pytest.approx([11.5, 2.5, 0.7])
-    assert row(pe.read_boxes(write(CSV), (-1.0, 0.0, 0.1)), 0)[:3] == pytest.approx([9, 2, 0.85])
+    assert row(pt.read_boxes(write(CSV), (-1.0, 0.0, 0.1)), 0)[:3] == pytest.approx([9, 2, 0.85])
 
 
 def test_a_folder_is_read_in_the_order_of_names(tmp_path):
@@ -136,12 +137,12 @@ def test_a_folder_is_read_in_the_order_of_names(tmp_path):
         (tmp_path / name).write_text(text)
     (tmp_path / ".hidden").write_text("not labels")
     (tmp_path / "more").mkdir()
-    assert list(pe.read_boxes(tmp_path).names) == ["car", "pedestrian"]
+    assert list(pt.read_boxes(tmp_path).names) == ["car", "pedestrian"]
     (tmp_path / "000011.txt").write_text(first.replace("1.50", "x"))
     with pytest.raises(pe.InputError, match=r"000011\.txt: line 1: .*the height, found 'x'"):
-        pe.read_boxes(tmp_path)
+        pt.read_boxes(tmp_path)
     with pytest.raises(pe.InputError, match="more: folder: expected files with labels, found none"):
-        pe.read_boxes(tmp_path / "more")
+        pt.read_boxes(tmp_path / "more")
 
 
 def test_nuscenes_annotations(write):
@@ -163,7 +164,7 @@ def test_nuscenes_annotations(write):
         "static_object.bicycle_rack": None,
         "animal": None,
     }
-    table = pe.read_boxes(write([nuscenes_box(name) for name in names]))
+    table = pt.read_boxes(write([nuscenes_box(name) for name in names]))
     assert list(table.names) == [ours for ours in names.values() if ours]
     assert row(table, 0) == pytest.approx([10, 2, 0.75, 4.5, 1.8, 1.5, 90])
     assert dict(table.left_out) == {
@@ -185,14 +186,14 @@ def test_nuscenes_results(write):
             "token3": [detected("barrier"), detected("pedestrian")],
         },
     }
-    table = pe.read_boxes(write(data))
+    table = pt.read_boxes(write(data))
     assert list(table.names) == ["cone", "truck", "pedestrian"]
     assert dict(table.left_out) == {"of unknown class 'barrier'": 1}
 
 
 def test_boxes_of_a_map_are_reported_from_the_vehicle_s(write):
     path = write([nuscenes_box(translation=[1010.1, 612.0, 0.8])])
-    prior = pe.Prior.from_boxes(pe.read_boxes(path))
+    prior = pe.Prior.from_boxes(pt.read_boxes(path))
     with pytest.raises(pe.InputError, match="in the ground frame of the vehicle, found all 1 out"):
         prior.densities(shapes.small_space())
 
@@ -258,12 +259,12 @@ BAD = [
 
 
 def test_bad_files_are_refused_by_their_line(write, tmp_path):
-    assert wrongly_refused(lambda data: pe.read_boxes(write(data)), BAD, tmp_path) == []
+    assert wrongly_refused(lambda data: pt.read_boxes(write(data)), BAD, tmp_path) == []
 
 
 def test_a_file_that_is_not_there(tmp_path):
     with pytest.raises(pe.InputError, match=r"none\.csv: file: expected an existing file"):
-        pe.read_boxes(tmp_path / "none.csv")
+        pt.read_boxes(tmp_path / "none.csv")
 
 
 def test_many_boxes_are_what_each_of_them_is(write):
@@ -280,7 +281,7 @@ def test_many_boxes_are_what_each_of_them_is(write):
         box = {"translation": [x, y, 0.75], "size": [0.5, 1.75, 1.5], "rotation": rotation}
         annotations.append(nuscenes_box("vehicle.bicycle", **box))
     files = [write("\n".join(kitti)), write("\n".join(plain), "b"), write(annotations, "c")]
-    tables = [pe.read_boxes(f) for f in files]
+    tables = [pt.read_boxes(f) for f in files]
     for table in tables[1:]:
         for column in ("x", "y", "z", "length", "width", "height"):
             np.testing.assert_allclose(
@@ -296,9 +297,9 @@ def test_a_column_of_tracks_is_no_column_of_classes(tmp_path):
     path.write_text("\n".join([CSV.splitlines()[0], *rows]))
     expected = "at most 64 names (is this the column of the class?), found 300"
     with pytest.raises(pe.InputError, match=re.escape(f"labels.csv: class: expected {expected}")):
-        pe.read_boxes(path)
+        pt.read_boxes(path)
     path.write_text("\n".join([CSV.splitlines()[0], *rows[:64]]))
-    assert len(pe.read_boxes(path).classes) == 64
+    assert len(pt.read_boxes(path).classes) == 64
 
 
 def test_classes_that_do_not_fit_in_memory_are_reported_before_work(monkeypatch):

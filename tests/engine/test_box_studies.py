@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from tests.engine.test_box_files import CSV, KITTI, changed
 from tests.engine.test_study_file import MINIMAL
 
@@ -62,7 +63,7 @@ def test_an_exported_study_scores_the_same_bits_elsewhere(write, tmp_path, origi
     write(KITTI)
     study = pe.load_study(write(changed(STUDY, '"labels"', f'"labels"{origin}'), "s.toml"))
     (tmp_path / "out").mkdir()
-    pe.export_study(study, tmp_path / "out" / name)
+    pt.export_study(study, tmp_path / "out" / name)
     table = {"study.toml": "boxes.csv", "other.toml": "other.boxes.csv"}[name]
     expected = sorted([".perception-entropy.json", name, table])
     assert sorted(p.name for p in (tmp_path / "out").iterdir()) == expected
@@ -78,8 +79,8 @@ def test_boxes_in_memory_are_exported_too(write, tmp_path):
     write(CSV)
     study = pe.load_study(write(STUDY.replace('classes = ["pedestrian"]', ""), "s.toml"))
     loose = replace(study, prior=pe.Prior.from_boxes([("car", 5, 0, 1, 4, 2, 1.5, 0.3)]))
-    outcome = pe.Outcome("score", loose, loose, *[loose.evaluator().score(loose.rig)] * 2)
-    data = pe.write_outcome(outcome, tmp_path / "out")
+    outcome = pt.Outcome("score", loose, loose, *[loose.evaluator().score(loose.rig)] * 2)
+    data = pt.write_outcome(outcome, tmp_path / "out")
     again = pe.load_study(tmp_path / "out" / "study.toml")
     assert again.prior.boxes == loose.prior.boxes
     assert again.evaluator().score(again.rig).to_dict() == data["after"]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.prior import BoxReport
 from pe_core.prior.boxes import voxelised
 from tests.engine import shapes
@@ -128,8 +129,8 @@ def test_yaws_wrap_and_are_what_a_file_gives_back(tmp_path):
     table = pe.Boxes(names, place, -place, abs(place), length, length, length, yaw)
     assert abs(table.yaw).max() <= math.pi
     np.testing.assert_allclose(np.cos(table.yaw), np.cos(yaw), atol=1e-10)
-    pe.write_boxes(tmp_path / "boxes.csv", table)
-    again = pe.read_boxes(tmp_path / "boxes.csv")
+    pt.write_boxes(tmp_path / "boxes.csv", table)
+    again = pt.read_boxes(tmp_path / "boxes.csv")
     assert again == table and np.array_equal(again.yaw, table.yaw)
     assert list(again.names) == list(names)
 

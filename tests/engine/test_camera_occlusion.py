@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from benchmarks import problems
 from pe_core.geometry.poses import dot, rotate
 from pe_core.geometry.ray_traversal import TriangleTree
@@ -20,7 +21,7 @@ SPACE = pe.PerceptionSpace((-16, 16), (-8, 8), (0, 4), 0.2)
 
 
 def shipped(name):
-    return pe.read_mesh(ASSETS / f"{name}.npz").triangles
+    return pt.read_mesh(ASSETS / f"{name}.npz").triangles
 
 
 def roof():

@@ -9,6 +9,7 @@ import threading
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.study.requirement_file import presets
 from pe_tools.cli.check_verb import COLUMNS, NOT_MET
 from pe_tools.cli.verbs import main
@@ -47,7 +48,7 @@ zone = { ring = [0.2, 0.5] }
 @pytest.fixture
 def study(tmp_path):
     car = shapes.box_car()
-    pe.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
+    pt.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
     path = tmp_path / "study.toml"
     path.write_text(STUDY)
     return path

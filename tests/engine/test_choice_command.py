@@ -6,6 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.search import EvaluatedRig
 from pe_tools import advice, jobs
 from pe_tools.cli import choose_verb, executors, verbs
@@ -18,7 +19,7 @@ pytestmark = pytest.mark.usefixtures("few_errors")
 @pytest.fixture
 def file(tmp_path):
     given = study([pe.Choice(options(), ["roof"])], free=(), currency="EUR")
-    pe.export_study(given, tmp_path / "car.toml")
+    pt.export_study(given, tmp_path / "car.toml")
     return tmp_path / "car.toml"
 
 
@@ -53,7 +54,7 @@ def test_a_user_s_own_file_is_refused_before_the_work(file, tmp_path, capsys, mo
 def test_an_interrupted_front_goes_on_to_the_same_bits(tmp_path, capsys):
     """Journals of half of the searches are lost, and half of the entries of another."""
     given = study([pe.Choice(options(), ["roof"])], free=("pitch",))
-    pe.export_study(given, tmp_path / "car.toml")
+    pt.export_study(given, tmp_path / "car.toml")
     file, out = str(tmp_path / "car.toml"), tmp_path / "out"
     assert verbs.main(["optimize", file, "--json", "-o", str(out)]) == 0
     whole = json.loads(capsys.readouterr().out)
@@ -84,7 +85,7 @@ def test_a_scheduler_evaluates_the_placements_and_the_front_is_the_same(
 ):
     choices = [pe.Choice(options(["Pandar64", mounting.CAN]), ["roof"])]
     file = tmp_path / "car.toml"
-    pe.export_study(study(choices, candidates=2), file)
+    pt.export_study(study(choices, candidates=2), file)
 
     class Workers(ThreadPoolExecutor):
         addresses, submitted = (), 0

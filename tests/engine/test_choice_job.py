@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.search import selection
 from pe_tools.cli.choose_verb import front_summary
 from pe_tools.jobs import design_study, front_job, write_front
@@ -39,7 +40,7 @@ def study(choices, *sensors, free=("x", "pitch"), candidates=3, **limits):
 
 
 def front_of(study, workers=None):
-    job = pe.FrontJob(study, workers)
+    job = pt.FrontJob(study, workers)
     for _ in job:
         pass
     return job.trade_off
@@ -52,7 +53,7 @@ def test_one_lidar_out_of_three_is_what_exhaustive_search_finds():
     by_hand = {}
     for name, price in PRICES.items():
         rig = pe.Rig([mounting.can(model=name)])
-        job = pe.OptimizeJob(replace(given, rig=rig, selection=pe.Selection()))
+        job = pt.OptimizeJob(replace(given, rig=rig, selection=pe.Selection()))
         list(job)
         by_hand[name] = (price, job.outcome.after.entropy, job.outcome.study.rig["roof"].pose)
     best = {
@@ -114,7 +115,7 @@ def test_a_further_sensor_never_raises_the_entropy():
 
 @pytest.mark.parametrize("after", [1, 2])
 def test_a_stop_keeps_the_front_so_far(after):
-    job = pe.FrontJob(study([pe.Choice(options(), ["roof"])]))
+    job = pt.FrontJob(study([pe.Choice(options(), ["roof"])]))
     for _ in job:
         if job.trade_off is not None and len(job.trade_off.designs) == after:
             job.stop()

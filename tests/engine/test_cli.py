@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_tools.cli.verbs import main
 from tests.engine import shapes
 
@@ -19,7 +20,7 @@ def study(tmp_path):
         {"roof": ("x", "z", "pitch")}, {}, 3, 2048, pe.Schedule(candidates=5), method="random"
     )
     path = tmp_path / "car.toml"
-    pe.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
+    pt.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
     return path
 
 

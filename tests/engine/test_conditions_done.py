@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core import catalog
 from pe_core.study import Conditions, condition_table, save_study
 from pe_core.study.requirement_file import preset
@@ -33,7 +34,7 @@ WEATHERS = [
 def written(tmp_path, study):
     """The study in a file, with its vehicle beside it."""
     car = study.vehicle
-    pe.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
+    pt.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
     path = tmp_path / "study.toml"
     save_study(replace(study, mesh="car.npz"), path)
     return path

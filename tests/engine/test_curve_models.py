@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.sensors import KINDS, scan_curves
 from pe_core.sensors.kind import SIZES
 from pe_core.study import study_from_dict, study_to_dict
@@ -131,7 +132,7 @@ def test_a_check_takes_the_curves_and_tells_them(path, provisional, capsys):
     """An adult whom a rig has to find with an AP of 0.6: it does by the curves from scans alone."""
     path.write_text(f"{STUDY}{ADULT}", "utf-8")
     car = shapes.box_car()
-    pe.write_mesh(path.parent / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
+    pt.write_mesh(path.parent / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
     assert main(["check", str(path)]) == 3
     assert "provisional" not in capsys.readouterr().err
     assert main(["check", str(path), "--ap-model", "scans"]) == 0

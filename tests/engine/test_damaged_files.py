@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_tools.formats import read_ap_table
 from pe_tools.formats.angles import read_angles
 from tests.engine.mesh_files import (
@@ -30,16 +31,16 @@ WORDS = [b"nan", b"-inf", b"1e308", b"-1", b"0", b"9" * 5000, b"\xff\xfe", b"\0"
 WORDS += [b"[", b'"', b"\n", b"\x1b[2J", b"\xe2\x80\xae", b"<!ENTITY a 'b'>", b"&a;", b"1_0", b"\\"]
 
 GOOD = {
-    "npz": (pe.read_mesh, "a.npz", npz_bytes(triangles=BOX, parts=ZEROS, part_names=["a"])),
-    "obj": (pe.read_mesh, "a.obj", b"o body\n" + obj_bytes()),
-    "stl": (pe.read_mesh, "a.stl", stl_binary()),
-    "stl, ascii": (pe.read_mesh, "a.stl", stl_ascii()),
-    "ply": (pe.read_mesh, "a.ply", ply_binary("<")),
-    "ply, ascii": (pe.read_mesh, "a.ply", ply_ascii()),
-    "glb": (pe.read_mesh, "a.glb", glb_file(*gltf())),
-    "csv": (pe.read_boxes, "a", CSV.encode()),
-    "kitti": (pe.read_boxes, "a", KITTI.encode()),
-    "nuscenes": (pe.read_boxes, "a", json.dumps([nuscenes_box(), nuscenes_box()]).encode()),
+    "npz": (pt.read_mesh, "a.npz", npz_bytes(triangles=BOX, parts=ZEROS, part_names=["a"])),
+    "obj": (pt.read_mesh, "a.obj", b"o body\n" + obj_bytes()),
+    "stl": (pt.read_mesh, "a.stl", stl_binary()),
+    "stl, ascii": (pt.read_mesh, "a.stl", stl_ascii()),
+    "ply": (pt.read_mesh, "a.ply", ply_binary("<")),
+    "ply, ascii": (pt.read_mesh, "a.ply", ply_ascii()),
+    "glb": (pt.read_mesh, "a.glb", glb_file(*gltf())),
+    "csv": (pt.read_boxes, "a", CSV.encode()),
+    "kitti": (pt.read_boxes, "a", KITTI.encode()),
+    "nuscenes": (pt.read_boxes, "a", json.dumps([nuscenes_box(), nuscenes_box()]).encode()),
     "hesai": (read_angles, "a", HESAI.encode()),
     "columns": (read_angles, "a", b"elevation,azimuth_offset\n5,1\n-3,-1\n"),
     "xml": (read_angles, "a", XML.encode()),

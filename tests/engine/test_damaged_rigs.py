@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_tools.exchange import RIG_FORMATS
 from pe_tools.formats.yaml_text import YamlText, parse_yaml
 from tests.engine.test_damaged_files import damaged
@@ -42,7 +43,7 @@ def good_files(name, folder):
     folder.mkdir()
     whole = rig()
     one_lidar = pe.Rig([s for s in whole if s.name != "side"])
-    paths, _ = pe.export_rig(one_lidar if name == "kitti" else whole, name, folder, AXLE)
+    paths, _ = pt.export_rig(one_lidar if name == "kitti" else whole, name, folder, AXLE)
     return paths
 
 
@@ -67,7 +68,7 @@ def hunt(name, folder, count, seed=8):
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("error")
-                found = pe.import_rig(asked, name, AXLE)
+                found = pt.import_rig(asked, name, AXLE)
         except pe.InputError as error:
             refused += 1
             line = str(error)
@@ -122,7 +123,7 @@ def test_a_word_in_place_of_a_number_is_never_0_or_nothing(name, tmp_path):
             in_json = path.suffix == ".json" and not before.endswith(b'"')
             path.write_bytes(before + (b'"one"' if in_json else b"one") + after)
             with pytest.raises(pe.InputError):
-                pe.import_rig(asked, name, AXLE)
+                pt.import_rig(asked, name, AXLE)
             refused += 1
         path.write_bytes(whole)
     assert refused >= 10
@@ -195,10 +196,10 @@ def test_a_rig_of_too_much_is_refused_before_it_is_worked_on(case, tmp_path):
     name, text, words = GREAT[case]
     (tmp_path / name).write_text(text())
     if words is None:
-        assert len(pe.import_rig(tmp_path / name, reference=AXLE).rig) == 1, "the last link"
+        assert len(pt.import_rig(tmp_path / name, reference=AXLE).rig) == 1, "the last link"
         return
     with pytest.raises(pe.InputError, match=words):
-        pe.import_rig(tmp_path / name, reference=AXLE)
+        pt.import_rig(tmp_path / name, reference=AXLE)
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ import pytest
 import trimesh
 
 import pe_core as pe
+import pe_tools as pt
 from pe_tools.cli.verbs import parser
 from tests.engine import shapes
 from tests.engine.mesh_files import stl_binary, to_gltf
@@ -78,7 +79,7 @@ def test_the_python_of_the_page_runs(tmp_path, monkeypatch, capsys):
     corners = [(-2, -0.9, 0.2), (2, -0.9, 0.2), (2, 0.9, 0.2), (-2, 0.9, 1.5), (2, 0.9, 1.5)]
     faces = [[corners[k] for k in (0, 1, 4)], [corners[k] for k in (0, 2, 3)]]
     monkeypatch.chdir(tmp_path)
-    pe.write_mesh(tmp_path / "box.npz", pe.Mesh(np.array(faces, float), np.zeros(2, int), ("box",)))
+    pt.write_mesh(tmp_path / "box.npz", pe.Mesh(np.array(faces, float), np.zeros(2, int), ("box",)))
     (tmp_path / "study.toml").write_text(STUDY, "utf-8")
     names = {}
     for block in blocks:
@@ -166,7 +167,7 @@ def files_of_a_reader(folder, page):
     trimesh.Trimesh(to_gltf(points), faces).export(folder / "car.glb")
     (folder / "car.stl").write_bytes(stl_binary(triangles=1000.0 * to_gltf(car.triangles)))
     shutil.copy(ROOT / "studies/paper/data/paper_lidar.csv", folder / "ap_by_points.csv")
-    pe.write_mesh(folder / "box.npz", car)
+    pt.write_mesh(folder / "box.npz", car)
     study = STUDY + (CHOICE if "choose_sensors" in page else "")
     for name in ("study.toml", "car.toml"):
         (folder / name).write_text(study, "utf-8")

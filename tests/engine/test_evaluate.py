@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.metric import (
     POINTPILLARS,
     average_precision,
@@ -462,7 +463,7 @@ def test_it_falls_with_the_number_of_voxels():
 def test_no_sample_is_printed_as_exact():
     """Not where nothing is seen, and not where the error is less than the last digit."""
     study = pe.Study(pe.Rig([BLIND]), space=SPACE, samples=2048)
-    job = pe.ScoreJob(study)
+    job = pt.ScoreJob(study)
     for _ in job:
         pass
     assert summary(job.outcome).startswith("entropy   16.6514 +- 0.0202 nats\n")
@@ -535,7 +536,7 @@ def test_a_stopped_job_s_thread_stops_as_well(monkeypatch):
             done.set()
 
     monkeypatch.setattr(pe.Evaluator, "score", score)
-    job = pe.ScoreJob(pe.Study(rig(), shapes.box_car(), WATCH_SPACE))
+    job = pt.ScoreJob(pe.Study(rig(), shapes.box_car(), WATCH_SPACE))
     steps = iter(job)
     next(steps)
     next(steps)

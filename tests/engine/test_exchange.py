@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.base.files import is_reserved, marked
 from pe_core.geometry.poses import rotation_matrix
 from pe_core.scoring.sampling import FIRST_SAMPLES
@@ -56,10 +57,10 @@ def there_and_back(name, folder):
     if name == "argoverse2":
         pytest.importorskip("pyarrow", reason="of the extra argoverse")
     rig = RIGS[name]
-    paths, _ = pe.export_rig(rig, name, folder, AXLE)
+    paths, _ = pt.export_rig(rig, name, folder, AXLE)
     placed = rig["velodyne"].pose if name == "kitti" else None
     file = folder if len(paths) > 1 else paths[0]
-    return rig, pe.import_rig(file, None, AXLE, CHOSEN.get(name), placed)
+    return rig, pt.import_rig(file, None, AXLE, CHOSEN.get(name), placed)
 
 
 @pytest.mark.parametrize("name", RIG_FORMATS)
@@ -108,14 +109,14 @@ def test_carla_brings_back_even_channels_and_says_what_it_cannot(tmp_path):
 
 def test_a_lens_keeps_its_middle_and_its_distortion_is_reported(tmp_path):
     rig = pe.Rig([sensor("wide", "PandaSet wide", (1.5, 0, 1.6))])
-    (path,), lines = pe.export_rig(rig, "driveworks", tmp_path / "rig.json", AXLE)
+    (path,), lines = pt.export_rig(rig, "driveworks", tmp_path / "rig.json", AXLE)
     assert lines == ["wide: the distortion (brown-conrady) of PandaSet wide is left out of "
                      "DriveWorks rig.json"]  # fmt: skip
     data = json.loads(path.read_text())
     data["rig"]["sensors"][0]["parameter"] = ""  # else its model is known, lens and all
     path.write_text(json.dumps(data))
     ours = rig["wide"].model.projection
-    theirs = pe.import_rig(path, reference=AXLE).rig["wide"].model.projection
+    theirs = pt.import_rig(path, reference=AXLE).rig["wide"].model.projection
     assert (theirs.fx, theirs.fy, theirs.cx, theirs.cy) == (ours.fx, ours.fy, ours.cx, ours.cy)
 
 
@@ -136,7 +137,7 @@ def test_nuscenes_own_front_camera(tmp_path):
         "camera_intrinsic": [[1266.417203, 0, 816.267020], [0, 1266.417203, 491.507065], [0, 0, 1]],
     }
     (tmp_path / "calibrated_sensor.json").write_text(json.dumps([row]))
-    found = pe.import_rig(tmp_path, reference=pe.Reference(-1.38, 0.3))
+    found = pt.import_rig(tmp_path, reference=pe.Reference(-1.38, 0.3))
     camera = found.rig["CAM_FRONT"]
     assert camera.pose.position == pytest.approx((0.32079118954, 0.0159456324149, 1.51095763913))
     assert camera.pose.rotation_deg == pytest.approx((-0.046, 0.323, 0.325), abs=2e-3)
@@ -158,7 +159,7 @@ def test_kitti_s_own_calibration(tmp_path):
         "-0.9998902 -0.07631618 0.9998621 0.00752379 0.01480755 -0.2717806\n"
         "Tr_imu_to_velo: 1 0 0 0 0 1 0 0 0 0 1 0\n"
     )
-    found = pe.import_rig(tmp_path / "calib.txt", placed=pe.Pose((0.0, 0.0, 1.73)))
+    found = pt.import_rig(tmp_path / "calib.txt", placed=pe.Pose((0.0, 0.0, 1.73)))
     first, second = found.rig["camera_0"], found.rig["camera_2"]
     assert (first.model.width, first.model.height) == (1242, 375)
     assert first.pose.position == pytest.approx((0.27, 0.0, 1.65), abs=0.01)
@@ -183,7 +184,7 @@ def test_an_autoware_kit(tmp_path):
         "    roll: 0.0\n    pitch: 0.0\n    yaw: 0.0\n"
     )
     models = {"velodyne_top": PUCK, "velodyne_rear": PUCK}
-    found = pe.import_rig(tmp_path, reference=pe.Reference(-1.4, 0.3), models=models)
+    found = pt.import_rig(tmp_path, reference=pe.Reference(-1.4, 0.3), models=models)
     names = [each.name for each in found.rig]
     assert names == ["camera0", "velodyne_top", "velodyne_rear"]
     assert found.to_choose == ("camera0",), "never dropped, to be chosen"
@@ -205,7 +206,7 @@ def test_a_robot_s_joints_are_followed_to_its_root(tmp_path):
       <joint name="c" type="fixed"><parent link="cam_link"/><child link="cam_optical_frame"/>
         <origin rpy="-1.5707963 0 -1.5707963"/></joint></robot>"""
     (tmp_path / "r.urdf").write_text(robot)
-    (camera,) = pe.import_rig(tmp_path / "r.urdf").rig
+    (camera,) = pt.import_rig(tmp_path / "r.urdf").rig
     assert (camera.name, camera.kind) == ("cam_link", "camera")
     assert camera.pose.position == pytest.approx((1.0, 0.5, 2.0))
     assert camera.pose.rotation_deg == pytest.approx((0, 0, 90))
@@ -257,17 +258,17 @@ def test_the_rear_axle_is_guessed_from_wheels_alone(names, known):
 )
 def test_without_the_rear_axle_its_formats_are_refused(name, tmp_path):
     with pytest.raises(pe.InputError, match="rear axle's place, which is the origin"):
-        pe.export_rig(MIXED, name, tmp_path / "new")
+        pt.export_rig(MIXED, name, tmp_path / "new")
     assert not (tmp_path / "new").exists()
 
 
 def test_nothing_is_replaced_without_being_asked(tmp_path):
-    pe.export_rig(MIXED, "csv", tmp_path / "rig.csv")
+    pt.export_rig(MIXED, "csv", tmp_path / "rig.csv")
     old = (tmp_path / "rig.csv").read_bytes()
     with pytest.raises(pe.InputError, match=r"rig\.csv: file: .*an existing file"):
-        pe.export_rig(ONE_WAY, "csv", tmp_path / "rig.csv")
+        pt.export_rig(ONE_WAY, "csv", tmp_path / "rig.csv")
     assert (tmp_path / "rig.csv").read_bytes() == old
-    pe.export_rig(ONE_WAY, "csv", tmp_path / "rig.csv", replace=True)
+    pt.export_rig(ONE_WAY, "csv", tmp_path / "rig.csv", replace=True)
     assert (tmp_path / "rig.csv").read_bytes() != old
 
 
@@ -277,20 +278,20 @@ DEVICES = ("CON", "nul", "com1", "Aux", "lpt9/x")
 @pytest.mark.parametrize("format_name", ["ros", "autoware"])
 def test_no_file_has_a_name_that_windows_keeps_for_itself(tmp_path, format_name):
     rig = pe.Rig([sensor(name, "KITTI cam2", (0, 0, 2)) for name in DEVICES])
-    paths, _ = pe.export_rig(rig, format_name, tmp_path / "rig", AXLE)
+    paths, _ = pt.export_rig(rig, format_name, tmp_path / "rig", AXLE)
     names = [name for path in paths for name in path.relative_to(tmp_path).parts]
     assert len(paths) > len(DEVICES) and not [*filter(is_reserved, names)]
-    assert len(pe.import_rig(tmp_path / "rig", format_name, AXLE).rig) == len(DEVICES)
+    assert len(pt.import_rig(tmp_path / "rig", format_name, AXLE).rig) == len(DEVICES)
 
 
 @pytest.mark.parametrize("name", FORMULAS)
 def test_a_table_is_read_back_whatever_the_names(tmp_path, name):
     rig = pe.Rig([sensor(name.replace("\t", ""), PUCK, (0, 0, 2))])
-    pe.export_rig(rig, "csv", tmp_path / "rig.csv")
+    pt.export_rig(rig, "csv", tmp_path / "rig.csv")
     with (tmp_path / "rig.csv").open(encoding="utf-8") as file:
         cells = [cell for row in csv.reader(file) for cell in row if not cell.startswith("#")]
     assert not [cell for cell in cells if marked(cell) != cell and cell[0] != "'"]
-    assert [each.name for each in pe.import_rig(tmp_path / "rig.csv").rig] == [
+    assert [each.name for each in pt.import_rig(tmp_path / "rig.csv").rig] == [
         each.name for each in rig
     ]
 
@@ -340,7 +341,7 @@ def test_bad_files_are_refused_by_what_is_wrong_in_them(tmp_path):
 
     def imported(given):
         (tmp_path / given[0]).write_text(given[1])
-        pe.import_rig(tmp_path / given[0], reference=AXLE)
+        pt.import_rig(tmp_path / given[0], reference=AXLE)
 
     assert wrongly_refused(imported, BAD, tmp_path) == []
     assert wrongly_refused(lambda text: imported((kit, text)), BAD_KITS, tmp_path / kit) == []

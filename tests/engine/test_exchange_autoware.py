@@ -3,6 +3,7 @@
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_tools.exchange import read_vehicle_info
 
 yaml = pytest.importorskip("yaml")
@@ -64,9 +65,9 @@ def read_kit(folder):
 def test_a_kit_that_is_read_and_written_over_is_the_same(kit):
     """Names, order, parents and numbers, all by another program's reader."""
     before, reference = read_kit(kit), read_vehicle_info(kit / "vehicle_info.param.yaml")
-    found = pe.import_rig(kit, None, reference, MODELS)
+    found = pt.import_rig(kit, None, reference, MODELS)
     assert found.to_choose == () and len(found.rig) == 5
-    _, lines = pe.export_rig(found.rig, "autoware", kit, reference, replace=True)
+    _, lines = pt.export_rig(found.rig, "autoware", kit, reference, replace=True)
     assert lines[0] == "kept as they stood in the kit: gnss_link, tamagawa/imu_link"
     for old, new in zip(before, read_kit(kit), strict=True):
         assert list(old) == list(new)
@@ -79,24 +80,24 @@ def test_a_kit_that_is_read_and_written_over_is_the_same(kit):
 
 def test_a_sensor_that_moved_moves_in_its_own_frame_and_a_new_one_goes_into_the_kit(kit):
     reference = read_vehicle_info(kit / "vehicle_info.param.yaml")
-    rig = pe.import_rig(kit, None, reference, MODELS).rig
+    rig = pt.import_rig(kit, None, reference, MODELS).rig
     rear = next(each for each in rig if each.name == "velodyne_rear")
     x, y, z = rear.pose.position
     moved = pe.Sensor(rear.name, rear.model, pe.Pose((x, y, z + 0.1), rear.pose.rpy))
     extra = pe.Sensor("velodyne_new", rear.model, pe.Pose((0.0, 0.0, 2.2)))
     others = [each for each in rig if each is not rear]
-    pe.export_rig(pe.Rig([*others, moved, extra]), "autoware", kit, reference, replace=True)
+    pt.export_rig(pe.Rig([*others, moved, extra]), "autoware", kit, reference, replace=True)
     base, inside = read_kit(kit)
     own = base["base_link"]["velodyne_rear_base_link"]
     assert own["z"] == pytest.approx(1.731, abs=1e-6) and own["x"] == pytest.approx(-0.358)
     assert list(inside["sensor_kit_base_link"])[-1] == "velodyne_new_base_link"
-    again = pe.import_rig(kit, None, reference, MODELS | {"velodyne_new": rear.model.name}).rig
+    again = pt.import_rig(kit, None, reference, MODELS | {"velodyne_new": rear.model.name}).rig
     assert again["velodyne_new"].pose.position == pytest.approx((0.0, 0.0, 2.2), abs=1e-9)
 
 
 def test_a_new_kit_and_its_lenses_are_what_pyyaml_reads(kit):
-    rig = pe.import_rig(kit, None, pe.Reference(-1.345, 0.383), MODELS).rig
-    pe.export_rig(rig, "autoware", kit / "new", pe.Reference(-1.345, 0.383))
+    rig = pt.import_rig(kit, None, pe.Reference(-1.345, 0.383), MODELS).rig
+    pt.export_rig(rig, "autoware", kit / "new", pe.Reference(-1.345, 0.383))
     base, inside = read_kit(kit / "new")
     assert list(base["base_link"]) == ["sensor_kit_base_link"]
     frames = inside["sensor_kit_base_link"]
@@ -171,7 +172,7 @@ def bus(tmp_path):
 def test_a_kit_of_several_units_is_a_study_and_a_kit_again(bus):
     """Places by hand; every number of the lens; and all files as they were."""
     reference = pe.Reference(-2.0, 0.4)
-    found = pe.import_rig(bus, None, reference, X2_MODELS)
+    found = pt.import_rig(bus, None, reference, X2_MODELS)
     assert found.to_choose == () and len(found.rig) == 5
     left, rear = found.rig["pandar_40p_left"].pose, found.rig["pandar_40p_rear"].pose
     lifted = 2.8087 + 0.002 + 0.047  # the foot of a Pandar40P is 47 mm below its scan
@@ -184,7 +185,7 @@ def test_a_kit_of_several_units_is_a_study_and_a_kit_again(bus):
     keys = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6")
     assert [getattr(lens, key) for key in keys] == D
     assert (lens.fx, lens.fy, lens.cx, lens.cy) == (1519.8, 1520.4, 1443.5, 929.7)
-    pe.export_rig(again, "autoware", bus, reference, replace=True)
+    pt.export_rig(again, "autoware", bus, reference, replace=True)
     for name, old in before.items():
         new = yaml.safe_load((bus / name).read_text())
         assert list(new) == list(old)
@@ -199,4 +200,4 @@ def test_a_unit_that_stands_nowhere_is_refused(bus):
     del table["base_link"]["rear_unit_base_link"]
     (bus / "sensors_calibration.yaml").write_text(yaml.safe_dump(table))
     with pytest.raises(pe.InputError, match="base_link: expected rear_unit_base_link, found"):
-        pe.import_rig(bus, None, pe.Reference(-2.0, 0.4))
+        pt.import_rig(bus, None, pe.Reference(-2.0, 0.4))

@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.sensors.camera.lens import Pinhole
 from pe_tools.exchange import csv_table, driveworks, import_rig, rig_files, ros
 from pe_tools.exchange.lens_pictures import Picture, _squares
@@ -77,7 +78,7 @@ def test_frames_of_sensors_and_of_the_format_stay_apart(name, tmp_path):
             sensor("base_link_2", PUCK, (4, 0, 1)),
         ]
     )
-    paths, lines = pe.export_rig(rig, name, tmp_path / "out")
+    paths, lines = pt.export_rig(rig, name, tmp_path / "out")
     text = paths[0].read_text()
     frames = re.findall(r'(?:<link name="|--child-frame-id )([\w/]+)', text)
     assert len(frames) == len(set(frames)) and "cam_optical" in frames
@@ -122,7 +123,7 @@ def test_a_robot_s_other_sensors_go_through_three_times(tmp_path):
         gone = "left out: 1 sonar sensor (front_sonar), 1 imu sensor (imu_link)"
         assert found.lines[0].startswith(gone)
         path = tmp_path / f"{number}.urdf"
-        pe.export_rig(found.rig, "urdf", path, passthrough=found.passthrough)
+        pt.export_rig(found.rig, "urdf", path, passthrough=found.passthrough)
         robot = ElementTree.fromstring(path.read_text())
         places = {
             joint.find("child").get("link"): joint.find("origin").get("xyz")
@@ -146,7 +147,7 @@ def test_ros_transforms_go_through_three_times(tmp_path):
         found = import_rig(path, "ros")
         assert found.lines[0].startswith("left out: 1 sonar sensor (front_sonar)")
         out = tmp_path / str(number) / "rig.launch.xml"
-        pe.export_rig(found.rig, "ros", out, passthrough=found.passthrough)
+        pt.export_rig(found.rig, "ros", out, passthrough=found.passthrough)
         calls = re.findall(r'args="(.*?)"', out.read_text())
         assert [call.split("--frame-id ")[1] for call in calls] == [
             "car --child-frame-id roof",

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.sensors.camera import BrownConrady, Camera, FTheta, KannalaBrandt, Pinhole
 from pe_tools.exchange import RIG_FORMATS
 
@@ -41,9 +42,9 @@ def camera(name, lens):
 def read_back(sensor, name, folder):
     if name == "argoverse2":
         pytest.importorskip("pyarrow", reason="of the extra argoverse")
-    paths, lines = pe.export_rig(pe.Rig([sensor]), name, folder, AXLE)
+    paths, lines = pt.export_rig(pe.Rig([sensor]), name, folder, AXLE)
     file = folder if len(paths) > 1 else paths[0]
-    return next(iter(pe.import_rig(file, None, AXLE).rig)), lines
+    return next(iter(pt.import_rig(file, None, AXLE).rig)), lines
 
 
 @pytest.mark.parametrize("name", KEEPS)
@@ -68,10 +69,10 @@ def test_a_lens_comes_back_or_is_reported(name, key, tmp_path):
 def test_kitti_s_projection_has_the_pinhole_alone(tmp_path):
     lidar = pe.Sensor("top", pe.catalog.load("Velodyne VLP-16 Puck"), pe.Pose((0.0, 0.0, 2.0)))
     rig = pe.Rig([lidar, camera("eye", BROWN)])
-    (path,), lines = pe.export_rig(rig, "kitti", tmp_path / "calib.txt")
+    (path,), lines = pt.export_rig(rig, "kitti", tmp_path / "calib.txt")
     assert "the distortion (brown-conrady) of own eye is left out of KITTI" in lines[-2]
     assert lines[-1] == "left out of KITTI calibration: beams of top"
-    theirs = pe.import_rig(path).rig["camera_0"].model.projection
+    theirs = pt.import_rig(path).rig["camera_0"].model.projection
     assert (theirs.fx, theirs.fy, theirs.cx, theirs.cy) == pytest.approx(PLACE, abs=1e-6)
 
 
@@ -126,7 +127,7 @@ def info_of(folder, model, values):
     ],
 )
 def test_ros_intrinsics_are_read_right(model, values, right, tmp_path):
-    (eye,) = pe.import_rig(info_of(tmp_path, model, values)).rig
+    (eye,) = pt.import_rig(info_of(tmp_path, model, values)).rig
     assert (eye.kind, eye.model.width, eye.model.height) == ("camera", 640, 480)
     ahead = np.array([2.0]), np.array([-1.0]), np.array([0.0])
     x, y = eye.model.projection.project(*ahead)
@@ -135,7 +136,7 @@ def test_ros_intrinsics_are_read_right(model, values, right, tmp_path):
 
 def test_a_lens_that_folds_sees_as_far_as_it_does_not(tmp_path):
     """r (1 - 0.9 r^2) turns back where 1 = 2.7 r^2: r = 0.60858, 31.32 deg from the axis."""
-    found = pe.import_rig(info_of(tmp_path, "plumb_bob", "-0.9, 0, 0, 0, 0"))
+    found = pt.import_rig(info_of(tmp_path, "plumb_bob", "-0.9, 0, 0, 0, 0"))
     fov = math.degrees(found.rig["eye"].model.projection.fov)
     assert fov == pytest.approx(2.0 * math.degrees(math.atan(math.sqrt(1 / 2.7))), abs=0.3)
     (line,) = found.lines
@@ -153,7 +154,7 @@ def test_a_lens_that_folds_sees_as_far_as_it_does_not(tmp_path):
 )
 def test_bad_intrinsics_are_refused_in_one_line(model, values, words, tmp_path):
     with pytest.raises(pe.InputError) as caught:
-        pe.import_rig(info_of(tmp_path, model, values))
+        pt.import_rig(info_of(tmp_path, model, values))
     line = str(caught.value)
     assert words in line and "eye.yaml" in line and "\n" not in line
 
@@ -177,7 +178,7 @@ def rig_json(folder, **properties):
 )
 def test_driveworks_polynomial_of_pixels_is_turned_round(properties, tmp_path):
     """500 px from the middle: 0.5 + 2e-10 * 500^3 = 0.525 rad from the axis."""
-    (eye,) = pe.import_rig(rig_json(tmp_path, **properties), reference=AXLE).rig
+    (eye,) = pt.import_rig(rig_json(tmp_path, **properties), reference=AXLE).rig
     ahead = np.array([math.cos(0.525)]), np.array([0.0]), np.array([-math.sin(0.525)])
     x, y = eye.model.projection.project(*ahead)
     assert (x[0], y[0]) == (pytest.approx(960.0), pytest.approx(1104.0, abs=0.02))
@@ -186,7 +187,7 @@ def test_driveworks_polynomial_of_pixels_is_turned_round(properties, tmp_path):
 def test_a_polynomial_that_cannot_be_turned_round_well_says_how_far_it_is_off(tmp_path):
     """A lens whose angle bends thrice on the way to the corner."""
     bends = "0 1.117e-3 -1.118e-6 3.190e-9 -3.474e-12 1.368e-15"
-    (line,) = pe.import_rig(rig_json(tmp_path, polynomial=bends), reference=AXLE).lines
+    (line,) = pt.import_rig(rig_json(tmp_path, polynomial=bends), reference=AXLE).lines
     assert line.startswith("eye: its polynomial from pixels to angles is turned round to within")
 
 
@@ -200,7 +201,7 @@ def test_a_polynomial_that_cannot_be_turned_round_well_says_how_far_it_is_off(tm
 )
 def test_driveworks_lenses_of_no_kind_are_refused(properties, words, tmp_path):
     with pytest.raises(pe.InputError, match=words):
-        pe.import_rig(rig_json(tmp_path, **properties), reference=AXLE)
+        pt.import_rig(rig_json(tmp_path, **properties), reference=AXLE)
 
 
 def test_driveworks_corrections_are_applied(tmp_path):
@@ -212,7 +213,7 @@ def test_driveworks_corrections_are_applied(tmp_path):
     eye["correction_sensor_R_FLU"] = {"roll-pitch-yaw": [0.0, 4.74, 0.0]}
     eye["correction_rig_T"] = [0.0, 0.0, 0.3275]
     path.write_text(json.dumps(data))
-    (found,) = pe.import_rig(path, reference=AXLE).rig
+    (found,) = pt.import_rig(path, reference=AXLE).rig
     assert found.pose.position == pytest.approx((1.0 - 1.31, -0.1, 1.8275))
     down = math.radians(4.74)  # to the left, and nose down in the sensor's own axes
     forward = found.pose.ground_from_sensor[:, 0]
@@ -220,18 +221,18 @@ def test_driveworks_corrections_are_applied(tmp_path):
     eye["correction_rig_T"] = [0.0, "x", 0.0]
     path.write_text(json.dumps(data))
     with pytest.raises(pe.InputError, match="correction_rig_T"):
-        pe.import_rig(path, reference=AXLE)
+        pt.import_rig(path, reference=AXLE)
 
 
 def test_gazebo_s_distortion_centre_is_the_principal_point(tmp_path):
     lens = BrownConrady(930.0, 930.0, 0.485 * 1920, 0.526 * 1080, None, -0.02)
-    (path,), _ = pe.export_rig(pe.Rig([camera("eye", lens)]), "urdf", tmp_path / "rig.urdf")
+    (path,), _ = pt.export_rig(pe.Rig([camera("eye", lens)]), "urdf", tmp_path / "rig.urdf")
     text = path.read_text()
     center = text.partition("<center>")[2].partition("</center>")[0]
     assert [float(v) for v in center.split()] == pytest.approx([0.485, 0.526])
     intrinsics = text[text.index("<lens>") : text.index("</lens>") + 7]
     path.write_text(text.replace(intrinsics, ""))
-    (eye,) = pe.import_rig(path).rig
+    (eye,) = pt.import_rig(path).rig
     found = eye.model.projection
     assert (found.cx, found.cy) == pytest.approx((0.485 * 1920, 0.526 * 1080))
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_tools.exchange import RIG_FORMATS, rig_files
 
 AXLE = pe.Reference(-1.31, 0.33)
@@ -58,8 +59,8 @@ def test_of_a_rig_that_a_format_holds_nothing_is_said(name):
 
 @pytest.mark.parametrize("name", ["csv", "urdf"])
 def test_ranges_and_fusion_groups_come_back(name, tmp_path):
-    (path,), _ = pe.export_rig(RIG, name, tmp_path / RIG_FORMATS[name].files[0])
-    found = pe.import_rig(path).rig
+    (path,), _ = pt.export_rig(RIG, name, tmp_path / RIG_FORMATS[name].files[0])
+    found = pt.import_rig(path).rig
     assert (found["eye"].model.min_range, found["eye"].model.max_range) == (0.3, 40.0)
     assert (found["roof"].fusion, found["eye"].fusion) == ("top", None)
     assert found["puck"].model.max_range == RIG["puck"].model.max_range
@@ -85,7 +86,7 @@ def test_a_foreign_clip_is_no_range(tmp_path):
         "<image><width>640</width><height>480</height></image><clip><near>0.1</near><far>100</far></clip></camera></sensor>"
         "</gazebo></robot>"
     )
-    (eye,) = pe.import_rig(path).rig
+    (eye,) = pt.import_rig(path).rig
     assert (eye.model.min_range, eye.model.max_range) == (0.0, math.inf)
 
 

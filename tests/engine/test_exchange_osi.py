@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_tools.exchange import rig_files
 
 AXLE = pe.Reference(-1.31, 0.33)
@@ -56,7 +57,7 @@ def test_what_protobuf_s_printer_writes_is_read(parsed, schema_names, tmp_path):
     assert ("sensorId" in text) != schema_names and '"value": "2"' in text
     path = tmp_path / "sensor_view_configuration.json"
     path.write_text(text)
-    found = pe.import_rig(path, reference=AXLE)
+    found = pt.import_rig(path, reference=AXLE)
     assert [s.name for s in found.rig] == ["lidar_0", "lidar_1", "camera_2"]
     assert found.lines == ()
     for ours, theirs in zip(RIG, found.rig, strict=True):
@@ -67,15 +68,15 @@ def test_what_protobuf_s_printer_writes_is_read(parsed, schema_names, tmp_path):
 
 
 def test_one_range_is_there_for_all_lidars_and_others_are_reported(tmp_path):
-    (path,), lines = pe.export_rig(RIG, "osi", tmp_path / "osi.json", AXLE)
+    (path,), lines = pt.export_rig(RIG, "osi", tmp_path / "osi.json", AXLE)
     assert "OSI has one range for all sensors, 80 m; left out: nose 30 m" in lines
-    found = pe.import_rig(path, "osi", AXLE)
+    found = pt.import_rig(path, "osi", AXLE)
     assert [s.model.max_range for s in found.rig][:2] == [80.0, 80.0]
     data = json.loads(path.read_text())
     assert all("range" not in row for row in data["lidar_sensor_view_configuration"])
     del data["range"]
     path.write_text(json.dumps(data))
-    found = pe.import_rig(path, "osi", AXLE)
+    found = pt.import_rig(path, "osi", AXLE)
     assert "lidar_0, lidar_1: no range in the file; 100 m stands in" in found.lines
     assert found.rig["lidar_0"].model.beam_count == 108, "its beams stay"
 
@@ -106,12 +107,12 @@ def test_one_range_is_there_for_all_lidars_and_others_are_reported(tmp_path):
     ],
 )
 def test_what_is_none_of_osi_s_is_refused_in_one_line(change, words, tmp_path):
-    (path,), _ = pe.export_rig(RIG, "osi", tmp_path / "osi.json", AXLE)
+    (path,), _ = pt.export_rig(RIG, "osi", tmp_path / "osi.json", AXLE)
     data = json.loads(path.read_text())
     data["lidar_sensor_view_configuration"][1].update(change)
     path.write_text(json.dumps(data))
     with pytest.raises(pe.InputError, match=words):
-        pe.import_rig(path, "osi", AXLE)
+        pt.import_rig(path, "osi", AXLE)
 
 
 def test_a_rig_of_too_many_beams_is_refused_before_they_are_written(monkeypatch):
@@ -125,15 +126,15 @@ def test_a_rig_of_too_many_beams_is_refused_before_they_are_written(monkeypatch)
 
 
 def test_fields_of_radars_that_are_not_read_are_kept(tmp_path):
-    (path,), _ = pe.export_rig(RIG, "osi", tmp_path / "osi.json", AXLE)
+    (path,), _ = pt.export_rig(RIG, "osi", tmp_path / "osi.json", AXLE)
     data = json.loads(path.read_text())
     radar = {"sensorId": {"value": "7"}, "emitter_frequency": 77e9, "rx_antenna_diagram": [{}]}
     data["radar_sensor_view_configuration"] = [radar]
     path.write_text(json.dumps(data))
-    found = pe.import_rig(path, "osi", AXLE)
+    found = pt.import_rig(path, "osi", AXLE)
     assert [s.name for s in found.rig] == ["lidar_0", "lidar_1", "camera_2", "radar_7"]
     assert found.to_choose == ("radar_7",)
-    (again,), _ = pe.export_rig(
+    (again,), _ = pt.export_rig(
         found.rig, "osi", tmp_path / "again.json", AXLE, passthrough=found.passthrough
     )
     (row,) = json.loads(again.read_text())["radar_sensor_view_configuration"]
@@ -148,5 +149,5 @@ def test_ids_are_any_numbers_of_64_bits(tmp_path):
     document["lidar_sensor_view_configuration"][0]["sensor_id"]["value"] = 2**64 - 1
     path = tmp_path / "sensor_view_configuration.json"
     path.write_text(json.dumps(document))
-    names = [s.name for s in pe.import_rig(path, reference=AXLE).rig]
+    names = [s.name for s in pt.import_rig(path, reference=AXLE).rig]
     assert names == ["lidar_1", "camera_2", f"lidar_{2**64 - 1}"]

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core import catalog
 from pe_tools.formats.yaml_text import parse_yaml
 from pe_tools.outputs import scene_files
@@ -34,8 +35,8 @@ def rig():
 
 @pytest.mark.parametrize("name", ["nuscenes", "carla", "autoware", "osi", "urdf", "csv"])
 def test_they_come_back_where_they_were(rig, name, tmp_path):
-    pe.export_rig(rig, name, tmp_path / "out", AXLE)
-    found = pe.import_rig(tmp_path / "out", name, AXLE)
+    pt.export_rig(rig, name, tmp_path / "out", AXLE)
+    found = pt.import_rig(tmp_path / "out", name, AXLE)
     kinds = ["radar", "radar"] if name == "carla" else ["radar", "radar", "ultrasonic"]
     assert [sensor.kind for sensor in found.rig] == kinds
     for before, after in zip(rig, found.rig, strict=False):
@@ -62,7 +63,7 @@ def test_a_radar_of_carla_is_its_field_of_view(tmp_path):
     }
     path = tmp_path / "objects.json"
     path.write_text(json.dumps({"objects": [{"type": "vehicle.a", "id": "e", "sensors": [radar]}]}))
-    (sensor,) = pe.import_rig(path).rig
+    (sensor,) = pt.import_rig(path).rig
     (mode,) = sensor.model.modes
     assert math.degrees(mode.azimuths[1]) == pytest.approx(20.0)
     assert math.degrees(mode.elevations[1]) == pytest.approx(15.0)

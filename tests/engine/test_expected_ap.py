@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.scoring.requirements import BODIES, Requirement, Zone
 from pe_core.search import Front, Goals, Stop
 from pe_core.search.tolerance import without_each
@@ -54,7 +55,7 @@ def study(goals=None, names=("roof",), **more):
 
 
 def finished(given, workers=1, **more):
-    job = pe.OptimizeJob(given, workers, **more)
+    job = pt.OptimizeJob(given, workers, **more)
     for _ in job:
         pass
     return job.outcome
@@ -227,7 +228,7 @@ def test_requirements_come_before_the_ap():
         free={"roof": ("x", "z", "pitch")},
     )
     given = replace(given, search=replace(given.search, requirements="keep"))
-    job = pe.OptimizeJob(given, 1)
+    job = pt.OptimizeJob(given, 1)
     texts = [p.value_text for p in job if p.stage == "optimizing"]
     assert [v.met for v in given.verdicts()] == [False]
     assert [v.met for v in job.outcome.verdicts] == [True]
@@ -239,7 +240,7 @@ def test_requirements_come_before_the_ap():
 
 def test_the_command_line_and_a_job_find_the_same_bits(tmp_path, capsys):
     given = study(objective="entropy")
-    pe.export_study(given, tmp_path / "study.toml")
+    pt.export_study(given, tmp_path / "study.toml")
     call = ["optimize", str(tmp_path / "study.toml"), "-o", str(tmp_path / "out"), "--json"]
     assert main([*call, "--objective", AP, "--no-review"]) == 0
     printed = json.loads(capsys.readouterr().out)
@@ -268,7 +269,7 @@ def test_the_command_line_and_a_job_find_the_same_bits(tmp_path, capsys):
 
 
 def _scored(given):
-    job = pe.ScoreJob(given, 1)
+    job = pt.ScoreJob(given, 1)
     list(job)
     return job.outcome
 
@@ -285,7 +286,7 @@ def chosen(**more):
 def test_choices_are_a_front_of_price_and_ap(screened, monkeypatch):
     if screened:
         monkeypatch.setattr(front_job, "ALL_SEARCHED_UP_TO", 1)
-    job = pe.FrontJob(chosen(), 1)
+    job = pt.FrontJob(chosen(), 1)
     list(job)
     found = job.trade_off
     assert found.objectives == ("price", "ap") and found.searched == 2

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core import catalog
 from pe_tools import advice
 from pe_tools.cli.verbs import main
@@ -18,7 +19,7 @@ def saved(folder, name, rig=None, **changes):
     """A small study in a file of its own."""
     rig = rig or pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
     study = pe.Study(rig, shapes.box_car(), shapes.small_space())
-    pe.export_study(replace(study, **changes), folder / name)
+    pt.export_study(replace(study, **changes), folder / name)
     return str(folder / name)
 
 
@@ -98,7 +99,7 @@ def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(tmp_path
     call = [
         "compare",
         study,
-        "--grid-samples",
+        "--samples",
         "1024",
         "--beside",
         "paper_car_camera60",
@@ -137,7 +138,7 @@ def test_files_of_one_name_are_reported_apart_by_their_folders(tmp_path, capsys)
         (tmp_path / folder).mkdir()
         saved(tmp_path / folder, "study.toml")
     paths = [str(tmp_path / folder / "study.toml") for folder in "ab"]
-    assert main(["compare", *paths, "--grid-samples", "1024"]) == 0
+    assert main(["compare", *paths, "--samples", "1024"]) == 0
     assert capsys.readouterr().out.splitlines()[0].split() == ["a/study", "b/study"]
 
 
@@ -168,7 +169,7 @@ def without_sight(text):
     return re.sub(r"\d+% by two or more", "by two or more", lines)
 
 
-@pytest.mark.parametrize("asked", [("--grid-samples", "65536"), ("--at", "-8", "6")])
+@pytest.mark.parametrize("asked", [("--samples", "65536"), ("--at", "-8", "6")])
 def test_the_page_s_examples_are_what_is_reported(asked, monkeypatch, capsys):
     monkeypatch.chdir(Path(pe.__file__).parent.parent)
     command = ["explain", "blend_assets/experiments/4_cameras.toml", *asked]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.geometry import ray_traversal, raycast
 from pe_core.geometry.poses import cross, dot
 from pe_core.geometry.ray_traversal import TriangleTree
@@ -182,7 +183,7 @@ def test_no_rays_and_no_triangles():
 @pytest.mark.parametrize("up", [0.03, 0.4, -0.6, 8.0])
 def test_a_frame_at_a_shipped_vehicle_is_that_of_every_triangle(mesh, up):
     """Of a Pandar64's beams some are tested; all are cast together, as a frame is."""
-    vehicle = pe.Vehicle(pe.read_mesh(ASSETS / f"{mesh}.npz").triangles)
+    vehicle = pe.Vehicle(pt.read_mesh(ASSETS / f"{mesh}.npz").triangles)
     seen = vehicle.seen_from(np.array([-0.4, 0.02, vehicle.bounds[1][2] + up]))
     directions = pe.catalog.load("Pandar64").directions
     hits = seen.first_hit(directions)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.search import Front, Goals, pareto_front
 from pe_tools.cli.choose_verb import front_summary
 from pe_tools.cli.verbs import main
@@ -59,7 +60,7 @@ def test_no_design_of_the_front_is_beaten_and_its_figures_are_those_of_its_rig(f
     lowest = min(found.front, key=lambda d: d.figures["height"])
     assert lowest.figures["height"] < 1.65 and "best height" in lowest.name
     best = min(found.front, key=lambda d: d.figures["entropy"])
-    plain = pe.OptimizeJob(replace(study(), search=replace(study().search, evaluations=40)), 1)
+    plain = pt.OptimizeJob(replace(study(), search=replace(study().search, evaluations=40)), 1)
     list(plain)
     assert best.figures["entropy"] <= plain.outcome.before.entropy
 
@@ -179,7 +180,7 @@ def test_prices_of_choices_are_an_objective(tmp_path):
 
 def test_the_command_line_writes_the_front_of_the_job(found, tmp_path, capsys):
     given = study(())
-    pe.export_study(given, tmp_path / "study.toml")
+    pt.export_study(given, tmp_path / "study.toml")
     line = ["optimize", str(tmp_path / "study.toml"), "--front", "entropy,height", "--json"]
     assert main([*line, "-o", str(tmp_path / "out"), "--workers", "1"]) == 0
     data = json.loads(capsys.readouterr().out)

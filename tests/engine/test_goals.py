@@ -6,6 +6,7 @@ from itertools import pairwise
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.search import Front, Goals, Start, Stop
 from pe_core.study import load_study_data, study_to_dict
 from pe_tools.cli.command import with_options
@@ -27,7 +28,7 @@ def study(goals=None, names=("roof",), **search):
 
 
 def finished(given, **more):
-    job = pe.OptimizeJob(given, 1, **more)
+    job = pt.OptimizeJob(given, 1, **more)
     for _ in job:
         pass
     return job.outcome
@@ -53,7 +54,7 @@ def test_a_search_stops_at_its_target_with_the_steps_of_the_whole_one(plain):
 
 def test_blind_ground_is_kept_by_key_or_option(tmp_path):
     path = tmp_path / "study.toml"
-    pe.export_study(study(Goals(blind_ground="keep")), path)
+    pt.export_study(study(Goals(blind_ground="keep")), path)
     assert 'blind_ground = "keep"' in path.read_text()
     kept = pe.load_study(path)
     assert kept.search.goals.blind_ground == "keep"
@@ -111,7 +112,7 @@ def test_several_starts_share_the_budget_and_the_best_end_is_the_result(plain):
 def test_the_curve_of_a_search_never_rises_and_ends_at_its_last_value(plain):
     """Neither with a further start, nor where the best is evaluated again with more samples."""
     poses = {"roof": pe.Pose((0.0, 0.0, 2.2))}
-    several = pe.OptimizeJob(study(Goals(starts=[Start("high", poses)])), 1)
+    several = pt.OptimizeJob(study(Goals(starts=[Start("high", poses)])), 1)
     last = []
     for _ in several:
         values = [value for _, value in several.curve]

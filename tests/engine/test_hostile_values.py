@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.base.table_reader import dumps
 from pe_core.study.study_file import study_from_dict
 from tests.engine import shapes
@@ -108,7 +109,7 @@ def key_of(path):
 def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("hostile")
     car = shapes.box_car()
-    pe.write_mesh(folder / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
+    pt.write_mesh(folder / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
     (folder / "angles.csv").write_text("elevation_deg\n-1\n2\n", "utf-8")
     (folder / "boxes.csv").write_text(
         "class,x,y,z,length,width,height,yaw\ncar,3,1,0.7,4,2,1.4,30\n", "utf-8"
@@ -292,11 +293,11 @@ def test_the_extremes_that_are_taken_score_to_finite_numbers(folder, change, sam
         warnings.simplefilter("error")
         study = study_from_dict(data, "study.toml", folder)
         try:
-            (*_, _) = job = pe.ScoreJob(study, 1)
+            (*_, _) = job = pt.ScoreJob(study, 1)
         except pe.InputError as error:
             assert "weight" in str(error) or "no box" in str(error)
             return
-    text = json.dumps(pe.result_dict(job.outcome), allow_nan=False)
+    text = json.dumps(pt.result_dict(job.outcome), allow_nan=False)
     assert "NaN" not in text and math.isfinite(job.outcome.after.entropy)
 
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.base import dump_json
 from pe_tools.jobs import HistoryRow, score_and_optimize
 from tests.engine import shapes
@@ -33,7 +34,7 @@ def finished(job):
 
 
 def test_a_score_job_scores_what_the_evaluator_scores():
-    progress, outcome = finished(pe.ScoreJob(study()))
+    progress, outcome = finished(pt.ScoreJob(study()))
     assert outcome.after.to_dict() == study().evaluator().score(study().rig).to_dict()
     assert progress[-1].fraction == 1.0
     assert outcome.before is outcome.after and outcome.history == ()
@@ -50,7 +51,7 @@ class EndsAfterTheWait(Future):
 
 def test_work_that_ends_just_after_a_wait_is_taken(monkeypatch):
     monkeypatch.setattr("pe_tools.jobs.job.begun", lambda work: EndsAfterTheWait())
-    steps = pe.ScoreJob(study())._beside(str, pe.Progress("waiting", 0.0))
+    steps = pt.ScoreJob(study())._beside(str, pt.Progress("waiting", 0.0))
     next(steps)
     with pytest.raises(StopIteration) as ended:
         next(steps)
@@ -58,7 +59,7 @@ def test_work_that_ends_just_after_a_wait_is_taken(monkeypatch):
 
 
 def test_an_optimize_job_improves_and_tells_its_history():
-    progress, outcome = finished(pe.OptimizeJob(study()))
+    progress, outcome = finished(pt.OptimizeJob(study()))
     assert outcome.after.entropy < outcome.before.entropy
     assert outcome.after.to_dict() == outcome.study.evaluator().score(outcome.study.rig).to_dict()
     assert outcome.evaluations == 1 + 7 * 6
@@ -76,10 +77,10 @@ def test_a_search_that_cannot_be_made_is_refused_before_any_work(monkeypatch):
     with pytest.raises(pe.InputError, match=r"optimize: samples: expected 0 .* >= 1024"):
         replace(given.search, samples=100)
     with pytest.raises(pe.InputError, match="bounds of z: expected bounds around the start"):
-        finished(pe.OptimizeJob(below))
+        finished(pt.OptimizeJob(below))
 
 
-@pytest.mark.parametrize("job_class", [pe.ScoreJob, pe.OptimizeJob])
+@pytest.mark.parametrize("job_class", [pt.ScoreJob, pt.OptimizeJob])
 def test_stop_before_a_score_is_complete_leaves_no_outcome(job_class, monkeypatch):
     goes_on = threading.Event()
     monkeypatch.setattr(pe.Evaluator, "score", lambda *_: goes_on.wait())
@@ -92,7 +93,7 @@ def test_stop_before_a_score_is_complete_leaves_no_outcome(job_class, monkeypatc
 
 
 def test_stop_while_the_result_is_scored_cuts_nothing_short():
-    job = pe.OptimizeJob(study())
+    job = pt.OptimizeJob(study())
     for progress in job:
         if progress.stage == "scoring the result":
             job.stop()
@@ -105,14 +106,14 @@ def test_a_stop_ends_the_analysis_and_the_result_does_not_wait_for_it(when, monk
     """Before it begins, or while it runs for as long as it likes."""
     goes_on = threading.Event()
     monkeypatch.setattr(score_and_optimize, "robustness", lambda *_: goes_on.wait(60.0))
-    job = pe.OptimizeJob(study())
+    job = pt.OptimizeJob(study())
     for progress in job:
         if progress.stage == when and progress.evaluations >= 20:
             job.stop()
     assert not goes_on.is_set() and job.outcome.robustness is None
     assert job.outcome.stopped is (when == "optimizing")
     assert job.outcome.after.entropy <= job.outcome.before.entropy
-    assert pe.result_dict(job.outcome)["entropy"] == job.outcome.after.entropy
+    assert pt.result_dict(job.outcome)["entropy"] == job.outcome.after.entropy
     goes_on.set()
 
 
@@ -120,20 +121,20 @@ def test_an_exception_in_the_scoring_thread_is_raised():
     given = study()
     nothing_counts = pe.Prior.road([pe.Focus(0.0)])
     with pytest.raises(pe.InputError, match="some weight left in the space"):
-        finished(pe.ScoreJob(replace(given, prior=nothing_counts)))
+        finished(pt.ScoreJob(replace(given, prior=nothing_counts)))
 
 
 def test_what_is_no_number_is_null_in_the_result():
-    _, outcome = finished(pe.ScoreJob(study()))
+    _, outcome = finished(pt.ScoreJob(study()))
     broken = replace(outcome, after=replace(outcome.after, entropy=math.nan, stderr=math.inf))
-    data = pe.result_dict(broken)
+    data = pt.result_dict(broken)
     assert (data["entropy"], data["after"]["entropy"]) == (None, None)
     assert data["after"]["stderr"] == "inf"
     assert "NaN" not in dump_json(data)
 
 
 def test_stop_keeps_the_best_so_far():
-    job = pe.OptimizeJob(study())
+    job = pt.OptimizeJob(study())
     for progress in job:
         if progress.evaluations >= 20:
             job.stop()
@@ -143,7 +144,7 @@ def test_stop_keeps_the_best_so_far():
 
 
 def test_a_placement_that_only_flatters_the_sample_is_not_taken(monkeypatch):
-    job = pe.OptimizeJob(study())
+    job = pt.OptimizeJob(study())
     worse = pe.Rig([job.study.rig.sensors[0].moved(pe.Pose((0.0, 0.0, 0.5)))])
 
     def flattering():
@@ -151,7 +152,7 @@ def test_a_placement_that_only_flatters_the_sample_is_not_taken(monkeypatch):
             HistoryRow(1, 0, 9.0, job.study.rig),
             HistoryRow(2, 0, 1.0, worse),
         ]
-        yield pe.Progress("optimizing", 1.0, 1.0, 2)
+        yield pt.Progress("optimizing", 1.0, 1.0, 2)
 
     monkeypatch.setattr(job, "_search", flattering)
     _, outcome = finished(job)
@@ -160,8 +161,8 @@ def test_a_placement_that_only_flatters_the_sample_is_not_taken(monkeypatch):
 
 
 def test_result_files_hold_the_run(tmp_path):
-    _, outcome = finished(pe.OptimizeJob(study()))
-    data = pe.write_outcome(outcome, tmp_path)
+    _, outcome = finished(pt.OptimizeJob(study()))
+    data = pt.write_outcome(outcome, tmp_path)
     assert json.loads((tmp_path / "result.json").read_text("utf-8")) == data
     assert sorted(p.name for p in tmp_path.iterdir()) == [
         ".perception-entropy.json",
@@ -179,6 +180,6 @@ def test_result_files_hold_the_run(tmp_path):
 
 
 def test_the_same_study_gives_the_same_result_but_for_the_run():
-    first, second = (pe.result_dict(finished(pe.OptimizeJob(study()))[1]) for _ in range(2))
+    first, second = (pt.result_dict(finished(pt.OptimizeJob(study()))[1]) for _ in range(2))
     assert first.pop("run") and second.pop("run")
     assert json.dumps(first) == json.dumps(second)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.base import plugins
 from pe_tools.cli import verbs
 from pe_tools.formats import FoundMesh
@@ -51,7 +52,7 @@ def test_a_reader_is_found_and_its_mesh_is_checked_and_turned(monkeypatch, tmp_p
     install(monkeypatch, f"{__name__}:box")
     monkeypatch.setitem(sys.modules, __name__, sys.modules[box.__module__])
     (tmp_path / "box.dae").write_bytes(b"anything")
-    mesh = pe.read_mesh(tmp_path / "box.dae")
+    mesh = pt.read_mesh(tmp_path / "box.dae")
     assert mesh.triangles.tolist() == BOX.tolist()
     assert mesh.part_names == ("a?name",)
     assert mesh.axes == "faces +z (shape), up is +y (file)"
@@ -64,7 +65,7 @@ def test_without_its_library_one_line_says_what_to_install(monkeypatch, tmp_path
         r"pip install 'perception-entropy\[meshes\]'.*No module named 'no_such_library_at_all'"
     )
     with pytest.raises(pe.InputError, match=expected):
-        pe.read_mesh(tmp_path / "car.dae")
+        pt.read_mesh(tmp_path / "car.dae")
 
 
 def fails(path, data):
@@ -94,7 +95,7 @@ def test_a_plugin_that_fails_is_named(monkeypatch, tmp_path, function, words):
     monkeypatch.setitem(sys.modules, __name__, sys.modules[box.__module__])
     (tmp_path / "box.dae").write_bytes(b"anything")
     with pytest.raises(pe.InputError) as caught:
-        pe.read_mesh(tmp_path / "box.dae")
+        pt.read_mesh(tmp_path / "box.dae")
     assert str(caught.value).startswith(f"plugin 'dae' of {__name__}: {words}")
 
 
@@ -115,7 +116,7 @@ def read_dae(monkeypatch, folder, text):
     pytest.importorskip("collada", reason="of the extra meshes")
     install(monkeypatch, "pe_tools.formats.meshes.collada:read_dae")
     (folder / "car.dae").write_text(text)
-    return pe.read_mesh(folder / "car.dae", pe.MeshAxes(forward="+x"))
+    return pt.read_mesh(folder / "car.dae", pe.MeshAxes(forward="+x"))
 
 
 def test_collada_s_unit_up_axis_polygons_and_nodes(monkeypatch, tmp_path):

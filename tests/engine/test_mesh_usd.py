@@ -5,6 +5,7 @@ import os
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 
 pytest.importorskip("pxr", reason="of the extra meshes")
 from pxr import UsdUtils  # where it is installed
@@ -95,7 +96,7 @@ def test_one_line_before_usd_composes_it(tmp_path, capfd, name):
     make, words = BAD[name]
     path = make(tmp_path)
     with pytest.raises(pe.InputError) as caught:
-        pe.read_mesh(path)
+        pt.read_mesh(path)
     assert words in str(caught.value) and "\n" not in str(caught.value)
     assert capfd.readouterr() == ("", ""), "USD itself prints nothing"
 
@@ -104,6 +105,6 @@ def test_references_to_what_is_there_are_read(tmp_path, capfd):
     (tmp_path / "inner").mkdir()
     layer(tmp_path / "inner", "leaf", MESH)
     inside = "".join(reference("inner/leaf.usda", n, "instanceable = true\n") for n in range(3))
-    mesh = pe.read_mesh(layer(tmp_path, "main", MESH + inside), pe.MeshAxes(forward="+x"))
+    mesh = pt.read_mesh(layer(tmp_path, "main", MESH + inside), pe.MeshAxes(forward="+x"))
     assert len(mesh.triangles) == 4
     assert capfd.readouterr() == ("", "")

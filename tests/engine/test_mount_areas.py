@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.search import Parametrization
 from pe_core.study.study_file import study_from_dict
 from tests.engine import mounting, shapes
@@ -28,10 +29,10 @@ def area_mount(standoff=BASE, orientation="upright"):
 @pytest.fixture
 def folder(tmp_path):
     car, faces = mounting.car(), painted()
-    pe.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
+    pt.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
     parts = np.repeat(np.arange(2, dtype=np.int32), len(faces))
     both = np.concatenate([faces, faces - [0.0, 0.0, 0.3]])
-    pe.write_mesh(tmp_path / "areas.npz", pe.Mesh(both, parts, ("front half", "lower")))
+    pt.write_mesh(tmp_path / "areas.npz", pe.Mesh(both, parts, ("front half", "lower")))
     return tmp_path
 
 
@@ -66,8 +67,8 @@ def test_a_study_with_areas_is_written_with_them_and_searches_the_same(folder, t
         mounting=space.mounting, samples=1024, schedule=pe.Schedule(2), method="random"
     )
     study = pe.Study(rig, mounting.car(), search=search, samples=1024)
-    there = pe.prepare_folder(tmp_path / "out")
-    pe.export_study(study, there / "study.toml")
+    there = pt.prepare_folder(tmp_path / "out")
+    pt.export_study(study, there / "study.toml")
     again = pe.load_study(there / "study.toml")
     assert {each.name for each in there.glob("*.npz")} == {"vehicle.npz", "areas.npz"}
     assert np.array_equal(again.search.mounting.mounts["roof"].area.triangles, painted())
@@ -78,7 +79,7 @@ def test_a_study_with_areas_is_written_with_them_and_searches_the_same(folder, t
 
 
 def run(study):
-    job = pe.OptimizeJob(study)
+    job = pt.OptimizeJob(study)
     list(job)
     return [(row.entropy, row.rig["roof"].pose) for row in job.history]
 
@@ -86,7 +87,7 @@ def run(study):
 def test_a_study_whose_areas_are_in_no_file_is_not_saved_alone(tmp_path):
     rig, space = mounting.space(mounting.can(START), mount={"roof": area_mount()})
     car, search = mounting.car(), pe.Search(mounting=space.mounting)
-    pe.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
+    pt.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
     with pytest.raises(pe.InputError, match="mount 'roof': area: expected a file beside"):
         pe.save_study(pe.Study(rig, car, search=search, mesh="car.npz"), tmp_path / "a.toml")
 
@@ -117,7 +118,7 @@ BAD = {
 def test_what_is_wrong_with_an_area_is_one_line(folder, name):
     mount, told = BAD[name]
     flat = pe.Mesh(np.ones((2, 3, 3)), np.zeros(2, np.int32), ("flat",))
-    pe.write_mesh(folder / "flat.npz", flat)
+    pt.write_mesh(folder / "flat.npz", flat)
     (folder / "text.npz").write_text("no archive")
     with pytest.raises(pe.InputError) as error:
         study_from_dict(data(mount), "study.toml", folder)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.search import Parametrization
 from pe_core.study.study_file import study_from_dict, study_to_dict
 from tests.engine import mounting
@@ -22,7 +23,7 @@ RACK = {"name": "rack", "slot": [SLOT, SLOT | {"name": "there", "position": [0.5
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     folder, car = tmp_path_factory.mktemp("mounts"), mounting.car()
-    pe.write_mesh(folder / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
+    pt.write_mesh(folder / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
     return folder
 
 

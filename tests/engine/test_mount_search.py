@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.search import Parametrization, pose_values
 from pe_tools.cli.verbs import main
 from tests.engine import mounting, shapes
@@ -103,7 +104,7 @@ def study(**limits):
 
 
 def outcome_of(study):
-    job = pe.OptimizeJob(study, 1)
+    job = pt.OptimizeJob(study, 1)
     assert list(job)
     return job.outcome
 
@@ -134,7 +135,7 @@ def sedan(tmp_path_factory):
         str(folder / "study.toml"),
         "-o",
         str(out),
-        "--grid-samples",
+        "--samples",
         "1024",
     ]
     assert main([*arguments, "--workers", "1"]) == 0
@@ -174,7 +175,7 @@ def test_result_json_says_the_slot():
         samples=1024, schedule=pe.Schedule(candidates=2), mounting=rack, method="random"
     )
     space = shapes.small_space()
-    told = pe.result_dict(outcome_of(pe.Study(rig, space=space, samples=1024, search=search)))
+    told = pt.result_dict(outcome_of(pe.Study(rig, space=space, samples=1024, search=search)))
     x = told["placements"]["after"]["roof"]["position"][0]
     assert told["mounts"] == {"roof": {"mount": "rack", "slot": f"slot {x:g}"}}
 

@@ -19,7 +19,7 @@ from tests.engine.test_docs import ROOT
 from tests.engine.test_mesh_axes import car, obj, triangles_of
 
 ASSETS = ROOT / "blend_assets"
-CHEAP = ["--grid-samples", "1024"]
+CHEAP = ["--samples", "1024"]
 
 
 def new(mesh, study, *more):
@@ -71,7 +71,7 @@ def test_a_study_of_our_vehicles_runs_as_it_is(name, tmp_path, monkeypatch, caps
     study = checked(tmp_path / "study.toml")
     assert set(study.vehicle.glass) >= {"windshield", "windows_left", "rear_window"}
     assert main(["score", "study.toml", *CHEAP]) == 0
-    budget = ["--samples", "1024", "--evaluations", "4", "--no-review"]
+    budget = ["--search-samples", "1024", "--evaluations", "4", "--no-review"]
     assert main(["optimize", "study.toml", "-o", "out", *CHEAP, *budget]) == 0
     moved = pe.load_study(tmp_path / "out" / "study.toml")
     assert moved.search.mounting.on == {"roof": "roof"}

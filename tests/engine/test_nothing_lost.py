@@ -12,6 +12,7 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_tools import jobs
 from tests.engine import shapes
 from tests.engine.processes import ROOT, Command
@@ -32,7 +33,7 @@ def study(tmp_path):
         {"roof": ("x", "z", "pitch")}, {}, 3, 2048, pe.Schedule(candidates=4), method="random"
     )
     path = tmp_path / "car.toml"
-    pe.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
+    pt.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
     return path
 
 
@@ -216,11 +217,11 @@ def test_a_disk_that_fills_after_a_checkpoint_over_an_older_set_is_told(
     from pe_tools.cli.run_job import keep
 
     monkeypatch.setattr("tempfile.tempdir", str(elsewhere))
-    first = pe.OptimizeJob(pe.load_study(study))
+    first = pt.OptimizeJob(pe.load_study(study))
     list(first)
     assert keep(first.outcome, out, None, None)[0] == 0
     old = (out / "result.json").read_bytes()
-    job = pe.OptimizeJob(replace(first.study, search=replace(first.study.search, seed=9)))
+    job = pt.OptimizeJob(replace(first.study, search=replace(first.study.search, seed=9)))
     list(job)
     jobs.Checkpoint(job).save(out)
     real = jobs.folder.write_synced
@@ -244,11 +245,11 @@ def test_a_disk_that_fills_after_a_checkpoint_over_an_older_set_is_told(
 
 @pytest.mark.parametrize("call", ["fsync", "replace"])
 def test_a_set_is_replaced_whole_or_stays(study, out, failing_call, call):
-    job = pe.ScoreJob(pe.load_study(study))
+    job = pt.ScoreJob(pe.load_study(study))
     list(job)
     jobs.write_outcome(job.outcome, out)
     before = {path.name: path.read_bytes() for path in out.iterdir()}
-    again = pe.ScoreJob(replace(job.study, samples=2048))
+    again = pt.ScoreJob(replace(job.study, samples=2048))
     list(again)
     count = failing_call(call, errno.EIO, first=3, once=call == "replace")
     with pytest.raises(pe.InputError, match="input/output error"):
@@ -317,7 +318,7 @@ def test_a_file_that_fails_after_the_result_sets_that_of_an_older_run_aside(
             raise pe.InputError(folder / names[0], "file", "enough space on the disk", "none")
         jobs.add_to_result(data, folder, {names[0]: b"scene"})
 
-    job = pe.ScoreJob(pe.load_study(study))
+    job = pt.ScoreJob(pe.load_study(study))
     list(job)
     assert keep(job.outcome, tmp_path / "out", None, More(names, write))[0] == 0
     assert (tmp_path / "out" / names[0]).exists()

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_tools import jobs
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import FileSet, files_of_other_runs
@@ -16,7 +17,7 @@ from tests.engine.processes import ROOT
 
 LISTING = ".perception-entropy.json"
 NAMES = ("study.toml", "vehicle.npz", "boxes.csv", "history.csv", "result.json")
-SHORT = ("--method", "random", "--candidates", "2", "--samples", "2048")
+SHORT = ("--method", "random", "--candidates", "2", "--search-samples", "2048")
 
 
 def a_study(boxes=True, x=-0.43):
@@ -34,7 +35,7 @@ def shapes_boxes():
 def study(tmp_path):
     path = tmp_path / "input" / "car.toml"
     path.parent.mkdir()
-    pe.export_study(a_study(), path)
+    pt.export_study(a_study(), path)
     return path
 
 
@@ -93,7 +94,7 @@ def test_files_that_a_run_does_not_write_are_nobodys_business(study, out):
 
 
 def test_the_folder_of_the_study_is_refused(tmp_path, capsys, monkeypatch, no_work):
-    pe.export_study(a_study(), tmp_path / "study.toml")
+    pt.export_study(a_study(), tmp_path / "study.toml")
     before = contents(tmp_path)
     monkeypatch.chdir(tmp_path)
     assert optimize("study.toml", ".") == 1
@@ -126,16 +127,16 @@ def test_an_export_replaces_what_was_chosen_and_not_its_neighbours(tmp_path):
     path, mesh = tmp_path / "car.toml", tmp_path / "car.npz"
     path.write_text("mine")
     with pytest.raises(pe.InputError, match=r"car\.toml: output: expected no file"):
-        pe.export_study(a_study(), path)
+        pt.export_study(a_study(), path)
     mesh.write_text("mine too")
     before = contents(tmp_path)
     with pytest.raises(pe.InputError, match=r"car\.npz: output: expected no file"):
-        pe.export_study(a_study(), path, replace_study=True)
+        pt.export_study(a_study(), path, replace_study=True)
     assert contents(tmp_path) == before
     mesh.unlink()
-    pe.export_study(a_study(), path, replace_study=True)
+    pt.export_study(a_study(), path, replace_study=True)
     assert pe.load_study(path).rig["roof"].pose.position[0] == -0.43
-    pe.export_study(a_study(x=0.1), path)  # all three are ours now
+    pt.export_study(a_study(x=0.1), path)  # all three are ours now
     assert pe.load_study(path).rig["roof"].pose.position[0] == 0.1
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.study import passthrough_of_text, passthrough_text
 from pe_tools.cli.verbs import main
 from pe_tools.exchange import RIG_FORMATS, import_rig
@@ -100,7 +101,7 @@ def test_what_moved_moves_and_nothing_else_changes(name, tmp_path):
     pose = pe.Pose((moved.pose.position[0] + 0.25, *moved.pose.position[1:]), moved.pose.rpy)
     rig = pe.Rig([moved.moved(pose), *list(found.rig)[1:]])
     out = tmp_path / "out" / path.name
-    pe.export_rig(rig, name, out, AXLE, passthrough=found.passthrough)
+    pt.export_rig(rig, name, out, AXLE, passthrough=found.passthrough)
     before, after = data_of(path), data_of(out)
     again = import_rig(out, name, AXLE).rig
     for ours, theirs in zip(rig, again, strict=True):
@@ -125,11 +126,11 @@ def test_a_kit_that_is_there_keeps_its_text_without_the_study_s_help(tmp_path):
     before = data_of(kit)
     for _ in range(3):
         rig = import_rig(kit, None, AXLE).rig
-        _, lines = pe.export_rig(rig, "autoware", kit, AXLE, replace=True)
+        _, lines = pt.export_rig(rig, "autoware", kit, AXLE, replace=True)
     assert data_of(kit) == before, "and no camera_info"
     assert "camera0: the kit has no camera_info of it; its lens is not written" in lines
     new = tmp_path / "new"
-    pe.export_rig(rig, "autoware", new, AXLE)
+    pt.export_rig(rig, "autoware", new, AXLE)
     again = import_rig(new, None, AXLE).rig
     for name in ("hesai_top", "hesai_left"):
         assert again[name].pose.position == pytest.approx(rig[name].pose.position, abs=1e-9)
@@ -146,10 +147,10 @@ def test_a_lens_of_a_kit_is_written_when_it_is_another(tmp_path):
     file = kit / "camera_info" / "camera0.yaml"
     file.write_text(info)
     rig = import_rig(kit, None, AXLE).rig
-    pe.export_rig(rig, "autoware", kit, AXLE, replace=True)
+    pt.export_rig(rig, "autoware", kit, AXLE, replace=True)
     assert file.read_text() == info
     other = pe.Sensor("camera0", pe.catalog.load("KITTI cam2"), rig["camera0"].pose)
-    pe.export_rig(pe.Rig([other]), "autoware", kit, AXLE, replace=True)
+    pt.export_rig(pe.Rig([other]), "autoware", kit, AXLE, replace=True)
     assert "image_width: 1242" in file.read_text()
 
 
@@ -159,7 +160,7 @@ def test_a_model_that_was_chosen_is_written_and_one_that_stands_in_is_not(tmp_pa
     for models, word in ((chosen, "model=Hesai OT128 (Pandar128E4X)"), ({}, "device=LUMINAR")):
         found = import_rig(path, None, AXLE, models)
         out = tmp_path / word[:5] / "rig.json"
-        pe.export_rig(found.rig, "driveworks", out, AXLE, passthrough=found.passthrough)
+        pt.export_rig(found.rig, "driveworks", out, AXLE, passthrough=found.passthrough)
         row = json.loads(out.read_text())["rig"]["sensors"][1]
         assert row["name"] == "lidar:top" and row["parameter"].startswith(word)
 
@@ -170,7 +171,7 @@ def test_the_file_s_own_place_is_taken_back(tmp_path):
     placed = pe.Pose((0.4, 0.1, -0.2), (0.0, 0.1, 0.3))
     found = import_rig(path, None, None, None, placed)
     assert found.rig["lidar"].pose.position != (0.0, 0.0, 2.4)
-    pe.export_rig(found.rig, "carla", tmp_path / "objects.json", passthrough=found.passthrough)
+    pt.export_rig(found.rig, "carla", tmp_path / "objects.json", passthrough=found.passthrough)
     assert json.loads((tmp_path / "objects.json").read_text()) == CARLA
 
 
@@ -180,7 +181,7 @@ def test_carla_s_horizontal_fov_is_the_lidar_s(tmp_path):
     assert math.degrees(lidar.horizontal_fov[1]) == pytest.approx(60.0)
     assert lidar.beam_count == 501 * 32
     rig = pe.Rig([pe.Sensor("lidar", lidar, pe.Pose((0, 0, 2)))])
-    pe.export_rig(rig, "carla", tmp_path / "objects.json")
+    pt.export_rig(rig, "carla", tmp_path / "objects.json")
     (row,) = json.loads((tmp_path / "objects.json").read_text())["objects"][0]["sensors"]
     assert row["horizontal_fov"] == pytest.approx(120.0)
     assert row["points_per_second"] / 10 == 501 * 32
@@ -202,7 +203,7 @@ def test_osi_s_radars_keep_their_ids_and_all_else(tmp_path):
         assert not any("left out" in line for line in found.lines)
         assert {s.kind for s in found.rig} == {"camera", "radar", "ultrasonic"}
         path = tmp_path / f"{number}.json"
-        pe.export_rig(found.rig, "osi", path, AXLE, passthrough=found.passthrough)
+        pt.export_rig(found.rig, "osi", path, AXLE, passthrough=found.passthrough)
         out = json.loads(path.read_text())
         (ours,) = out["radar_sensor_view_configuration"]
         assert ours == {"sensor_id": {"value": "0"}, "emitter_frequency": 77e9}

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.base.table_reader import Table, dumps
 from pe_core.base.values import as_in_file
 from pe_core.scoring.requirements import (
@@ -218,7 +219,7 @@ def test_bad_input_is_one_line_that_names_it(tmp_path):
     """Through the study file: the line has the file or the requirement, and what was expected."""
     lidar = study_to_dict(pe.Study(pe.Rig([rig()["top"]]), van()))
     mesh = tmp_path / "van.npz"
-    pe.write_mesh(mesh, pe.Mesh(van().triangles, van().parts, van().part_names))
+    pt.write_mesh(mesh, pe.Mesh(van().triangles, van().parts, van().part_names))
     lidar["vehicle"] = {"mesh": mesh.name}
     offenders = []
     for name, (change, expected) in BAD.items():

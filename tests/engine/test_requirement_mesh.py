@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.base.table_reader import Table
 from pe_core.scoring.requirements import (
     Body,
@@ -105,7 +106,7 @@ def test_verdicts_on_a_mesh_are_those_of_the_definition_and_never_easier_than_it
 
 
 def test_a_mesh_comes_from_a_file_and_back(tmp_path):
-    pe.write_mesh(tmp_path / "ball.obj", pe.Mesh(ball(0.2), np.zeros(512, np.int32), ("ball",)))
+    pt.write_mesh(tmp_path / "ball.obj", pe.Mesh(ball(0.2), np.zeros(512, np.int32), ("ball",)))
     body = {"mesh": "ball.obj", "scale": 2.0, "name": "ball", "low": 0.5, "class": "pedestrian"}
     table = {"name": "a", "body": [body], "zone": {"x": ["front", "front + 2"], "y": [-1, 1]}}
     read = read_requirement(Table(table, "study"), tmp_path)
@@ -117,7 +118,7 @@ def test_a_mesh_comes_from_a_file_and_back(tmp_path):
     rig = pe.Rig([shapes.camera(60.0, (2.53, 0.0, 0.93), (0.0, 18.0, 0.0), "front")])
     study = pe.Study(rig, vehicle, requirements=[read])
     (tmp_path / "elsewhere").mkdir()
-    pe.export_study(study, tmp_path / "elsewhere" / "study.toml")
+    pt.export_study(study, tmp_path / "elsewhere" / "study.toml")
     there = pe.load_study(tmp_path / "elsewhere" / "study.toml")
     assert there.requirements == study.requirements
     assert fingerprint(there) == fingerprint(study)
@@ -144,7 +145,7 @@ def test_a_bad_mesh_is_one_line_that_names_it(tmp_path, name):
     faces = ball(0.2)
     for file, some in (("ball", faces), ("open", faces[::2])):
         parts = np.zeros(len(some), np.int32)
-        pe.write_mesh(tmp_path / f"{file}.obj", pe.Mesh(some, parts, ("ball",)))
+        pt.write_mesh(tmp_path / f"{file}.obj", pe.Mesh(some, parts, ("ball",)))
     (tmp_path / "words.stl").write_text("no mesh at all")
     (tmp_path / "ball.txt").write_text("1 2 3")
     change, expected = BAD[name]

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.scoring.requirements import (
     BODIES,
     Body,
@@ -74,7 +75,7 @@ def finished(job):
 def test_a_search_that_starts_with_two_requirements_broken_ends_with_none():
     start = study(evaluations=400)
     assert [v.met for v in start.verdicts()] == [True, False, False]
-    outcome = finished(pe.OptimizeJob(start, workers=1))
+    outcome = finished(pt.OptimizeJob(start, workers=1))
     assert [v.met for v in outcome.verdicts] == [True, True, True]
     values = [row.entropy for row in outcome.history]
     assert values[0] > INFEASIBLE > values[-1] and values == sorted(values, reverse=True)
@@ -87,7 +88,7 @@ def test_a_requirement_that_cannot_be_kept_is_told_with_what_stands_against_it()
     hopeless = Requirement("under", AHEAD, (BODIES["patch"],), Criterion(of=("lidar",)))
     start = study(evaluations=60)
     outcome = finished(
-        pe.OptimizeJob(replace(start, requirements=(*start.requirements, hopeless)), workers=1)
+        pt.OptimizeJob(replace(start, requirements=(*start.requirements, hopeless)), workers=1)
     )
     told = [w.line for w in outcome.warnings if w.code == "requirement"]
     assert any("under is not met" in line and "alone" in line for line in told)
@@ -194,7 +195,7 @@ def tilted(blind_ground, method="portfolio"):
 @pytest.mark.parametrize("method", ["portfolio", "random"])
 def test_a_search_that_keeps_blind_ground_ends_with_no_more_of_it(method):
     """Without the key the same search pays its gain with blind ground, and says so."""
-    free, kept = (finished(pe.OptimizeJob(tilted(keep, method), 1)) for keep in (None, "keep"))
+    free, kept = (finished(pt.OptimizeJob(tilted(keep, method), 1)) for keep in (None, "keep"))
     before, after = free.blind_m2
     assert after > before + 1.0
     assert "blind ground (" in free.cost and advice.costs_nothing(kept.cost) == (
@@ -227,7 +228,7 @@ def test_workers_and_cutoffs_keep_the_same_blind_ground():
             found = objective.evaluate(rig, cutoff)
             assert (found.entropy < cutoff) == (objective.entropy(rig) < cutoff)
             assert found.is_lower_bound or found.entropy == objective.entropy(rig)
-    one, two = (finished(pe.OptimizeJob(given, workers)) for workers in (1, 2))
+    one, two = (finished(pt.OptimizeJob(given, workers)) for workers in (1, 2))
     assert one.evaluated == two.evaluated and one.after == two.after
 
 

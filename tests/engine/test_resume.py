@@ -11,6 +11,7 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.search import METHODS, Journal, evaluate_all
 from pe_core.study import SEARCH
 from pe_tools import jobs
@@ -37,7 +38,7 @@ def a_study(method="random"):
 
 @pytest.fixture
 def path(tmp_path):
-    pe.export_study(a_study(), tmp_path / "car.toml")
+    pt.export_study(a_study(), tmp_path / "car.toml")
     return tmp_path / "car.toml"
 
 
@@ -65,15 +66,15 @@ def outcome_of(job, steps=None):
 @pytest.mark.parametrize("method", METHODS)
 def test_every_method_goes_on_to_the_bits_of_an_unbroken_search(method):
     study = a_study(method)
-    whole = outcome_of(pe.OptimizeJob(study, 1))
+    whole = outcome_of(pt.OptimizeJob(study, 1))
     known = ()
     for steps in MOMENTS:  # broken off again and again
-        job = pe.OptimizeJob(study, 1, journal=Journal(known))
+        job = pt.OptimizeJob(study, 1, journal=Journal(known))
         outcome_of(job, steps)
         known = job.journal.entries
         assert len(known) >= steps
-    end = outcome_of(pe.OptimizeJob(study, 1, journal=Journal(known)))
-    data, expected = pe.result_dict(end), pe.result_dict(whole)
+    end = outcome_of(pt.OptimizeJob(study, 1, journal=Journal(known)))
+    data, expected = pt.result_dict(end), pt.result_dict(whole)
     del data["run"], expected["run"]
     assert data == expected
     assert end.evaluated == whole.evaluated
@@ -130,7 +131,7 @@ def test_a_resumed_search_leaves_the_same_files(path, tmp_path, capsys):
     for number, named in enumerate(([], [str(path)])):
         out = tmp_path / f"out{number}"
         study = pe.load_study(path)
-        job = pe.OptimizeJob(study)
+        job = pt.OptimizeJob(study)
         outcome_of(job, 30)
         SearchState(study).save(out, job.best, job.journal.entries)
         assert main(["optimize", "--no-review", *named, "--resume", str(out)]) == 0
@@ -235,7 +236,7 @@ def test_another_study_or_option_is_refused_in_one_line(path, out, capsys):
     begun_in(out)
     study = pe.load_study(path)
     lower = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90), (-0.43, 0.0, 1.7))])
-    pe.export_study(study.with_rig(lower), path.with_name("lower.toml"))
+    pt.export_study(study.with_rig(lower), path.with_name("lower.toml"))
     for more in ([str(path.with_name("lower.toml"))], ["--seed", "9"], [str(path), "--seed", "9"]):
         assert main(["optimize", *more, "--resume", str(out)]) == 1
         (line,) = capsys.readouterr().err.splitlines()
@@ -247,7 +248,7 @@ def test_a_mesh_that_changed_is_refused(out, capsys):
     begun_in(out)
     body = shapes.box_car()
     moved = pe.Mesh(body.triangles + 0.5, body.parts, body.part_names)
-    pe.write_mesh(out / "vehicle.npz", moved)
+    pt.write_mesh(out / "vehicle.npz", moved)
     assert main(["optimize", "--resume", str(out)]) == 1
     assert "study: expected unchanged files beside the study" in capsys.readouterr().err
 
@@ -275,7 +276,7 @@ def test_usage(arguments, status, complaint, capsys):
 def test_a_fingerprint_tells_studies_apart_by_what_they_are(tmp_path):
     """Not by the names of their files: a copy in another folder is the same study."""
     study = a_study()
-    pe.export_study(study, tmp_path / "copy.toml")
+    pt.export_study(study, tmp_path / "copy.toml")
     assert fingerprint(pe.load_study(tmp_path / "copy.toml")) == fingerprint(study)
     body = study.vehicle
     others = [

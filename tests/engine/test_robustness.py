@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.search import mounted_off, robustness
 from pe_core.search.tolerance import FRESH
 from pe_tools import advice
@@ -37,7 +38,7 @@ def study(tolerance=OFF, samples=1024, failures=False):
 
 @pytest.fixture(scope="module")
 def outcome():
-    job = pe.OptimizeJob(study())
+    job = pt.OptimizeJob(study())
     assert list(job)[-1].stage == "done"
     return job.outcome
 
@@ -82,7 +83,7 @@ def test_the_standard_error_covers_what_other_seeds_tell():
 
 
 def test_result_json_and_the_terminal_say_it(outcome):
-    told = json.loads(json.dumps(pe.result_dict(outcome)))["robustness"]
+    told = json.loads(json.dumps(pt.result_dict(outcome)))["robustness"]
     assert (told["position"], told["angle"], told["draws"], told["samples"]) == (0.02, 0.5, 4, 1024)
     before, after = outcome.robustness.before, outcome.robustness.after
     for when, stands in (("before", before), ("after", after)):
@@ -96,7 +97,7 @@ def test_result_json_and_the_terminal_say_it(outcome):
 
 def test_a_search_under_errors_keeps_what_it_found_though_it_scores_worse_as_it_stands(outcome):
     assert len(outcome.history) > 1
-    again = pe.OptimizeJob(study(), before=replace(outcome.before, entropy=0.0))
+    again = pt.OptimizeJob(study(), before=replace(outcome.before, entropy=0.0))
     list(again)
     assert again.outcome.study.rig is again.history[-1].rig is not again.outcome.start.rig
 

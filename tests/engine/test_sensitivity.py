@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.search import Evaluation, Goals, Parametrization
 from pe_tools.cli.terminal import summary
 from pe_tools.jobs import result_dict
@@ -45,7 +46,7 @@ def finished(job):
 
 @pytest.fixture(scope="module")
 def outcome():
-    return finished(pe.OptimizeJob(study(), 1))
+    return finished(pt.OptimizeJob(study(), 1))
 
 
 def test_costs_are_those_of_plain_evaluations_and_the_result_is_not_touched(outcome):
@@ -61,7 +62,7 @@ def test_costs_are_those_of_plain_evaluations_and_the_result_is_not_touched(outc
     assert row.cost[-1.0].stderr == pytest.approx(np.std(each, ddof=1) / 2.0, abs=1e-9)
     assert row.status == "free"
     assert {a.axis for a in found.axes if a.status == "fixed"} == {"x", "y", "roll", "yaw"}
-    without = finished(pe.OptimizeJob(study("off"), 1))
+    without = finished(pt.OptimizeJob(study("off"), 1))
     assert without.sensitivity is None and without.evaluated == outcome.evaluated
     assert without.study.rig["roof"].pose == pose and without.after.entropy == outcome.after.entropy
 
@@ -77,7 +78,7 @@ class CountingThreads(ThreadPoolExecutor):
 
 
 def test_workers_do_the_analysis_and_find_the_same(outcome):
-    job = pe.OptimizeJob(study(), 1)
+    job = pt.OptimizeJob(study(), 1)
     with CountingThreads(2) as threads:
         job.executor = threads
         by_workers = finished(job)
@@ -214,7 +215,7 @@ def test_another_optimum_is_told_from_the_flank_of_the_same_one():
 
 
 def test_a_search_that_resumes_says_the_same(outcome):
-    job = pe.OptimizeJob(study(), 1)
+    job = pt.OptimizeJob(study(), 1)
     job.journal = pe.search.Journal(outcome.evaluated[:11])
     again = result_dict(finished(job))
     assert again["sensitivity"] == result_dict(outcome)["sensitivity"]

@@ -93,7 +93,7 @@ def test_the_script_of_a_shell_has_every_verb(shell, capsys):
     (verbs,) = (action.choices for action in parser()._actions if action.metavar == "VERB")
     assert {"new", "doctor", "score", "review"} <= set(verbs)
     assert [verb for verb in verbs if verb not in script] == []
-    assert "--grid-samples" in script or "grid-samples" in script
+    assert "--samples" in script or "samples" in script
 
 
 def test_bash_completes_verbs_options_and_files(tmp_path, capsys):
@@ -109,10 +109,10 @@ def test_bash_completes_verbs_options_and_files(tmp_path, capsys):
         "source pe.bash; try() { COMP_WORDS=(pe $@); COMP_CWORD=$#; COMPREPLY=(); "
         'f=$(complete -p pe | sed "s/.*-F \\([^ ]*\\).*/\\1/"); '
         '$f pe "${!#}" "${@:$#-1:1}"; echo "${COMPREPLY[@]}"; }; '
-        "try opt; try score --grid; try score stu; try completion f"
+        "try opt; try score --samp; try score stu; try completion f"
     )
     run = subprocess.run([bash, "-c", code], cwd=tmp_path, capture_output=True, text=True)
-    assert run.stdout.split("\n")[:4] == ["optimize", "--grid-samples", "study.toml", "fish"], run
+    assert run.stdout.split("\n")[:4] == ["optimize", "--samples", "study.toml", "fish"], run
 
 
 def test_without_the_library_a_line_says_what_to_install(monkeypatch, capsys):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.base.table_reader import dumps
 from pe_core.study.study_file import study_from_dict, study_to_dict
 from tests.engine import shapes
@@ -76,7 +77,7 @@ RANDOM = 'method = "random"\n'
 @pytest.fixture
 def write(tmp_path):
     car = shapes.box_car()
-    pe.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
+    pt.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
 
     def to_file(text):
         path = tmp_path / "study.toml"
@@ -111,7 +112,7 @@ def test_everything_that_is_said_arrives(write):
 @pytest.mark.parametrize("text", [MINIMAL, FULL], ids=["minimal", "full"])
 def test_a_saved_study_is_the_same_study_to_the_bit(write, tmp_path, text):
     study = pe.load_study(write(text))
-    pe.export_study(study, tmp_path / "copy.toml")
+    pt.export_study(study, tmp_path / "copy.toml")
     copy = pe.load_study(tmp_path / "copy.toml")
     assert [s.pose for s in copy.rig] == [s.pose for s in study.rig]
     for a, b in zip(copy.rig, study.rig, strict=True):

@@ -12,6 +12,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.base.table_reader import dumps
 from pe_core.search import AXES
 from pe_core.study.study_file import study_from_dict, study_to_dict
@@ -326,7 +327,7 @@ def test_a_random_study_comes_back_from_its_file_equal_in_every_field(data):
         if study.vehicle is not None:
             body = study.vehicle
             mesh = pe.Mesh(body.triangles, body.parts, body.part_names)
-            pe.write_mesh(folder / study.mesh, mesh)
+            pt.write_mesh(folder / study.mesh, mesh)
         pe.save_study(study, folder / "study.toml")
         again = pe.load_study(folder / "study.toml")
     assert differences(study, again) == []
@@ -341,7 +342,7 @@ def test_an_exported_study_holds_the_same_prior_and_vehicle(data):
         folder = Path(first)
         (folder / "table.csv").write_text(BOX_TABLE, "utf-8")
         study = data.draw(studies(folder))
-        pe.export_study(study, Path(second) / "study.toml")
+        pt.export_study(study, Path(second) / "study.toml")
         again = pe.load_study(Path(second) / "study.toml")
     assert again.prior == study.prior
     assert not differences(study.vehicle, again.vehicle)
@@ -383,7 +384,7 @@ def test_a_vehicle_in_no_file_is_not_saved_but_exported(tmp_path, mesh):
     with pytest.raises(pe.InputError, match=r"vehicle\.mesh: .*pe\.export_study writes it"):
         pe.save_study(study, tmp_path / "study.toml")
     assert not list(tmp_path.iterdir())
-    pe.export_study(study, tmp_path / "study.toml")
+    pt.export_study(study, tmp_path / "study.toml")
     again = pe.load_study(tmp_path / "study.toml")
     assert not differences(again.vehicle, study.vehicle)
 
@@ -393,7 +394,7 @@ def test_boxes_in_no_file_are_not_saved_but_exported(tmp_path):
     study = pe.Study(pe.Rig([shapes.lidar_on_roof()]), prior=pe.Prior.from_boxes(boxes))
     with pytest.raises(pe.InputError, match=r"prior\.boxes: .*pe\.export_study writes it"):
         pe.save_study(study, tmp_path / "study.toml")
-    pe.export_study(study, tmp_path / "study.toml")
+    pt.export_study(study, tmp_path / "study.toml")
     assert pe.load_study(tmp_path / "study.toml").prior == study.prior
 
 

@@ -16,6 +16,7 @@ from threading import Thread
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.base.files import is_reserved
 from pe_core.search import Journal
 from pe_core.study import SEARCH
@@ -45,7 +46,7 @@ def study(tmp_path):
     schedule = pe.Schedule(candidates=2)
     search = pe.Search({"roof": ("x", "z")}, {}, 3, 1024, schedule, method="random")
     path = tmp_path / "car.toml"
-    pe.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
+    pt.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
     return path
 
 
@@ -209,7 +210,7 @@ def test_a_sweep_leaves_each_run_and_a_table(study, out, capsys):
         lidar = changed.rig["roof"]
         height = float(row["sensor.roof.position.2"])
         placed = replace(lidar, pose=replace(lidar.pose, position=(-0.43, 0.0, height)))
-        job = pe.OptimizeJob(changed.with_rig(pe.Rig([placed])))
+        job = pt.OptimizeJob(changed.with_rig(pe.Rig([placed])))
         list(job)
         assert job.outcome.after.entropy == result["entropy"]
 
@@ -272,7 +273,7 @@ def noted(monkeypatch):
 
 def searched(study):
     """The result of a search that nothing broke off."""
-    job = pe.OptimizeJob(study)
+    job = pt.OptimizeJob(study)
     list(job)
     return job.outcome
 
@@ -327,7 +328,7 @@ def test_a_small_disk_that_fills(study, out, tmp_path, capfd, size, done):
     if mounted.returncode:
         pytest.skip("no file system may be mounted here")
     try:
-        argv = ["sweep", study, "--set", "optimize.seed=1,2,3,4,5,6", "--grid-samples", 1024]
+        argv = ["sweep", study, "--set", "optimize.seed=1,2,3,4,5,6", "--samples", 1024]
         options = {"env": {**os.environ, "TMPDIR": str(other)}}
         with Command(*argv, "-o", out / "sweep", "--workers", 1, "--json", **options) as command:
             data = json.loads(command.process.stdout.read())
@@ -350,7 +351,7 @@ def test_a_result_that_no_folder_takes_is_told_and_not_called_done(study, out, t
     def quota():
         resource.setrlimit(resource.RLIMIT_FSIZE, (2500, 2500))
 
-    argv = ["sweep", study, "--set", "optimize.seed=1,2", "--grid-samples", 1024, "-o", out]
+    argv = ["sweep", study, "--set", "optimize.seed=1,2", "--samples", 1024, "-o", out]
     options = {"env": {**os.environ, "TMPDIR": str(tmp_path)}, "preexec_fn": quota}
     with Command(*argv, "--workers", 1, **options) as command:
         text = command.process.stdout.read()

@@ -12,6 +12,7 @@ import time
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_tools.cli import sweep_verb
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import SearchState, read_search
@@ -42,7 +43,7 @@ Evaluator.score = score
 def study(tmp_path_factory):
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
     path = tmp_path_factory.mktemp("sweep") / "car.toml"
-    pe.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space()), path)
+    pt.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space()), path)
     return path
 
 
@@ -144,7 +145,7 @@ def test_searches_on_a_cluster_leave_checkpoints_here(cluster, tmp_path, monkeyp
     search = pe.Search({"roof": ("x", "z")}, {}, 3, 1024, schedule, method="random")
     study = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search)
     path, out = tmp_path / "car.toml", tmp_path / "out"
-    pe.export_study(study, path)
+    pt.export_study(study, path)
     saved, save = [], SearchState.save
 
     def watched(self, folder, best, entries, *, meshes=True):
@@ -158,7 +159,7 @@ def test_searches_on_a_cluster_leave_checkpoints_here(cluster, tmp_path, monkeyp
         return main(argv)
 
     assert asyncio.run(in_a_notebook()) == 0
-    whole = pe.OptimizeJob(pe.load_study(path))
+    whole = pt.OptimizeJob(pe.load_study(path))
     list(whole)
     evaluated = read_search(out / "car").evaluated
     assert evaluated == whole.outcome.evaluated  # events that come after the result change nothing

@@ -7,6 +7,7 @@ import re
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.base import dump_json, plugins
 from pe_tools.cli import command, progress_line, show
 from pe_tools.cli.progress_line import Reporter
@@ -89,7 +90,7 @@ def test_workers_are_a_whole_number_of_moderate_size(value, capsys):
     assert max(map(len, err.splitlines())) < 200
 
 
-@pytest.mark.parametrize("option", ["--grid-samples", "--seed", "--samples", "--candidates"])
+@pytest.mark.parametrize("option", ["--samples", "--seed", "--search-samples", "--candidates"])
 def test_every_option_of_a_number_has_a_range(option, capsys):
     assert status_of(["optimize", "x.toml", option, "1" + "0" * 30]) == 2
     assert "expected a whole number from 0 to " in capsys.readouterr().err
@@ -103,10 +104,10 @@ def test_the_greatest_values_are_taken():
 def test_a_name_that_steers_the_terminal_is_refused_and_shown_escaped(tmp_path, capsys):
     sensor = pe.Sensor("roof", pe.catalog.load("Pandar64"), pe.Pose((0.0, 0.0, 2.0)))
     path = tmp_path / "car.toml"
-    pe.export_study(pe.Study(pe.Rig([sensor])), path)
+    pt.export_study(pe.Study(pe.Rig([sensor])), path)
     text = path.read_text("utf-8")
     path.write_text(text.replace('"roof"', '"roof\u202e"'), "utf-8")
-    status = main(["score", str(path), "--grid-samples", "2048"])
+    status = main(["score", str(path), "--samples", "2048"])
     out, err = capsys.readouterr()
     assert (status, out) == (1, "")
     assert "\u202e" not in out + err and r"\u202e" in out + err

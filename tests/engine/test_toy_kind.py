@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core import catalog
 from pe_core import sensors as kinds
 from pe_core.metric import entropy_of, late_fusion, precision_of
@@ -196,10 +197,10 @@ def test_it_goes_through_other_programs_files(ring_kind, tmp_path):
     rig = pe.Rig([away, shapes.lidar_on_roof(shapes.small_lidar()), shapes.camera()])
     told = {}
     for name in RIG_FORMATS:
-        _, told[name] = pe.export_rig(rig, name, tmp_path / name, pe.Reference(-1.3, 0.3))
+        _, told[name] = pt.export_rig(rig, name, tmp_path / name, pe.Reference(-1.3, 0.3))
     for name in ("csv", "urdf"):
         assert not any("parameters" in line for line in told.pop(name))
-        back = pe.import_rig(tmp_path / name, name).rig["away"]
+        back = pt.import_rig(tmp_path / name, name).rig["away"]
         assert (back.model.name, back.model.range_m, back.fusion) == ("long", 7.5, "all")
         assert back.pose.position == pytest.approx(away.pose.position, abs=1e-9)
     for name, lines in told.items():
@@ -213,11 +214,11 @@ def test_without_its_kind_its_row_passes_through(tmp_path):
     kinds.register(RING)
     rig = pe.Rig([ring(), shapes.lidar_on_roof()])
     try:
-        (path,), _ = pe.export_rig(rig, "csv", tmp_path / "rig.csv")
+        (path,), _ = pt.export_rig(rig, "csv", tmp_path / "rig.csv")
     finally:
         kinds.unregister(RING.name)
-    found = pe.import_rig(path)
+    found = pt.import_rig(path)
     assert [sensor.name for sensor in found.rig] == ["roof"]
     options = {"passthrough": found.passthrough}
-    (again,), _ = pe.export_rig(found.rig, "csv", tmp_path / "again.csv", **options)
+    (again,), _ = pt.export_rig(found.rig, "csv", tmp_path / "again.csv", **options)
     assert again.read_text().splitlines()[5] == path.read_text().splitlines()[5]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.base import plugins
 from pe_tools.exchange import rig_files
 from pe_tools.outputs import scene_files
@@ -180,12 +181,12 @@ def test_distortion_in_an_argoverse_table_is_reported(tmp_path):
     feather = pytest.importorskip("pyarrow.feather", reason="of the extra argoverse")
     import pyarrow
 
-    pe.export_rig(RIG, "argoverse2", tmp_path, AXLE)
+    pt.export_rig(RIG, "argoverse2", tmp_path, AXLE)
     path = tmp_path / "intrinsics.feather"
     (row,) = feather.read_table(path).to_pylist()
     feather.write_feather(pyarrow.Table.from_pylist([{**row, "k1": -0.25}]), path)
     assert any(
-        "k1, k2, k3 are not applied" in line for line in pe.import_rig(tmp_path, None, AXLE).lines
+        "k1, k2, k3 are not applied" in line for line in pt.import_rig(tmp_path, None, AXLE).lines
     )
 
 
@@ -194,11 +195,11 @@ def test_distortion_in_an_argoverse_table_is_reported(tmp_path):
 )
 def test_a_damaged_feather_table_is_refused_in_a_line(tmp_path, damage):
     pytest.importorskip("pyarrow", reason="of the extra argoverse")
-    pe.export_rig(RIG, "argoverse2", tmp_path, AXLE)
+    pt.export_rig(RIG, "argoverse2", tmp_path, AXLE)
     path = tmp_path / "intrinsics.feather"
     path.write_bytes(damage(path.read_bytes()))
     with pytest.raises(pe.InputError, match="expected a feather table"):
-        pe.import_rig(tmp_path, None, AXLE)
+        pt.import_rig(tmp_path, None, AXLE)
 
 
 @pytest.mark.parametrize("compression", ["zstd", "lz4"])
@@ -209,27 +210,27 @@ def test_a_compressed_table_is_read_and_one_that_would_fill_memory_is_refused(
     feather = pytest.importorskip("pyarrow.feather", reason="of the extra argoverse")
     import pyarrow
 
-    pe.export_rig(RIG, "argoverse2", tmp_path, AXLE)
+    pt.export_rig(RIG, "argoverse2", tmp_path, AXLE)
     path = tmp_path / "egovehicle_SE3_sensor.feather"
     table = feather.read_table(path)
     feather.write_feather(table, path, compression=compression)
-    assert [s.name for s in pe.import_rig(tmp_path, None, AXLE).rig] == [s.name for s in RIG]
+    assert [s.name for s in pt.import_rig(tmp_path, None, AXLE).rig] == [s.name for s in RIG]
     zeros = pyarrow.array(np.zeros(50_000_000))
     feather.write_feather(pyarrow.table({"qw": zeros}), path, compression=compression)
     assert path.stat().st_size < 4_000_000
     before = pyarrow.total_allocated_bytes()
     with pytest.raises(pe.InputError, match=r"at most 64\.0 MB unpacked, found 400\.0 MB$"):
-        pe.import_rig(tmp_path, None, AXLE)
+        pt.import_rig(tmp_path, None, AXLE)
     assert pyarrow.total_allocated_bytes() - before < 1_000_000
     feather.write_feather(pyarrow.table({"qw": pyarrow.nulls(10**6)}), path)
     with pytest.raises(pe.InputError, match="expected a feather table, found something else"):
-        pe.import_rig(tmp_path, None, AXLE)
+        pt.import_rig(tmp_path, None, AXLE)
 
 
 def test_offsets_that_lie_and_feather_s_first_version_are_refused_before_a_value_is_read(tmp_path):
     """A text that would begin before the table's own memory: reading it ended the process."""
     feather = pytest.importorskip("pyarrow.feather", reason="of the extra argoverse")
-    pe.export_rig(RIG, "argoverse2", tmp_path, AXLE)
+    pt.export_rig(RIG, "argoverse2", tmp_path, AXLE)
     path = tmp_path / "egovehicle_SE3_sensor.feather"
     whole = path.read_bytes()
     names = [each.name for each in RIG]
@@ -241,7 +242,7 @@ def test_offsets_that_lie_and_feather_s_first_version_are_refused_before_a_value
     for data in (whole.replace(offsets, lying), first.getvalue()):
         path.write_bytes(data)
         with pytest.raises(pe.InputError, match="expected a feather table"):
-            pe.import_rig(tmp_path, None, AXLE)
+            pt.import_rig(tmp_path, None, AXLE)
 
 
 ASKING = {

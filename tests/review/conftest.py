@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.catalog import load
 from pe_tools.page import ReportContext, page_bytes
 from pe_tools.page.pictures import sensor_views, vehicle_picture
@@ -67,26 +68,26 @@ def outcome_of(job):
 @pytest.fixture(scope="session")
 def scored():
     """The study scored as it stands."""
-    return ReportContext("a/b <i>c</i>", outcome_of(pe.ScoreJob(small_study())))
+    return ReportContext("a/b <i>c</i>", outcome_of(pt.ScoreJob(small_study())))
 
 
 @pytest.fixture(scope="session")
 def other():
     """Another study, with the LiDAR farther back."""
-    return ReportContext("B & co", outcome_of(pe.ScoreJob(small_study(-1.5))))
+    return ReportContext("B & co", outcome_of(pt.ScoreJob(small_study(-1.5))))
 
 
 @pytest.fixture(scope="session")
 def searched():
     """The study after a search."""
-    return ReportContext("searched", outcome_of(pe.OptimizeJob(small_study())))
+    return ReportContext("searched", outcome_of(pt.OptimizeJob(small_study())))
 
 
 @pytest.fixture(scope="session")
 def bare():
     """A study without a vehicle."""
     study = dataclasses.replace(small_study(), vehicle=None)
-    return ReportContext("bare", outcome_of(pe.ScoreJob(study)))
+    return ReportContext("bare", outcome_of(pt.ScoreJob(study)))
 
 
 @pytest.fixture(scope="session")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-import pe_core as pe
+import pe_tools as pt
 from pe_tools import jobs
 from pe_tools.cli.verbs import main
 from pe_tools.page import PAGE
@@ -35,7 +35,7 @@ def few_sections(monkeypatch):
 def study(tmp_path):
     """A study file with its mesh, its name full of HTML and spaces."""
     path = tmp_path / f"{NAMED}.toml"
-    pe.export_study(small_study(), path)
+    pt.export_study(small_study(), path)
     return path
 
 
@@ -43,7 +43,7 @@ def study(tmp_path):
 def found(tmp_path_factory):
     """The folder of a search that left no page."""
     folder = tmp_path_factory.mktemp("search")
-    pe.export_study(small_study(), folder / "study.toml")
+    pt.export_study(small_study(), folder / "study.toml")
     out = folder / "out"
     options = ["-o", str(out), "--no-review", "--evaluations", "20"]
     assert main(["optimize", str(folder / "study.toml"), *options]) == 0
@@ -156,7 +156,7 @@ def test_a_folder_of_results_is_reviewed_as_the_search_it_was(study, tmp_path, c
     study.write_text(f"{study.read_text('utf-8')}\n{held}", "utf-8")
     assert main(["optimize", str(study), "-o", str(out)]) == 0
     told = json.loads((out / "result.json").read_text("utf-8"))["requirements"]
-    again = outcome_of_folder(out, lambda each: outcome_of(pe.ScoreJob(each)))
+    again = outcome_of_folder(out, lambda each: outcome_of(pt.ScoreJob(each)))
     assert json.loads(json.dumps([v.to_dict() for v in again.verdicts])) == told != []
     left = (out / PAGE).read_text("utf-8").replace("a &lt;b&gt; &amp; c.npz", "vehicle.npz")
     assert main(["review", str(out), "-o", str(tmp_path / "again")]) == 0

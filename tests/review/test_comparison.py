@@ -6,6 +6,7 @@ import re
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.catalog import load
 from pe_tools.page import ReportContext, keyed_contexts
 from pe_tools.page.markup import escaped, price_text, render
@@ -36,7 +37,7 @@ def differences(contexts):
 def beside(*rigs, **changes):
     """Studies of these rigs as a page has them; none is scored."""
     study = dataclasses.replace(small_study(), **changes)
-    each = [pe.Outcome("score", s, s, None, None) for s in map(study.with_rig, rigs)]
+    each = [pt.Outcome("score", s, s, None, None) for s in map(study.with_rig, rigs)]
     return keyed_contexts(
         [ReportContext(name, one) for name, one in zip("ABCDEF", each, strict=False)]
     )
@@ -96,7 +97,7 @@ def comparison(scored, other):
 
 
 def test_the_comparison_marks_the_engine_s_winner(scored, other, comparison):
-    rows = pe.advice.compare({"a": scored.after, "b": other.after})
+    rows = pt.advice.compare({"a": scored.after, "b": other.after})
     better = min((scored, other), key=lambda one: one.after.entropy)
     winner = (scored, other).index(better)
     assert rows[0].winner == winner
@@ -115,10 +116,10 @@ def test_expected_ap_stands_beside_the_entropy_of_voxels(scored, other, comparis
 
 
 def test_other_hardware_is_a_line_of_the_comparison():
-    wide = outcome_of(pe.ScoreJob(small_study().with_rig(rig(camera="Camera 120 deg"))))
-    narrow = outcome_of(pe.ScoreJob(small_study().with_rig(rig())))
+    wide = outcome_of(pt.ScoreJob(small_study().with_rig(rig(camera="Camera 120 deg"))))
+    narrow = outcome_of(pt.ScoreJob(small_study().with_rig(rig())))
     both = [ReportContext("wide", wide), ReportContext("narrow", narrow)]
-    assert escaped(pe.advice.OTHER_HARDWARE) in html_of(comparison_section, *keyed_contexts(both))
+    assert escaped(pt.advice.OTHER_HARDWARE) in html_of(comparison_section, *keyed_contexts(both))
 
 
 def test_tables_of_several_studies_are_one(scored, other, comparison):
@@ -134,7 +135,7 @@ def test_tables_of_several_studies_are_one(scored, other, comparison):
 def test_a_camera_in_the_body_is_named_in_the_summary(scored):
     inside = dataclasses.replace(small_study().rig[CAMERA], pose=pe.Pose((0.0, 0.0, 0.9)))
     study = small_study().with_rig(pe.Rig([small_study().rig[LIDAR], inside]))
-    one = ReportContext("inside", outcome_of(pe.ScoreJob(study)))
+    one = ReportContext("inside", outcome_of(pt.ScoreJob(study)))
     (line,) = overview((one,))["hidden"]
     assert line.startswith(f"<b>{escaped(CAMERA)}</b>") and line in html_of(overview, one)
     assert not overview((scored,))["hidden"]

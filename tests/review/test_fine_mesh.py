@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 
 import pe_core as pe
+import pe_tools as pt
 from pe_tools.page import ReportContext, report_context
 from pe_tools.page.sections.score import warnings_and_text
 from tests.review.conftest import html_of, outcome_of, small_study
@@ -26,7 +27,7 @@ def hood():
 def test_it_is_drawn_with_fewer_and_the_page_says_so(monkeypatch):
     monkeypatch.setattr(report_context, "MAX_TRIANGLES", FEW)
     study = dataclasses.replace(small_study(), vehicle=pe.Vehicle(hood()), samples=1024)
-    one = ReportContext("fine", outcome_of(pe.ScoreJob(study)))
+    one = ReportContext("fine", outcome_of(pt.ScoreJob(study)))
     shown, moved = one.display_vehicle
     assert len(shown.triangles) <= FEW and moved > 0.0
     assert len(one.vehicle.triangles) == 2 * ACROSS**2, "beams are cast at all"

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.catalog import load
 from pe_tools.page import ReportContext, picture_file
 from pe_tools.page.pictures import vehicle_picture as picture_module
@@ -124,7 +125,7 @@ def test_a_sensor_behind_the_body_is_reported_apart(car):
     vehicle, rig = car
     behind = pe.Sensor("a <b>", rig["right"].model, pe.Pose((-2.3, 0.5, 0.6)))
     study = pe.Study(pe.Rig([rig["right"], behind]), vehicle)
-    shown = ReportContext("car", pe.Outcome("score", study, study, None, None))
+    shown = ReportContext("car", pt.Outcome("score", study, study, None, None))
     drawing, key = picture_module.labelled_picture(shown, "alt")
     assert drawing.count('stroke-dasharray="4 4"') == 1 and drawing.count("<circle") == 3
     assert [row[:2] for row in key] == [(1, "right"), (2, "a <b>")]
@@ -142,7 +143,7 @@ def test_the_picture_s_file_has_figures_above_and_a_key_below(car):
     colors = picture_module.graphics.sensor_colors_on_paper(car[1]).values()
     for color in colors:
         assert (abs(key - 255 * np.array(color)) <= 1).all(axis=1).sum() > 100
-    job = pe.ScoreJob(pe.Study(car[1], car[0], samples=1024))
+    job = pt.ScoreJob(pe.Study(car[1], car[0], samples=1024))
     for _ in job:
         pass
     written = decoded(picture_file(study, job.outcome)).astype(int)

@@ -5,6 +5,7 @@ import dataclasses
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core import catalog
 from pe_tools import graphics
 from pe_tools.page import ReportContext
@@ -21,7 +22,7 @@ def parking():
     rear = pe.Pose.from_degrees((-2.6, 0.3, 0.5), (0, 0, 180))
     sonar = pe.Sensor("rear", catalog.load("Bosch Ultrasonic 3.1"), rear)
     study = study.with_rig(pe.Rig([*study.rig, front, sonar]))
-    return ReportContext("parking", outcome_of(pe.ScoreJob(study)))
+    return ReportContext("parking", outcome_of(pt.ScoreJob(study)))
 
 
 def test_a_page_shows_them(parking):

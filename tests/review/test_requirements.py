@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core.scoring import requirements
 from pe_tools import graphics
 from pe_tools.page import ReportContext
@@ -48,7 +49,7 @@ BEHIND = requirements.Requirement(
 def context():
     """The small study, held to three requirements."""
     study = dataclasses.replace(small_study(), requirements=(AHEAD, BESIDE, BEHIND))
-    return ReportContext("held", outcome_of(pe.ScoreJob(study)))
+    return ReportContext("held", outcome_of(pt.ScoreJob(study)))
 
 
 @pytest.fixture(scope="module")
@@ -157,7 +158,7 @@ def test_the_redundancy_section_has_the_engine_s_map_and_shares():
     camera = small_study().rig[NAMES[1]]
     other = pe.Sensor("other", camera.model, pe.Pose((2.3, -0.6, 1.2)))
     study = dataclasses.replace(small_study(), rig=pe.Rig([camera, other]))
-    context = ReportContext("two", outcome_of(pe.ScoreJob(study)))
+    context = ReportContext("two", outcome_of(pt.ScoreJob(study)))
     html = html_of(redundancy, context)
     seen = requirements.Redundancy(study.vehicle, study.space, HEIGHT_M, WITHIN_M, STEP_M)
     found = seen.map(context.rig)

@@ -5,6 +5,7 @@ import dataclasses
 import pytest
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core import scene
 from pe_core import sensors as kinds
 from pe_tools.page import ReportContext, page_bytes
@@ -26,7 +27,7 @@ def bumper():
     study = dataclasses.replace(small_study(), samples=1024)
     ring = pe.Sensor("bumper", Ring("park pilot", 4.0), pe.Pose((2.3, 0.0, 0.5)))
     study = study.with_rig(pe.Rig([*study.rig, ring]))
-    yield ReportContext("parking", outcome_of(pe.ScoreJob(study)))
+    yield ReportContext("parking", outcome_of(pt.ScoreJob(study)))
     kinds.unregister("toyring")
 
 

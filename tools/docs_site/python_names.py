@@ -1,4 +1,4 @@
-"""Pages of the Python names that ``import pe_core as pe`` shows, by the room that defines them."""
+"""Pages of the Python names that ``pe_core`` and ``pe_tools`` show, by the room of each."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import types
 from collections.abc import Iterator
 
 import pe_core as pe
+import pe_tools as pt
 
 FOLDER = "reference/python"
 ROOMS = {
@@ -46,19 +47,20 @@ def pages() -> dict[str, str]:
 
 def public_names() -> Iterator[tuple[str, str]]:
     """Yield the name of each public class, function and module, and where it is defined."""
-    for name in pe.__all__:
-        value = getattr(pe, name)
-        if isinstance(value, types.ModuleType):
-            yield name, value.__name__
-        elif callable(value):
-            yield name, f"{value.__module__}.{value.__qualname__}"
+    for short, package in (("pe", pe), ("pt", pt)):
+        for name in package.__all__:
+            value = getattr(package, name)
+            if isinstance(value, types.ModuleType):
+                yield f"{short}.{name}", value.__name__
+            elif callable(value):
+                yield f"{short}.{name}", f"{value.__module__}.{value.__qualname__}"
 
 
 def entry(name: str, target: str) -> str:
     """Return a name's part of its page: as mkdocstrings takes it, or a heading alone."""
     if os.environ.get("PE_SITE_DOCSTRINGS") == "0":
-        return f"### pe.{name}\n\n"
-    return f"::: {target}\n    options:\n      heading: pe.{name}\n      toc_label: {name}\n\n"
+        return f"### {name}\n\n"
+    return f"::: {target}\n    options:\n      heading: {name}\n      toc_label: {name}\n\n"
 
 
 def index(heads: dict[str, list[str]], texts: dict[str, list[tuple[str, str]]]) -> str:
@@ -68,7 +70,7 @@ def index(heads: dict[str, list[str]], texts: dict[str, list[tuple[str, str]]]) 
         names = ", ".join(f"`{name}`" for name, _ in sorted(texts[page]))
         rows.append(f"## [{title}]({page}.md)\n\n{about}\n\n{names}\n\n")
     return (
-        "# Python names\n\nWhat `import pe_core as pe` shows, generated from the docstrings. These"
-        " names stay; what lies deeper may change with any version. How to begin:"
-        " [python.md](../../python.md).\n\n" + "".join(rows)
+        "# Python names\n\nWhat `import pe_core as pe` and `import pe_tools as pt` show, generated"
+        " from the docstrings. These names stay; what lies deeper may change with any"
+        " version. How to begin: [python.md](../../python.md).\n\n" + "".join(rows)
     )

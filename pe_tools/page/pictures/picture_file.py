@@ -12,7 +12,7 @@ import numpy as np
 import pe_core as pe
 from pe_core.base.arrays import Floats
 
-from ... import graphics
+from ... import graphics, jobs
 from ..report_context import MAX_TRIANGLES
 from . import vehicle_picture as pictures
 
@@ -32,7 +32,7 @@ INK: graphics.Rgb = (0.106, 0.122, 0.141)
 WHITE: graphics.Rgb = (1.0, 1.0, 1.0)
 
 
-def picture_file(study: pe.Study, outcome: pe.Outcome | None = None) -> bytes:
+def picture_file(study: pe.Study, outcome: jobs.Outcome | None = None) -> bytes:
     """Return the picture of a study's rig on its vehicle as PNG, with numbers and their key; above
     it the figures of an outcome."""
     vehicle = study.vehicle
@@ -94,7 +94,7 @@ def _key(rig: pe.Rig, width: int) -> list[KeyEntry]:
     return entries
 
 
-def _figures(outcome: pe.Outcome) -> list[str]:
+def _figures(outcome: jobs.Outcome) -> list[str]:
     """Return entropy and coverage, of a search before and after; first what it searched for."""
     before, after = outcome.before, outcome.after
     entropy, coverage = f"{after.entropy:.3f}", f"{after.coverage:.1%}"

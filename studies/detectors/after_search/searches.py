@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pe_core as pe
+import pe_tools as pt
 from pe_core import InputError
 from pe_core.base import dump_json, write_bytes
 from pe_core.search import PAPER_FREE
@@ -83,7 +84,7 @@ class _SearchIdentity:
 
 def _search(plan: AfterSearchPlan, rig: SearchedRig, objective: str) -> Json:
     """Run a search; return what was found, as JSON data."""
-    job = pe.OptimizeJob(study_of(plan, rig, objective))
+    job = pt.OptimizeJob(study_of(plan, rig, objective))
     for _ in job:
         pass
     outcome = job.outcome

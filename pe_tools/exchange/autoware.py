@@ -23,17 +23,8 @@ from pe_core.geometry.poses import Pose
 from pe_core.scene.vehicle_description import Reference
 from pe_tools.formats.yaml_text import KeyPath, YamlText, parse_yaml
 
-from .foreign_values import (
-    RPY,
-    XYZ,
-    Export,
-    FileTexts,
-    named_numbers,
-    plain_number,
-    pose_from,
-    pose_numbers,
-    text_of,
-)
+from . import foreign_values as foreign
+from .foreign_values import RPY, XYZ, Export, FileTexts, plain_number
 from .frames import composed, seen_from, with_legal_frames
 from .lens_pictures import alike
 from .passthrough import is_there, is_turned_so
@@ -63,7 +54,7 @@ def kit_texts(folder: Path) -> dict[str, str]:
     file_names = sorted(path.name for path in folder.glob("*_calibration.yaml"))
     units = [name for name in file_names if name not in (TO_KIT, IN_KIT)]
     kit = [IN_KIT] if IN_KIT in file_names or not units else []
-    return {name: text_of(folder / name) for name in (TO_KIT, *kit, *units)}
+    return {name: foreign.text_of(folder / name) for name in (TO_KIT, *kit, *units)}
 
 
 def _units(folder: Path, texts: Mapping[str, str]) -> dict[str, Unit]:
@@ -89,8 +80,8 @@ def _units(folder: Path, texts: Mapping[str, str]) -> dict[str, Unit]:
         frames = {}
         for name in table.names:
             row = table.table(name)
-            position, angles = (named_numbers(row, keys) for keys in (XYZ, RPY))
-            frames[name] = pose_from(path, row.path, position, angles)
+            position, angles = (foreign.named_numbers(row, keys) for keys in (XYZ, RPY))
+            frames[name] = foreign.pose_from(path, row.path, position, angles)
         units[file] = Unit(yaml, parent, frames)
     return units
 
@@ -133,7 +124,7 @@ def source(path: Path) -> dict[str, str]:
         for frame in unit.frames:
             name = info_name(frame.removesuffix(FRAMES[CAMERA]))
             if (folder / name).is_file():
-                texts[name] = text_of(folder / name)
+                texts[name] = foreign.text_of(folder / name)
     return texts
 
 
@@ -168,7 +159,7 @@ def _frame_lines(sensor: PortableSensor, unit: Pose) -> list[str]:
 
 
 def _lines_of(head: str, pose: Pose) -> list[str]:
-    return [head, *(f"  {key}: {plain_number(v)}" for key, v in pose_numbers(pose).items())]
+    return [head, *(f"  {key}: {plain_number(v)}" for key, v in foreign.pose_numbers(pose).items())]
 
 
 def write(sensors: PortableRig, texts: FileTexts) -> Export:
@@ -251,7 +242,7 @@ def _patched(
         moved = zip(XYZ, old.position, now.position, strict=True)
         changed = [key for key, a, b in moved if not is_there(a, b)]
         changed += [] if is_turned_so(old, now) else RPY
-        numbers = pose_numbers(now)
+        numbers = foreign.pose_numbers(now)
         values |= {(unit.parent, frame, key): plain_number(numbers[key]) for key in changed}
         model = sensor.known_model or ""
         if frame in models and model in catalog.entries():
@@ -288,9 +279,9 @@ def read_vehicle_info(path: str | Path) -> Reference:
     be read, or a number that is missing or impossible, raises `InputError`.
     """
     path = Path(path)
-    top = Table(parse_yaml(str(path), text_of(path)), str(path))
+    top = Table(parse_yaml(str(path), foreign.text_of(path)), str(path))
     nodes = top.table("/**") if "/**" in top else top
     keys = ("wheel_radius", "wheel_base", "front_overhang", "rear_overhang")
-    radius, base, front, rear = named_numbers(nodes.table("ros__parameters"), keys)
+    radius, base, front, rear = foreign.named_numbers(nodes.table("ros__parameters"), keys)
     middle = (rear + base + front) / 2.0
     return Reference(rear - middle, radius, base, front, rear)

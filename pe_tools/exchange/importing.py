@@ -14,23 +14,17 @@ from pe_core.scene.rig import Rig, Sensor, SensorModel
 from pe_core.scene.vehicle_description import Reference
 from pe_core.study.passthrough import Passthrough, SourceSensor
 
+from . import portable_kinds
 from .foreign_values import MAX_SENSORS, require_at_most
 from .frames import composed, origin_in_ground, shifted
 from .lens_pictures import alike
 from .passthrough import NO_WORD, listed_kinds, model_text, parted
 from .portable import PortableSensor, merged_lines, named_apart
-from .portable_kinds import (
-    PORTABLE_KINDS,
-    camera_of,
-    kind_by_name,
-    picture_of,
-    portable_kind,
-    stand_in_of,
-    with_ranges,
-)
 from .rig_formats import RigFormat, detect_format, rig_format
 
-STAND_INS = {kind: row.stand_in for kind, row in PORTABLE_KINDS.items() if row.stand_in}
+STAND_INS = {
+    kind: row.stand_in for kind, row in portable_kinds.PORTABLE_KINDS.items() if row.stand_in
+}
 """Stand-in models by kind, for sensors whose model the file does not name."""
 CHOOSE = "choose its model"
 Modelled = tuple[PortableSensor, SensorModel, str]
@@ -128,8 +122,13 @@ def _imported(
     for sensor, model, _ in modelled:
         pose = sensor.pose if placed is None else composed(placed, sensor.pose)
         rig.append(Sensor(sensor.name, model, shifted(pose, origin), sensor.fusion))
-    sources = _kept(named, left_out, modelled, models)
-    passthrough = Passthrough(row.name, sources, row.source(path), placed)
+    sources = {s.name: SourceSensor(s.name, s.kind or "", s.entry) for s in left_out}
+    for sensor, model, line in modelled:
+        text = "" if sensor.name in models else model_text(model)
+        fields = sensor.name, model.kind, sensor.entry, sensor.pose, text
+        sources[sensor.name] = SourceSensor(*fields, line.endswith(CHOOSE))
+    in_order = tuple(sources[sensor.name] for sensor in named)
+    passthrough = Passthrough(row.name, in_order, row.source(path), placed)
     hint = f"; an export to {row.title} has them again" if row.passes_through else ""
     left_out_lines = [f"left out: {left_out_names}{hint}"] if left_out else []
     notes = merged_lines(((sensor.name, sensor.told) for sensor, _, _ in modelled), len(modelled))
@@ -138,24 +137,9 @@ def _imported(
     return ImportedRig(Rig(rig), to_choose, lines, passthrough if passthrough.holds else None)
 
 
-def _kept(
-    named: Sequence[PortableSensor],
-    left_out: Sequence[PortableSensor],
-    modelled: Sequence[Modelled],
-    models: Mapping[str, str],
-) -> tuple[SourceSensor, ...]:
-    """Return the passthrough record of each sensor, in the file's order."""
-    sources = {s.name: SourceSensor(s.name, s.kind or "", s.entry) for s in left_out}
-    for sensor, model, line in modelled:
-        text = "" if sensor.name in models else model_text(model)
-        fields = sensor.name, model.kind, sensor.entry, sensor.pose, text
-        sources[sensor.name] = SourceSensor(*fields, line.endswith(CHOOSE))
-    return tuple(sources[sensor.name] for sensor in named)
-
-
 def _with_model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> Modelled:
     """Return a sensor with its kind resolved, its model, and a message about the model."""
-    sensor = replace(sensor, kind=sensor.kind or kind_by_name(sensor.name))
+    sensor = replace(sensor, kind=sensor.kind or portable_kinds.kind_by_name(sensor.name))
     model, line = (catalog.load(chosen), "") if chosen is not None else _model(sensor, row)
     return row.settled(replace(sensor, model=model.name)), model, line
 
@@ -169,15 +153,15 @@ def _model(sensor: PortableSensor, row: RigFormat) -> tuple[SensorModel, str]:
     names = {NO_WORD.sub("", name.lower()): name for name in catalog.names(sensor.kind)}
     if normalized and normalized in names:
         model, line = catalog.load(names[normalized]), ""
-        ours, theirs = picture_of(model), sensor.picture
+        ours, theirs = portable_kinds.picture_of(model), sensor.picture
         if ours and theirs is not None and not alike(row.keeps(ours), theirs):
             note = f"{sensor.name}: its lens is not that of {model.name} in the catalogue, but the"
-            model, line = camera_of(sensor.name, theirs, row.usual_size)
+            model, line = portable_kinds.camera_of(sensor.name, theirs, row.usual_size)
             line = line or f"{note} file's"
-        return with_ranges(model, sensor), line
-    if (own := portable_kind(sensor.kind).model(sensor, row.usual_size)) is not None:
+        return portable_kinds.with_ranges(model, sensor), line
+    if (own := portable_kinds.portable_kind(sensor.kind).model(sensor, row.usual_size)) is not None:
         return own
-    stand_in = stand_in_of(sensor.kind or "")
+    stand_in = portable_kinds.stand_in_of(sensor.kind or "")
     assert stand_in is not None, "`parted` has left it out"
     reason = (
         f"no {shown(sensor.model)} in the catalogue" if sensor.model else "no model in the file"

@@ -18,15 +18,8 @@ from pe_core.geometry.poses import METRES
 from pe_core.sensors.camera import BrownConrady, Pinhole
 from pe_core.study.passthrough import json_entry
 
+from . import frames
 from .foreign_values import Export, FileTexts, json_of, json_rows
-from .frames import (
-    BODY_FROM_OPTICAL,
-    BODY_FROM_RIGHT_FORWARD,
-    from_quaternion,
-    pose_of,
-    product,
-    quaternion,
-)
 from .lens_pictures import Picture, with_fourth
 from .passthrough import entry_row
 from .portable import PortableRig, PortableSensor
@@ -35,7 +28,7 @@ from .portable_kinds import CAMERA, LIDAR
 FILES = CALIBRATED, SENSORS = "calibrated_sensor.json", "sensor.json"
 FIVE = ("k1", "k2", "p1", "p2", "k3")
 POSE, FIGURES = ("translation", "rotation"), ("camera_intrinsic", "camera_distortion")
-AXES = {CAMERA: BODY_FROM_OPTICAL, LIDAR: BODY_FROM_RIGHT_FORWARD}
+AXES = {CAMERA: frames.BODY_FROM_OPTICAL, LIDAR: frames.BODY_FROM_RIGHT_FORWARD}
 """Rotation from nuScenes' sensor axes to those of this project, by kind; others have the same."""
 
 
@@ -61,13 +54,13 @@ def _known(sensor: PortableSensor) -> dict[str, Any]:
 def _calibrated(sensor: PortableSensor) -> dict[str, Any]:
     rotation = sensor.pose.ground_from_sensor
     if sensor.kind in AXES:
-        rotation = product(rotation, AXES[sensor.kind])
+        rotation = frames.product(rotation, AXES[sensor.kind])
     p = sensor.picture
     row = {
         "token": _token("calibrated", sensor.name),
         "sensor_token": _token("sensor", sensor.name),
         "translation": list(sensor.pose.position),
-        "rotation": list(quaternion(rotation)),
+        "rotation": list(frames.quaternion(rotation)),
         "camera_intrinsic": [] if p is None else p.matrix,
     }
     if p is not None and isinstance(p.lens, BrownConrady):
@@ -102,9 +95,9 @@ def _sensor(path: Path, row: Table, sensor_row: Table) -> PortableSensor:
     name, kind = sensor_row.text("channel"), sensor_row.text("modality")
     position = vector(path, row.field("translation"), row.raw("translation"), 3, METRES)
     rotation_values = vector(path, row.field("rotation"), row.raw("rotation"), 4)
-    rotation = from_quaternion(path, row.field("rotation"), rotation_values)
+    rotation = frames.from_quaternion(path, row.field("rotation"), rotation_values)
     if kind in AXES:
-        rotation = product(rotation, AXES[kind].T)
+        rotation = frames.product(rotation, AXES[kind].T)
     picture, note, value = None, "", row.raw("camera_intrinsic", [])
     if value != []:
         matrix = numbers(value)
@@ -115,7 +108,7 @@ def _sensor(path: Path, row: Table, sensor_row: Table) -> PortableSensor:
         if row.raw("camera_distortion", []):
             picture, note = _bent(row, picture)
     entry = json_entry({CALIBRATED: row.data, SENSORS: sensor_row.data})
-    pose = pose_of(rotation, position)
+    pose = frames.pose_of(rotation, position)
     return PortableSensor(name, pose, kind, None, picture, told=note, entry=entry)
 
 

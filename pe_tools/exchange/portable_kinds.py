@@ -121,7 +121,13 @@ def camera_of(name: str, p: Picture, usual: Size | None = None) -> tuple[Camera,
     the image, the field of view is limited to the part before the fold, to 0.1 degrees.
     """
     if p.size is None:
-        size, reason = _made_up_size(p, usual)
+        doubled = [2.0 * middle for middle in p.center]
+        size, reason = (round(doubled[0]), round(doubled[1])), "has its middle there"
+        is_centred = max(abs(a - b) for a, b in zip(doubled, size, strict=True)) < ALIKE_PX
+        if usual is not None and not is_centred:  # calibrations do not have half pixels by chance
+            offsets = [abs(a / b - 1.0) / 2.0 for a, b in zip(doubled, usual, strict=True)]
+            if max(offsets) < OFF_CENTER:
+                size, reason = usual, "is usual there"
         model, _ = camera_of(name, replace(p, size=size))
         return model, f"{name}: no size in the file; {size[0]} x {size[1]} px {reason}"
     if p.is_plain:
@@ -136,18 +142,6 @@ def camera_of(name: str, p: Picture, usual: Size | None = None) -> tuple[Camera,
     half = math.degrees(unfolded.fov or 0.0) / 2.0
     line = f"{name}: its lens folds inside the picture; what is farther than {half:g} deg from the "
     return Camera(name, *p.size, lens=unfolded), f"{line}axis is left out"
-
-
-def _made_up_size(p: Picture, usual: Size | None) -> tuple[Size, str]:
-    """Return an assumed image size [px], and the reason for it."""
-    doubled = [2.0 * middle for middle in p.center]
-    width, height = (round(side) for side in doubled)
-    is_centred = max(abs(doubled[0] - width), abs(doubled[1] - height)) < ALIKE_PX
-    if usual is not None and not is_centred:  # calibrations do not have half pixels by chance
-        offsets = [abs(a / b - 1.0) / 2.0 for a, b in zip(doubled, usual, strict=True)]
-        if max(offsets) < OFF_CENTER:
-            return usual, "is usual there"
-    return (width, height), "has its middle there"
 
 
 def lidar_of(name: str, scan: Scan) -> Lidar:

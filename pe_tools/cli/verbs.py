@@ -17,26 +17,12 @@ from pe_core.study import Study, load_study
 from pe_core.version import __version__
 
 from ..jobs import FrontJob, front_study, has_front, prepare_folder, result_names
+from . import exchange_verbs, run_job
 from .check_verb import add_check_options, add_requirements_verb, check
 from .choose_verb import choose, resumed
 from .command import Parser, add_run_options, add_sensors_verb, as_typed, run, with_options
-from .exchange_verbs import (
-    add_export_options,
-    add_import_options,
-    add_rigs_verb,
-    export,
-    import_study,
-)
 from .explain_verbs import add_compare_options, add_explain_options, compare, explain, named_by_file
 from .new_verb import add_new_verb
-from .run_job import (
-    add_page_option,
-    begun_search,
-    carry_out,
-    job_and_folder,
-    refuse_own_folder,
-    with_pages,
-)
 from .setup_verbs import add_setup_verbs
 from .sweep_verb import add_sweep_options, sweep
 from .terminal import Answer, open_missing_streams, tell
@@ -96,13 +82,13 @@ def parser() -> argparse.ArgumentParser:
     for verb in VERBS:
         verb.add(verbs)
     add_sensors_verb(verbs)
-    add_rigs_verb(verbs)
+    exchange_verbs.add_rigs_verb(verbs)
     add_requirements_verb(verbs)
     add_new_verb(verbs)
     add_setup_verbs(verbs, parser)
     for plugin in find_plugins("verb"):
         _add_plugin_verbs(plugin, verbs)
-    add_page_option(verbs.choices["optimize"])
+    run_job.add_page_option(verbs.choices["optimize"])
     return top
 
 
@@ -135,20 +121,20 @@ def _run_job(args: argparse.Namespace) -> Answer:
         folder = resumed(front, args)
         output = None if folder is None else Path(folder)
         return choose(front, output, as_json=args.json, scheduler=args.scheduler)
-    begun = begun_search(args)
+    begun = run_job.begun_search(args)
     if given is None and begun is None:
         args.usage_error("expected STUDY, or --resume DIR")
     study = given if given is not None or begun is None else with_options(begun.study, args)
     assert study is not None
-    (job, name), more = job_and_folder(study, args, begun), with_pages(args)
+    (job, name), more = run_job.job_and_folder(study, args, begun), run_job.with_pages(args)
     if name is not None:
         if args.study is not None:
-            refuse_own_folder(Path(args.study), Path(name))
+            run_job.refuse_own_folder(Path(args.study), Path(name))
         more_names = more.names if more else ()
         prepare_folder(name, [*result_names(study, args.kind), *more_names])
     output = None if name is None else Path(name)
     scheduler = getattr(args, "scheduler", None)
-    return carry_out(job, output, as_json=args.json, more=more, scheduler=scheduler)
+    return run_job.carry_out(job, output, as_json=args.json, more=more, scheduler=scheduler)
 
 
 VERBS = (
@@ -191,11 +177,17 @@ VERBS = (
     Verb(
         "export",
         "write a study's rig for another program",
-        add_export_options,
+        exchange_verbs.add_export_options,
         ONE,
-        lambda args: export(load_study(args.study), args),
+        lambda args: exchange_verbs.export(load_study(args.study), args),
     ),
-    Verb("import", "make a study of another program's rig", add_import_options, "", import_study),
+    Verb(
+        "import",
+        "make a study of another program's rig",
+        exchange_verbs.add_import_options,
+        "",
+        exchange_verbs.import_study,
+    ),
     Verb(
         "sweep",
         "run many studies, or one with many changes",

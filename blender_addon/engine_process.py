@@ -7,6 +7,7 @@ called here and at once. The process ends with the file, with the add-on, and wi
 from __future__ import annotations
 
 import atexit
+import traceback
 from collections.abc import Callable
 from typing import Any
 
@@ -59,7 +60,11 @@ def ask(
 
 def deliver_all() -> float | None:
     """Timer: deliver results; it ends when none is awaited."""
-    return POLL_S if _engine.deliver_all() else None
+    try:
+        return POLL_S if _engine.deliver_all() else None
+    except Exception:  # in what takes a result: others are awaited all the same
+        traceback.print_exc()
+        return POLL_S
 
 
 cancel, drop, busy = _engine.cancel, _engine.drop, _engine.busy

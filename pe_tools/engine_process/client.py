@@ -185,18 +185,17 @@ class EngineProcess:
         """Drop everything, and end the process."""
         self._awaited.clear()
         if self._process is not None:
-            self._connection.close()  # for the process the sign to end
-            self._process.join(END_S if self._is_up else 0.0)
-            if self._process.is_alive():
-                self._process.kill()
-            self._forget_process()
+            self._end_process(END_S if self._is_up else 0.0)
 
     def _deliver(self, number: int, topic: str, kind: str, data: bytes) -> None:
         waiting = self._awaited.get(topic, [])
         each = next((each for each in waiting if each.number == number), None)
         if each is None:  # dropped
             return
-        content = unpacked(data, each.shared.__getitem__)
+        try:
+            content = unpacked(data, each.shared.__getitem__)
+        except Exception as error:  # too little memory for it
+            kind, content = FAILED, error
         if kind == STEP:
             if each.step is not None:
                 each.step(content)
@@ -210,7 +209,7 @@ class EngineProcess:
 
     def _ask_again(self) -> None:
         """The process was killed: start another, and ask it what this one was asked last."""
-        self._forget_process()
+        self._end_process(END_S)
         for topic, waiting in list(self._awaited.items()):
             latest = waiting[-1]
             if latest.again:
@@ -221,9 +220,12 @@ class EngineProcess:
                 self._awaited[topic] = [latest]
                 self._send_request(topic, latest)
 
-    def _forget_process(self) -> None:
-        self._connection.close()
-        self._process.join()
+    def _end_process(self, patience_s: float) -> None:
+        self._connection.close()  # for the process the sign to end
+        self._process.join(patience_s)
+        if self._process.is_alive():
+            self._process.kill()
+            self._process.join()
         self._process = self._connection = None
 
     def _send_request(self, topic: str, each: _Awaited) -> None:

@@ -12,7 +12,7 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from pe_core.base.errors import InputError
 from pe_core.base.spawning import (
@@ -54,12 +54,20 @@ class _Awaited:
     again: bool = False
 
 
+class _Sent(NamedTuple):
+    """An object that the engine has: held, so that no other gets its `id`; and those in it."""
+
+    number: int
+    part: object
+    inside: dict[int, object]
+
+
 class _SharedObjects:
     """The objects that the engine has, by number; of each type those that were used last."""
 
     def __init__(self, most: Mapping[type, int]) -> None:
         self._most, self._last = most, 0
-        self._known: dict[type, dict[int, tuple[int, object]]] = {kind: {} for kind in most}
+        self._known: dict[type, dict[int, _Sent]] = {kind: {} for kind in most}
 
     def call(self, each: _Awaited) -> tuple[bytes, dict[int, bytes]]:
         """Return a call, pickled, and the shared objects in it that the engine does not have.
@@ -68,24 +76,25 @@ class _SharedObjects:
         """
         new: dict[int, bytes] = {}
 
-        def number_of(part: object, inside: object = None) -> int | None:
+        def number_of(part: object, noted: dict[int, object], inside: object = None) -> int | None:
             known = self._known.get(type(part))
             if known is None or part is inside:
                 return None
-            entry = known.pop(id(part), None)
-            if entry is None:
+            sent = known.pop(id(part), None)
+            if sent is None:
                 self._last += 1
-                entry = self._last, part
-                new[entry[0]] = packed(part, lambda inner: number_of(inner, part))
-            known[id(part)] = entry  # held, so that no other object gets its `id`
-            each.shared[entry[0]] = part
-            return entry[0]
+                sent = _Sent(self._last, part, {})
+                own = sent.inside
+                new[sent.number] = packed(part, lambda inner: number_of(inner, own, part))
+            known[id(part)] = sent
+            noted |= {sent.number: part, **sent.inside}
+            return sent.number
 
         try:
-            data = packed(each.call, number_of)
+            data = packed(each.call, lambda part: number_of(part, each.shared))
         except Exception:
             for known in self._known.values():  # the engine never got them
-                for key in [key for key, (number, _) in known.items() if number in each.shared]:
+                for key in [key for key, sent in known.items() if sent.number in new]:
                     del known[key]
             raise
         return data, dict(sorted(new.items(), reverse=True))  # what is inside comes first
@@ -95,7 +104,7 @@ class _SharedObjects:
         numbers = []
         for kind, known in self._known.items():
             for key in list(known)[: -self._most[kind]]:
-                numbers.append(known.pop(key)[0])
+                numbers.append(known.pop(key).number)
         return numbers
 
 

@@ -9,8 +9,9 @@ from __future__ import annotations
 import pickle
 import threading
 import traceback
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from multiprocessing.connection import Connection
 from typing import Any
 
@@ -30,7 +31,7 @@ class _Call:
     topic: str
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
-    numbers: Mapping[int, int]
+    numbers: dict[int, int]
     running: Any = None
     cancels: int = 0
 
@@ -103,6 +104,8 @@ class _Server:
     def __init__(self, connection: Connection) -> None:
         self._connection, self._sending = connection, threading.Lock()
         self._shared: dict[int, Any] = {}
+        self._inside: dict[int, dict[int, int]] = {}
+        """The numbers of the shared objects in a shared object, by their `id`."""
         self._lanes: dict[str, _Lane] = {}
 
     def serve(self) -> None:
@@ -122,6 +125,7 @@ class _Server:
             elif kind == FORGET:
                 for number in content:
                     self._shared.pop(number, None)
+                    self._inside.pop(number, None)
             else:
                 function, arguments = content
                 try:
@@ -130,24 +134,25 @@ class _Server:
                     traceback.print_exc()
 
     def _begin(self, request: Request) -> None:
-        used: dict[int, int] = {}
-
-        def shared(number: int) -> Any:
-            used[id(self._shared[number])] = number
-            return self._shared[number]
-
-        named = _Call(request.number, request.topic, tuple, (), used)
+        call = _Call(request.number, request.topic, tuple, (), {})
         try:
             for number, data in request.shared.items():
-                self._shared[number] = unpacked(data, shared)
-            named.function, named.arguments = unpacked(request.call, shared)
+                own = self._inside[number] = {}
+                self._shared[number] = unpacked(data, partial(self._object, own))
+            named = unpacked(request.call, partial(self._object, call.numbers))
+            call.function, call.arguments = named
         except Exception as error:  # a class that is not known here, too little memory
-            self._send(named, FAILED, error)
+            self._send(call, FAILED, error)
             return
         if request.lane not in self._lanes:
             self._lanes[request.lane] = _Lane(self._send)
             self._lanes[request.lane].start()
-        self._lanes[request.lane].put(named)
+        self._lanes[request.lane].put(call)
+
+    def _object(self, used: dict[int, int], number: int) -> Any:
+        """Return a shared object, and note it and those in it as used."""
+        used |= {id(self._shared[number]): number, **self._inside[number]}
+        return self._shared[number]
 
     def _send(self, call: _Call, kind: str, content: Any) -> None:
         """Send an answer; objects that came with the request go back as their numbers."""

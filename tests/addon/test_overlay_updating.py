@@ -1,5 +1,7 @@
 """What is shown follows the scene: worked out once a change, and never while drawing."""
 
+import pickle
+
 import bpy
 import numpy as np
 import pytest
@@ -66,6 +68,15 @@ def test_each_layer_has_a_switch_and_all_of_them_one(rig):
     assert not scenes.drawn(rig)
     rig.perception_entropy.show_overlay = True
     assert set(scenes.drawn(rig)) == ALL_LAYERS
+
+
+def test_shapes_can_be_sent_as_they_are(rig):
+    """By the engine's process: what a first redraw needs is in them."""
+    for layer, shapes in scenes.drawn(rig).items():
+        for shape in shapes.values():
+            sent = pickle.loads(pickle.dumps(shape))
+            assert len(sent.lines.points) == len(shape.lines.points), layer
+            assert (sent.sheet is None) or "mesh" in vars(sent.sheet)
 
 
 def test_nothing_is_worked_out_without_a_change(rig, worked):

@@ -99,6 +99,22 @@ def test_a_vehicle_is_sent_once_and_comes_back_as_the_same_object(engine):
         assert got[0] is each
 
 
+class Scene(list):
+    """Holds shared objects, and is one."""
+
+
+def test_what_is_in_a_shared_object_comes_back_as_itself_too():
+    engine = EngineProcess(lambda: {pe.Vehicle: 2, Scene: 1})
+    try:
+        for scene in (Scene([shapes.box_car()]), Scene([shapes.box_car()])):
+            for _ in range(2):
+                got = ask(engine, "car", itemgetter(0), scene)
+                settled(engine)
+                assert got[0] is scene[0]
+    finally:
+        engine.stop()
+
+
 def test_own_sensors_are_known_there(engine):
     pe.catalog.add("Mine", {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 60})
     try:

@@ -16,12 +16,11 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
-from ...base.arrays import Flags, Floats, Ints, read_only
+from ...base.arrays import Flags, Floats, Ints, ReadOnlyDict, read_only
 from ...base.errors import InputError, shown
 from ...base.values import FINITE, LENGTH, real
 from ...scene.vehicle import Vehicle
@@ -229,9 +228,9 @@ class VehiclePlanes:
         else:
             along["eyes"], found["eyes"] = eyes, {"code": "stated"}
         rounded = ({k: round(v, DECIMALS) for k, v in own.items()} for own in (along, across))
-        x, y = (MappingProxyType(each) for each in rounded)
+        x, y = (ReadOnlyDict(each) for each in rounded)
         outline = read_only(convex_outline(points[:, :2]))
-        return cls(x, y, MappingProxyType(found), MappingProxyType(missing), outline)
+        return cls(x, y, found, missing, outline)
 
     def coordinate(self, axis: int, place: Place, near_side: str, source: str, field: str) -> float:
         """Return a coordinate [m] of a place along x (0) or y (1), or raise `InputError`."""

@@ -7,9 +7,9 @@ to the safe side: a step is taken off, and they are rounded down to the centimet
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,7 +21,7 @@ from ...scene.vehicle import Vehicle
 from ...sensors import kind_of
 from ..sight.ground_cells import GroundCells
 from .bodies import Body
-from .criteria import Requirement, levels_of
+from .criteria import Criterion, Requirement, levels_of
 from .zones import INSIDE_M, PlacedZone
 
 DECIMALS = 2
@@ -373,17 +373,25 @@ def _worst_place(
     body = columns_of(requirement)[column]
     x, y = samples.points[worst].tolist()
 
-    def why() -> dict[str, Reason]:
-        foot = (x, y, requirement.zone.z[0])
-        blind = [s for s in rig if not result.seen[s.name][worst, column]]
-        counts = requirement.criterion.counts
-        reasons = {
-            s.name: why_not(s, body, foot, vehicle) if counts(s.kind) else Reason(NO_COUNT)
-            for s in blind
-        }
-        if requirement.criterion.share is None:
-            return reasons
-        return {n: Reason(IN_PART) if r.code == TOO_FEW else r for n, r in reasons.items()}
-
+    blind = [s for s in rig if not result.seen[s.name][worst, column]]
+    foot = x, y, requirement.zone.z[0]
+    why = partial(_reasons, requirement.criterion, blind, body, foot, vehicle)
     seen_by = tuple(s.name for s in rig if result.seen[s.name][worst, column])
     return {"worst": (x, y), "body": body.name, "seen_by": seen_by, "why": why}
+
+
+def _reasons(
+    criterion: Criterion,
+    blind: Sequence[Sensor],
+    body: Body,
+    foot: tuple[float, float, float],
+    vehicle: Vehicle | None,
+) -> dict[str, Reason]:
+    """Return why sensors do not see a body at a foot point, by name."""
+    reasons = {
+        s.name: why_not(s, body, foot, vehicle) if criterion.counts(s.kind) else Reason(NO_COUNT)
+        for s in blind
+    }
+    if criterion.share is None:
+        return reasons
+    return {n: Reason(IN_PART) if r.code == TOO_FEW else r for n, r in reasons.items()}

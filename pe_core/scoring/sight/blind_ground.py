@@ -21,12 +21,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
-from ...base.arrays import Flags, Floats, read_only
+from ...base.arrays import Flags, Floats, ReadOnlyDict, read_only
 from ...geometry.grids import GroundGrid, PerceptionSpace
 from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
@@ -144,9 +143,9 @@ def blind_ground(
         area_of(cells, blind),
         height,
         within,
-        MappingProxyType({side: strip.nearest() for side, strip in strips.items()}),
-        MappingProxyType({side: strip.zone() for side, strip in strips.items()}),
-        MappingProxyType({side: strip.seen_from() for side, strip in strips.items()}),
+        ReadOnlyDict({side: strip.nearest() for side, strip in strips.items()}),
+        ReadOnlyDict({side: strip.zone() for side, strip in strips.items()}),
+        ReadOnlyDict({side: strip.seen_from() for side, strip in strips.items()}),
         preview,
     )
 

@@ -28,8 +28,44 @@ def blender_s_own_words():
     ctypes.CDLL(None).fflush(None)
 
 
+def sent(content):
+    """Return content as it comes out of the engine's process: pickled, but for shared objects."""
+    from blender_addon import engine_process
+    from pe_tools.engine_process.messages import packed, unpacked
+
+    shared, kinds = {}, tuple(engine_process._shared_types())
+
+    def number_of(part):
+        if not isinstance(part, kinds):
+            return None
+        shared[id(part)] = part
+        return id(part)
+
+    return unpacked(packed(content, number_of), shared.__getitem__)
+
+
 @pytest.fixture(scope="session")
-def registered():
+def everything_is_sent():
+    """Have all that a window would send to the engine's process, and get from it, sent here too."""
+    from blender_addon.engine import engine_process
+    from blender_addon.operators.jobs import JobRow
+
+    call_here, finish = engine_process.call_here, JobRow.finish
+
+    def called(function, arguments, deliver, fail, step=None):
+        call_here(function, sent(arguments), lambda found: deliver(sent(found)), fail, step)
+
+    def finished(self, scene, task, found, job):
+        return finish(self, scene, task, sent(found), job)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(engine_process, "call_here", called)
+        patch.setattr(JobRow, "finish", finished)
+        yield
+
+
+@pytest.fixture(scope="session")
+def registered(everything_is_sent):
     """Return the add-on with its classes registered, once for all tests; nothing of it runs yet."""
     import bpy
 

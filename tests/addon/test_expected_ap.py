@@ -67,7 +67,8 @@ def test_the_curve_of_a_running_search_is_an_ap_that_rises(settings, monkeypatch
     job = pt.OptimizeJob(scenes.study(), 1)
     scene = bpy.context.scene
     context = type("Context", (), {"scene": scene, "window_manager": Manager(), "window": None})
-    running = RunningJob(context, job)
+    running = RunningJob(context, job, "outcome")
+    running.seen = job
     monkeypatch.setattr("blender_addon.operators.running_job.BEST_EVERY_S", 0.0)
     texts = []
     for progress in job:

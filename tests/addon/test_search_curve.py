@@ -51,7 +51,8 @@ def test_a_running_search_tells_the_view_each_time_it_finds_better(car, monkeypa
 
     job = jobs.OptimizeJob(scenes.study())
     context = type("Context", (), {"scene": car, "window_manager": Manager(), "window": None})
-    running = RunningJob(context, job)
+    running = RunningJob(context, job, "outcome")
+    running.seen = job
     monkeypatch.setattr("blender_addon.operators.running_job.BEST_EVERY_S", 0.0)
     best_lines = []
     for progress in job:

@@ -26,13 +26,10 @@ from ..kernels import (
     GridKernel,
     GroundKernel,
     GroundView,
-    Measured,
     ObjectKernel,
     ObjectView,
     Occlusion,
-    SampleKernel,
     VisibleGround,
-    Voxels,
     block_voxels,
     heights_of_post,
 )
@@ -95,30 +92,11 @@ class CameraGrid(GridKernel):
         return prepared.view.areas(planes)
 
 
-class CameraSample(SampleKernel):
-    """Measures areas of sampled voxels."""
-
-    def __init__(self, voxels: Voxels, vehicle: Vehicle | None, _: int = 0) -> None:
-        self._voxels, self._vehicle = voxels, vehicle
-        self._centers = np.asfortranarray(voxels.centers)  # fast for arithmetic axis by axis
-
-    def measure(self, sensor: Sensor, approximate: bool) -> Measured:
-        """Measure a camera, always exactly."""
-        return Measured(sensor, self._pixels(sensor, self._vehicle))
-
-    def unoccluded(self, sensor: Sensor) -> NDArray:
-        """Measure a camera as if there were no vehicle."""
-        return self._pixels(sensor, None)
-
-    def occlusion(self, measured: Measured) -> Occlusion:
-        """Count places of the picture that the vehicle hides."""
-        return picture_occlusion(measured.sensor, self._vehicle)
-
-    def _pixels(self, sensor: Sensor, vehicle: Vehicle | None) -> NDArray:
-        camera, side = cast(Camera, sensor.model), self._voxels.space.interval
-        seen = _seen(vehicle, sensor)
-        areas = pixel_areas if camera.projection.is_straight else bent_pixel_areas
-        return areas(camera, sensor.pose, self._centers, side, seen)
+def sampled_pixels(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None) -> Floats:
+    """Return the areas (V,) of cubes with centres (V, 3), equal to the definition [px]."""
+    camera, seen = cast(Camera, sensor.model), _seen(vehicle, sensor)
+    areas = pixel_areas if camera.projection.is_straight else bent_pixel_areas
+    return areas(camera, sensor.pose, centers, side, seen)
 
 
 def _seen(vehicle: Vehicle | None, sensor: Sensor) -> VisibleMesh | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any, cast
 
@@ -17,13 +18,14 @@ from ...scene.objects import Objects
 from ...scene.rig import Sensor
 from ..boxes import PlacedBoxes
 from ..field_of_view import NEAREST, limited
+from ..kernels import DefinedSample
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, Kind, derived_object_curves
 from ..weather import camera_range
 from .definition import axes_of, count_pixels, is_ranged, out_of_range
-from .kernels import CameraGrid, CameraGround, CameraObjects, CameraSample
+from .kernels import CameraGrid, CameraGround, CameraObjects, sampled_pixels
 from .lens import COEFFICIENT, FOCAL, LENSES, PLACE, FTheta, Lens, Pinhole
 from .lens import FOV as LENS_FOV
-from .model import FOV, PIXELS, Camera, picture_mask, picture_patch, picture_rays
+from .model import FOV, PIXELS, Camera, picture_mask, picture_occlusion, picture_patch, picture_rays
 from .object_definition import box_images, count_object_pixels
 
 LENS_KEYS = frozenset({"fx", "fy", "cx", "cy", "distortion", "fov_deg"})
@@ -187,7 +189,7 @@ CAMERA = Kind(
     view=picture_patch,
     ego_mask=picture_mask,
     on_grid=CameraGrid,
-    on_sample=CameraSample,
+    on_sample=partial(DefinedSample, sampled_pixels, occlusion=picture_occlusion),
     on_ground=CameraGround,
     on_objects=CameraObjects,
 )

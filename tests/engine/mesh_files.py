@@ -117,12 +117,7 @@ def gltf(
         "nodes": [{"name": "box", "mesh": 0}],
         "meshes": [{"name": "the mesh", "primitives": [primitive]}],
         "accessors": [
-            {
-                "bufferView": 0,
-                "componentType": 5126,
-                "type": "VEC3",
-                "count": len(positions) // 12,
-            },
+            {"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": len(positions) // 12},
             {"bufferView": 1, "componentType": component, "type": "SCALAR", "count": len(flat)},
         ],
         "bufferViews": [

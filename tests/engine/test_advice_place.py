@@ -109,18 +109,6 @@ def test_beside_its_field_a_lidar_does_not_look(point, reason):
     assert ask([sensor], point).sensors[0].reason == reason
 
 
-def test_beams_of_a_raster_leave_gaps_too():
-    """A list of beams, 3 degrees apart: a place between them is not out of view."""
-    angles = np.radians(np.arange(-30, 31, 3))
-    beams = [(math.cos(a), math.sin(a), 0.0) for a in angles]
-    model = pe.Lidar.from_directions("raster", beams, 100.0)
-    sensor = pe.Sensor("raster", model, pe.Pose((0.25, 0.25, 0.25)))
-    space = pe.PerceptionSpace((-20, 20), (-10, 10), (0, 5), 0.1)
-    between = (15 * math.cos(math.radians(1.5)), 15 * math.sin(math.radians(1.5)) + 0.25, 0.25)
-    assert ask([sensor], between, space=space).sensors[0].reason == "between beams"
-    assert ask([sensor], (5, 9, 0.25), space=space).sensors[0].reason == "out of view"
-
-
 def test_the_nearest_part_hides():
     """The fence is met first, the wall where the fence does not reach; cameras alike."""
     lidar = one_beam(elevations=(0.0, 23.0))

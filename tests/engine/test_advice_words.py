@@ -289,11 +289,7 @@ def test_what_is_reported_of_it(stopped, coverage, warned, stderr, lines):
 def test_several_are_one_line_a_kind_and_the_dead_come_first():
     names = ["a", "b", "c"]
     rig = pe.Rig([dataclasses.replace(shapes.camera(60.0), name=name) for name in names])
-    own = {
-        "a": sensor_score(0.1, 700),
-        "b": sensor_score(0.0, 1000),
-        "c": sensor_score(0.0, 1000),
-    }
+    own = {"a": sensor_score(0.1, 700), "b": sensor_score(0.0, 1000), "c": sensor_score(0.0, 1000)}
     found = advice.hidden_sensors(rig, pe.Score(2.0, 0.1, 0.0, {}, {}, own, 9))
     assert [each.name for each in found] == ["b", "c", "a"]
     assert advice.hidden_words(found) == (

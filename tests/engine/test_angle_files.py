@@ -219,18 +219,6 @@ def test_a_saved_study_stands_alone_with_the_same_beams_to_the_bit(write, tmp_pa
     assert "angles" not in study_to_dict(first)["sensor"][0]["model"]
 
 
-def test_the_file_is_beside_the_study(write):
-    write("5 1\n", "unit.dat")
-    path = write(
-        '[[sensor]]\nname = "own"\nposition = [0, 0, 1]\n[sensor.model]\nkind = "lidar"\n'
-        'angles = "unit.dat"\nazimuth_step_deg = 90\nmax_range_m = 50\n',
-        "study.toml",
-    )
-    model = pe.load_study(path).rig["own"].model
-    assert model.elevations.tolist() == [math.radians(5)]
-    assert model.azimuth_offsets.tolist() == [math.radians(1)]
-
-
 BAD = [
     ("file", ""),
     ("file", " \r\n\n"),

@@ -98,11 +98,7 @@ def test_boxes_in_memory_are_exported_too(write, tmp_path):
         ),
         ('"labels"', '"labels"\nclasses = []', "prior.classes: expected nothing beside"),
         ('"labels"', '"labels"\norigin = [1, 2]', "prior.origin: expected a list of 3 numbers"),
-        (
-            '"labels"',
-            '"labels"\norigin = [1, 2, inf]',
-            "prior.origin: expected three finite",
-        ),
+        ('"labels"', '"labels"\norigin = [1, 2, inf]', "prior.origin: expected three finite"),
         ("pedestrian", "truck", "focus: classes: expected one of car, pedestrian, found 'truck'"),
         ('boxes = "labels"', "origin = [1, 2, 3]", "prior.origin: expected one of"),
     ],

@@ -87,19 +87,6 @@ def test_more_designs_are_looked_at_first_and_the_front_is_the_same(monkeypatch)
     assert found.is_complete
 
 
-def test_of_many_designs_a_local_search_looks_at_some(monkeypatch):
-    monkeypatch.setattr(front_job, "ALL_SEARCHED_UP_TO", 3)
-    monkeypatch.setattr(selection, "ALL_UP_TO", 5)
-    eye = mounting.can((0.5, 0.0, 1.6), "eye", model="Camera 60 deg")
-    eyes = options(["Camera 30 deg", "Camera 60 deg"])
-    choices = [pe.Choice(options(), ["roof"], optional=True), pe.Choice(eyes, ["eye"])]
-    found = front_of(study(choices, mounting.can(), eye, free=()))
-    assert 5 < len(found.designs) <= 8
-    assert not found.is_complete
-    assert all(design.score is not None for design in found.front)
-    assert "looked at (of more, by local search)" in front_summary(found)
-
-
 def test_a_further_sensor_never_raises_the_entropy():
     """At places that stay: what a cheaper design may not beat by leaving a sensor out."""
     eye = mounting.can((0.5, 0.0, 1.6), "eye", model="Camera 60 deg")

@@ -169,10 +169,7 @@ def test_a_frame_with_an_optical_frame_below_it_is_a_camera(tmp_path):
     path = tmp_path / "rig.launch.xml"
     frames = ("base_link", "eye"), ("eye", "eye_optical"), ("base_link", "ears")
     path.write_text("<launch>" + "".join(CALL.format(*f, "") for f in frames) + "</launch>")
-    assert [(s.name, s.kind) for s in ros.read(path)] == [
-        ("eye", "camera"),
-        ("ears", None),
-    ]
+    assert [(s.name, s.kind) for s in ros.read(path)] == [("eye", "camera"), ("ears", None)]
 
 
 def test_a_call_of_too_many_characters_is_refused_by_its_number(tmp_path):

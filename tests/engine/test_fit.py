@@ -76,11 +76,6 @@ def test_what_is_saturated_is_left_out():
     assert fit.curve.a == pytest.approx(0.15 / math.log(2.0))
 
 
-def test_a_single_highest_point_is_not_saturated():
-    fit = fit_ap_curve(table([0.1, 0.2, 0.4], [0.3, 0.45, 0.6]))
-    assert fit.used.all()
-
-
 def test_the_snippet_is_part_of_a_study(tmp_path):
     fit = fit_ap_curve(table([1.0, math.e, math.e**2, math.e**3], [0.21, 0.33, 0.48, 0.62]))
     text = study_snippet(fit, "camera")

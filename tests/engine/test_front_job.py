@@ -14,13 +14,7 @@ from pe_core.search import Front, Goals, pareto_front
 from pe_tools.cli.choose_verb import front_summary
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import FrontJob, FrontJournals, front_dict, write_front
-from pe_tools.jobs.front_objectives import (
-    FrontFigures,
-    ScalarValue,
-    height_of,
-    spread,
-    weights_of,
-)
+from pe_tools.jobs.front_objectives import FrontFigures, ScalarValue, height_of, spread, weights_of
 from tests.engine import shapes
 
 NAMES = ("entropy", "height", "worst_loss")

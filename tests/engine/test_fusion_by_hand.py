@@ -15,7 +15,6 @@ from pe_core.metric import (
     POINTPILLARS,
     RTM3D,
     average_precision,
-    early_fusion,
     entropy_of,
     late_fusion,
     perception_entropy,
@@ -26,7 +25,6 @@ from pe_core.metric.entropy import ap_of_entropy
 from pe_core.metric.fusion import DIGITS, Fusion, PlaneFusion, VisibleRows, group_sum
 from pe_core.sensors.lidar.kernel_voxels import compact
 from pe_core.study import study_from_dict, study_to_dict
-from pe_tools.formats import ApTable, fit_ap_curve
 from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
 
@@ -212,22 +210,6 @@ def test_a_curve_too_flat_to_saturate_says_so():
     assert pe.ApCurve(1.0, -1.0).saturation == pytest.approx(math.exp(1.999))
 
 
-def test_a_measurement_that_is_a_rounding_below_nothing_is_nothing():
-    """Areas are sums: one may come out at -1e-12. No logarithm of it is taken."""
-    assert average_precision([-1e-12, -1.0, 0.0], RTM3D).tolist() == [0.001] * 3
-
-
-def table(m, ap):
-    return ApTable(np.array(m, float), np.array(ap, float), np.ones(len(m)))
-
-
-def test_points_within_two_hundredths_of_the_highest_are_saturated():
-    """0.80 and 0.79 are, from m = 8 on; 0.78 is 0.02 below and so is not."""
-    fit = fit_ap_curve(table([1, 2, 4, 8, 16, 32], [0.2, 0.4, 0.78, 0.79, 0.80, 0.5]))
-    assert fit.why == ("", "", "", "saturated", "saturated", "saturated")
-    assert fit.left_out == {"saturated": 3} and fit.used.tolist() == [True] * 3 + [False] * 3
-
-
 def test_sums_of_a_group_hold_what_their_parts_add_up_to():
     """Bytes add up in 16 bits, longer counts in 32, areas as they are."""
     byte, word = np.full(2, 250, np.uint8), np.full(2, 60_000, np.uint16)
@@ -266,26 +248,6 @@ def test_average_precision_is_the_paper_s_line_clipped():
     ap = average_precision([0, 1, math.e, 1000], POINTPILLARS)
     assert ap == pytest.approx([0.001, 0.659, 0.811, 0.999])
     assert average_precision(1e-9, RTM3D) == pytest.approx(0.001)
-
-
-def test_sigma_of_ap():
-    assert sigma_of([0.5, 0.8, 0.001]) == pytest.approx([1.0, 0.25, 999.0])
-
-
-def test_entropy_of_a_blind_and_of_a_saturated_voxel():
-    assert pytest.approx(16.651386623858684) == H_BLIND
-    assert entropy_of(precision_of(1000, POINTPILLARS)) == pytest.approx(-10.976, abs=1e-3)
-    assert entropy_of(1.0) == pytest.approx(1.0 + math.log(2.0 * math.pi))
-
-
-def test_early_fusion_sums():
-    assert early_fusion([[1, 2], [3, 4], [0, 1]]).tolist() == [4.0, 7.0]
-
-
-def test_late_fusion_of_two_equal_sensors_halves_the_variance():
-    fused = late_fusion([4.0, 4.0], "literal")
-    assert fused == pytest.approx(8.0)
-    assert entropy_of(fused) == pytest.approx(entropy_of(4.0) - math.log(2.0))
 
 
 def test_blind_sensors_change_nothing_unless_the_letter_is_asked_for():

@@ -52,20 +52,3 @@ def test_hostile_files_are_refused_in_one_line(tmp_path_factory):
     outcomes = outcomes_of(cases, tmp_path_factory.mktemp)
     faults = {name: fault_of(outcomes.get(name), words) for name, (_, _, words) in cases.items()}
     assert {name: fault for name, fault in faults.items() if fault} == {}
-
-
-@pytest.mark.parametrize(
-    "told",
-    [
-        None,
-        {"how": "failed", "line": "Traceback", "warnings": []},
-        {"how": "read", "line": "", "warnings": []},
-        {"how": "refused", "line": "expected more", "warnings": ["overflow"]},
-        {"how": "refused", "line": "another line", "warnings": []},
-        {"how": "refused", "line": "expected more\nand more", "warnings": []},
-        {"how": "refused", "line": "expected more" + "x" * 600, "warnings": []},
-    ],
-)
-def test_each_fault_is_seen(told):
-    assert fault_of(told, "expected more")
-    assert fault_of({"how": "refused", "line": "expected more", "warnings": []}, "expected") is None

@@ -70,17 +70,7 @@ def test_an_optimize_job_improves_and_tells_its_history():
     assert stages[-1] == "done" and "optimizing" in stages
 
 
-def test_a_search_that_cannot_be_made_is_refused_before_any_work(monkeypatch):
-    given = study()
-    below = replace(given, search=replace(given.search, limits={"roof": {"z": (0.0, 1.0)}}))
-    monkeypatch.setattr(pe.Evaluator, "score", lambda *_: pytest.fail("work was begun"))
-    with pytest.raises(pe.InputError, match=r"optimize: samples: expected 0 .* >= 1024"):
-        replace(given.search, samples=100)
-    with pytest.raises(pe.InputError, match="bounds of z: expected bounds around the start"):
-        finished(pt.OptimizeJob(below))
-
-
-@pytest.mark.parametrize("job_class", [pt.ScoreJob, pt.OptimizeJob])
+@pytest.mark.parametrize("job_class", [pe.ScoreJob, pe.OptimizeJob])
 def test_stop_before_a_score_is_complete_leaves_no_outcome(job_class, monkeypatch):
     goes_on = threading.Event()
     monkeypatch.setattr(pe.Evaluator, "score", lambda *_: goes_on.wait())

@@ -213,11 +213,6 @@ def test_beyond_its_range_is_nothing():
     assert np.isinf(picture.distance).all() and not picture.occluded.any()
 
 
-def test_below_the_ground_there_is_no_ground():
-    sensor = pe.Sensor("toy", lidar([-45, 0]), pe.Pose((0.0, 0.0, -1.0)))
-    assert np.isinf(range_picture(sensor, None).distance).all()
-
-
 @pytest.mark.parametrize("model", ["Hesai AT128E2X", "Velodyne VLP-16 Puck", "RoboSense RS-Bpearl"])
 def test_each_pixel_is_its_beam_s_first_hit(model):
     """Beam by beam, from directions worked out anew, turned and tilted."""

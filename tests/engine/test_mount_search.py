@@ -117,11 +117,6 @@ def test_a_start_that_breaks_a_rule_is_not_returned_though_it_is_the_best():
     assert all(row.rig["roof"].pose.position[2] <= 1.5 for row in under.history)
 
 
-def test_a_search_that_cannot_be_ends_before_it_begins():
-    with pytest.raises(pe.InputError, match="max_height of 'roof' leaves no feasible placement"):
-        outcome_of(study(max_height=0.1))
-
-
 @pytest.fixture(scope="module")
 def sedan(tmp_path_factory):
     """The command's result for the sedan, and its vehicle."""
@@ -165,19 +160,6 @@ def test_result_json_says_the_mounts(sedan):
     assert data["mounts"] == {"roof": surface}
     assert data["inputs"]["study"]["optimize"]["mount"][0]["parts"] == ["roof"]
     assert found.search.mounting.on == {"roof": "roof"}
-
-
-def test_result_json_says_the_slot():
-    slots = [pe.Slot(f"slot {x}", pe.Pose((float(x), 0.0, 2.0))) for x in range(3)]
-    rig = pe.Rig([study().rig["roof"].moved(slots[1].pose)])
-    rack = pe.Mounting({"rack": pe.SlotMount(slots)}, {"roof": "rack"})
-    search = pe.Search(
-        samples=1024, schedule=pe.Schedule(candidates=2), mounting=rack, method="random"
-    )
-    space = shapes.small_space()
-    told = pt.result_dict(outcome_of(pe.Study(rig, space=space, samples=1024, search=search)))
-    x = told["placements"]["after"]["roof"]["position"][0]
-    assert told["mounts"] == {"roof": {"mount": "rack", "slot": f"slot {x:g}"}}
 
 
 def test_the_result_can_be_searched_again(sedan):

@@ -211,12 +211,6 @@ def test_which_scenes_have_one_more_of_a_class_says_nothing_of_another_class(shi
     assert np.abs(others).max() < 3.0 / math.sqrt(256.0)  # what chance leaves
 
 
-def test_boxes_need_memory_before_they_are_laid_out(monkeypatch):
-    monkeypatch.setattr("pe_core.base.errors.available_bytes", lambda: 100)
-    with pytest.raises(pe.InputError, match="prior: boxes: expected what fits in"):
-        drawn(pe.Prior.from_boxes(BOXES), targets=TargetRule("objects"))
-
-
 def test_labelled_boxes_are_sampled_nearest_first():
     """Each of four boxes once, in the order of the sequence over the boxes by distance."""
     x = np.array([-8.0, 1.0, 4.0, -2.0])

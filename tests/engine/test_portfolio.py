@@ -150,15 +150,6 @@ def test_sensors_in_slots_exchange_them_and_move_two_at_a_time():
     assert len(recorder.rigs) < 600  # it ends where nothing better is left
 
 
-def test_nothing_that_can_move_ends_the_search():
-    ends = {
-        "roof": {axis: (value, value) for axis, value in zip("xyz", (-0.4, 0.0, 1.6), strict=True)}
-    }
-    rig, space = mounting.space(can((-0.4, 0.0, 1.6)), limits=ends, free=("x", "y", "z"))
-    recorder, _ = searched(flat, rig, space)
-    assert len(recorder.rigs) <= 3
-
-
 def test_the_first_survey_is_the_same_for_every_seed_and_the_second_is_not():
     rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
     asked = [searched(flat, rig, space, 60, seed)[0].rigs for seed in (0, 1)]

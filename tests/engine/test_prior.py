@@ -34,13 +34,6 @@ def test_classes_of_the_road_share_alike_and_stand_on_the_ground():
     assert densities["truck"].profile[z > 2.6].sum() > 0.05
 
 
-def test_the_road_is_met_more_often_near_than_far():
-    ground = pe.Prior.road().densities(pe.PerceptionSpace(interval=0.5))[0].ground
-    middle = ground[:, 80]
-    assert middle[160] > 2 * middle[10] > 0
-    np.testing.assert_allclose(ground, ground[::-1, ::-1], rtol=1e-9)
-
-
 def test_the_highway_s_vehicles_keep_to_their_lanes_and_its_cones_between_them():
     space = pe.PerceptionSpace(interval=0.25)
     densities = {d.name: d for d in pe.Prior.highway().densities(space)}

@@ -7,12 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.scoring.requirements import (
-    VehiclePlanes,
-    Zone,
-    margin_of,
-    signed_distance,
-)
+from pe_core.scoring.requirements import VehiclePlanes, Zone, margin_of, signed_distance
 from tests.engine import shapes
 from tests.engine.requirement_scene import van
 

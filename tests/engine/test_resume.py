@@ -258,11 +258,7 @@ def test_a_mesh_that_changed_is_refused(out, capsys):
     [
         (["optimize"], 2, "expected STUDY, or --resume DIR"),
         (["optimize", "--resume", "a", "-o", "b"], 2, "not allowed with argument"),
-        (
-            ["optimize", "--resume", "nowhere"],
-            1,
-            "pe: nowhere/search.json: file: expected",
-        ),
+        (["optimize", "--resume", "nowhere"], 1, "pe: nowhere/search.json: file: expected"),
     ],
 )
 def test_usage(arguments, status, complaint, capsys):

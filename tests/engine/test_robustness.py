@@ -21,10 +21,7 @@ OFF = pe.Tolerance(0.02, math.radians(0.5), 4)
 def study(tolerance=OFF, samples=1024, failures=False):
     model = shapes.small_lidar(4, 90)
     rig = pe.Rig(
-        [
-            shapes.lidar_on_roof(model),
-            shapes.lidar_on_roof(model, (1.0, 0.4, 1.6), name="front"),
-        ]
+        [shapes.lidar_on_roof(model), shapes.lidar_on_roof(model, (1.0, 0.4, 1.6), name="front")]
     )
     search = pe.Search(
         free={"roof": ("z",), "front": ("z",)},

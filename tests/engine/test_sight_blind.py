@@ -225,24 +225,6 @@ def flooded(flags):
         yield piece
 
 
-def test_opening_keeps_what_a_disc_fits_into():
-    flags = np.zeros((12, 12), bool)
-    flags[2:5, 2:10] = True  # three cells wide
-    flags[7:9, 2:10] = True  # two
-    flags[3, 10] = True  # a spur of one
-    expected = np.zeros_like(flags)
-    expected[2:5, 2:10] = True
-    assert np.array_equal(opened(flags, 1.5), expected)
-    assert np.array_equal(closed(~flags, 1.5), ~expected)
-
-
-def test_beyond_the_edge_a_region_goes_on():
-    flags = np.zeros((8, 8), bool)
-    flags[:, :1] = True
-    assert np.array_equal(opened(flags, 1.5), flags)
-    assert np.array_equal(opened(flags.T, 1.5), flags.T)
-
-
 @pytest.mark.parametrize("radius", [0.0, 0.9, 1.0, 1.5, 2.3])
 def test_opening_is_the_union_of_discs_that_fit(radius):
     rng = np.random.default_rng(2)
@@ -281,11 +263,6 @@ def test_a_long_way_round_is_one_piece():
     assert len(list(flooded(flags))) == 1
     assert np.array_equal(without_specks(flags, flags.sum()), flags)
     assert not without_specks(flags, flags.sum() + 1).any()
-
-
-def test_nothing_and_everything():
-    assert not without_specks(np.zeros((3, 4), bool), 1).any()
-    assert without_specks(np.ones((3, 4), bool), 12).all()
 
 
 def test_smoothing_is_a_gauss_curve_both_ways():
@@ -327,31 +304,12 @@ def test_a_hole_runs_the_other_way_round():
     assert signed_area(inner) == pytest.approx(-4 * np.pi, rel=0.01)
 
 
-def test_a_region_that_reaches_the_edge_is_closed_along_it():
-    (ring,) = lines_of(np.ones((4, 3), bool))
-    assert ring.min(axis=0) == pytest.approx([-0.5, -0.5])
-    assert ring.max(axis=0) == pytest.approx([3.5, 2.5])
-    assert signed_area(ring) == pytest.approx(4 * 3 - 4 * 0.125)
-
-
-def test_two_corners_that_touch_are_apart():
-    flags = np.zeros((5, 5), bool)
-    flags[1, 1] = flags[2, 2] = True
-    rings = lines_of(flags)
-    assert len(rings) == 2
-    assert all(signed_area(ring) == pytest.approx(0.5) for ring in rings)
-
-
 def test_a_middle_that_is_inside_joins_two_corners():
     field = np.array([[-1.0, 3.0], [3.0, -1.0]])
     assert len(outlines(field, 0.0, np.arange(2.0), np.arange(2.0))) == 1
     assert len(outlines(-field, 0.0, np.arange(2.0), np.arange(2.0))) == 2
     hardly = np.array([[-1.0, 1.1], [1.1, -1.0]])
     assert len(outlines(hardly, 0.0, np.arange(2.0), np.arange(2.0))) == 1
-
-
-def test_nothing_has_no_outline():
-    assert lines_of(np.zeros((4, 4), bool)) == ()
 
 
 def test_of_any_region_the_rings_are_closed_and_bound_its_area():

@@ -112,11 +112,6 @@ def test_unknown_names_are_refused_and_the_nearest_ones_offered(state, text):
         pe.Study(rig(), car(), conditions=Conditions([state]))
 
 
-def test_states_need_a_vehicle():
-    with pytest.raises(pe.InputError, match="vehicle"):
-        pe.Study(rig(), None, conditions=Conditions([OPEN]))
-
-
 def test_states_and_weathers_stay_the_same_in_a_study_file():
     weathers = [pe.Weather("sun", 0.9), pe.Weather("fog", 0.1, fog_mor_m=80.0, reflectivity=0.5)]
     body = pe.State("b", heave=0.02, roll_rad=math.radians(1.5), about=(0.1, 0, 0.3), frame=20)
@@ -169,10 +164,7 @@ def parked(**under):
     """The car with a LiDAR on its left door's mirror, held to a cyclist who comes from behind."""
     zone = pe.requirements.Zone(path=((-7.0, 1.9), (-4.0, 1.9)))
     wanted = pe.requirements.Requirement(
-        "dooring",
-        zone,
-        (pe.requirements.BODIES["cyclist"],),
-        under=pe.requirements.Under(**under),
+        "dooring", zone, (pe.requirements.BODIES["cyclist"],), under=pe.requirements.Under(**under)
     )
     camera = pe.Camera("c", 640, 480, math.radians(40.0))
     back = pe.Sensor("back", camera, pe.Pose.from_degrees((0.6, 0.97, 1.1), (0, 0, 170)))
@@ -223,8 +215,3 @@ def test_a_search_minimises_the_mean_or_the_worst_of_the_table(how):
     with pytest.raises(pe.InputError, match=r"\[\[state\]\] or \[\[weather\]\]"):
         plain = replace(study, conditions=Conditions())
         study_objective(plain, plain.evaluator(), 4096)
-
-
-def test_a_study_without_conditions_has_no_table():
-    assert condition_table(pe.Study(rig(), samples=4096)) is None
-    assert StateInWeather().name == "clear" and not Conditions()

@@ -23,12 +23,7 @@ from pe_core.study import SEARCH
 from pe_tools import jobs
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import read_search
-from pe_tools.sweep import (
-    RunTask,
-    read_settings,
-    run_all,
-    sweep_runs,
-)
+from pe_tools.sweep import RunTask, read_settings, run_all, sweep_runs
 from pe_tools.sweep.parameter_grid import MAX_NAME_LENGTH, folder_names
 from tests.engine import shapes
 from tests.engine.processes import Command
@@ -89,10 +84,7 @@ def test_several_settings_make_every_combination(study):
     [
         ("sensr.roof.model=x", "{study} with sensr.roof.model=x: sensr: expected one of ap"),
         ("sensor.rof.model=x", "{study}: sensor.rof.model: expected one of roof, found 'rof'"),
-        (
-            "sensor.roof.model=No",
-            "{study} with sensor.roof.model=No: sensor[0].model: expected",
-        ),
+        ("sensor.roof.model=No", "{study} with sensor.roof.model=No: sensor[0].model: expected"),
         ("optimize.sed=1", "{study} with optimize.sed=1: optimize.sed: expected one of"),
         ("samples=1.5", "{study} with samples=1.5: samples: expected a whole number"),
         ("samples.x=1", "{study} with samples.x=1: samples: expected a whole number"),
@@ -122,14 +114,8 @@ def test_what_fits_no_study_is_one_line_before_any_work(study, out, setting, com
         (["--scheduler", "ws://a:1"], "command line: scheduler: expected HOST:PORT, tcp://HOST:"),
         (["--scheduler", "tcp://u:p@127.0.0.1:1"], "command line: scheduler: expected HOST:PORT"),
         (["--scheduler", "tls://127.0.0.1:1"], "tls://127.0.0.1:1: scheduler: expected a"),
-        (
-            ["--scheduler", "tcp://127.0.0.1:1"],
-            "tcp://127.0.0.1:1: scheduler: expected a",
-        ),
-        (
-            ["--set", SEEDS],
-            "--set: runs: expected",
-        ),
+        (["--scheduler", "tcp://127.0.0.1:1"], "tcp://127.0.0.1:1: scheduler: expected a"),
+        (["--set", SEEDS], "--set: runs: expected"),
     ],
 )
 def test_sweeps_that_cannot_be_are_one_line(study, out, more, complaint, capsys, monkeypatch):

@@ -31,11 +31,6 @@ def test_what_would_steer_the_terminal_is_escaped(text):
     assert printable(text) == STEERING[text]
 
 
-@pytest.mark.parametrize("text", ["", "plain\nlines\n", "Dach-Lidar \u00fc \u8eca \U0001f697"])
-def test_all_else_stays(text):
-    assert printable(text) == text
-
-
 def test_what_the_encoding_has_no_word_for_is_escaped():
     assert printable("\u00fc\u8eca", "latin-1") == "\u00fc\\u8eca"
 
@@ -94,11 +89,6 @@ def test_workers_are_a_whole_number_of_moderate_size(value, capsys):
 def test_every_option_of_a_number_has_a_range(option, capsys):
     assert status_of(["optimize", "x.toml", option, "1" + "0" * 30]) == 2
     assert "expected a whole number from 0 to " in capsys.readouterr().err
-
-
-def test_the_greatest_values_are_taken():
-    count = command.count_up_to(1024)
-    assert [count("0"), count("1024"), count("0007")] == [0, 1024, 7]
 
 
 def test_a_name_that_steers_the_terminal_is_refused_and_shown_escaped(tmp_path, capsys):
@@ -179,14 +169,3 @@ def test_a_terminal_that_goes_away_ends_nothing():
             raise OSError("input/output error")
 
     assert told(Gone()) == ""
-
-
-def test_extras_are_those_that_the_project_offers():
-    import tomllib
-    from pathlib import Path
-
-    project = Path(plugins.__file__).parents[2] / "pyproject.toml"
-    offered = tomllib.loads(project.read_text("utf-8"))["project"]["optional-dependencies"]
-    name = plugins.EXTRAS["distributed"]
-    assert any(need.startswith("distributed") for need in offered[name])
-    assert any(need.startswith("distributed") for need in offered["test"]), "tests are not skipped"

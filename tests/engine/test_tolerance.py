@@ -126,8 +126,7 @@ def test_the_draws_of_one_sensor_meet_several_of_the_others():
 
 
 @pytest.mark.parametrize(
-    "tolerance",
-    [BOTH, pe.Tolerance(failures=True), pe.Tolerance(0.05, draws=2, worst=True)],
+    "tolerance", [BOTH, pe.Tolerance(failures=True), pe.Tolerance(0.05, draws=2, worst=True)]
 )
 def test_a_candidate_is_worth_the_mean_or_the_worst_of_its_cases(tolerance, evaluator):
     fresh = pe.Evaluator(evaluator.space, evaluator.prior, evaluator.vehicle, samples=1024)

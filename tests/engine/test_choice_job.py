@@ -87,19 +87,6 @@ def test_more_designs_are_looked_at_first_and_the_front_is_the_same(monkeypatch)
     assert found.is_complete
 
 
-def test_a_further_sensor_never_raises_the_entropy():
-    """At places that stay: what a cheaper design may not beat by leaving a sensor out."""
-    eye = mounting.can((0.5, 0.0, 1.6), "eye", model="Camera 60 deg")
-    other = mounting.can((-1.0, 0.3, 1.6), "other", model="Pandar40")
-    sensors = (mounting.can(), other, eye)
-    choices = [pe.Choice([pe.Option(s.model, 1.0)], [s.name], optional=True) for s in sensors]
-    found = front_of(study(choices, *sensors, free=()))
-    by_names = {frozenset(s.name for s in d.study.rig): d.entropy for d in found.designs}
-    assert len(by_names) == 7
-    for some, entropy in by_names.items():
-        assert all(more <= entropy for names, more in by_names.items() if names > some)
-
-
 @pytest.mark.parametrize("after", [1, 2])
 def test_a_stop_keeps_the_front_so_far(after):
     job = pt.FrontJob(study([pe.Choice(options(), ["roof"])]))

@@ -49,13 +49,6 @@ def test_what_is_said():
     ]
 
 
-def test_many_classes_are_not_all_named():
-    shares = SimpleNamespace(by_number=(1.0, 0.8), zones={})
-    aps = {f"c{k}": 0.5 for k in range(10)}
-    line = next(outlook_words(advice.Outlook(aps, shares, reach({}), ROUND)))
-    assert line == f"expected AP: {', '.join(f'c{k} 0.50' for k in range(8))}, ..."
-
-
 def test_what_is_found_nowhere_and_no_blind_ground():
     lines = said(reach({}, "any"), blind(front=0.0, rear=0.0, left=0.0, right=0.0))
     assert lines[1:] == [
@@ -80,13 +73,6 @@ def test_an_outlook_is_sight_s():
     data = found.to_dict()
     assert data["reach"]["bearings_deg"][:2] == [0.0, 5.0]
     assert data["seen_by_at_least"] == list(sight.shares(study.rig).by_number)
-
-
-def test_the_first_class_where_there_are_no_pedestrians():
-    assert advice.class_of(pe.Prior.highway(), None) == "car"
-    assert advice.class_of(pe.Prior.uniform(), None) == "any"
-    with pytest.raises(pe.InputError, match="expected one of any, found 'car'"):
-        advice.class_of(pe.Prior.uniform(), "car")
 
 
 def test_a_space_above_the_ground_has_its_floor_looked_at():

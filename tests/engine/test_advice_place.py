@@ -12,12 +12,6 @@ from tests.engine import shapes
 from tests.thorough import tries
 
 SPACE = pe.PerceptionSpace((-20, 20), (-10, 10), (0, 5), 0.5)
-WALL = pe.Vehicle(
-    np.concatenate([shapes.box((2, -1, 0), (2.2, 1, 2)), shapes.box((2.4, -3, 0), (2.6, 3, 4))]),
-    np.repeat([0, 1], 12),
-    ("fence", "wall"),
-)
-"""A fence, and a larger wall behind it."""
 
 
 def one_beam(position=(0.0, 0.0, 1.25), elevations=(0.0,), max_range=15.0, **options):
@@ -107,24 +101,6 @@ def test_why_a_lidar_misses_a_place(point, reason):
 def test_beside_its_field_a_lidar_does_not_look(point, reason):
     sensor = one_beam(horizontal_fov=(math.radians(-30), math.radians(30)), max_range=20.0)
     assert ask([sensor], point).sensors[0].reason == reason
-
-
-def test_the_nearest_part_hides():
-    """The fence is met first, the wall where the fence does not reach; cameras alike."""
-    lidar = one_beam(elevations=(0.0, 23.0))
-    camera = shapes.camera(90.0, position=(0.0, 0.0, 1.25))
-    low, high = (ask([lidar, camera], p, WALL) for p in ((10, 0, 1.25), (8, 0, 4.9)))
-    assert [(s.reason, s.occluded_by) for s in low.sensors] == [("occluded", "fence")] * 2
-    assert [(s.reason, s.occluded_by) for s in high.sensors] == [("occluded", "wall")] * 2
-    assert not low.seen and low.entropy == pytest.approx(16.651, abs=1e-3)
-    assert low.text[2:] == ("beam: occluded by fence", "camera: occluded by fence")
-
-
-def test_cameras_see_through_glass():
-    glass = pe.Vehicle(WALL.triangles, WALL.parts, WALL.part_names, glass=("fence", "wall"))
-    camera = shapes.camera(90.0, position=(0.0, 0.0, 1.25))
-    place = ask([one_beam(), camera], (10, 0, 1.25), glass)
-    assert [s.reason for s in place.sensors] == ["occluded", "sees"]
 
 
 def test_in_the_vehicle_nothing_counts():

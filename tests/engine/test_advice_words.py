@@ -14,31 +14,8 @@ from pe_core.base.errors import plural
 from pe_core.scoring import FoundClass
 from pe_core.scoring.targets.object_metric import SECTORS
 from pe_tools import advice
-from pe_tools.cli.explain_verbs import comparison
 from pe_tools.cli.terminal import summary
-from pe_tools.wording import metres, percent, times
 from tests.engine import shapes
-
-
-@pytest.mark.parametrize(
-    ("share", "text"),
-    [
-        *((0.0, "0%"), (1.0, "100%"), (0.854, "85%"), (0.0042, "0.4%"), (0.099, "9.9%")),
-        *((0.0995, "10%"), (0.997, "99.7%"), (0.9999, "over 99.9%"), (0.0001, "under 0.1%")),
-    ],
-)
-def test_percent(share, text):
-    assert percent(share) == text
-
-
-def test_metres_and_counts():
-    assert [metres(v) for v in (0.05, 0.994, 1.45, 9.99, 84.2)] == [
-        *("5 cm", "99 cm", "1.45 m", "9.99 m", "84 m")
-    ]
-    assert [plural(v, "pixel") for v in (1, 7, 1310.4, 4.34)] == [
-        *("1 pixel", "7 pixels", "1,310 pixels", "4.3 pixels")
-    ]
-    assert [times(v) for v in (12.3, 1.0, 0.312)] == ["12 times", "1 times", "0.31 times"]
 
 
 def part(entropy, coverage, share=0.5):
@@ -222,18 +199,6 @@ def test_a_score_comes_back_from_its_data():
     assert pe.ObjectScore.from_dict(score.to_dict()["objects"]) == score.objects
 
 
-def test_ap_and_reach_stand_side_by_side():
-    better = replace(CAR, ap=0.5, reach=REACH | {"front": 30.0})
-    rows = advice.compare({"a": scored(), "b": scored(0.35, car=better)})
-    found = {(row.measure, row.name): row for row in rows}
-    assert found["ap", ""].values == (0.33, 0.35) and found["ap", ""].best == (False, True)
-    assert found["reach", "car"].differences == (0.0, pytest.approx(4.4))
-    lines = comparison(["a", "b"], rows)
-    assert "expected AP" in lines and any("30.0 (+4.4)*" in line for line in lines)
-    voxels = pe.Score(3.0, 0.5, 0.1, {}, {}, {}, 9)
-    assert "expected AP" not in comparison(["a"], advice.compare({"a": voxels}))
-
-
 def test_the_summary_says_what_was_evaluated():
     study = pe.Study(pe.Rig([shapes.lidar_on_roof()]), targets=pe.TargetRule("objects", scenes=64))
     own = pe.SensorScore(3.0, 0.5, 1.0, 0, 0, {})
@@ -349,17 +314,6 @@ def test_they_are_those_of_sight(study):
         "at_least": found.at_least,
         "expected_ap": found.expected_ap,
     }
-
-
-def test_on_objects_reach_and_ap_are_left_to_the_score(study):
-    found = advice.key_figures(study.sight(), study.rig, of_voxels=False)
-    assert found.blind_m2 > 0.0
-    assert (found.class_name, found.reach_m, found.expected_ap) == (None, None, None)
-
-
-def test_a_class_that_there_is_not(study):
-    with pytest.raises(pe.InputError, match=r"expected one of .*pedestrian"):
-        advice.key_figures(study.sight(), study.rig, class_name="boat")
 
 
 def test_straight_ahead(study):

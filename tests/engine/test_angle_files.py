@@ -101,12 +101,6 @@ def test_columns_are_elevation_and_counter_clockwise_offset(write, text):
     assert degrees(write(text)) == PLAIN
 
 
-@pytest.mark.parametrize("text", ["5\n-0.125\n", "elevation\n5\n-0.125", "5,\n-0.125,\n"])
-def test_without_offsets_they_are_zero(write, text):
-    assert degrees(write(text)) == [(5.0, 0.0), (-0.125, 0.0)]
-    assert str(degrees(write("0\n"))) == "[(0.0, 0.0)]"
-
-
 @pytest.mark.parametrize(
     "text",
     [

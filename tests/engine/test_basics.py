@@ -25,12 +25,6 @@ def test_angles_come_back_from_the_matrix():
         assert rpy_from_matrix(pose.ground_from_sensor) == pytest.approx(rpy, abs=1e-9)
 
 
-@pytest.mark.parametrize("bad", [(0, 0), (0, 0, math.nan), (0, 0, math.inf), "abc", None])
-def test_a_bad_position_is_one_clear_line(bad):
-    with pytest.raises(pe.InputError, match="pose: position: expected three finite numbers"):
-        pe.Pose(bad)
-
-
 def test_every_entry_of_the_catalogue_loads_and_says_its_source():
     for name in pe.catalog.names():
         model = pe.catalog.load(name)
@@ -38,11 +32,6 @@ def test_every_entry_of_the_catalogue_loads_and_says_its_source():
         if isinstance(model, pe.Lidar):
             assert model.directions.shape == (model.beam_count, 3), name
             assert np.abs(np.linalg.norm(model.directions, axis=1) - 1.0).max() <= 1e-6, name
-
-
-def test_an_unknown_model_is_answered_with_near_ones():
-    with pytest.raises(pe.InputError, match=r"'Pandar64'.*found 'pandar 64'"):
-        pe.catalog.load("pandar 64")
 
 
 def test_a_rig_needs_sensors_with_names_of_their_own():

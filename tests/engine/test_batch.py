@@ -20,7 +20,7 @@ import pytest
 import pe_core as pe
 from pe_core.scoring import Evaluation
 from pe_core.search import Processes, evaluate_all, processes, start_processes
-from pe_core.search.payload import Payload, keep_freed_memory
+from pe_core.search.payload import Payload
 from pe_tools.cli.executors import workplace
 from tests.engine import shapes
 from tests.engine.processes import ROOT
@@ -333,13 +333,3 @@ def page_faults(*arguments):
 def test_arrays_of_a_worker_of_dask_are_not_paged_in_anew():
     assert page_faults() > 100 * 100
     assert page_faults("keep") < 1000
-
-
-def test_another_c_library_is_no_error(monkeypatch):
-    def no_library(_):
-        raise OSError("no such library")
-
-    keep_freed_memory.cache_clear()
-    monkeypatch.setattr("ctypes.CDLL", no_library)
-    assert not keep_freed_memory()
-    keep_freed_memory.cache_clear()

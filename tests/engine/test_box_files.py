@@ -60,13 +60,6 @@ def row(table, index):
     return [*values, math.degrees(table.yaw[index])]
 
 
-def test_plain_csv(write):
-    table = pt.read_boxes(write(CSV))
-    assert list(table.names) == ["car", "tram"] and table.classes == ("car", "tram")
-    assert row(table, 0) == pytest.approx([10, 2, 0.75, 4.5, 1.8, 1.5, 90])
-    assert row(table, 1) == pytest.approx([-20.5, -3, 1.8, 15, 2.5, 3.6, -45])
-
-
 @pytest.mark.parametrize(
     "text",
     [
@@ -260,11 +253,6 @@ BAD = [
 
 def test_bad_files_are_refused_by_their_line(write, tmp_path):
     assert wrongly_refused(lambda data: pt.read_boxes(write(data)), BAD, tmp_path) == []
-
-
-def test_a_file_that_is_not_there(tmp_path):
-    with pytest.raises(pe.InputError, match=r"none\.csv: file: expected an existing file"):
-        pt.read_boxes(tmp_path / "none.csv")
 
 
 def test_many_boxes_are_what_each_of_them_is(write):

@@ -1,7 +1,6 @@
 """Boxes to densities: held to every voxel centre tested, and counted by hand."""
 
 import math
-import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -72,14 +71,6 @@ def test_every_class_sums_to_one_before_focus_and_shares_alike():
     assert [d.profile.sum() for d in densities] == pytest.approx([1.0, 1.0])
 
 
-def test_focus_weighs_the_classes_of_the_boxes():
-    table = boxes(*ROTATED, ("tram", 5, 5, 0.5, 0.4, 0.4, 1.0, 10))
-    focused = pe.Prior.from_boxes(table, [pe.Focus(3.0, classes=("tram",))]).densities(SPACE)
-    assert [d.ground.sum() for d in focused] == pytest.approx([0.25, 0.75])
-    with pytest.raises(pe.InputError, match="classes: expected one of car, tram, found 'cone'"):
-        pe.Prior.from_boxes(table, [pe.Focus(3.0, classes=("cone",))])
-
-
 def test_boxes_outside_the_space_are_counted():
     table = boxes(*ROTATED, ("car", 30, 0, 1, 4, 2, 1.5, 0), ("tram", 0, 0, 9, 4, 2, 1.5, 0))
     prior = pe.Prior.from_boxes(table)
@@ -93,18 +84,6 @@ def test_boxes_outside_the_space_are_counted():
         assert list(score.per_class) == ["car"] and math.isfinite(score.entropy)
     with pytest.raises(pe.InputError, match=r"^boxes: boxes: expected a box in .*all 8 outside$"):
         prior.densities(pe.PerceptionSpace((50, 60), (0, 10), (0, 5), 0.5))
-
-
-def test_a_prior_of_boxes_is_a_value():
-    prior = pe.Prior.from_boxes(boxes(*ROTATED))
-    same, other = (pe.Prior.from_boxes(boxes(*rows)) for rows in (ROTATED, ROTATED[1:]))
-    assert prior == same and hash(prior) == hash(same) and prior != other
-    again = pickle.loads(pickle.dumps(prior))
-    assert again == prior
-    for a, b in zip(again.densities(SPACE), prior.densities(SPACE), strict=True):
-        assert np.array_equal(a.ground, b.ground) and np.array_equal(a.profile, b.profile)
-    with pytest.raises(ValueError, match="read-only"):
-        prior.boxes.x[0] = 1.0
 
 
 def test_tables_in_memory_are_taken():
@@ -144,20 +123,6 @@ def counted(*boxes, space=BY_HAND_SPACE):
     prior = pe.Prior.from_boxes(rows)
     (density,) = prior.densities(space)
     return density.ground, density.profile.tolist(), str(prior.report(space))
-
-
-def test_a_box_has_the_voxels_whose_centres_it_holds():
-    """From 0.4 to 2.4 along x, 0.4 to 1.4 along y, 0 to 1 in height: centres 0.5 and 1.5; 0.5."""
-    ground, profile, report = counted((1.4, 0.9, 0.5, 2.0, 1.0, 1.0, 0.0))
-    assert ground.tolist() == [[0.5, 0.0], [0.5, 0.0], [0.0, 0.0]] and profile == [1.0, 0.0]
-    assert report == "boxes: 1 box taken"
-
-
-def test_a_box_that_is_turned_lies_across():
-    """2 m long, turned by 90 degrees: along y; by -90 the same."""
-    for yaw in (90.0, -90.0, 270.0):
-        ground, profile, _ = counted((1.5, 1.0, 1.0, 2.0, 1.0, 2.0, yaw))
-        assert ground.tolist() == [[0.0, 0.0], [0.5, 0.5], [0.0, 0.0]] and profile == [0.5, 0.5]
 
 
 def test_a_box_turned_by_45_degrees():

@@ -129,19 +129,6 @@ def test_the_list_of_presets_names_standard_and_confidence(capsys):
     assert main(["requirements", "r000"]) == 1
 
 
-def test_a_search_that_keeps_requirements_says_how_many_it_met(study, tmp_path, capsys):
-    keep = '[optimize]\nrequirements = "keep"\nfree = ["z"]\nsamples = 1024\nevaluations = 6\n'
-    study.write_text(STUDY + SMALL + keep)
-    assert main(["optimize", str(study), "-o", str(tmp_path / "out"), "--no-review"]) == 0
-    told = capsys.readouterr()
-    assert "requirements  1 of 2 met" in told.out and "not met: bump, fails" in told.out
-    assert "warning: placement: bump is not met" in told.out
-    assert "constraints broken by 0." in told.err
-    found = json.loads((tmp_path / "out" / "result.json").read_text())
-    assert [row["met"] for row in found["requirements"]] == [True, False]
-    assert 'requirements = "keep"' in (tmp_path / "out" / "study.toml").read_text()
-
-
 def test_a_score_has_the_verdicts_in_its_result(study, tmp_path, capsys):
     assert main(["score", str(study), "-o", str(tmp_path / "out"), "--json"]) == 0
     found = json.loads((tmp_path / "out" / "result.json").read_text())

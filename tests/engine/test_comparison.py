@@ -10,13 +10,7 @@ import pytest
 import pe_core as pe
 from pe_core.scoring.score import Scatter
 from pe_tools import advice
-from pe_tools.advice.score_comparison import (
-    BLOCKS,
-    ComparedRow,
-    degrees_of,
-    difference_errors,
-    sure_factor,
-)
+from pe_tools.advice.score_comparison import BLOCKS, degrees_of, difference_errors, sure_factor
 from tests.engine import shapes
 
 ENTROPY, COVERAGE = ("rig", "", "entropy"), ("rig", "", "coverage")
@@ -207,22 +201,6 @@ def test_a_gain_counts_when_it_is_clear_and_a_loss_always():
         row = advice.compare({"a": scores[first], "b": scores[second]})[0]
         assert row.sense(0) == 0
         assert row.sense(1) == {1: 0, 2: 1, 3: -1, 4: 0}[second]
-
-
-def test_key_figures_side_by_side():
-    """Without an error, and no AP is the best: what chance it has is not known."""
-    figures = {
-        "a": advice.KeyFigures(3.0, 0.6, 10.0, "car", 40.0, False, 0.5),
-        "b": advice.KeyFigures(2.0, 0.6, 10.0, "car", 50.0, False, 0.75),
-    }
-    none = ((0.0, 0.0), (0.0, 0.0))
-    text = "0.6 m tall, within 10 m"
-    assert advice.compare_figures(figures) == (
-        ComparedRow("rig", text, "blind", (3.0, 2.0), none),
-        ComparedRow("class", "car", "reach", (40.0, 50.0), none),
-        ComparedRow("class", "car", "ap", (0.5, 0.75), none, is_ranked=False),
-    )
-    assert advice.compare_figures({}) == ()
 
 
 def test_degrees_of_freedom_are_those_of_the_score_with_fewest_batches():

@@ -103,14 +103,6 @@ def test_a_rosette_shows_all_over_its_picture():
     assert len(shown(mounted(rosette), None, 200, ChannelMode.FEW).ends) == 200
 
 
-def test_a_preview_casts_few_beams_of_every_channel(vehicle):
-    sensor = mounted(catalog.load("Pandar64"))
-    found = beams.cast(sensor, vehicle, beams.PREVIEW_BEAMS)
-    assert len(found.rows) == 64 and 10_000 < len(found.ends) <= beams.PREVIEW_BEAMS
-    fine = beams.cast(sensor, vehicle)
-    assert abs(found.occluded.mean() - fine.occluded.mean()) < 0.01
-
-
 COLOR = np.array([0.1, 0.2, 0.3, 0.5])
 
 
@@ -201,14 +193,6 @@ def test_frustum_corners():
     assert (points[5:, 2] > 4.0).all()  # the mark is above the upper edge
 
 
-def test_frustum_of_a_turned_camera():
-    """Yaw 90 degrees looks to the left, pitch 90 degrees straight down."""
-    left = kinds.frustum_points(mounted(SQUARE, (0, 0, 0), (0, 0, 90)), math.sqrt(3.0))
-    np.testing.assert_allclose(left[1:5, 1], 1.0, atol=1e-12)
-    down = kinds.frustum_points(mounted(SQUARE, (0, 0, 0), (0, 90, 0)), math.sqrt(3.0))
-    np.testing.assert_allclose(down[1:5, 2], -1.0, atol=1e-12)
-
-
 def test_frustum_is_as_wide_as_the_picture():
     points = kinds.frustum_points(mounted(WIDE, (0, 0, 0)), 2.0)
     assert points[1, 1] / points[1, 0] == pytest.approx(math.tan(math.radians(30)))
@@ -255,17 +239,6 @@ def test_a_camera_that_looks_up_or_is_below_the_ground_has_no_footprint():
     assert not len(below)
     assert not len(kinds.footprint_lines(below, (1.0, 1.0, 1.0, 1.0)).points)
     assert not len(kinds.footprint_faces(below, (1.0, 1.0, 1.0, 1.0)).points)
-
-
-def test_the_area_of_a_footprint_is_filled_once():
-    outline = kinds.footprint(mounted(WIDE, (0, 0, 1.4), (0, 30, 10)), 20.0)
-    x, y = outline[:, 0], outline[:, 1]
-    area = 0.5 * float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum())
-    a, b, c = (
-        kinds.footprint_faces(outline, (1, 1, 1, 1)).points.reshape(-1, 3, 3).transpose(1, 0, 2)
-    )
-    filled = 0.5 * float(np.abs(np.cross(b - a, c - a)[:, 2]).sum())
-    assert filled == pytest.approx(area, rel=1e-5) and area > 1.0
 
 
 ARS, PARKING = "Continental ARS408-21", "Parking module 2.5 m"

@@ -103,13 +103,6 @@ def test_the_value_is_minus_the_ap_of_a_score_in_traffic_and_bounds_are_below_it
     assert together.entropy == max(values[:3])
 
 
-def test_the_study_s_own_score_does_not_change():
-    given = study()
-    default = replace(given, search=replace(given.search, objective="entropy"))
-    assert given.evaluator().score(given.rig) == default.evaluator().score(given.rig)
-    assert searched_study(default) is default
-
-
 def test_a_search_raises_the_ap_and_tells_both(plain):
     first, last = plain.in_traffic
     assert last.ap > first.ap and last.traffic and last.scenes == 8

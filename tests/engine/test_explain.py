@@ -133,15 +133,6 @@ def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(tmp_path
         assert out == "" and "expected" in err and "scoring" not in err
 
 
-def test_files_of_one_name_are_reported_apart_by_their_folders(tmp_path, capsys):
-    for folder in "ab":
-        (tmp_path / folder).mkdir()
-        saved(tmp_path / folder, "study.toml")
-    paths = [str(tmp_path / folder / "study.toml") for folder in "ab"]
-    assert main(["compare", *paths, "--samples", "1024"]) == 0
-    assert capsys.readouterr().out.splitlines()[0].split() == ["a/study", "b/study"]
-
-
 @pytest.mark.parametrize(
     ("field", "changes"),
     [

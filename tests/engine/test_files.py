@@ -94,22 +94,6 @@ def test_only_files_are_written_over(tmp_path, kind):
     assert [p.name for p in tmp_path.iterdir()] == ["out"]
 
 
-@pytest.mark.parametrize(
-    ("count", "told"),
-    [
-        (0, "0 bytes"),
-        (999, "999 bytes"),
-        (1000, "1.0 kB"),
-        (2 << 30, "2.1 GB"),
-        (999_999_999, "999.9 MB"),
-        (8 * 10**15, "8,000.0 TB"),
-        (10**4000, "more than a million TB"),
-    ],
-)
-def test_sizes_are_reported_as_people_say_them(count, told):
-    assert size_text(count) == told
-
-
 def test_the_least_of_all_limits_counts(monkeypatch, tmp_path):
     """Free memory, a container's limit, in either generation, and that of the process."""
     (tmp_path / "meminfo").write_text("MemTotal: 9000 kB\nMemAvailable:    5000 kB\n")

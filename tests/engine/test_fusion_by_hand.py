@@ -1,7 +1,6 @@
 """Equations 4 to 9 and fusion, worked by hand; planes against them; own curves."""
 
 import math
-import pickle
 from types import SimpleNamespace
 
 import numpy as np
@@ -167,28 +166,6 @@ def test_a_model_tells_its_curves():
     assert pe.PerceptionModel().lidar == POINTPILLARS
     with pytest.raises(AttributeError, match="sonar"):
         _ = model.sonar
-
-
-def test_models_are_equal_when_they_say_the_same():
-    own = pe.ApCurve(0.2, 0.5)
-    plain = pe.PerceptionModel()
-    assert plain == pe.PerceptionModel("floor", lidar=POINTPILLARS)
-    assert plain != pe.PerceptionModel("literal") and plain != pe.PerceptionModel(lidar=own)
-    assert plain != "floor" and hash(plain) == hash(pe.PerceptionModel(camera=RTM3D))
-    assert len({plain, pe.PerceptionModel("literal"), pe.PerceptionModel(lidar=own)}) == 3
-    assert repr(pe.PerceptionModel(lidar=own)).startswith(
-        "PerceptionModel(blind='floor', lidar=ApCurve(a=0.2, b=0.5), camera="
-    )
-
-
-def test_a_model_goes_to_other_processes_and_cannot_be_changed():
-    model = pe.PerceptionModel("literal", camera=pe.ApCurve(0.1, 0.2))
-    again = pickle.loads(pickle.dumps(model))
-    assert again == model and again.blind == "literal" and again.camera == model.camera
-    for name in ("blind", "lidar", "more"):
-        with pytest.raises(AttributeError, match=name):
-            setattr(model, name, "floor")
-    assert model.blind == "literal"
 
 
 IMPOSSIBLE_MODELS = [

@@ -84,15 +84,6 @@ def test_each_pixel_is_the_ray_through_its_middle(lens, monkeypatch):
     assert {-1, 0} <= kinds and 1 not in kinds  # cameras see through the pane
 
 
-def test_left_is_left_and_up_is_up():
-    """The wall is on the left; a roof above is in the upper rows."""
-    level = ego_mask(mounted(camera(), (0.0, 0.0, 0.0)), BODY)
-    assert (level.parts[18, :20] == 0).all() and (level.parts[18, 40:] == FREE).all()
-    roof = np.array([[[-9.0, -9.0, 2.0], [9.0, -9.0, 2.0], [0.0, 20.0, 2.0]]])
-    above = ego_mask(mounted(camera(), (0.0, 0.0, 0.0)), pe.Vehicle(roof))
-    assert not above.sees_out[0, 32] and above.sees_out[-1, 32]
-
-
 def test_each_beam_is_its_first_hit():
     lidar = Lidar("toy", np.radians([-10.0, 0.0, 15.0]), 360, 2.5)
     sensor = mounted(lidar)
@@ -259,15 +250,6 @@ def test_things_end_beams_unless_something_is_before_them():
     assert picture.distance[0] == pytest.approx([math.inf, 5.0, 1.0, math.inf])
     assert not picture.occluded.any()
     assert range_picture(sensor, WALL, pe.Vehicle(boxes[1])).occluded[0].tolist()[2]
-
-
-def test_colours_run_from_bright_to_dark_and_are_the_body_s_own_hue():
-    sensor = pe.Sensor("toy", lidar([-2, -10, -45]), pe.Pose((0.0, 0.0, 1.0)))
-    colors = range_colors(range_picture(sensor, WALL), 50.0)
-    lightness = colors[1:, 0] @ [0.2126, 0.7152, 0.0722]  # behind: the ground, 6 and 1.4 m away
-    assert lightness[1] > lightness[0] + 0.1
-    red, green, blue = colors[0, 2]  # ahead: the wall
-    assert red > green > blue
 
 
 def eye(position, rotation=(0, 0, 0)):

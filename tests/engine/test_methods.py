@@ -19,7 +19,7 @@ from pe_core.search.methods.method import Phase
 from pe_core.search.parametrization import feasible_start
 from tests.engine import mounting, shapes
 from tests.engine.mounting import can, roof
-from tests.engine.recording import Recorder, distance_to, flat
+from tests.engine.recording import Recorder, distance_to
 
 SPACE = shapes.small_space()
 
@@ -65,25 +65,6 @@ def test_a_budget_ends_any_search():
         steps = list(pe.optimize(recorder, rig, space, method=method, evaluations=25))
         assert len(recorder.rigs) == steps[-1].evaluations == 25
         assert steps[-1].fraction == 1.0
-
-
-def test_an_unknown_method_is_refused_in_one_line():
-    rig, space = mounting.space(can())
-    with pytest.raises(pe.InputError, match=r"optimize: method: expected one of .*random") as error:
-        next(pe.optimize(Recorder(flat), rig, space, method="simulated annealing"))
-    assert "\n" not in str(error.value)
-    with pytest.raises(pe.InputError, match="method"):
-        pe.Search(method="annealing")
-
-
-def test_a_schedule_chooses_no_method():
-    schedule = pe.Schedule(candidates=3)
-    assert pe.Search().method == pe.Search(schedule=pe.Schedule()).method == "portfolio"
-    with pytest.raises(pe.InputError, match="method: expected 'random' named with a schedule"):
-        pe.Search(schedule=schedule)
-    with pytest.raises(pe.InputError, match="method: expected 'random' named with a schedule"):
-        rig, space = mounting.space(can())
-        next(pe.optimize(None, rig, space, 0, schedule))
 
 
 def test_on_another_level_the_best_so_far_is_evaluated_anew(monkeypatch):

@@ -53,13 +53,6 @@ def test_pairs_of_dimensions_fill_the_square():
             assert np.bincount(cells, minlength=64).min() > 0, (a, b)
 
 
-def test_the_same_study_has_the_same_objects_to_the_bit():
-    one, other = drawn(), drawn()
-    for name in ("centers", "sizes", "yaws", "labels", "scenes"):
-        assert getattr(one.objects, name).tobytes() == getattr(other.objects, name).tobytes()
-    assert not np.array_equal(one.objects.centers, drawn(shift=0.25).objects.centers)
-
-
 def test_no_two_of_a_scene_overlap_and_none_the_vehicle():
     car = shapes.box_car()
     dense = pe.Prior("road", ROAD.classes, density={"car": 60, "truck": 30})

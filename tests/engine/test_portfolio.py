@@ -1,7 +1,6 @@
 """The default method: surveys, linear and surrogate descents, and slots."""
 
 import math
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -123,16 +122,6 @@ def test_a_linear_landscape_takes_few_placements_to_the_end_of_its_range():
     assert descent.best.vector == pytest.approx(corner, abs=0.02)
 
 
-def test_a_linear_descent_neither_leaves_its_ranges_nor_breaks_a_rule():
-    limits = pe.Constraints(no_go=[pe.NoGo("hatch", x=(-0.2, 3.0))])
-    rig, space = mounting.space(can((-1.0, 0.0, 1.6)), constraints=limits)
-    coding = Parametrization(rig, space)
-    recorder, steps = searched(lambda rig: -rig["roof"].pose.position[0], rig, space)
-    assert not any(coding.broken(asked) for asked in recorder.rigs)
-    found = steps[-1].best["roof"].pose.position[0]
-    assert found == pytest.approx(-0.2 - mounting.RADIUS, abs=0.02)
-
-
 def test_sensors_in_slots_exchange_them_and_move_two_at_a_time():
     """Alone no sensor gains: what each wants the other one has, or both must go."""
     poses = [(-1.0, 0.0, 1.6), (-0.5, 0.3, 1.6), (0.0, -0.3, 1.6), (0.5, 0.0, 1.6)]
@@ -173,18 +162,6 @@ def test_a_survey_asks_for_one_sensor_at_a_time_and_tells_what_the_next_has_to_b
     assert len({c.rig["roof"].pose for c in question.candidates}) == 1
     exact = Survey(Given(coding, coding.start, 5.0), exact=True)
     assert next(exact.survey(Incumbent(coding.start, 5.0), PHASE, 4)).cutoff == math.inf
-
-
-def test_workers_take_the_same_steps():
-    rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
-
-    def steps(executor):
-        landscape = Recorder(distance_to({"x": 0.5}))
-        found = pe.optimize(landscape, rig, space, evaluations=120, executor=executor)
-        return [(s.entropy, s.evaluations, [own.pose for own in s.best]) for s in found]
-
-    with ThreadPoolExecutor(2) as executor:
-        assert steps(executor) == steps(None)
 
 
 def model_of(points, values):

@@ -253,22 +253,6 @@ def test_a_mesh_that_changed_is_refused(out, capsys):
     assert "study: expected unchanged files beside the study" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    ("arguments", "status", "complaint"),
-    [
-        (["optimize"], 2, "expected STUDY, or --resume DIR"),
-        (["optimize", "--resume", "a", "-o", "b"], 2, "not allowed with argument"),
-        (["optimize", "--resume", "nowhere"], 1, "pe: nowhere/search.json: file: expected"),
-    ],
-)
-def test_usage(arguments, status, complaint, capsys):
-    try:
-        assert main(arguments) == status
-    except SystemExit as stop:
-        assert stop.code == status
-    assert complaint in capsys.readouterr().err
-
-
 def test_a_fingerprint_tells_studies_apart_by_what_they_are(tmp_path):
     """Not by the names of their files: a copy in another folder is the same study."""
     study = a_study()

@@ -214,13 +214,6 @@ def test_another_optimum_is_told_from_the_flank_of_the_same_one():
     assert other.behind.mean == pytest.approx(0.1, abs=0.002) and other.moved == ("roof",)
 
 
-def test_a_search_that_resumes_says_the_same(outcome):
-    job = pt.OptimizeJob(study(), 1)
-    job.journal = pe.search.Journal(outcome.evaluated[:11])
-    again = result_dict(finished(job))
-    assert again["sensitivity"] == result_dict(outcome)["sensitivity"]
-
-
 def test_it_is_in_result_json_on_the_terminal_and_read_back(outcome):
     table = result_dict(outcome)["sensitivity"]
     found = sensitivity_from_dict(table, outcome.study.rig)

@@ -5,7 +5,7 @@ import pytest
 
 import pe_core as pe
 from pe_core import sensors as kinds
-from pe_core.metric.entropy import H_BLIND, entropy_of, precision_of
+from pe_core.metric.entropy import entropy_of, precision_of
 from pe_core.metric.fusion import late_fusion
 from pe_core.scoring.sight import Sight
 from pe_core.scoring.sight.ground_cells import gauss
@@ -90,27 +90,6 @@ def test_a_wide_place_is_the_mean_of_what_is_in_it():
     assert coarse.entropy.shape == (20, 10)
     assert np.mean(np.abs(coarse.entropy - means)[outside]) < 1.5
     assert coarse.x[:2] == pytest.approx([-19.0, -17.0])
-
-
-@pytest.mark.parametrize("height", [None, 0.5])
-def test_mirrored_rigs_have_mirrored_maps(height):
-    own = sight()
-    left = own.ground(pe.Rig([lidar((0.3, 0.613, 1.62), (2, 4, 31))]), height)
-    right = own.ground(pe.Rig([lidar((0.3, -0.613, 1.62), (-2, 4, -31))]), height)
-    assert left.coverage == pytest.approx(right.coverage[:, ::-1], abs=1e-9, nan_ok=True)
-    assert np.array_equal(left.sensors, right.sensors[:, ::-1])
-    assert left.entropy == pytest.approx(right.entropy[:, ::-1], abs=1e-9, nan_ok=True)
-    assert np.nanmax(np.abs(left.coverage - left.coverage[:, ::-1])) > 0.5
-
-
-def test_nothing_is_seen_behind_a_wall():
-    """A wall from the ground to the sky at x = 5: the columns behind it are as blind as can be."""
-    wall = pe.Vehicle(shapes.box((5.0, -10.0, 0.0), (5.2, 10.0, 40.0)))
-    ground = sight(wall).ground(pe.Rig([lidar(channels=64)]), 1.0)
-    behind = ground.x > 6.0
-    assert (ground.entropy[behind] == H_BLIND).all()
-    assert (ground.coverage[behind] == 0.0).all() and (ground.sensors[behind] == 0).all()
-    assert (ground.coverage[(ground.x > 0.0) & (ground.x < 4.0)] > 0.0).any()
 
 
 def test_where_no_object_is_ever_met_there_is_a_map_all_the_same():

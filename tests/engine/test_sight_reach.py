@@ -114,18 +114,6 @@ def test_the_blind_zone_near_by_does_not_end_a_reach():
     assert own.reach(rig, "any", bearings=4).distance[0] == pytest.approx(30.0, abs=1.0)
 
 
-def test_a_rig_reaches_no_less_than_its_sensors():
-    front = shapes.lidar_on_roof(shapes.small_lidar(64, 720), (1.0, 0.0, 1.6), name="front")
-    rear = shapes.lidar_on_roof(shapes.small_lidar(64, 720), (-1.0, 0.0, 1.6), name="rear")
-    rig = pe.Rig([front, rear, shapes.camera()])
-    space = pe.PerceptionSpace(interval=0.5)
-    reach = sight.Sight(space, pe.Prior.road(), shapes.box_car()).reach(rig, "car")
-    assert list(reach.per_sensor) == ["front", "rear", "camera"]
-    assert (reach.distance >= np.max(list(reach.per_sensor.values()), axis=0)).all()
-    assert (reach.distance > np.max(list(reach.per_sensor.values()), axis=0)).any()
-    assert (reach.distance <= reach.limit).all()
-
-
 NO_QUESTIONS = [
     ("class_name", ("tram", {})),
     ("class_name", (None, {})),

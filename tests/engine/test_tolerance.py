@@ -164,14 +164,6 @@ def test_a_bound_is_no_higher_than_the_truth_and_told_only_where_it_settles(chan
         assert found.is_lower_bound or above < 2.0  # where much is to spare, it is not measured
 
 
-def test_a_grid_evaluates_as_a_sample_does():
-    space = pe.PerceptionSpace((-4, 4), (-4, 4), (0, 2), 0.5)
-    grid = pe.Evaluator(space, pe.Prior.uniform(), shapes.box_car())
-    each = [grid.entropy(case) for case in BOTH.cases(rig())]
-    objective = RobustObjective(grid, BOTH)
-    assert objective.evaluate(rig(), 0.0) == (pytest.approx(np.mean(each), abs=1e-9), False)
-
-
 def test_a_search_minimises_what_placements_are_worth_mounted_off(evaluator):
     bounds = {"roof": {"z": (1.5, 2.2), "pitch": (-0.2, 0.2)}}
     objective = RobustObjective(evaluator, BOTH)

@@ -47,7 +47,7 @@ def scored(capsys, path):
 
 
 @pytest.mark.parametrize("targets", ["voxels", "objects"])
-def test_nuscenes_rig_with_five_radars_in_sun_rain_and_fog(targets, tmp_path, capsys):
+def test_nuscenes_rig_with_five_radars_in_sun_rain_and_fog(targets):
     """By class; fog takes most from all, and a rig without its radars loses more in it."""
     plain = study_of_rig(catalog.known_rig("nuscenes"), shapes.box_car(), stretched=True)
     study = replace(
@@ -71,7 +71,6 @@ def test_nuscenes_rig_with_five_radars_in_sun_rain_and_fog(targets, tmp_path, ca
         clear, foggy = condition_table(study.with_rig(without)).rows[::2]
         assert foggy.entropy - clear.entropy > fog.entropy - sun.entropy > 0.5
     assert all(fog.without[s.name] >= fog.entropy for s in study.rig)
-    assert scored(capsys, written(tmp_path, study)) == json.loads(json.dumps(table.to_dict()))
 
 
 CAB_REAR, HITCH = 1.2, (-0.5, 0.0, 1.1)

@@ -11,8 +11,7 @@ import pe_core as pe
 from pe_core import catalog
 from pe_core.sensors import kind_of
 from pe_core.sensors.field_of_view import FREE
-from pe_core.study import study_from_dict, study_to_dict
-from pe_tools.graphics import PAPER, VIEWPORT, beams, colors, kinds
+from pe_tools.graphics import PAPER, VIEWPORT, beams, kinds
 from pe_tools.graphics import colors as tints
 from pe_tools.graphics.colors import tints_of
 from pe_tools.outputs.solid import free_solid, mounted_view, whole_solid

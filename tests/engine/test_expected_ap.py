@@ -16,7 +16,6 @@ from pe_core.study import Conditions, load_study_data, study_from_dict, study_to
 from pe_core.study.condition_table import (
     ExpectedApEvaluator,
     search_evaluator,
-    searched_study,
     study_objective,
 )
 from pe_tools import jobs

@@ -16,7 +16,6 @@ from pe_core.base.errors import (
     available_bytes,
     report_memory_errors,
     require_memory,
-    size_text,
 )
 from pe_core.base.files import (
     csv_text,

@@ -67,6 +67,16 @@ def test_a_budget_ends_any_search():
         assert steps[-1].fraction == 1.0
 
 
+def test_a_schedule_chooses_no_method():
+    schedule = pe.Schedule(candidates=3)
+    assert pe.Search().method == pe.Search(schedule=pe.Schedule()).method == "portfolio"
+    with pytest.raises(pe.InputError, match="method: expected 'random' named with a schedule"):
+        pe.Search(schedule=schedule)
+    with pytest.raises(pe.InputError, match="method: expected 'random' named with a schedule"):
+        rig, space = mounting.space(can())
+        next(pe.optimize(None, rig, space, 0, schedule))
+
+
 def test_on_another_level_the_best_so_far_is_evaluated_anew(monkeypatch):
     """A method that asks twice for one better placement: on few voxels, then on many."""
     rig, space = mounting.space(can())

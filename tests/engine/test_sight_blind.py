@@ -19,7 +19,6 @@ from pe_core.scoring.sight.blind_ground import (
 )
 from pe_core.scoring.sight.ground_cells import (
     GroundCells,
-    closed,
     gauss,
     opened,
     outlines,

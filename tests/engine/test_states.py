@@ -11,7 +11,6 @@ import pe_core as pe
 from pe_core.base.table_reader import Table
 from pe_core.study import (
     Conditions,
-    StateInWeather,
     condition_table,
     study_from_dict,
     study_to_dict,

@@ -10,7 +10,6 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.base.errors import plural
 from pe_core.scoring import FoundClass
 from pe_core.scoring.targets.object_metric import SECTORS
 from pe_tools import advice

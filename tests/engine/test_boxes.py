@@ -8,8 +8,6 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.prior import BoxReport
-from pe_core.prior.boxes import voxelised
 from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
 

@@ -8,7 +8,6 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.search import selection
 from pe_tools.cli.choose_verb import front_summary
 from pe_tools.jobs import design_study, front_job, write_front
 from tests.engine import mounting

@@ -70,7 +70,7 @@ def test_an_optimize_job_improves_and_tells_its_history():
     assert stages[-1] == "done" and "optimizing" in stages
 
 
-@pytest.mark.parametrize("job_class", [pe.ScoreJob, pe.OptimizeJob])
+@pytest.mark.parametrize("job_class", [pt.ScoreJob, pt.OptimizeJob])
 def test_stop_before_a_score_is_complete_leaves_no_outcome(job_class, monkeypatch):
     goes_on = threading.Event()
     monkeypatch.setattr(pe.Evaluator, "score", lambda *_: goes_on.wait())

@@ -8,8 +8,8 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.base import dump_json, plugins
-from pe_tools.cli import command, progress_line, show
+from pe_core.base import dump_json
+from pe_tools.cli import progress_line, show
 from pe_tools.cli.progress_line import Reporter
 from pe_tools.cli.terminal import MAX_LINE_LENGTH, one_line, printable
 from pe_tools.cli.verbs import main

@@ -179,7 +179,7 @@ def test_an_objective_that_cannot_be_sent_evaluates_here(tmp_path, rigs, pool):
 
 def test_where_no_process_can_be_started_there_are_none(monkeypatch):
     assert start_processes(1) is None
-    monkeypatch.setattr(processes, "INITIALIZER", "raise SystemExit(1)")
+    monkeypatch.setattr(processes, "beginning", lambda *_: "raise SystemExit(1)")
     assert start_processes(2) is None
 
 

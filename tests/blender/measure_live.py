@@ -114,6 +114,7 @@ def main() -> int:
 def install(suite: str, checkout: Path, folder: Path) -> Installed:
     """Build the extension of a checkout and install it into a user folder of its own."""
     finder = [sys.executable, ROOT / "tools" / "real_blender.py", "--suite", suite]
+    (folder / "user").mkdir()
     blender = Blender(said_by(finder)).with_resources(folder / "user")
     built = said_by([sys.executable, checkout / "tools" / "build_extension.py"])
     command = ("--command", "extension", "install-file", "-r", "user_default", "--enable", built)

@@ -30,7 +30,7 @@ def _shared_types() -> dict[type, int]:
     return {pe.Vehicle: 2, pe.Prior: 4, ViewRequest: 2, **models}
 
 
-def _setup() -> engine_process.Call:
+def _setup() -> engine_process.EngineCall:
     """Return what the process has to know besides: own sensors."""
     return catalog.replace_added, (catalog.added(),)
 

@@ -16,7 +16,7 @@ from ..language import draw_label, shown
 from ..operators import FIX_LABELS, SAME, sense_icon, warnings_outdated
 from ..properties import ROWS, DeclaredRow, StoredWarning, declared_rows
 
-Draw = Callable[[UILayout, PropertyGroup, Context], None]
+DrawPanel = Callable[[UILayout, PropertyGroup, Context], None]
 DrawHeader = Callable[[UILayout, Context], None]
 TAB: dict[str, Any] = {
     "bl_space_type": "VIEW_3D",
@@ -36,7 +36,7 @@ def panel(
     count: str = "",
     chosen: str = "",
     **members: Any,
-) -> Callable[[Draw], type[bpy.types.Panel]]:
+) -> Callable[[DrawPanel], type[bpy.types.Panel]]:
     """Return what makes a panel of the tab of a function, whose name and docstring it takes.
 
     The function draws into a layout; it takes the settings of the scene and the context. `parent`
@@ -46,7 +46,7 @@ def panel(
     `members` are attributes of the class.
     """
 
-    def make(function: Draw) -> type[bpy.types.Panel]:
+    def make(function: DrawPanel) -> type[bpy.types.Panel]:
         def draw(self: bpy.types.Panel, context: Context) -> None:
             function(self.layout, context.scene.perception_entropy, context)
 

@@ -30,7 +30,7 @@ FOLLOWS_MOUSE, BEHIND = "mouse", "behind"
 END_S = 1.0
 """A process that has not ended by itself after this time is killed; one that begins, at once."""
 Take = Callable[[Any], None]
-Call = tuple[Callable[..., Any], tuple[Any, ...]]
+EngineCall = tuple[Callable[..., Any], tuple[Any, ...]]
 
 
 class EngineEnded(InputError):
@@ -46,7 +46,7 @@ class _Awaited:
 
     number: int
     lane: str
-    call: Call
+    call: EngineCall
     deliver: Take
     fail: Take
     step: Take | None
@@ -126,11 +126,11 @@ class EngineProcess:
     def __init__(
         self,
         shared: Callable[[], Mapping[type, int]],
-        setup: Callable[[], Call] = lambda: (tuple, ()),
+        setup: Callable[[], EngineCall] = lambda: (tuple, ()),
         packages: Sequence[str] = (),
     ) -> None:
         self._shared_types, self._setup, self._packages = shared, setup, packages
-        self._set_up: Call | None = None
+        self._set_up: EngineCall | None = None
         self._process: Any = None
         self._connection: Any = None
         self._awaited: dict[str, list[_Awaited]] = {}

@@ -36,7 +36,7 @@ class Request:
 def packed(content: object, number_of: Callable[[object], int | None]) -> bytes:
     """Pickle content; objects with a number are referred to by it."""
     file = io.BytesIO()
-    pickler = _Pickler(file, pickle.HIGHEST_PROTOCOL)
+    pickler = _Packer(file, pickle.HIGHEST_PROTOCOL)
     pickler.persistent_id = number_of  # type: ignore[method-assign]
     pickler.dump(content)
     return file.getvalue()
@@ -44,14 +44,14 @@ def packed(content: object, number_of: Callable[[object], int | None]) -> bytes:
 
 def unpacked(data: bytes, object_of: Callable[[int], Any]) -> Any:
     """Return what was packed; numbers become objects again."""
-    unpickler = _Unpickler(io.BytesIO(data))
+    unpickler = _Unpacker(io.BytesIO(data))
     unpickler.persistent_load = object_of  # type: ignore[method-assign]
     return unpickler.load()
 
 
-class _Pickler(pickle.Pickler):
+class _Packer(pickle.Pickler):
     """Has a dictionary, for `persistent_id`."""
 
 
-class _Unpickler(pickle.Unpickler):
+class _Unpacker(pickle.Unpickler):
     """Has a dictionary, for `persistent_load`."""

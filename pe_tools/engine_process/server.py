@@ -21,7 +21,7 @@ from .messages import CANCEL, DONE, FAILED, FORGET, STEP, Request, packed, unpac
 
 
 @dataclass(slots=True)
-class _Call:
+class _RunningRequest:
     """A request as it is run: a job can be cancelled, before it begins as well.
 
     `numbers` are those of the shared objects of the request, by their `id`.
@@ -62,13 +62,13 @@ class _Call:
 class _Lane(threading.Thread):
     """Runs the calls of a lane; of each topic the latest, the one that waits longest first."""
 
-    def __init__(self, send: Callable[[_Call, str, Any], None]) -> None:
+    def __init__(self, send: Callable[[_RunningRequest, str, Any], None]) -> None:
         super().__init__(daemon=True)
         self._send, self._changed = send, threading.Condition()
-        self._waiting: dict[str, _Call] = {}
-        self._running: _Call | None = None
+        self._waiting: dict[str, _RunningRequest] = {}
+        self._running: _RunningRequest | None = None
 
-    def put(self, call: _Call) -> None:
+    def put(self, call: _RunningRequest) -> None:
         """Take a call; one of its topic that has not begun is dropped."""
         with self._changed:
             self._waiting.pop(call.topic, None)
@@ -134,7 +134,7 @@ class _Server:
                     traceback.print_exc()
 
     def _begin(self, request: Request) -> None:
-        call = _Call(request.number, request.topic, tuple, (), {})
+        call = _RunningRequest(request.number, request.topic, tuple, (), {})
         try:
             for number, data in request.shared.items():
                 own = self._inside[number] = {}
@@ -154,7 +154,7 @@ class _Server:
         used |= {id(self._shared[number]): number, **self._inside[number]}
         return self._shared[number]
 
-    def _send(self, call: _Call, kind: str, content: Any) -> None:
+    def _send(self, call: _RunningRequest, kind: str, content: Any) -> None:
         """Send an answer; objects that came with the request go back as their numbers."""
         if kind == FAILED:
             content.add_note("".join(traceback.format_exception(content)))

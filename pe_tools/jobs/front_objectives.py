@@ -34,7 +34,7 @@ AUGMENTED = 0.05
 """Weight of the sum beside the maximum: it drops placements that are only weakly efficient."""
 TIE = 1e-3
 """Weight of the other objectives while the best value of one is looked for."""
-Figures = Mapping[str, float]
+FrontValues = Mapping[str, float]
 
 
 def check_objectives(study: Study, names: Sequence[str]) -> None:
@@ -96,7 +96,7 @@ class FrontFigures:
         """Pickle the arguments: a worker has figures of its own from them."""
         return FrontFigures, self._given
 
-    def __call__(self, rig: Rig) -> Figures:
+    def __call__(self, rig: Rig) -> FrontValues:
         """Return the objectives of a rig by name, each in its own unit."""
         key = tuple((s.name, s.model.name, s.pose.position, s.pose.rpy) for s in rig)
         if key not in self._known:
@@ -107,7 +107,7 @@ class FrontFigures:
         """Return the objectives of a rig as values to minimise."""
         return costs_of(self(rig), self.names)
 
-    def scored(self, rig: Rig, score: Score) -> Figures:
+    def scored(self, rig: Rig, score: Score) -> FrontValues:
         """Return the objectives with entropy and AP of a score on all voxels of the study."""
         figures = dict(self(rig))
         if ENTROPY in figures:
@@ -153,7 +153,7 @@ def height_of(rig: Rig) -> float:
     )
 
 
-def costs_of(figures: Figures, names: Sequence[str]) -> list[float]:
+def costs_of(figures: FrontValues, names: Sequence[str]) -> list[float]:
     """Return figures as values to minimise."""
     return [-figures[n] if n in HIGHER_IS_BETTER else figures[n] for n in names]
 

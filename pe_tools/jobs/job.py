@@ -184,7 +184,7 @@ class Progress:
         return "" if self.entropy is None else self.figure.text(self.entropy)
 
 
-Steps = Generator[Progress, None, T | None]
+ProgressSteps = Generator[Progress, None, T | None]
 """Yields progress while work runs; returns the result, None where the job ends before it."""
 
 
@@ -262,7 +262,9 @@ class Job:
         """Time since the job was made [s]."""
         return time.monotonic() - self._started
 
-    def _score(self, rig: Rig, waiting: Progress, *, to_the_end: bool = False) -> Steps[Score]:
+    def _score(
+        self, rig: Rig, waiting: Progress, *, to_the_end: bool = False
+    ) -> ProgressSteps[Score]:
         """Score in a thread, yielding `waiting` until it is done. Returns None if the job is
         dropped meanwhile, or stopped without `to_the_end`. The thread then ends soon by itself;
         nothing waits for it."""
@@ -274,7 +276,7 @@ class Job:
 
     def _beside(
         self, work: Callable[[Watch], T], waiting: Progress, to_the_end: bool = False
-    ) -> Steps[T]:
+    ) -> ProgressSteps[T]:
         """Run `work` in a thread, yielding progress; return None if the job ends before it. The
         work tells its progress, and hears whether to go on. The fraction is never below that of
         `waiting`."""
@@ -303,7 +305,7 @@ class Job:
 
     def _awaited(
         self, future: Future[T], waiting: Callable[[], Progress], to_the_end: bool = False
-    ) -> Steps[T]:
+    ) -> ProgressSteps[T]:
         while self._goes_on(to_the_end):
             # Not result(timeout=...): work may end between its TimeoutError and a look at done().
             wait([future], timeout=WAIT_S)
@@ -315,7 +317,9 @@ class Job:
     def _goes_on(self, to_the_end: bool) -> bool:
         return not self.dropped and (to_the_end or not self.stopped)
 
-    def _warnings(self, study: Study, score: Score, waiting: Progress) -> Steps[tuple[Advice, ...]]:
+    def _warnings(
+        self, study: Study, score: Score, waiting: Progress
+    ) -> ProgressSteps[tuple[Advice, ...]]:
         """Collect the warnings about a study in a thread, yielding `waiting` until it is done."""
 
         def work(_: Watch) -> tuple[Advice, ...]:
@@ -326,7 +330,7 @@ class Job:
 
     def _verdicts(
         self, study: Study, waiting: Progress, to_the_end: bool = True
-    ) -> Steps[tuple[Verdict, ...]]:
+    ) -> ProgressSteps[tuple[Verdict, ...]]:
         """Hold a study to its requirements in a thread, yielding `waiting` until it is done."""
         if not study.requirements:
             return ()
@@ -347,7 +351,7 @@ class Job:
 
     def _conditions(
         self, study: Study, waiting: Progress, to_the_end: bool = True
-    ) -> Steps[ConditionTable]:
+    ) -> ProgressSteps[ConditionTable]:
         """Score a study under its conditions in a thread; None without, or where it is dropped."""
         if not study.conditions:
             return None

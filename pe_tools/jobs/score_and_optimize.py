@@ -34,7 +34,7 @@ from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 from ..advice import Advice, condition_warnings, fragile, unmet
 from ..sensitivity import Archive, FreshSamples, analyse, fresh_objectives, is_analysed
 from .candidate_workers import ExecutorSource, candidate_workers
-from .job import HistoryRow, Job, Outcome, Progress, StartEnd, Steps, begun, best_so_far
+from .job import HistoryRow, Job, Outcome, Progress, ProgressSteps, StartEnd, begun, best_so_far
 from .searched_figure import IN_AP, searched_figure, searched_samples
 from .stopping import TARGET, StopWatch
 
@@ -235,7 +235,7 @@ class OptimizeJob(Job):
 
     def _scored(
         self, rig: Rig, waiting: Progress, known: Score | None = None, to_the_end: bool = False
-    ) -> Steps[_Scored]:
+    ) -> ProgressSteps[_Scored]:
         """Score a placement; of a search by expected AP, on objects in traffic, too."""
         by_ap = is_by_ap(self.study)
         apart = by_ap and searched_study(self.study).targets != self.study.targets

@@ -10,20 +10,6 @@ from blender_addon import commands
 from blender_addon.engine import page
 from tests.addon import scenes
 
-PICTURE = re.compile('="The vehicle with 1 LiDAR')
-
-
-def test_the_panel_s_page_has_its_title_and_the_picture_once(car, tmp_path, small_pictures):
-    car.perception_entropy.score_samples = 1024
-    path = tmp_path / "for <all>.html"
-    path.write_text("mine")  # the file dialog has asked
-    said = {"title": "Roof & rails", "author": "A. Author", "date": "May", "revision": "B"}
-    assert bpy.ops.pe.export_review(filepath=str(path), **said) == {"FINISHED"}
-    text = path.read_text("utf-8")
-    assert "for &lt;all&gt;" in text
-    assert "<h1>Roof &amp; rails</h1>" in text and "A. Author, May, Revision B</p>" in text
-    assert len(PICTURE.findall(text)) == 1
-
 
 def test_headless_blender_writes_the_page_of_the_command_line(car, tmp_path, small_pictures):
     scenes.add_sensor("front", model="Camera 60 deg")

@@ -94,14 +94,18 @@ def test_place_score_optimize_check_and_export(scene, tmp_path, small_pictures):
     assert bridge.stored_verdict(row) == verdict.summary
 
     # Export: what is written scores the same, from the panel, headless and outside of Blender.
-    study, glb, review = (tmp_path / name for name in ("car.toml", "car.glb", "car.html"))
+    study, glb, review = (tmp_path / n for n in ("car.toml", "car.glb", "for <all>.html"))
     assert bpy.ops.pe.export_study(filepath=str(study)) == {"FINISHED"}
     loaded = pe.load_study(study)
     assert finished(jobs.ScoreJob(loaded)).after == finished(jobs.ScoreJob(scenes.study())).after
     assert bpy.ops.pe.export_scene(filepath=str(glb), output="gltf") == {"FINISHED"}
     assert glb.read_bytes() == outputs.scene_files(scenes.study(), "gltf", None)[0]["scene.glb"]
-    assert bpy.ops.pe.export_review(filepath=str(review)) == {"FINISHED"}
-    assert "</html>" in review.read_text("utf-8")
+    review.write_text("mine")  # the file dialog has asked
+    said = {"title": "Roof & rails", "author": "A. Author", "date": "May", "revision": "B"}
+    assert bpy.ops.pe.export_review(filepath=str(review), **said) == {"FINISHED"}
+    told = review.read_text("utf-8")
+    assert "for &lt;all&gt;" in told and told.count('="The vehicle with 1 LiDAR') == 1
+    assert "<h1>Roof &amp; rails</h1>" in told and "A. Author, May, Revision B</p>" in told
     picture = tmp_path / "car.png"
     assert bpy.ops.pe.render_review(filepath=str(picture)) == {"FINISHED"}
     job = jobs.ScoreJob(scenes.study())

@@ -162,7 +162,7 @@ def study_to_dict(study: Study) -> dict[str, Any]:
 def _check_beside(path: Path, field: str, needed: bool, file: str | None) -> None:
     """Raise `InputError` for a file that the study names and that does not exist."""
     if needed and not (file and os.path.exists(path.parent / file)):
-        expected = "a file beside the study (pt.export_study writes it)"
+        expected = "a file beside the study (export_study of pe_tools writes it)"
         raise InputError(path, field, expected, shown(file) if file else "none")
 
 

@@ -117,7 +117,7 @@ def report_state():
         "sensors": [each.name for each in sensors],
         "places": {each.name: list(each.matrix_world.translation) for each in sensors},
         "running": running_job.current is not None,
-        "better_found": running_job.current is not None and better_found(running_job.current.job),
+        "better_found": running_job.current is not None and better_found(running_job.current.seen),
         "notice": running_job.current.notice if running_job.current else "",
         "kind": found.result_kind,
         "has_result": found.has_result,

@@ -6,6 +6,7 @@ import signal
 import psutil
 
 from tests.blender.runner import output_of
+from tests.blender.test_search_window import ask_for
 from tests.limits import HANG_S
 
 NAME = "bl_ext.user_default.perception_entropy"
@@ -62,6 +63,19 @@ def test_killed_in_a_drag_and_in_a_search_it_goes_on(stage, installed, tmp_path)
     shown = round(found["found"][0], 6)
     assert shown == round(result["entropy"], 6), "a window and the command line differ"
     assert "bl_ext" not in stage.log.read_text()  # a worker that began may tell of its end
+
+
+def test_killed_in_an_export_it_writes_the_page_all_the_same(stage, tmp_path):
+    page = tmp_path / "page" / "review.html"
+    page.parent.mkdir()
+    stage.do(SMALL_SEARCH)
+    ask_for(stage, page)
+    stage.wait_until(f"{RUNNING} and {RUNNING}.progress.fraction > 0.0")
+    engine_of(stage).kill()
+    stage.wait_until(f"{RUNNING} is None")
+    assert "</html>" in page.read_text("utf-8")[-20:]
+    names = {path.name for path in page.parent.iterdir()}
+    assert names == {page.name, ".perception-entropy.json"}, "nothing unfinished is left"
 
 
 def test_it_ends_with_the_file_and_with_blender(spent_stage, sedan):

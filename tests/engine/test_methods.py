@@ -58,6 +58,31 @@ def test_algorithm_1_on_a_roof_with_a_no_go_area_takes_the_steps_it_always_took(
     assert fingerprint(steps) == (211, "e533652c3e57f69b")
 
 
+@pytest.mark.parametrize(
+    ("seed", "told"), [(0, (600, "3569b1ddca222fee")), (1, (600, "0fc0d9b59656c5d1"))]
+)
+def test_the_portfolio_takes_the_steps_it_always_took(seed, told):
+    """On two levels, with two sensors that hinder each other: corners, races, blocks, descents."""
+    rig = pe.Rig([shapes.lidar_on_roof(), shapes.camera()])
+    space = pe.SearchSpace.on_vehicle(rig, shapes.box_car())
+    levels = [Recorder(rugged(wide)) for wide in (0.9, 1.0)]
+    steps = pe.optimize(levels, rig, space, seed, method="portfolio", evaluations=600)
+    assert fingerprint(steps) == told
+
+
+def rugged(wide):
+    """A landscape with several hollows, and a ridge between its two sensors."""
+
+    def landscape(rig):
+        at = [pose_values(sensor.pose) for sensor in rig]
+        bowl = sum((own["x"] - 0.4 * wide) ** 2 + 0.5 * (own["z"] - 1.7) ** 2 for own in at)
+        turns = sum(0.1 * math.sin(3.0 * own["yaw"]) ** 2 + own["pitch"] ** 2 for own in at)
+        near = abs(at[0]["x"] - at[1]["x"]) + abs(at[0]["y"] - at[1]["y"])
+        return round(bowl + turns + 0.2 / (0.5 + near), 9)
+
+    return landscape
+
+
 def test_a_budget_ends_any_search():
     rig, space = mounting.space(can())
     for method in METHODS:

@@ -8,12 +8,14 @@ import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
 import pe_core as pe
 import pe_tools as pt
 from pe_tools.cli import sweep_verb
+from pe_tools.cli.executors import workplace
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import SearchState, read_search
 from tests.engine import shapes
@@ -155,10 +157,7 @@ def test_searches_on_a_cluster_leave_checkpoints_here(cluster, tmp_path, monkeyp
     monkeypatch.setattr(SearchState, "save", watched)
     argv = ["sweep", str(path), "--optimize", "-o", str(out), "--scheduler", cluster.address]
 
-    async def in_a_notebook():  # a loop runs there already
-        return main(argv)
-
-    assert asyncio.run(in_a_notebook()) == 0
+    assert main(argv) == 0
     whole = pt.OptimizeJob(pe.load_study(path))
     list(whole)
     evaluated = read_search(out / "car").evaluated
@@ -168,6 +167,17 @@ def test_searches_on_a_cluster_leave_checkpoints_here(cluster, tmp_path, monkeyp
     assert json.loads((out / "car" / "result.json").read_text())["entropy"] == (
         whole.outcome.after.entropy
     )
+
+
+def test_a_cluster_is_reached_where_a_loop_runs_already(cluster):
+    """As in a notebook; in a thread of its own, as this one may have a loop, too."""
+
+    async def in_a_notebook():
+        with workplace(1, cluster.address) as workers:
+            return workers.width()
+
+    with ThreadPoolExecutor(1) as thread:
+        assert thread.submit(asyncio.run, in_a_notebook()).result() > 0
 
 
 def test_a_scheduler_that_goes_away_is_one_line(study, cluster, tmp_path, monkeypatch, capsys):

@@ -35,7 +35,7 @@ def _setup() -> engine_process.EngineCall:
     return catalog.replace_added, (catalog.added(),)
 
 
-_PACKAGES = (__package__, f"{__package__}.overlay", f"{__package__}.operators")
+_PACKAGES = (__package__, f"{__package__}.overlay")
 _engine = engine_process.EngineProcess(_shared_types, _setup, _PACKAGES)
 
 

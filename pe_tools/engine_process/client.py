@@ -9,7 +9,7 @@ from __future__ import annotations
 import multiprocessing
 import pickle
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -23,7 +23,7 @@ from pe_core.base.spawning import (
     without_main,
 )
 
-from .messages import CANCEL, FAILED, FORGET, SET_UP, STEP, Request, packed, unpacked
+from .messages import CANCEL, FAILED, FORGET, SET_UP, STEP, Request, packed, steps_of, unpacked
 
 FOLLOWS_MOUSE, BEHIND = "mouse", "behind"
 """Lanes: one that never waits for what takes long, and one for all else."""
@@ -281,16 +281,10 @@ def call_here(
 ) -> None:
     """Call a function here and now, as the engine's process would."""
     try:
-        result = function(*arguments)
-        while isinstance(result, Iterator):
-            try:
-                found = next(result)
-            except StopIteration as end:
-                result = end.value
-            else:
-                if step is not None:
-                    step(found)
+        for kind, found in steps_of(function(*arguments)):
+            if kind == STEP and step is not None:
+                step(found)
     except Exception as error:  # whatever it is, `fail` has to know
         fail(error)
     else:
-        deliver(result)
+        deliver(found)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 import pickle
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -47,6 +47,18 @@ def unpacked(data: bytes, object_of: Callable[[int], Any]) -> Any:
     unpickler = _Unpacker(io.BytesIO(data))
     unpickler.persistent_load = object_of  # type: ignore[method-assign]
     return unpickler.load()
+
+
+def steps_of(found: object) -> Iterator[tuple[str, Any]]:
+    """Yield the steps of a job, and its result; the result alone of what is no iterator."""
+    while isinstance(found, Iterator):
+        try:
+            step = next(found)
+        except StopIteration as end:
+            found = end.value
+        else:
+            yield STEP, step
+    yield DONE, found
 
 
 class _Packer(pickle.Pickler):

@@ -17,7 +17,7 @@ from typing import Any
 
 from pe_core.base.spawning import belong_to_parent, end_process
 
-from .messages import CANCEL, DONE, FAILED, FORGET, STEP, Request, packed, unpacked
+from .messages import CANCEL, FAILED, FORGET, Request, packed, steps_of, unpacked
 
 
 @dataclass(slots=True)
@@ -43,20 +43,10 @@ class _RunningRequest:
 
     def steps(self) -> Iterator[tuple[str, Any]]:
         """Run it; yield the steps of a job, and the result."""
-        found = self.function(*self.arguments)
-        if not isinstance(found, Iterator):
-            yield DONE, found
-            return
-        self.running = found
-        for _ in range(self.cancels):
-            self.cancel()
-        while True:
-            try:
-                step = next(found)
-            except StopIteration as end:
-                yield DONE, end.value
-                return
-            yield STEP, step
+        self.running = self.function(*self.arguments)
+        for _ in range(self.cancels if hasattr(self.running, "cancel") else 0):
+            self.running.cancel()
+        yield from steps_of(self.running)
 
 
 class _Lane(threading.Thread):

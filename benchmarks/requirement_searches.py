@@ -78,11 +78,7 @@ def shuttle() -> pe.Study:
         body.prior,
         requirements=[presets[name].requirement() for name in NINE],
         search=pe.Search(
-            free=free,
-            limits=limits,
-            requirements="keep",
-            samples=SAMPLES,
-            evaluations=EVALUATIONS,
+            free=free, limits=limits, requirements="keep", samples=SAMPLES, evaluations=EVALUATIONS
         ),
     )
 

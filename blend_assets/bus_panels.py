@@ -39,10 +39,7 @@ door = both(flank, lines.door)
 
 def common_gaps() -> list[tuple[Line, Where]]:
     """Shut lines of both halves."""
-    return [
-        (lines.roof_line, height(2.0)),
-        (lines.bumper_top, lines.ends_of_bumper),
-    ]
+    return [(lines.roof_line, height(2.0)), (lines.bumper_top, lines.ends_of_bumper)]
 
 
 def door_gaps() -> list[tuple[Line, Where]]:

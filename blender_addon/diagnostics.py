@@ -8,15 +8,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import (
-    analysis_calls,
-    bridge,
-    engine_process,
-    sensor_cache,
-    signals,
-    vehicle_cache,
-    viewport,
-)
+from . import analysis_calls, bridge, engine_process, sensor_cache, signals, vehicle_cache, viewport
 from .engine import advice, jobs, pe
 
 IDLE_DELAY_S = 1.0

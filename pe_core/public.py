@@ -67,15 +67,7 @@ from .sensors import (
     measure,
     measure_objects,
 )
-from .study import (
-    Conditions,
-    Search,
-    Study,
-    load_study,
-    save_study,
-    study_from_dict,
-    study_to_dict,
-)
+from .study import Conditions, Search, Study, load_study, save_study, study_from_dict, study_to_dict
 from .version import __version__
 
 __all__ = ["METHODS", "ApCurve", "BeamField", "BlindGround", "BoxReport", "Boxes"]

@@ -171,10 +171,7 @@ def _value(value: Any) -> str:
     return f'"{value}"' if isinstance(value, str) else repr(value)
 
 
-CONVERSIONS = {
-    "lidar": (_lidar_table, _lidar_figures),
-    "camera": (_camera_table, _camera_figures),
-}
+CONVERSIONS = {"lidar": (_lidar_table, _lidar_figures), "camera": (_camera_table, _camera_figures)}
 """By kind: from an own sensor to a table of the catalogue, and from such a table to properties."""
 OTHER = (
     lambda row: read_line(row.keys, "keys"),

@@ -118,10 +118,7 @@ def _picture(scene: Scene, camera: bpy.types.Camera) -> tuple[int, int, float]:
     """Return width, height [px] and pixel aspect (height / width) of the camera or the scene."""
     render = scene.render
     share = render.resolution_percentage / 100.0
-    size = camera.get(SIZE) or [
-        int(render.resolution_x * share),
-        int(render.resolution_y * share),
-    ]
+    size = camera.get(SIZE) or [int(render.resolution_x * share), int(render.resolution_y * share)]
     aspect = render.pixel_aspect_y / render.pixel_aspect_x
     return (
         int(size[0]),

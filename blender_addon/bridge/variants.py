@@ -14,13 +14,7 @@ from ..engine import pe
 from .apply_variant import apply_records
 from .fingerprint import Fingerprint
 from .scene_record import record_of_scene, study_of
-from .sensor_records import (
-    SensorRecord,
-    records_of,
-    records_of_scene,
-    same_sensors,
-    write_records,
-)
+from .sensor_records import SensorRecord, records_of, records_of_scene, same_sensors, write_records
 
 Variant: TypeAlias = PropertyGroup
 

@@ -104,10 +104,7 @@ def _key(problem: Problem, rule: bridge.FigureRule | None, rig: pe.Rig) -> Hasha
 
 
 def _keep(
-    problem: Problem,
-    rule: bridge.FigureRule,
-    rigs: list[pe.Rig],
-    figures: list[advice.KeyFigures],
+    problem: Problem, rule: bridge.FigureRule, rigs: list[pe.Rig], figures: list[advice.KeyFigures]
 ) -> None:
     for rig, found in zip(rigs, figures, strict=True):
         figure_cache.put(_key(problem, rule, rig), found)

@@ -16,13 +16,7 @@ from .. import engine_process, viewport
 from ..language import shown as in_language
 from ..viewport import FAINT, INK, PLATE, SMALL, Rgba
 from . import background_figures
-from .readout_text import (
-    BETTER,
-    WORSE,
-    ReadoutLine,
-    TextPiece,
-    readout_of,
-)
+from .readout_text import BETTER, WORSE, ReadoutLine, TextPiece, readout_of
 from .sense_icons import SENSES
 from .state import LiveScore, ShownScore, live_state, shown_score
 
@@ -91,10 +85,7 @@ def row_of(line: ReadoutLine, color: Rgba = INK) -> TextRow:
 
 
 def rows_of(
-    score: LiveScore | None,
-    note: str,
-    shown: ShownScore | None,
-    figures: Sequence[TextRow] = (),
+    score: LiveScore | None, note: str, shown: ShownScore | None, figures: Sequence[TextRow] = ()
 ) -> list[TextRow]:
     """Return rows from the top down: the score, rows of figures, and why there is no newer one."""
     rows = [] if shown is None else _rows_of_score(score, shown, figures)

@@ -136,12 +136,7 @@ MODEL: dict[str, Any] = {
 """Properties of operators that add a sensor."""
 
 
-@operator(
-    "Add Sensor",
-    mode="Sensors are added in Object Mode",
-    tooltip=with_data_sheet,
-    **MODEL,
-)
+@operator("Add Sensor", mode="Sensors are added in Object Mode", tooltip=with_data_sheet, **MODEL)
 def add_sensor(context: bpy.types.Context, model: str, housing: bool) -> None:
     """Add a sensor at the 3D cursor, or on the roof while the cursor is at the origin"""
     kind = kinds.kind_of(catalog.load(model))

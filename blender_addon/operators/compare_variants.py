@@ -168,9 +168,7 @@ def pending_variants(scene: bpy.types.Scene) -> list[bpy.types.PropertyGroup]:
     return [r for r in rows if not r.has_result or r.stale or bridge.figures_of(r, of) is None]
 
 
-def comparison_of(
-    scene: bpy.types.Scene,
-) -> tuple[list[str], tuple[advice.ComparedRow, ...]]:
+def comparison_of(scene: bpy.types.Scene) -> tuple[list[str], tuple[advice.ComparedRow, ...]]:
     """Return the names of the scored variants, the active one first, and the table's rows.
 
     Of key figures there are rows if every variant has figures of the present settings.

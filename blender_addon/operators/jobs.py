@@ -12,14 +12,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import bpy
 
-from .. import (
-    bridge,
-    diagnostics,
-    engine_calls,
-    result_staleness,
-    signals,
-    vehicle_cache,
-)
+from .. import bridge, diagnostics, engine_calls, result_staleness, signals, vehicle_cache
 from ..engine import advice, engine_process, jobs, pe
 from ..language import shown
 from ..live import FinishedScore, live_state

@@ -119,10 +119,7 @@ def _corners(obj: bpy.types.Object) -> np.ndarray:
 
 
 def put_on_mount(
-    scene: bpy.types.Scene,
-    depsgraph: bpy.types.Depsgraph,
-    obj: bpy.types.Object,
-    name: str,
+    scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, obj: bpy.types.Object, name: str
 ) -> None:
     """Put a sensor on a mount, at the nearest point to where it is.
 

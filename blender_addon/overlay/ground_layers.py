@@ -52,11 +52,9 @@ def _redundancy(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
     """Return the map of what is left with one sensor lost, or of the number of kinds."""
     view = request.view
     seen = cache.redundancy(request).map(pe.Rig([e.sensor for e in request.counted]))
-    values = {
-        SENSORS_LEFT: seen.sensors_left,
-        KINDS: seen.kinds,
-        KINDS_LEFT: seen.kinds_left,
-    }[view.redundancy_of]
+    values = {SENSORS_LEFT: seen.sensors_left, KINDS: seen.kinds, KINDS_LEFT: seen.kinds_left}[
+        view.redundancy_of
+    ]
     cells, unknown = seen.cells, np.full(values.shape, np.nan)
     ground = sight.GroundSight(
         cells.x, cells.y, cells.step, seen.height, unknown, unknown, values, values

@@ -32,9 +32,7 @@ CornerPair = tuple[Floats, Floats]
 
 
 def draw_labels(
-    context: bpy.types.Context,
-    labels: Sequence[graphics.Tag],
-    taken: Sequence[PlateBox] = (),
+    context: bpy.types.Context, labels: Sequence[graphics.Tag], taken: Sequence[PlateBox] = ()
 ) -> None:
     """Draw labels above their positions, without those that would cover a label or a plate.
 
@@ -121,9 +119,7 @@ def arranged(
         free = [b for b in found if not any(graphics.boxes_overlap(b, each) for each in covered)]
         at_right = right - width
         box = min(
-            free,
-            key=lambda b: (_overlap(b, vehicle), b[0] != at_right, b[1], b[0]),
-            default=None,
+            free, key=lambda b: (_overlap(b, vehicle), b[0] != at_right, b[1], b[0]), default=None
         )
         placed.append(box)
         covered += [] if box is None else [box]

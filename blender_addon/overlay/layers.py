@@ -251,10 +251,7 @@ def _ghost_keys(request: ViewRequest) -> dict[str, Hashable]:
 
 
 def _ghosts(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
-    here, of = (
-        [e.sensor for e in request.counted],
-        "Search" if request.searching else GHOST_TITLE,
-    )
+    here, of = ([e.sensor for e in request.counted], "Search" if request.searching else GHOST_TITLE)
     shape = ghost_sensors(request.ghosts, here, request.ghosts_name, of)
     if request.searching:
         return shape
@@ -341,14 +338,7 @@ def _front(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.Lay
 
 
 LAYERS = (
-    Layer(
-        "ground",
-        "Ground Map",
-        _ground_keys,
-        _ground,
-        rough=True,
-        on_ground=True,
-    ),
+    Layer("ground", "Ground Map", _ground_keys, _ground, rough=True, on_ground=True),
     Layer(
         "blind",
         "Blind Ground",

@@ -15,13 +15,7 @@ from ..engine import graphics, pe, studies
 from ..live import live_state
 from ..view_settings import MIN_LENGTH_M, RANGES, ViewSettings
 from .layers import LAYERS
-from .request import (
-    FocusRegion,
-    MountFaces,
-    SceneSensor,
-    SearchBox,
-    ViewRequest,
-)
+from .request import FocusRegion, MountFaces, SceneSensor, SearchBox, ViewRequest
 
 BEST_SO_FAR = "best so far"
 SLOW_S = 0.05

@@ -8,14 +8,7 @@ from bpy.types import Context, PropertyGroup, UILayout
 
 from ..language import draw_label
 from ..operators import ShownSource, after_of, shown_verdicts, source_of
-from ..properties.requirement_fields import (
-    AREA,
-    BODIES_ASKED,
-    OF_GROUND,
-    OWN,
-    RING,
-    SEVERAL,
-)
+from ..properties.requirement_fields import AREA, BODIES_ASKED, OF_GROUND, OWN, RING, SEVERAL
 from .layout import (
     columns,
     draw_declared,

@@ -6,15 +6,7 @@ from typing import Any
 
 from bpy.types import Context, PropertyGroup, UILayout
 
-from ..choices import (
-    BY_GROUP,
-    BY_MATERIAL,
-    BY_PARTS,
-    EXPECTED_AP,
-    OBJECTS,
-    ON_SLOTS,
-    RANDOM,
-)
+from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, EXPECTED_AP, OBJECTS, ON_SLOTS, RANDOM
 from ..language import shown
 from .layout import columns, draw_declared, draw_list, draw_properties, panel, row_list
 from .variant_panels import draw_front
@@ -128,11 +120,4 @@ def tolerance(layout: UILayout, settings: PropertyGroup, _context: Context) -> N
     row.prop(settings, "worst")
 
 
-CLASSES = (
-    search,
-    mounts_rows,
-    mounts,
-    constraints,
-    tolerance,
-    goals,
-)
+CLASSES = (search, mounts_rows, mounts, constraints, tolerance, goals)

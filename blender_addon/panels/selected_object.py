@@ -131,9 +131,4 @@ def part(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
     layout.prop(obj.perception_entropy, "cover_loss_db", text="Radar Cover [dB]")
 
 
-CLASSES = (
-    sensor,
-    own_curve,
-    bounds,
-    part,
-)
+CLASSES = (sensor, own_curve, bounds, part)

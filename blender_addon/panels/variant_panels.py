@@ -166,9 +166,4 @@ def _draw_design(
     draw_label(name, texts[2])
 
 
-CLASSES = (
-    PE_MT_known_rigs,
-    variants_rows,
-    variants,
-    selection,
-)
+CLASSES = (PE_MT_known_rigs, variants_rows, variants, selection)

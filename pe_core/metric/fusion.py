@@ -353,12 +353,7 @@ class LeaveOneOut:
         return np.array(sums).T
 
     def _add_rest(
-        self,
-        group: _FusionGroup,
-        precision: Floats,
-        rank: int,
-        visible: VisibleVoxels,
-        plane: int,
+        self, group: _FusionGroup, precision: Floats, rank: int, visible: VisibleVoxels, plane: int
     ) -> None:
         """Add to 1 / sigma^2 (N,) what a group adds without its sensor `rank`."""
         if len(group.sensors) == 1:

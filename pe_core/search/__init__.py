@@ -11,13 +11,7 @@ from .domains import (
     standoff_point,
 )
 from .goals import Front, Goals, Start, Stop
-from .methods import (
-    DEFAULT_METHOD,
-    METHODS,
-    SCHEDULED_METHOD,
-    Method,
-    checked_method,
-)
+from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method
 from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .optimize import EvaluatedRig, Journal, Step, optimize
 from .parametrization import Candidate, Parametrization, feasible_start, mirrored

@@ -16,14 +16,7 @@ from pe_core.scene import Pose, Reference, Vehicle, guessed_reference
 from pe_core.scoring.sampling import FIRST_SAMPLES
 from pe_core.study import Study, save_study
 
-from ..exchange import (
-    FILES,
-    RIG_FORMATS,
-    export_rig,
-    format_of_file,
-    import_rig,
-    read_vehicle_info,
-)
+from ..exchange import FILES, RIG_FORMATS, export_rig, format_of_file, import_rig, read_vehicle_info
 from ..formats import read_mesh
 from ..outputs import OF_EXAMPLE, export_scene, output_files, scene_output, scene_outputs
 from ..wording import aligned

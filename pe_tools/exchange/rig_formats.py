@@ -10,18 +10,7 @@ from typing import Protocol
 
 from pe_core.base.errors import InputError, shown
 
-from . import (
-    argoverse2,
-    autoware,
-    carla,
-    csv_table,
-    driveworks,
-    kitti,
-    nuscenes,
-    osi,
-    ros,
-    urdf,
-)
+from . import argoverse2, autoware, carla, csv_table, driveworks, kitti, nuscenes, osi, ros, urdf
 from . import lens_pictures as lenses
 from .foreign_values import Export, FileTexts
 from .frames import GROUND, REAR_AXLE, REAR_AXLE_GROUND

@@ -22,11 +22,7 @@ DESIGNS = {
     MIXED: "one detector for many placements",
     FRESH: "the same at placements that it never met",
 }
-WORDS = {
-    START: START,
-    "entropy": "perception entropy",
-    "expected_ap": "expected AP in traffic",
-}
+WORDS = {START: START, "entropy": "perception entropy", "expected_ap": "expected AP in traffic"}
 NO_RUNS = "Whether detectors find more at a better score is open: not all runs are done."
 
 

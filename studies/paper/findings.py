@@ -18,14 +18,7 @@ from pe_core.metric import H_BLIND, POINTPILLARS
 from ..pages import joined, range_text
 from ..results_file import Json, values_of
 from .claims import SMALL_DEG, TEXTS
-from .experiments import (
-    CAMERA_ROWS,
-    FITS,
-    LIDAR_ROWS,
-    Effort,
-    best_search,
-    pilot_name,
-)
+from .experiments import CAMERA_ROWS, FITS, LIDAR_ROWS, Effort, best_search, pilot_name
 from .paper import (
     EXPECTED_COUNTS,
     HALF_LENGTH_M,

@@ -9,15 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..ranks import (
-    Floats,
-    agreement,
-    exact_p,
-    exact_p_of_mean,
-    holm,
-    spearman,
-    under_chance,
-)
+from ..ranks import Floats, agreement, exact_p, exact_p_of_mean, holm, spearman, under_chance
 from ..results_file import Json, Values, values_of
 from .published import CLEAN, READINGS, Paper, papers
 from .scores import BASE, CANDIDATES, RankedScore, Rating, ScoreChoice, candidates_of

@@ -97,13 +97,7 @@ def voxels(paper: str, placement: str, reading: str, body: str, samples: int) ->
 
 
 def voxels_in_traffic(
-    paper: str,
-    placement: str,
-    reading: str,
-    body: str,
-    density: float,
-    samples: int,
-    scenes: int,
+    paper: str, placement: str, reading: str, body: str, density: float, samples: int, scenes: int
 ) -> Json:
     """Score a placement's voxels among other road users, by prior: the mean over scenes."""
     rig = paper_of(paper).rig(placement, reading)

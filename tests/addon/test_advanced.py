@@ -74,10 +74,7 @@ def test_an_exported_study_scores_and_searches_the_same(full, tmp_path):
 
 @pytest.mark.parametrize(
     ("name", "value", "said"),
-    [
-        ("space_x", (10.0, -10.0), "space"),
-        ("space_interval", 0.3, "a length that divides"),
-    ],
+    [("space_x", (10.0, -10.0), "space"), ("space_interval", 0.3, "a length that divides")],
 )
 def test_an_impossible_space_is_one_line(car, name, value, said):
     setattr(car.perception_entropy, name, value)

@@ -11,13 +11,7 @@ import pytest
 from blender_addon.__main__ import main
 from blender_addon.engine import jobs
 from tests.addon import scenes
-from tests.addon.command_line import (
-    FAST,
-    complaints,
-    pe_here,
-    run_alone,
-    run_here,
-)
+from tests.addon.command_line import FAST, complaints, pe_here, run_alone, run_here
 from tests.limits import HANG_S
 
 
@@ -38,15 +32,8 @@ def blend(car, tmp_path) -> Path:
 def test_explain_says_what_it_says_without_blender(blend, tmp_path):
     assert run_here(blend, "export", "-o", tmp_path / "study").returncode == 0
     study = tmp_path / "study" / "study.toml"
-    for asked in (
-        ("--samples", "4096"),
-        ("--at", "8", "2"),
-        ("--at", "8", "2", "1", "--json"),
-    ):
-        inside, outside = (
-            run_here(blend, "explain", *asked),
-            pe_here("explain", study, *asked),
-        )
+    for asked in (("--samples", "4096"), ("--at", "8", "2"), ("--at", "8", "2", "1", "--json")):
+        inside, outside = (run_here(blend, "explain", *asked), pe_here("explain", study, *asked))
         assert inside.stdout == outside.stdout and inside.stdout, inside.stderr
         assert inside.returncode == outside.returncode == 0
 

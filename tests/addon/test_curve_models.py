@@ -44,8 +44,7 @@ def test_the_panel_and_headless_blender_score_by_it(settings, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("panel", "targets"),
-    [(scoring_panels.targets, "objects"), (search_panels.search, "")],
+    ("panel", "targets"), [(scoring_panels.targets, "objects"), (search_panels.search, "")]
 )
 def test_it_is_drawn_where_objects_count(settings, panel, targets):
     settings.targets, settings.objective = targets or "voxels", "expected_ap"

@@ -57,8 +57,7 @@ def test_a_job_tells_how_far_it_is_and_writes_at_its_end(job_of, tmp_path, name)
 
 
 @pytest.mark.parametrize(
-    ("name", "stage"),
-    [(name, stage) for name, stages in STAGES.items() for stage in stages],
+    ("name", "stage"), [(name, stage) for name, stages in STAGES.items() for stage in stages]
 )
 def test_stopped_at_any_stage_it_leaves_nothing(job_of, tmp_path, name, stage):
     job = job_of(tmp_path / name)

@@ -13,14 +13,7 @@ import pytest
 from blender_addon.commands import open_file
 from blender_addon.engine import jobs, pe
 from tests.addon import scenes
-from tests.addon.command_line import (
-    FAST,
-    ROOT,
-    command,
-    complaints,
-    run_here,
-    wait_for,
-)
+from tests.addon.command_line import FAST, ROOT, command, complaints, run_here, wait_for
 from tests.limits import HANG_S
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals and files")

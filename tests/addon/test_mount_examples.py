@@ -78,17 +78,7 @@ def test_the_four_corners_of_the_file_and_of_the_study_are_one(addon, tmp_path):
     assert main(["optimize", "--no-review", "-o", str(out), *FAST], "pe", io.StringIO()) == 0
     with contextlib.redirect_stdout(io.StringIO()):
         assert (
-            pe_main(
-                [
-                    "optimize",
-                    "--no-review",
-                    str(study),
-                    "-o",
-                    str(tmp_path / "pe"),
-                    *FAST,
-                ]
-            )
-            == 0
+            pe_main(["optimize", "--no-review", str(study), "-o", str(tmp_path / "pe"), *FAST]) == 0
         )
     inside, outside = (result(tmp_path / name) for name in ("blender", "pe"))
     assert inside["history"] == outside["history"] and len(inside["history"]) > 1

@@ -123,10 +123,7 @@ def test_each_gain_and_each_loss_of_the_figures_has_its_colour():
         (
             figures(),
             None,
-            (
-                "81.2 m² blind to what is 0.5 m tall",
-                "Pedestrian detected to 47 m ahead, AP 0.62",
-            ),
+            ("81.2 m² blind to what is 0.5 m tall", "Pedestrian detected to 47 m ahead, AP 0.62"),
         ),
         (
             figures(),

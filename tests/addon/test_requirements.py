@@ -433,11 +433,7 @@ def test_the_ground_map_of_redundancy_has_the_engine_s_numbers(held):
     maker = pe.requirements.Redundancy(study.vehicle, study.space, 1.0, within=20.0, step=0.5)
     seen = maker.map(study.rig)
     counts = np.float32(graphics.COUNTS)
-    wanted = {
-        "SENSORS_LEFT": seen.sensors_left,
-        "KINDS": seen.kinds,
-        "KINDS_LEFT": seen.kinds_left,
-    }
+    wanted = {"SENSORS_LEFT": seen.sensors_left, "KINDS": seen.kinds, "KINDS_LEFT": seen.kinds_left}
     assert {int(values.max()) for values in wanted.values()} == {1, 2}, "they differ"
     for name, values in wanted.items():
         view.redundancy_of = name

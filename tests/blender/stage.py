@@ -62,14 +62,7 @@ class Stage:
         blender = installed.blender
         command = [blender.command, *installed.START, "--window-geometry", "0", "0"]
         command += [str(WIDTH), str(HEIGHT), str(blend)]
-        command += [
-            "--python-exit-code",
-            "3",
-            "--python",
-            str(STARTUP),
-            "--",
-            str(self.folder),
-        ]
+        command += ["--python-exit-code", "3", "--python", str(STARTUP), "--", str(self.folder)]
         self._processes.append(process.start(command, self.log, {**blender.env, **self._env}))
         self.wait_for(lambda: (self.folder / "ready.json").exists(), READY_TIMEOUT_S, "its window")
 

@@ -145,14 +145,7 @@ def test_warnings_are_in_the_result_and_below_the_summary():
     told = job.outcome.warnings
     assert [(each.subject, each.code) for each in told] == [("roof", "inside")]
     assert pt.result_dict(job.outcome)["warnings"] == [
-        {
-            "subject": "roof",
-            "code": "inside",
-            "values": {},
-            "part": None,
-            "fix": None,
-            "amount": [],
-        }
+        {"subject": "roof", "code": "inside", "values": {}, "part": None, "fix": None, "amount": []}
     ]
     last = summary(job.outcome).splitlines()[-1]
     assert last == "warning: roof: it is inside the body and sees next to nothing"

@@ -13,11 +13,7 @@ from pe_core.scoring.requirements import BODIES, Requirement, Zone
 from pe_core.search import Front, Goals, Stop
 from pe_core.search.tolerance import without_each
 from pe_core.study import Conditions, load_study_data, study_from_dict, study_to_dict
-from pe_core.study.condition_table import (
-    ExpectedApEvaluator,
-    search_evaluator,
-    study_objective,
-)
+from pe_core.study.condition_table import ExpectedApEvaluator, search_evaluator, study_objective
 from pe_tools import jobs
 from pe_tools.cli.choose_verb import front_summary
 from pe_tools.cli.terminal import summary

@@ -11,12 +11,7 @@ from pathlib import Path
 import pytest
 
 from pe_core.base import errors, files
-from pe_core.base.errors import (
-    InputError,
-    available_bytes,
-    report_memory_errors,
-    require_memory,
-)
+from pe_core.base.errors import InputError, available_bytes, report_memory_errors, require_memory
 from pe_core.base.files import (
     csv_text,
     file_stem,

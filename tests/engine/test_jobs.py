@@ -138,10 +138,7 @@ def test_a_placement_that_only_flatters_the_sample_is_not_taken(monkeypatch):
     worse = pe.Rig([job.study.rig.sensors[0].moved(pe.Pose((0.0, 0.0, 0.5)))])
 
     def flattering():
-        job.history += [
-            HistoryRow(1, 0, 9.0, job.study.rig),
-            HistoryRow(2, 0, 1.0, worse),
-        ]
+        job.history += [HistoryRow(1, 0, 9.0, job.study.rig), HistoryRow(2, 0, 1.0, worse)]
         yield pt.Progress("optimizing", 1.0, 1.0, 2)
 
     monkeypatch.setattr(job, "_search", flattering)

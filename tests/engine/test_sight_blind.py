@@ -17,13 +17,7 @@ from pe_core.scoring.sight.blind_ground import (
     shown_end,
     shown_start,
 )
-from pe_core.scoring.sight.ground_cells import (
-    GroundCells,
-    gauss,
-    opened,
-    outlines,
-    without_specks,
-)
+from pe_core.scoring.sight.ground_cells import GroundCells, gauss, opened, outlines, without_specks
 from pe_core.sensors import CAMERA, GroundView
 from pe_core.sensors.kernels import DefinedGround
 from tests.engine import shapes

@@ -9,12 +9,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.base.table_reader import Table
-from pe_core.study import (
-    Conditions,
-    condition_table,
-    study_from_dict,
-    study_to_dict,
-)
+from pe_core.study import Conditions, condition_table, study_from_dict, study_to_dict
 from pe_core.study.condition_table import study_objective
 from pe_core.study.conditions import read_conditions, state_table
 from pe_tools.jobs import conditions_csv

@@ -47,10 +47,7 @@ def test_it_holds_all_it_needs(shown):
 
 def test_it_is_of_today_s_make(shown, searched_page):
     """If this fails, run `tools/example_review.py` again."""
-    own, more = (
-        chapters(shown),
-        {"requirements", "sensitivity"},
-    )  # of a whole search
+    own, more = (chapters(shown), {"requirements", "sensitivity"})  # of a whole search
     assert more <= set(own)
     assert [each for each in own if each not in more] == chapters(searched_page)
     assert shape(view(shown)) == shape(view(searched_page))

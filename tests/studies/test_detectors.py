@@ -222,12 +222,7 @@ def test_files_of_another_plan_are_refused(tmp_path):
     first, second = files.all[:2]
     files.write(first, {"ap": 0.5})
     assert files.missing()[0] == second and files.read() == {
-        first.name: {
-            "schema": 1,
-            "plan": quick_plan().digest,
-            "run": first.name,
-            "ap": 0.5,
-        }
+        first.name: {"schema": 1, "plan": quick_plan().digest, "run": first.name, "ap": 0.5}
     }
     other = RunFiles(tmp_path, replace(quick_plan(), digest="other"), files.all)
     with pytest.raises(InputError, match="plan"):

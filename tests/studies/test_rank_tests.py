@@ -8,14 +8,7 @@ import numpy as np
 import pytest
 
 from studies.detectors.afterwards import afterwards
-from studies.detectors.analysis import (
-    HOLDS,
-    OPEN,
-    REFUTED,
-    UNDECIDED,
-    analysis,
-    step_title,
-)
+from studies.detectors.analysis import HOLDS, OPEN, REFUTED, UNDECIDED, analysis, step_title
 from studies.detectors.findings import short_answer, statements
 from studies.detectors.placements import placements
 from studies.detectors.plan import FIXED, full_plan, quick_plan

@@ -9,12 +9,7 @@ import pytest
 
 from studies.published import correlations, scores
 from studies.published.__main__ import own_answer, page, read_results
-from studies.published.correlations import (
-    LAYOUTS,
-    RankComparison,
-    ValidityResults,
-    comparisons,
-)
+from studies.published.correlations import LAYOUTS, RankComparison, ValidityResults, comparisons
 from studies.published.findings import placements_for
 from studies.published.published import CLEAN, DEGREES, RADIANS, paper_of, papers
 from studies.published.scores import BASE, box_triangles, variants

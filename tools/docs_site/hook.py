@@ -13,10 +13,7 @@ from mkdocs.structure.files import File, Files  # noqa: E402
 
 from docs_site import catalogue, commands, outside, python_names  # noqa: E402
 
-GENERATED_FOLDERS = {
-    "Catalogue of sensors": catalogue.FOLDER,
-    "Python names": python_names.FOLDER,
-}
+GENERATED_FOLDERS = {"Catalogue of sensors": catalogue.FOLDER, "Python names": python_names.FOLDER}
 """Entries of the navigation whose pages are generated."""
 
 

@@ -18,8 +18,5 @@ bpy.ops.wm.open_mainfile(filepath=str(SEDAN))
 for each in bpy.context.scene.objects:
     each.select_set(each.type == "MESH" and not each.perception_entropy.is_sensor)
 bpy.ops.wm.obj_export(
-    filepath=str(FOLDER / "sedan.obj"),
-    export_selected_objects=True,
-    forward_axis="Y",
-    up_axis="Z",
+    filepath=str(FOLDER / "sedan.obj"), export_selected_objects=True, forward_axis="Y", up_axis="Z"
 )

@@ -225,10 +225,7 @@ def _feet(requirement: Requirement, samples: Samples) -> Floats:
 
 
 def counted(
-    rig: Rig,
-    seen: Mapping[str, Flags],
-    criterion: Criterion,
-    members: Collection[str],
+    rig: Rig, seen: Mapping[str, Flags], criterion: Criterion, members: Collection[str]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return by how many sensors and kinds each body of each sample is seen, (N, bodies)."""
     first = next(iter(seen.values()))

@@ -46,10 +46,7 @@ class Criterion:
         1, COUNT, "At least so many sensors see the body", Panel("sensors", "Sensors", soft_max=6)
     )
     kinds: int = setting(
-        1,
-        COUNT,
-        "These sensors are of at least so many kinds",
-        Panel("kinds", "Kinds", soft_max=3),
+        1, COUNT, "These sensors are of at least so many kinds", Panel("kinds", "Kinds", soft_max=3)
     )
     of: tuple[str, ...] = setting((), NAMES, "Only these kinds of sensors count; by default all")
     points: int = setting(
@@ -83,10 +80,7 @@ class Criterion:
         Panel("share", "Visible Share"),
     )
     ap: float | None = setting(
-        None,
-        SHARE,
-        "AP of the body's class is at least this, all sensors fused",
-        Panel("ap", "AP"),
+        None, SHARE, "AP of the body's class is at least this, all sensors fused", Panel("ap", "AP")
     )
     zone_share: float = setting(
         1.0,

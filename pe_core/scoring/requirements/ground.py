@@ -209,10 +209,7 @@ class _ZoneGround:
         """Return the squares that each sensor marks in a scene, with their margin, by name."""
         check = self.check
         if number not in self._searches:
-            height, caches = (
-                check.requirement.criterion.blind_height,
-                check._caches[number],
-            )
+            height, caches = (check.requirement.criterion.blind_height, check._caches[number])
             self._searches[number] = BlindSearch.of(self.cells, height, check._vehicle, caches)
         search = self._searches[number]
         search.squares.marked(rig, approximate)

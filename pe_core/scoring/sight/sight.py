@@ -22,14 +22,7 @@ from ..sampling import VoxelSample, draw
 from ..scenarios import fused_early
 from ..targets.object_metric import LoneObjects
 from ..targets.object_sampling import TargetRule, sample_objects
-from .blind_ground import (
-    STEP_M,
-    BlindGround,
-    BlindSearch,
-    area_of,
-    blind_ground,
-    body_rectangle,
-)
+from .blind_ground import STEP_M, BlindGround, BlindSearch, area_of, blind_ground, body_rectangle
 from .ground_cells import GroundCells, widened
 from .reach import AP, BEARINGS, Reach, Spokes, density_of, object_reach
 from .visibility import (

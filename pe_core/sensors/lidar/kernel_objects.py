@@ -25,14 +25,7 @@ from ...scene.rig import Sensor
 from ..boxes import BodyParts, PlacedBoxes
 from ..kernels import ObjectKernel, ObjectView
 from .beams import BeamCache
-from .box_hits import (
-    BoxTester,
-    FanBeams,
-    box_windows,
-    candidate_hits,
-    concatenated,
-    nearest_hits,
-)
+from .box_hits import BoxTester, FanBeams, box_windows, candidate_hits, concatenated, nearest_hits
 from .definition import BoxHits, counts_in_bands
 from .fan_runs import ChannelRuns, Fan, RotatedFan, RunBlock, fans_of
 from .lattice import lattice_of

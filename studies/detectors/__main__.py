@@ -6,14 +6,12 @@ The study of LiDARs, that of cameras or that after a search: the missing runs, t
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pe_core as pe
-from pe_core import InputError
 from pe_core.base import dump_json, write_bytes
 from pe_tools import prepare_folder
-from pe_tools.cli import DONE, Answer, count_up_to, noted_when_interrupted
+from pe_tools.cli import DONE, Answer, count_up_to
 
 from ..command import main, page_parser
 from ..pages import PAGE, check_page
@@ -31,13 +29,12 @@ from .findings import answer_after_search, short_answer
 from .page import OWN, TITLE, Plans, Study, page
 from .placements import Placement, placements
 from .plan import AFTER_SEARCH, CAMERAS, StudyPlan, full_plan, quick_plan
-from .runs import Run, RunFiles, runs, seed_by_seed
+from .runs import MAX_RUNS, Run, RunFiles, do_runs, runs, seed_by_seed
 from .scan_curves import scan_curves
 from .scores import placement_scores
 from .segmentation import segmentation_scores
 
 FOLDER, QUICK_FOLDER = "docs/validity/own", "validity-own-quick"
-MAX_RUNS = 10_000
 
 
 def validate_own(args: argparse.Namespace, folder: Path) -> Answer:
@@ -149,33 +146,6 @@ def _summary(name: str, study: Study) -> str:
     counts, rows = study.found["runs"], study.found["statements"]
     lines = [f"{row['verdict']:12} {row['statement']}" for row in rows]
     return "\n".join([f"{counts['done']} of {counts['planned']} runs are done", *lines])
-
-
-def do_runs(args: argparse.Namespace, files: RunFiles, result_of: Callable[[Run], Json]) -> None:
-    """Do the missing runs of a plan, at most `args.runs` of them.
-
-    Results that are there without `args.resume` are an `InputError`.
-    """
-    files.read()  # complains now, not after hours
-    missing, total = files.missing(), len(files.all)
-    done = total - len(missing)
-    if args.page_only or args.runs == 0 or not missing:
-        return
-    if done and not args.resume:
-        found = f"{done} of {total} runs; pass --resume to go on"
-        raise InputError(files.folder, "folder", "a folder without results", found)
-    note = f"{files.folder} keeps the finished runs; --resume goes on from them"
-    with noted_when_interrupted(note):
-        for run in missing[: args.runs]:
-            data = result_of(run)
-            files.write(run, data)
-            done = total - len(files.missing())
-            print_progress(f"[{done}/{total}] {run.name}  {_brief(data)}")
-
-
-def _brief(data: Mapping[str, Json]) -> str:
-    ap = f"AP {data['ap']:.3f}, " if "ap" in data else ""
-    return f"{ap}{data['training']['epochs']} epochs, {data['seconds']:.0f} s"
 
 
 if __name__ == "__main__":

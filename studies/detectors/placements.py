@@ -58,6 +58,8 @@ class Placement:
         Whether a point near the ground is seen in each direction.
     model : str
         Its name in the catalogue; empty for cameras, whose model the plan has.
+    lidar : Lidar, optional
+        In place of the catalogue's model.
     """
 
     name: str
@@ -66,11 +68,12 @@ class Placement:
     all_round: bool
     design: str
     model: str
+    lidar: Lidar | None = None
 
     @property
     def hardware(self) -> str:
         """Number of sensors and their model."""
-        return f"{len(self.poses)} x {self.model}"
+        return f"{len(self.poses)} x {self.lidar.name if self.lidar else self.model}"
 
     @property
     def mean_height(self) -> float:
@@ -79,7 +82,7 @@ class Placement:
 
     def rig(self, model: SensorModel | None = None) -> pe.Rig:
         """Return the rig, with sensors of the catalogue's model or of another one."""
-        model = model or catalog.load(self.model)
+        model = model or self.lidar or catalog.load(self.model)
         named = enumerate(self.poses)
         return pe.Rig([pe.Sensor(f"{model.kind} {k}", model, pose_of(p)) for k, p in named])
 

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import argparse
 import hashlib
 import itertools
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 
 from pe_core import InputError
 from pe_core.base import Number, Table, dump_json, write_bytes
+from pe_tools.cli import noted_when_interrupted
 
-from ..results_file import Json, read_json
+from ..results_file import Json, print_progress, read_json
 from .placements import Placement, placements
 from .plan import ACROSS, FIXED, GRID, MIXED, PLAIN, StudyPlan
 
@@ -20,6 +22,7 @@ FIXED_IN_TURN = 2
 """Placements of the fixed design after each one across hardware, within a seed."""
 RUNS = "runs"
 """Folder of the results."""
+MAX_RUNS = 10_000
 SCHEMA = 1
 CODE = ("pe_core", "studies.detectors")
 """Packages of which a run is made; they have the prior, the catalogue and the plans, too."""
@@ -133,6 +136,33 @@ class RunFiles:
         for part in [table] if parts is None else [parts.table(k) for k in parts.names]:
             part.number("ap", rule=SHARE)
         return data
+
+
+def do_runs(args: argparse.Namespace, files: RunFiles, result_of: Callable[[Run], Json]) -> None:
+    """Do the missing runs of a plan, at most `args.runs` of them.
+
+    Results that are there without `args.resume` are an `InputError`.
+    """
+    files.read()  # complains now, not after hours
+    missing, total = files.missing(), len(files.all)
+    done = total - len(missing)
+    if args.page_only or args.runs == 0 or not missing:
+        return
+    if done and not args.resume:
+        found = f"{done} of {total} runs; pass --resume to go on"
+        raise InputError(files.folder, "folder", "a folder without results", found)
+    note = f"{files.folder} keeps the finished runs; --resume goes on from them"
+    with noted_when_interrupted(note):
+        for run in missing[: args.runs]:
+            data = result_of(run)
+            files.write(run, data)
+            done = total - len(files.missing())
+            print_progress(f"[{done}/{total}] {run.name}  {_brief(data)}")
+
+
+def _brief(data: Mapping[str, Json]) -> str:
+    ap = f"AP {data['ap']:.3f}, " if "ap" in data else ""
+    return f"{ap}{data['training']['epochs']} epochs, {data['seconds']:.0f} s"
 
 
 def run_digest(plan: str, versions: Mapping[str, str]) -> str:

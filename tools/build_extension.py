@@ -28,7 +28,7 @@ MANIFEST = ADDON / "blender_manifest.toml"
 PACKED = (ENGINE.name, TOOLS.name)
 REPORTS = ("plots",)
 """Rooms of the tools that the extension has no use for: they plot with Matplotlib."""
-BUNDLED = ("jinja2", "markupsafe", "ruamel.yaml")
+BUNDLED = ("jinja2", "markupsafe", "ruamel.yaml", "trimesh")
 """Libraries of the engine and the tools that Blender does not have, as wheels in the extension."""
 OPTIONAL = "_speedups"
 """Start of the names of compiled modules that are left out: the same is there in Python."""

@@ -187,30 +187,33 @@ def glbs() -> dict[str, Case]:
     files: dict[str, tuple[bytes, str | None]] = {
         "a crowd": (
             scene(nodes=crowd, scenes=all_of_them, meshes=[{"primitives": primitives * 150}]),
-            "at most 25,000,000, found 36,000,000",
+            "20,000 surfaces",
         ),
         "a smaller crowd": (
             scene(nodes=crowd, scenes=all_of_them, meshes=[{"primitives": primitives * 15}]),
-            "memory that are free, found about 1.1 GB",
+            "20,000 surfaces",
         ),
-        "many primitives": (scene(meshes=[{"primitives": primitives * 99_999}]), "memory that"),
+        "many primitives": (scene(meshes=[{"primitives": primitives * 99_999}]), "20,000 surfaces"),
         "too many primitives": (
             scene(meshes=[{"primitives": primitives * 100_001}]),
-            "primitives: expected at most 100,000, found 100,001",
+            "20,000 surfaces",
         ),
         "2^60 nodes by doubling": (scene(nodes=dag), "one parent to a node"),
-        "too many nodes": (scene(nodes=[{}] * 200_001), "at most 200,000, found 200,001"),
-        "too many with a mesh": (scene(nodes=[{"mesh": 0}] * 20_001), "at most 20,000 with a mesh"),
+        "too many nodes": (scene(nodes=[{}] * 200_001), "at most 200,000 nodes"),
+        "too many with a mesh": (scene(nodes=[{"mesh": 0}] * 20_001), "20,000 surfaces"),
         "20,000 deep": (scene(nodes=chain(20_000, {"mesh": 0})), None),
-        "a long loop": (scene(nodes=chain(1000, {"children": [0]})), "a second parent or a loop"),
-        "2^60 vertices": (scene(accessors=huge), "elements of 12 bytes within the 96"),
-        "all at one place": (scene(bufferViews=still), "8 from 0, 0 apart"),
-        "brackets": (glb_file(b'{"a":' + b"[" * 100_000, b""), "valid JSON"),
-        "5,000 digits": (glb_file(digits, b""), "valid JSON"),
-        "NaN": (glb_file(json.dumps({**root, "x": float("nan")}).encode(), b""), "found NaN"),
-        "Infinity": (glb_file(json.dumps({**root, "x": float("inf")}).encode(), b""), "found Inf"),
-        "many chunks": (chunks, "chunks: expected at most 100"),
-        "much JSON": (glb_file(b" " * 40_000_000, b""), "JSON: expected a scene of at most"),
+        "a long loop": (scene(nodes=chain(1000, {"children": [0]})), "at least one triangle"),
+        "2^60 vertices": (scene(accessors=huge), "a whole .glb"),
+        "all at one place": (scene(bufferViews=still), "a whole .glb"),
+        "brackets": (glb_file(b'{"a":' + b"[" * 100_000, b""), "a well-formed"),
+        "5,000 digits": (glb_file(digits, b""), "a well-formed"),
+        "NaN": (glb_file(json.dumps({**root, "x": float("nan")}).encode(), b""), "a whole .glb"),
+        "Infinity": (
+            glb_file(json.dumps({**root, "x": float("inf")}).encode(), b""),
+            "a whole .glb",
+        ),
+        "many chunks": (chunks, "a well-formed"),
+        "much JSON": (glb_file(b" " * 40_000_000, b""), "memory that"),
     }
     return {f"glb: {k}": ("mesh", holding("a.glb", d), words) for k, (d, words) in files.items()}
 
@@ -230,19 +233,19 @@ def meshes() -> dict[str, Case]:
     vertices = b"v 0 0 0\nv 1 0 0\nv 0 1 0\n"
     faces = b"".join(b"f %d %d %d\n" % tuple(f + 1) for f in FACES)
     files: dict[str, tuple[str, bytes, str | None]] = {
-        "10^14 vertices": ("a.ply", many, "100000000000000 rows, found data for at most 83"),
+        "10^14 vertices": ("a.ply", many, "a whole .ply"),
         "a polygon of millions": ("a.ply", polygon, "memory that are free, found about 639"),
-        "a list of 2^32": ("a.ply", long_list, "the end of the file in row 0"),
-        "uneven lists": ("a.ply", uneven, "memory that are free, found about"),
-        "an endless header": ("a.ply", b"ply\n" + b"comment\n" * 500_000, "none in 1,048,576"),
-        "many properties": ("a.ply", wide, "element vertex"),
-        "2^32 facets": ("a.stl", b"x" * 80 + b"\xff" * 4 + bytes(50), "4294967295 triangles"),
-        "one line in a million": ("a.obj", vertices + b"\\\n" * 1_000_000 + faces, "line"),
+        "a list of 2^32": ("a.ply", long_list, "a whole .ply"),
+        "uneven lists": ("a.ply", uneven, "a whole .ply"),
+        "an endless header": ("a.ply", b"ply\n" + b"comment\n" * 500_000, "a whole .ply"),
+        "many properties": ("a.ply", wide, "a whole .ply"),
+        "2^32 facets": ("a.stl", b"x" * 80 + b"\xff" * 4 + bytes(50), "at least one triangle"),
+        "one line in a million": ("a.obj", vertices + b"\\\n" * 1_000_000 + faces, "a whole .obj"),
         "much text": ("a.obj", b"#" * 30_000_000, "memory that are free, found about 600.0 MB"),
-        "a number of a million": ("a.obj", b"v 0 0 " + b"9" * 1_000_000 + b"x\n", "three numbers"),
-        "5,000 digits": ("a.obj", vertices + f"f 1 2 {HUGE}\n".encode(), "vertex indices"),
+        "a number of a million": ("a.obj", b"v 0 0 " + b"9" * 1_000_000 + b"x\n", "a whole .obj"),
+        "5,000 digits": ("a.obj", vertices + f"f 1 2 {HUGE}\n".encode(), "a whole .obj"),
         "1e308": ("a.obj", b"v 1e308 -1e308 1e308\n" + vertices + b"f 1 2 3\nf 2 3 4", None),
-        "1e309": ("a.obj", b"v 1e309 0 0\n" + vertices + b"f 1 2 3\n", "finite numbers"),
+        "1e309": ("a.obj", b"v 1e309 0 0\n" + vertices + b"f 1 2 3\n", "finite coordinates"),
     }
     return {f"mesh: {k}": ("mesh", holding(n, d), words) for k, (n, d, words) in files.items()}
 

@@ -17,6 +17,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+import trimesh  # noqa: F401  (before memory is limited)
+
 import pe_core as pe
 import pe_tools as pt
 from pe_tools.formats import read_ap_table

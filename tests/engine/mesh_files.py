@@ -163,3 +163,10 @@ def one_line_test(rows: list[tuple[str, Any]], name: str = "") -> Callable[..., 
         assert wrongly_refused(reading, rows, tmp_path) == []
 
     return test
+
+
+def turned_alike(triangles: np.ndarray) -> list:
+    """Triangles in any order, each from its least corner on, with the same side outside."""
+    corners = [[tuple(corner) for corner in triangle] for triangle in triangles.tolist()]
+    firsts = [triangle.index(min(triangle)) for triangle in corners]
+    return sorted(t[k:] + t[:k] for t, k in zip(corners, firsts, strict=True))

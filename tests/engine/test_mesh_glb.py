@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import struct
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 from tests.engine.mesh_files import (
     BOX,
-    INF,
     NAN,
-    POINTS,
     TRIANGLE,
     changed,
     cut,
@@ -24,51 +20,13 @@ from tests.engine.mesh_files import (
 )
 
 
-@pytest.mark.parametrize(
-    ("mode", "fans"),
-    [
-        (5, [(0, 1, 2), (1, 3, 2), (2, 3, 4), (3, 5, 4)]),
-        (6, [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5)]),
-    ],
-    ids=["strip", "fan"],
-)
-def test_glb_strips_and_fans(tmp_path: Path, mode: int, fans: list[tuple[int, ...]]) -> None:
-    """Triangles as the standard lists them: every other one of a strip is turned round."""
-    data = glb_file(*gltf(indices=[7, 6, 5, 4, 3, 2], mode=mode))
-    expected = POINTS[np.array([7, 6, 5, 4, 3, 2])[np.array(fans)]]
-    assert read(tmp_path, "x.glb", data).triangles.tolist() == expected.tolist()
-
-
-def test_glb_skips_points_lines_and_primitives_without_positions(tmp_path: Path) -> None:
-    """Only the one primitive of triangles among five is read."""
+def test_glb_surfaces_of_one_mesh_are_one_part(tmp_path: Path) -> None:
+    """Blender writes a surface a material; points and lines are left out."""
     root, binary = gltf()
     primitives = root["meshes"][0]["primitives"]
-    primitives += [{"attributes": {"POSITION": 0}, "mode": mode} for mode in (0, 1, 3)]
-    primitives += [{"attributes": {}}]
-    assert len(read(tmp_path, "x.glb", glb_file(root, binary)).triangles) == 12
-
-
-def test_glb_byte_stride(tmp_path: Path) -> None:
-    """Positions interleaved with other data, at an offset in their view."""
-    root, binary = gltf()
-    interleaved = b"".join(b"pad!" + binary[12 * i : 12 * i + 12] + b"more" for i in range(8))
-    views = root["bufferViews"]
-    views[0] = {"buffer": 0, "byteLength": len(interleaved), "byteStride": 20}
-    views[1]["byteOffset"] = len(interleaved)
-    root["accessors"][0]["byteOffset"] = 4
-    mesh = read(tmp_path, "x.glb", glb_file(root, interleaved + binary[96:]))
-    assert mesh.triangles.tolist() == BOX.tolist()
-
-
-def test_glb_normalized_positions(tmp_path: Path) -> None:
-    """KHR_mesh_quantization: normalised 16-bit positions, -32768 meaning -1 as well."""
-    root, _ = gltf(points=TRIANGLE, indices=None)
-    root["extensionsRequired"] = ["KHR_mesh_quantization"]
-    root["accessors"][0].update(componentType=5122, normalized=True)
-    binary = struct.pack("<9h", 32767, 0, 0, -32768, -32767, 0, 0, 0, 0)
-    root["bufferViews"][0]["byteLength"] = len(binary)
-    mesh = read(tmp_path, "x.glb", glb_file(root, binary), forward="+z")
-    assert mesh.triangles.tolist() == [[[0, 1, 0], [0, -1, -1], [0, 0, 0]]]
+    primitives += [primitives[0], *({"attributes": {"POSITION": 0}, "mode": m} for m in (0, 1))]
+    mesh = read(tmp_path, "x.glb", glb_file(root, binary))
+    assert len(mesh.triangles) == 24 and mesh.part_names == ("box",)
 
 
 def test_glb_transforms_go_down_the_hierarchy(tmp_path: Path) -> None:
@@ -102,7 +60,7 @@ def test_glb_rotation_is_a_quaternion(tmp_path: Path) -> None:
     root["nodes"][0].update(rotation=[1, 1, 1, 1], scale=[0.5, 0.5, 0.5])
     mesh = read(tmp_path, "x.glb", glb_file(root, binary), forward="+z")
     # Ours: left goes to up, up to forward, forward to left.
-    assert mesh.triangles.tolist() == (BOX[..., [2, 0, 1]] / 2).tolist()
+    np.testing.assert_allclose(mesh.triangles, BOX[..., [2, 0, 1]] / 2, atol=1e-12)
 
 
 def test_glb_mirror_keeps_the_outside_outside(tmp_path: Path) -> None:
@@ -114,29 +72,14 @@ def test_glb_mirror_keeps_the_outside_outside(tmp_path: Path) -> None:
     assert volumes[1] == pytest.approx(volumes[0])
 
 
-@pytest.mark.parametrize(
-    ("nodes", "names"),
-    [
-        ([{"name": "a", "mesh": 0}, {"name": "b", "mesh": 0}], ("a", "b")),
-        ([{"name": "a", "mesh": 0}, {"name": "a", "mesh": 0}], ("a",)),
-        ([{"mesh": 0}], ("the mesh",)),
-        ([{"mesh": 1}], ("node 0",)),
-        ([{"name": 7, "mesh": 0}], ("the mesh",)),
-        ([{"name": "a", "children": [1, 2]}, {"name": "c", "mesh": 0}, {"mesh": 1}], None),
-    ],
-    ids=["two", "same name", "mesh name", "no name", "name no text", "children"],
-)
-@pytest.mark.parametrize("scenes", [True, False], ids=["scene", "no scene"])
-def test_glb_parts(tmp_path: Path, nodes: list[Any], names: Any, scenes: bool) -> None:
-    """Parts are called by node, else mesh, else number; without scenes every root counts."""
+def test_glb_parts_are_nodes_in_their_order(tmp_path: Path) -> None:
+    """Two nodes may have one mesh; a node inside another is a part of its own."""
     root, binary = gltf()
-    root["meshes"].append({"primitives": root["meshes"][0]["primitives"]})
-    root["nodes"] = nodes
-    root["scenes"][0]["nodes"] = [0] if "children" in nodes[0] else list(range(len(nodes)))
-    if not scenes:
-        del root["scenes"], root["scene"]
+    inner = {"name": "inner", "mesh": 0}
+    root["nodes"] = [{"name": "a", "mesh": 0, "children": [2]}, {"name": "b", "mesh": 0}, inner]
+    root["scenes"][0]["nodes"] = [0, 1]
     mesh = read(tmp_path, "x.glb", glb_file(root, binary))
-    assert mesh.part_names == (names or ("c", "node 2"))
+    assert set(mesh.part_names) == {"a", "b", "inner"} and len(mesh.triangles) == 36
 
 
 @pytest.mark.parametrize(("scene", "name"), [(0, "box"), (1, "other"), (None, "box")])
@@ -152,49 +95,25 @@ def test_glb_reads_the_default_scene_only(tmp_path: Path, scene: int | None, nam
 
 
 BAD = [
-    ("header", b""),
-    ("header", b'{"asset": {}}'),
-    ("version", struct.pack("<4sII", b"glTF", 1, 12)),
-    ("length", cut(glb_file(*gltf()))),
-    ("chunk JSON", struct.pack("<4sII", b"glTF", 2, 12)),
-    ("chunk b'JSON'", struct.pack("<4sIII4s", b"glTF", 2, 20, 9, b"JSON")),
+    ("JSON", b""),
+    ("JSON", b'{"asset": {}}'),
+    ("file", cut(glb_file(*gltf()))),
     ("JSON", glb_file(b"{no}", b"")),
-    ("JSON", glb_file(b"[" * 200000, b"")),
     ("JSON", glb_file([], b"")),
     ("triangles", glb_file({}, b"")),
     ("JSON", changed("meshes", 0, {})),
-    ("JSON", changed("nodes", None)),
-    ("extensionsRequired", changed("extensionsRequired", ["KHR_draco_mesh_compression"])),
-    ("extensionsRequired", changed("extensionsRequired", ["EXT_meshopt_compression"])),
-    ("accessors[0]", changed("accessors", 0, "sparse", {})),
-    ("accessors[0]", changed("accessors", 0, {})),
-    ("accessors[0]", changed("accessors", 0, "type", "VEC2")),
-    ("accessors[0]", changed("accessors", 0, "componentType", 5130)),
-    ("accessors[0].count", changed("accessors", 0, "count", -1)),
-    ("accessors[0]", changed("accessors", 0, "count", 0)),
-    ("accessors[0]", changed("accessors", 0, "count", 9)),
-    ("accessors[0]", changed("bufferViews", 0, "byteStride", 4)),
-    ("bufferViews[1]", changed("bufferViews", 1, "byteLength", 999)),
-    ("bufferViews", changed("accessors", 0, "bufferView", 2)),
-    ("bufferViews[0]", changed("buffers", 0, "uri", "a.bin")),
-    ("nodes", changed("nodes", 0, "children", [-1])),
-    ("meshes", changed("nodes", 0, "mesh", 1)),
-    ("scenes", changed("scene", True)),
-    ("nodes[0]", changed("nodes", [7])),
-    ("nodes[0]", changed("nodes", 0, "children", [0])),
-    ("nodes[0].matrix", changed("nodes", 0, "matrix", [1])),
-    ("nodes[0].scale", changed("nodes", 0, "scale", [2.0])),
-    ("nodes[0].translation", changed("nodes", 0, "translation", ["a", 0, 0])),
-    ("nodes[0].translation", changed("nodes", 0, "translation", [10**400, 0, 0])),
+    ("scene", changed("extensionsRequired", ["KHR_draco_mesh_compression"])),
+    ("scene", changed("accessors", 0, "sparse", {})),
+    ("scene", changed("accessors", 0, "normalized", True)),
+    ("scene", changed("nodes", 0, "skin", 0)),
+    ("scene", changed("nodes", 0, "weights", [0, 0.5])),
+    ("scene", glb_file(*gltf(mode=6))),
+    ("file", changed("accessors", 0, "count", 9)),
+    ("file", changed("buffers", 0, "uri", "a.bin")),
+    ("JSON", changed("nodes", 0, "mesh", 1)),
     ("triangles[0]", changed("nodes", 0, "scale", [1e308, 1e308, 1e308])),
-    ("nodes[0].rotation", changed("nodes", 0, "rotation", [0, 0, 0, 0])),
-    ("nodes[0]", changed("nodes", 0, "skin", 0)),
-    ("nodes[0]", changed("nodes", 0, "weights", [0, 0.5])),
-    ("accessors[1]", glb_file(*gltf(indices=[0, 1, 8]))),
-    ("primitive", glb_file(*gltf(indices=[0, 1, 2, 3]))),
-    ("triangles", glb_file(*gltf(indices=[0, 1], mode=5))),
+    ("file", glb_file(*gltf(indices=[0, 1, 8]))),
     ("triangles[0]", glb_file(*gltf(points=NAN))),
-    ("triangles[0]", glb_file(*gltf(points=INF))),
 ]
 
 

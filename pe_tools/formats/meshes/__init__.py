@@ -17,22 +17,16 @@ from pe_core.scene.mesh import MeshAxes as MeshAxes
 
 from .axes import GLTF, OURS, UNSAID, SaidAxes, oriented, said_in_comments
 from .axes import axes_in_text as axes_in_text
-from .glb import read_glb
 from .mesh import MESH_PLUGIN, fit_names, make_mesh, read_with_plugin
 from .mesh import FoundMesh as FoundMesh
 from .npz import dump_npz, read_npz
-from .obj import dump_obj, read_obj
-from .ply import read_ply
-from .stl import read_stl
+from .with_trimesh import dump_obj, read_scene
 
 _F = TypeVar("_F")
 
 _READERS: dict[str, Callable[[Path, bytes], Mesh]] = {
     ".npz": read_npz,
-    ".obj": read_obj,
-    ".stl": read_stl,
-    ".ply": read_ply,
-    ".glb": read_glb,
+    **dict.fromkeys((".obj", ".stl", ".ply", ".glb"), read_scene),
 }
 _SAYS: dict[str, Callable[[bytes], SaidAxes]] = {
     ".npz": lambda _: OURS,
@@ -86,7 +80,7 @@ def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
 
 
 def write_mesh(path: str | Path, mesh: Mesh) -> None:
-    """Write a mesh to a .npz or .obj file; reading it gives the same mesh exactly.
+    """Write a mesh to a .npz file, exactly, or to an .obj file, to 1e-12 m.
 
     The suffix decides the format. The file is written atomically; parts without triangles are not,
     and parts with the same name are merged. Another suffix, a mesh that could not be read again, or

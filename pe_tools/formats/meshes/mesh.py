@@ -149,15 +149,20 @@ def placed(triangles: Floats, matrix: Floats) -> Floats:
     return moved[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0.0 else moved
 
 
+def joined(pieces: Sequence[Piece]) -> tuple[Floats, NDArray[np.int32]]:
+    """Triangles (F, 3, 3) of all pieces, and the piece (F,) of each."""
+    sizes = [len(piece.triangles) for piece in pieces]
+    triangles = np.concatenate([np.zeros((0, 3, 3)), *(piece.triangles for piece in pieces)])
+    return triangles, np.repeat(np.arange(len(pieces), dtype=np.int32), sizes)
+
+
 def found(source: str, pieces: list[Piece], metres: float, up: str) -> FoundMesh:
     """Join pieces into one mesh; `metres` is the file's unit [m], `up` its up axis."""
     if not (np.isfinite(metres) and metres > 0.0):
         raise InputError(source, "unit", "a length in metres", metres)
-    sizes = [len(piece.triangles) for piece in pieces]
-    triangles = np.concatenate([np.zeros((0, 3, 3)), *(piece.triangles for piece in pieces)])
+    triangles, parts = joined(pieces)
     if metres != 1.0:
         triangles = triangles * metres
-    parts = np.repeat(np.arange(len(pieces), dtype=np.int32), sizes)
     return FoundMesh(triangles, parts, [piece.name for piece in pieces], up)
 
 

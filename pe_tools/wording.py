@@ -138,6 +138,10 @@ WARNINGS: Mapping[str, Callable[..., str]] = {
     "provisional": lambda _, runs, planned: (
         f"the curves from scans are provisional: {runs} of {planned} runs of their study are done"
     ),
+    "returns": lambda _: (
+        "LiDARs return as measured in real traffic, not each beam as in the paper: these scores "
+        "compare with such scores alone"
+    ),
     "below_ground": lambda part, state, depth, parts: (
         f"state {state!r} drives {part!r}{f' and {parts - 1} more parts' if parts > 1 else ''} "
         f"through the ground, {depth:.2f} m deep"

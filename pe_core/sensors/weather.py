@@ -95,6 +95,8 @@ class Weather:
         Panel("reflectivity", "Reflectivity", min=0.001),
         scored=True,
     )
+    returns: str = ""
+    """`Lidar.returns` under it; empty: as it is."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", A_NAME.checked("weather", "name", self.name))
@@ -116,7 +118,7 @@ class Weather:
         """Return a rig with its sensors as they are under this weather, and the vehicle itself."""
         if self.is_clear:
             return rig, vehicle
-        models = [_model_in_weather(sensor.model, self) for sensor in rig]
+        models = [self.model(sensor.model) for sensor in rig]
         pairs = zip(rig, models, strict=True)
         sensors = [s if model is s.model else replace(s, model=model) for s, model in pairs]
         return Rig(sensors), vehicle
@@ -131,7 +133,12 @@ class Weather:
     @property
     def is_clear(self) -> bool:
         """Whether sensors are as they are without it."""
-        return self.extinction == 0.0 and not self.night and self.reflectivity == 1.0
+        as_in_clear_air = self.extinction == 0.0 and not self.night and self.reflectivity == 1.0
+        return as_in_clear_air and not self.returns
+
+    def model(self, model: SensorModel) -> SensorModel:
+        """Return a model as it is under this weather."""
+        return model if self.is_clear else _model_in_weather(model, self)
 
 
 @lru_cache(maxsize=1024)
@@ -139,6 +146,13 @@ def _model_in_weather(model: SensorModel, weather: Weather) -> SensorModel:
     """Return one and the same object for a model and a weather: caches compare by identity."""
     changed: SensorModel = kind_of(model).in_weather(model, weather)
     return changed
+
+
+def with_returns(rig: Rig, returns: str) -> Rig:
+    """Return a rig whose LiDARs have these returns; the same rig where they do already."""
+    if all(getattr(sensor.model, "returns", returns) == returns for sensor in rig):
+        return rig
+    return Weather("returns", returns=returns)(rig)[0]
 
 
 def lidar_range(max_range: float, weather: Weather) -> float:

@@ -52,6 +52,8 @@ from ..search import (
     checked_method,
 )
 from ..sensors import PerceptionModel
+from ..sensors.lidar import ALL, RETURNS
+from ..sensors.weather import with_returns
 from .conditions import (
     ConditionedChecker,
     Conditions,
@@ -199,7 +201,8 @@ class Study:
     export to its own format. Of `search`, what concerns the rig's sensors is kept; one that it does
     not name is free as in the paper. `selection` says which sensors it may have instead of those of
     `rig`, and what they cost. `targets` says what is evaluated, `requirements` what has to be met,
-    `conditions` the states of the vehicle and the weathers that count.
+    `conditions` the states of the vehicle and the weathers that count, `returns` which beams of the
+    rig's LiDARs return.
 
     Raises
     ------
@@ -229,6 +232,20 @@ class Study:
     passthrough: Passthrough | None = None
     requirements: tuple[Requirement, ...] = ()
     conditions: Conditions = field(default_factory=Conditions)
+    returns: str = setting(
+        ALL,
+        OneOf(RETURNS),
+        "Beams of LiDARs that return: all, as in the paper, or as many as measured in real traffic",
+        Panel(
+            "returns",
+            "LiDAR Returns",
+            menu=(
+                ("All Beams", "Each beam on a target returns, as in the paper"),
+                ("As on the Road", "Bodies are open and returns fade, fitted to real traffic"),
+            ),
+        ),
+        scored=True,
+    )
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "requirements", checked_requirements(self.requirements))
@@ -241,6 +258,7 @@ class Study:
         if self.mesh is not None:
             object.__setattr__(self, "mesh", A_PATH.checked("study", "mesh", self.mesh))
         check_settings(self, "study")
+        object.__setattr__(self, "rig", with_returns(self.rig, self.returns))
         self.conditions.check(self.vehicle, self.rig)
         object.__setattr__(self, "search", _of_rig(self.search, self.rig))
 

@@ -18,6 +18,7 @@ from ..base.setting import (
     OneOf,
     Setting,
     Several,
+    changed_settings,
     key_of,
     read_declared,
     read_settings,
@@ -79,6 +80,8 @@ from .study import Search, Study
 
 OWN_MODEL = "own"
 """Name of an own model in a choice that has no name."""
+MEASUREMENT = ("returns",)
+"""Settings of a study in [measurement]."""
 AXES_KEYS = ("scale", "rotation", "up", "forward")
 
 
@@ -144,6 +147,7 @@ def study_to_dict(study: Study) -> dict[str, Any]:
         "space": settings_table(study.space),
         "prior": prior_table(study.prior),
         "metric": targets_table(study.targets),
+        "measurement": changed_settings(study, MEASUREMENT) or None,
         "ap": curves_table(study.model),
         "fusion": {"blind": study.model.blind},
         "vehicle": _vehicle_table(study),
@@ -187,7 +191,7 @@ def _read_study(table: Table, folder: Path) -> Study:
         read_prior(table.table("prior"), folder),
         read_model(table.table("ap"), table.table("fusion")),
         read_search(search, free, limits, on, folder, is_choice="choice" in table),
-        read_settings(table, Study)["samples"],
+        read_settings(table, Study, ("samples",))["samples"],
         *file,
         read_declared(table.table("reference"), Reference) if "reference" in table else None,
         read_selection(table, lambda option: _read_intrinsics(option, OWN_MODEL, folder)),
@@ -195,12 +199,19 @@ def _read_study(table: Table, folder: Path) -> Study:
         read_passthrough(table.table("passthrough")) if "passthrough" in table else None,
         read_requirements(table, folder),
         read_conditions(table),
+        **_read_measurement(table.table("measurement")),
     )
     study.designs()
     if study.requirements:
         study.checker()  # zones that cannot be placed are bad input, too
     study.coding()  # bounds that do not hold their start are bad input, not a late surprise
     return study
+
+
+def _read_measurement(table: Table) -> dict[str, Any]:
+    values = read_settings(table, Study, MEASUREMENT)
+    table.finish()
+    return values
 
 
 def _read_vehicle(table: Table, folder: Path) -> tuple[Vehicle | None, MeshFile]:
@@ -351,10 +362,11 @@ class StudyTable:
 
 
 SECTIONS = (
-    StudyTable("", Study, part="score"),
+    StudyTable("", Study, ("samples",), part="score"),
     StudyTable("space", PerceptionSpace),
     StudyTable("vehicle", Vehicle),
     StudyTable("metric", TargetRule),
+    StudyTable("measurement", Study, MEASUREMENT, part="metric"),
     StudyTable("ap", PerceptionModel),
     StudyTable("reference", Reference),
     StudyTable("optimize", Search, part="search"),

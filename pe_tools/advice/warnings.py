@@ -11,6 +11,7 @@ from pe_core.scene.rig import Rig, Sensor
 from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.score import Score
 from pe_core.sensors import SCANS, PerceptionModel, kind_of, scan_curves
+from pe_core.sensors.lidar import ALL
 from pe_core.study.condition_table import ConditionTable
 from pe_tools.wording import joined, percent
 
@@ -32,7 +33,10 @@ def warnings(
     """
     body = None if vehicle is None else Bodywork(vehicle)
     found = [] if body is None else [*odd_vehicle(body)]
-    for sensor in rig:
+    sensors = tuple(rig)
+    if any(getattr(sensor.model, "returns", ALL) != ALL for sensor in sensors):
+        found.append(Advice(None, "returns", {}))
+    for sensor in sensors:
         found += odd_place(sensor, space)
         if body is not None:
             sensor_score = None if score is None else score.per_sensor.get(sensor.name)

@@ -21,6 +21,7 @@ from pe_core.search import Schedule
 from pe_core.search.goals import FULL, OFF, Front, Start
 from pe_core.search.goals import OBJECTIVES as GOALS
 from pe_core.sensors import CURVE_MODELS, kind_of
+from pe_core.sensors.lidar import RETURNS
 from pe_core.study import METHODS, OBJECTIVES, SCHEDULED_METHOD, Study, load_study
 
 from .interrupts import FATAL, signals_interrupt
@@ -127,12 +128,16 @@ def add_curve_option(parser: argparse.ArgumentParser) -> None:
     about = "AP curves of whole objects: from publications, or of LiDARs from our own scans"
     form = "|".join(CURVE_MODELS)
     parser.add_argument("--ap-model", choices=CURVE_MODELS, metavar=form, help=about)
+    about = "beams of LiDARs that return: all, or as many as measured in real traffic"
+    parser.add_argument("--returns", choices=RETURNS, metavar="|".join(RETURNS), help=about)
 
 
 def with_curves(study: Study, args: argparse.Namespace) -> Study:
     """Return the study with the AP curves of that option."""
-    model = getattr(args, "ap_model", None)
-    return study if model is None else replace(study, model=study.model.with_model(model))
+    model, returns = (getattr(args, key, None) for key in ("ap_model", "returns"))
+    if model is not None:
+        study = replace(study, model=study.model.with_model(model))
+    return study if returns is None else replace(study, returns=returns)
 
 
 def count_up_to(greatest: int) -> Callable[[str], int]:

@@ -88,7 +88,7 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
     if outcome.blind_m2 is not None:
         blind = dict(zip(("before", "after"), outcome.blind_m2, strict=True))
         data |= {"blind_ground_m2": blind, "cost": outcome.cost}
-    data["ap_model"] = study.model.model
+    data["ap_model"], data["returns"] = study.model.model, study.returns
     if is_search:
         found = outcome.sensitivity
         data["sensitivity"] = None if found is None else found.to_dict()

@@ -76,10 +76,10 @@ def beam_counts(plan: StudyPlan, chosen: Sequence[Placement]) -> dict[str, BeamC
                 found.setdefault(of_class, []).append((m[rows], drawn.weights[rows]))
     order = [k for name in plan.vehicles for k, p in enumerate(chosen) if p.vehicle == name]
     back = np.argsort(order)
-    return {name: _counts([rows[k] for k in back]) for name, rows in found.items()}
+    return {name: counts_of([rows[k] for k in back]) for name, rows in found.items()}
 
 
-def _counts(by_placement: Sequence[tuple[Floats, Floats]]) -> BeamCounts:
+def counts_of(by_placement: Sequence[tuple[Floats, Floats]]) -> BeamCounts:
     m = np.unique(np.concatenate([each for each, _ in by_placement]))
     shares = [
         np.bincount(np.searchsorted(m, each), weights, len(m)) / weights.sum()

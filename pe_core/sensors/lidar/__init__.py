@@ -3,6 +3,15 @@
 from .beams import BeamField, beam_field
 from .field_of_view import RangePicture, range_picture
 from .kind import LIDAR
-from .model import Lidar
+from .model import ALL, RETURNS, Lidar
 
-__all__ = ["LIDAR", "BeamField", "Lidar", "RangePicture", "beam_field", "range_picture"]
+__all__ = [
+    "ALL",
+    "LIDAR",
+    "RETURNS",
+    "BeamField",
+    "Lidar",
+    "RangePicture",
+    "beam_field",
+    "range_picture",
+]

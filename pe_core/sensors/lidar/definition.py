@@ -19,6 +19,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...base.arrays import Floats, Ints
 from ...geometry.bins import blocks
@@ -27,7 +28,8 @@ from ...scene.objects import Objects
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
 from ..boxes import CELLS, LAYERS, NO_END, BodyParts, PlacedBoxes
-from .model import lidar_of
+from .model import ROAD, lidar_of
+from .returns import expected_points, share_of_points
 
 SNAP_DECIMALS = 9
 NUDGE_UNIT = 2.0**-40
@@ -104,7 +106,19 @@ def count_beams(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle |
         through = (enter < leave) & (enter <= ends[beam])
         through &= np.minimum(leave, ends[beam]) >= min_range
         counts[some] = np.bincount(voxel[through], minlength=len(block))
-    return counts
+    return with_returns(sensor, counts, centers)
+
+
+def with_returns(
+    sensor: Sensor, counts: NDArray, centers: Floats, objects: Objects | None = None
+) -> NDArray:
+    """Return the points that counts (V,) of beams are worth at centres (V, 3), if not all return.
+
+    `objects` are what is there; None: voxels.
+    """
+    if lidar_of(sensor).returns != ROAD:
+        return counts
+    return counts * share_of_points(centers - np.asarray(sensor.pose.position), objects)
 
 
 def _near_pairs(
@@ -152,9 +166,13 @@ def count_on_objects(
     directions = beam_directions(sensor)
     ends = beam_ends(sensor, directions, vehicle)
     hits = _box_hits(PlacedBoxes.of(objects, sensor.pose.position), directions, ends)
+    lidar = lidar_of(sensor)
+    if lidar.returns == ROAD:
+        scenes = objects.scenes if traffic else np.arange(len(objects))
+        return expected_points((hits.box, hits.beam, hits.enter), objects, scenes, lidar.min_range)
     if traffic:
         hits = first_of_scene(hits, objects.scenes)
-    in_range = hits.enter >= lidar_of(sensor).min_range
+    in_range = hits.enter >= lidar.min_range
     return np.bincount(hits.box[in_range], minlength=len(objects)).astype(float)
 
 
@@ -168,7 +186,8 @@ def count_on_parts(sensor: Sensor, parts: BodyParts, vehicle: Vehicle | None) ->
     directions = beam_directions(sensor)
     ends = beam_ends(sensor, directions, vehicle)
     hits = _box_hits(PlacedBoxes.of(parts.objects, sensor.pose.position), directions, ends)
-    return counts_in_bands(hits, parts, lidar_of(sensor).min_range)
+    counts = counts_in_bands(hits, parts, lidar_of(sensor).min_range)
+    return with_returns(sensor, counts, parts.cells.centers, parts.cells)
 
 
 def counts_in_bands(hits: BoxHits, parts: BodyParts, min_range: float) -> Floats:

@@ -26,11 +26,12 @@ from ..boxes import BodyParts, PlacedBoxes
 from ..kernels import ObjectKernel, ObjectView
 from .beams import BeamCache
 from .box_hits import BoxTester, FanBeams, box_windows, candidate_hits, concatenated, nearest_hits
-from .definition import BoxHits, counts_in_bands
+from .definition import BoxHits, counts_in_bands, with_returns
 from .fan_runs import ChannelRuns, Fan, RotatedFan, RunBlock, fans_of
 from .lattice import lattice_of
-from .model import lidar_of
+from .model import ROAD, lidar_of
 from .planar_clip import PlanarBoxes, TiltedBoxes, tilted_runs, upright_runs
+from .returns import expected_points
 
 Bits = NDArray[np.uint64]
 FanBlock = tuple[FanBeams, RunBlock]
@@ -58,13 +59,23 @@ class LidarObjects(ObjectKernel):
 
     def measure(self, sensor: Sensor) -> Floats:
         """Count the beams (N,) that end on each object; equal to the definition."""
-        scenes = self._view.objects.scenes if self._view.traffic else None
+        lidar, objects = lidar_of(sensor), self._view.objects
+        scenes = objects.scenes if self._view.traffic else None
+        if lidar.returns == ROAD:
+            hits, alone = self.crossings(sensor), np.arange(len(objects))
+            beams = hits.box, hits.beam, hits.enter
+            scenes = alone if scenes is None else scenes
+            return expected_points(beams, objects, scenes, lidar.min_range)
         return _count(self._tester(sensor), scenes).astype(float)
 
     def measure_parts(self, sensor: Sensor, parts: BodyParts) -> Floats:
         """Count the beams that meet cells of bodies (N,) in the band in which they surely end."""
-        hits = concatenated(list(candidate_hits(self._tester(sensor))))
-        return counts_in_bands(hits, parts, lidar_of(sensor).min_range)
+        counts = counts_in_bands(self.crossings(sensor), parts, lidar_of(sensor).min_range)
+        return with_returns(sensor, counts, parts.cells.centers, parts.cells)
+
+    def crossings(self, sensor: Sensor) -> BoxHits:
+        """Return all hits of beams and objects, whatever is before them."""
+        return concatenated(list(candidate_hits(self._tester(sensor))))
 
     def _tester(self, sensor: Sensor) -> BoxTester:
         boxes = PlacedBoxes.of(self._view.objects, sensor.pose.position)

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from ...base.arrays import Floats, Ints
 from ...geometry.bins import blocks, count_up
 from ...geometry.grids import GroundGrid, PerceptionSpace
+from ...metric.fusion import MAX_TABLE, VisibleRows
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
 from ..kernels import (
@@ -38,10 +39,10 @@ from ..kernels import (
     block_voxels,
 )
 from .beams import BeamCache, BeamEnds, BeamField, LazyEnds, beam_field
-from .definition import cube_crossing, position_in_voxels
+from .definition import cube_crossing, position_in_voxels, with_returns
 from .grid_sweep import BeamGrid
 from .lattice import lattice_of
-from .model import lidar_of
+from .model import ALL, ROAD, lidar_of
 from .voxel_beams import (
     CUBE_RADIUS,
     PlacedLidar,
@@ -115,6 +116,8 @@ class LidarGrid(GridKernel):
         self, groups: Sequence[Sequence[tuple[Sensor, BeamField]]], pool: Executor
     ) -> list[Planes]:
         """Count each group's beams on the whole grid at once; keep several groups compact."""
+        if any(lidar_of(sensor).returns == ROAD for group in groups for sensor, _ in group):
+            return super().planes([[self._counted(one) for one in g] for g in groups], pool)
         planes: list[Planes] = []
         for group in groups:
             self._grid.clear()
@@ -127,12 +130,28 @@ class LidarGrid(GridKernel):
             planes.append(counts.__getitem__)
         return planes
 
+    def _counted(self, prepared: tuple[Sensor, BeamField]) -> tuple[Sensor, NDArray]:
+        """Count one sensor's beams on the whole grid."""
+        sensor, field = prepared
+        self._grid.clear()
+        min_range = lidar_of(sensor).min_range
+        self._grid.add(sensor.pose.position, field.directions, field.ends, min_range)
+        return sensor, self._grid.counts.copy()
+
+    def rows(self, prepared: tuple[Sensor, NDArray], planes: slice) -> VisibleRows:
+        """Return the expected points of a sensor whose beams are counted."""
+        sensor, counts = prepared
+        x, y, z = (self._space.centers(axis) for axis in range(3))
+        centers = np.stack(np.meshgrid(x[planes], y, z, indexing="ij"), axis=-1)
+        m = with_returns(sensor, counts[planes].astype(float), centers)
+        return VisibleRows(slice(0, m.shape[1]), m)
+
 
 class LidarSample(SampleKernel):
     """Counts beams through sampled voxels; from `saturation_count` on not exactly."""
 
     def __init__(self, voxels: Voxels, vehicle: Vehicle | None, saturation_count: int) -> None:
-        self._space, self._vehicle = voxels.space, vehicle
+        self._space, self._vehicle, self._centers = voxels.space, vehicle, voxels.centers
         self._saturation_count = saturation_count
         self._points = VoxelPoints(voxels.index)
         self.cache = BeamCache(vehicle)
@@ -144,19 +163,25 @@ class LidarSample(SampleKernel):
         lidar = self._placed(sensor, beams.ends)
         cached = self._unoccluded.get(sensor.name)
         unoccluded = cached[1] if cached and sensor.measures_as(cached[0]) else None
-        counts = count_voxel_beams(self._points, lidar, self._saturation_count, unoccluded)
+        counts = count_voxel_beams(self._points, lidar, self._most(sensor), unoccluded)
         counts = recount_min_range(self._points, lidar, counts, lidar_of(sensor).min_range)
-        return Measured(sensor, counts, beams.approximate, beams.ends)
+        m = with_returns(sensor, counts, self._centers)
+        return Measured(sensor, m, beams.approximate, beams.ends)
 
     def unoccluded(self, sensor: Sensor) -> NDArray:
         """Count a LiDAR's beams without the vehicle."""
         lidar = self._placed(sensor, self.cache.unoccluded(sensor))
-        unoccluded = count_unoccluded(self._points, lidar, self._saturation_count)
+        unoccluded = count_unoccluded(self._points, lidar, self._most(sensor))
         self._unoccluded[sensor.name] = sensor, unoccluded
         min_range = lidar_of(sensor).min_range
-        return recount_min_range(
+        counts = recount_min_range(
             self._points, lidar, unoccluded.counts, min_range, without_vehicle=True
         )
+        return with_returns(sensor, counts, self._centers)
+
+    def _most(self, sensor: Sensor) -> int:
+        """Return from which count on it need not be exact."""
+        return self._saturation_count if lidar_of(sensor).returns == ALL else MAX_TABLE
 
     def occlusion(self, measured: Measured) -> Occlusion:
         """Count the beams that the vehicle occludes; exactly, whatever `measured` is."""

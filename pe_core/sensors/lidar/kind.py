@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from ...base.values import A_PATH, Number, degrees_in_file, listed, vector
 from ...metric.entropy import POINTPILLARS, ApCurve
 from ..field_of_view import NEAREST, limited
 from ..kind import Kind, derived_object_curves
-from ..weather import lidar_range
+from ..weather import Weather, lidar_range
 from .definition import count_beams, count_on_objects, count_on_parts
 from .field_of_view import beam_patch, beams_to, reason_missed, revolution_mask, sample_beams
 from .kernel_objects import LidarObjects
@@ -146,6 +147,14 @@ def plot(model: Lidar) -> list[str]:
     ]
 
 
+def in_weather(model: Lidar, weather: Weather) -> Lidar:
+    """Return a LiDAR under a weather: its range, and which of its beams return."""
+    if weather.returns not in ("", model.returns):
+        model = replace(model, returns=weather.returns)
+    whole: Lidar = limited(model, lidar_range(model.max_range, weather))
+    return whole
+
+
 LIDAR = Kind(
     name="lidar",
     label="LiDAR",
@@ -162,7 +171,7 @@ LIDAR = Kind(
     measure_parts=count_on_parts,
     read=read,
     write=write,
-    in_weather=lambda model, weather: limited(model, lidar_range(model.max_range, weather)),
+    in_weather=in_weather,
     data_sheet=figures,
     summary=summary,
     plot=plot,

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...base.arrays import Floats, read_only
 from ...base.errors import InputError, shown
-from ...base.values import A_NAME, Angle, Number, Whole, all_as_in_file, numbers, pair
+from ...base.values import A_NAME, Angle, Number, Whole, all_as_in_file, choice, numbers, pair
 from ...scene.rig import Sensor, SensorModel
 from ..field_of_view import NEAREST, SHORTEST_RANGE_M, checked_ranges
 
@@ -20,6 +20,8 @@ FULL_CIRCLE = (-math.pi, math.pi)
 STEPS = Whole(1, 360_000, "azimuths")
 RANGE = Number(SHORTEST_RANGE_M, cap=1e5, unit="m", noun="length")
 FOV = Angle(-720.0, 720.0)
+ALL, ROAD = "all", "road"
+RETURNS = (ALL, ROAD)
 MAX_BEAMS = 10_000_000
 """A frame of more is a typing error: it has sixty times the beams of the catalogue's largest."""
 
@@ -47,6 +49,9 @@ class Lidar(SensorModel):
         Azimuths the sensor scans, before the offsets [rad].
     min_range : float
         A beam counts in a voxel that it leaves no nearer than this [m].
+    returns : {"all", "road"}
+        Whether each beam returns, or as on the road: then m is an expected number of points
+        (`lidar.returns`).
 
     Angles are stored as reading them back from a file in degrees gives them: an angle that is the
     `math.radians` of no float changes by one unit in the last place.
@@ -68,6 +73,7 @@ class Lidar(SensorModel):
     azimuth_offsets: Floats = None  # type: ignore[assignment]  # zeros
     horizontal_fov: tuple[float, float] = FULL_CIRCLE
     min_range: float = NEAREST
+    returns: str = ALL
 
     def __post_init__(self) -> None:
         name = A_NAME.checked("lidar", "name", self.name)
@@ -90,6 +96,7 @@ class Lidar(SensorModel):
             "max_range": farthest,
             "min_range": nearest,
             "horizontal_fov": fov,
+            "returns": choice(name, "returns", self.returns, RETURNS),
         }
         for key, value in checked.items():
             object.__setattr__(self, key, value)

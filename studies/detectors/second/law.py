@@ -1,0 +1,160 @@
+"""``python -m studies.detectors.second.law``: does AP depend on m, or on rows and columns?
+
+``AP = a ln m_w + b`` with ``m_w = rows^(2 w) columns^(2 (1 - w))`` and columns = m / rows is the
+paper's curve for w = 0.5. w is fitted to published figures alone; then curves are fitted to the
+first plan's design *fixed* and forecast its design *across*.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+import pe_core as pe
+from pe_core.base import dump_json, write_bytes
+from pe_core.sensors.kernels import ObjectView
+from pe_core.sensors.lidar.definition import first_of_scene
+from pe_core.sensors.lidar.kernel_objects import LidarObjects
+from pe_core.sensors.lidar.model import lidar_of
+from pe_tools.cli import DONE, Answer, Parser
+
+from ...command import main
+from ...results_file import Json, print_progress
+from ..analysis import plain_design
+from ..placements import Placement, vehicle
+from ..plan import ACROSS, FIXED, StudyPlan, full_plan
+from ..runs import RunFiles, runs
+from ..scan_curves import BeamCounts, counts_of, fitted_curve
+from ..scores import scored_objects
+
+Floats = NDArray[np.float64]
+
+OWN = "docs/validity/own"
+PUBLISHED = {
+    "trained on it, AP 3D": (0.7015, 0.6696, 0.5987, 0.5524),
+    "trained on it, AP BEV": (0.8222, 0.7947, 0.7432, 0.7043),
+    "direct transfer, AP 3D": (0.6591, 0.5777, 0.4748, 0.3875),
+    "direct transfer, AP BEV": (0.7981, 0.7356, 0.6491, 0.5632),
+}
+"""PointPillars on KITTI, cars, moderate: 32 rows, 32 with half of the columns, 16, 16 with half.
+LiDAR-Distillation (arXiv 2203.14956), weiyithu/LiDAR-Distillation@1c222ca, README."""
+ROWS_HALVED, COLUMNS_HALVED = (0, 0, 1, 1), (0, 1, 0, 1)
+CHOSEN = "trained on it, AP 3D"
+"""Our detectors, too, are trained with the rig that they are tested with."""
+PAPER_W = 0.5
+LOG_STEP = 0.01
+"""ln m_w is rounded to this: the counts of many placements share one axis."""
+
+
+def published_law(ap: Sequence[float]) -> dict[str, float]:
+    """Return w and a of ``AP = a ln m_w + b`` over the four scans, by least squares."""
+    halved = np.stack([ROWS_HALVED, COLUMNS_HALVED], axis=1) * -np.log(2.0)
+    design = np.column_stack([halved, np.ones(4)])
+    (rows, columns, b), *_ = np.linalg.lstsq(design, np.array(ap), rcond=None)
+    error = design @ [rows, columns, b] - np.array(ap)
+    return {
+        "w": round(float(rows / (rows + columns)), 3),
+        "a": round(float((rows + columns) / 2.0), 4),
+        "rmse": round(float(np.sqrt((error**2).mean())), 4),
+    }
+
+
+def rows_and_beams(rig: pe.Rig, view: ObjectView) -> tuple[Floats, Floats]:
+    """Return rows (N,) and beams (N,) that end on objects in traffic, over all LiDARs.
+
+    Rows are channels with a beam on the object; those of two LiDARs are two.
+    """
+    kernel, count = LidarObjects(view), len(view.objects)
+    rows, beams = np.zeros(count), np.zeros(count)
+    for sensor in rig:
+        hits = first_of_scene(kernel.crossings(sensor), view.objects.scenes)
+        lidar = lidar_of(sensor)
+        kept = hits.enter >= lidar.min_range
+        channel = hits.beam[kept] // len(lidar.azimuth_steps)
+        box = hits.box[kept]
+        beams += np.bincount(box, minlength=count)
+        pairs = np.unique(box * len(lidar.elevations) + channel)
+        rows += np.bincount(pairs // len(lidar.elevations), minlength=count)
+    return rows, beams
+
+
+def weighted(rows: Floats, beams: Floats, w: float) -> Floats:
+    """Return m_w (N,); 0 where no beam ends."""
+    seen = beams > 0
+    m = np.zeros(len(beams))
+    log = 2.0 * w * np.log(rows[seen]) + 2.0 * (1.0 - w) * np.log(beams[seen] / rows[seen])
+    m[seen] = np.exp(np.round(log / LOG_STEP) * LOG_STEP)
+    return m
+
+
+def weighted_counts(
+    plan: StudyPlan, chosen: Sequence[Placement], ws: Sequence[float]
+) -> list[dict[str, BeamCounts]]:
+    """Return for each w the m_w on the objects of the shipped score's scenes, by class."""
+    found: list[dict[str, list[tuple[Floats, Floats]]]] = [{} for _ in ws]
+    for number, placement in enumerate(chosen, 1):
+        drawn = scored_objects(placement.vehicle, True, plan.statistics.scenes).drawn
+        view = ObjectView(drawn.objects, vehicle(placement.vehicle), True)
+        rows, beams = rows_and_beams(placement.rig(), view)
+        for own, w in zip(found, ws, strict=True):
+            m = weighted(rows, beams, w)
+            for label, name in enumerate(drawn.objects.class_names):
+                of_class = drawn.objects.labels == label
+                own.setdefault(name, []).append((m[of_class], drawn.weights[of_class]))
+        print_progress(f"[{number}/{len(chosen)}] {placement.name}")
+    return [{name: counts_of(rows) for name, rows in own.items()} for own in found]
+
+
+def forecast(plan: StudyPlan, folder: Path, w: float) -> Json:
+    """Return the RMSE of the AP of *across*, forecast by curves that are fitted to *fixed*."""
+    results = RunFiles(folder, plan, runs(plan)).read()
+    whole = plain_design(plan, [FIXED, ACROSS], results)
+    is_across = np.array([p.design == ACROSS for p in whole.chosen])
+    fixed, across = np.flatnonzero(~is_across), np.flatnonzero(is_across)
+    data: Json = {"fitted": len(fixed), "judged": len(across), "classes": {}}
+    by_w = weighted_counts(plan, whole.chosen, (PAPER_W, w))
+    for name in by_w[0]:
+        design = plain_design(
+            plan,
+            [FIXED, ACROSS],
+            results,
+            lambda found, of=name: found["by_class"][of],  # type: ignore[misc]
+        )
+        ap, row = design.samples.ap, {}
+        for label, counts in zip(("paper", "m_w"), by_w, strict=True):
+            curve = fitted_curve(counts[name].subset(fixed), ap[fixed])
+            error = counts[name].subset(across).expected_ap(curve) - ap[across]
+            row[label] = {
+                "a": round(curve.a, 4),
+                "b": round(curve.b, 4),
+                "rmse": round(float(np.sqrt((error**2).mean())), 4),
+                "errors": [round(float(e), 4) for e in error],
+            }
+        data["classes"][name] = row
+    means = {
+        label: np.mean([row[label]["errors"] for row in data["classes"].values()], axis=0)
+        for label in ("paper", "m_w")
+    }
+    data["mean_ap_rmse"] = {k: round(float(np.sqrt((e**2).mean())), 4) for k, e in means.items()}
+    data["placements"] = [whole.chosen[k].name for k in across]
+    return data
+
+
+def law(args: argparse.Namespace, folder: Path) -> Answer:
+    """Fit w, forecast, write the figures."""
+    published = {name: published_law(ap) for name, ap in PUBLISHED.items()}
+    w = published[CHOSEN]["w"]
+    found = {"published": published, "w": w, "across": forecast(full_plan(), Path(OWN), w)}
+    write_bytes(folder / "law.json", dump_json(found).encode())
+    return dump_json(found), DONE
+
+
+if __name__ == "__main__":
+    parser = Parser(prog="python -m studies.detectors.second.law", description=__doc__)
+    parser.add_argument("-o", "--output", metavar="DIR", help="folder for law.json")
+    parser.set_defaults(default_folders=(f"{OWN}/second",), quick=False)
+    main(parser, law)

@@ -150,7 +150,7 @@ class Tables:
                 row["verdict"],
             ]
             for step, short in self.judged.items()
-            for row in self.found["statements"][step]
+            for row in sorted(self.found["statements"][step], key=lambda r: WORDS[r["figure"]])
         ]
 
     def cells(self) -> list[list[str]]:
@@ -166,7 +166,9 @@ class Tables:
                     bare = "-" if share is None else f"{share:.2f}"
                     head = [log, name, ring, str(cell["boxes"]), str(cell["tracks"]), bare]
                     afterwards = cell.get("poisson")
-                    rows.append([*head, *texts, "-" if share is None else f"{afterwards:+.2f}"])
+                    rows.append(
+                        [*head, *texts, "-" if afterwards is None else f"{afterwards:+.2f}"]
+                    )
         return rows
 
 

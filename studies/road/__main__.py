@@ -165,10 +165,8 @@ class Tables:
                     share = cell.get("without_points")
                     bare = "-" if share is None else f"{share:.2f}"
                     head = [log, name, ring, str(cell["boxes"]), str(cell["tracks"]), bare]
-                    afterwards = cell.get("poisson")
-                    rows.append(
-                        [*head, *texts, "-" if afterwards is None else f"{afterwards:+.2f}"]
-                    )
+                    later = cell.get("poisson")
+                    rows.append([*head, *texts, "-" if later is None else f"{later:+.2f}"])
         return rows
 
 

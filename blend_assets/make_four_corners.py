@@ -112,7 +112,8 @@ def design() -> None:
     settings.min_distance, settings.max_height = 0.3, 2.7
     settings.method = METHOD  # said, so that another default changes nothing
     settings.keep_requirements = True
-    settings.keep_blind_ground = False  # the study does not name it
+    # the study does not name them
+    settings.keep_blind_ground = settings.keep_blind_sector = False
 
 
 def write_study() -> None:

@@ -19,11 +19,10 @@ _sight: text.RecentCache[sight.Sight] = text.RecentCache()
 def key_figures(
     problem: Problem, height: float, class_name: str, rigs: Sequence[pe.Rig]
 ) -> list[advice.KeyFigures]:
-    """Return blind ground, reach and expected AP of rigs."""
-    place = problem.space, problem.prior, problem.vehicle
-    look = _sight.made(problem.key, lambda: sight.Sight(*place, model=problem.model))
-    voxels = not problem.targets.are_objects
-    return [advice.key_figures(look, rig, height, class_name, of_voxels=voxels) for rig in rigs]
+    """Return expected AP in traffic, blind sectors, blind ground and reach of rigs."""
+    place, how = (problem.space, problem.prior, problem.vehicle), (problem.model, problem.targets)
+    look = _sight.made(problem.key, lambda: sight.Sight(*place, model=how[0], targets=how[1]))
+    return [advice.key_figures(look, rig, height, class_name) for rig in rigs]
 
 
 def known_rig_score(problem: Problem, known_rig: catalog.KnownRig) -> pe.SummaryScore:

@@ -182,5 +182,4 @@ class CompareJob(jobs.Job):
         return replace(step, stage=f"scoring {name}", fraction=min(share, 1.0))
 
     def _figures(self, study: pe.Study) -> advice.KeyFigures:
-        voxels = not study.targets.are_objects
-        return advice.key_figures(study.sight(), study.rig, *self.rule, of_voxels=voxels)
+        return advice.key_figures(study.sight(), study.rig, *self.rule)

@@ -9,6 +9,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from pe_core.scoring.requirements import Reason, VerdictSummary
+from pe_core.scoring.score import TrafficAp
+from pe_core.scoring.sight import BlindSector
 
 
 def percent(share: float, digits: int | None = None) -> str:
@@ -31,6 +33,27 @@ def metres(length: float) -> str:
     if abs(length) < 0.995:
         return f"{100.0 * length:.0f} cm"
     return f"{length:.2f} m" if abs(length) < 9.995 else f"{length:.0f} m"
+
+
+def degrees(width: float) -> str:
+    """Return the width of a blind sector [deg], rounded up: "303.7 deg", or "none"."""
+    return f"{math.ceil(width * 10.0 - 1e-6) / 10.0:.1f} deg" if width else "none"
+
+
+def sectors_text(sectors: Sequence[BlindSector]) -> str:
+    """Return "0.5 m tall: 12.3 deg, 1 m: none, 1.5 m: none"; "none" if no body is invisible."""
+    if not any(each.width for each in sectors):
+        return "none"
+    texts = [f"{each.height:g} m: {degrees(each.width)}" for each in sectors]
+    return ", ".join(texts).replace(" m:", " m tall:", 1)
+
+
+def traffic_text(traffic: TrafficAp | None, plus_minus: str = "+-") -> str:
+    """Return "0.662 +- 0.005 (near 0.90, mid 0.72, far 0.43)"; "none" without a figure."""
+    if traffic is None:
+        return "none"
+    rings = ", ".join(f"{name} {ap:.2f}" for name, (ap, _) in traffic.rings.items())
+    return f"{traffic.ap:.3f} {plus_minus} {max(traffic.stderr, 1e-3):.3f} ({rings})"
 
 
 def times(factor: float) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterator, Sequence
 
 import bpy
@@ -33,7 +32,7 @@ def store_outcome(scene: Scene, outcome: jobs.Outcome, signature: str) -> None:
         off = _change(robustness.before.rise, robustness.after.rise)
         lost = _change(robustness.before.loss, robustness.after.loss)
     before, after = outcome.before, outcome.after
-    blind = [math.ceil(10.0 * m2) / 10.0 for m2 in outcome.blind_m2 or (0.0, 0.0)]
+    told = [figures.to_dict() for figures in outcome.figures or ()]
     shown = StoredResult(
         result_kind=outcome.kind,
         result_entropy=after.entropy,
@@ -41,12 +40,11 @@ def store_outcome(scene: Scene, outcome: jobs.Outcome, signature: str) -> None:
         result_coverage=after.coverage,
         result_coverage_before=before.coverage,
         result_stderr=after.stderr,
-        result_blind=(blind[0], blind[1]),
+        result_figures=dict(zip(("before", "after"), told, strict=False)),
         result_cost=outcome.cost,
         result_conditions="\n".join(_condition_lines(outcome.conditions)),
         result_missing="\n".join(w.text for w in outcome.warnings if w.code in MARKING),
         result_ap=_ap_text(after.objects),
-        result_in_traffic=_in_traffic_text(outcome),
         result_mounted_off=off,
         result_sensor_lost=lost,
         result_sureness="\n".join(jobs.sureness_lines(outcome)),
@@ -124,14 +122,6 @@ def store_warnings(settings: PropertyGroup, warnings: Sequence[advice.Advice]) -
 def blender_version() -> dict[str, str]:
     """Return the version of Blender, as result.json holds it."""
     return {"blender": bpy.app.version_string}
-
-
-def _in_traffic_text(outcome: jobs.Outcome) -> str:
-    """Return the expected AP that a search by it began and ended with; empty for others."""
-    if outcome.in_traffic is None:
-        return ""
-    before, after = (each.ap for each in outcome.in_traffic)
-    return f"{before:.3f} \N{RIGHTWARDS ARROW} {after:.3f}"
 
 
 def _change(before: float | None, after: float | None) -> str:

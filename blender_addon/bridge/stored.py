@@ -83,8 +83,8 @@ def _rows(row: type) -> Any:
 class StoredResult:
     """Figures of the last result. Pairs are of the start of a search and of its result.
 
-    Entropies are in nats, shares from 0 to 1, `result_blind` is in m2, rounded up. Texts of several
-    lines have one for each sentence.
+    Entropies are in nats, shares from 0 to 1. `result_figures` has the key figures (`KeyFigures`,
+    as plain data) "before" and "after". Texts of several lines have one for each sentence.
     """
 
     result_kind: str = ""
@@ -93,13 +93,12 @@ class StoredResult:
     result_coverage: float = 0.0
     result_coverage_before: float = 0.0
     result_stderr: float = 0.0
-    result_blind: tuple[float, float] = (0.0, 0.0)
+    result_figures: dict[str, dict[str, Any]] = field(default_factory=dict)
     result_cost: str = ""
     result_conditions: str = ""
     result_words: str = ""
     result_missing: str = ""
     result_ap: str = ""
-    result_in_traffic: str = ""
     result_mounted_off: str = ""
     result_sensor_lost: str = ""
     result_sureness: str = ""

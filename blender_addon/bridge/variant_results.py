@@ -220,7 +220,7 @@ def figures_of(variant: Variant, signature: str) -> advice.KeyFigures | None:
     """Return a variant's key figures; None if none with this signature are stored."""
     if not variant.figures_json or variant.figures_of != signature:
         return None
-    return advice.KeyFigures(**json.loads(variant.figures_json))
+    return advice.KeyFigures.from_dict(json.loads(variant.figures_json))
 
 
 def restore_result(
@@ -242,6 +242,8 @@ def restore_result(
     if set(score.per_sensor) != {sensor.name for sensor in study.rig}:
         return None  # an object has another name than the sensor that was scored
     warnings = scene_advice(scene)
-    outcome = jobs.Outcome("score", study, study, score, score, warnings=warnings)
+    known = figures_of(variant, figures_signature(scene, now))
+    beside = None if known is None else (known, known)
+    outcome = jobs.Outcome("score", study, study, score, score, warnings=warnings, figures=beside)
     store_outcome(scene, outcome, now.text)
     return outcome

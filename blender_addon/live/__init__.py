@@ -12,7 +12,7 @@ import bpy
 from . import background_figures, readout, sense_icons, session
 from .readout_text import BETTER, SAME, WORSE, ReadoutLine, nats_text, sense_of, text_of
 from .sense_icons import sense_icon
-from .state import FinishedScore, ShownScore, live_state, shown_score
+from .state import FinishedScore, ShownScore, live_state, shown_figures, shown_score
 
 __all__ = [
     "BETTER",
@@ -26,6 +26,7 @@ __all__ = [
     "register",
     "sense_icon",
     "sense_of",
+    "shown_figures",
     "shown_score",
     "text_of",
     "unregister",

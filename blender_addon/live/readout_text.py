@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..engine import advice, pe
+from ..engine import advice, pe, wording
 from .state import KnownRigScore, LiveScore, ShownFigures, ShownScore
 
 MIN_CHANGE = 0.0005
@@ -16,7 +16,7 @@ MAX_LABEL_LETTERS = 32
 """Letters of a variant's name that the read-out has room for."""
 MINUS = "\N{MINUS SIGN}"
 BEFORE_SEARCH = "before the search"
-PENDING = "Blind ground, reach, AP: being computed"
+PENDING = "AP in traffic, blind ground, reach: being computed"
 BEFORE = "Before this move: "
 
 
@@ -124,16 +124,41 @@ def zone_lines(now: pe.SummaryScore, before: pe.SummaryScore | None) -> list[Rea
     return lines
 
 
-def figure_lines(figures: ShownFigures) -> tuple[ReadoutLine, ReadoutLine]:
-    """Return two lines: blind ground; reach and AP. Earlier figures are marked as such."""
+def figure_lines(figures: ShownFigures) -> tuple[ReadoutLine, ...]:
+    """Return lines: AP in traffic; blind sectors; blind ground; reach.
+
+    Earlier figures are marked as such; lines may be empty.
+    """
     now, before = figures.now, figures.before
     if now is None:
         return (TextPiece(PENDING),), ()
-    lines = blind_line(now, before), reach_line(now, before)
+    makers = traffic_line, sector_line, blind_line, reach_line
+    lines = tuple(make(now, before) for make in makers)
     if figures.current:
         return lines
-    blind, reach = ((TextPiece(f"{BEFORE}{text_of(line)}"),) if line else () for line in lines)
-    return blind, reach
+    return tuple((TextPiece(f"{BEFORE}{text_of(line)}"),) if line else () for line in lines)
+
+
+def traffic_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> ReadoutLine:
+    """Return "AP in traffic 0.662 (+0.012)   near 0.90, mid 0.72, far 0.43"; empty without it."""
+    if now.traffic is None:
+        return ()
+    was = None if before is None else before.traffic
+    by = None if was is None else now.traffic.ap - was.ap
+    rings = ", ".join(f"{name} {ap:.2f}" for name, (ap, _) in now.traffic.rings.items())
+    return TextPiece(f"AP in traffic {now.traffic.ap:.3f}"), *change_of(by, 3), TextPiece(rings)
+
+
+def sector_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> ReadoutLine:
+    """Return "Widest blind sector 12.3 deg (−2.0) to what is 0.5 m tall, 1 m: none, ..."."""
+    first, *taller = now.sectors
+    by = None if before is None else first.width - before.sectors[0].width
+    rest = "".join(f", {each.height:g} m: {wording.degrees(each.width)}" for each in taller)
+    return (
+        TextPiece(f"Widest blind sector {wording.degrees(first.width)}"),
+        *change_of(by, 1, lower_is_better=True),
+        TextPiece(f"to what is {first.height:g} m tall{rest}"),
+    )
 
 
 def blind_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> ReadoutLine:
@@ -144,20 +169,13 @@ def blind_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> Read
 
 
 def reach_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> ReadoutLine:
-    """Return "Pedestrian detected to 47 m ahead (+2), AP 0.62"; empty without a class."""
+    """Return "Pedestrian detected to 47 m ahead (+2)"; empty without a class."""
     if now.class_name is None or now.reach_m is None:
         return ()
     by = None if before is None or before.reach_m is None else now.reach_m - before.reach_m
     sign = "\N{GREATER-THAN OR EQUAL TO} " if now.at_least else ""
     to = f"to {sign}{now.reach_m:.0f} m ahead" if now.reach_m else "nowhere ahead"
-    line = TextPiece(f"{now.class_name.capitalize()} detected {to}"), *change_of(by, 0)
-    if now.expected_ap is None:
-        return line
-    earlier_ap = None if before is None else before.expected_ap
-    by = None if earlier_ap is None else now.expected_ap - earlier_ap
-    *first, last = line
-    comma = last._replace(text=f"{last.text},")
-    return *first, comma, TextPiece(f"AP {now.expected_ap:.2f}"), *change_of(by, 2)
+    return TextPiece(f"{now.class_name.capitalize()} detected {to}"), *change_of(by, 0)
 
 
 def change_of(by: float | None, digits: int, *, lower_is_better: bool = False) -> ReadoutLine:

@@ -200,6 +200,12 @@ class ShownScore(NamedTuple):
     before: float | None = None
 
 
+def shown_figures(scene: bpy.types.Scene) -> advice.KeyFigures | None:
+    """Return the key figures of the live score that the panel shows; None until they are known."""
+    state = live_state(scene.name)
+    return state.shown_figures if state.score is not None and state.score.exact else None
+
+
 def shown_score(scene: bpy.types.Scene) -> ShownScore | None:
     """Return the score that is shown of a scene with *Live* on; None while there is none yet.
 

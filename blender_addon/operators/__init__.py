@@ -14,6 +14,7 @@ from ..live import (
     nats_text,
     sense_icon,
     sense_of,
+    shown_figures,
     shown_score,
     text_of,
 )
@@ -82,6 +83,7 @@ __all__ = [
     "running_job",
     "sense_icon",
     "sense_of",
+    "shown_figures",
     "shown_score",
     "shown_state",
     "shown_verdicts",

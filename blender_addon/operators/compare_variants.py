@@ -21,6 +21,7 @@ MIN_WIDTH_PX, LETTER_PX = 560, 7
 """Smallest width of the table, and width of a letter of the sentences above it."""
 MAX_VARIANTS = 8
 TITLES = {
+    "sector": "Widest blind sector [°], lower is better",
     "blind": "Blind ground [m²], lower is better",
     "reach": "Reach ahead [m], AP 0.5 or more",
     "ap": "Expected AP",
@@ -28,10 +29,18 @@ TITLES = {
     "coverage": "Coverage",
 }
 """In the order of the table: what a designer asks for first."""
-KEY_FIGURES = ("blind", "reach", "ap")
-FORMATS = {"entropy": ".3f", "coverage": ".1%", "ap": ".3f", "reach": ".1f", "blind": ".1f"}
+KEY_FIGURES = ("sector", "blind", "reach", "ap")
+FORMATS = {
+    "entropy": ".3f",
+    "coverage": ".1%",
+    "ap": ".3f",
+    "reach": ".1f",
+    "blind": ".1f",
+    "sector": ".1f",
+}
 """Formats of the figures by measure."""
 WHOLE_RIG = "Everywhere"
+IN_TRAFFIC = ", in traffic"
 
 
 def compare_task(context: bpy.types.Context) -> Task | None:
@@ -196,9 +205,10 @@ def hardware_note(scene: bpy.types.Scene) -> str:
 
 def sentences(names: list[str], rows: tuple[advice.ComparedRow, ...], letters: int) -> list[str]:
     """Return sentences on the best variant by row, wrapped into lines of `letters` letters."""
-    scored = [row for row in rows if row.factor]  # key figures have no standard error
-    lines = (*advice.ranking(names, scored), *advice.win_words(names, scored))
-    return [line for sentence in lines for line in wrap(sentence, letters)]
+    scored = [row for row in rows if row.factor and row.group != advice.TRAFFIC]
+    apart = advice.disagreement(names, rows)
+    lines = (apart, *advice.ranking(names, scored), *advice.win_words(names, scored))
+    return [line for sentence in lines if sentence for line in wrap(sentence, letters)]
 
 
 def columns_of(names: list[str], rows: Sequence[advice.ComparedRow]) -> list[list[TableCell]]:
@@ -213,7 +223,8 @@ def columns_of(names: list[str], rows: Sequence[advice.ComparedRow]) -> list[lis
         for row in found:
             table += [gap] if row.group != group else []
             group = row.group
-            label = TextCell(f"    {row.name.capitalize() or WHOLE_RIG}")
+            traffic = IN_TRAFFIC if row.group == advice.TRAFFIC else ""
+            label = TextCell(f"    {row.name.capitalize() or WHOLE_RIG}{traffic}")
             table.append([label, *(_cell(row, k) for k in range(len(names)))])
     return [list(column) for column in zip(*table, strict=True)]
 

@@ -281,13 +281,13 @@ def store_search(
     if bpy.ops.ed.undo_push.poll():  # a script without a window has no undo
         bpy.ops.ed.undo_push(message="Optimize: Keep Variant")
     goes_on = settings.has_result and settings.result_signature == taken.text
-    before = settings.result_before, settings.result_coverage_before, settings.result_blind[0]
+    first = settings.result_before, settings.result_coverage_before, settings.result_figures
     is_next = goes_on and settings.result_kind == "optimize"
     gone = bridge.place_rig(scene, outcome.study.rig, outcome.start.rig)
     store_result(scene, outcome, taken.with_rig(outcome.study.rig).text)
     if is_next:  # of searches in a row: where the first began
-        settings.result_before, settings.result_coverage_before, blind = before
-        settings.result_blind = blind, settings.result_blind[1]
+        settings.result_before, settings.result_coverage_before, figures = first
+        settings.result_figures = {**settings.result_figures, "before": figures["before"]}
     bridge.mark_active(scene, result_key)
     return gone
 

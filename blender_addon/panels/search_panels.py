@@ -12,7 +12,8 @@ from .layout import columns, draw_declared, draw_list, draw_properties, panel, r
 from .variant_panels import draw_front
 
 ICONS = {BY_PARTS: "OBJECT_DATA", BY_MATERIAL: "MATERIAL", BY_GROUP: "WPAINT_HLT"}
-FIRST = ("objective", "keep_blind_ground")
+KEPT = ("keep_blind_ground", "keep_blind_sector", "keep_traffic_ap")
+FIRST = ("objective", *KEPT)
 ELSEWHERE = (
     *("objective", "evaluations", "seed", "search_samples"),
     *("keep_requirements", "search_conditions"),
@@ -100,7 +101,7 @@ def goals(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """When a search stops, from where it starts, and how its result is analysed"""
     draw_declared(layout, settings, "optimize.stop")
     draw_properties(layout, settings, ("start_variants",))
-    draw_declared(layout, settings, "goals", ("keep_blind_ground",))
+    draw_declared(layout, settings, "goals", KEPT)
     draw_declared(layout, settings, "optimize.front")
     layout.operator("pe.choose_sensors", text="Find Front", icon="FCURVE")
     if settings.front and settings.front[0].figures:

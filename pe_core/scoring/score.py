@@ -38,6 +38,7 @@ NEAR_M, FAR_M = 10.0, 40.0
 ZONES = ("front", "rear", "left", "right", "near", "mid", "far")
 """Half planes before, behind, left and right of the vehicle's centre, and rings round it: nearer
 than NEAR_M, farther than FAR_M, and between."""
+BY_DISTANCE = ZONES[4:]
 Watch = Callable[[float], bool]
 """Called repeatedly with the completed share of a score, 0 to 1; returns whether to continue."""
 
@@ -158,6 +159,27 @@ class FoundClass:
     def to_dict(self) -> dict[str, Any]:
         """Return the score as plain JSON data."""
         return {**asdict(self), "points": {str(n): s for n, s in self.points.items()}}
+
+
+@dataclass(frozen=True, slots=True)
+class TrafficAp:
+    """Expected AP of objects in traffic: the mean over all, by their weights, and by ring.
+
+    Attributes
+    ----------
+    ap, stderr : float
+        0 to 1, and its standard error.
+    scenes : int
+        Number of scenes of the sample.
+    rings : mapping of str to (float, float)
+        AP and standard error by "near", "mid" and "far" (`ZONES`); a ring without objects is left
+        out.
+    """
+
+    ap: float
+    stderr: float
+    scenes: int
+    rings: Mapping[str, tuple[float, float]]
 
 
 @dataclass(frozen=True, slots=True)

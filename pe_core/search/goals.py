@@ -222,6 +222,20 @@ class Goals:
         "the vehicle where no sensor sees what is 0.5 m tall. A candidate takes longer",
         Panel("keep_blind_ground", "No More Blind Ground", default=True),
     )
+    blind_sector: str | None = setting(
+        None,
+        OneOf(("keep",)),
+        "Placements with no wider blind sector than the start's come first: 20 m away, for what is "
+        "0.5, 1 and 1.5 m tall. A candidate takes longer",
+        Panel("keep_blind_sector", "No Wider Blind Sector", default=True),
+    )
+    traffic_ap: str | None = setting(
+        None,
+        OneOf(("keep",)),
+        "Placements with no lower expected AP in traffic than the start's come first. A candidate "
+        "takes longer",
+        Panel("keep_traffic_ap", "No Lower AP in Traffic"),
+    )
 
     def __post_init__(self) -> None:
         for key, value, kind in (("stop", self.stop, Stop), ("front", self.front, Front)):

@@ -13,7 +13,7 @@ linked pair) is put elsewhere within its range, the nearest places first.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import chain
@@ -22,10 +22,7 @@ from typing import Protocol
 import numpy as np
 
 from ..base.values import rounded
-from ..geometry.grids import PerceptionSpace
-from ..prior.prior import Prior
 from ..scene.rig import Rig
-from ..scene.vehicle import Vehicle
 from ..scoring.requirements import RequirementChecker
 from ..scoring.score import Evaluation, Objective
 from ..scoring.sight import BLIND_TO_M, Sight
@@ -63,30 +60,46 @@ def blind_area(sight: Sight, rig: Rig) -> float:
     return rounded(sight.blind_area(rig, max(BLIND_TO_M, sight.space.z[0])))
 
 
-class BlindGroundLimit:
-    """The constraint that a rig has no more blind ground than a limit; the vehicle is as drawn."""
+def _widths(sight: Sight, rig: Rig) -> tuple[float, ...]:
+    return tuple(sector.width for sector in sight.blind_sectors(rig))
 
-    def __init__(
-        self, space: PerceptionSpace, prior: Prior, vehicle: Vehicle | None, limit_m2: float
-    ) -> None:
-        self._problem = space, prior, vehicle
-        self.limit_m2 = limit_m2
-        self._sight = Sight(*self._problem)
+
+def _missed(sight: Sight, rig: Rig) -> tuple[float, ...]:
+    """Return 1 minus the expected AP in traffic; 1 where there is no such figure."""
+    traffic = sight.in_traffic(rig)
+    return (1.0 if traffic is None else rounded(1.0 - traffic.ap),)
+
+
+KEPT_FIGURES: dict[str, Callable[[Sight, Rig], tuple[float, ...]]] = {
+    "blind_ground": lambda sight, rig: (blind_area(sight, rig),),
+    "blind_sector": _widths,
+    "traffic_ap": _missed,
+}
+"""By key of `Goals`: figures of a rig, of which none may be higher than the start's."""
+
+
+class FiguresLimit:
+    """The constraint that figures of a rig are no higher than limits; the vehicle is as drawn.
+
+    `keys` are those of `KEPT_FIGURES`; `limits` are their figures in that order.
+    """
+
+    def __init__(self, study: Study, keys: Sequence[str], limits: Sequence[float] = ()) -> None:
+        self._study, self._keys = study, tuple(keys)
+        self._sight = study.sight()
+        self.limits = tuple(limits) or self._figures(study.rig)
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the arguments: a worker has a `Sight` of its own."""
-        return BlindGroundLimit, (*self._problem, self.limit_m2)
+        return FiguresLimit, (self._study, self._keys, self.limits)
 
-    @classmethod
-    def of(cls, study: Study) -> BlindGroundLimit:
-        """Return the constraint of a study's search: no more blind ground than its own rig has."""
-        problem = study.space, study.prior, study.vehicle
-        return cls(*problem, blind_area(study.sight(), study.rig))
+    def _figures(self, rig: Rig) -> tuple[float, ...]:
+        return tuple(v for key in self._keys for v in KEPT_FIGURES[key](self._sight, rig))
 
     def violation(self, rig: Rig) -> float:
-        """Return the share of a rig's blind ground above the limit: above 0 to 1; 0 if none is."""
-        area = blind_area(self._sight, rig)
-        return rounded(1.0 - self.limit_m2 / area) if area > self.limit_m2 else 0.0
+        """Return the sum of the shares of a rig's figures above their limits; 0 if none is."""
+        pairs = zip(self._figures(rig), self.limits, strict=True)
+        return rounded(sum(1.0 - limit / value for value, limit in pairs if value > limit))
 
 
 class FeasibilityRule(Protocol):
@@ -153,7 +166,7 @@ class FeasibleFirst:
 
 
 def constraints_of(study: Study) -> tuple[FeasibilityRule, ...]:
-    """Return what placements of a study's search have to keep: requirements, blind ground.
+    """Return what placements of a study's search have to keep: requirements, key figures.
 
     `InputError` when a zone of a requirement that is to be kept cannot be placed.
     """
@@ -161,8 +174,8 @@ def constraints_of(study: Study) -> tuple[FeasibilityRule, ...]:
     if search.requirements == KEEP and study.requirements:
         checker = study.checker()
         constraints.append(RequirementConstraint(checker, search.tolerance, search.seed))
-    if search.goals.blind_ground == KEEP:
-        constraints.append(BlindGroundLimit.of(study))
+    if keys := [key for key in KEPT_FIGURES if getattr(search.goals, key) == KEEP]:
+        constraints.append(FiguresLimit(study, keys))
     return tuple(constraints)
 
 

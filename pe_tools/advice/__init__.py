@@ -12,8 +12,15 @@ from .key_figures import KeyFigures, SensorRow, key_figures, loss_text, sensor_r
 from .location import AskedPlace, SensorAtPlace, ask_place
 from .mount_checks import check_mirror_image, occluded_shares
 from .mounting_places import place_name, plain_name, sensor_labels
-from .ranking import Notation, costs_nothing, ranking, search_cost, win_words
-from .score_comparison import OTHER_HARDWARE, ComparedRow, compare, compare_figures, hardware_note
+from .ranking import Notation, costs_nothing, disagreement, ranking, search_cost, win_words
+from .score_comparison import (
+    OTHER_HARDWARE,
+    TRAFFIC,
+    ComparedRow,
+    compare,
+    compare_figures,
+    hardware_note,
+)
 from .summary import Outlook, class_of, lone_reach, object_words, objects_looked_at, outlook
 from .summary_text import WHERE, occluded_words, rig_words, sensor_words, words
 from .warnings import (
@@ -32,5 +39,14 @@ __all__ += ["compare_figures", "condition_warnings", "costs_nothing", "curve_not
 __all__ += ["curve_warnings", "fragile", "hardware_note", "hidden_sensors", "hidden_words"]
 __all__ += ["joined", "key_figures", "lone_reach", "loss_text", "object_words", "objects_looked_at"]
 __all__ += ["occluded_shares", "occluded_words", "off_by", "outlook", "percent", "place_name"]
-__all__ += ["plain_name", "ranking", "rig_words", "search_cost", "sensor_labels", "sensor_rows"]
+__all__ += [
+    "TRAFFIC",
+    "disagreement",
+    "plain_name",
+    "ranking",
+    "rig_words",
+    "search_cost",
+    "sensor_labels",
+    "sensor_rows",
+]
 __all__ += ["sensor_table", "sensor_words", "unmet", "warnings", "win_words", "words"]

@@ -8,8 +8,8 @@ from typing import Any
 
 from pe_core.scene.rig import Rig
 from pe_core.scene.vehicle import Vehicle
-from pe_core.scoring.score import FAR_M, NEAR_M, Score
-from pe_core.scoring.sight import BLIND_TO_M, Sight, ends_with_space
+from pe_core.scoring.score import FAR_M, NEAR_M, Score, TrafficAp
+from pe_core.scoring.sight import BLIND_TO_M, BlindSector, Sight, ends_with_space
 from pe_tools.wording import percent
 
 from .mount_checks import occluded_shares
@@ -116,57 +116,67 @@ def loss_text(loss: float | None) -> str:
 
 @dataclass(frozen=True, slots=True)
 class KeyFigures:
-    """Blind ground, reach ahead and expected AP of a rig.
+    """What a rig is decided by beside its entropy: expected AP in traffic, and what is blind.
 
     Attributes
     ----------
+    traffic : TrafficAp or None
+        None where the prior's objects have no room, or a sensor has a curve of its own.
+    sectors : tuple of BlindSector
+        The widest blind sector for bodies of each height.
     blind_m2, height, within : float
         Ground within a distance of the body's rectangle on which an object `height` tall is
         invisible [m2, m, m].
     class_name : str or None
-        Class of the reach and the AP; None where objects are scored: that score already has both.
+        Class of the reach; None where objects are scored: that score already has it.
     reach_m : float or None
         How far ahead of the origin an object is found with an AP of 0.5 or more [m]; 0: it is not.
     at_least : bool
         Whether the perception space ends there: the true reach may be longer.
-    expected_ap : float or None
-        0 to 1; None where the prior has no such objects in the space.
     """
 
+    traffic: TrafficAp | None
+    sectors: tuple[BlindSector, ...]
     blind_m2: float
     height: float
     within: float
     class_name: str | None = None
     reach_m: float | None = None
     at_least: bool = False
-    expected_ap: float | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Return the figures as plain JSON data."""
-        return asdict(self)
+        data = {**asdict(self), "sectors": [asdict(sector) for sector in self.sectors]}
+        if self.traffic is not None:
+            data["traffic"]["rings"] = {n: list(ap) for n, ap in self.traffic.rings.items()}
+        return data
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> KeyFigures:
+        """Return the figures from the data of `to_dict`."""
+        traffic = data["traffic"]
+        if traffic is not None:
+            rings = {name: (ap, error) for name, (ap, error) in traffic["rings"].items()}
+            traffic = TrafficAp(**{**traffic, "rings": rings})
+        sectors = tuple(BlindSector(**each) for each in data["sectors"])
+        return cls(**{**data, "traffic": traffic, "sectors": sectors})
 
 
 def key_figures(
-    sight: Sight,
-    rig: Rig,
-    height: float = BLIND_TO_M,
-    class_name: str | None = None,
-    *,
-    of_voxels: bool = True,
+    sight: Sight, rig: Rig, height: float = BLIND_TO_M, class_name: str | None = None
 ) -> KeyFigures:
     """Return the key figures of a rig.
 
     Blind ground is that of an object `height` tall [m], or of the lowest height of the space if
-    that is greater; one that is not in the space raises `InputError`. Reach and AP are of a class
-    (`class_of`). Without `of_voxels` objects are scored: the score then has reach and AP, and they
-    are left out.
+    that is greater; one that is not in the space raises `InputError`. Reach is that of a class
+    (`class_of`), left out where objects are scored.
     """
-    name = class_of(sight.prior, class_name)
     blind = sight.blind(rig, max(height, sight.space.z[0]))
-    of_ground = blind.area, blind.height, blind.within
-    if not of_voxels:
-        return KeyFigures(*of_ground)
+    found = sight.in_traffic(rig), sight.blind_sectors(rig), blind.area, blind.height, blind.within
+    if sight.targets.are_objects:
+        return KeyFigures(*found)
+    name = class_of(sight.prior, class_name)
     reach = sight.reach(rig, name)
     ahead = float(reach.distance[0])  # the first bearing is straight ahead
     at_least = ahead > 0.0 and bool(ends_with_space(reach, reach.distance)[0])
-    return KeyFigures(*of_ground, name, ahead, at_least, sight.expected_ap(rig).get(name))
+    return KeyFigures(*found, name, ahead, at_least)

@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 from pe_core.scoring.score import Score
 
-from ..wording import joined
-from .score_comparison import AP, BLIND, COVERAGE, ENTROPY, MIN_CHANGE, ComparedRow
+from ..wording import degrees, joined
+from .key_figures import KeyFigures
+from .score_comparison import AP, BLIND, COVERAGE, ENTROPY, MIN_CHANGE, SECTOR, TRAFFIC, ComparedRow
 from .summary_text import WHERE
 
 MAX_PAIRS = 3
@@ -159,12 +160,45 @@ class _RankingSentences:
         return self._notation.number(max(shown, 10.0**-digits) if shown else 0.0, digits)
 
 
-def search_cost(before: Score, after: Score, blind_m2: tuple[float, float]) -> str:
-    """Return one sentence on what a search made worse, or that nothing is; `blind_m2` is the blind
-    ground of start and result [m2]."""
-    losses = []
-    if blind_m2[1] > blind_m2[0] + MIN_CHANGE[BLIND]:
-        losses.append(f"blind ground ({_areas(blind_m2)})")
+def disagreement(names: Sequence[str], rows: Sequence[ComparedRow]) -> str:
+    """Return one sentence where the three figures prefer different rigs; empty where one is best.
+
+    The figures are entropy, expected AP in traffic, and the widest blind sector for the lowest
+    body. `rows` are those of `compare` and of `compare_figures`. Rigs that do not differ clearly
+    from the best one are as good as it.
+    """
+    entropy = (row for row in rows if (row.group, row.measure) == ("rig", ENTROPY))
+    traffic = (row for row in rows if (row.group, row.name) == (TRAFFIC, ""))
+    sector = (row for row in rows if row.measure == SECTOR)
+    best = {}
+    for called, found in (
+        ("entropy", entropy),
+        ("expected AP in traffic", traffic),
+        ("the widest blind sector", sector),
+    ):
+        if (row := next(found, None)) is not None and row.order:
+            best[called] = [k for k in row.order if not row.differ(row.order[0], k)]
+    if not best or set.intersection(*map(set, best.values())):
+        return ""
+    told = [f"{joined([names[k] for k in own])} by {called}" for called, own in best.items()]
+    return f"The figures disagree: best is {', '.join(told)}."
+
+
+def search_cost(before: Score, after: Score, start: KeyFigures, result: KeyFigures) -> str:
+    """Return one sentence on what a search made worse, or that nothing is.
+
+    `start` and `result` are the key figures of the rigs with the scores `before` and `after`.
+    """
+    losses, areas = [], _areas(start.blind_m2, result.blind_m2)
+    if result.blind_m2 > start.blind_m2 + MIN_CHANGE[BLIND]:
+        losses.append(f"blind ground ({areas})")
+    for one, other in zip(start.sectors, result.sectors, strict=True):
+        if other.width > one.width + MIN_CHANGE[SECTOR]:
+            widths = f"{degrees(one.width)} to {degrees(other.width)}"
+            losses.append(f"the widest blind sector for what is {one.height:g} m tall ({widths})")
+    first, last = (0.0 if f.traffic is None else f.traffic.ap for f in (start, result))
+    if first - last >= MIN_CHANGE[AP]:
+        losses.append(f"expected AP in traffic ({first:.3f} to {last:.3f})")
     if before.coverage - after.coverage >= MIN_CHANGE[COVERAGE]:
         losses.append(f"coverage ({before.coverage:.1%} to {after.coverage:.1%})")
     if before.objects is not None and after.objects is not None:
@@ -183,8 +217,8 @@ def search_cost(before: Score, after: Score, blind_m2: tuple[float, float]) -> s
         losses.append(f"sight {WHERE.get(name, name)} ({first:.2f} to {last:.2f} nats)")
     if losses:
         return f"It cost {joined(losses)}"
-    rest = "coverage and all zones are no worse"
-    return f"{NOTHING}: blind ground {_areas(blind_m2)}, {rest}"
+    rest = "blind sectors, expected AP in traffic, coverage and all zones are no worse"
+    return f"{NOTHING}: blind ground {areas}, {rest}"
 
 
 def costs_nothing(cost: str) -> bool:
@@ -192,7 +226,7 @@ def costs_nothing(cost: str) -> bool:
     return cost.startswith(NOTHING)
 
 
-def _areas(blind_m2: tuple[float, float]) -> str:
+def _areas(before_m2: float, after_m2: float) -> str:
     """Return "24.1 to 53.0 m2", rounded up."""
-    before, after = (math.ceil(area * 10.0 - 1e-6) / 10.0 for area in blind_m2)
+    before, after = (math.ceil(area * 10.0 - 1e-6) / 10.0 for area in (before_m2, after_m2))
     return f"{before:.1f} to {after:.1f} m2"

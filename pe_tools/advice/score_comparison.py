@@ -11,13 +11,21 @@ from typing import Any
 
 from pe_core.scene.rig import SensorModel
 from pe_core.scoring.sampling import BLOCKS
-from pe_core.scoring.score import FigureKey, PartScore, Score, paired_error
+from pe_core.scoring.score import BY_DISTANCE, FigureKey, PartScore, Score, TrafficAp, paired_error
+from pe_core.scoring.sight import SECTOR_RADIUS_M
 from pe_core.study.mounting_file import same_model
 
 from .key_figures import KeyFigures
 
 CERTAINTY = 0.95
-MIN_CHANGE = {"entropy": 0.005, "coverage": 0.0005, "ap": 0.0005, "reach": 0.05, "blind": 0.05}
+MIN_CHANGE = {
+    "entropy": 0.005,
+    "coverage": 0.0005,
+    "ap": 0.0005,
+    "reach": 0.05,
+    "blind": 0.05,
+    "sector": 0.05,
+}
 """Smallest difference of each measure that counts: half of the last digit that is shown."""
 
 
@@ -88,6 +96,7 @@ def _error(score: Score, figure: FigureKey) -> float:
 
 
 ENTROPY, COVERAGE, AP, REACH, BLIND = "entropy", "coverage", "ap", "reach", "blind"
+SECTOR, TRAFFIC = "sector", "in traffic"
 OTHER_HARDWARE = (
     "The rigs differ in models or numbers of sensors. On simulated rigs of LiDARs entropy was not "
     "shown to rank better than the number of beams, and it can prefer a rig with a blind sector; "
@@ -95,7 +104,7 @@ OTHER_HARDWARE = (
     "beside it (docs/validity/own)."
 )
 """Note beside scores of rigs that differ in their sensors, not in their placement alone."""
-LOWER_IS_BETTER = frozenset({ENTROPY, BLIND})
+LOWER_IS_BETTER = frozenset({ENTROPY, BLIND, SECTOR})
 AHEAD = "front"
 """Direction whose reach is compared."""
 
@@ -107,10 +116,10 @@ class ComparedRow:
     Attributes
     ----------
     group, name : str
-        "rig", "zone" or "class", and the name of the zone or class.
-    measure : {"entropy", "coverage", "ap", "reach", "blind"}
-        Entropy [nats] and blind ground [m2]: lower is better. Coverage and expected AP, 0 to 1, and
-        reach ahead [m]: higher is better.
+        "rig", "zone", "class" or "in traffic", and the name of the zone or class.
+    measure : {"entropy", "coverage", "ap", "reach", "blind", "sector"}
+        Entropy [nats], blind ground [m2] and widest blind sector [deg]: lower is better. Coverage
+        and expected AP, 0 to 1, and reach ahead [m]: higher is better.
     values : tuple of float or None
         By score; None for a score without this zone or class.
     errors : tuple of tuple of float
@@ -144,7 +153,7 @@ class ComparedRow:
 
     @property
     def lower_is_better(self) -> bool:
-        """Whether the measure is entropy or blind ground."""
+        """Whether the measure is entropy, blind ground or a blind sector."""
         return self.measure in LOWER_IS_BETTER
 
     @property
@@ -192,22 +201,39 @@ def compare(scores: Mapping[str, Score]) -> tuple[ComparedRow, ...]:
 
 
 def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...]:
-    """Compare key figures: blind ground, and reach ahead and expected AP of one class.
+    """Compare key figures: expected AP in traffic, blind sectors, blind ground, and reach ahead.
 
-    All are of the same height and class; differences refer to the first. No AP is marked as the
-    best: it comes from a sample, and the error of a difference is unknown.
+    All are of the same height and class; differences refer to the first. The error of a difference
+    of AP is that of independent samples, which is too large: rigs share the scenes.
     """
     columns = list(figures.values())
     if not columns:
         return ()
-    height_text = f"{columns[0].height:g} m tall, within {columns[0].within:g} m"
+    rows = [*_traffic_rows([figures.traffic for figures in columns])]
     none = ((0.0,) * len(columns),) * len(columns)
-    rows = [ComparedRow("rig", height_text, BLIND, tuple(f.blind_m2 for f in columns), none)]
+    for sectors in zip(*(figures.sectors for figures in columns), strict=True):
+        tall = f"{sectors[0].height:g} m tall, at {SECTOR_RADIUS_M:g} m"
+        rows.append(ComparedRow("rig", tall, SECTOR, tuple(s.width for s in sectors), none))
+    height_text = f"{columns[0].height:g} m tall, within {columns[0].within:g} m"
+    rows.append(ComparedRow("rig", height_text, BLIND, tuple(f.blind_m2 for f in columns), none))
     if (name := columns[0].class_name) is not None:
-        reaches, aps = (tuple(f.reach_m for f in columns), tuple(f.expected_ap for f in columns))
-        rows.append(ComparedRow("class", name, REACH, reaches, none))
-        rows.append(ComparedRow("class", name, AP, aps, none, is_ranked=False))
+        rows.append(ComparedRow("class", name, REACH, tuple(f.reach_m for f in columns), none))
     return tuple(rows)
+
+
+def _traffic_rows(found: Sequence[TrafficAp | None]) -> Iterator[ComparedRow]:
+    """Yield rows of the expected AP in traffic: of the rigs, and by distance."""
+    of_rigs = [None if each is None else (each.ap, each.stderr) for each in found]
+    by_ring = {
+        name: [None if each is None else each.rings.get(name) for each in found]
+        for name in BY_DISTANCE
+    }
+    for name, cells in {"": of_rigs, **by_ring}.items():
+        if any(cell is not None for cell in cells):
+            values = tuple(None if cell is None else cell[0] for cell in cells)
+            own = [0.0 if cell is None else cell[1] for cell in cells]
+            errors = tuple(tuple(math.hypot(a, b) for b in own) for a in own)
+            yield ComparedRow(TRAFFIC, name, AP, values, errors, sure_factor(len(found)))
 
 
 def _rows(scores: list[Score]) -> Iterator[ComparedRow]:

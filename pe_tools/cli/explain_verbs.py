@@ -28,6 +28,7 @@ MEASURES = {
     "entropy": ("entropy [nats], lower is better", ".4f", 1.0),
     "coverage": ("seen, of where objects are", ".1%", 100.0),
     "ap": ("expected AP", ".3f", 1.0),
+    "sector": ("widest blind sector [deg], lower is better", ".1f", 1),
     "reach": ("reach ahead (AP 0.5) [m]", ".1f", 1),
     "blind": ("blind ground [m2], lower is better", ".1f", 1),
 }
@@ -47,8 +48,13 @@ def comparison(names: Sequence[str], rows: Sequence[ComparedRow]) -> list[str]:
         own = [row for row in rows if row.measure == measure]
         if own:
             table.append([title, *[""] * len(heads)])
-        table += [[f"  {r.name or 'all'}", *(_cell(r, k) for k in range(len(heads)))] for r in own]
+        table += [[f"  {row_name(r)}", *(_cell(r, k) for k in range(len(heads)))] for r in own]
     return [*aligned(table, 1), f"{BEST} best; in brackets the difference to {heads[0]}"]
+
+
+def row_name(row: ComparedRow) -> str:
+    """Return what a row is of: "all", "pedestrian", "near, in traffic"."""
+    return f"{row.name or 'all'}{', in traffic' if row.group == advice.TRAFFIC else ''}"
 
 
 def _cell(row: ComparedRow, k: int) -> str:
@@ -78,7 +84,7 @@ def add_compare_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``compare`` to a parser."""
     about = "for what is so tall blind ground is told [m] (0.5)"
     parser.add_argument("--height", type=float, default=advice.BLIND_TO_M, metavar="M", help=about)
-    about = "class whose reach and expected AP are told (pedestrian)"
+    about = "class whose reach is told (pedestrian)"
     parser.add_argument("--class", dest="class_name", metavar="NAME", help=about)
     about = "a known rig on the first one's vehicle as a further column"
     parser.add_argument("--beside", metavar="RIG", help=about)
@@ -118,13 +124,7 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     refuse_different(studies)
     studies = {**studies, **_beside(studies, args.beside)}
     figures = {
-        name: advice.key_figures(
-            study.sight(),
-            study.rig,
-            args.height,
-            args.class_name,
-            of_voxels=not study.targets.are_objects,
-        )
+        name: advice.key_figures(study.sight(), study.rig, args.height, args.class_name)
         for name, study in studies.items()
     }
     scores = {name: scored(study, args.workers).after for name, study in studies.items()}
@@ -137,10 +137,12 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
         "same_vehicle": alike,
     }
     names = list(scores)
-    data["words"] = said = [*advice.ranking(names, rows), *advice.win_words(names, rows)]
+    said = [*advice.ranking(names, rows), *advice.win_words(names, rows)]
     models = ([sensor.model for sensor in study.rig] for study in studies.values())
     curves = advice.curve_note(study.model for study in studies.values())
     data["notes"] = notes = [note for note in (advice.hardware_note(models), curves) if note]
+    apart = advice.disagreement(names, [*rows, *figure_rows])
+    data["words"] = said = [*[apart] * bool(apart), *said]
     lines = [*comparison(names, [*rows, *figure_rows]), *said]
     lines += [] if alike else ["their vehicles differ"]
     if error := max(score.stderr for score in scores.values()):

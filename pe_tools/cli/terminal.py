@@ -5,15 +5,23 @@ from __future__ import annotations
 import os
 import sys
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from typing import TextIO
 
+from pe_core.scoring.sight import SECTOR_RADIUS_M
 from pe_core.sensors import kind_of
 
-from ..advice import hidden_sensors, hidden_words, object_words, objects_looked_at, off_by
+from ..advice import (
+    KeyFigures,
+    hidden_sensors,
+    hidden_words,
+    object_words,
+    objects_looked_at,
+    off_by,
+)
 from ..jobs import Outcome, condition_lines, searched_on, sureness_lines
-from ..wording import margin_text
+from ..wording import margin_text, sectors_text, traffic_text
 
 DONE, BAD_INPUT, USAGE, INTERRUPTED = 0, 1, 2, 130
 Answer = tuple[str, int]
@@ -102,6 +110,8 @@ def summary(outcome: Outcome) -> str:
     score = outcome.after
     if outcome.kind == "score":
         lines = [f"entropy   {with_error(score.entropy, score.stderr)}"]
+        if outcome.figures is not None:
+            lines += figure_lines(outcome.figures[:1])
         lines.append(f"coverage  {score.coverage:.1%}")
     else:
         lines = list(_before_and_after(outcome))
@@ -139,12 +149,9 @@ def summary(outcome: Outcome) -> str:
 def _before_and_after(outcome: Outcome) -> Iterator[str]:
     """Yield what a search began and ended with, also under mounting errors and failures."""
     before, after = outcome.before, outcome.after
-    if outcome.in_traffic is not None:
-        first, last = outcome.in_traffic
-        error = f"standard error {max(last.ap_stderr, MIN_SHOWN_ERROR):.4f}"
-        on = f"({error}, on {last.scenes:,} scenes)"
-        yield f"expected AP in traffic  {first.ap:.4f} -> {last.ap:.4f} {on}"
-    yield f"entropy   {before.entropy:.4f} -> {after.entropy:.4f} nats"
+    entropy = f"entropy   {before.entropy:.4f} -> {after.entropy:.4f} nats"
+    beside = [] if outcome.figures is None else figure_lines(outcome.figures)
+    yield from [*beside, entropy] if outcome.in_traffic is not None else [entropy, *beside]
     yield f"coverage  {before.coverage:.1%} -> {after.coverage:.1%}"
     yield outcome.cost
     if (found := outcome.robustness) is not None:
@@ -153,6 +160,16 @@ def _before_and_after(outcome: Outcome) -> Iterator[str]:
         yield f"{off} (1 sigma)  {one.rise:+.4f} -> {other.rise:+.4f} nats on average"
         if one.loss is not None and other.loss is not None:
             yield f"one sensor lost  {one.loss:+.4f} -> {other.loss:+.4f} nats on average"
+
+
+def figure_lines(figures: Sequence[KeyFigures]) -> list[str]:
+    """Return what stands beside the entropy of one rig, or of start and result."""
+    found = [traffic_text(each.traffic) for each in figures]
+    blind = [sectors_text(each.sectors) for each in figures]
+    return [
+        f"expected AP in traffic  {' -> '.join(found)}",
+        f"widest blind sector at {SECTOR_RADIUS_M:g} m  {' -> '.join(blind)}",
+    ]
 
 
 def warned(outcome: Outcome) -> list[str]:

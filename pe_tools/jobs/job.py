@@ -6,9 +6,11 @@ import threading
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Executor, Future, wait
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
+from pe_core.base.errors import InputError
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigEvaluator
@@ -24,7 +26,7 @@ from pe_core.study.condition_table import (
 from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Study
 
-from ..advice import Advice, curve_warnings, search_cost, warnings
+from ..advice import Advice, KeyFigures, curve_warnings, key_figures, search_cost, warnings
 from ..sensitivity import Sensitivity
 from .searched_figure import IN_NATS, SearchedFigure
 
@@ -115,8 +117,9 @@ class Outcome:
         Why the search ended before its budget did: "target", "seconds", "gain", or empty.
     in_traffic : tuple of ObjectScore, or None
         Of a search by expected AP: start and result on objects in traffic.
-    blind_m2 : (float, float), or None
-        Of a search: blind ground of start and result [m2] (`blind_area`).
+    figures : (KeyFigures, KeyFigures), or None
+        Expected AP in traffic, blind sectors and blind ground of start and result; None where the
+        ground round the vehicle is not in the space.
     """
 
     kind: str
@@ -138,12 +141,13 @@ class Outcome:
     starts: tuple[StartEnd, ...] = ()
     stop_reason: str = ""
     in_traffic: tuple[ObjectScore, ObjectScore] | None = None
-    blind_m2: tuple[float, float] | None = None
+    figures: tuple[KeyFigures, KeyFigures] | None = None
 
     @property
     def cost(self) -> str:
         """What a search cost, in one sentence; empty for a score."""
-        return "" if self.blind_m2 is None else search_cost(self.before, self.after, self.blind_m2)
+        is_told = self.kind == "optimize" and self.figures is not None
+        return search_cost(self.before, self.after, *self.figures) if is_told else ""
 
 
 T = TypeVar("T")
@@ -325,6 +329,19 @@ class Job:
         def work(_: Watch) -> tuple[Advice, ...]:
             found_warnings = warnings(study.rig, study.vehicle, study.space, study.prior, score)
             return (*self.notes, *curve_warnings(study.model), *found_warnings)
+
+        return (yield from self._beside(work, waiting, to_the_end=True))
+
+    def _figures(
+        self, rigs: Sequence[Rig], waiting: Progress
+    ) -> ProgressSteps[tuple[KeyFigures, ...]]:
+        """Return the key figures of rigs on the study's vehicle; none where it has no ground."""
+        sight = self.study.sight()
+
+        def work(_: Watch) -> tuple[KeyFigures, ...]:
+            with suppress(InputError):
+                return tuple(key_figures(sight, rig) for rig in rigs)
+            return ()
 
         return (yield from self._beside(work, waiting, to_the_end=True))
 

@@ -85,9 +85,11 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
     if outcome.in_traffic is not None:
         first, last = (each.to_dict() for each in outcome.in_traffic)
         data |= {"objective": EXPECTED_AP, EXPECTED_AP: {"before": first, "after": last}}
-    if outcome.blind_m2 is not None:
-        blind = dict(zip(("before", "after"), outcome.blind_m2, strict=True))
-        data |= {"blind_ground_m2": blind, "cost": outcome.cost}
+    if outcome.figures is not None:
+        first, last = (each.to_dict() for each in outcome.figures)
+        data["figures"] = {"before": first, "after": last}
+    if is_search:
+        data["cost"] = outcome.cost
     data["ap_model"], data["returns"] = study.model.model, study.returns
     if is_search:
         found = outcome.sensitivity

@@ -23,7 +23,6 @@ from pe_core.search import (
 )
 from pe_core.study.condition_table import is_by_ap, searched_study, study_objective
 from pe_core.study.requirement_search import (
-    blind_area,
     conflicts,
     constraints_of,
     feasible_first,
@@ -67,9 +66,16 @@ class ScoreJob(Job):
         warnings = yield from self._warnings(
             self.study, score, Progress("scoring", 1.0, score.entropy)
         )
+        seeing = Progress("looking at the ground", 1.0, score.entropy)
+        figures = yield from self._figures([self.study.rig], seeing)
         verdicts = yield from self._verdicts(self.study, Progress("checking", 1.0, score.entropy))
         table = yield from self._conditions(self.study, Progress("conditions", 0.0, score.entropy))
-        if warnings is None or verdicts is None or (self.study.conditions and table is None):
+        if (
+            warnings is None
+            or figures is None
+            or verdicts is None
+            or (self.study.conditions and table is None)
+        ):
             return
         self.outcome = Outcome(
             "score",
@@ -78,6 +84,7 @@ class ScoreJob(Job):
             warnings=(*warnings, *condition_warnings(table)),
             verdicts=verdicts,
             conditions=table,
+            figures=(figures[0], figures[0]) if figures else None,
         )
         yield Progress("done", 1.0, score.entropy)
 
@@ -181,7 +188,8 @@ class OptimizeJob(Job):
         last, best = yield from self._better_of(first)
         looking = self._about("scoring the result", last.value)
         warnings = yield from self._warnings(best, last.score, looking)
-        blind = yield from self._beside(lambda _: self._blind(best), looking, to_the_end=True)
+        rigs = [self.study.rig, *([best.rig] if best is not self.study else [])]
+        figures = yield from self._figures(rigs, looking)
         # A stop, before it or while it runs, ends what follows: the result does not wait for it.
         analysing = replace(looking, stage="analysing")
         found = yield from self._beside(lambda _: self._robustness(best), analysing)
@@ -197,7 +205,7 @@ class OptimizeJob(Job):
                 lambda _: analyse(*given, lambda: not self.stopped), analysing
             )
         table = yield from self._conditions(best, analysing, to_the_end=False)
-        if self.dropped or warnings is None or blind is None:
+        if self.dropped or warnings is None or figures is None:
             return
         sure: tuple[Advice, ...] = ()
         if found is not None:
@@ -223,7 +231,7 @@ class OptimizeJob(Job):
             tuple(self.ends),
             self.stop_reason,
             (first.in_traffic, last.in_traffic) if first.in_traffic and last.in_traffic else None,
-            blind,
+            (figures[0], figures[-1]) if figures else None,
         )
         yield self._about("done", last.value)
 
@@ -268,12 +276,6 @@ class OptimizeJob(Job):
         last = self.evaluators.on(search.samples)
         sampled = last if last.samples else self.evaluators.on(DEFAULT_SEARCH_SAMPLES)
         return robustness(sampled, self.study.rig, best.rig, search.tolerance, search.seed)
-
-    def _blind(self, best: Study) -> tuple[float, float]:
-        """Return the blind ground of start and result [m2]."""
-        sight = self.study.sight()
-        before = blind_area(sight, self.study.rig)
-        return before, before if best is self.study else blind_area(sight, best.rig)
 
     @property
     def _start_may_stay(self) -> bool:

@@ -153,8 +153,10 @@ def outcome_of_folder(
             replace(advice.Advice(**table), amount=tuple(table["amount"]))
             for table in result["warnings"]
         )
-        blind = result["blind_ground_m2"]
-        blind_m2 = float(blind["before"]), float(blind["after"])
+        figures = None
+        if (table := result.get("figures")) is not None:
+            told = [advice.KeyFigures.from_dict(table[which]) for which in ("before", "after")]
+            figures = told[0], told[1]
         evaluations, stopped = int(result["evaluations"]), bool(result["stopped"])
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         if isinstance(error, pe.InputError):
@@ -175,7 +177,7 @@ def outcome_of_folder(
         starts=starts,
         stop_reason=reason,
         in_traffic=in_traffic,
-        blind_m2=blind_m2,
+        figures=figures,
     )
 
 

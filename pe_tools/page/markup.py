@@ -18,7 +18,7 @@ from pe_core.base.errors import plural
 from pe_core.scoring.sight import shown_end
 
 from .. import advice, graphics
-from ..wording import margin_text, unseen_text, verdict_text
+from ..wording import degrees, margin_text, unseen_text, verdict_text
 
 TEMPLATES = Path(__file__).with_name("templates")
 ALLOWED_SPACES = "\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}"
@@ -52,6 +52,7 @@ def _environment() -> Environment:
         environment.filters[function.__name__] = function
     environment.filters |= {
         "css_string": css_string,
+        "degrees": degrees,
         "price": price_text,
         "shown_end": shown_end,
         "at_least": lambda count: f"{count} points or more",

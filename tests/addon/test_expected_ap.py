@@ -28,7 +28,9 @@ def settings(car):
     found = car.perception_entropy
     found.objective, found.scenes, found.method = "expected_ap", 8, "portfolio"
     found.evaluations, found.search_samples, found.score_samples, found.seed = 12, 1024, 1024, 4
-    found.keep_blind_ground = False  # this car has no higher AP with as little of it
+    found.keep_blind_ground = found.keep_blind_sector = (
+        False  # this car has no higher AP with as little of it
+    )
     return found
 
 

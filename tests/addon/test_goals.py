@@ -23,7 +23,7 @@ def asked(car):
 def test_goals_of_the_panel_are_those_of_the_study(asked):
     settings = asked.perception_entropy
     assert scenes.study().search.goals == Goals(sensitivity="off", blind_ground="keep")
-    settings.keep_blind_ground = False
+    settings.keep_blind_ground = settings.keep_blind_sector = False
     assert scenes.study().search.goals == Goals(sensitivity="off")
     settings.stop_target, settings.stop_gain, settings.stop_over = -1.25, 0.002, 40
     bpy.data.objects["roof"].perception_entropy.stays = True
@@ -43,7 +43,8 @@ def test_goals_of_the_panel_are_those_of_the_study(asked):
 def test_the_panel_finds_the_front_of_the_job(asked):
     settings = asked.perception_entropy
     settings.front_objectives, settings.front_points = {"entropy", "height"}, 3
-    settings.keep_blind_ground = False  # a lower sensor has more of it
+    # a lower sensor has more of both
+    settings.keep_blind_ground = settings.keep_blind_sector = False
     job = FrontJob(scenes.study(), 1)
     list(job)
     assert bpy.ops.pe.choose_sensors() == {"FINISHED"}

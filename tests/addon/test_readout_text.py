@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from blender_addon.engine import advice, pe
+from blender_addon.engine import advice, pe, sight
 from blender_addon.live import readout, readout_text, state
 from blender_addon.live.readout_text import BETTER, SAME, WORSE
 from blender_addon.live.state import Baseline, ShownFigures, ShownScore
+from pe_core.scoring.score import TrafficAp
 
 
 def summary(entropy=3.0, coverage=0.85, zones=()):
@@ -90,9 +91,17 @@ def test_better_and_worse_differ_by_arrow_and_colour():
     assert blue[2] > blue[0] and orange[0] > orange[2]
 
 
+TRAFFIC = "AP in traffic 0.617 near 0.90"
+FOUND = "Pedestrian detected to 47 m ahead"
+SECTOR = "Widest blind sector 12.1 deg to what is 0.5 m tall, 1 m: none"
+
+
 def figures(**changed):
     told = {"blind_m2": 81.24, "height": 0.5, "within": 10.0, "class_name": "pedestrian"}
-    told |= {"reach_m": 47.2, "at_least": False, "expected_ap": 0.617}
+    told |= {"reach_m": 47.2, "at_least": False}
+    told["traffic"] = TrafficAp(changed.pop("ap", 0.617), 0.005, 256, {"near": (0.9, 0.01)})
+    widths = changed.pop("widths", (12.01, 0.0))
+    told["sectors"] = tuple(map(sight.BlindSector, (0.5, 1.0), widths, (0.0, 0.0)))
     return advice.KeyFigures(**told | changed)
 
 
@@ -102,41 +111,39 @@ def texts(shown):
 
 def test_each_gain_and_each_loss_of_the_figures_has_its_colour():
     """More blind ground is a loss, however much farther objects are detected."""
-    before = figures(blind_m2=24.0, reach_m=45.0, expected_ap=0.7)
-    blind, reach = readout_text.figure_lines(ShownFigures(figures(blind_m2=53.0), before, True))
+    before = figures(blind_m2=24.0, reach_m=45.0, ap=0.7, widths=(13.0, 0.0))
+    shown = ShownFigures(figures(blind_m2=53.0), before, True)
+    traffic, sector, blind, reach = readout_text.figure_lines(shown)
+    assert [piece.sense for piece in traffic] == [SAME, WORSE, SAME]
+    assert [piece.sense for piece in sector] == [SAME, BETTER, SAME]
     assert [piece.sense for piece in blind] == [SAME, WORSE]
-    assert [piece.sense for piece in reach] == [SAME, BETTER, SAME, WORSE]
+    assert [piece.sense for piece in reach] == [SAME, BETTER]
     rows = [readout.row_of(line) for line in (blind, reach)]
     assert rows[0].words[1][1] == readout.SENSE_COLORS[WORSE]
-    assert [color for _, color in rows[1].words] == [
-        readout.INK,
-        readout.SENSE_COLORS[BETTER],
-        readout.INK,
-        readout.SENSE_COLORS[WORSE],
-    ]
-    assert readout_text.sense_of(reach) == WORSE and readout_text.sense_of(blind[:1]) == SAME
+    assert rows[1].words[1][1] == readout.SENSE_COLORS[BETTER]
+    assert readout_text.sense_of(blind) == WORSE and readout_text.sense_of(blind[:1]) == SAME
 
 
 @pytest.mark.parametrize(
     ("now", "before", "lines"),
     [
+        (figures(), None, (TRAFFIC, SECTOR, "81.2 m² blind to what is 0.5 m tall", FOUND)),
         (
             figures(),
-            None,
-            ("81.2 m² blind to what is 0.5 m tall", "Pedestrian detected to 47 m ahead, AP 0.62"),
-        ),
-        (
-            figures(),
-            figures(blind_m2=84.3, reach_m=45.0, expected_ap=0.6),
+            figures(blind_m2=84.3, reach_m=45.0, ap=0.6, widths=(14.0, 0.0)),
             (
+                "AP in traffic 0.617 (+0.017) near 0.90",
+                "Widest blind sector 12.1 deg (\N{MINUS SIGN}2.0) to what is 0.5 m tall, 1 m: none",
                 "81.2 m² blind to what is 0.5 m tall (\N{MINUS SIGN}3.1)",
-                "Pedestrian detected to 47 m ahead (+2), AP 0.62 (+0.02)",
+                "Pedestrian detected to 47 m ahead (+2)",
             ),
         ),
         (
-            figures(height=0.0, reach_m=80.0, at_least=True, expected_ap=None),
+            replace(figures(height=0.0, reach_m=80.0, at_least=True), traffic=None),
             figures(blind_m2=81.26, reach_m=80.0),
             (
+                "",
+                SECTOR,
                 "81.2 m² blind to what lies flat",
                 "Pedestrian detected to \N{GREATER-THAN OR EQUAL TO} 80 m ahead",
             ),
@@ -144,12 +151,12 @@ def test_each_gain_and_each_loss_of_the_figures_has_its_colour():
         (
             figures(reach_m=0.0, class_name="cone"),
             None,
-            ("81.2 m² blind to what is 0.5 m tall", "Cone detected nowhere ahead, AP 0.62"),
+            (TRAFFIC, SECTOR, "81.2 m² blind to what is 0.5 m tall", "Cone detected nowhere ahead"),
         ),
         (
-            figures(reach_m=None, class_name=None, expected_ap=None),
+            figures(reach_m=None, class_name=None),
             None,
-            ("81.2 m² blind to what is 0.5 m tall", ""),
+            (TRAFFIC, SECTOR, "81.2 m² blind to what is 0.5 m tall", ""),
         ),
     ],
 )

@@ -1,6 +1,7 @@
 """Scores in words: figures as people read them, tables, and sensors that see nothing."""
 
 import dataclasses
+import json
 import math
 from dataclasses import replace
 from types import SimpleNamespace
@@ -295,23 +296,21 @@ def test_they_are_those_of_sight(study):
     assert 0.0 < found.blind_m2 == blind.area and (found.height, found.within) == (0.6, 10.0)
     assert found.class_name == "car" and found.reach_m == reach.distance[0]
     assert found.at_least == (reach.distance[0] >= reach.limit[0] - 0.5)
-    assert found.expected_ap == look.expected_ap(study.rig)["car"]
+    assert found.traffic == look.in_traffic(study.rig) is not None
+    assert found.sectors == look.blind_sectors(study.rig)
     assert advice.key_figures(look, study.rig).class_name == "pedestrian"
-    assert found.to_dict() == {
-        "blind_m2": found.blind_m2,
-        "height": 0.6,
-        "within": 10.0,
-        "class_name": "car",
-        "reach_m": found.reach_m,
-        "at_least": found.at_least,
-        "expected_ap": found.expected_ap,
-    }
+    assert advice.KeyFigures.from_dict(json.loads(json.dumps(found.to_dict()))) == found
 
 
 def test_straight_ahead(study):
     look = study.sight()
     sight = SimpleNamespace(
-        prior=look.prior, space=look.space, blind=look.blind, expected_ap=look.expected_ap
+        prior=look.prior,
+        space=look.space,
+        targets=look.targets,
+        blind=look.blind,
+        in_traffic=look.in_traffic,
+        blind_sectors=look.blind_sectors,
     )
     for distance, limit, at_least in ((43.2, 80.0, False), (79.6, 80.0, True), (0.0, 0.0, False)):
         reach = SimpleNamespace(

@@ -6,6 +6,7 @@ camera sees a body where a ray to one of many points of it meets no triangle fir
 """
 
 import math
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -62,13 +63,13 @@ BUS_RIG = [
 class LowBeams:
     """A LiDAR's beams from above, where they are between the ground and a height."""
 
-    def __init__(self, sensor, height, vehicle):
+    def __init__(self, sensor, height, vehicle, reach=20.0):
         way = sensor.model.directions @ oracle.rotation(*sensor.pose.rpy).T
         self.start, (x, y, z) = np.array(sensor.pose.position), way.T
         with np.errstate(divide="ignore"):
             ends = np.sort([-self.start[2] / z, (height - self.start[2]) / z], axis=0)
         self.first, self.last = np.maximum(ends[0], 0.0), np.minimum(ends[1], 60.0)
-        low = np.flatnonzero((self.first <= self.last) & (self.first * np.hypot(x, y) < 20.0))
+        low = np.flatnonzero((self.first <= self.last) & (self.first * np.hypot(x, y) < reach))
         self.way, self.first, self.last = way[low], self.first[low], self.last[low]
         self.triangles, self.hits = vehicle.triangles, np.full(len(low), np.nan)
 
@@ -132,8 +133,9 @@ DISC_FINE = np.array(
 class Oracle:
     """All sensors of a rig."""
 
-    def __init__(self, rig, height, vehicle):
-        kinds = {"lidar": LowBeams, "camera": SeenPoints}
+    def __init__(self, rig, height, vehicle, *reach):
+        beams = partial(LowBeams, reach=reach[0]) if reach else LowBeams
+        kinds = {"lidar": beams, "camera": SeenPoints}
         self.looks = [kinds[s.kind](s, height, vehicle) for s in rig]
 
     def unseen(self, centers, radius):
@@ -216,3 +218,49 @@ def test_no_unseen_body_stands_where_nothing_is_reported_and_no_edge_is_far_out(
     near = (blind_places[:16, None] + FAR_M * DISC_FINE).reshape(-1, 2)
     holes = truth.unseen(near, SURE_RADIUS) | ~told.beside_body(near)
     assert holes.reshape(16, -1).any(axis=1).all()
+
+
+BEARINGS = np.arange(0.0, 360.0, 0.25 if THOROUGH else 0.5)
+FINE = pe.Lidar("fine", np.radians([-6.0, -4.5, -3.5, -2.5, -1.5, 0.0]), 2400, 60.0)
+"""Its beams are 5 cm apart, 20 m away, so that no gap between them is blind."""
+SECTORS = {
+    "cameras": (van, VAN_RIG[1:], 0.5),
+    "lidar behind a box": (van, [shapes.lidar_on_roof(FINE, (1.8, 0.3, 1.4))], 1.0),
+    "lidars at corners": (
+        lambda: from_assets("bus"),
+        [
+            shapes.lidar_on_roof(FINE, (3.1, y, 1.7), name=name)
+            for y, name in ((1.1, "a"), (0, "b"))
+        ],
+        1.5,
+    ),
+}
+
+
+@pytest.mark.parametrize("case", SECTORS)
+def test_the_widest_blind_sector_is_that_of_bodies_on_the_circle(case):
+    """It is no smaller than the run of bearings at which a body is unseen, and 2 deg wider."""
+    make, rig, height = SECTORS[case]
+    vehicle, rig = make(), pe.Rig(rig)
+    found = {s.height: s for s in Sight(SPACE, pe.Prior.road(), vehicle).blind_sectors(rig)}
+    truth = Oracle(rig, height, vehicle, blind_ground.SECTOR_RADIUS_M + 1.0)
+    around = np.radians(BEARINGS)
+    centers = blind_ground.SECTOR_RADIUS_M * np.stack([np.cos(around), np.sin(around)], axis=1)
+    unseen = truth.unseen(centers, RADIUS)
+    assert unseen.any() and not unseen.all()
+    first = int(np.argmin(unseen))  # a body that is seen: runs do not go over the end
+    runs = "".join("x" if each else " " for each in np.roll(unseen, -first)).split()
+    step, width = BEARINGS[1], found[height].width
+    longest = max(map(len, runs))
+    assert (longest - 1) * step <= width <= (longest + 1) * step + 2.0
+    middle = math.radians(found[height].bearing)
+    there = blind_ground.SECTOR_RADIUS_M * np.array([[math.cos(middle), math.sin(middle)]])
+    assert truth.unseen(there, RADIUS - 0.01).all()
+
+
+def test_a_rig_that_sees_all_round_has_no_blind_sector_and_one_that_sees_nothing_only_that():
+    top = shapes.lidar_on_roof(FINE, (0.0, 0.0, 1.6), name="top")
+    up = shapes.camera(60.0, (0.0, 0.0, 3.0), (0.0, -90.0, 0.0), "up")
+    look = Sight(SPACE, pe.Prior.road())
+    assert [s.width for s in look.blind_sectors(pe.Rig([top]))] == [0.0] * 3
+    assert [s.width for s in look.blind_sectors(pe.Rig([up]))] == [360.0] * 3

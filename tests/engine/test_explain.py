@@ -124,9 +124,11 @@ def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(tmp_path
         "car": figures[0].to_dict(),
         "paper_car_camera60": figures[1].to_dict(),
     }
-    blind, reach, ap = data["rows"][-3:]
-    assert (blind["measure"], reach["measure"], ap["measure"]) == ("blind", "reach", "ap")
-    assert ap["values"] == [each.expected_ap for each in figures] and not any(ap["best"])
+    *before, blind, reach = [row for row in data["rows"] if row["group"] != "zone"]
+    assert (blind["measure"], reach["measure"]) == ("blind", "reach")
+    assert [row["measure"] for row in before[-3:]] == ["sector"] * 3
+    (traffic,) = (row for row in before if (row["group"], row["name"]) == ("in traffic", ""))
+    assert traffic["values"] == [each.traffic.ap for each in figures]
     for wrong in (["--height", "99"], ["--class", "boat"], ["--beside", "nobody"]):
         assert main([*call, *wrong]) == 1
         out, err = capsys.readouterr()

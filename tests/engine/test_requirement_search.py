@@ -196,18 +196,19 @@ def tilted(blind_ground, method="portfolio"):
 def test_a_search_that_keeps_blind_ground_ends_with_no_more_of_it(method):
     """Without the key the same search pays its gain with blind ground, and says so."""
     free, kept = (finished(pt.OptimizeJob(tilted(keep, method), 1)) for keep in (None, "keep"))
-    before, after = free.blind_m2
+    before, after = (figures.blind_m2 for figures in free.figures)
     assert after > before + 1.0
     assert "blind ground (" in free.cost and advice.costs_nothing(kept.cost) == (
         "nothing" in kept.cost
     )
-    assert kept.blind_m2[0] == before >= kept.blind_m2[1]
+    start, result = (figures.blind_m2 for figures in kept.figures)
+    assert start == before >= result
     assert "blind ground (" not in kept.cost and free.before == kept.before
     assert free.after.entropy < kept.after.entropy <= kept.before.entropy
     sight = kept.study.sight()
-    assert sight.blind(kept.study.rig, BLIND_TO_M).area == pytest.approx(kept.blind_m2[1])
+    assert sight.blind(kept.study.rig, BLIND_TO_M).area == pytest.approx(result)
     told = result_dict(kept)
-    assert told["blind_ground_m2"] == {"before": before, "after": kept.blind_m2[1]}
+    assert [told["figures"][which]["blind_m2"] for which in ("before", "after")] == [start, result]
     assert told["cost"] == kept.cost
 
 

@@ -1,11 +1,20 @@
 """Visibility by location: the ground map, blind ground round the vehicle, reach."""
 
-from .blind_ground import BLIND_TO_M, BlindGround, BlindSpot, shown_end, shown_start
+from .blind_ground import (
+    BLIND_TO_M,
+    SECTOR_RADIUS_M,
+    BlindGround,
+    BlindSector,
+    BlindSpot,
+    shown_end,
+    shown_start,
+)
 from .ground_cells import outlines
 from .reach import Reach, ends_with_space, reach_line
 from .sight import Sight
 from .visibility import GroundSight, VisibleShares
 
-__all__ = ["BLIND_TO_M", "BlindGround", "BlindSpot", "GroundSight", "Reach", "Sight"]
+__all__ = ["BLIND_TO_M", "SECTOR_RADIUS_M", "BlindGround", "BlindSector", "BlindSpot"]
+__all__ += ["GroundSight", "Reach", "Sight"]
 __all__ += ["VisibleShares", "ends_with_space", "outlines", "reach_line", "shown_end"]
 __all__ += ["shown_start"]

@@ -26,6 +26,7 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Flags, Floats, ReadOnlyDict, read_only
+from ...base.values import rounded
 from ...geometry.grids import GroundGrid, PerceptionSpace
 from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
@@ -65,6 +66,12 @@ MIN_AREA_M2 = 0.18
 PARTLY_VISIBLE = math.sqrt(2.0)
 """A blind point in a marked square is no farther than this from an unmarked square, in squares: a
 body at that point has an unmarked square under it."""
+SECTOR_RADIUS_M = 20.0
+"""Distance from the origin at which blind sectors are measured."""
+SECTOR_HEIGHTS_M = (0.5, 1.0, 1.5)
+"""A post or a small child, an older child, an adult who bends."""
+ARC_STEP_M = 0.01
+"""Distance of the points of the circle at which squares are looked up."""
 SQUARES_PER_VOXEL = 16
 """Memory in the cache: a voxel takes some 100 bytes, a square a few."""
 
@@ -113,6 +120,54 @@ class BlindGround:
     zone: Mapping[str, float | None]
     seen_from: Mapping[str, float | None]
     preview: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class BlindSector:
+    """The widest sector in which a body is invisible, `SECTOR_RADIUS_M` from the origin.
+
+    Attributes
+    ----------
+    height : float
+        Height of the body [m].
+    width : float
+        0 where the body is visible all round, 360 where it is nowhere [deg]. It is never too small,
+        and at most 2 deg wider than where the middle of an invisible body can stand: it counts the
+        ground under the body, and edges are up to `TOO_FAR_M` too far out.
+    bearing : float
+        Bearing of its middle, counter-clockwise from ahead, above -180 to 180 [deg].
+    """
+
+    height: float
+    width: float
+    bearing: float
+
+
+def sector_cells() -> GroundCells:
+    """Return the squares round the circle on which blind sectors are measured."""
+    count = math.ceil(SECTOR_RADIUS_M / STEP_M) + math.ceil(1.0 / STEP_M)
+    low = np.arange(-count, count) * STEP_M
+    return GroundCells(low, low, low + STEP_M, low + STEP_M, STEP_M)
+
+
+def widest_sector(cells: GroundCells, blind: Flags, height: float) -> BlindSector:
+    """Return the widest sector of blind squares (NX, NY) on the circle of `SECTOR_RADIUS_M`."""
+    count = math.ceil(2.0 * math.pi * SECTOR_RADIUS_M / ARC_STEP_M)
+    angles = [2.0 * math.pi * k / count for k in range(count)]
+    i, j = (
+        np.floor((SECTOR_RADIUS_M * np.array([turn(a) for a in angles]) - low[0]) / cells.step)
+        for turn, low in ((math.cos, cells.x0), (math.sin, cells.y0))
+    )
+    clear = np.flatnonzero(~blind[i.astype(np.int64), j.astype(np.int64)])
+    if not len(clear):
+        return BlindSector(height, 360.0, 0.0)
+    steps = np.diff(clear, append=clear[0] + count)
+    k = int(np.argmax(steps))
+    if steps[k] == 1:
+        return BlindSector(height, 0.0, 0.0)
+    middle = 360.0 * (clear[k] + steps[k] / 2.0) / count
+    bearing = 180.0 - (180.0 - middle) % 360.0
+    return BlindSector(height, rounded(360.0 * float(steps[k]) / count), rounded(bearing))
 
 
 def body_rectangle(vehicle: Vehicle | None) -> Rectangle:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from functools import cached_property
 from threading import RLock
 
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Floats, read_only
+from ...base.errors import InputError
 from ...base.values import rounded
 from ...geometry.grids import PerceptionSpace
 from ...metric.entropy import H_BLIND, ap_of_entropy
@@ -20,9 +22,21 @@ from ...scene.vehicle import Vehicle
 from ...sensors import PerceptionModel
 from ..sampling import VoxelSample, draw
 from ..scenarios import fused_early
+from ..score import TrafficAp
+from ..targets import OBJECTS, ObjectEvaluator, TargetRule, sample_objects
 from ..targets.object_metric import LoneObjects
-from ..targets.object_sampling import TargetRule, sample_objects
-from .blind_ground import STEP_M, BlindGround, BlindSearch, area_of, blind_ground, body_rectangle
+from .blind_ground import (
+    SECTOR_HEIGHTS_M,
+    STEP_M,
+    BlindGround,
+    BlindSearch,
+    BlindSector,
+    area_of,
+    blind_ground,
+    body_rectangle,
+    sector_cells,
+    widest_sector,
+)
 from .ground_cells import GroundCells, widened
 from .reach import AP, BEARINGS, Reach, Spokes, density_of, object_reach
 from .visibility import (
@@ -160,6 +174,27 @@ class Sight:
         cells, blind, _ = self._blind_cells(rig, height, WITHIN_M, False)
         return area_of(cells, blind)
 
+    def blind_sectors(self, rig: Rig) -> tuple[BlindSector, ...]:
+        """Return the widest blind sector for bodies of each of `SECTOR_HEIGHTS_M`.
+
+        The body and the safe side are those of `blind`; the space may be smaller than the circle.
+        """
+        cells = sector_cells()
+        found = ((h, self._blind_of(cells, rig, h, False)[0]) for h in SECTOR_HEIGHTS_M)
+        return tuple(widest_sector(cells, blind, height) for height, blind in found)
+
+    def in_traffic(self, rig: Rig) -> TrafficAp | None:
+        """Return the expected AP of the prior's objects in traffic.
+
+        None where there is no such figure: the objects have no room in the space, or a sensor has
+        an AP curve of its own, which is one of voxels.
+        """
+        with self._lock:
+            try:
+                return self._objects_in_traffic.expected_ap(rig)
+            except InputError:
+                return None
+
     def _blind_cells(
         self, rig: Rig, height: float, within: float, preview: bool
     ) -> tuple[GroundCells, NDArray[np.bool_], bool]:
@@ -167,6 +202,11 @@ class Sight:
         area = widened(body_rectangle(self.vehicle), within)
         cells = GroundCells.of(self.space, STEP_M, area)
         layer_at(self.space, height)  # raises InputError for a height that is not in the space
+        return (cells, *self._blind_of(cells, rig, height, preview))
+
+    def _blind_of(
+        self, cells: GroundCells, rig: Rig, height: float, preview: bool
+    ) -> tuple[NDArray[np.bool_], bool]:
         with self._lock:
             search = self._voxel_sets.cached(
                 ("blind", float(height), cells.key),
@@ -174,7 +214,7 @@ class Sight:
                     cells, max(float(height), 0.0), self.vehicle, self._voxel_sets.kernel_cache
                 ),
             )
-            return (cells, *search.blind(rig, preview))
+            return search.blind(rig, preview)
 
     def reach(
         self,
@@ -284,6 +324,12 @@ class Sight:
             without = self._fusion.entropies(fused_early(rig, m, rest))[0] if rest else H_BLIND
             rises[name] = without - whole
         return rises
+
+    @cached_property
+    def _objects_in_traffic(self) -> ObjectEvaluator:
+        targets = replace(self.targets, targets=OBJECTS, traffic=True)
+        where = self.space, self.prior, self.vehicle
+        return ObjectEvaluator(*where, targets=targets, model=self._model)
 
     @cached_property
     def _lone(self) -> LoneObjects:

@@ -19,7 +19,16 @@ from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...sensors import ObjectMeasurementCache, PerceptionModel, kind_of
 from ..scenarios import Scenarios, mean_or_worst
-from ..score import Evaluation, ObjectScore, Score, ScoreProgress, SensorScore, SummaryScore, Watch
+from ..score import (
+    Evaluation,
+    ObjectScore,
+    Score,
+    ScoreProgress,
+    SensorScore,
+    SummaryScore,
+    TrafficAp,
+    Watch,
+)
 from .object_metric import FusedObjects, LoneObjects, ObjectSums
 from .object_sampling import CENTERED, OBJECTS, SampledObjects, TargetRule, sample_objects
 
@@ -157,6 +166,13 @@ class ObjectEvaluator:
         with self._lock:
             self._fused.check(rig)
             return self._summary(rig, *self._fused.entropies(rig, self._sensors.measure(rig)))
+
+    def expected_ap(self, rig: Rig) -> TrafficAp:
+        """Return the expected AP of a rig, over all objects and by ring."""
+        with self._lock:
+            self._fused.check(rig)
+            entropies, _ = self._fused.entropies(rig, self._sensors.measure(rig))
+            return self._sums.by_ring(entropies)
 
     def score(self, rig: Rig, *, preview: bool = False, watch: Watch | None = None) -> Score:
         """Score a rig in full: as `Evaluator.score`, with an `ObjectScore`."""

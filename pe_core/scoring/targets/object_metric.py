@@ -25,6 +25,7 @@ from ...scene.vehicle import Vehicle
 from ...sensors import ObjectMeasurementCache, PerceptionModel
 from ..score import (
     ALIKE,
+    BY_DISTANCE,
     FARTHEST_M,
     POINTS,
     RULE_OF_THREE,
@@ -33,6 +34,7 @@ from ..score import (
     ObjectScore,
     PartScore,
     Scatter,
+    TrafficAp,
     residuals,
     sample_digest,
     zone_masks,
@@ -170,6 +172,17 @@ class ObjectSums:
     def expected_ap(self, entropies: Floats) -> float:
         """Return the expected AP of all objects, by their weights."""
         return rounded(self._mean(ap_of_entropy(entropies), None))
+
+    def by_ring(self, entropies: Floats) -> TrafficAp:
+        """Return the expected AP of all objects and of those in each ring."""
+        ap = ap_of_entropy(entropies)
+        rings = {
+            name: (rounded(self._mean(ap, mask)), self._scatter(ap, mask))
+            for name, mask in self._zones.items()
+            if name in BY_DISTANCE
+        }
+        whole = self.expected_ap(entropies), self._scatter(ap, None)
+        return TrafficAp(*whole, self._drawn.scenes, rings)
 
     def scatter(self, entropies: Floats, visible: Bools) -> Scatter:
         """Return residuals by batch of scenes: entropy and coverage of all parts, AP of classes."""

@@ -77,6 +77,9 @@ def comparison(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
         return None
     first, *others = contexts
     rows = advice.compare({context.key: context.after for context in contexts})
+    told = {c.key: c.outcome.figures[1] for c in contexts if c.outcome.figures is not None}
+    figures = advice.compare_figures(told) if len(told) == len(contexts) else ()
+    rows = (*rows, *(row for row in figures if row.measure in ("ap", "sector")))
     return {
         "names": [macros().bold_study(context) for context in contexts],
         "rows": rows,
@@ -108,6 +111,8 @@ def _summary_lines(
 ) -> Iterator[str]:
     """Yield, as HTML, which rig is better overall and where, and what limits the comparison."""
     names = [macros().bold_study(context) for context in contexts]
+    if apart := advice.disagreement(names, rows):
+        yield apart
     yield from advice.ranking(names, rows, PAGE_NOTATION)
     yield from advice.win_words(names, [replace(row, name=escaped(row.name)) for row in rows])
     for name, context in zip(names, contexts, strict=True):

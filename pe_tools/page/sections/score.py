@@ -14,6 +14,7 @@ from markupsafe import Markup
 import pe_core as pe
 from pe_core import metric, scene
 from pe_core import sensors as kinds
+from pe_core.scoring.sight import SECTOR_RADIUS_M
 from pe_core.study.condition_table import ConditionTable
 
 from ... import advice, jobs
@@ -50,7 +51,6 @@ def overview(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
         noun = kind.label if count == 1 else kind.plural
         counts.append(f"{count} {noun.lower() if noun.istitle() else noun}")
     blind = context.outlook.blind
-    away = {side: float("inf") if end is None else end for side, end in blind.zone.items()}
     return {
         "sensors": joined(counts),
         "moved": sum(a.pose != b.pose for a, b in zip(context.start.rig, context.rig, strict=True)),
@@ -59,7 +59,7 @@ def overview(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
         "hidden": [Markup(capitalized(line)) for line in hidden_sensor_lines(context)],
         "blind": blind,
         "sides": SIDES,
-        "farthest": max(away, key=lambda side: away[side]),
+        "sector_radius": SECTOR_RADIUS_M,
         "worst": max(scores.per_sensor, key=lambda name: scores.per_sensor[name].lost),
         "picture": labelled_picture(context, f"The vehicle with {joined(counts)}"),
         "unseen_nats": metric.H_BLIND,

@@ -12,7 +12,7 @@ from ..engine import advice, jobs, pe, studies
 from .requirements import store_verdicts
 from .scene_diagnostics import DRIVER, MISSING
 from .stored import ResultPart, SensorFigures, StoredResult, StoredWarning, store
-from .versions import score_to_dict
+from .versions import scored_data
 
 PARTS_NAMED = 3
 """The panel names so many parts of the vehicle that block beams."""
@@ -57,7 +57,7 @@ def store_outcome(scene: Scene, outcome: jobs.Outcome, signature: str) -> None:
     )
     store(settings, "result_shown", shown)
     result = jobs.result_dict(outcome, blender_version())
-    result["after"] = score_to_dict(after)
+    result["after"] = scored_data(after, outcome.figures and outcome.figures[1])
     settings.result_json, settings.result_signature = json.dumps(result), signature
     store_warnings(settings, outcome.warnings)
     store_verdicts(settings, outcome.verdicts)

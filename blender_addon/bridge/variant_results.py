@@ -19,7 +19,7 @@ from .scene_diagnostics import check_placeable, scene_advice
 from .sensor_records import SensorRecord, records_of, records_of_scene, rig_of
 from .stored import FrontRow, StoredFront, store
 from .variants import Variant, find_or_add_variant, mark_active, study_of_variant
-from .versions import score_from_dict, score_to_dict
+from .versions import score_from_dict, scored_data
 
 BEFORE = "Before choosing"
 MAX_NAME_LENGTH = 60
@@ -30,14 +30,20 @@ def same_score(records: Sequence[SensorRecord], others: Sequence[SensorRecord]) 
     return [record.scored for record in records] == [record.scored for record in others]
 
 
-def store_variant_scores(scene: Scene, rig: pe.Rig, score: pe.Score, surroundings: str) -> None:
-    """Store a score with every variant of exactly these sensors.
+def store_variant_scores(scene: Scene, outcome: jobs.Outcome, surroundings: str) -> None:
+    """Store the scores of an outcome with every variant of exactly these sensors.
 
     `surroundings` is the fingerprint of the scene without its sensors when it was scored.
     """
-    for row in scene.perception_entropy.variants:
-        if _is_rig(row, rig):
-            store_variant_score(row, score, surroundings)
+    beside = outcome.figures or (None, None)
+    for study, score, figures in (
+        (outcome.start, outcome.before, beside[0]),
+        (outcome.study, outcome.after, beside[1]),
+    ):
+        for row in scene.perception_entropy.variants:
+            if _is_rig(row, study.rig):
+                _write_figures(row, scored_data(score, figures))
+                row.signature = surroundings
 
 
 def _is_rig(variant: Variant, rig: pe.Rig) -> bool:
@@ -68,8 +74,7 @@ def store_search(scene: Scene, outcome: jobs.Outcome, surroundings: str) -> int:
     after = find_or_add_variant(scene, name, result).key
     for number, other in enumerate(jobs.runners_up(outcome).values(), 1):
         find_or_add_variant(scene, f"Runner-up {number}", _moved(records, other.rig))
-    store_variant_scores(scene, outcome.start.rig, outcome.before, surroundings)
-    store_variant_scores(scene, outcome.study.rig, outcome.after, surroundings)
+    store_variant_scores(scene, outcome, surroundings)
     mark_active(scene, before)
     return after
 
@@ -87,7 +92,7 @@ def _moved(records: Sequence[SensorRecord], rig: pe.Rig) -> tuple[SensorRecord, 
 
 def store_variant_score(variant: Variant, score: pe.Score, surroundings: str) -> None:
     """Store a score with a variant."""
-    _write_figures(variant, score_to_dict(score))
+    _write_figures(variant, scored_data(score))
     variant.signature = surroundings
 
 
@@ -242,8 +247,8 @@ def restore_result(
     if set(score.per_sensor) != {sensor.name for sensor in study.rig}:
         return None  # an object has another name than the sensor that was scored
     warnings = scene_advice(scene)
-    known = figures_of(variant, figures_signature(scene, now))
-    beside = None if known is None else (known, known)
+    known = figures.get("figures")
+    beside = None if known is None else (advice.KeyFigures.from_dict(known),) * 2
     outcome = jobs.Outcome("score", study, study, score, score, warnings=warnings, figures=beside)
     store_outcome(scene, outcome, now.text)
     return outcome

@@ -26,10 +26,12 @@ def newer_version_message(scene: Scene) -> str:
     )
 
 
-def score_to_dict(score: pe.Score) -> dict:
-    """Return a score as plain data, with the scatter that the error of a difference needs."""
+def scored_data(score: pe.Score, figures: advice.KeyFigures | None = None) -> dict:
+    """Return a score as plain data, with the scatter that the error of a difference needs, and the
+    key figures beside it."""
     scatter = {} if score.scatter is None else {"scatter": score.scatter.to_dict()}
-    return {**score.to_dict(), **scatter}
+    beside = {} if figures is None else {"figures": figures.to_dict()}
+    return {**score.to_dict(), **scatter, **beside}
 
 
 def score_from_dict(figures: dict) -> pe.Score:

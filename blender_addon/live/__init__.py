@@ -9,8 +9,19 @@ from __future__ import annotations
 
 import bpy
 
+from ..engine import advice
 from . import background_figures, readout, sense_icons, session
-from .readout_text import BETTER, SAME, WORSE, ReadoutLine, nats_text, sense_of, text_of
+from .readout_text import (
+    BETTER,
+    SAME,
+    WORSE,
+    FigureRow,
+    ReadoutLine,
+    nats_text,
+    rows_of_figures,
+    sense_of,
+    text_of,
+)
 from .sense_icons import sense_icon
 from .state import FinishedScore, ShownScore, live_state, shown_figures, shown_score
 
@@ -20,17 +31,28 @@ __all__ = [
     "WORSE",
     "FinishedScore",
     "ShownScore",
+    "figure_rows",
     "live_lines",
     "live_state",
     "nats_text",
     "register",
     "sense_icon",
     "sense_of",
-    "shown_figures",
     "shown_score",
     "text_of",
     "unregister",
 ]
+
+
+def figure_rows(scene: bpy.types.Scene, *, live: bool) -> list[FigureRow]:
+    """Return rows of key figures for the panel: of the live score, or of the stored result."""
+    if live:
+        now = shown_figures(scene)
+        return rows_of_figures([] if now is None else [now])
+    settings = scene.perception_entropy
+    of_kind = ("before", "after") if settings.result_kind == "optimize" else ("after",)
+    told = [settings.result_figures[which] for which in of_kind if settings.result_figures]
+    return rows_of_figures([advice.KeyFigures.from_dict(data) for data in told])
 
 
 def live_lines(scene: bpy.types.Scene) -> list[ReadoutLine]:

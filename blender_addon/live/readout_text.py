@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from ..engine import advice, pe, wording
@@ -18,6 +20,7 @@ MINUS = "\N{MINUS SIGN}"
 BEFORE_SEARCH = "before the search"
 PENDING = "AP in traffic, blind ground, reach: being computed"
 BEFORE = "Before this move: "
+NO_FIGURE, ARROW = "\N{EN DASH}", " \N{RIGHTWARDS ARROW} "
 
 
 class TextPiece(NamedTuple):
@@ -137,6 +140,47 @@ def figure_lines(figures: ShownFigures) -> tuple[ReadoutLine, ...]:
     if figures.current:
         return lines
     return tuple((TextPiece(f"{BEFORE}{text_of(line)}"),) if line else () for line in lines)
+
+
+class FigureRow(NamedTuple):
+    """A row of the panel: name, text, and whether it tells a gain or a loss."""
+
+    name: str
+    text: str
+    sense: int = SAME
+
+
+def rows_of_figures(found: Sequence[advice.KeyFigures]) -> list[FigureRow]:
+    """Return rows for the key figures of a rig, or of start and result of a search.
+
+    The blind sector is the widest for any of the heights.
+    """
+    traffic = [figures.traffic for figures in found if figures.traffic is not None]
+    aps = [f"{each.ap:.3f}" for each in traffic]
+    error = f" ± {max(traffic[-1].stderr, 1e-3):.3f}" if len(traffic) == 1 else ""
+    rings = traffic[-1].rings if traffic else {}
+    by_ring = ", ".join(f"{name} {ap:.2f}" for name, (ap, _) in rings.items())
+    widest = [max(figures.sectors, key=lambda sector: sector.width) for figures in found]
+    widths = [wording.degrees(sector.width) for sector in widest]
+    tall = f" ({widest[0].height:g} m tall)" if len(found) == 1 and widest[0].width else ""
+    areas = [f"{math.ceil(10.0 * figures.blind_m2) / 10.0:.1f}" for figures in found]
+    blind = [figures.blind_m2 for figures in found]
+    return [
+        FigureRow("AP in Traffic", _from_to(aps, error), _sense([-t.ap for t in traffic], 5e-4)),
+        FigureRow("", by_ring or NO_FIGURE),
+        FigureRow("Blind Sector", _from_to(widths, tall), _sense([s.width for s in widest], 1.0)),
+        FigureRow("Blind Ground", _from_to(areas, " m²"), _sense(blind, 0.05)),
+    ]
+
+
+def _from_to(texts: Sequence[str], after: str) -> str:
+    return f"{ARROW.join(texts)}{after}" if texts else NO_FIGURE
+
+
+def _sense(values: Sequence[float], least: float) -> int:
+    """Return whether a low figure became lower or higher, by more than `least`."""
+    by = values[-1] - values[0] if values else 0.0
+    return SAME if abs(by) < least else WORSE if by > 0.0 else BETTER
 
 
 def traffic_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> ReadoutLine:

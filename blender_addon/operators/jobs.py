@@ -243,7 +243,7 @@ def score_task(_scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerpri
 
     def finish(scene: bpy.types.Scene, outcome: jobs.Outcome) -> str:
         store_result(scene, outcome, taken.text)
-        bridge.store_variant_scores(scene, outcome.study.rig, outcome.after, taken.surroundings)
+        bridge.store_variant_scores(scene, outcome, taken.surroundings)
         score = outcome.after
         return f"Perception entropy {score.entropy:.4f} nats, coverage {score.coverage:.1%}"
 

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-
 import bpy
 from bpy.types import Context, PropertyGroup, Scene, UILayout
 
 from ..choices import VERSION
-from ..engine import advice, wording
 from ..language import draw_label, shown
 from ..operators import (
     BETTER,
@@ -18,12 +14,12 @@ from ..operators import (
     ShownScore,
     costs_nothing,
     exports,
+    figure_rows,
     listed_sensors,
     nats_text,
     offers,
     running_job,
     sense_icon,
-    shown_figures,
     shown_score,
     shown_state,
 )
@@ -76,8 +72,8 @@ def draw_result(layout: UILayout, context: Context) -> None:
     elif listed_sensors(context.scene):
         column = layout.box().column(align=True)
         for name in ("Entropy", "Coverage"):
-            draw_figure(column, name, NO_FIGURE)
-        draw_key_figures(column, [])
+            draw_figure(column, name, "\N{EN DASH}")
+        draw_key_figures(column, settings, live=True)
         draw_label(column, "Not scored yet", "BLANK1")
         draw_changed(layout, is_changed=False)
     if settings.has_result and (state := shown_state(context.scene)):
@@ -90,12 +86,17 @@ def draw_live(layout: UILayout, settings: PropertyGroup, live: ShownScore) -> No
     error = max(live.stderr, 1e-3)
     draw_figure(column, "Entropy", f"{nats_text(live.entropy)} ± {error:.3f} nats")
     draw_figure(column, "Coverage", f"{live.coverage:.1%}")
-    figures = shown_figures(settings.id_data)
-    draw_key_figures(column, [] if figures is None else [figures])
+    draw_key_figures(column, settings, live=True)
     state = "Live: exact, on a sample" if live.exact else "Live: a preview, on a sample"
     draw_label(column, state, "REC")
     is_changed = settings.has_result and (settings.result_stale or not live.state)
     draw_changed(layout, is_changed=is_changed)
+
+
+def draw_key_figures(layout: UILayout, settings: PropertyGroup, *, live: bool) -> None:
+    """Draw the figures beside the entropy: of the live score, or of the stored result."""
+    for name, text, sense in figure_rows(settings.id_data, live=live):
+        draw_figure(layout, name, text, sense)
 
 
 def draw_changed(layout: UILayout, *, is_changed: bool) -> None:
@@ -115,10 +116,7 @@ def draw_stored(layout: UILayout, context: Context) -> None:
         draw_changes(column, context, settings)
     else:
         draw_figure(column, "Coverage", f"{settings.result_coverage:.1%}")
-    told = settings.result_figures
-    of_search = ("before", "after") if settings.result_kind == "optimize" else ("after",)
-    found = [advice.KeyFigures.from_dict(told[which]) for which in of_search if told]
-    draw_key_figures(column, found)
+    draw_key_figures(column, settings, live=False)
     if settings.result_kind == "optimize":
         sense = BETTER if costs_nothing(settings) else WORSE
         draw_sentence(column, context, settings.result_cost, sense=sense)
@@ -148,31 +146,7 @@ def draw_changes(layout: UILayout, context: Context, settings: PropertyGroup) ->
     draw_figure(layout, "Coverage", text, sense_of_change(-by, MIN_POINTS))
 
 
-def draw_key_figures(layout: UILayout, found: Sequence[advice.KeyFigures]) -> None:
-    """Draw the figures beside the entropy: of a rig, or of start and result of a search."""
-    traffic = [figures.traffic for figures in found if figures.traffic is not None]
-    aps = [each.ap for each in traffic]
-    error = f" ± {max(traffic[-1].stderr, 1e-3):.3f}" if len(traffic) == 1 else ""
-    text = f"{ARROW.join(f'{ap:.3f}' for ap in aps)}{error}" or NO_FIGURE
-    fell = aps[0] - aps[-1] if aps else 0.0
-    draw_figure(layout, "AP in Traffic", text, sense_of_change(fell, MIN_AP))
-    rings = traffic[-1].rings if traffic else {}
-    text = ", ".join(f"{name} {ap:.2f}" for name, (ap, _) in rings.items()) or NO_FIGURE
-    draw_figure(layout, "", text)
-    widest = [max(figures.sectors, key=lambda sector: sector.width) for figures in found]
-    text = ARROW.join(wording.degrees(sector.width) for sector in widest) or NO_FIGURE
-    if len(widest) == 1 and widest[0].width:
-        text += f" ({widest[0].height:g} m tall)"
-    grew = widest[-1].width - widest[0].width if widest else 0.0
-    draw_figure(layout, "Blind Sector", text, sense_of_change(grew, MIN_DEGREES))
-    areas = [math.ceil(10.0 * figures.blind_m2) / 10.0 for figures in found]
-    text = f"{ARROW.join(f'{area:.1f}' for area in areas)} m²" if areas else NO_FIGURE
-    grew = areas[-1] - areas[0] if areas else 0.0
-    draw_figure(layout, "Blind Ground", text, sense_of_change(grew, MIN_AREA_M2))
-
-
-NO_FIGURE, ARROW = "\N{EN DASH}", " \N{RIGHTWARDS ARROW} "
-MIN_NATS, MIN_POINTS, MIN_AREA_M2, MIN_AP, MIN_DEGREES = 5e-4, 0.05, 0.05, 5e-4, 0.05
+MIN_NATS, MIN_POINTS = 5e-4, 0.05
 """Smaller changes are 0 in the digits that are shown."""
 
 

@@ -61,7 +61,8 @@ def blind_area(sight: Sight, rig: Rig) -> float:
 
 
 def _widths(sight: Sight, rig: Rig) -> tuple[float, ...]:
-    return tuple(sector.width for sector in sight.blind_sectors(rig))
+    """Return widths of blind sectors, rounded up to whole degrees: closer ones are alike."""
+    return tuple(math.ceil(sector.width) for sector in sight.blind_sectors(rig))
 
 
 def _missed(sight: Sight, rig: Rig) -> tuple[float, ...]:
@@ -84,14 +85,15 @@ class FiguresLimit:
     `keys` are those of `KEPT_FIGURES`; `limits` are their figures in that order.
     """
 
-    def __init__(self, study: Study, keys: Sequence[str], limits: Sequence[float] = ()) -> None:
-        self._study, self._keys = study, tuple(keys)
-        self._sight = study.sight()
-        self.limits = tuple(limits) or self._figures(study.rig)
+    def __init__(self, sight: Sight, keys: Sequence[str], limits: Sequence[float]) -> None:
+        self._sight, self._keys, self.limits = sight, tuple(keys), tuple(limits)
 
-    def __reduce__(self) -> tuple[object, ...]:
-        """Pickle the arguments: a worker has a `Sight` of its own."""
-        return FiguresLimit, (self._study, self._keys, self.limits)
+    @classmethod
+    def of(cls, study: Study, keys: Sequence[str]) -> FiguresLimit:
+        """Return the constraint of a study's search: no figure higher than its own rig has."""
+        sight = study.sight()
+        limits = [v for key in keys for v in KEPT_FIGURES[key](sight, study.rig)]
+        return cls(sight, keys, limits)
 
     def _figures(self, rig: Rig) -> tuple[float, ...]:
         return tuple(v for key in self._keys for v in KEPT_FIGURES[key](self._sight, rig))
@@ -175,7 +177,7 @@ def constraints_of(study: Study) -> tuple[FeasibilityRule, ...]:
         checker = study.checker()
         constraints.append(RequirementConstraint(checker, search.tolerance, search.seed))
     if keys := [key for key in KEPT_FIGURES if getattr(search.goals, key) == KEEP]:
-        constraints.append(FiguresLimit(study, keys))
+        constraints.append(FiguresLimit.of(study, keys))
     return tuple(constraints)
 
 

@@ -24,9 +24,10 @@ MIN_CHANGE = {
     "ap": 0.0005,
     "reach": 0.05,
     "blind": 0.05,
-    "sector": 0.05,
+    "sector": 1.0,
 }
-"""Smallest difference of each measure that counts: half of the last digit that is shown."""
+"""Smallest difference of each measure that counts: half of the last digit that is shown; of a blind
+sector the error of its edges [deg]."""
 
 
 def sure_factor(studies: int, degrees: int = BLOCKS - 1) -> float:

@@ -62,7 +62,8 @@ def test_a_job_the_command_lines_and_the_panel_find_the_same_bits(settings, tmp_
         assert own == {name: found[0][name] for name in found[0] if name not in ALONE}
     assert (inside / "history.csv").read_bytes() == (outside / "history.csv").read_bytes()
     first, last = (each.ap for each in job.outcome.in_traffic)
-    assert settings.result_in_traffic == f"{first:.3f} \N{RIGHTWARDS ARROW} {last:.3f}"
+    told = [settings.result_figures[which]["traffic"]["ap"] for which in ("before", "after")]
+    assert told == [first, last]
 
 
 def test_the_curve_of_a_running_search_is_an_ap_that_rises(settings, monkeypatch):
@@ -101,11 +102,13 @@ def test_the_panels_show_what_an_objective_needs_and_found(settings):
     settings.evaluations = 2
     assert bpy.ops.pe.optimize() == {"FINISHED"}
     shown = layouts.drawn(main.main, **vars(layouts.Window(scene))).texts("label")
-    assert shown[shown.index("AP in Traffic") + 1] == settings.result_in_traffic != ""
+    first, last = (settings.result_figures[w]["traffic"]["ap"] for w in ("before", "after"))
+    row = shown[shown.index("AP in Traffic") + 1]
+    assert row == f"{first:.3f} \N{RIGHTWARDS ARROW} {last:.3f}"
     settings.objective = "entropy"
     assert "scenes" not in props(search_panels.search)
     assert "search_samples" in props(search_panels.search)
-    assert bpy.ops.pe.score() == {"FINISHED"} and settings.result_in_traffic == ""
+    assert bpy.ops.pe.score() == {"FINISHED"}
 
 
 def test_choices_by_ap_are_variants_with_their_figures(settings):

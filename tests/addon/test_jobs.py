@@ -1,6 +1,7 @@
 """Score and optimize from the scene: the engine's own numbers, to the bit."""
 
 import json
+import math
 from types import SimpleNamespace
 
 import bpy
@@ -80,9 +81,11 @@ def test_what_a_search_cost_is_stored_and_shown(car):
     assert bpy.ops.pe.optimize() == {"FINISHED"}
     settings = car.perception_entropy
     assert settings.result_cost == expected.cost
-    shown, told = expected.blind_m2, settings.result_blind
-    assert all(m2 <= up <= m2 + 0.1001 for m2, up in zip(shown, told, strict=True)), "rounded up"
+    told = [settings.result_figures[which] for which in ("before", "after")]
+    assert told == [figures.to_dict() for figures in expected.figures]
     labels = " ".join(layouts.drawn(main.main, **vars(layouts.Window(car))).texts("label"))
+    up = [f"{math.ceil(10.0 * figures.blind_m2) / 10.0:.1f}" for figures in expected.figures]
+    assert f"{up[0]} \N{RIGHTWARDS ARROW} {up[1]} m²" in labels
     assert "Blind Ground" in labels and expected.cost.split("(")[0].strip() in labels
 
 

@@ -40,7 +40,7 @@ def test_the_panel_scores_objects_as_the_command_line_does(settings, tmp_path):
         pass
     assert bpy.ops.pe.score() == {"FINISHED"}
     stored = json.loads(settings.result_json)
-    assert stored["after"] == bridge.versions.score_to_dict(job.outcome.after)
+    assert stored["after"] == bridge.versions.scored_data(job.outcome.after, job.outcome.figures[1])
     objects = job.outcome.after.objects
     assert settings.result_ap.startswith(f"{objects.ap:.3f}")
     shown = {row.name: (row.ap, row.reach) for row in settings.result_parts if row.is_class}

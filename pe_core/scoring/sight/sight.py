@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from threading import RLock
 
 import numpy as np
@@ -96,6 +96,11 @@ class Sight:
         self._densities: list[ClassDensity] = prior.densities(space)
         self._voxel_sets = VoxelSetCache(space, vehicle, self._fusion)
         self._lock = RLock()
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle the arguments: another process makes one of its own from them."""
+        what = self.space, self.prior, self.vehicle
+        return partial(type(self), *what, model=self._model, targets=self.targets), ()
 
     def ground(
         self,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from bpy.types import Scene
 
 from ..choices import VERSION
-from ..engine import pe
+from ..engine import advice, pe
 
 
 def mark_version(scene: Scene) -> None:

@@ -146,8 +146,9 @@ class Outcome:
     @property
     def cost(self) -> str:
         """What a search cost, in one sentence; empty for a score."""
-        is_told = self.kind == "optimize" and self.figures is not None
-        return search_cost(self.before, self.after, *self.figures) if is_told else ""
+        if self.kind == "score" or self.figures is None:
+            return ""
+        return search_cost(self.before, self.after, *self.figures)
 
 
 T = TypeVar("T")

@@ -84,6 +84,7 @@ def record_of_study(study: pe.Study) -> SceneRecord:
         model=study.model,
         targets=study.targets,
         samples=study.samples,
+        returns=study.returns,
         search=replace(study.search, free={}, limits={}, mounting=pe.Mounting(), goals=goals),
         mounts=mounting.mounts,
         constraints=mounting.constraints,
@@ -207,7 +208,8 @@ def _write_settings(settings: PropertyGroup, record: SceneRecord) -> None:
     instances = (record.space, record.targets, record.model, own, own.schedule, record.selection)
     for instance in instances:
         write_values(settings, instance)
-    settings.score_samples, settings.method = record.samples, own.method
+    settings.score_samples, settings.returns = record.samples, record.returns
+    settings.method = own.method
     write_goals(settings, own.goals)
     settings.mounting_errors = tolerance.position > 0.0 or tolerance.angle > 0.0
     names = () if settings.mounting_errors else ("failures", "worst")

@@ -11,7 +11,7 @@ import numpy as np
 from bpy.types import Depsgraph, Object, PropertyGroup, Scene, ViewLayer
 from mathutils import Matrix
 
-from ..engine import catalog, geometry, graphics, pe, search
+from ..engine import catalog, geometry, graphics, kinds, pe, search
 from .scene_settings import values_of
 
 SCALE_TOLERANCE = 1e-4
@@ -51,7 +51,9 @@ def sensor_from_object(obj: Object, depsgraph: Depsgraph) -> pe.Sensor:
     """
     settings = obj.perception_entropy
     try:
-        model, pose = catalog.load(settings.model), pose_of(obj, depsgraph)
+        returns = depsgraph.scene.perception_entropy.returns
+        model = kinds.returning(catalog.load(settings.model), returns)
+        pose = pose_of(obj, depsgraph)
         fusion, color = settings.fusion or None, color_of(obj)
         return pe.Sensor(obj.name, model, pose, fusion, curve_of(settings), color)
     except pe.InputError as error:

@@ -61,6 +61,7 @@ class SceneRecord:
     model: pe.PerceptionModel
     targets: pe.TargetRule
     samples: int
+    returns: str
     search: pe.Search
     mounts: Mapping[str, AnyMount]
     constraints: pe.Constraints
@@ -144,7 +145,7 @@ def record_of_scene(
         prior=prior_from_scene(scene),
         model=perception_of(settings),
         targets=targets_of(settings),
-        samples=values_of(settings, pe.Study)["samples"],
+        **values_of(settings, pe.Study),
         search=with_starts(search_of(settings, is_choice=is_choice), scene),
         selection=pe.Selection(**values_of(settings, pe.Selection))
         if is_choice
@@ -179,6 +180,7 @@ def study_of(record: SceneRecord) -> pe.Study:
         model=record.model,
         search=search_of_rig,
         samples=record.samples,
+        returns=record.returns,
         mesh=studies.MESH,  # the name the mesh gets beside a study: part of what is reported
         reference=record.reference,
         selection=selection_of(counted, record.selection),

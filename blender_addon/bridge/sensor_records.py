@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from bpy.types import Depsgraph, Object, PropertyGroup, Scene, ViewLayer
 
-from ..engine import catalog, pe, search
+from ..engine import catalog, kinds, pe, search
 from .rig import (
     color_of,
     curve_of,
@@ -243,8 +243,10 @@ def record_of_sensor(sensor: pe.Sensor) -> SensorRecord:
     )
 
 
-def rig_of(records: Sequence[SensorRecord], source: str = "variant") -> pe.Rig:
-    """Return the visible sensors of some records as a rig.
+def rig_of(
+    records: Sequence[SensorRecord], source: str = "variant", returns: str = "all"
+) -> pe.Rig:
+    """Return the visible sensors of some records as a rig, whose LiDARs have these returns.
 
     `source` is named by errors: "scene" or "variant".
 
@@ -256,7 +258,7 @@ def rig_of(records: Sequence[SensorRecord], source: str = "variant") -> pe.Rig:
         raise pe.InputError(source, "sensors", "at least one visible sensor", found)
     sensors = [sensor_of(record, source) for record in visible]
     try:
-        return pe.Rig(sensors)
+        return kinds.with_returns(pe.Rig(sensors), returns)
     except pe.InputError as error:
         raise error.at(source) from None
 

@@ -41,15 +41,15 @@ def store_variant_scores(scene: Scene, outcome: jobs.Outcome, surroundings: str)
         (outcome.study, outcome.after, beside[1]),
     ):
         for row in scene.perception_entropy.variants:
-            if _is_rig(row, study.rig):
+            if _is_rig(row, study.rig, study.returns):
                 _write_figures(row, scored_data(score, figures))
                 row.signature = surroundings
 
 
-def _is_rig(variant: Variant, rig: pe.Rig) -> bool:
-    """Return whether the visible sensors of a variant are this rig."""
+def _is_rig(variant: Variant, rig: pe.Rig, returns: str) -> bool:
+    """Return whether the visible sensors of a variant, with these returns, are this rig."""
     try:
-        variant_rig = rig_of(records_of(variant))
+        variant_rig = rig_of(records_of(variant), returns=returns)
     except pe.InputError:  # a sensor that the catalogue does not know, or none
         return False
     return [_scored_values(sensor) for sensor in variant_rig] == [

@@ -260,7 +260,8 @@ def _chosen_rig(scene: bpy.types.Scene, state: LiveState, choice: int) -> tuple[
     for row in scene.perception_entropy.variants if choice != BEFORE_MOVE else ():
         if row.key == choice:
             try:
-                return bridge.rig_of(bridge.records_of(row)), row.name
+                returns = scene.perception_entropy.returns
+                return bridge.rig_of(bridge.records_of(row), returns=returns), row.name
             except pe.InputError:  # no sensor of it counts, or a model is not known here
                 return None
     return None

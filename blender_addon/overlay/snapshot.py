@@ -217,10 +217,12 @@ def _compared(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str]:
 
 def _variant(scene: bpy.types.Scene, key: int) -> tuple[tuple[pe.Sensor, ...], str]:
     """Return the sensors of the variant with a key, and its name; nothing without such a one."""
-    for row in scene.perception_entropy.variants if key else ():
+    settings = scene.perception_entropy
+    for row in settings.variants if key else ():
         if row.key == key:
             with contextlib.suppress(pe.InputError):
-                return tuple(bridge.rig_of(bridge.records_of(row))), row.name
+                rig = bridge.rig_of(bridge.records_of(row), returns=settings.returns)
+                return tuple(rig), row.name
     return (), ""
 
 

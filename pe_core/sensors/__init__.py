@@ -30,7 +30,7 @@ from .measurement_cache import MeasurementCache, ObjectMeasurementCache, Visible
 from .perception import BLIND_RULES, CURVE_MODELS, SCANS, PerceptionModel, scan_curves
 from .radar import RADAR, Radar, RadarMode
 from .ultrasonic import ULTRASONIC, Ultrasonic
-from .weather import Weather
+from .weather import Weather, returning, with_returns
 
 __all__ = ["BLIND_RULES", "CURVE_MODELS", "KINDS", "SCANS", "BeamField", "BrownConrady", "Camera"]
 __all__ += ["EgoMask", "FTheta", "FieldPicture", "GridKernel", "GroundKernel", "GroundView"]
@@ -39,7 +39,8 @@ __all__ += ["ObjectKernel", "ObjectMeasurementCache", "ObjectView", "Occlusion",
 __all__ += ["Pinhole", "Radar", "RadarMode", "RangePicture", "SampleKernel", "Ultrasonic"]
 __all__ += ["ViewPatch", "VisibleGround", "VisibleGroundCache", "Voxels", "Weather", "beam_field"]
 __all__ += ["derived_object_curves", "kind_named", "kind_of", "measure", "measure_objects"]
-__all__ += ["range_picture", "register", "scan_curves", "unregister"]
+__all__ += ["range_picture", "register", "returning", "scan_curves", "unregister"]
+__all__ += ["with_returns"]
 
 for _kind in (LIDAR, CAMERA, RADAR, ULTRASONIC):
     register(_kind)

@@ -148,11 +148,20 @@ def _model_in_weather(model: SensorModel, weather: Weather) -> SensorModel:
     return changed
 
 
+def returning(model: SensorModel, returns: str) -> SensorModel:
+    """Return a model with these returns; of a kind without any, or with these, the same object."""
+    if getattr(model, "returns", returns) == returns:
+        return model
+    return Weather("returns", returns=returns).model(model)
+
+
 def with_returns(rig: Rig, returns: str) -> Rig:
     """Return a rig whose LiDARs have these returns; the same rig where they do already."""
-    if all(getattr(sensor.model, "returns", returns) == returns for sensor in rig):
+    models = [returning(sensor.model, returns) for sensor in rig]
+    pairs = list(zip(rig, models, strict=True))
+    if all(sensor.model is model for sensor, model in pairs):
         return rig
-    return Weather("returns", returns=returns)(rig)[0]
+    return Rig([replace(sensor, model=model) for sensor, model in pairs])
 
 
 def lidar_range(max_range: float, weather: Weather) -> float:

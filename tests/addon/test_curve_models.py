@@ -43,6 +43,30 @@ def test_the_panel_and_headless_blender_score_by_it(settings, tmp_path):
     assert by_option["after"]["objects"]["ap"] == paper["after"]["objects"]["ap"]
 
 
+def test_returns_as_on_the_road_are_those_of_the_panel_and_of_headless_blender(settings, tmp_path):
+    """A change makes the stored score stale, and the panel says which returns it is of."""
+    blend = tmp_path / "car.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+    assert bpy.ops.pe.score() == {"FINISHED"}
+    paper = json.loads(settings.result_json)
+    assert paper["returns"] == "all"
+    settings.returns = "road"
+    assert result_staleness.fingerprint(bpy.context.scene).text != settings.result_signature
+    assert bpy.ops.pe.score() == {"FINISHED"}
+    road = json.loads(settings.result_json)
+    assert "returns" in [row.code for row in settings.result_warnings]
+    assert road["returns"] == "road"
+    assert road["after"]["objects"]["ap"] != paper["after"]["objects"]["ap"]
+    assert "returns" in drawn(scoring_panels.targets)
+    del settings  # the file is opened again
+    answer = run_here(blend, "score", "--returns", "road", "--json")
+    assert answer.returncode == 0, answer.stderr
+    by_option = json.loads(answer.stdout)
+    assert by_option["returns"] == "road"
+    assert by_option["after"]["entropy"] == road["after"]["entropy"]
+    assert by_option["after"]["objects"] == road["after"]["objects"]
+
+
 @pytest.mark.parametrize(
     ("panel", "targets"), [(scoring_panels.targets, "objects"), (search_panels.search, "")]
 )

@@ -35,6 +35,8 @@ SURFACES = {
 """`fill` and `half` [m] by class, fitted to three logs: docs/validity/road/results.json."""
 SPREAD = 1.5
 """Standard deviation of ln rho: reflectivities of 3 to 60 % are two of them apart."""
+LEAST = 0.5
+"""An object of which a LiDAR expects fewer points is not seen: bodies let some beams through."""
 NEAREST_M = 1e-3
 STEPS = np.linspace(-6.0, 6.0, 1201)
 PHI = np.array([0.5 * math.erfc(-x / math.sqrt(2.0)) for x in STEPS.tolist()])
@@ -66,13 +68,15 @@ def expected_points(
     """Return the expected points (N,) on objects of beams that enter them.
 
     `hits` (H,) each are box, beam, and the distance at which it enters [m]; `scenes` (N,): objects
-    of one scene take beams from each other.
+    of one scene take beams from each other. Below `LEAST` no point is expected, and it is 0.
     """
     box, _, enter = hits
     fill, half = surfaces(objects)
     points = passed(*hits, scenes, fill[box]) * fill[box] * return_probability(enter, half[box])
     points[enter < min_range] = 0.0
-    return np.bincount(box, points, len(objects)).astype(float)
+    found = np.bincount(box, points, len(objects)).astype(float)
+    found[found < LEAST] = 0.0
+    return found
 
 
 def passed(box: Ints, beam: Ints, enter: Floats, scenes: Ints, fill: Floats) -> Floats:

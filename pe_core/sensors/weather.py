@@ -157,11 +157,9 @@ def returning(model: SensorModel, returns: str) -> SensorModel:
 
 def with_returns(rig: Rig, returns: str) -> Rig:
     """Return a rig whose LiDARs have these returns; the same rig where they do already."""
-    models = [returning(sensor.model, returns) for sensor in rig]
-    pairs = list(zip(rig, models, strict=True))
-    if all(sensor.model is model for sensor, model in pairs):
-        return rig
-    return Rig([replace(sensor, model=model) for sensor, model in pairs])
+    sensors = [replace(each, model=returning(each.model, returns)) for each in rig]
+    same = all(a.model is b.model for a, b in zip(rig, sensors, strict=True))
+    return rig if same else Rig(sensors)
 
 
 def lidar_range(max_range: float, weather: Weather) -> float:

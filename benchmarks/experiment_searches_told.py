@@ -84,7 +84,7 @@ def groups(runs: list[Json]) -> dict[tuple[str, str], list[Json]]:
 
 def plot(runs: list[Json], path: Path) -> None:
     """Draw the best so far against time: the median of the seeds, and from lowest to highest."""
-    from pe_tools.plots import plotting
+    from studies import plotting
 
     looks = dict(zip(METHODS, plotting.PALETTE, strict=False))
 

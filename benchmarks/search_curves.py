@@ -31,7 +31,7 @@ def draw_curve(axis: Any, runs: Sequence[Json], colour: str, label: str) -> None
 
 def save_with_legend(figure: Any, path: Path, bottom: float) -> None:
     """Put one legend below all panels, in `bottom` of the height, and save the plot."""
-    from pe_tools.plots import plotting
+    from studies import plotting
 
     by_label = {}
     for axis in figure.axes:

@@ -80,7 +80,7 @@ def _cell(values: list[float], best: float) -> str:
 
 def plot(runs: list[Json], path: Path) -> None:
     """Draw the best so far against processor time: a panel for each problem."""
-    from pe_tools.plots import plotting
+    from studies import plotting
 
     methods = methods_of(runs)
     looks = dict(zip(methods, plotting.PALETTE, strict=False))

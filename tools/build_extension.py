@@ -26,8 +26,6 @@ ENGINE = ROOT / "pe_core"
 TOOLS = ROOT / "pe_tools"
 MANIFEST = ADDON / "blender_manifest.toml"
 PACKED = (ENGINE.name, TOOLS.name)
-REPORTS = ("plots",)
-"""Rooms of the tools that the extension has no use for: they plot with Matplotlib."""
 BUNDLED = ("jinja2", "markupsafe", "ruamel.yaml", "trimesh")
 """Libraries of the engine and the tools that Blender does not have, as wheels in the extension."""
 OPTIONAL = "_speedups"
@@ -80,8 +78,6 @@ def stage(target: Path) -> None:
         # A developer's link to it may stand in the add-on's folder.
         shutil.rmtree(target / package.name, ignore_errors=True)
         shutil.copytree(package, target / package.name, ignore=LEFT_OUT)
-    for room in REPORTS:
-        shutil.rmtree(target / TOOLS.name / room)
     shutil.copy(ROOT / "LICENSE", target / "LICENSE")
     wheels = [add_wheel(target / "wheels", name) for name in BUNDLED]
     listed = ", ".join(f'"./wheels/{wheel.name}"' for wheel in wheels)

@@ -30,7 +30,6 @@ SHIPPED = {
     "mesh.usdz": "pe_tools.formats.meshes.usd:read_usd",
     "library.picture": "pe_tools.page.pictures.picture_file:picture_output",
     "library.rerun": "pe_tools.outputs.recording:write",
-    "verb.plots": "pe_tools.plots.verbs:add_verbs",
     "verb.review": "pe_tools.page:add_verbs",
 }
 """Plugins of this distribution: module and attribute, by the plugin's name."""

@@ -29,7 +29,6 @@ from .terminal import DONE, Answer
 PACKAGES: Mapping[str, tuple[str, ...]] = {
     "meshes": ("pycollada", "usd-core"),
     "cluster": ("distributed",),
-    "report": ("matplotlib",),
     "rerun": ("rerun-sdk", "pyarrow"),
     "argoverse": ("pyarrow",),
     "studies": ("matplotlib", "tensorflow"),

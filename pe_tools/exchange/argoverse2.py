@@ -8,12 +8,11 @@ like Argoverse's own reader, this module ignores the distortion coefficients k1,
 from __future__ import annotations
 
 import io
-import struct
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from pe_core.base.errors import InputError, size_text
+from pe_core.base.errors import InputError
 from pe_core.base.files import read_bytes
 from pe_core.base.plugins import install_hint
 from pe_core.base.table_reader import Table
@@ -30,12 +29,10 @@ from .portable_kinds import CAMERA, LIDAR
 MAGIC = b"ARROW1"
 """First bytes of an Arrow file; its stream begins after two more."""
 STREAM = 8
-DICTIONARY, RECORDS = 2, 3
-"""Types of the messages that have values, of `MessageHeader` in Arrow's Message.fbs."""
 MAX_ROWS = 100_000
 """Columns of the null type have rows without a byte."""
-MAX_TABLE_BYTES = 64_000_000
-"""Maximum size of a table's values: a few kB that are compressed may be gigabytes."""
+MAX_FILE_BYTES = 100_000
+"""Maximum size of a file: what is compressed may be a thousand times as large."""
 FILES = POSES, INTRINSICS = "egovehicle_SE3_sensor.feather", "intrinsics.feather"
 TITLE, NAME = "Argoverse 2", "sensor_name"
 TURN, SHIFT = ("qw", "qx", "qy", "qz"), ("tx_m", "ty_m", "tz_m")
@@ -79,12 +76,7 @@ def read(path: Path) -> PortableRig:
 
 def _rows(path: Path) -> list[Table]:
     """Return the rows of a feather table; each row maps column names to values."""
-    data = read_bytes(path)
-    size = _unpacked_bytes(data)
-    if size is not None and size > MAX_TABLE_BYTES:
-        expected = f"a feather table of at most {size_text(MAX_TABLE_BYTES)} unpacked"
-        raise InputError(path, "file", expected, size_text(size))
-    rows = None if size is None else _rows_of(data)
+    rows = _rows_of(read_bytes(path, MAX_FILE_BYTES))
     if rows is None:
         raise InputError(path, "file", "a feather table", "something else")
     return [Table(row, str(path), f"row {k}") for k, row in enumerate(rows, 1)]
@@ -142,13 +134,10 @@ def _table_bytes(
 def _rows_of(data: bytes) -> list[dict[str, Any]] | None:
     """Return the rows of a feather table, each by column name; None if the data are no such table.
 
-    The caller has checked `_unpacked_bytes`. A table of more than `MAX_ROWS` rows is none of a rig.
-
-    Only version 2 of feather, the Arrow file format, is read: a stream of messages between a magic
-    word and a footer. It is read as that stream, so the messages whose size is checked are those
-    that are unpacked. A damaged file of the obsolete version 1 would crash the process inside
-    pyarrow. pyarrow reads offsets and lengths unchecked,
-    so `validate` checks them all before values are read.
+    A table of more than `MAX_ROWS` rows is none of a rig. Only version 2 of feather, the Arrow file
+    format, is read, as the stream of messages that it holds: a damaged file of the obsolete version
+    1 would crash the process inside pyarrow. pyarrow reads offsets and lengths unchecked, so
+    `validate` checks them all before values are read.
     """
     if not data.startswith(MAGIC):
         return None
@@ -162,68 +151,3 @@ def _rows_of(data: bytes) -> list[dict[str, Any]] | None:
     except Exception:  # pyarrow's own, OSError, UnicodeDecodeError, OverflowError, MemoryError
         return None
     return rows
-
-
-def _unpacked_bytes(data: bytes) -> int | None:
-    """Return how many bytes the values of a feather table have, unpacked; None for other data.
-
-    A compressed buffer begins with its length before compression (Arrow columnar format, "IPC
-    messages"): nothing is unpacked to read it.
-    """
-    if not data.startswith(MAGIC):
-        return None
-    pyarrow, _ = _arrow()
-    try:
-        reader = pyarrow.ipc.MessageReader.open_stream(data[STREAM:])
-        return sum(_buffer_bytes(m.metadata.to_pybytes(), m.body) for m in reader)
-    except Exception:  # pyarrow's own, OSError, struct.error, OverflowError, MemoryError
-        return None
-
-
-def _buffer_bytes(head: bytes, body: Any) -> int:
-    """Return the unpacked bytes of all buffers of a message with a flatbuffer `head`."""
-    message = _Flat(head, struct.unpack_from("<I", head)[0])
-    kind = head[at] if (at := message.field(1)) else 0
-    if kind not in (DICTIONARY, RECORDS):
-        return 0
-    batch = message.table(2)
-    if kind == DICTIONARY:
-        batch = batch.table(1)
-    is_packed, total = bool(batch.field(3)), 0
-    for offset, length in batch.pairs(2):
-        unpacked = -1
-        if is_packed and length > 0:
-            (unpacked,) = struct.unpack_from("<q", body, offset)
-        size = length if unpacked == -1 else unpacked  # -1: this buffer is not compressed
-        if size < 0:
-            raise ValueError("a negative length")
-        total += size
-    return total
-
-
-class _Flat:
-    """A table of a flatbuffer at a position of its bytes."""
-
-    def __init__(self, data: bytes, at: int) -> None:
-        self._data, self._at = data, at
-
-    def field(self, number: int) -> int:
-        """Return the position of a field; 0 for one that is left out."""
-        known = self._at - struct.unpack_from("<i", self._data, self._at)[0]
-        entry = 4 + 2 * number
-        if entry >= struct.unpack_from("<H", self._data, known)[0]:
-            return 0
-        offset: int = struct.unpack_from("<H", self._data, known + entry)[0]
-        return self._at + offset if offset else 0
-
-    def table(self, number: int) -> _Flat:
-        """Return the table that a field refers to."""
-        at = self.field(number)
-        return _Flat(self._data, at + struct.unpack_from("<I", self._data, at)[0])
-
-    def pairs(self, number: int) -> Iterator[tuple[int, int]]:
-        """Yield the pairs of 64-bit integers of a vector."""
-        if at := self.field(number):
-            at += struct.unpack_from("<I", self._data, at)[0]
-            for k in range(struct.unpack_from("<I", self._data, at)[0]):
-                yield struct.unpack_from("<qq", self._data, at + 4 + 16 * k)

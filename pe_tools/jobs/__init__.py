@@ -18,7 +18,6 @@ from .folder import prepare_folder as prepare_folder
 from .front_files import FRONT_JSON as FRONT_JSON
 from .front_files import FRONT_NAMES as FRONT_NAMES
 from .front_files import FRONT_PAGE as FRONT_PAGE
-from .front_files import FRONT_PLOT as FRONT_PLOT
 from .front_files import front_dict as front_dict
 from .front_files import write_front as write_front
 from .front_job import FrontJob as FrontJob

@@ -18,10 +18,10 @@ from .results import placements, run_dict
 from .study_export import study_writers
 from .trade_off import Design, TradeOff
 
-FRONT_JSON, FRONT_CSV, FRONT_PLOT, DESIGNS = "front.json", "front.csv", "front.png", "designs"
+FRONT_JSON, FRONT_CSV, DESIGNS = "front.json", "front.csv", "designs"
 FRONT_PAGE = "front.html"
-FRONT_NAMES = (FRONT_JSON, FRONT_CSV, FRONT_PLOT, FRONT_PAGE)
-"""Files of a front. Other rooms write the page, and the plot where matplotlib is installed."""
+FRONT_NAMES = (FRONT_JSON, FRONT_CSV, FRONT_PAGE)
+"""Files of a front. Other rooms write the page."""
 FRONT_SCHEMA = 1
 MAX_STEM_LENGTH = 80
 """Maximum number of characters of a design's file name, without the suffix."""
@@ -83,7 +83,7 @@ def write_front(
         designs.take_away(list(our_files(designs_folder)))
         for name, write in writers.items():
             designs.add(name, write)
-        files.take_away([FRONT_PLOT, FRONT_PAGE])  # they show the front of an earlier run
+        files.take_away([FRONT_PAGE])  # it shows the front of an earlier run
         files.add(FRONT_CSV, front_csv(chosen).encode(errors="backslashreplace"))
         files.add(FRONT_JSON, dump_json(data).encode(errors="backslashreplace"))
     return data

@@ -11,6 +11,9 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from pe_core.sensors import KINDS
+from pe_tools.formats import SATURATION
+
 if TYPE_CHECKING:
     from .build import review_studies as review_studies
     from .document import PAGE as PAGE
@@ -37,8 +40,10 @@ def __getattr__(name: str) -> Any:
 
 
 def add_verbs(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the verb ``review`` to the parser of ``pe``, and the page to the files of a search."""
+    """Add the verbs ``fit`` and ``review`` to ``pe``, and pages to the files of a search."""
     from .. import cli as app
+
+    _add_fit(verbs)
 
     review = verbs.add_parser(
         "review", help="write an HTML page that shows a rig and what its sensors see"
@@ -49,6 +54,32 @@ def add_verbs(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
     app.add_score_options(review)
     review.set_defaults(function=_later("review"))
     add_page()
+
+
+def _add_fit(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    fit = verbs.add_parser("fit", help="fit a and b of AP = a ln m + b to a table")
+    fit.add_argument(
+        "table", metavar="TABLE", help="CSV with the columns m (or range_m) and ap, optionally n"
+    )
+    about = "of the sensor (default lidar, or the kind of --model)"
+    fit.add_argument("--kind", choices=tuple(KINDS), help=about)
+    about = "the table has a column range_m in place of m; m is what this model measures there"
+    fit.add_argument("--model", metavar="MODEL", help=about)
+    about = "of the model above the ground (default: level with the object's middle)"
+    fit.add_argument("--height", type=float, metavar="M", help=about)
+    about = "m is counted on whole objects of this class, not divided by their voxels"
+    fit.add_argument("--object", metavar="CLASS", help=about)
+    fit.add_argument(
+        "--saturation",
+        type=float,
+        default=SATURATION,
+        metavar="AP",
+        help=f"points whose AP differs by less than this from the largest one are saturated "
+        f"(default {SATURATION})",
+    )
+    fit.add_argument("-o", "--output", metavar="DIR", help="folder for ap.toml and ap.html")
+    fit.add_argument("--json", action="store_true", help="print JSON on stdout")
+    fit.set_defaults(function=_later("fit", "fitting"))
 
 
 def add_review_options(parser: argparse.ArgumentParser) -> None:
@@ -74,6 +105,6 @@ def add_page() -> None:
         app.plots.append(_later("write_front_page"))
 
 
-def _later(name: str) -> Callable[..., Any]:
-    """Return a function of `build` that is imported when it is called."""
-    return lambda *given: getattr(import_module(".build", __name__), name)(*given)
+def _later(name: str, module: str = "build") -> Callable[..., Any]:
+    """Return a function of a module that is imported when it is called."""
+    return lambda *given: getattr(import_module(f".{module}", __name__), name)(*given)

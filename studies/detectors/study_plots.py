@@ -15,8 +15,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from pe_tools.plots.plotting import BLUE, GREY, ORANGE, remove_frame, save_plot, styled
-
+from ..plotting import BLUE, GREY, ORANGE, remove_frame, save_plot, styled
 from .analysis import DesignResults, Results, designs_of
 from .cameras.analysis import design_of_cameras
 from .cameras.rendering import Renderer

@@ -19,7 +19,7 @@ from pe_core.metric import H_BLIND
 from pe_core.scoring import VoxelSample, draw
 from pe_tools.formats import fit_ap_curve, read_ap_table
 from pe_tools.jobs import placements
-from pe_tools.plots.fitting import fit_data
+from pe_tools.page.fitting import fit_data
 
 from ..results_file import Json, Task, Values
 from .analytic import expected_entropy, max_distance_for, max_unseen_share, min_entropy

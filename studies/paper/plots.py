@@ -18,8 +18,8 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 import pe_core as pe
-from pe_tools.plots.fitting import draw_ap_curves
-from pe_tools.plots.plotting import (
+
+from ..plotting import (
     BLUE,
     GREY,
     ORANGE,
@@ -31,7 +31,6 @@ from pe_tools.plots.plotting import (
     shortened,
     styled,
 )
-
 from .findings import Findings
 from .paper import PRIORS, ROW, ROWS, Row, study_of
 
@@ -272,3 +271,36 @@ def _mark(
         pitch, yaw = np.radians(rotation[1]), np.radians(rotation[2])
         tip = u + PITCH_LINE_M * np.cos(pitch) * np.cos(yaw), v - PITCH_LINE_M * np.sin(pitch)
         view.plot([u, tip[0]], [v, tip[1]], color=color, lw=1, ls="-" if filled else ":", zorder=2)
+
+
+@styled
+def draw_ap_curves(path: Path, fits: Mapping[str, Any]) -> None:
+    """Draw AP against the measurement, a panel for each fit: points, curve, points left out. `fits`
+    has the data of `fit_data` by the name of the panel."""
+    size = (0.6 + 3.0 * len(fits), 3.4)
+    layout: dict[str, Any] = {"sharey": True, "layout": "constrained", "squeeze": False}
+    figure, grid = plt.subplots(1, len(fits), figsize=size, **layout)
+    for axes, (name, fit) in zip(grid[0], fits.items(), strict=True):
+        _draw_ap_curve(axes, fit)
+        axes.set_title(shortened(name.replace("_", " ")), loc="left", parse_math=False)
+    grid[0][0].set_ylabel("AP")
+    marks = [
+        plt.Line2D([], [], marker="o", color=BLUE, ls="none", label="taken"),
+        plt.Line2D([], [], marker="o", color=GREY, mfc="none", ls="none", label="left out"),
+    ]
+    figure.legend(handles=marks, frameon=False, loc="outside upper right", ncols=2)
+    save_plot(figure, path)
+
+
+def _draw_ap_curve(axes: Axes, fit: Mapping[str, Any]) -> None:
+    m, ap = np.array(fit["m"]), np.array(fit["ap"])
+    used = np.array([not why for why in fit["left_out"]])
+    x = np.geomspace(m[m > 0].min() / 1.5, m.max() * 1.5, 200)
+    axes.plot(x, np.clip(fit["a"] * np.log(x) + fit["b"], 0.001, 0.999), color=ORANGE)
+    axes.plot(m[used], ap[used], "o", color=BLUE)
+    axes.plot(m[~used], ap[~used], "o", color=GREY, mfc="none")
+    axes.set(xscale="log", ylim=(-0.03, 1.03), xlabel="measurement a voxel, m")
+    label = f"a = {fit['a']:.3f} ± {fit['a_error']:.3f}\nb = {fit['b']:.3f} ± {fit['b_error']:.3f}"
+    axes.text(0.97, 0.04, label, transform=axes.transAxes, va="bottom", ha="right")
+    axes.grid(alpha=0.3)
+    remove_frame(axes)

@@ -14,9 +14,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from pe_tools.plots.plotting import BLUE, GREY, ORANGE, remove_frame, save_plot, styled
-
 from ..pages import rho_text
+from ..plotting import BLUE, GREY, ORANGE, remove_frame, save_plot, styled
 from ..ranks import min_significant_rho
 from ..results_file import Json
 from .correlations import MAIN_CLASS, ValidityResults, detectors_disagree

@@ -54,15 +54,6 @@ def pe(*arguments):
     return SimpleNamespace(returncode=status, stdout=out.getvalue(), stderr=err.getvalue() + said)
 
 
-def pe_without_matplotlib(*arguments):
-    """Run the command where matplotlib cannot be imported."""
-    code = (
-        "import sys; sys.modules['matplotlib'] = None; from pe_tools.cli.verbs import main; "
-        f"sys.exit(main({[str(a) for a in arguments]!r}))"
-    )
-    return subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
-
-
 class Command:
     """A running ``pe``; its stderr is read as it comes."""
 

@@ -59,8 +59,7 @@ ROOMS = {
             "outputs",
             "sweep",
         },
-        "page": {"wording", "graphics", "advice", "sensitivity", "jobs", "cli"},
-        "plots": {"formats", "jobs", "cli"},
+        "page": {"wording", "formats", "graphics", "advice", "sensitivity", "jobs", "cli"},
         "public": {"formats", "exchange", "advice", "jobs"},
         "__main__": {"cli"},
     },
@@ -79,7 +78,6 @@ LIBRARIES = {
     "trimesh": {"pe_tools/formats"},
     "pyarrow": {"pe_tools/exchange"},
     "rerun": {"pe_tools/outputs"},
-    "matplotlib": {"pe_tools/plots"},
     "jinja2": {"pe_tools/page", "pe_tools/cli"},
     "markupsafe": {"pe_tools/page"},
 }
@@ -269,8 +267,9 @@ def test_a_sensor_s_kind_is_asked_of_the_table_alone():
     kinds = ("Lidar", "Camera", "Radar", "Ultrasonic")
     own = (*(f"pe_core/sensors/{kind.lower()}/" for kind in kinds), "pe_core/sensors/__init__.py")
     tables = (
-        *("pe_tools/graphics/", "pe_tools/plots/"),
+        "pe_tools/graphics/",
         *("pe_tools/page/pictures/sensor_views.py", "pe_tools/exchange/portable_kinds.py"),
+        "pe_tools/page/fitting.py",  # the usual kind of a table
         "pe_tools/exchange/passthrough.py",  # words in the names of foreign sensors
     )
     offenders = []
@@ -336,14 +335,13 @@ def test_importing_the_engine_loads_neither_blender_nor_the_tools():
 
 def test_the_parser_loads_neither_sections_nor_matplotlib():
     """`pe sensors` does not wait for what it does not use."""
-    rooms = ("pe_tools.page", "pe_tools.plots", "matplotlib")
+    rooms = ("pe_tools.page", "matplotlib")
     code = (
         "import sys; from pe_tools.cli.verbs import parser; parser(); "
         f"print(*sorted(m for m in sys.modules if m.startswith({rooms})))"
     )
     run = subprocess.run([sys.executable, "-c", code], cwd=CHECKOUT, capture_output=True, text=True)
-    loaded = ("page", "plots", "plots.verbs")
-    assert run.stdout.split() == [f"pe_tools.{name}" for name in loaded], run.stderr
+    assert run.stdout.split() == ["pe_tools.page"], run.stderr
 
 
 def test_sections_of_the_page_are_found_by_their_table_alone():

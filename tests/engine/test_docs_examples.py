@@ -105,7 +105,7 @@ FIRST = "pe optimize car.toml -o results"
 """What the reader of README has done before, in Blender. Other readers have README's files."""
 OF_THEIR_OWN = ("docs/howto/choose_sensors.md", "docs/howto/vehicle.md")
 """Pages that begin with another study, or with none."""
-NEEDS_AN_EXTRA, NOT_MET = {"pe front results"}, 3
+NOT_MET = 3
 TYPE_ALL = r"""
 import contextlib, importlib, io, json, os, re, shlex, shutil, sys, traceback
 from dataclasses import replace
@@ -203,9 +203,6 @@ def test_commands_of_readme_and_how_to_pages_do_as_typed_without_extras(typed):
     assert len(typed) > 30
     wrong = []
     for page, line, status, _, said in typed:
-        if line in NEEDS_AN_EXTRA:
-            as_expected = status == 1 and "pip install" in said and said.count("\n") == 1
-        else:
-            as_expected = status == 0 or (status == NOT_MET and line.startswith("pe check"))
+        as_expected = status == 0 or (status == NOT_MET and line.startswith("pe check"))
         wrong += [] if as_expected else [(page, line, said)]
     assert not wrong

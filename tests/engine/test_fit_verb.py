@@ -8,7 +8,7 @@ import pytest
 
 from pe_core import catalog
 from pe_tools.formats import m_by_range
-from tests.engine.processes import ROOT, pe, pe_without_matplotlib
+from tests.engine.processes import ROOT, pe
 
 TABLE = ROOT / "studies" / "paper" / "data" / "paper_lidar.csv"
 LINE = """m,ap
@@ -30,13 +30,14 @@ def test_it_prints_the_curve_what_was_left_out_and_the_snippet(tmp_path):
     assert "[ap.lidar]" in run.stdout
 
 
-def test_it_writes_a_snippet_and_a_plot(tmp_path):
+def test_it_writes_a_snippet_and_a_page(tmp_path):
     (tmp_path / "line.csv").write_text(LINE)
     run = pe("fit", tmp_path / "line.csv", "--kind", "camera", "--output", tmp_path / "new")
     assert run.returncode == 0
     curve = tomllib.loads((tmp_path / "new" / "ap.toml").read_text("utf-8"))["ap"]["camera"]
     assert curve == {"a": 0.15, "b": 0.183333}
-    assert (tmp_path / "new" / "ap.png").read_bytes().startswith(b"\x89PNG")
+    page = (tmp_path / "new" / "ap.html").read_text("utf-8")
+    assert page.count("<circle") == 4 and page.count('class="beaten"') == 1
 
 
 RADAR, RANGES = "Continental ARS408-21", (60.0, 80.0, 100.0, 120.0)
@@ -71,14 +72,6 @@ def test_wrong_options_of_a_table_by_range_are_one_line(tmp_path, options, line)
     (tmp_path / "r.csv").write_text("range_m,ap\n10,0.5\n20,0.4\n30,0.3\n")
     run = pe("fit", tmp_path / "r.csv", *options)
     assert run.returncode == 1 and line in run.stderr and run.stderr.count("\n") == 1
-
-
-def test_without_matplotlib_all_but_the_plot_is_there_and_a_line_says_what_to_install(tmp_path):
-    run = pe_without_matplotlib("fit", TABLE, "-o", tmp_path)
-    assert run.returncode == 0 and run.stdout.startswith("a  0.")
-    assert (tmp_path / "ap.toml").exists() and not (tmp_path / "ap.png").exists()
-    assert "matplotlib" in run.stderr and "[report]" in run.stderr and run.stderr.count("\n") == 1
-    assert run.stderr.count("pe:") == 1
 
 
 def test_a_file_of_the_users_own_is_not_written_over(tmp_path):

@@ -203,28 +203,20 @@ def test_a_damaged_feather_table_is_refused_in_a_line(tmp_path, damage):
 
 
 @pytest.mark.parametrize("compression", ["zstd", "lz4"])
-def test_a_compressed_table_is_read_and_one_that_would_fill_memory_is_refused(
-    compression, tmp_path, monkeypatch
-):
-    """400 MB of zeros in a file of some hundred kB: refused by its own figures, not unpacked."""
+def test_a_compressed_table_is_read_and_a_large_one_is_refused(compression, tmp_path):
+    """A file of more than 100 kB, or of more rows than a rig has, is no calibration."""
     feather = pytest.importorskip("pyarrow.feather", reason="of the extra argoverse")
     import pyarrow
 
     pt.export_rig(RIG, "argoverse2", tmp_path, AXLE)
     path = tmp_path / "egovehicle_SE3_sensor.feather"
-    table = feather.read_table(path)
-    feather.write_feather(table, path, compression=compression)
+    feather.write_feather(feather.read_table(path), path, compression=compression)
     assert [s.name for s in pt.import_rig(tmp_path, None, AXLE).rig] == [s.name for s in RIG]
-    zeros = pyarrow.array(np.zeros(50_000_000))
-    feather.write_feather(pyarrow.table({"qw": zeros}), path, compression=compression)
-    assert path.stat().st_size < 4_000_000
-    before = pyarrow.total_allocated_bytes()
-    with pytest.raises(pe.InputError, match=r"at most 64\.0 MB unpacked, found 400\.0 MB$"):
-        pt.import_rig(tmp_path, None, AXLE)
-    assert pyarrow.total_allocated_bytes() - before < 1_000_000
-    feather.write_feather(pyarrow.table({"qw": pyarrow.nulls(10**6)}), path)
-    with pytest.raises(pe.InputError, match="expected a feather table, found something else"):
-        pt.import_rig(tmp_path, None, AXLE)
+    for column in (np.arange(2e5), np.zeros(10**6)):
+        table = pyarrow.table({"qw": pyarrow.array(column)})
+        feather.write_feather(table, path, compression=compression)
+        with pytest.raises(pe.InputError, match="at most 100,000 bytes|a feather table"):
+            pt.import_rig(tmp_path, None, AXLE)
 
 
 def test_offsets_that_lie_and_feather_s_first_version_are_refused_before_a_value_is_read(tmp_path):

@@ -5,7 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 
+import numpy as np
 from markupsafe import Markup
+from numpy.typing import NDArray
+
+import pe_core as pe
+from pe_core.base.arrays import Floats
 
 from ... import sensitivity as sure
 from ..markup import MINUS, number
@@ -141,6 +146,36 @@ def pareto_plot(front: Points, others: Points, labels: tuple[str, str], alt: str
     middle = (top + bottom) / 2.0
     turned = f"rotate(-90 14 {middle:.0f})"
     canvas.text(14.0, middle, labels[1], transform=turned, **style)
+    return canvas.svg()
+
+
+def curve_plot(
+    curve: pe.ApCurve, m: Floats, ap: Floats, used: NDArray[np.bool_], alt: str
+) -> Markup:
+    """Return AP against the measurement on a logarithmic axis: the curve, and the points of a fit;
+    those left out are empty circles."""
+    width, height, left, right, top, bottom = 480.0, 330.0, 62.0, 466.0, 12.0, 286.0
+    canvas = Canvas(width, height, alt, "fronts")
+    low, high = (math.log10(end) for end in (m[m > 0.0].min() / 1.5, m.max() * 1.5))
+    to_x, to_y = linear_map(low, high, left, right), linear_map(0.0, 1.0, bottom, top)
+    for power in range(math.ceil(low), math.floor(high) + 1):
+        canvas.add("line", x1=to_x(power), x2=to_x(power), y1=top, y2=bottom)
+        canvas.text(to_x(power), bottom + 16.0, f"{10.0**power:g}", text_anchor="middle")
+    for tick in (0.0, 0.2, 0.4, 0.6, 0.8, 1.0):
+        canvas.add("line", x1=left, x2=right, y1=to_y(tick), y2=to_y(tick))
+        canvas.text(left - 6.0, to_y(tick) + 4.0, f"{tick:g}", text_anchor="end")
+    drawn = [low + (high - low) * k / 199.0 for k in range(200)]
+    heights = (min(max(curve.a * math.log(10.0) * at + curve.b, 0.001), 0.999) for at in drawn)
+    line = [(to_x(at), to_y(height)) for at, height in zip(drawn, heights, strict=True)]
+    canvas.path([np.array(line)], closed=False, css="fit")
+    for x, y, is_used in zip(m, ap, used, strict=True):
+        if x > 0.0:
+            css = {} if is_used else {"css": "beaten"}
+            canvas.add("circle", cx=to_x(math.log10(x)), cy=to_y(float(y)), r=4.0, **css)
+    canvas.text(
+        (left + right) / 2.0, height - 8.0, "measurement, m", text_anchor="middle", css="label"
+    )
+    canvas.text(14.0, top + 4.0, "AP", css="label")
     return canvas.svg()
 
 

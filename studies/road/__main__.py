@@ -16,6 +16,7 @@ from pe_tools.cli import DONE, Answer, Parser
 from ..command import main
 from ..pages import PAGE, check_page, render
 from ..results_file import RESULTS, Json, made_by, print_progress, read_json
+from .cameras import hidden_and_seen, read_cameras
 from .logs import CLASSES, Log, read_lidars, read_logs
 from .models import SOLID, STEPS, Fitted, cells_of, crossings, fit, loss
 from .statistics import RESAMPLES, SEED, compared, statements
@@ -107,6 +108,10 @@ def measured(args: argparse.Namespace) -> Json:
     judged = {s: {name: by[s] for name, by in found["logs"].items()} for s in (SOLID, kept)}
     found["statements"] = {step: statements(by_log) for step, by_log in judged.items()}
     found["further"] = [log.name for log in further]
+    print_progress("cameras")
+    name, cameras = read_cameras(Path(args.logs))
+    (log,) = (each for each in logs if each.name == name)
+    found["cameras"] = hidden_and_seen(log.every(FIT_EVERY), cameras)
     found["made"] = made_by(Effort(RESAMPLES, SEED, FIT_EVERY))
     return found
 

@@ -58,7 +58,8 @@ class Log:
         return self.some(np.flatnonzero(self.objects.scenes % step == 0))
 
 
-def _table(path: Path, columns: str) -> dict[str, NDArray]:
+def read_table(path: Path, columns: str) -> dict[str, NDArray]:
+    """Return columns of a feather file; `InputError` where it has not all of them."""
     from pyarrow import feather
 
     try:
@@ -79,7 +80,7 @@ def read_logs(folder: Path) -> list[Log]:
 def _log(path: Path) -> Log:
     columns = "timestamp_ns track_uuid category num_interior_pts"
     sizes, places = "length_m width_m height_m", "tx_m ty_m tz_m"
-    data = _table(path, f"{columns} {sizes} {places} qw qx qy qz")
+    data = read_table(path, f"{columns} {sizes} {places} qw qx qy qz")
     kept = np.flatnonzero(data["category"] != EGO)
     data = {name: values[kept] for name, values in data.items()}
     w, x, y, z = (data[f"q{axis}"] for axis in "wxyz")
@@ -101,7 +102,7 @@ def read_lidars(folder: Path) -> pe.Rig:
     files = sorted(folder.glob("*/calibration/egovehicle_SE3_sensor.feather"))
     if not files:
         raise InputError(folder, "folder", "a folder with calibration", "none")
-    data = _table(files[0], "sensor_name qw qx qy qz tx_m ty_m tz_m")
+    data = read_table(files[0], "sensor_name qw qx qy qz tx_m ty_m tz_m")
     return pe.Rig([_lidar(name, data) for name in LIDARS])
 
 

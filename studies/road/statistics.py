@@ -84,7 +84,7 @@ def _cell(log: Log, m: Floats, boxes: Ints, name: str, figures: tuple[str, ...])
         value = FIGURES[figure](log.points[boxes], m[boxes])
         data[figure] = {"value": _rounded(value)}
         if name in JUDGED[figure]:
-            low, high = _interval(FIGURES[figure], log, m, boxes)
+            low, high = tracks_interval(FIGURES[figure], log, m, boxes)
             interval = [_rounded(low), _rounded(high)]
             data[figure] |= {"interval": interval, "verdict": verdict(figure, low, high)}
     return data
@@ -98,10 +98,10 @@ def verdict(figure: str, low: float, high: float) -> str:
     return REFUTED if low > most or high < least else OPEN
 
 
-def _interval(
-    figure: Callable[[Ints, Floats], float], log: Log, m: Floats, boxes: Ints
+def tracks_interval(
+    figure: Callable[[Ints, Floats], float], log: Log, m: NDArray, boxes: Ints
 ) -> tuple[float, float]:
-    """Return the 95 % interval: percentiles of bootstraps over the tracks."""
+    """Return the 95 % interval of a figure: percentiles of bootstraps over the tracks."""
     rng = np.random.default_rng(SEED)
     order = boxes[np.argsort(log.tracks[boxes], kind="stable")]
     parts = np.split(order, np.flatnonzero(np.diff(log.tracks[order])) + 1)

@@ -129,13 +129,8 @@ class _SweepVerb:
                 def make_task(name: str) -> RunTask:
                     run = self.rows[name].run
                     self.rows[name] = replace(self.rows[name], status=BEGUN)
-                    checkpoints = place.checkpoints(run, self._folder / name) if searches else None
-                    return RunTask(run.study, searches, place.threads, checkpoints)
-
-                def take(name: str, found: jobs.Outcome | InputError) -> None:
-                    if isinstance(found, jobs.Outcome):
-                        place.finish(name)
-                    self._take(name, found)
+                    folder = self._folder / name if place.reaches_folders else None
+                    return RunTask(run.study, searches, place.threads, folder)
 
                 def goes_on() -> bool:
                     if self._on_terminal:
@@ -145,7 +140,7 @@ class _SweepVerb:
                         )
                     return received.signum is None
 
-                run_all(left, make_task, place, take, goes_on)
+                run_all(left, make_task, place, self._take, goes_on)
             return received
         finally:
             self._reporter.clear()

@@ -9,7 +9,6 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from pe_core.base.errors import InputError
 from pe_core.search import Call, WorkerDied, run_tasks, start_processes
@@ -35,37 +34,17 @@ class SweepRun:
 
 
 @dataclass(frozen=True, slots=True)
-class FolderCheckpoints:
-    """Checkpoints that the worker itself saves in the folder of the run's results."""
-
-    folder: Path
-
-    def begin(self, job: OptimizeJob) -> Callable[[], None]:
-        """Continue the search whose checkpoint is in the folder, if its study is the same."""
-        with suppress(InputError):  # no checkpoint, a damaged one, or another study: a new search
-            job.journal = read_search(self.folder).journal_of(job.study)
-        checkpoint = Checkpoint(job)
-
-        def save() -> None:
-            if checkpoint.due():
-                with suppress(InputError):  # the search continues; its results are saved elsewhere
-                    checkpoint.save(self.folder)
-
-        return save
-
-
-@dataclass(frozen=True, slots=True)
 class RunTask:
     """The task of a run, as it is sent to a worker: all of it can be pickled.
 
-    Without `optimize` the study is scored, by so many threads. Without `checkpoints`, an
-    interrupted search leaves none. `version` is that of the engine that sends the task.
+    Without `optimize` the study is scored, by so many threads. A search leaves checkpoints in
+    `folder`, and goes on from there. `version` is that of the engine that sends the task.
     """
 
     study: Study
     optimize: bool
     threads: int
-    checkpoints: Any = None
+    folder: Path | None = None
     version: str = __version__
 
 
@@ -79,8 +58,8 @@ def run_task(task: RunTask) -> RunResult:
     try:
         kind = OptimizeJob if task.optimize else ScoreJob
         job: ScoreJob | OptimizeJob = kind(task.study, task.threads)
-        if task.optimize and task.checkpoints is not None:
-            save = task.checkpoints.begin(job)
+        if isinstance(job, OptimizeJob) and task.folder is not None:
+            save = _begun(job, task.folder)
         for _ in job:
             if save is not None:
                 save()
@@ -93,11 +72,28 @@ def run_task(task: RunTask) -> RunResult:
     return job.outcome
 
 
+def _begun(job: OptimizeJob, folder: Path) -> Callable[[], None]:
+    """Let a search go on from its checkpoint in a folder; return what saves it there again."""
+    with suppress(InputError):  # no checkpoint, a damaged one, or another study: a new search
+        job.journal = read_search(folder).journal_of(job.study)
+    checkpoint = Checkpoint(job)
+
+    def save() -> None:
+        if checkpoint.due():
+            with suppress(InputError):  # the search continues; its results are saved elsewhere
+                checkpoint.save(folder)
+
+    return save
+
+
 class LocalWorkers:
     """Processes on this machine that run the tasks of a sweep; a thread where there are none.
 
     Other workers have the same methods. The executor accepts tasks even after a worker's death.
     """
+
+    reaches_folders = True
+    """Whether the workers save checkpoints in the folders of the results."""
 
     def __init__(self, count: int) -> None:
         processes = start_processes(count)
@@ -112,13 +108,6 @@ class LocalWorkers:
 
     def check(self) -> None:
         """Raise `InputError` when the workers are gone; called several times a second."""
-
-    def checkpoints(self, run: SweepRun, folder: Path) -> Any:
-        """Return the checkpoints of a run's search; `folder` is that of the run's results."""
-        return FolderCheckpoints(folder)
-
-    def finish(self, name: str) -> None:
-        """Save no more checkpoints of a run: its outcome is here, with the whole search."""
 
     def close(self) -> None:
         """Kill processes in the middle of their tasks; a thread finishes its task."""

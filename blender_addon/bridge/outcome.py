@@ -41,6 +41,7 @@ def store_outcome(scene: Scene, outcome: jobs.Outcome, signature: str) -> None:
         result_coverage_before=before.coverage,
         result_stderr=after.stderr,
         result_figures=dict(zip(("before", "after"), told, strict=False)),
+        result_gain=outcome.gain.replace("+-", "±"),
         result_cost=outcome.cost,
         result_conditions="\n".join(_condition_lines(outcome.conditions)),
         result_missing="\n".join(w.text for w in outcome.warnings if w.code in MARKING),

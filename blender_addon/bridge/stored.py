@@ -94,6 +94,7 @@ class StoredResult:
     result_coverage_before: float = 0.0
     result_stderr: float = 0.0
     result_figures: dict[str, dict[str, Any]] = field(default_factory=dict)
+    result_gain: str = ""
     result_cost: str = ""
     result_conditions: str = ""
     result_words: str = ""

@@ -159,7 +159,7 @@ def rows_of_figures(found: Sequence[advice.KeyFigures]) -> list[FigureRow]:
     aps = [f"{each.ap:.3f}" for each in traffic]
     error = f" ± {max(traffic[-1].stderr, 1e-3):.3f}" if len(traffic) == 1 else ""
     rings = traffic[-1].rings if traffic else {}
-    by_ring = ", ".join(f"{name} {ap:.2f}" for name, (ap, _) in rings.items())
+    by_ring = "   ".join(f"{ap:.2f}" for ap, _ in rings.values())
     widest = [max(figures.sectors, key=lambda sector: sector.width) for figures in found]
     widths = [wording.degrees(sector.width) for sector in widest]
     tall = f" ({widest[0].height:g} m tall)" if len(found) == 1 and widest[0].width else ""
@@ -167,7 +167,7 @@ def rows_of_figures(found: Sequence[advice.KeyFigures]) -> list[FigureRow]:
     blind = [figures.blind_m2 for figures in found]
     return [
         FigureRow("AP in Traffic", _from_to(aps, error), _sense([-t.ap for t in traffic], 5e-4)),
-        FigureRow("", by_ring or NO_FIGURE),
+        FigureRow(", ".join(rings or ("near", "mid", "far")).title(), by_ring or NO_FIGURE),
         FigureRow("Blind Sector", _from_to(widths, tall), _sense([s.width for s in widest], 1.0)),
         FigureRow("Blind Ground", _from_to(areas, " m²"), _sense(blind, 0.05)),
     ]
@@ -196,6 +196,8 @@ def traffic_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> Re
 def sector_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> ReadoutLine:
     """Return "Widest blind sector 12.3 deg (−2.0) to what is 0.5 m tall, 1 m: none, ..."."""
     first, *taller = now.sectors
+    if not any(each.width for each in (*now.sectors, *(before.sectors if before else ()))):
+        return (TextPiece(f"No blind sector for what is {first.height:g} m tall or taller"),)
     by = None if before is None else first.width - before.sectors[0].width
     rest = "".join(f", {each.height:g} m: {wording.degrees(each.width)}" for each in taller)
     return (

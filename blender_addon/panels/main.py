@@ -119,7 +119,9 @@ def draw_stored(layout: UILayout, context: Context) -> None:
     draw_key_figures(column, settings, live=False)
     if settings.result_kind == "optimize":
         sense = BETTER if costs_nothing(settings) else WORSE
-        draw_sentence(column, context, settings.result_cost, sense=sense)
+        for text, mark in ((settings.result_gain, SAME), (settings.result_cost, sense)):
+            if text:
+                draw_sentence(column, context, text, sense=mark)
     samples = "On all voxels" if not settings.result_stderr else "On a sample"
     draw_label(column, f"{samples}, as scored", "CHECKMARK")
     draw_changed(layout, is_changed=settings.result_stale)

@@ -12,7 +12,15 @@ from .key_figures import KeyFigures, SensorRow, key_figures, loss_text, sensor_r
 from .location import AskedPlace, SensorAtPlace, ask_place
 from .mount_checks import check_mirror_image, occluded_shares
 from .mounting_places import place_name, plain_name, sensor_labels
-from .ranking import Notation, costs_nothing, disagreement, ranking, search_cost, win_words
+from .ranking import (
+    Notation,
+    costs_nothing,
+    disagreement,
+    gain_sentence,
+    ranking,
+    search_cost,
+    win_words,
+)
 from .score_comparison import (
     OTHER_HARDWARE,
     TRAFFIC,
@@ -42,6 +50,7 @@ __all__ += ["occluded_shares", "occluded_words", "off_by", "outlook", "percent",
 __all__ += [
     "TRAFFIC",
     "disagreement",
+    "gain_sentence",
     "plain_name",
     "ranking",
     "rig_words",

@@ -8,16 +8,19 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple
 
+from pe_core.scene.rig import Rig
 from pe_core.scoring.score import Score
 
-from ..wording import degrees, joined
+from ..wording import degrees, joined, metres
 from .key_figures import KeyFigures
+from .location import WAYS
 from .score_comparison import AP, BLIND, COVERAGE, ENTROPY, MIN_CHANGE, SECTOR, TRAFFIC, ComparedRow
 from .summary_text import WHERE
 
 MAX_PAIRS = 3
 """Up to this number, pairs that are alike behind the best are named; of more, only the number."""
 ZONES_NAMED = 2
+SENSORS_NAMED = 3
 NOTHING = "It cost nothing"
 
 
@@ -182,6 +185,39 @@ def disagreement(names: Sequence[str], rows: Sequence[ComparedRow]) -> str:
         return ""
     told = [f"{joined([names[k] for k in own])} by {called}" for called, own in best.items()]
     return f"The figures disagree: best is {', '.join(told)}."
+
+
+def moved_words(before: Rig, after: Rig) -> str:
+    """Return which sensors moved, and how: "roof 8 cm up, rear 1.20 m ahead and turned 12 deg"."""
+    moved = []
+    for sensor in after:
+        old, pose = before[sensor.name].pose, sensor.pose
+        if pose == old:
+            continue
+        steps = [b - a for a, b in zip(old.position, pose.position, strict=True)]
+        axis = max(range(3), key=lambda k: abs(steps[k]))
+        ways = [f"{metres(abs(steps[axis]))} {WAYS[axis][steps[axis] < 0.0]}"] * any(steps)
+        angles = zip(old.rotation_deg, pose.rotation_deg, strict=True)
+        turned = max(abs(math.remainder(a - b, 360.0)) for a, b in angles)
+        ways += [f"turned {turned:.0f} deg"] * (turned >= 0.5)
+        moved.append(f"{sensor.name} {' and '.join(ways)}" if ways else sensor.name)
+    others = len(moved) - SENSORS_NAMED
+    return joined([*moved[:SENSORS_NAMED], *[f"{others} others"] * (others > 0)])
+
+
+def gain_sentence(before: Rig, after: Rig, start: KeyFigures, result: KeyFigures) -> str:
+    """Return the move from a rig to another, its gain and its error, in one sentence.
+
+    The gain is that of the expected AP in traffic by distance. The error is the largest standard
+    error of these, so that of a difference is smaller. Empty without a move or such an AP.
+    """
+    if start.traffic is None or result.traffic is None or before == after:
+        return ""
+    first, last = start.traffic.rings, result.traffic.rings
+    rings = [f"{name} {first[name][0]:.2f} to {ap:.2f}" for name, (ap, _) in last.items()]
+    error = max(each for _, each in last.values())
+    told = f"expected AP in traffic {', '.join(rings)} (+- {math.ceil(100.0 * error) / 100.0:.2f})"
+    return f"{moved_words(before, after)}: {told}"
 
 
 def search_cost(before: Score, after: Score, start: KeyFigures, result: KeyFigures) -> str:

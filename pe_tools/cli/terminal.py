@@ -153,7 +153,7 @@ def _before_and_after(outcome: Outcome) -> Iterator[str]:
     beside = [] if outcome.figures is None else figure_lines(outcome.figures)
     yield from [*beside, entropy] if outcome.in_traffic is not None else [entropy, *beside]
     yield f"coverage  {before.coverage:.1%} -> {after.coverage:.1%}"
-    yield outcome.cost
+    yield from filter(None, (outcome.gain, outcome.cost))
     if (found := outcome.robustness) is not None:
         one, other = found.before, found.after
         off = off_by(found.errors.position, found.errors.angle)

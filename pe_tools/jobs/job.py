@@ -26,7 +26,15 @@ from pe_core.study.condition_table import (
 from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Study
 
-from ..advice import Advice, KeyFigures, curve_warnings, key_figures, search_cost, warnings
+from ..advice import (
+    Advice,
+    KeyFigures,
+    curve_warnings,
+    gain_sentence,
+    key_figures,
+    search_cost,
+    warnings,
+)
 from ..sensitivity import Sensitivity
 from .searched_figure import IN_NATS, SearchedFigure
 
@@ -142,6 +150,12 @@ class Outcome:
     stop_reason: str = ""
     in_traffic: tuple[ObjectScore, ObjectScore] | None = None
     figures: tuple[KeyFigures, KeyFigures] | None = None
+
+    @property
+    def gain(self) -> str:
+        """What a search moved, and the expected AP in traffic that it gained; may be empty."""
+        rigs = self.start.rig, self.study.rig
+        return "" if self.figures is None else gain_sentence(*rigs, *self.figures)
 
     @property
     def cost(self) -> str:

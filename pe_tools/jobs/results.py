@@ -89,7 +89,7 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
         first, last = (each.to_dict() for each in outcome.figures)
         data["figures"] = {"before": first, "after": last}
     if is_search:
-        data["cost"] = outcome.cost
+        data["gain"], data["cost"] = outcome.gain, outcome.cost
     data["ap_model"], data["returns"] = study.model.model, study.returns
     if is_search:
         found = outcome.sensitivity

@@ -12,6 +12,7 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_core.scoring import FoundClass
+from pe_core.scoring.score import TrafficAp
 from pe_core.scoring.targets.object_metric import SECTORS
 from pe_tools import advice
 from pe_tools.cli.terminal import summary
@@ -321,3 +322,39 @@ def test_straight_ahead(study):
         sight.reach = lambda *_, reach=reach: reach
         figures = advice.key_figures(sight, study.rig)
         assert (figures.reach_m, figures.at_least) == (distance, at_least)
+
+
+def in_traffic(near):
+    """Key figures of a rig with this AP near the vehicle."""
+    rings = {"near": near, "far": (0.33, 0.002)}
+    return advice.KeyFigures(TrafficAp(0.4, 0.01, 8, rings), (), 1.0, 0.5, 10.0)
+
+
+def test_a_move_is_told_with_its_gain_and_its_error(study):
+    """The largest step and turn of each sensor that moved; AP by distance of start and result."""
+    x, y, z = study.rig["roof"].pose.position
+    up = study.rig.with_poses([pe.Pose.from_degrees((x - 0.03, y, z + 0.08), (0.0, 0.0, 12.0))])
+    told = in_traffic((0.41, 0.01)), in_traffic((0.474, 0.0101))
+    assert advice.gain_sentence(study.rig, up, *told) == (
+        "roof 8 cm up and turned 12 deg: expected AP in traffic near 0.41 to 0.47, "
+        "far 0.33 to 0.33 (+- 0.02)"
+    )
+    assert advice.gain_sentence(study.rig, study.rig, *told) == ""
+
+
+def test_figures_that_prefer_different_rigs_are_told():
+    none = ((0.0, 0.0),) * 2
+
+    def told(entropies, aps, widths):
+        rows = [
+            advice.ComparedRow("rig", "", "entropy", entropies, none, 2.0),
+            advice.ComparedRow(advice.TRAFFIC, "", "ap", aps, none, 2.0),
+            advice.ComparedRow("rig", "0.5 m tall, at 20 m", "sector", widths, none),
+        ]
+        return advice.disagreement(["one", "other"], rows)
+
+    assert told((1.0, 2.0), (0.6, 0.5), (0.0, 0.0)) == ""
+    assert told((1.0, 2.0), (0.6, 0.5), (20.0, 0.0)) == (
+        "The figures disagree: best is one by entropy, one by expected AP in traffic, "
+        "other by the widest blind sector."
+    )

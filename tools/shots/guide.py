@@ -178,7 +178,7 @@ def optimized(camera: Camera) -> None:
     stage.wait_until(SETTLED, 60)
     stage.rest(3.0)
     camera.still("guide_optimized")
-    stage.point_at(420, 330)
+    stage.point_at(800, 330)
     stage.do("bpy.ops.pe.compare_variants('INVOKE_DEFAULT')")
     stage.wait_until(f"{RUNNING}.current is None", 300)
     stage.rest(3.0)

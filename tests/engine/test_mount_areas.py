@@ -110,7 +110,10 @@ BAD = {
         {"area": "flat.npz"},
         "mount 'area': area: expected faces, found none in the area",
     ),
-    "what is no mesh": ({"area": "text.npz"}, "text.npz: file: expected a complete NumPy .npz archive"),
+    "what is no mesh": (
+        {"area": "text.npz"},
+        "text.npz: file: expected a complete NumPy .npz archive",
+    ),
 }
 
 

@@ -27,7 +27,16 @@ from .kind import (
 )
 from .lidar import LIDAR, BeamField, Lidar, RangePicture, beam_field, range_picture
 from .measurement_cache import MeasurementCache, ObjectMeasurementCache, VisibleGroundCache
-from .perception import BLIND_RULES, CURVE_MODELS, SCANS, PerceptionModel, scan_curves
+from .perception import (
+    BLIND_RULES,
+    CURVE_MODELS,
+    SCANS,
+    PerceptionModel,
+    curve_source,
+    detectors,
+    fitted_curves,
+    scan_curves,
+)
 from .radar import RADAR, Radar, RadarMode
 from .ultrasonic import ULTRASONIC, Ultrasonic
 from .weather import Weather, returning, with_returns
@@ -40,7 +49,7 @@ __all__ += ["Pinhole", "Radar", "RadarMode", "RangePicture", "SampleKernel", "Ul
 __all__ += ["ViewPatch", "VisibleGround", "VisibleGroundCache", "Voxels", "Weather", "beam_field"]
 __all__ += ["derived_object_curves", "kind_named", "kind_of", "measure", "measure_objects"]
 __all__ += ["range_picture", "register", "returning", "scan_curves", "unregister"]
-__all__ += ["with_returns"]
+__all__ += ["curve_source", "detectors", "fitted_curves", "with_returns"]
 
 for _kind in (LIDAR, CAMERA, RADAR, ULTRASONIC):
     register(_kind)

@@ -2,7 +2,9 @@
 
 Whole objects have the curves of their kind (`[ap] model = "paper"`), or those from scans
 (`"scans"`): fitted to the detectors of our own study, docs/validity/own; `python -m
-studies.detectors --curves` writes them. They are of LiDARs alone: other kinds keep the paper's.
+studies.detectors --curves` writes them. Those of published detectors are fitted to their AP by
+range on one vehicle, and hold over range within one rig. Both are of LiDARs alone: other kinds keep
+the paper's.
 """
 
 from __future__ import annotations
@@ -22,23 +24,27 @@ from ..metric.entropy import ApCurve
 from .kind import KINDS, ClassCurves, kind_named
 
 PAPER, SCANS = "paper", "scans"
-CURVE_MODELS = (PAPER, SCANS)
+BEVFUSION, CENTERPOINT = "bevfusion", "centerpoint"
+CURVE_MODELS = (PAPER, SCANS, BEVFUSION, CENTERPOINT)
 MODEL: str = setting(
     PAPER,
     OneOf(CURVE_MODELS),
-    "AP curves of whole objects: from publications, or of LiDARs fitted to detectors on scans",
+    "AP curves of whole objects: from publications, or of LiDARs fitted to detectors",
     Panel(
         "ap_model",
         "Object AP",
         menu=(
             ("Publications", "Fitted to published detectors, or converted from the paper's curves"),
             ("Scans", "LiDARs: fitted to detectors that this project trained on simulated scans"),
+            ("BEVFusion-L", "LiDARs: fitted to published AP by range, within one rig"),
+            ("CenterPoint", "LiDARs: fitted to published AP by range, within one rig"),
         ),
     ),
     scored=True,
 )
 """The field of `PerceptionModel`."""
 FILE = Path(__file__).with_name("scans.toml")
+DETECTORS_FILE = FILE.with_name("detectors.toml")
 BLIND_RULES = ("floor", "literal")
 SOURCE = "perception model"
 
@@ -70,6 +76,62 @@ def scan_curves() -> ScanCurves:
     return ScanCurves(curves, table.whole("runs"), table.whole("planned"))
 
 
+@dataclass(frozen=True, slots=True)
+class DetectorCurve:
+    """A curve of a published detector: root of the mean square error of AP, span of m."""
+
+    curve: ApCurve
+    rmse: float
+    m: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Detector:
+    """A published detector: its curves by kind and class, their source, where they hold."""
+
+    label: str
+    source: str
+    trust: str
+    rows: Mapping[str, Mapping[str, DetectorCurve]]
+
+
+@cache
+def detectors() -> Mapping[str, Detector]:
+    """Return the published detectors of the file that is part of the engine, by model."""
+    table = Table(load_toml(DETECTORS_FILE, "curves", decode_text(read_bytes(DETECTORS_FILE))), "")
+    found = {}
+    for model in table.names:
+        own = table.table(model)
+        texts = [own.text(key) for key in ("label", "source", "trust")]
+        kinds = {kind: own.table(kind) for kind in KINDS if kind in own}
+        rows = {k: {n: _row(t.table(n)) for n in t.names} for k, t in kinds.items()}
+        found[model] = Detector(*texts, rows)
+    return found
+
+
+def _row(table: Table) -> DetectorCurve:
+    low, high = table.numbers("m", 2)
+    curve = ApCurve(table.number("a"), table.number("b"))
+    return DetectorCurve(curve, table.number("rmse"), (low, high))
+
+
+def curve_source(model: str) -> str:
+    """Return where the curves of objects of a model are from, and where they hold."""
+    if (known := detectors().get(model)) is not None:
+        return f"{known.label}, {known.trust}; {known.source}"
+    if model == SCANS:
+        return "of LiDARs, fitted to detectors on simulated scans (docs/validity/own)"
+    return "fitted to published detectors, or derived from those of voxels by size"
+
+
+def fitted_curves(model: str) -> ClassCurves:
+    """Return the curves that a model has in place of the kinds' own, by kind and class."""
+    if model == SCANS:
+        return scan_curves().curves
+    rows = detectors()[model].rows if model in detectors() else {}
+    return {kind: {n: row.curve for n, row in own.items()} for kind, own in rows.items()}
+
+
 @dataclass(frozen=True, init=False, repr=False)
 class PerceptionModel:
     """The AP curve of every kind of sensor, and how late fusion takes sensors that see nothing.
@@ -81,8 +143,8 @@ class PerceptionModel:
         in which a blind sensor changes the result.
     objects : mapping of kind to mapping of class to ApCurve
         Curves of whole objects, m counted on the object, in place of the model's.
-    model : {"paper", "scans"}
-        Curves of the other objects: the kind's own, or of LiDARs those from scans.
+    model : {"paper", "scans", "bevfusion", "centerpoint"}
+        Curves of the other objects: the kind's own, or of LiDARs those fitted to detectors.
     **curves : ApCurve
         By kind, ``lidar=ApCurve(0.2, 0.5)``; a kind's own by default. They are attributes as well:
         ``model.lidar`` is ``model.curve("lidar")``.
@@ -131,7 +193,7 @@ class PerceptionModel:
             When there is none.
         """
         own_curves = kind_named(kind, SOURCE).object_curves
-        fitted = scan_curves().curves.get(kind, {}) if self.model == SCANS else {}
+        fitted = fitted_curves(self.model).get(kind, {})
         given = self.objects.get(kind, {}).get(name)
         curve = given or fitted.get(name) or own_curves.get(name)
         if curve is None:

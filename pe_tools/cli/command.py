@@ -20,7 +20,7 @@ from pe_core.base.files import named_path, quoted, reason_of
 from pe_core.search import Schedule
 from pe_core.search.goals import FULL, OFF, Front, Start
 from pe_core.search.goals import OBJECTIVES as GOALS
-from pe_core.sensors import CURVE_MODELS, kind_of
+from pe_core.sensors import CURVE_MODELS, KINDS, curve_source, detectors, fitted_curves, kind_of
 from pe_core.sensors.lidar import RETURNS
 from pe_core.study import METHODS, OBJECTIVES, SCHEDULED_METHOD, Study, load_study
 
@@ -125,7 +125,7 @@ def add_score_options(parser: argparse.ArgumentParser, workers: str = "threads")
 
 def add_curve_option(parser: argparse.ArgumentParser) -> None:
     """Add the option of the AP curves of whole objects to a parser."""
-    about = "AP curves of whole objects: from publications, or of LiDARs from our own scans"
+    about = "AP curves of whole objects: from publications, or of LiDARs from detectors (pe curves)"
     form = "|".join(CURVE_MODELS)
     parser.add_argument("--ap-model", choices=CURVE_MODELS, metavar=form, help=about)
     about = "beams of LiDARs that return: all, or as many as measured in real traffic"
@@ -234,6 +234,27 @@ def _show_sensors(args: argparse.Namespace) -> Answer:
     lines = [args.name, *kind.data_sheet(model)]
     lines.append(f"source          {catalog.entries()[args.name].source}")
     return "\n".join([*lines, *(["", *plot] if plot else [])]), DONE
+
+
+def add_curves_verb(verbs: argparse._SubParsersAction[Any]) -> None:
+    """Add ``curves``: the AP curves of whole objects by model, and where they hold."""
+    parser = verbs.add_parser("curves", help="list the AP curves of whole objects, by model")
+    parser.set_defaults(function=_show_curves)
+
+
+def _show_curves(_: argparse.Namespace) -> Answer:
+    lines = ["AP = a ln m + b, m: of an object; [ap] model = NAME, or --ap-model NAME"]
+    own = {kind.name: kind.object_curves for kind in KINDS.values()}
+    for name in CURVE_MODELS:
+        lines += ["", f"{name}: {curve_source(name)}"]
+        rows = detectors()[name].rows if name in detectors() else {}
+        for kind, curves in (fitted_curves(name) or own).items():
+            for each, curve in curves.items():
+                line = f"  {kind:11} {each:11}a {curve.a:6.4f}  b {curve.b:+7.4f}"
+                if row := rows.get(kind, {}).get(each):
+                    line += f"  RMSE {row.rmse:.3f}, m {row.m[0]:g} to {row.m[1]:g}"
+                lines.append(line)
+    return "\n".join(lines), DONE
 
 
 def as_typed(prog: str, argv: Sequence[str]) -> str:

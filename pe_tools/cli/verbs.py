@@ -20,7 +20,15 @@ from ..jobs import FrontJob, front_study, has_front, prepare_folder, result_name
 from . import exchange_verbs, run_job
 from .check_verb import add_check_options, add_requirements_verb, check
 from .choose_verb import choose, resumed
-from .command import Parser, add_run_options, add_sensors_verb, as_typed, run, with_options
+from .command import (
+    Parser,
+    add_curves_verb,
+    add_run_options,
+    add_sensors_verb,
+    as_typed,
+    run,
+    with_options,
+)
 from .explain_verbs import add_compare_options, add_explain_options, compare, explain, named_by_file
 from .new_verb import add_new_verb
 from .setup_verbs import add_setup_verbs
@@ -82,6 +90,7 @@ def parser() -> argparse.ArgumentParser:
     for verb in VERBS:
         verb.add(verbs)
     add_sensors_verb(verbs)
+    add_curves_verb(verbs)
     exchange_verbs.add_rigs_verb(verbs)
     add_requirements_verb(verbs)
     add_new_verb(verbs)

@@ -4,11 +4,12 @@ import importlib
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.sensors import KINDS, scan_curves
+from pe_core.sensors import KINDS, detectors, scan_curves
 from pe_core.sensors.kind import SIZES
 from pe_core.study import study_from_dict, study_to_dict
 from pe_tools import advice
@@ -148,3 +149,23 @@ def test_the_result_says_which_curves_it_used(path, tmp_path, provisional, capsy
         codes = [each["code"] for each in result["warnings"]]
         assert codes.count(advice.PROVISIONAL) == (model == "scans")
         assert pe.load_study(folder / "study.toml").model.model == model
+
+
+@pytest.mark.parametrize("model", ["bevfusion", "centerpoint"])
+def test_curves_of_published_detectors_are_told_with_source_and_span(model, path, capsys):
+    """They take the place of the classes' own; a class that they lack keeps its own."""
+    known, own = detectors()[model], pe.PerceptionModel()
+    chosen = pe.PerceptionModel(model=model)
+    assert set(known.rows) == {"lidar"} and "within one rig" in known.trust
+    for name, row in known.rows["lidar"].items():
+        assert chosen.object_curve("lidar", name) == row.curve
+        low, high = row.m
+        ends = [row.curve.a * np.log(m) + row.curve.b for m in (low, high)]
+        assert 0.2 < ends[0] < ends[1] < 1.05 and row.rmse < 0.12
+    assert chosen.object_curve("lidar", "cone") == own.object_curve("lidar", "cone")
+    assert chosen.object_curve("camera", "car") == own.object_curve("camera", "car")
+    assert main(["curves"]) == 0
+    told = capsys.readouterr().out
+    assert f"\n{model}: {known.label}, {known.trust}; {known.source}\n" in told
+    assert main(["score", str(path), "--ap-model", model, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["ap_model"] == model

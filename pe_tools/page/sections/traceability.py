@@ -50,11 +50,7 @@ def assumptions(contexts: tuple[ReportContext, ...]) -> dict[str, Any]:
     boxes = study.prior.boxes
     objects_source = ""
     if contexts[0].after.objects is not None or contexts[0].outcome.in_traffic is not None:
-        objects_source = (
-            "of LiDARs, fitted to detectors on simulated scans (docs/validity/own)"
-            if model.model == kinds.SCANS
-            else "fitted to published detectors, or derived from those above by size"
-        )
+        objects_source = kinds.curve_source(model.model)
     return {
         "curves": [
             [name, number(c.a, 3), number(c.b, 3), CURVE_SOURCES.get(c, "given by the study")]

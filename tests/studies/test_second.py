@@ -1,0 +1,92 @@
+"""The second plan: placements that were not used before, equal m, rows and columns."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core import catalog
+from pe_core.scene.objects import Objects
+from pe_core.sensors.kernels import ObjectView
+from studies.detectors.placements import placements
+from studies.detectors.plan import FIXED, full_plan
+from studies.detectors.second.law import (
+    PUBLISHED,
+    of_mean_ap,
+    published_law,
+    rows_and_beams,
+    weighted,
+)
+from studies.detectors.second.plan import (
+    arm_placements,
+    full_second_plan,
+    good_placements,
+    quick_second_plan,
+    second_runs,
+)
+
+FOLDER = Path(__file__).parents[2] / "docs/validity/own/second"
+
+
+def test_the_good_placements_see_all_round_and_are_new():
+    plan = full_second_plan()
+    good = good_placements(plan)
+    assert len(good) == 96 and all(p.all_round for p in good)
+    known = {p.poses for p in placements(full_plan()) if p.design == FIXED}
+    assert not known & {p.poses for p in good}
+    assert plan.study.digest != full_plan().digest
+    names = [run.name for run in second_runs(plan)]
+    assert len(names) == len(set(names)) == 36 + 192
+    assert names[0] == "equal-m-16-sedan-01-s1" and names[36] == "good-sedan-01-s1"
+
+
+def test_arms_have_equal_beams_at_equal_poses():
+    arms = arm_placements(full_second_plan())
+    assert {len(p.poses) for p in arms} == {2}
+    assert {p.lidar.beam_count for p in arms} == {28_800}
+    assert sorted({len(p.lidar.elevations) for p in arms}) == [16, 32, 64]
+    by_pose = {}
+    for p in arms:
+        by_pose.setdefault(p.poses, []).append(p.rig().sensors[0].model.name)
+    assert len(by_pose) == 4
+    assert all(n == ["16 x 1800", "32 x 900", "64 x 450"] for n in by_pose.values())
+    assert len(second_runs(quick_second_plan())) == 4
+
+
+def test_w_of_made_up_scans_is_found():
+    shares = np.log([[1.0, 1.0], [1.0, 0.5], [0.5, 1.0], [0.5, 0.5]])
+    ap = [0.8 + 0.1 * (2 * 0.7 * rows + 2 * 0.3 * columns) for rows, columns in shares]
+    assert published_law(ap) == {"w": 0.7, "a": 0.1, "rmse": 0.0}
+    assert all(0.65 < published_law(ap)["w"] < 0.78 for ap in PUBLISHED.values())
+
+
+def test_half_is_the_number_of_beams():
+    rows, beams = np.array([1.0, 4.0, 0.0]), np.array([7.0, 60.0, 0.0])
+    assert weighted(rows, beams, 0.5) == pytest.approx(beams, rel=0.006)
+    assert weighted(rows, beams, 1.0) == pytest.approx(rows**2, rel=0.006)
+
+
+def test_rows_are_channels_of_each_lidar_that_meet_the_object():
+    box = Objects(
+        np.array([[10.0, 0.0, 0.9], [20.0, 0.0, 0.9]]),
+        np.array([[1.0, 2.0, 1.8], [1.0, 1.0, 1.0]]),
+        np.zeros(2),
+        np.zeros(2, int),
+        ("car",),
+        np.zeros(2, int),
+    )
+    puck = catalog.load("Velodyne VLP-16 Puck")
+    rig = pe.Rig([pe.Sensor(f"{z}", puck, pe.Pose((0.0, 0.0, z))) for z in (1.0, 1.5)])
+    rows, beams = rows_and_beams(rig, ObjectView(box, None, True))
+    spans = np.arctan(np.array([[-1.0, 0.8], [-1.5, 0.3]]) / 9.5)
+    expected = sum(((puck.elevations > a) & (puck.elevations < b)).sum() for a, b in spans)
+    assert rows[0] == expected and beams[0] > rows[0]
+    assert rows[1] == beams[1] == 0.0  # behind the first
+
+
+def test_saved_forecast_follows_from_its_errors():
+    found = json.loads((FOLDER / "law.json").read_text("utf-8"))
+    assert found["published"] == {name: published_law(ap) for name, ap in PUBLISHED.items()}
+    assert found["across"]["mean"] == of_mean_ap(found["across"]["classes"], full_plan())

@@ -102,10 +102,10 @@ def detectors() -> Mapping[str, Detector]:
     found = {}
     for model in table.names:
         own = table.table(model)
-        texts = [own.text(key) for key in ("label", "source", "trust")]
+        label, source, trust = (own.text(key) for key in ("label", "source", "trust"))
         kinds = {kind: own.table(kind) for kind in KINDS if kind in own}
         rows = {k: {n: _row(t.table(n)) for n in t.names} for k, t in kinds.items()}
-        found[model] = Detector(*texts, rows)
+        found[model] = Detector(label, source, trust, rows)
     return found
 
 

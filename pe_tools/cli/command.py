@@ -244,7 +244,7 @@ def add_curves_verb(verbs: argparse._SubParsersAction[Any]) -> None:
 
 def _show_curves(_: argparse.Namespace) -> Answer:
     lines = ["AP = a ln m + b, m: of an object; [ap] model = NAME, or --ap-model NAME"]
-    own = {kind.name: kind.object_curves for kind in KINDS.values()}
+    own = {kind.name: kind.object_curves for kind in KINDS.values() if kind.curve.a > 0.0}
     for name in CURVE_MODELS:
         lines += ["", f"{name}: {curve_source(name)}"]
         rows = detectors()[name].rows if name in detectors() else {}

@@ -26,7 +26,7 @@ from ..scene.rig import Rig
 from ..scoring.requirements import RequirementChecker
 from ..scoring.score import Evaluation, Objective
 from ..scoring.sight import BLIND_TO_M, Sight
-from ..search import Parametrization, Tolerance, optimize, shared_parts
+from ..search import Parametrization, Tolerance, shared_parts
 from ..search.domains import METRE, RADIAN, SHARE
 from ..search.methods.method import sampled_candidate
 from ..search.parametrization import Candidate
@@ -36,9 +36,6 @@ from .study import Study
 KEEP = "keep"
 INFEASIBLE = 100.0
 """Value of a placement that breaks a constraint, without the violation: above all entropies."""
-CONFLICT_TRIES = 80
-"""Placements that are tried for each requirement that is not met."""
-MAX_CONFLICTS = 3
 HELP_STEPS = {
     METRE: (0.05, 0.1, 0.2, 0.4, 0.8),
     RADIAN: (0.05, 0.1, 0.2, 0.4, 0.8),
@@ -189,58 +186,6 @@ def feasible_first(objective: Objective, constraints: Sequence[FeasibilityRule])
 def is_infeasible(value: float) -> bool:
     """Whether a value of a search is that of a placement that breaks a constraint."""
     return value >= INFEASIBLE
-
-
-class _OneFirst:
-    """One requirement first, then as few violations of the others as possible."""
-
-    def __init__(self, checker: RequirementChecker, number: int) -> None:
-        self._checker, self._number = checker, number
-
-    def entropy(self, rig: Rig) -> float:
-        """Return 10 times the violation of the one, and the sum of the others'."""
-        found = self._checker.shortfalls(rig)
-        return rounded(10.0 * found[self._number] + sum(found) - found[self._number])
-
-    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
-        """Return the value of a placement."""
-        return Evaluation(self.entropy(rig), False)
-
-
-def _best_for(objective: _OneFirst, study: Study) -> Rig:
-    """Return the best of random placements, and of a short search from there."""
-    coding, rng = study.coding(), np.random.default_rng(study.search.seed)
-
-    def sample() -> list[float]:
-        return [float(rng.uniform(v.low, v.high)) for v in coding.variables]
-
-    sampled = [sampled_candidate(coding, sample) for _ in range(CONFLICT_TRIES // 2)]
-    rigs = [study.rig, *(each.rig for each in sampled if each is not None)]
-    best = min(rigs, key=objective.entropy)
-    space, seed = study.with_rig(best).search_space(), study.search.seed
-    for step in optimize(objective, best, space, seed, evaluations=CONFLICT_TRIES // 2):
-        best = step.best
-    return best
-
-
-def conflicts(study: Study, rig: Rig) -> dict[str, tuple[str, ...] | None]:
-    """Return which requirements stand against each one that a placement does not meet, by its name.
-
-    For each of the first `MAX_CONFLICTS` that are not met a short search looks for a placement that
-    meets it. Those that are then broken and were not before stand against it: none, if only the
-    budget of the search was short. None if no placement met it even without all others. Mounting
-    errors are left out.
-    """
-    checker = study.checker()
-    names = [each.name for each in checker.requirements]
-    before = checker.shortfalls(rig)
-    found: dict[str, tuple[str, ...] | None] = {}
-    for number in [k for k, off in enumerate(before) if off][:MAX_CONFLICTS]:
-        best = _best_for(_OneFirst(checker, number), study.with_rig(rig))
-        after = checker.shortfalls(best)
-        broken = tuple(n for n, was, now in zip(names, before, after, strict=True) if now > was)
-        found[names[number]] = None if after[number] else broken
-    return found
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from pe_core.study.requirement_search import Suggestion
+
 from ..wording import warning_text
 
 FRAGILE = "fragile"
@@ -83,12 +85,12 @@ def fragile(
     return (Advice(None, FRAGILE, values),)
 
 
-def unmet(conflicts: Mapping[str, tuple[str, ...] | None]) -> tuple[Advice, ...]:
+def unmet(found: Mapping[str, Suggestion | None]) -> tuple[Advice, ...]:
     """Return a warning for each requirement that a search could not keep.
 
-    `conflicts` has the requirements that stand against each; None: it was met nowhere.
+    `found` has the nearest placement that meets each, and what it breaks; None: it was met nowhere.
     """
     return tuple(
-        Advice(None, UNMET, {"name": name, "against": against and list(against)})
-        for name, against in conflicts.items()
+        Advice(None, UNMET, {"name": name, "against": own and list(own.breaks)})
+        for name, own in found.items()
     )

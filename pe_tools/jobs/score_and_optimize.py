@@ -23,10 +23,10 @@ from pe_core.search import (
 )
 from pe_core.study.condition_table import is_by_ap, searched_study, study_objective
 from pe_core.study.requirement_search import (
-    conflicts,
     constraints_of,
     feasible_first,
     is_infeasible,
+    suggestions,
 )
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 
@@ -196,7 +196,7 @@ class OptimizeJob(Job):
         verdicts = (yield from self._verdicts(best, analysing, to_the_end=False)) or ()
         against: tuple[Advice, ...] | None = ()
         if best.search.requirements and not all(verdict.met for verdict in verdicts):
-            against = yield from self._beside(lambda _: unmet(conflicts(best, best.rig)), analysing)
+            against = yield from self._beside(lambda _: unmet(suggestions(best)), analysing)
         sensitivity = None
         if self.analyses and not self.stopped:
             samples = FreshSamples(best, best.rig, self._fresh_objectives, self._helpers)

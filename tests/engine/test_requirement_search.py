@@ -23,13 +23,7 @@ from pe_core.scoring.requirements import (
 )
 from pe_core.scoring.sight import BLIND_TO_M
 from pe_core.search import Goals
-from pe_core.study.requirement_search import (
-    INFEASIBLE,
-    conflicts,
-    constraints_of,
-    feasible_first,
-    suggestions,
-)
+from pe_core.study.requirement_search import INFEASIBLE, constraints_of, feasible_first, suggestions
 from pe_tools import advice
 from pe_tools.jobs import result_dict
 from tests.engine import shapes
@@ -108,7 +102,8 @@ def test_a_requirement_that_cannot_be_kept_is_told_with_what_stands_against_it()
         ),
     )
     assert [v.met for v in both.verdicts()] == [True, False]
-    assert conflicts(both, both.rig) == {"far": ("near",)}
+    (found,) = suggestions(both).values()
+    assert found.breaks == ("near",)
 
 
 def test_the_nearest_change_of_one_sensor_is_suggested():

@@ -62,7 +62,7 @@ screenshots: .venv/dev.stamp  ## make docs/images in a real window; ARGS="guide"
 	@tools/make_venv.sh blender,test,meshes,rerun,argoverse,docs,dev$(if $(CI),$(comma)studies) $@
 
 .venv/docs.stamp: .venv/run.stamp
-	@tools/make_venv.sh blender,docs $@
+	@tools/make_venv.sh blender,docs,notebook $@
 
 .venv/release.stamp: .venv/run.stamp
 	@tools/make_venv.sh blender,release $@

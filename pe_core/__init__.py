@@ -32,7 +32,7 @@ def _lazy_names(package: str) -> tuple[Callable[[str], object], Callable[[], lis
         return value
 
     def names() -> list[str]:
-        return sorted({*vars(sys.modules[package]), *import_module(".public", package).__all__})
+        return sorted(import_module(".public", package).__all__)
 
     return get, names
 

@@ -33,7 +33,7 @@ WANTED_BLENDERS = ("4.2", "4.3", "5")
 BPY_4_2 = "bpy==4.2.*"
 DEBIAN_SUITES = ("trixie", "sid")
 """Suites of Debian whose Blenders `--install` gets: 4.3 and 5.x."""
-EXTRAS = ("progress", "completion", "cluster", "rerun", "argoverse", "meshes")
+EXTRAS = ("notebook", "parquet", "completion", "cluster", "rerun", "argoverse", "meshes")
 """Extras of users, each of which is installed into an empty environment of its own."""
 EXAMPLE = ROOT / "examples" / "robotaxi_sedan" / "1_roof.toml"
 PAGE = ROOT / "tools" / "repository_page.html"

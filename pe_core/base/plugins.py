@@ -36,7 +36,12 @@ SHIPPED = {
 EXTRAS = {
     "mesh": "meshes",
     "library.rerun": "rerun",
-    "library.feather": "argoverse",
+    "pyarrow.feather": "argoverse",
+    "matplotlib": "notebook",
+    "pandas": "notebook",
+    "pyarrow": "argoverse",
+    "pyarrow.parquet": "parquet",
+    "tqdm.auto": "notebook",
     "distributed": "cluster",
     "shtab": "completion",
 }
@@ -72,7 +77,12 @@ def find_plugins(sort: str) -> list[EntryPoint]:
 def install_hint(sort: str, name: str) -> str:
     """Return the command that installs what a plugin needs."""
     extra = EXTRAS.get(f"{sort}.{name}", EXTRAS.get(sort, ""))
-    return f"pip install 'perception-entropy[{extra}]'" if extra else "a package that brings it"
+    return extra_text(extra) if extra else "a package that brings it"
+
+
+def extra_text(extra: str) -> str:
+    """Return the command that installs an extra; it can be typed in any shell."""
+    return f'pip install "perception-entropy[{extra}]"'
 
 
 def optional_package(package: str) -> Any | None:
@@ -82,6 +92,15 @@ def optional_package(package: str) -> Any | None:
         return import_module(package)
     except ImportError:
         return None
+
+
+def required_package(package: str) -> Any:
+    """Return a package of `EXTRAS`; `InputError` with the command that installs it."""
+    found = optional_package(package)
+    if found is None:
+        expected = f"{package}: {extra_text(EXTRAS[package])}"
+        raise InputError("packages", package, expected, "not installed")
+    return found
 
 
 def plugin_name(point: EntryPoint) -> str:

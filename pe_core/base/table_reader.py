@@ -11,6 +11,7 @@ import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from difflib import get_close_matches
 from typing import Any
 
 from .errors import InputError, shown
@@ -147,7 +148,8 @@ class Table:
         """Raise `InputError` for the first key that was not read."""
         for key in self._data:
             if key not in self._read:
-                known = ", ".join(sorted(self._read))
+                near = get_close_matches(key, self._read, n=3)
+                known = ", ".join((*near, *sorted(self._read.difference(near))))
                 raise self.error(key, f"one of {known}", "an unknown key")
 
 
@@ -178,9 +180,9 @@ def dumps(data: Mapping[str, Any]) -> str:
 
 def _table(data: Mapping[str, Any], path: str) -> list[str]:
     items = {k: v for k, v in data.items() if v is not None}
-    lines = [f"{_key(k)} = {_value(v)}" for k, v in items.items() if not _is_section(v)]
+    lines = [f"{dotted(k)} = {inline(v)}" for k, v in items.items() if not _is_section(v)]
     for key, value in items.items():
-        name = f"{path}.{_key(key)}" if path else _key(key)
+        name = f"{path}.{dotted(key)}" if path else dotted(key)
         if isinstance(value, Mapping):
             lines += ["", f"[{name}]", *_table(value, name)]
         elif _is_section(value):
@@ -195,12 +197,14 @@ def _is_section(value: object) -> bool:
     return isinstance(value, Mapping)
 
 
-def _key(key: str) -> str:
+def dotted(key: str) -> str:
+    """Return a part of a dotted key, in quotes where it needs them."""
     plain = key and all(c.isascii() and (c.isalnum() or c in "-_") for c in key)
-    return key if plain else _value(key)
+    return key if plain else inline(key)
 
 
-def _value(value: object) -> str:
+def inline(value: object) -> str:
+    """Return a value in one line of TOML."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int):
@@ -212,7 +216,9 @@ def _value(value: object) -> str:
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(_value(v) for v in value) + "]"
+        return "[" + ", ".join(inline(v) for v in value) + "]"
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{dotted(k)} = {inline(v)}" for k, v in value.items()) + " }"
     raise TypeError(f"no TOML for {type(value).__name__}")
 
 

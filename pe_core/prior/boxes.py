@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..base.arrays import Floats, Ints, read_only
 from ..base.errors import InputError, shown
+from ..base.notebook import ShortRepr
 from ..base.values import A_PATH, Number, numbers, vector
 from ..geometry.grids import PerceptionSpace
 from .classes import Shape, normed
@@ -43,7 +44,7 @@ STRAIGHT = 1e-12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Boxes:
+class Boxes(ShortRepr):
     """Labelled boxes in the ground frame; equal when they hold the same boxes.
 
     Parameters
@@ -269,7 +270,7 @@ def _class_counts(boxes: _Footprints, space: PerceptionSpace) -> tuple[Shape, in
         np.subtract.at(steps, (i, end), layers[which])
         np.add.at(columns, which, end - start)
     thin = np.flatnonzero(columns == 0)
-    i, j = _voxel_of(boxes.x[thin], space, 0), _voxel_of(boxes.y[thin], space, 1)
+    i, j = voxel_of(boxes.x[thin], space, 0), voxel_of(boxes.y[thin], space, 1)
     inside = (i >= 0) & (j >= 0)
     thin, i, j = thin[inside], i[inside], j[inside]
     np.add.at(steps, (i, j), layers[thin])
@@ -289,7 +290,7 @@ def _layers(boxes: _Footprints, space: PerceptionSpace) -> tuple[Ints, Ints]:
     """First layer of each box, and the one after its last."""
     first = _first_center(boxes.z - boxes.up, space, 2)
     last = _first_center(boxes.z + boxes.up, space, 2)
-    own = _voxel_of(boxes.z, space, 2)
+    own = voxel_of(boxes.z, space, 2)
     thin = (first == last) & (own >= 0)
     return np.where(thin, own, first), np.where(thin, own + 1, last)
 
@@ -339,7 +340,7 @@ def _first_center(edge: Floats, space: PerceptionSpace, axis: int) -> Ints:
     return np.ceil(np.round(clipped, TIE_DECIMALS)).astype(np.int64)
 
 
-def _voxel_of(value: Floats, space: PerceptionSpace, axis: int) -> Ints:
+def voxel_of(value: Floats, space: PerceptionSpace, axis: int) -> Ints:
     """Index of the voxel that holds a coordinate, -1 outside the space."""
     count = space.shape[axis]
     steps = np.clip((value - space.origin[axis]) / space.interval, -1.0, count)

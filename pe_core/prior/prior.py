@@ -7,14 +7,16 @@ each of 64 million voxels. Traffic density is the number of objects of a class i
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
 from ..base.errors import InputError, require_memory, shown
+from ..base.notebook import ShortRepr
 from ..base.setting import NAMES, Pair, Panel, check_settings, required_setting, setting
 from ..base.values import WEIGHT, Number, choice
 from ..geometry.grids import PerceptionSpace
@@ -29,6 +31,7 @@ from .classes import (
     mass_in,
     uniform_shape,
 )
+from .grid import Grid
 
 Densities = tuple[tuple[str, float], ...]
 """Traffic density: objects of a class at once, by its name; the default is in `DOCUMENTED`."""
@@ -69,8 +72,8 @@ def density_of(name: str, given: Densities) -> float:
     return densities[name]
 
 
-FROM_BOXES, UNIFORM = "boxes", "uniform"
-MODELS = (*SHIPPED, UNIFORM, FROM_BOXES)
+FROM_BOXES, FROM_GRID, UNIFORM = "boxes", "grid", "uniform"
+MODELS = (*SHIPPED, UNIFORM, FROM_BOXES, FROM_GRID)
 CLASS_BYTES = 32
 """Memory of a score per class and column of the space [bytes] (measured: 29)."""
 
@@ -126,12 +129,12 @@ class ClassDensity:
 
 
 @dataclass(frozen=True, slots=True)
-class Prior:
+class Prior(ShortRepr):
     """A prior: the name of a model, its classes or boxes, the focus, and the traffic density.
 
-    Use `road`, `highway`, `uniform` or `from_boxes`. With other classes:
-    ``Prior("road", classes=(...))``. `density` is the number of objects of a class in the paper's
-    space at once, by the name of the class: a mapping, or pairs.
+    Use `road`, `highway`, `uniform`, `from_boxes`, `from_grid` or `from_function`. With other
+    classes: ``Prior("road", classes=(...))``. `density` is the number of objects of a class in the
+    paper's space at once, by the name of the class: a mapping, or pairs.
     """
 
     model: str
@@ -139,6 +142,7 @@ class Prior:
     focus: tuple[Focus, ...] = ()
     boxes: Boxes | None = None
     density: Densities = ()
+    grid: Grid | None = None
 
     def __post_init__(self) -> None:
         choice("prior", "model", self.model, MODELS)
@@ -150,6 +154,8 @@ class Prior:
         if bool(self.boxes) != (self.model == FROM_BOXES):
             expected = "at least one" if self.model == FROM_BOXES else f"none with {self.model!r}"
             raise InputError("prior", "boxes", expected, len(self.boxes or ()))
+        if isinstance(self.grid, Grid) != (self.model == FROM_GRID):
+            raise InputError("prior", "grid", f"a Grid if, and only if, {FROM_GRID!r}", self.model)
         names = self.class_names
         for i, name in enumerate(names):
             if name in names[:i]:
@@ -193,9 +199,62 @@ class Prior:
         boxes = table if isinstance(table, Boxes) else Boxes.of(table)
         return cls(FROM_BOXES, (), tuple(focus), boxes)
 
+    @classmethod
+    def from_grid(
+        cls, weights: ArrayLike, space: PerceptionSpace, focus: Sequence[Focus] = ()
+    ) -> Prior:
+        """Weights of the voxels of a space, in any unit: the prior is their share of the sum.
+
+        Parameters
+        ----------
+        weights : (nx, ny) or (nx, ny, nz) float
+            Of each column, the same at all heights, or of each voxel; at least 0.
+        space : PerceptionSpace
+            The space of the weights, whose `shape` is (nx, ny, nz).
+        focus : sequence of Focus
+
+        Raises
+        ------
+        InputError
+            When the shape is another, or a weight is negative or not finite.
+        """
+        return cls(FROM_GRID, (), tuple(focus), grid=Grid(weights, space))  # type: ignore[arg-type]
+
+    @classmethod
+    def from_function(
+        cls, weight: Callable[..., ArrayLike], space: PerceptionSpace, focus: Sequence[Focus] = ()
+    ) -> Prior:
+        """Weights by a function of the voxels' centres: ``from_grid`` of what it returns.
+
+        Parameters
+        ----------
+        weight : callable
+            Takes x (nx, 1, 1), y (1, ny, 1) and z (1, 1, nz) [m], ground frame, and returns weights
+            that broadcast with them. Without z in it, weights are the same at all heights.
+        space : PerceptionSpace
+        focus : sequence of Focus
+
+        Raises
+        ------
+        InputError
+            When what is returned does not broadcast to the space; else as of `from_grid`.
+        """
+        x, y, z = (space.centers(axis) for axis in range(3))
+        values = np.asarray(weight(x[:, None, None], y[:, None], z))
+        by_height = values.ndim == 3 and values.shape[2] > 1
+        shape = space.shape if by_height or values.ndim == 1 else (*space.shape[:2], 1)
+        try:
+            weights = np.broadcast_to(values, shape)
+        except ValueError:
+            found = f"shape {values.shape}"
+            raise InputError("prior", "weights", f"shape {space.shape}", found) from None
+        return cls.from_grid(weights if shape[2] > 1 else weights[:, :, 0], space, focus)
+
     @property
     def class_names(self) -> tuple[str, ...]:
-        """Names of the classes; ``("any",)`` for the uniform prior."""
+        """Names of the classes; ``("any",)`` for a prior that has none."""
+        if self.grid is not None:
+            return self.grid.layers
         if self.boxes is not None:
             return self.boxes.classes
         return tuple(c.name for c in self.classes) or ("any",)
@@ -208,10 +267,9 @@ class Prior:
         InputError
             When there is no number for a class, or the prior has no classes.
         """
-        if self.model == UNIFORM:
-            raise InputError(
-                "prior", "model", "a prior with classes, because objects need them", UNIFORM
-            )
+        if self.model in (UNIFORM, FROM_GRID):
+            expected = "a prior with classes, because objects need them"
+            raise InputError("prior", "model", expected, self.model)
         counts = {name: density_of(name, self.density) for name in self.class_names}
         # for each object of a class in the paper's space, the number in this space
         shares = {c.name: mass_in(c, space) / mass_in(c, PAPER_SPACE) for c in self.classes}
@@ -264,6 +322,8 @@ class Prior:
         """Density of each class, which sums to its share of the prior."""
         if self.boxes is not None:
             return voxelised(self.boxes, space).shapes
+        if self.grid is not None:
+            return self.grid.shapes(space)
         shapes = ((c.share, class_shape(c, space)) for c in self.classes)
         weighted = [(share * ground, profile) for share, (ground, profile) in shapes]
         return weighted or [uniform_shape(space)]

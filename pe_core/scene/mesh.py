@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ..base.arrays import Floats
 from ..base.errors import MAX_FOUND_LENGTH, InputError
+from ..base.notebook import ShortRepr
 from ..base.values import Number, choice, vector
 from ..geometry.poses import ROTATION_DEG
 
@@ -46,7 +47,7 @@ LARGER_UNITS = {"units of 100 m": 100.0, "kilometres": 1000.0}
 
 
 @dataclass(frozen=True, slots=True)
-class Mesh:
+class Mesh(ShortRepr):
     """Triangles of one object; each triangle belongs to a named part.
 
     Attributes

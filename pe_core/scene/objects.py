@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..base.arrays import Floats, Ints, read_only
 from ..base.errors import InputError, shown
+from ..base.notebook import ShortRepr
 from ..base.values import A_NAME, numbers
 from ..geometry.poses import FARTHEST_M
 
@@ -20,7 +21,7 @@ STRAIGHT = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
-class Objects:
+class Objects(ShortRepr):
     """Boxes in the ground frame, rotated about the vertical axis only.
 
     Parameters

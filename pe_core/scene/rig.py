@@ -10,12 +10,13 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from ..base.arrays import Floats
 from ..base.errors import InputError, shown
+from ..base.notebook import ShortRepr, Tabular
 from ..base.values import A_NAME, A_TEXT, LENGTH, Number, choice, vector
 from ..geometry.overlap import Hull, meets_box, meets_cylinder, upright_hull
 from ..geometry.poses import Pose, dot, rotate
@@ -30,7 +31,7 @@ SEAT_M = 0.003
 NEAR = Number(-10.0, 10.0, unit="m")
 
 
-class SensorModel:
+class SensorModel(ShortRepr):
     """Intrinsics of a sensor: the base of every kind's model class.
 
     `kind` is the name of the kind in studies and in the catalogue. With `fuses_early` the sensors
@@ -45,7 +46,7 @@ class SensorModel:
 
 
 @dataclass(frozen=True, eq=False)
-class Sensor:
+class Sensor(ShortRepr):
     """A sensor on the vehicle: intrinsics, extrinsics and the fusion group it belongs to.
 
     Parameters
@@ -114,7 +115,7 @@ class Sensor:
 
 
 @dataclass(frozen=True, eq=False)
-class Rig:
+class Rig(Tabular):
     """The sensors mounted on one vehicle.
 
     Parameters
@@ -157,6 +158,14 @@ class Rig:
             if sensor.name == name:
                 return sensor
         raise KeyError(name)
+
+    def _rows(self) -> list[dict[str, Any]]:
+        names = ("x [m]", "y [m]", "z [m]", "roll [deg]", "pitch [deg]", "yaw [deg]")
+        return [
+            {"sensor": s.name, "model": s.model.name, "kind": s.kind}
+            | dict(zip(names, (*s.pose.position, *s.pose.rotation_deg), strict=True))
+            for s in self.sensors
+        ]
 
     @property
     def groups(self) -> dict[str, list[Sensor]]:

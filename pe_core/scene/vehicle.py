@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..base.arrays import Floats, ReadOnlyDict, read_only, read_only_copy
 from ..base.errors import InputError, shown
+from ..base.notebook import Tabular
 from ..base.setting import Panel, check_settings, setting
 from ..base.values import A_NAME, Number, numbers
 from ..geometry.grids import PerceptionSpace, top_heights
@@ -57,7 +58,7 @@ def checked_covers(covers: Any, names: Sequence[str]) -> Mapping[str, float]:
 
 
 @dataclass(frozen=True, eq=False)
-class Vehicle:
+class Vehicle(Tabular):
     """Triangles of the vehicle in the ground frame.
 
     Parameters
@@ -120,6 +121,46 @@ class Vehicle:
         """Pickle without cached properties."""
         own = self.triangles, self.parts, self.part_names, self.glass, self.clearance, self.covers
         return type(self), own
+
+    def _rows(self) -> list[dict[str, Any]]:
+        counts = np.bincount(self.parts, minlength=len(self.part_names)).tolist()
+        return [
+            {"part": name, "triangles": count, "glass": name in self.glass}
+            | {"cover [dB]": self.covers.get(name)}
+            for name, count in zip(self.part_names, counts, strict=True)
+        ]
+
+    @classmethod
+    def from_trimesh(cls, mesh: Any, **options: Any) -> Vehicle:
+        """Return the vehicle of a mesh of the library trimesh, or of a scene, a part a mesh.
+
+        Parameters
+        ----------
+        mesh : trimesh.Trimesh or trimesh.Scene
+            In the ground frame [m]: x forward, z up; ``mesh.apply_transform`` turns others. What
+            has no triangles is left out.
+        **options
+            `glass`, `clearance` and `covers`, as of the class.
+
+        Raises
+        ------
+        InputError
+            When it is no mesh, or has no triangles; else as of the class.
+        """
+        found = {"vehicle": (mesh, np.eye(4))}
+        if hasattr(mesh, "graph"):
+            nodes = {name: mesh.graph[name] for name in mesh.graph.nodes_geometry}
+            found = {name: (mesh.geometry[of], at) for name, (at, of) in nodes.items()}
+        parts = {
+            name: own.copy().apply_transform(at).triangles
+            for name, (own, at) in found.items()
+            if len(getattr(own, "triangles", ()))
+        }
+        if not parts:
+            expected = "a trimesh.Trimesh or trimesh.Scene with triangles"
+            raise InputError("vehicle", "mesh", expected, type(mesh).__name__)
+        numbers = np.repeat(np.arange(len(parts)), [len(t) for t in parts.values()])
+        return cls(np.concatenate(list(parts.values())), numbers, tuple(parts), **options)
 
     @cached_property
     def bounds(self) -> tuple[Floats, Floats]:

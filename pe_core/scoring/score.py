@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arrays import Floats, read_only
+from ..base.notebook import ShortRepr, Tabular
 from ..base.values import DECIMALS, rounded
 from ..geometry.grids import PerceptionSpace
 from ..scene.rig import Rig
@@ -44,7 +45,7 @@ Watch = Callable[[float], bool]
 
 
 @dataclass(frozen=True, slots=True)
-class Scatter:
+class Scatter(ShortRepr):
     """Residuals of a score's means.
 
     Attributes
@@ -183,7 +184,7 @@ class TrafficAp:
 
 
 @dataclass(frozen=True, slots=True)
-class ObjectScore:
+class ObjectScore(Tabular):
     """Score of a rig on objects, beside entropy and coverage.
 
     Attributes
@@ -203,6 +204,13 @@ class ObjectScore:
     scenes: int
     traffic: bool
     per_class: dict[str, FoundClass]
+
+    def _rows(self) -> list[dict[str, Any]]:
+        return [
+            {"class": name, "objects": c.objects, "AP": c.ap, "entropy [nats]": c.entropy}
+            | {f"reach {direction} [m]": far for direction, far in c.reach.items()}
+            for name, c in self.per_class.items()
+        ]
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> ObjectScore:
@@ -287,7 +295,7 @@ class SensorScore:
 
 
 @dataclass(frozen=True, slots=True)
-class GroundMap:
+class GroundMap(ShortRepr):
     """Entropy and coverage of every column, averaged over height by the prior; (nx, ny) each.
 
     `mass` is the prior in each column. Columns without mass, also inside the vehicle, hold NaN.
@@ -319,7 +327,7 @@ def ground_map(columns: NDArray[np.float64]) -> GroundMap:
 
 
 @dataclass(frozen=True, slots=True)
-class SummaryScore:
+class SummaryScore(ShortRepr):
     """The summary of a sampled score: the whole rig, without the part by sensor.
 
     The fields are those of `Score`, with the same numbers to the bit; `ap` is that of its objects.
@@ -336,7 +344,7 @@ class SummaryScore:
 
 
 @dataclass(frozen=True, slots=True)
-class Score:
+class Score(Tabular):
     """Score of a rig.
 
     Attributes
@@ -375,6 +383,27 @@ class Score:
     preview: bool = False
     objects: ObjectScore | None = None
     scatter: Scatter | None = None
+
+    def _caption(self) -> str:
+        error = f" ± {self.stderr:.4f}" if self.stderr else ""
+        return f"{self.entropy:.4f}{error} nats, coverage {self.coverage:.1%}"
+
+    def _rows(self) -> list[dict[str, Any]]:
+        whole = PartScore(self.entropy, self.coverage, 1.0)
+        of: dict[str, Mapping[str, PartScore | SensorScore]] = {"rig": {"": whole}}
+        of |= {"class": self.per_class, "zone": self.per_zone, "sensor": self.per_sensor}
+        rows = []
+        for group, parts in of.items():
+            for name, part in parts.items():
+                row: dict[str, Any] = {"of": group, "name": name, "entropy [nats]": part.entropy}
+                row["coverage"] = part.coverage
+                if isinstance(part, PartScore):
+                    row["share"] = part.share
+                else:
+                    row |= {"lost [nats]": part.lost, "beams": part.beams}
+                    row["occluded"] = part.occluded / part.beams if part.beams else None
+                rows.append(row)
+        return rows
 
     def to_dict(self) -> dict[str, Any]:
         """Return the score as plain JSON data, without ground map and scatter."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..base.arrays import Floats, ReadOnlyDict
 from ..base.errors import InputError, shown
+from ..base.notebook import ShortRepr
 from ..base.setting import FLAG, OneOf, Pair, Panel, check_settings, setting
 from ..base.values import A_NAME, A_PATH, ANY, LENGTH, Number, listed
 from ..geometry.poses import Pose
@@ -18,7 +19,7 @@ from ..scene.vehicle import Vehicle
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class MountArea:
+class MountArea(ShortRepr):
     """Faces on which a sensor moves, independent of the parts of the body.
 
     Parameters
@@ -217,7 +218,7 @@ class Constraints:
 
 
 @dataclass(frozen=True, slots=True)
-class Mounting:
+class Mounting(ShortRepr):
     """Where the sensors of a rig may be mounted, besides their bounds.
 
     Parameters

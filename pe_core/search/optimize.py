@@ -16,9 +16,11 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import accumulate
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from ..base.errors import InputError
+from ..base.errors import InputError, shown
+from ..base.notebook import ShortRepr
+from ..base.values import real
 from ..scene.rig import Rig
 from ..scoring.score import Evaluation, Objective
 from .dispatch import evaluate_all
@@ -150,7 +152,36 @@ def _digest(rig: Rig, level: int) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class FunctionObjective:
+    """A function of a rig that is minimised: a number for each rig, the same each time."""
+
+    function: Callable[[Rig], float]
+
+    def entropy(self, rig: Rig) -> float:
+        """Return the value of a rig; `InputError` where it is no number."""
+        value = real(found := self.function(rig))
+        if math.isnan(value):
+            raise InputError("objective", "value", "a number for each rig", shown(found))
+        return value
+
+    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
+        """Return the value of a rig, whatever the cutoff."""
+        return Evaluation(self.entropy(rig), False)
+
+
+def as_objective(objective: Any) -> Objective:
+    """Return an objective, or a function as one; `InputError` for anything else."""
+    if hasattr(objective, "evaluate") and hasattr(objective, "entropy"):
+        found: Objective = objective
+        return found
+    if not callable(objective):
+        expected = "an Evaluator, or a function of a rig"
+        raise InputError("optimize", "objective", expected, type(objective).__name__)
+    return FunctionObjective(objective)
+
+
+@dataclass(frozen=True, slots=True)
+class Step(ShortRepr):
     """A step of a search: one candidate evaluated.
 
     Attributes
@@ -181,7 +212,7 @@ class Step:
 
 
 def optimize(
-    objective: Objective | Sequence[Objective],
+    objective: Objective | Callable[[Rig], float] | Sequence[Objective],
     rig: Rig,
     search_space: SearchSpace,
     seed: int = 0,
@@ -199,9 +230,10 @@ def optimize(
 
     Parameters
     ----------
-    objective : Objective, or sequence of Objective
-        What is minimised, for example an `Evaluator`. Several: one for each level of the method,
-        the cheapest first.
+    objective : Objective, callable, or sequence of Objective
+        What is minimised, for example an `Evaluator`, or any function of a rig that returns a
+        number, the same for the same rig. Several: one for each level of the method, the cheapest
+        first.
     rig : Rig
         Where the search starts.
     search_space : SearchSpace
@@ -220,11 +252,13 @@ def optimize(
     Raises
     ------
     InputError
-        When there is no such method, the search space does not fit the rig, or no placement keeps
-        to all of its rules.
+        When there is no such method, the search space does not fit the rig, no placement keeps to
+        all of its rules, or an objective is none.
     """
     chosen = METHODS[checked_method("optimize", method, schedule is not None)]
-    levels = list(objective) if isinstance(objective, Sequence) else [objective]
+    levels = [
+        as_objective(o) for o in (objective if isinstance(objective, Sequence) else [objective])
+    ]
     parametrization, schedule = Parametrization(rig, search_space), schedule or Schedule()
     start = feasible_start(parametrization, seed)
     first = Step(start.rig, levels[0].entropy(start.rig), 1, 0.0, 0, False)

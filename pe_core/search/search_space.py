@@ -15,6 +15,7 @@ import numpy as np
 
 from ..base.arrays import ReadOnlyDict
 from ..base.errors import InputError, shown
+from ..base.notebook import ShortRepr
 from ..base.setting import Panel, check_settings, setting
 from ..base.values import Angle, Number, Whole, listed, pair
 from ..geometry.overlap import Hull, hull_box, overlaps
@@ -47,7 +48,7 @@ SPAN = (-FARTHEST_M, FARTHEST_M)
 
 
 @dataclass(frozen=True, slots=True)
-class SearchSpace:
+class SearchSpace(ShortRepr):
     """The free coordinates of each sensor, and their bounds.
 
     Parameters

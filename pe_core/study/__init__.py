@@ -19,7 +19,7 @@ from ..search import METHODS, SCHEDULED_METHOD, Robustness
 from . import requirement_file, requirement_search
 from .condition_table import ConditionTable, condition_table
 from .conditions import Conditions, StateInWeather, state_from_dict, state_table
-from .file_names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW_PAGE, SEARCH, STUDY
+from .file_names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW_PAGE, SCHEMA, SEARCH, STUDY
 from .mounting_file import mounts_table
 from .passthrough import passthrough_of_text, passthrough_table, passthrough_text, read_passthrough
 from .study import OBJECTIVES, Search, Study, vehicle_digest
@@ -37,7 +37,7 @@ from .study_file import (
 )
 
 __all__ = ["AREAS", "MESH", "METHODS", "OBJECTIVES", "OPTIMIZED", "REQUIRED", "RESULT"]
-__all__ += ["REVIEW_PAGE", "SCHEDULED_METHOD", "SEARCH", "STUDY"]
+__all__ += ["REVIEW_PAGE", "SCHEDULED_METHOD", "SCHEMA", "SEARCH", "STUDY"]
 __all__ += ["Angle", "ConditionTable", "Conditions", "Name", "Number", "OneOf"]
 __all__ += ["Pair", "Panel", "Robustness", "Search", "Setting", "Several", "StateInWeather"]
 __all__ += ["Study", "Texts", "Toggle", "Triple", "Whole"]

@@ -5,6 +5,8 @@ AREAS = "areas.npz"
 """Mesh file with the areas of mounts, one part for each mount."""
 BOXES = "boxes.csv"
 """File of labelled boxes beside a study, when they have no file of their own."""
+GRID = "prior.npy"
+"""File of a prior's weights beside a study, when they have no file of their own."""
 OPTIMIZED = "optimized.blend"
 """The file that Blender adds."""
 REVIEW_PAGE = "review.html"
@@ -14,7 +16,7 @@ CONDITIONS = "conditions.csv"
 SEARCH, RUNNERS_UP = "search.json", tuple(f"runner_up_{k}.toml" for k in (1, 2, 3))
 """Checkpoint of a search, from which it can be resumed, and studies of other optima it found."""
 BESIDE_RESULT = (
-    *(STUDY, MESH, AREAS, BOXES, HISTORY, CONDITIONS, SEARCH),
+    *(STUDY, MESH, AREAS, BOXES, GRID, HISTORY, CONDITIONS, SEARCH),
     *(*RUNNERS_UP, OPTIMIZED, REVIEW_PAGE),
 )
 """All files that belong to a result.json."""

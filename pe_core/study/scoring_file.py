@@ -11,13 +11,15 @@ from ..base.plugins import shipped
 from ..base.setting import read_declared, read_settings, settings_table
 from ..base.table_reader import REQUIRED, Table
 from ..base.values import A_NAME, A_PATH, vector
+from ..geometry.grids import PerceptionSpace
 from ..metric.entropy import ApCurve
 from ..prior.boxes import ORIGIN
 from ..prior.classes import FIELDS, SHIPPED, ObjectClass
-from ..prior.prior import FROM_BOXES, MODELS, Densities, Focus, Prior, checked_densities
+from ..prior.grid import read_grid
+from ..prior.prior import FROM_BOXES, FROM_GRID, MODELS, Densities, Focus, Prior, checked_densities
 from ..scoring.targets import TargetRule
 from ..sensors import BLIND_RULES, KINDS, PerceptionModel
-from .file_names import BOXES
+from .file_names import BOXES, GRID
 
 CLASSES = "objects"
 """The table of a kind's curves by class, in [ap.KIND]."""
@@ -76,8 +78,13 @@ def read_curve(table: Table, default: ApCurve | None = None) -> ApCurve:
 
 
 def read_prior(table: Table, folder: Path) -> Prior:
-    """Read a prior; the path of its boxes is relative to `folder`."""
-    prior = _read_boxes(table, folder) if FROM_BOXES in table else _read_model(table)
+    """Read a prior; the path of its boxes or weights is relative to `folder`."""
+    own = next((key for key in (FROM_BOXES, FROM_GRID) if key in table), None)
+    for key in ("model", "classes", "class", FROM_GRID):
+        if own not in (None, key) and key in table:
+            raise table.error(key, f"nothing beside {table.field(str(own))}", "a value")
+    read = {FROM_BOXES: _read_boxes, FROM_GRID: _read_grid}
+    prior = read[own](table, folder) if own else _read_model(table)
     prior = replace(prior, focus=tuple(read_declared(t, Focus) for t in table.tables("focus")))
     if "density" in table:
         prior = replace(prior, density=_read_density(table.table("density"), prior))
@@ -92,6 +99,12 @@ def prior_table(prior: Prior) -> dict[str, Any]:
         named, origin = prior.boxes.file or BOXES, prior.boxes.origin
         where = {FROM_BOXES: named, "origin": None if origin is None else list(origin)}
         return {**where, "focus": focus or None, "density": dict(prior.density) or None}
+    if (grid := prior.grid) is not None:
+        return {
+            FROM_GRID: grid.file or GRID,
+            "focus": focus or None,
+            "space": settings_table(grid.space),
+        }
     shipped = SHIPPED.get(prior.model, ())
     tables = [t for c in prior.classes if len(t := _class_table(c, shipped)) > 1]
     names = list(prior.class_names)
@@ -114,9 +127,6 @@ def _read_density(table: Table, prior: Prior) -> Densities:
 
 
 def _read_boxes(table: Table, folder: Path) -> Prior:
-    for key in ("model", "classes", "class"):
-        if key in table:
-            raise table.error(key, f"nothing beside {table.field(FROM_BOXES)}", "a value")
     file, origin = table.text(FROM_BOXES, rule=A_PATH), table.numbers("origin", 3, None)
     if origin is not None:
         origin = vector(table.source, table.field("origin"), origin, 3, ORIGIN)
@@ -124,8 +134,16 @@ def _read_boxes(table: Table, folder: Path) -> Prior:
     return Prior.from_boxes(replace(shipped("reader.boxes")(folder / file, at), file=file))
 
 
+def _read_grid(table: Table, folder: Path) -> Prior:
+    file = table.text(FROM_GRID, rule=A_PATH)
+    grid = read_grid(folder / file, read_declared(table.table("space"), PerceptionSpace))
+    return Prior(FROM_GRID, grid=replace(grid, file=file))
+
+
 def _read_model(table: Table) -> Prior:
-    model = table.text("model", DEFAULT_MODEL, [m for m in MODELS if m != FROM_BOXES])
+    model = table.text(
+        "model", DEFAULT_MODEL, [m for m in MODELS if m not in (FROM_BOXES, FROM_GRID)]
+    )
     shipped = SHIPPED.get(model, ())
     for key in ("class", "classes"):
         if key in table and not shipped:

@@ -14,6 +14,7 @@ from typing import Any
 
 from ..base.arrays import ReadOnlyDict
 from ..base.errors import InputError, shown
+from ..base.notebook import ShortRepr, Tabular
 from ..base.setting import OneOf, Panel, check_settings, setting
 from ..base.values import A_NAME, A_PATH, Whole
 from ..geometry.grids import PerceptionSpace
@@ -75,7 +76,7 @@ FEW_SCENES = 32
 
 
 @dataclass(frozen=True, slots=True)
-class Search:
+class Search(ShortRepr):
     """How to optimize.
 
     Parameters
@@ -191,7 +192,7 @@ class Search:
 
 
 @dataclass(frozen=True, eq=False)
-class Study:
+class Study(Tabular):
     """Space, prior, perception model, vehicle, rig, and how to search.
 
     `mesh` names the file the vehicle was read from (or is written to), `axes` is how that is to be
@@ -261,6 +262,17 @@ class Study:
         object.__setattr__(self, "rig", with_returns(self.rig, self.returns))
         self.conditions.check(self.vehicle, self.rig)
         object.__setattr__(self, "search", _of_rig(self.search, self.rig))
+
+    def _caption(self) -> str:
+        space = " x ".join(f"{high - low:g}" for low, high in (self.space.x, self.space.y))
+        looked = f"{self.samples:,}" if self.samples else "all"
+        return (
+            f"{self.vehicle_line or 'no vehicle'}; {space} m, {self.prior.model}, {looked} voxels"
+        )
+
+    def _rows(self) -> list[dict[str, Any]]:
+        free = self.search.free
+        return [{**row, "free": ", ".join(free[row["sensor"]])} for row in self.rig._rows()]
 
     @property
     def vehicle_line(self) -> str | None:

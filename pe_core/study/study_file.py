@@ -105,18 +105,18 @@ def load_study_data(path: Path) -> dict[str, Any]:
 def save_study(study: Study, path: str | Path) -> None:
     """Write a study's TOML file, atomically.
 
-    Mesh, areas and boxes are not written, but have to be there; `export_study` writes them, too.
+    The files that it names are not written, but have to be there; `export_study` writes them, too.
 
     Raises
     ------
     InputError
-        When the vehicle's mesh, an area or the prior's boxes are in no file, or the study cannot
-        be written.
+        When the vehicle's mesh, an area or the prior's boxes or weights are in no file, or the
+        study cannot be written.
     """
     path = Path(path)
     _check_beside(path, "vehicle.mesh", study.vehicle is not None, study.mesh)
-    boxes = study.prior.boxes
-    _check_beside(path, "prior.boxes", boxes is not None, boxes.file if boxes else None)
+    for key, prior in (("boxes", study.prior.boxes), ("grid", study.prior.grid)):
+        _check_beside(path, f"prior.{key}", prior is not None, prior.file if prior else None)
     for name, file in mesh_files(study.requirements):
         _check_beside(path, f"requirement {name!r}: body.mesh", True, file)
     for name, area in areas_of(study.search.mounting).items():

@@ -12,7 +12,7 @@ from contextlib import closing, contextmanager, suppress
 from typing import Any
 
 from pe_core.base.errors import InputError, shown
-from pe_core.base.plugins import EXTRAS, optional_package
+from pe_core.base.plugins import required_package
 from pe_core.search import no_processes
 from pe_core.search.payload import plugin_name
 
@@ -108,10 +108,7 @@ class DaskWorkers(LocalWorkers):
 
 
 def _client_of(address: str) -> Any:
-    distributed = optional_package("distributed")
-    if distributed is None:
-        expected = f'distributed: pip install "perception-entropy[{EXTRAS["distributed"]}]"'
-        raise InputError("command line", "scheduler", expected, "it is not installed")
+    distributed = required_package("distributed")
     if not ADDRESS.fullmatch(address):
         expected = "HOST:PORT, tcp://HOST:PORT or tls://HOST:PORT"
         raise InputError("command line", "scheduler", expected, shown(address))

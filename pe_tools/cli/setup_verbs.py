@@ -17,16 +17,17 @@ from typing import Any
 
 import numpy as np
 
-from pe_core.base import dump_json
-from pe_core.base.errors import InputError, available_bytes, size_text
+from pe_core.base import dump_json, plugins
+from pe_core.base.errors import available_bytes, size_text
 from pe_core.base.files import reason_of
-from pe_core.base.plugins import EXTRAS, optional_package
 from pe_core.version import __version__
 
 from .command import FILES, FOLDERS
 from .terminal import DONE, Answer
 
 PACKAGES: Mapping[str, tuple[str, ...]] = {
+    "notebook": ("matplotlib", "pandas", "tqdm"),
+    "parquet": ("pyarrow",),
     "meshes": ("pycollada", "usd-core"),
     "cluster": ("distributed",),
     "rerun": ("rerun-sdk", "pyarrow"),
@@ -88,13 +89,8 @@ def extra_text(extra: str) -> str:
     """Return the versions of an extra's packages, or how to install the extra."""
     versions = {package: _version(package) for package in PACKAGES[extra]}
     if None in versions.values():
-        return f"missing: {install_text(extra)}"
+        return f"missing: {plugins.extra_text(extra)}"
     return ", ".join(f"{package} {found}" for package, found in versions.items())
-
-
-def install_text(extra: str) -> str:
-    """Return the command that installs an extra."""
-    return f'pip install "perception-entropy[{extra}]"'
 
 
 def _version(package: str) -> str | None:
@@ -151,10 +147,7 @@ def completion(top: argparse.ArgumentParser, shell: str) -> str:
 
     `InputError` where the library that makes the script is not installed.
     """
-    shtab = optional_package("shtab")
-    if shtab is None:
-        expected = f"shtab: {install_text(EXTRAS['shtab'])}"
-        raise InputError("completion", shell, expected, "not installed")
+    shtab = plugins.required_package("shtab")
     _complete_paths(top, shtab)
     script: str = shtab.complete(top, shell)
     return script

@@ -7,11 +7,13 @@ import sys
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
+from pe_core.base.plugins import required_package
 from pe_core.study import SEARCH
 
 from .. import jobs
@@ -37,6 +39,8 @@ def add_sweep_options(parser: argparse.ArgumentParser) -> None:
     about = "have the workers of a Dask scheduler do it, tcp://host:8786"
     parser.add_argument("--scheduler", metavar="ADDRESS", help=about)
     parser.add_argument("--json", action="store_true", help=f"print {table.SWEEP_JSON} on stdout")
+    about = f"write the table as {table.SWEEP_PARQUET}, too"
+    parser.add_argument("--parquet", action="store_true", help=about)
     add_score_options(parser, workers="processes")
     add_search_options(parser)
 
@@ -49,12 +53,16 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
     kind = "optimize" if args.optimize else "score"
     settings = read_settings(args.set)
     runs = sweep_runs(files, settings, lambda study: with_options(study, args))
-    folder = jobs.prepare_folder(args.output, [table.SWEEP_CSV, table.SWEEP_JSON])
+    names = [table.SWEEP_CSV, table.SWEEP_JSON]
+    if args.parquet:
+        required_package("pyarrow.parquet")  # before the work
+        names.append(table.SWEEP_PARQUET)
+    folder = jobs.prepare_folder(args.output, names)
     for run in runs:  # before the work
         refuse_own_folder(Path(files[run.study_name]), folder / run.name)
         jobs.check_files(folder / run.name, jobs.result_names(run.study, kind))
     with ExitStack() as places:
-        work = _SweepVerb(runs, kind, folder, places)
+        work = _SweepVerb(runs, kind, folder, places, args.parquet)
         received = work.run(args)
         if received.signum is not None:
             kept = f", {work.count(BEGUN)} begun and kept" if work.count(BEGUN) else ""
@@ -81,9 +89,10 @@ class _SweepVerb:
     """
 
     def __init__(
-        self, runs: Sequence[SweepRun], kind: str, folder: Path, places: ExitStack
+        self, runs: Sequence[SweepRun], kind: str, folder: Path, places: ExitStack, parquet: bool
     ) -> None:
         self._kind, self._folder, self._places = kind, folder, places
+        self._write = partial(table.write_table, kind=kind, parquet=parquet)
         self._fallback: Path | None = None
         self.failed_to_write = False
         self.rows: dict[str, SweepRow] = {}
@@ -185,13 +194,13 @@ class _SweepVerb:
         """Write the table; if that fails, to the fallback folder."""
         rows = list(self.rows.values())
         try:
-            self.data = table.write_table(rows, self._kind, self._folder)
+            self.data = self._write(rows, folder=self._folder)
         except InputError as error:
             first, self.failed_to_write = not self.failed_to_write, True
             if first:
                 self._print_failure("", error)
             try:
-                self.data = table.write_table(rows, self._kind, self._fall_back())
+                self.data = self._write(rows, folder=self._fall_back())
             except InputError as second:
                 if first:
                     self._print_failure("", second)

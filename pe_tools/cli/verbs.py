@@ -31,6 +31,7 @@ from .command import (
 )
 from .explain_verbs import add_compare_options, add_explain_options, compare, explain, named_by_file
 from .new_verb import add_new_verb
+from .set_verb import add_set_options, set_keys
 from .setup_verbs import add_setup_verbs
 from .sweep_verb import add_sweep_options, sweep
 from .terminal import Answer, open_missing_streams, tell
@@ -197,6 +198,7 @@ VERBS = (
         "",
         exchange_verbs.import_study,
     ),
+    Verb("set", "change keys of a study file; its comments stay", add_set_options, ONE, set_keys),
     Verb(
         "sweep",
         "run many studies, or one with many changes",

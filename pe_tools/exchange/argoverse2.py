@@ -14,7 +14,7 @@ from typing import Any
 
 from pe_core.base.errors import InputError
 from pe_core.base.files import read_bytes
-from pe_core.base.plugins import install_hint
+from pe_core.base.plugins import required_package
 from pe_core.base.table_reader import Table
 from pe_core.base.values import vector
 from pe_core.geometry.poses import METRES
@@ -100,14 +100,8 @@ def _sensor(path: Path, row: Table, cameras: Mapping[str, Table]) -> PortableSen
 
 
 def _arrow() -> tuple[Any, Any]:
-    """Return pyarrow and its feather module. Raise `InputError` when it is not installed."""
-    try:
-        import pyarrow
-        from pyarrow import feather
-    except ImportError as error:
-        expected = install_hint("library", "feather")
-        raise InputError(TITLE, "library", expected, error) from None
-    return pyarrow, feather
+    """Return pyarrow and its feather module; `InputError` when they are not installed."""
+    return required_package("pyarrow"), required_package("pyarrow.feather")
 
 
 def _table_bytes(

@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from pe_core.base.errors import InputError
+from pe_core.base.notebook import Tabular
+from pe_core.base.plugins import optional_package
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigEvaluator
@@ -90,7 +92,7 @@ class StartEnd:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class Outcome(Tabular):
     """The result of a job.
 
     Attributes
@@ -150,6 +152,14 @@ class Outcome:
     stop_reason: str = ""
     in_traffic: tuple[ObjectScore, ObjectScore] | None = None
     figures: tuple[KeyFigures, KeyFigures] | None = None
+
+    def _rows(self) -> list[dict[str, Any]]:
+        ends = (("before", self.start, self.before), ("after", self.study, self.after))
+        return [
+            {"": when, "entropy [nats]": score.entropy, "coverage": score.coverage, **row}
+            for when, study, score in ends[self.kind == "score" :]
+            for row in study.rig._rows()
+        ]
 
     @property
     def gain(self) -> str:
@@ -263,6 +273,24 @@ class Job:
 
     def __iter__(self) -> Iterator[Progress]:
         raise NotImplementedError
+
+    def run(self) -> Outcome | None:
+        """Run to the end, with a progress bar where tqdm is installed (the extra ``notebook``).
+
+        Returns
+        -------
+        Outcome or None
+            `outcome`: None after `drop`. A `FrontJob` has its result in `trade_off` instead.
+        """
+        tqdm = optional_package("tqdm.auto")
+        bar = tqdm and tqdm.tqdm(total=1.0, bar_format="{desc} {percentage:3.0f} % |{bar}|")
+        for progress in self:
+            if bar:
+                bar.n = progress.fraction
+                bar.set_description(f"{progress.stage} {progress.value_text}")
+        if bar:
+            bar.close()
+        return self.outcome
 
     def stop(self) -> None:
         """Stop the search early; score and keep the best placement so far.

@@ -24,6 +24,7 @@ from pe_core.study.file_names import (
     BESIDE_RESULT,
     BOXES,
     CONDITIONS,
+    GRID,
     HISTORY,
     MESH,
     RESULT,
@@ -48,9 +49,10 @@ FIGURES = ("entropy", "stderr", "coverage")
 
 def result_names(study: Study, kind: str) -> list[str]:
     """Return the names of the files that a run of this kind (score or optimize) writes."""
-    vehicle, boxes = study.vehicle is not None, study.prior.boxes is not None
+    vehicle, prior = study.vehicle is not None, study.prior
+    given = [*[BOXES] * (prior.boxes is not None), *[GRID] * (prior.grid is not None)]
     areas = bool(areas_of(study.search.mounting))
-    with_study = [STUDY, *[MESH] * vehicle, *[AREAS] * areas, *[BOXES] * boxes]
+    with_study = [STUDY, *[MESH] * vehicle, *[AREAS] * areas, *given]
     of_search = [HISTORY, SEARCH, *RUNNERS_UP] * (kind == "optimize")
     return [*with_study, *of_search, *[CONDITIONS] * bool(study.conditions), RESULT]
 

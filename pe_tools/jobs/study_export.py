@@ -14,7 +14,8 @@ import numpy as np
 
 from pe_core import catalog
 from pe_core.base.table_reader import finite
-from pe_core.study.file_names import AREAS, BOXES, MESH, STUDY
+from pe_core.prior.grid import grid_bytes
+from pe_core.study.file_names import AREAS, BOXES, GRID, MESH, STUDY
 from pe_core.study.mounting_file import areas_mesh, areas_of, with_areas_in
 from pe_core.study.study import Study, vehicle_digest
 from pe_core.study.study_file import study_bytes, study_to_dict
@@ -25,13 +26,13 @@ from .folder import FileSet, Write
 
 
 def export_study(study: Study, path: str | Path, *, replace_study: bool = False) -> None:
-    """Write a portable study: the study file with the vehicle's mesh, areas and boxes beside it.
+    """Write a portable study: the study file, and the files that it names beside it.
 
     Parameters
     ----------
     study : Study
     path : path
-        Of the study file; mesh, areas and boxes are named after it.
+        Of the study file; the others are named after it.
     replace_study : bool
         Whether the user has agreed to replace the file at `path`, even one that this program did
         not write. This does not apply to the files beside it.
@@ -68,6 +69,10 @@ def study_writers(study: Study, name: str) -> dict[str, Write | bytes]:
         writers[table] = lambda at: write_boxes(at, boxes)
         named = replace(boxes, file=table, origin=None)
         study = replace(study, prior=replace(study.prior, boxes=named))
+    if (grid := study.prior.grid) is not None:
+        file = GRID if name == STUDY else path.with_suffix(f".{GRID}").name
+        writers[file] = grid_bytes(grid)
+        study = replace(study, prior=replace(study.prior, grid=replace(grid, file=file)))
     writers[name] = study_bytes(study)
     return writers
 
@@ -121,6 +126,8 @@ def _parts(study: Study) -> Iterator[bytes]:
         yield name.encode() + np.ascontiguousarray(area.triangles).tobytes()
     if (boxes := study.prior.boxes) is not None:
         yield boxes.digest.encode()
+    if study.prior.grid is not None:
+        yield study.prior.grid.digest.encode()
 
 
 def inputs_of(study: Study) -> dict[str, Any]:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
 from pe_core import catalog
+from pe_core.base.notebook import ShortRepr, Tabular
 from pe_core.geometry.poses import Pose, rotate
 from pe_core.scene.rig import Rig, Sensor, SensorModel
 from pe_core.scoring.requirements import Verdict
@@ -104,7 +106,7 @@ def _seated(before: Rig, rig: Rig, mounting: Mounting) -> list[Pose]:
 
 
 @dataclass(frozen=True, slots=True)
-class Design:
+class Design(ShortRepr):
     """A design that was evaluated.
 
     Attributes
@@ -158,7 +160,7 @@ class Design:
 
 
 @dataclass(frozen=True, slots=True)
-class TradeOff:
+class TradeOff(Tabular):
     """The result of a choice of sensors.
 
     Attributes
@@ -188,6 +190,13 @@ class TradeOff:
     stopped: bool = False
     seconds: float = 0.0
     objectives: tuple[str, ...] = ()
+
+    def _rows(self) -> list[dict[str, Any]]:
+        return [
+            {"design": d.name, "price": d.price, "entropy [nats]": d.entropy, **d.figures}
+            | {"on the front": d in self.front, "requirements": d.met_text or None}
+            for d in self.designs
+        ]
 
     @property
     def searched(self) -> int:

@@ -60,7 +60,8 @@ ROOMS = {
             "sweep",
         },
         "page": {"wording", "formats", "graphics", "advice", "sensitivity", "jobs", "cli"},
-        "public": {"formats", "exchange", "advice", "jobs"},
+        "plot": {"graphics"},
+        "public": {"formats", "exchange", "advice", "jobs", "plot"},
         "__main__": {"cli"},
     },
 }
@@ -78,6 +79,7 @@ LIBRARIES = {
     "trimesh": {"pe_tools/formats"},
     "pyarrow": {"pe_tools/exchange"},
     "rerun": {"pe_tools/outputs"},
+    "matplotlib": {"pe_tools/plot.py"},
     "jinja2": {"pe_tools/page", "pe_tools/cli"},
     "markupsafe": {"pe_tools/page"},
 }

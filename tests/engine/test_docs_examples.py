@@ -72,24 +72,6 @@ def test_lines_of_the_command_parse():
             pytest.fail(f"{page}: {line}: {end}")
 
 
-def test_the_python_of_the_page_runs(tmp_path, monkeypatch, capsys):
-    page = (DOCS / "python.md").read_text("utf-8")
-    blocks = [text for language, text in BLOCK.findall(page) if language == "python"]
-    assert len(blocks) == 4
-    corners = [(-2, -0.9, 0.2), (2, -0.9, 0.2), (2, 0.9, 0.2), (-2, 0.9, 1.5), (2, 0.9, 1.5)]
-    faces = [[corners[k] for k in (0, 1, 4)], [corners[k] for k in (0, 2, 3)]]
-    monkeypatch.chdir(tmp_path)
-    pt.write_mesh(tmp_path / "box.npz", pe.Mesh(np.array(faces, float), np.zeros(2, int), ("box",)))
-    (tmp_path / "study.toml").write_text(STUDY, "utf-8")
-    names = {}
-    for block in blocks:
-        exec(compile(block, "docs/python.md", "exec"), names)
-    said = capsys.readouterr().out
-    assert "roof" in said and "met" in said
-    assert (tmp_path / "results" / "result.json").is_file()
-    assert pe.load_study(tmp_path / "small.toml").samples == 4096
-
-
 TYPED = ["README.md", *sorted(p.relative_to(ROOT).as_posix() for p in DOCS.glob("howto/*.md"))]
 """Pages whose commands a newcomer types from the first to the last."""
 SMALL = "samples = 1024\n\n[space]\nx = [-14, 14]\ny = [-12, 12]\nz = [0, 2]\ninterval = 0.5\n\n"

@@ -61,9 +61,7 @@ def test_a_reader_is_found_and_its_mesh_is_checked_and_turned(monkeypatch, tmp_p
 def test_without_its_library_one_line_says_what_to_install(monkeypatch, tmp_path):
     install(monkeypatch, "no_such_library_at_all:read")
     (tmp_path / "car.dae").write_bytes(b"<COLLADA/>")
-    expected = (
-        r"pip install 'perception-entropy\[meshes\]'.*No module named 'no_such_library_at_all'"
-    )
+    expected = r'"perception-entropy\[meshes\]".*No module named .no_such_library_at_all'
     with pytest.raises(pe.InputError, match=expected):
         pt.read_mesh(tmp_path / "car.dae")
 

@@ -82,7 +82,7 @@ def test_several_settings_make_every_combination(study):
 @pytest.mark.parametrize(
     ("setting", "complaint"),
     [
-        ("sensr.roof.model=x", "{study} with sensr.roof.model=x: sensr: expected one of ap"),
+        ("sensr.roof.model=x", "{study} with sensr.roof.model=x: sensr: expected one of sensor"),
         ("sensor.rof.model=x", "{study}: sensor.rof.model: expected one of roof, found 'rof'"),
         ("sensor.roof.model=No", "{study} with sensor.roof.model=No: sensor[0].model: expected"),
         ("optimize.sed=1", "{study} with optimize.sed=1: optimize.sed: expected one of"),
@@ -412,3 +412,20 @@ def test_a_worker_that_dies_costs_at_most_the_run_that_killed_it(study, deaths, 
         expected = "a worker that survives its task, found two that died (BrokenExecutor)"
         assert line == f"run2: worker: expected {expected}"
     assert executor.given == [1, 2, 3, 1, 2], "what may be guilty is tried again, alone"
+
+
+def test_a_sweep_is_a_table_of_parquet_too(study, out):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    keys = ["--set", "optimize.seed=1,2", "--set", "space.interval=0.5"]
+    assert main(["sweep", str(study), *keys, "-o", str(out), "--parquet", "--workers", "1"]) == 0
+    found = parquet.read_table(out / "sweep.parquet").to_pylist()
+    rows = table(out)
+    assert [list(row) for row in found] == [list(row) for row in rows]
+    for row, line in zip(found, rows, strict=True):
+        assert row["entropy"] == float(line["entropy"]) and row["run"] == line["run"]
+
+
+def test_without_pyarrow_a_line_comes_before_the_work(study, out, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
+    assert main(["sweep", str(study), "-o", str(out), "--parquet"]) == 1
+    assert "[parquet]" in capsys.readouterr().err and not out.exists()

@@ -253,8 +253,6 @@ def test_without_its_library_it_says_in_one_line_what_to_install(monkeypatch, na
             monkeypatch.setitem(plugins.SHIPPED, plugin, "no_such_library:write")
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     ask, extra = ASKING[name]
-    with pytest.raises(
-        pe.InputError, match=rf"pip install 'perception-entropy\[{extra}\]'"
-    ) as told:
+    with pytest.raises(pe.InputError, match=rf'"perception-entropy\[{extra}\]"') as told:
         ask()
     assert "\n" not in str(told.value) and len(str(told.value)) < 200

@@ -11,7 +11,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tools")]
 
 from mkdocs.structure.files import File, Files  # noqa: E402
 
-from docs_site import catalogue, commands, outside, python_names  # noqa: E402
+from docs_site import catalogue, commands, notebook, outside, python_names  # noqa: E402
 
 GENERATED_FOLDERS = {"Catalogue of sensors": catalogue.FOLDER, "Python names": python_names.FOLDER}
 """Entries of the navigation whose pages are generated."""
@@ -66,11 +66,14 @@ def on_files(files: Files, config) -> Files:
 @functools.cache
 def generated() -> dict[str, str]:
     """Return the content of each generated page and picture, by its path."""
-    return {commands.PATH: commands.page(), **python_names.pages(), **catalogue.pages()}
+    own = {commands.PATH: commands.page(), notebook.NOTEBOOK: notebook.notebook()}
+    return {**own, **python_names.pages(), **catalogue.pages()}
 
 
 def on_page_markdown(markdown: str, page, config, files) -> str:
     """Lead links to where the site has their targets; give wide tables the room of the page."""
     if page.file.src_uri in WIDE:
         page.meta.setdefault("hide", ["toc"])
+    if page.file.src_uri == notebook.PAGE:
+        markdown = notebook.on_site(markdown)
     return outside.with_site_links(markdown, page.file.src_uri)

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import functools
 import os
+import re
 import types
 from collections.abc import Iterator
+from pathlib import Path
 
 import pe_core as pe
 import pe_tools as pt
 
 FOLDER = "reference/python"
+EXAMPLES = Path(__file__).resolve().parents[2] / "docs" / "python_names.md"
 ROOMS = {
     "pe_core.study": ("study", "Studies", "Everything that a run needs, and its file."),
     "pe_core.scene": (
@@ -57,10 +61,18 @@ def public_names() -> Iterator[tuple[str, str]]:
 
 
 def entry(name: str, target: str) -> str:
-    """Return a name's part of its page: as mkdocstrings takes it, or a heading alone."""
+    """Return a name's part of its page: as mkdocstrings takes it, or a heading; and its example."""
     if os.environ.get("PE_SITE_DOCSTRINGS") == "0":
         return f"### {name}\n\n"
-    return f"::: {target}\n    options:\n      heading: {name}\n      toc_label: {name}\n\n"
+    head = f"::: {target}\n    options:\n      heading: {name}\n      toc_label: {name}\n\n"
+    return f"{head}{examples().get(name, '')}\n"
+
+
+@functools.cache
+def examples() -> dict[str, str]:
+    """Return the example of each name, a block of a session, from docs/python_names.md."""
+    text = EXAMPLES.read_text("utf-8")
+    return dict(re.findall(r"^### (\S+)\n\n(```pycon\n.*?```\n)", text, re.M | re.S))
 
 
 def index(heads: dict[str, list[str]], texts: dict[str, list[tuple[str, str]]]) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from ...base.errors import InputError, shown
+from ...base.notebook import ShortRepr
 from ...base.setting import FLAG, NAMES, Panel, check_settings, setting, settings_of
 from ...base.values import A_NAME, A_TEXT, SHARE, Number, Whole
 from ...scene.rig import Rig
@@ -192,7 +193,7 @@ class Under:
 
 
 @dataclass(frozen=True)
-class Requirement:
+class Requirement(ShortRepr):
     """A requirement: bodies at all samples of a zone meet a criterion.
 
     Parameters

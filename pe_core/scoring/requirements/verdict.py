@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Flags, Floats, Ints
+from ...base.notebook import ShortRepr
 from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...sensors import kind_of
@@ -206,7 +207,7 @@ class VerdictSummary:
 
 
 @dataclass(frozen=True, eq=False)
-class Verdict:
+class Verdict(ShortRepr):
     """A verdict on one requirement.
 
     Attributes

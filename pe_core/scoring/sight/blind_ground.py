@@ -26,6 +26,7 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Flags, Floats, ReadOnlyDict, read_only
+from ...base.notebook import ShortRepr
 from ...base.values import rounded
 from ...geometry.grids import GroundGrid, PerceptionSpace
 from ...scene.rig import Rig
@@ -85,7 +86,7 @@ class BlindSpot:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class BlindGround:
+class BlindGround(ShortRepr):
     """Ground round the vehicle where an object is invisible to all sensors.
 
     Attributes

@@ -20,6 +20,7 @@ import numpy as np
 
 from ...base.arrays import Flags, Floats, Ints, read_only
 from ...base.errors import InputError, shown
+from ...base.notebook import ShortRepr
 from ...base.values import Number, Whole
 from ...geometry.grids import PerceptionSpace
 from ...prior.prior import ClassDensity
@@ -44,7 +45,7 @@ BEARINGS = Whole(4, 720)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Reach:
+class Reach(ShortRepr):
     """The distance up to which a class is found, by bearing.
 
     Attributes

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ...base.arrays import Floats, Ints, read_only
 from ...base.errors import InputError
+from ...base.notebook import ShortRepr
 from ...base.values import FINITE
 from ...geometry.bins import blocks
 from ...geometry.grids import PerceptionSpace
@@ -259,7 +260,7 @@ class VoxelSetCache:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class GroundSight:
+class GroundSight(ShortRepr):
     """What is visible to a rig in every cell of the ground.
 
     Attributes

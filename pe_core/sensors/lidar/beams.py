@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Flags, Floats, Ints
+from ...base.notebook import ShortRepr
 from ...geometry.poses import rotate
 from ...geometry.raycast import Hits
 from ...scene.rig import Sensor
@@ -28,7 +29,7 @@ from .occlusion import ApproximateOcclusion, BeamSlopes, occlusion_candidates
 
 
 @dataclass(frozen=True)
-class BeamField:
+class BeamField(ShortRepr):
     """The beams of a mounted LiDAR, cast against a vehicle.
 
     `directions` (B, 3) are unit vectors in the ground frame; `ends` (B,) the distances at which the

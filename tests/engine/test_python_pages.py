@@ -1,0 +1,94 @@
+"""docs/python.md gives what it shows; each public name has an example, and all of them hold."""
+
+import doctest
+import io
+import json
+import re
+import sys
+
+import matplotlib.image
+import numpy as np
+import pytest
+
+import pe_core as pe
+import pe_tools as pt
+from tests.engine.test_docs import ROOT
+
+sys.path.insert(0, str(ROOT / "tools"))
+from docs_site import notebook, python_names
+
+PAGE = (ROOT / "docs" / notebook.PAGE).read_text("utf-8")
+PUBLIC = {f"pe.{name}" for name in pe.__all__} | {f"pt.{name}" for name in pt.__all__}
+ALIKE, OTHER = 0.01, 0.02
+"""Mean difference of two pictures, 0 to 1: of the same plot by another matplotlib; of another."""
+
+
+@pytest.fixture(scope="module")
+def found():
+    return notebook.page_run()
+
+
+def test_cells_give_what_the_page_shows(found):
+    assert len(found) > 12
+    assert notebook.refreshed(PAGE, found) == PAGE
+
+
+def blurred(png):
+    """Brightness of a PNG in 40 x 40 blocks: letters of another font differ little there."""
+    grey = matplotlib.image.imread(io.BytesIO(png))[..., :3].mean(axis=2)
+    rows, columns = (np.linspace(0, size, 41).astype(int)[:-1] for size in grey.shape)
+    sums = np.add.reduceat(np.add.reduceat(grey, rows, axis=0), columns, axis=1)
+    counts = np.add.reduceat(np.add.reduceat(np.ones_like(grey), rows, axis=0), columns, axis=1)
+    return sums / counts
+
+
+def test_plots_are_those_of_the_page_and_another_rig_s_are_not(found):
+    images = [match["image"] for match in notebook.CELL.finditer(PAGE)]
+    plots = [(name, own.png) for name, own in zip(images, found, strict=True) if own.png or name]
+    assert len(plots) == 4
+    stored = {name: blurred((ROOT / "docs" / name).read_bytes()) for name, _ in plots}
+    for name, png in plots:
+        assert np.abs(blurred(png) - stored[name]).mean() < ALIKE, name
+    others = notebook.run(
+        [
+            "import pe_core as pe, pe_tools as pt\n"
+            "study = pe.load_study('examples/robotaxi_sedan/2_wings.toml')\n"
+            "rig = study.rig.with_poses([pe.Pose((1.0, 0.9, 1.0)) for _ in study.rig])\n"
+            "pt.plot.ground(study, rig)",
+            "pt.plot.rig(study, rig, view='top')",
+        ]
+    )
+    for part, other in zip(("ground", "rig"), others, strict=True):
+        name = f"images/python_{part}.png"
+        assert np.abs(blurred(other.png) - stored[name]).mean() > OTHER, name
+
+
+def test_the_notebook_has_the_page_s_cells_in_order():
+    cells = json.loads(notebook.notebook())["cells"]
+    code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
+    assert code == [cell.strip() for cell in notebook.cells_of(PAGE)]
+    assert cells[0]["source"].startswith("# Starting in Python")
+
+
+def test_each_public_name_has_an_example():
+    assert set(python_names.examples()) == PUBLIC
+
+
+def test_examples_of_public_names_hold(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = python_names.EXAMPLES.read_text("utf-8")
+    blocks = re.findall(r"(?:^### (\S+)\n\n)?^```pycon\n(.*?)^```\n", text, re.M | re.S)
+    assert len(blocks) == len(PUBLIC) + 1
+    names, wrong, parser = {}, {}, doctest.DocTestParser()
+    for name, block in blocks:
+        runner, said = doctest.DocTestRunner(verbose=False), io.StringIO()
+        test = parser.get_doctest(block, names, name or "first", str(python_names.EXAMPLES), 0)
+        assert test.examples, name
+        if runner.run(test, out=said.write, clear_globs=False).failed:
+            wrong[name] = said.getvalue()
+        names.update(test.globs)
+    assert not wrong, "\n".join(wrong.values())
+
+
+def test_a_package_shows_its_public_names_and_no_helpers():
+    assert dir(pe) == sorted(pe.__all__) and dir(pt) == sorted(pt.__all__)

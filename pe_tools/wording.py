@@ -162,8 +162,8 @@ WARNINGS: Mapping[str, Callable[..., str]] = {
         f"the curves from scans are provisional: {runs} of {planned} runs of their study are done"
     ),
     "returns": lambda _: (
-        "LiDARs return as measured in real traffic, not each beam as in the paper: these scores "
-        "compare with such scores alone"
+        "as measured in real traffic, not each beam as in the paper: compare these scores with "
+        "such scores alone"
     ),
     "below_ground": lambda part, state, depth, parts: (
         f"state {state!r} drives {part!r}{f' and {parts - 1} more parts' if parts > 1 else ''} "

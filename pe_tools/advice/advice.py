@@ -17,6 +17,7 @@ UNMET = "requirement"
 PROVISIONAL = "provisional"
 """Code of the warning about AP curves that rest on a part of their runs."""
 SUBJECTS = {FRAGILE: "placement", UNMET: "placement", PROVISIONAL: "AP curves"}
+SUBJECTS |= {"returns": "returns"}
 """What warnings without a sensor concern, by code; others concern the vehicle."""
 
 

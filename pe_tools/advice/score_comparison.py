@@ -105,6 +105,7 @@ OTHER_HARDWARE = (
     "beside it (docs/validity/own)."
 )
 """Note beside scores of rigs that differ in their sensors, not in their placement alone."""
+OTHER_RETURNS = "LiDAR returns differ, as in the paper or on the road: do not compare scores."
 LOWER_IS_BETTER = frozenset({ENTROPY, BLIND, SECTOR})
 AHEAD = "front"
 """Direction whose reach is compared."""
@@ -270,8 +271,13 @@ def _row(
 
 
 def hardware_note(rigs: Iterable[Sequence[SensorModel]]) -> str:
-    """Return `OTHER_HARDWARE` where rigs, by their models in any order, differ; else nothing."""
-    first, *others = [list(models) for models in rigs] or [[]]
+    """Return `OTHER_HARDWARE` where rigs, by their models in any order, differ; else nothing.
+
+    Where LiDARs have other `returns`, it is `OTHER_RETURNS`.
+    """
+    first, *others = rows = [list(models) for models in rigs] or [[]]
+    if len({m.returns for models in rows for m in models if hasattr(m, "returns")}) > 1:
+        return OTHER_RETURNS
     for left in others:
         for model in first:
             match = next((k for k, each in enumerate(left) if same_model(model, each)), None)

@@ -26,11 +26,12 @@ mutants: .venv/dev.stamp  ## change the engine line by line: does a test fail? a
 bench: .venv/dev.stamp  ## measure speed
 	@$(PYTHON_VENV) -m benchmarks $(ARGS)
 
-lint: .venv/dev.stamp  ## style, format, types
+lint: .venv/dev.stamp  ## style, format, types, licences
 	@.venv/bin/ruff check --quiet .
 	@.venv/bin/ruff format --check --quiet . || \
 		{ echo "lint: not formatted; run .venv/bin/ruff format ." >&2; exit 1; }
 	@.venv/bin/mypy --no-error-summary
+	@.venv/bin/reuse lint --quiet || { .venv/bin/reuse lint >&2; exit 1; }
 	@echo "lint: clean"
 
 extension: .venv/run.stamp  ## build the Blender extension, dist/perception_entropy-VERSION.zip

@@ -41,7 +41,7 @@ def open_file(name: str) -> app.Answer:
     """Open a .blend file; nothing to print."""
     path = Path(name)
     if not path.is_file():
-        raise pe.InputError(name, "file", "an existing .blend file", "no such file")
+        raise pe.InputError(name, "", "", "no such file")
     try:
         bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False)
     except RuntimeError as error:

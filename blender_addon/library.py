@@ -20,10 +20,6 @@ def example_file() -> Path | None:
     return next((each / EXAMPLE for each in EXAMPLES if (each / EXAMPLE).is_file()), None)
 
 
-WEBSITE = "https://extensions.blender.org/add-ons/perception-entropy/"
-"""As in the manifest."""
-
-
 def show() -> None:
     """Add the library to Blender's, once; another library of the same name is left alone."""
     libraries = bpy.context.preferences.filepaths.asset_libraries

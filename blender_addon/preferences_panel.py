@@ -7,9 +7,9 @@ from typing import Any
 import bpy
 
 from . import library, own_catalog, signals
-from .engine import catalog, graphics
+from .engine import app, catalog, graphics
 from .language import draw_label
-from .preferences import COLORS, LIVE_BUDGET_MS, stored
+from .preferences import COLORS, LIVE_BUDGET_MS, mark_seen, stored
 from .properties import fields
 from .sensor_kinds import mount_of
 from .translation_context import CONTEXT
@@ -56,6 +56,7 @@ class PE_Preferences(bpy.types.AddonPreferences):
 
     bl_idname = __package__
 
+    seen_version: fields.text("Version", "Version whose news were shown", options={"HIDDEN"})
     show_library: fields.switch(
         "Sensors in the Asset Browser",
         "A library of LiDARs and cameras: drag one onto the vehicle",
@@ -124,7 +125,7 @@ class PE_Preferences(bpy.types.AddonPreferences):
         row = self.layout.split(factor=NAMES_SHARE)
         row.separator()
         link = row.operator("wm.url_open", text="Website", text_ctxt=CONTEXT, icon="URL")
-        link.url = library.WEBSITE
+        link.url = app.WEBSITE
 
     def _section(self, heading: str) -> bpy.types.UILayout:
         """Draw a heading; return a column below it. Blender draws a column's own only at a tick."""
@@ -136,7 +137,9 @@ CLASSES = (PE_Preferences,)
 
 
 def register() -> None:
-    """Load the catalogue that the preferences name."""
+    """Load the catalogue that the preferences name. A first installation has no news."""
+    if not getattr(stored(), "seen_version", ""):
+        mark_seen()
     own_catalog.load(getattr(stored(), "own_catalog", ""))
 
 

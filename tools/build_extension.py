@@ -78,7 +78,8 @@ def stage(target: Path) -> None:
         # A developer's link to it may stand in the add-on's folder.
         shutil.rmtree(target / package.name, ignore_errors=True)
         shutil.copytree(package, target / package.name, ignore=LEFT_OUT)
-    shutil.copy(ROOT / "LICENSE", target / "LICENSE")
+    for name in ("LICENSE", "CHANGELOG.md"):
+        shutil.copy(ROOT / name, target / name)
     wheels = [add_wheel(target / "wheels", name) for name in BUNDLED]
     listed = ", ".join(f'"./wheels/{wheel.name}"' for wheel in wheels)
     manifest = read(MANIFEST).replace("[permissions]", f"wheels = [{listed}]\n\n[permissions]", 1)
@@ -226,7 +227,7 @@ def check_contents(archive: Path) -> None:
     with zipfile.ZipFile(archive) as packed:
         names = set(packed.namelist())
     presets = {path.relative_to(ROOT).as_posix() for path in ENGINE.glob("**/*.toml")}
-    always = {"__init__.py", "blender_manifest.toml", "LICENSE", "pe_core/__init__.py", EXAMPLE}
+    always = {"__init__.py", "blender_manifest.toml", "LICENSE", "CHANGELOG.md", EXAMPLE}
     always |= {path.relative_to(ROOT).as_posix() for path in TOOLS.glob("page/**/*.[cjh][st]*")}
     always |= {path.relative_to(ADDON).as_posix() for path in ADDON.glob("languages/*.po")}
     assets = {path.relative_to(ADDON).as_posix() for path in ADDON.glob("assets/*")}

@@ -210,7 +210,7 @@ def draw(name: str) -> None:
 
 def in_blender(what: str, name: str) -> None:
     """Make a file of a project with bpy 4.2: later versions read its files."""
-    command = [release.install_bpy_4_2(), ROOT / "blend_assets" / "make_example.py", what, name]
+    command = [release.install_bpy("4.2"), ROOT / "blend_assets" / "make_example.py", what, name]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, timeout=release.TIMEOUT_S)
 
 

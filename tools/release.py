@@ -6,19 +6,22 @@
 ``*.whl``, ``*.tar.gz``       wheel and sdist, checked by twine, installed into empty environments
 ``repository/``               a repository of extensions: ``index.json`` for Blender, and a page
 ``NOTES.md``                  the changelog of this version
-``SHA256SUMS``                checksums of all files above
+``SHA256SUMS``                checksums of all files above; a second build has to have the same
 ==========================  ====================================================================
 
 Nothing is published: the folder is what a server or a release page gets.
 """
 
 import argparse
+import gzip
 import hashlib
+import io
 import os
 import re
 import shutil
 import subprocess
 import sys
+import tarfile
 import tempfile
 import zipfile
 from collections.abc import Iterator
@@ -28,9 +31,10 @@ import build_extension
 import real_blender
 from build_extension import ROOT, BuildError, agreed_version, bpy_tool, read
 
-WANTED_BLENDERS = ("4.2", "4.3", "5")
+WANTED_BLENDERS = ("4.2", "4.3", "4.5", "5")
 """Versions of Blender whose own tool has to validate the extension, by their beginning."""
-BPY_4_2 = "bpy==4.2.*"
+BPY_VERSIONS = ("4.2", "4.5")
+"""Versions of Blender as a Python module that `--install` gets: the LTS versions of Python 3.11."""
 DEBIAN_SUITES = ("trixie", "sid")
 """Suites of Debian whose Blenders `--install` gets: 4.3 and 5.x."""
 EXTRAS = ("notebook", "parquet", "completion", "cluster", "rerun", "argoverse", "meshes")
@@ -87,25 +91,26 @@ def tools_of_blender() -> Iterator[tuple[str, list[str]]]:
         if command is not None:
             version = re.findall(r"Blender (\S+)", run(command, "--version"))[0]
             yield version, [command, "--factory-startup", "--command", "extension"]
-    python = folder_of_bpy_4_2() / "bin" / "python"
-    if python.exists():
+    for python in filter(Path.exists, map(python_of_bpy, BPY_VERSIONS)):
         code = "import importlib.util as u; print(u.find_spec('bpy').origin)"
         origin = Path(run(python, "-c", code).strip())
         tool = next(origin.parent.glob("*/scripts/addons_core/bl_pkg/cli/blender_ext.py"))
         yield tool.parents[4].name, [str(python), str(tool)]
 
 
-def folder_of_bpy_4_2() -> Path:
-    """Return where the oldest Blender that the extension supports is kept, as a Python module."""
-    return real_blender.cache_folder() / "bpy-4.2"
+def python_of_bpy(version: str) -> Path:
+    """Return where the Python is that has a version of Blender as a module."""
+    return real_blender.cache_folder() / f"bpy-{version}" / "bin" / "python"
 
 
-def install_bpy_4_2() -> Path:
-    """Install the oldest Blender that the extension supports; return its Python."""
-    python = folder_of_bpy_4_2() / "bin" / "python"
+def install_bpy(version: str) -> Path:
+    """Return a Python with a version of Blender as a module; install it where there is none."""
+    if (tool := bpy_tool()) and tool.parents[4].name == version:
+        return Path(sys.executable)
+    python = python_of_bpy(version)
     if not python.exists():
-        run(sys.executable, "-m", "venv", folder_of_bpy_4_2())
-    run(python, "-m", "pip", "install", "-qq", BPY_4_2)  # again where it was interrupted
+        run(sys.executable, "-m", "venv", python.parents[1])
+    run(python, "-m", "pip", "install", "-qq", f"bpy=={version}.*")  # again where it broke off
     return python
 
 
@@ -122,7 +127,8 @@ def install_blenders() -> None:
     for suite in DEBIAN_SUITES:  # first: they may be refused at once
         if real_blender.from_chroot(suite) is None:
             real_blender.install(suite)
-    install_bpy_4_2()
+    for version in BPY_VERSIONS:
+        install_bpy(version)
 
 
 def validate(archive: Path, every_version: bool) -> list[str]:
@@ -147,11 +153,26 @@ def validate(archive: Path, every_version: bool) -> list[str]:
 
 
 def build_packages(folder: Path) -> list[Path]:
-    """Build sdist, and from it the wheel; have twine check both."""
-    run(sys.executable, "-m", "build", "--outdir", folder, ROOT)
+    """Build sdist, and from it the wheel, dated as the commit; have twine check both."""
+    time = run("git", "log", "-1", "--format=%ct").strip()
+    env = {"SOURCE_DATE_EPOCH": time}
+    run(sys.executable, "-m", "build", "--outdir", folder, ROOT, env=env)
     made = sorted([*folder.glob("*.whl"), *folder.glob("*.tar.gz")])
+    repack_sdist(next(path for path in made if path.suffix == ".gz"), int(time))
     run(sys.executable, "-m", "twine", "check", "--strict", *made)
     return made
+
+
+def repack_sdist(path: Path, time: int) -> None:
+    """Write an sdist again without what differs from build to build: times and owners."""
+    made = io.BytesIO()
+    with tarfile.open(path) as old, tarfile.open(fileobj=made, mode="w") as new:
+        for entry in sorted(old.getmembers(), key=lambda entry: entry.name):
+            entry.mtime, entry.uid, entry.gid, entry.uname, entry.gname = time, 0, 0, "", ""
+            entry.mode = 0o755 if entry.isdir() else 0o644
+            entry.pax_headers = {}
+            new.addfile(entry, old.extractfile(entry) if entry.isfile() else None)
+    path.write_bytes(gzip.compress(made.getvalue(), mtime=time))
 
 
 def try_wheel(wheel: Path, extra: str = "") -> None:
@@ -184,14 +205,37 @@ def build_repository(archive: Path, folder: Path) -> None:
     )
 
 
-def write_checksums(folder: Path) -> None:
-    """Write ``SHA256SUMS`` in the form that ``sha256sum --check`` reads."""
+def checksums(folder: Path) -> str:
+    """Return the digests of all files in the form that ``sha256sum --check`` reads."""
     files = sorted(path for path in folder.rglob("*") if path.is_file())
-    lines = [
+    return "".join(
         f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.relative_to(folder).as_posix()}\n"
         for path in files
-    ]
-    (folder / "SHA256SUMS").write_text("".join(lines), "utf-8")
+    )
+
+
+def build_all(folder: Path, version: str) -> tuple[Path, list[Path]]:
+    """Build all that is published into a new folder; return the extension and the packages.
+
+    Raises
+    ------
+    BuildError
+        A step failed, or the changelog has no section of this version.
+    """
+    folder.mkdir()
+    archive = Path(shutil.copy(build_extension.build(), folder))
+    packages = build_packages(folder)
+    build_repository(archive, folder / "repository")
+    (folder / "NOTES.md").write_text(notes(version), "utf-8")
+    (folder / "SHA256SUMS").write_text(checksums(folder), "utf-8")
+    return archive, packages
+
+
+def require_same(first: Path, second: Path) -> None:
+    """Raise `BuildError` when two builds differ; the message names a file that does."""
+    sums = [(each / "SHA256SUMS").read_text("utf-8").splitlines() for each in (first, second)]
+    if different := sorted(set(sums[0]) ^ set(sums[1])):
+        raise BuildError(f"two builds differ: {different[0].split()[-1]}")
 
 
 def release(arguments: argparse.Namespace) -> Path:
@@ -199,26 +243,24 @@ def release(arguments: argparse.Namespace) -> Path:
     if not arguments.dirty:
         check_tree()
     version = agreed_version()
-    text = notes(version)
+    notes(version)  # a missing section is noticed before anything is built
     if arguments.install and not arguments.dirty:
         install_blenders()
     made = ROOT / "dist" / f"release-{version}"
     (ROOT / "dist").mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=".release-", dir=ROOT / "dist") as scratch:
         folder = Path(scratch, "release")
-        folder.mkdir()
-        archive = Path(shutil.copy(build_extension.build(), folder))
+        archive, packages = build_all(folder, version)
         tell(f"extension, {size_of(archive)}", validate(archive, not arguments.dirty))
-        packages = build_packages(folder)
+        build_all(Path(scratch, "again"), version)
+        require_same(folder, Path(scratch, "again"))
+        tell("built twice", ["the same digests"])
         wheel = next(path for path in packages if path.suffix == ".whl")
         extras = () if arguments.quick else EXTRAS
         for extra in ("", *extras):
             try_wheel(wheel, extra)
         tell("wheel and sdist", [path.name for path in packages])
         tell("wheel installed and run", ["alone", *(f"with [{extra}]" for extra in extras)])
-        build_repository(archive, folder / "repository")
-        (folder / "NOTES.md").write_text(text, "utf-8")
-        write_checksums(folder)
         shutil.rmtree(made, ignore_errors=True)
         folder.rename(made)
     return made

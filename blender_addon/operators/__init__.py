@@ -18,6 +18,7 @@ from ..live import (
     shown_score,
     text_of,
 )
+from ..preferences import is_updated
 from ..sensor_cache import sensors as listed_sensors
 from ..sensor_kinds import kind_label
 from . import (
@@ -35,6 +36,7 @@ from . import (
     shortcuts,
     upright,
     variants,
+    whats_new,
 )
 from .add_sensor import Offer, brief, known_makers, makers, models, offers
 from .declared import CLASSES
@@ -66,6 +68,7 @@ __all__ = [
     "figure_rows",
     "first_steps",
     "holder_of",
+    "is_updated",
     "kind_label",
     "known_makers",
     "known_rigs",
@@ -93,6 +96,7 @@ __all__ = [
     "upright",
     "variants",
     "warnings_outdated",
+    "whats_new",
 ]
 
 

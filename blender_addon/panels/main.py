@@ -15,6 +15,7 @@ from ..operators import (
     costs_nothing,
     exports,
     figure_rows,
+    is_updated,
     listed_sensors,
     nats_text,
     offers,
@@ -217,6 +218,8 @@ def main(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
         newer = "Saved by a newer version of the extension: its new settings are not shown"
         draw_sentence(layout, context, newer, icon="ERROR")
     draw_actions(layout, settings)  # first: nothing that comes late moves them
+    if is_updated():
+        layout.operator("pe.whats_new", icon="INFO")
     draw_vehicle(layout, context)
     draw_step(layout, context, 2)
     draw_add(layout, settings)

@@ -9,8 +9,9 @@ from __future__ import annotations
 import os
 import reprlib
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,8 @@ MAX_FOUND_LENGTH = 80
 """Maximum characters of a found value in a message."""
 MAX_TEXT_LENGTH = 160
 """Maximum characters of the field and of what was expected: a list of all keys of a table fits."""
+MAX_NAMES = 1000
+"""Maximum names among which near ones are looked for: a hostile file may have any number."""
 CUT = "..."
 MANY_DIGITS = 40
 """An integer of more digits is shown by the number of its digits. (Python does not convert an
@@ -40,21 +43,21 @@ class InputError(ValueError):
     source : object
         Where the input came from: a file's path, or the name of what was passed in.
     field : str
-        Which field of it is wrong (``sensor[0].model``), or what was being read.
+        Which field of it is wrong (``sensor[0].model``), or what was being read; "" for all of it.
     expected : str
-        What would have been right.
+        What would have been right; "" where `found` alone says it, as of a file that is missing.
     found : object
         What was there instead: a text that is shown unchanged, or the value itself.
     """
 
     def __init__(self, source: object, field: str, expected: str, found: object) -> None:
         self.source, self.field, self.expected, self.found = str(source), field, expected, found
-        where = f"{_middle_cut(visible(self.source))}: {_cut(visible(field), MAX_TEXT_LENGTH)}"
         self._found_text = visible(found) if isinstance(found, str) else _short(found)
-        wanted = _cut(visible(expected), MAX_TEXT_LENGTH)
-        super().__init__(
-            f"{where}: expected {wanted}, found {_cut(self._found_text, MAX_FOUND_LENGTH)}"
-        )
+        message = _cut(self._found_text, MAX_FOUND_LENGTH)
+        if expected:
+            message = f"expected {_cut(visible(expected), MAX_TEXT_LENGTH)}, found {message}"
+        where = (_middle_cut(visible(self.source)), _cut(visible(field), MAX_TEXT_LENGTH))
+        super().__init__(": ".join([*filter(None, where), message]))
 
     def __reduce__(self) -> tuple[object, ...]:
         return type(self), (self.source, self.field, self.expected, self._found_text)
@@ -65,12 +68,39 @@ class InputError(ValueError):
 
     def within(self, source: object, of: str = "") -> InputError:
         """Return the same error with another source; `of`, else its own, goes before the field."""
-        return InputError(source, f"{of or self.source}: {self.field}", self.expected, self.found)
+        field = ": ".join(filter(None, (of or self.source, self.field)))
+        return InputError(source, field, self.expected, self.found)
 
 
 def shown(value: object) -> str:
     """Return a value as messages quote it: like `repr`, but short, and it never fails."""
     return _cut(_SHORT.repr(value), MAX_FOUND_LENGTH)
+
+
+def one_of(names: Iterable[object], given: object) -> str:
+    """Return what is expected in place of an unknown name: the nearest names come first."""
+    known = list(dict.fromkeys(str(name) for name in names))
+    lowered = {name.lower(): name for name in known[:MAX_NAMES]}
+    wanted = given[:MAX_FOUND_LENGTH].lower() if isinstance(given, str) else ""
+    near = get_close_matches(wanted, lowered, cutoff=0.5)
+    ordered = list(dict.fromkeys([*(lowered[name] for name in near), *known]))
+    if sum(len(name) + 2 for name in ordered) > MAX_TEXT_LENGTH - 20:
+        return f"one of {len(known)} names, such as {', '.join(ordered[:3])}"
+    if near and len(ordered) > 1:
+        return f"{ordered[0]}, or one of {', '.join(ordered[1:])}"
+    return f"one of {', '.join(ordered)}" if ordered else "no name at all"
+
+
+def require_name(source: object, field: str, name: object, names: Iterable[str]) -> None:
+    """Raise `InputError` for a name that is none of several."""
+    if name not in (known := tuple(names)):
+        raise InputError(source, field, one_of(known, name), shown(name))
+
+
+def require_keys(source: object, of: str, table: Iterable[str], known: Iterable[str]) -> None:
+    """Raise `InputError` for the first key of a table, named after `of`, that is not known."""
+    for key in sorted(set(map(str, table)).difference(known := sorted(known))):
+        raise InputError(source, f"{of}{key}", one_of(known, key), "an unknown key")
 
 
 def plural(count: float, noun: str) -> str:

@@ -65,7 +65,7 @@ def read_bytes(path: Path, max_bytes: int = TEXT_BYTES) -> bytes:
         _require_regular(path, os.stat(path), "a readable file")
         return _read(path, max_bytes)
     except FileNotFoundError as error:
-        raise InputError(str(path), "file", "an existing file", "no such file") from error
+        raise InputError(str(path), "", "", "no such file") from error
     except InputError:
         raise
     except (OSError, ValueError) as error:  # ValueError: no path may hold a NUL

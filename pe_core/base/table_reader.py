@@ -11,10 +11,9 @@ import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from difflib import get_close_matches
 from typing import Any
 
-from .errors import InputError, shown
+from .errors import InputError, one_of, shown
 from .values import A_TEXT, ANY, Name, Number, Whole, choice, listed, real
 
 REQUIRED = object()
@@ -148,9 +147,7 @@ class Table:
         """Raise `InputError` for the first key that was not read."""
         for key in self._data:
             if key not in self._read:
-                near = get_close_matches(key, self._read, n=3)
-                known = ", ".join((*near, *sorted(self._read.difference(near))))
-                raise self.error(key, f"one of {known}", "an unknown key")
+                raise self.error(key, one_of(sorted(self._read), key), "an unknown key")
 
 
 def load_toml(source: object, field: str, text: str) -> dict[str, Any]:

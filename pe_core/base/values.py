@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from .arrays import Floats
-from .errors import InputError, shown
+from .errors import InputError, one_of, shown
 
 DEGREE_DECIMALS = 9
 """Decimals of degrees in a file, where these give the angle exactly."""
@@ -267,7 +267,7 @@ def choice(source: object, field: str, value: Any, choices: Iterable[str]) -> st
     choices = tuple(choices)
     if isinstance(value, str) and value in choices:
         return value
-    raise InputError(source, field, f"one of {', '.join(choices)}", shown(value))
+    raise InputError(source, field, one_of(choices, value), shown(value))
 
 
 def _whole(value: Any) -> int | None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -17,7 +16,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ..base.arrays import read_only_data
-from ..base.errors import InputError, shown
+from ..base.errors import InputError, require_keys, require_name, shown
 from ..base.files import decode_text, read_bytes
 from ..base.table_reader import load_toml
 from ..base.values import A_NAME, A_TEXT
@@ -191,10 +190,8 @@ def load(name: str) -> SensorModel:
     """
     name = A_TEXT.checked("catalogue", "model", name)
     if name not in _loaded:
-        entry = entries().get(name)
-        if entry is None:
-            raise InputError("catalogue", "model", f"a name such as {_near(name)}", shown(name))
-        _loaded.setdefault(name, from_table(name, entry.table))
+        require_name("catalogue", "model", name, names())
+        _loaded.setdefault(name, from_table(name, entries()[name].table))
     return _loaded[name]
 
 
@@ -240,11 +237,7 @@ def from_table(name: str, table: Mapping[str, Any], folder: Path | None = None) 
     if not isinstance(table, Mapping):
         raise InputError(name, "model", "a table", shown(table))
     kind = kind_named(table.get("kind"), name)
-    unknown = sorted(map(str, set(table) - kind.keys - COMMON_KEYS))
-    if unknown:
-        raise InputError(
-            name, unknown[0], f"one of {', '.join(sorted(kind.keys))}", "an unknown key"
-        )
+    require_keys(name, "", table, kind.keys | COMMON_KEYS)
     if "housing" in table:
         read_housing(name, table["housing"])
     try:
@@ -274,9 +267,3 @@ def _shipped() -> Mapping[str, Entry]:
                 raise InputError(file.name, name, "a name used once", by_name[name].file)
             by_name[name] = Entry(name, file.name, read_only_data(table))
     return MappingProxyType(by_name)
-
-
-def _near(name: str) -> str:
-    lowered = {n.lower(): n for n in names()}
-    close = get_close_matches(name.lower(), lowered, n=3, cutoff=0.4)
-    return ", ".join(repr(lowered[c]) for c in close) or repr(names()[0])

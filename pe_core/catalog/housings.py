@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from ..base.errors import InputError, shown
+from ..base.errors import InputError, require_keys, shown
 from ..base.values import A_TEXT, LENGTH, choice, vector
 from ..scene.rig import NEAR, SHAPES, Housing
 
@@ -32,10 +32,7 @@ def read_housing(name: str, table: Any) -> Housing:
     if not isinstance(table, Mapping):
         raise InputError(name, "housing", "a table", shown(table))
     shape = choice(name, "housing.shape", table.get("shape"), SHAPES)
-    unknown = sorted(map(str, set(table) - KEYS[shape]))
-    if unknown:
-        keys = ", ".join(sorted(KEYS[shape]))
-        raise InputError(name, f"housing.{unknown[0]}", f"one of {keys}", "an unknown key")
+    require_keys(name, "housing.", table, KEYS[shape])
     source = A_TEXT.checked(name, "housing.source", table.get("source"))
     size, center = (_box if shape == "box" else _cylinder)(name, table)
     return Housing(shape, size, center, source)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
-from ..base.errors import InputError, require_memory, shown
+from ..base.errors import InputError, require_memory, require_name, shown
 from ..base.notebook import ShortRepr
 from ..base.setting import NAMES, Pair, Panel, check_settings, required_setting, setting
 from ..base.values import WEIGHT, Number, choice
@@ -55,8 +55,7 @@ def checked_densities(values: Any, names: Sequence[str]) -> Densities:
     if pairs is None:
         raise InputError("prior", "density", "numbers of objects by class", shown(values))
     for name in pairs:
-        if name not in names:
-            raise InputError("prior", "density", f"one of {', '.join(names)}", shown(name))
+        require_name("prior", "density", name, names)
     counts = {n: COUNT.checked("prior", f"density.{n}", pairs[n]) for n in names if n in pairs}
     return tuple(counts.items())
 
@@ -163,8 +162,7 @@ class Prior(ShortRepr):
         object.__setattr__(self, "density", checked_densities(self.density, names))
         for focus in self.focus:
             for name in focus.classes or ():
-                if name not in names:
-                    raise InputError("focus", "classes", f"one of {', '.join(names)}", shown(name))
+                require_name("focus", "classes", name, names)
 
     @classmethod
     def road(cls, focus: Sequence[Focus] = ()) -> Prior:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from functools import cache, cached_property
 from typing import Any
 
@@ -17,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..base.arrays import Floats, ReadOnlyDict, read_only, read_only_copy
-from ..base.errors import InputError, shown
+from ..base.errors import InputError, require_name, shown
 from ..base.notebook import Tabular
 from ..base.setting import Panel, check_settings, setting
 from ..base.values import A_NAME, Number, numbers
@@ -50,9 +49,7 @@ def checked_covers(covers: Any, names: Sequence[str]) -> Mapping[str, float]:
     if not isinstance(covers, Mapping):
         raise InputError("vehicle", "covers", "a table of parts and losses", shown(covers))
     for name in covers:
-        if name not in names:
-            near = get_close_matches(str(name), names, n=3, cutoff=0.4) or list(names)[:5]
-            raise InputError("vehicle", "covers", f"a part such as {', '.join(near)}", shown(name))
+        require_name("vehicle", "covers", name, names)
     items = covers.items()
     return ReadOnlyDict({k: LOSS_DB.checked("vehicle", f"covers.{k}", v) for k, v in items})
 
@@ -109,8 +106,7 @@ class Vehicle(Tabular):
             found = f"{parts.shape} with {len(names)} names"
             raise InputError("vehicle", "parts", "one index into part_names a triangle", found)
         for name in self.glass:
-            if name not in names:
-                raise InputError("vehicle", "glass", f"one of {', '.join(names)}", shown(name))
+            require_name("vehicle", "glass", name, names)
         object.__setattr__(self, "covers", checked_covers(self.covers, names))
         check_settings(self, "vehicle")
         for key, value in (("triangles", triangles), ("parts", parts), ("part_names", names)):

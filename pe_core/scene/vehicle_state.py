@@ -6,7 +6,6 @@ move with it. All products are written out, so that a state has the same bits in
 
 from __future__ import annotations
 
-import difflib
 import fnmatch
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -15,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.errors import InputError, shown
+from ..base.errors import InputError, require_name
 from ..base.setting import NAMES, Panel, Triple, check_settings, required_setting, setting
 from ..base.values import A_NAME, WEIGHT, Angle, Number, Whole
 from ..geometry.poses import Pose, rotate, rotation_matrix, rpy_from_matrix
@@ -210,7 +209,7 @@ def _named(
         return parts, frozenset(name for name, part in carriers.items() if part in parts)
     if carriers:
         for name in motion.sensors:
-            check_name(who, "move.sensors", name, carriers)
+            require_name(who, "move.sensors", name, carriers)
     return parts, frozenset(name for name in motion.sensors if name in carriers)
 
 
@@ -222,16 +221,6 @@ def _parts(who: str, key: str, names: Iterable[str], vehicle: Vehicle) -> frozen
         if name in vehicle.part_names:
             fitting = [list(vehicle.part_names).index(name)]
         if not fitting:
-            check_name(who, key, name, vehicle.part_names)
+            require_name(who, key, name, vehicle.part_names)
         found.update(fitting)
     return frozenset(found)
-
-
-def check_name(who: str, key: str, name: str, names: Iterable[str]) -> None:
-    """Raise `InputError` for a name that is none of several; the nearest ones are offered."""
-    names = list(names)
-    if name in names:
-        return
-    near = difflib.get_close_matches(name, names, 3, 0.3) or names[:3]
-    expected = f"one of {len(names)} names, such as {', '.join(near)}" if near else "a name"
-    raise InputError(who, key, expected, shown(name))

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.errors import InputError, shown
+from ..base.errors import InputError, one_of, shown
 from ..geometry.poses import Pose, cross, dot, rotate, rotation_matrix, rpy_from_matrix
 from ..geometry.ray_traversal import TriangleTree
 from ..scene.rig import Housing, Sensor
@@ -146,7 +146,7 @@ def _faces(who: str, mount: SurfaceMount, vehicle: Vehicle | None) -> tuple[Vehi
     names = () if vehicle is None else vehicle.part_names
     for part in mount.parts:
         if vehicle is None or part not in names:
-            expected = f"one of {', '.join(names)}" if names else "a vehicle with such a part"
+            expected = one_of(names, part) if names else "a vehicle with such a part"
             raise InputError(who, "parts", expected, shown(part))
     assert vehicle is not None  # a mount has at least one part
     chosen = np.isin(vehicle.parts, [names.index(part) for part in mount.parts])

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from ..base.arrays import ReadOnlyDict
-from ..base.errors import InputError, shown
+from ..base.errors import InputError, require_name, shown
 from ..base.setting import NAMES, OneOf, Panel, Several, check_settings, setting
 from ..base.values import A_NAME, Number, Whole, listed
 from ..geometry.poses import Pose
@@ -183,9 +183,7 @@ class Start:
         """
         names = [sensor.name for sensor in rig]
         for name in self.poses:
-            if name not in names:
-                expected = f"sensors of {', '.join(names)}"
-                raise InputError("optimize", f"start {self.name!r}", expected, shown(name))
+            require_name("optimize", f"start {self.name!r}", name, names)
         return rig.with_poses([self.poses.get(s.name, s.pose) for s in rig])
 
 

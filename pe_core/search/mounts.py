@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..base.arrays import Floats, ReadOnlyDict
-from ..base.errors import InputError, shown
+from ..base.errors import InputError, one_of, shown
 from ..base.notebook import ShortRepr
 from ..base.setting import FLAG, OneOf, Pair, Panel, check_settings, setting
 from ..base.values import A_NAME, A_PATH, ANY, LENGTH, Number, listed
@@ -255,7 +255,7 @@ class Mounting(ShortRepr):
                 raise InputError(who, f"mount {name!r}", "a mount", shown(mount))
         for sensor, name in self.on.items():
             if name not in self.mounts:
-                known = f"one of {', '.join(self.mounts)}" if self.mounts else NO_MOUNT
+                known = one_of(self.mounts, name) if self.mounts else NO_MOUNT
                 raise InputError(f"sensor {sensor!r}", "mount", known, shown(name))
         put(self, "mounts", ReadOnlyDict(self.mounts))
         put(self, "on", ReadOnlyDict(self.on))

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.errors import InputError, shown
+from ..base.errors import InputError, require_name, shown
 from ..geometry.poses import Pose, rotate, rpy_from_matrix
 from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
@@ -118,8 +118,8 @@ def _links(rig: Rig, mounting: Mounting) -> Iterator[Follower]:
 def _check_names(rig: Rig, mounting: Mounting) -> None:
     names = [sensor.name for sensor in rig]
     for field, links in (("pair", mounting.pairs), ("group", mounting.groups)):
-        for name in (name for link in links for name in link if name not in names):
-            raise InputError("optimize", field, f"sensors of {', '.join(names)}", shown(name))
+        for name in (name for link in links for name in link):
+            require_name("optimize", field, name, names)
     following = [pair[1] for pair in mounting.pairs]
     following += [name for group in mounting.groups for name in group[1:]]
     for name in following:

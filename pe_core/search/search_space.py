@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..base.arrays import ReadOnlyDict
-from ..base.errors import InputError, shown
+from ..base.errors import InputError, require_name, shown
 from ..base.notebook import ShortRepr
 from ..base.setting import Panel, check_settings, setting
 from ..base.values import Angle, Number, Whole, listed, pair
@@ -125,8 +125,7 @@ class SearchSpace(ShortRepr):
         """Return itself, or raise `InputError` when a name, an axis or a start is not possible."""
         sensors = {sensor.name: sensor for sensor in rig}
         for name, axes in self.bounds.items():
-            if name not in sensors:
-                raise InputError("search space", "sensor", "a sensor of the rig", shown(name))
+            require_name("search space", "sensor", name, sensors)
             if self.mounting.mount_of(name) is not None:
                 continue  # its angles are relative to its mount, whose domain checks them
             start = pose_values(sensors[name].pose)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from operator import le
 
 from ..base.arrays import ReadOnlyDict
-from ..base.errors import InputError, shown
+from ..base.errors import InputError, one_of, require_name, shown
 from ..base.setting import Panel, check_settings, required_setting, setting
 from ..base.values import A_NAME, Name, Number, Whole, listed
 from ..scene.rig import Rig, SensorModel
@@ -206,13 +206,12 @@ def _sites_of_choice(
     """Yield the sensors of each site of a choice, with their mirror images."""
     names = [sensor.name for sensor in rig]
     for name in choice.sensors:
-        if name not in names:
-            raise InputError(who, "sensor", f"one of {', '.join(names)}", shown(name))
+        require_name(who, "sensor", name, names)
     if choice.mount is None:
         yield _with_images(choice.sensors, mounting)
         return
     if choice.mount not in mounting.mounts:
-        known = f"one of {', '.join(mounting.mounts)}" if mounting.mounts else NO_MOUNT
+        known = one_of(mounting.mounts, choice.mount) if mounting.mounts else NO_MOUNT
         raise InputError(who, "mount", known, shown(choice.mount))
     on_mount = [name for name in names if mounting.on.get(name) == choice.mount]
     if not on_mount:

@@ -19,7 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
-from ..base.errors import InputError, shown
+from ..base.errors import InputError
+from ..base.values import choice
 from ..geometry.grids import PerceptionSpace
 from ..geometry.poses import dot
 from ..metric.entropy import ApCurve
@@ -267,10 +268,7 @@ def kind_named(name: object, source: str, field: str = "kind") -> Kind:
     InputError
         When there is no such kind.
     """
-    kind = _kinds.get(name) if isinstance(name, str) else None
-    if kind is None:
-        raise InputError(source, field, f"one of {', '.join(_kinds)}", shown(name))
-    return kind
+    return _kinds[choice(source, field, name, _kinds)]
 
 
 def kind_of(sensor: Sensor | SensorModel) -> Kind:

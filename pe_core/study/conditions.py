@@ -14,13 +14,13 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, TypeVar
 
-from ..base.errors import InputError
+from ..base.errors import InputError, require_name
 from ..base.setting import changed_settings, read_declared, read_settings
 from ..base.table_reader import Table
 from ..base.values import A_NAME
 from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
-from ..scene.vehicle_state import Motion, State, check_name
+from ..scene.vehicle_state import Motion, State
 from ..scoring.requirements import CheckStep, Requirement, RequirementChecker, Verdict
 from ..search import Tolerance, mounted_off
 from ..sensors.weather import Weather, checked_weights
@@ -130,7 +130,7 @@ class Conditions:
 def _named(kind: str, name: str | None, items: Sequence[T]) -> T | None:
     if name is None:
         return None
-    check_name("study", kind, name, [each.name for each in items])
+    require_name("study", kind, name, [each.name for each in items])
     return next(each for each in items if each.name == name)
 
 
@@ -279,9 +279,9 @@ def check_classes(requirements: Sequence[Requirement], known: Iterable[str | Non
     names = {name for name in known if name is not None}
     for each in requirements:
         for body in each.bodies:
-            if body.class_name is not None and body.class_name not in names:
-                who, expected = f"requirement {each.name!r}", f"one of {', '.join(sorted(names))}"
-                raise InputError(who, "body.class", expected, repr(body.class_name))
+            if body.class_name is not None:
+                who = f"requirement {each.name!r}"
+                require_name(who, "body.class", body.class_name, sorted(names))
 
 
 def mounting_cases(

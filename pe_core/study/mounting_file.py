@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from .. import catalog
-from ..base.errors import InputError, shown
+from ..base.errors import InputError, one_of, shown
 from ..base.plugins import shipped
 from ..base.setting import read_declared, read_settings, settings_table
 from ..base.table_reader import Table
@@ -111,7 +111,7 @@ def _read_area(table: Table, folder: Path, file: str, parts: tuple[str, ...]) ->
     mesh = shipped("reader.mesh")(folder / file, AS_SAID)  # a patch's shape tells nothing
     for part in parts:
         if part not in mesh.part_names:
-            expected = f"one of {', '.join(mesh.part_names)}"
+            expected = one_of(mesh.part_names, part)
             raise table.error("parts", f"{expected} in {file}", shown(part))
     wanted = [mesh.part_names.index(part) for part in parts or mesh.part_names]
     triangles = mesh.triangles[np.isin(mesh.parts, wanted)]

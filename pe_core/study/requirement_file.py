@@ -21,7 +21,7 @@ from ..base.errors import InputError, shown
 from ..base.plugins import shipped
 from ..base.setting import changed_settings, read_declared, settings_of
 from ..base.table_reader import Table
-from ..base.values import A_NAME, A_PATH, as_in_file, degrees_in_file, listed
+from ..base.values import A_NAME, A_PATH, as_in_file, choice, degrees_in_file, listed
 from ..scene.mesh import SCALE, MeshAxes
 from ..scoring import requirements as room
 from ..scoring.requirements import BODIES, Body, Criterion, MeshShape, Requirement, Under, Zone
@@ -82,10 +82,7 @@ def presets() -> Mapping[str, Preset]:
 
 def preset(identifier: str, source: str = "presets", field: str = "preset") -> Preset:
     """Return a preset; `InputError` where there is none."""
-    found = presets().get(identifier) if isinstance(identifier, str) else None
-    if found is None:
-        raise InputError(source, field, "a preset (pe requirements lists them)", shown(identifier))
-    return found
+    return presets()[choice(source, field, identifier, presets())]
 
 
 def read_requirements(table: Table, folder: Path = Path()) -> tuple[Requirement, ...]:
@@ -177,9 +174,7 @@ def _read_bodies(table: Table, folder: Path) -> list[Body]:
 
 def _read_body(value: Any, table: Table, folder: Path) -> Body:
     if isinstance(value, str):
-        if value not in BODIES:
-            raise table.error("body", f"one of {', '.join(BODIES)}", shown(value))
-        return BODIES[value]
+        return BODIES[choice(table.source, table.field("body"), value, BODIES)]
     own = Table(value, table.source, table.field("body"))
     name = own.text("name", CUSTOM, rule=A_NAME)
     if own.names == ["name"]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from pe_core.base.errors import InputError, shown
+from pe_core.base.values import choice
 from pe_core.prior.prior import Prior
 from pe_core.scene.rig import Rig
 from pe_core.scoring.score import FARTHEST_M, FoundClass, ObjectScore
@@ -119,9 +119,7 @@ def class_of(prior: Prior, name: str | None) -> str:
     names = prior.class_names
     if name is None:
         return USUAL_CLASS if USUAL_CLASS in names else names[0]
-    if name not in names:
-        raise InputError("prior", "class", f"one of {', '.join(names)}", shown(name))
-    return name
+    return choice("prior", "class", name, names)
 
 
 def outlook_words(found: Outlook, of_voxels: bool = True) -> Iterator[str]:

@@ -1,5 +1,7 @@
 """The command ``pe``, and the parts that all command lines of the project share."""
 
+from pe_core.version import WEBSITE as WEBSITE
+
 from .check_verb import add_check_options as add_check_options
 from .check_verb import check_study as check_study
 from .choose_verb import choose as choose

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, NoReturn, TextIO
 
 from pe_core import catalog
-from pe_core.base.errors import InputError
+from pe_core.base.errors import InputError, one_of
 from pe_core.base.files import named_path, quoted, reason_of
 from pe_core.search import Schedule
 from pe_core.search.goals import FULL, OFF, Front, Start
@@ -50,12 +50,20 @@ class Parser(argparse.ArgumentParser):
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Parse arguments; raise `InputError` for a path that no file can have."""
         found, rest = super().parse_known_args(args, namespace)
+        for word in rest if self.get_default("function") else ():  # a verb has all of its options
+            if word.startswith("-"):
+                self.error(f"{word}: expected {one_of(self._option_string_actions, word)}")
         for action in self._actions:
             if (where := action.metavar) in (*FILES, *FOLDERS):
                 given = getattr(found, action.dest, None)
                 for path in [given] if isinstance(given, str) else given or ():
                     named_path("command line", "/".join(action.option_strings) or where, path)
         return found, rest
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        if action.choices is not None and value not in action.choices:
+            expected = f"expected {one_of(action.choices, value)}, found {quoted(value)}"
+            raise argparse.ArgumentError(action, expected)
 
     def error(self, message: str) -> NoReturn:
         """Print the usage and the error, and exit with status 2."""

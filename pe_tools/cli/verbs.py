@@ -14,7 +14,7 @@ from pe_core.base.errors import InputError
 from pe_core.base.plugins import call_plugin, find_plugins, load_plugin, plugin_name
 from pe_core.search.payload import keep_freed_memory
 from pe_core.study import Study, load_study
-from pe_core.version import __version__
+from pe_core.version import WEBSITE, __version__
 
 from ..jobs import FrontJob, front_study, has_front, prepare_folder, result_names
 from . import exchange_verbs, run_job
@@ -38,6 +38,30 @@ from .terminal import Answer, open_missing_streams, tell
 
 ONE, PERHAPS, SOME = "one", "?", "+"
 """How many study files a verb takes."""
+
+
+GROUPS = {
+    "begin": "new import rigs sensors curves requirements",
+    "score": "score explain check compare",
+    "place": "optimize sweep fit",
+    "show": "review export",
+    "this program": "doctor completion",
+}
+"""Verbs by their groups in the help; what is in none of them is listed last."""
+
+
+class _InGroups(argparse.HelpFormatter):
+    """Help with the verbs in groups."""
+
+    def _iter_indented_subactions(self, action: argparse.Action) -> Any:
+        verbs = {verb.dest: verb for verb in getattr(action, "_choices_actions", ())}
+        rest = [name for name in verbs if name not in " ".join(GROUPS.values()).split()]
+        for title, names in {**GROUPS, "more": " ".join(rest)}.items():
+            if found := [verbs[name] for name in names.split() if name in verbs]:
+                yield argparse.Action([], "", metavar=title)
+                self._indent()
+                yield from found
+                self._dedent()
 
 
 class Verb(NamedTuple):
@@ -84,7 +108,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
     top: argparse.ArgumentParser = Parser(
-        prog="pe", description="Perception entropy of vehicle sensors."
+        prog="pe",
+        description="Perception entropy of vehicle sensors.",
+        formatter_class=_InGroups,
+        epilog=f"Manual: docs/index.md of the source. Home page: {WEBSITE}",
     )
     top.add_argument("--version", action="version", version=f"pe {__version__}")
     verbs = top.add_subparsers(required=True, metavar="VERB")

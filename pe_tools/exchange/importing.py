@@ -81,8 +81,7 @@ def import_rig(
     """
     path = Path(path)
     if not path.exists():
-        found = "no file or folder of that name"
-        raise InputError(path, "file", "an existing file or folder", found)
+        raise InputError(path, "", "", "no such file or folder")
     row = detect_format(path) if name is None else rig_format(name)
     origin = origin_in_ground(row.origin, reference, row.title, path)
     try:

@@ -8,7 +8,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Protocol
 
-from pe_core.base.errors import InputError, shown
+from pe_core.base.errors import InputError
+from pe_core.base.values import choice
 
 from . import argoverse2, autoware, carla, csv_table, driveworks, kitti, nuscenes, osi, ros, urdf
 from . import lens_pictures as lenses
@@ -144,9 +145,7 @@ RIG_FORMATS = MappingProxyType({row.name: row for row in _ROWS})
 
 def rig_format(name: str) -> RigFormat:
     """Return the format of that name, or raise `InputError`."""
-    if name not in RIG_FORMATS:
-        raise InputError("exchange", "format", f"one of {', '.join(RIG_FORMATS)}", shown(name))
-    return RIG_FORMATS[name]
+    return RIG_FORMATS[choice("exchange", "format", name, RIG_FORMATS)]
 
 
 def format_of_file(output: Path, files: Mapping[str, str], chosen: str | None = None) -> str:

@@ -18,7 +18,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 import numpy as np
 
-from pe_core.base.errors import InputError, shown
+from pe_core.base.errors import InputError, one_of, shown
 from pe_core.base.table_reader import Table
 from pe_core.base.values import numbers
 from pe_core.geometry.poses import Pose
@@ -206,7 +206,7 @@ def picture_of_info(source: str, text: str) -> Picture:
     k = _data(top.table("camera_matrix"), (9,))
     model = top.text("distortion_model", PLUMB_BOB)
     if model not in LENSES:
-        raise top.error("distortion_model", f"one of {', '.join(LENSES)}", shown(model))
+        raise top.error("distortion_model", one_of(LENSES, model), shown(model))
     bent = _data(top.table("distortion_coefficients"), FEWEST.get(model, (4,)))
     intrinsics = k[0], k[4], k[2], k[5]
     if not any(bent) and LENSES[model] is BrownConrady:

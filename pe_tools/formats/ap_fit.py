@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pe_core.base.arrays import Floats
-from pe_core.base.errors import InputError, shown
+from pe_core.base.errors import InputError, require_name
 from pe_core.base.files import decode_text, numbered_lines, parse_number, read_bytes
 from pe_core.geometry.poses import Pose
 from pe_core.metric.entropy import AP_MAX, AP_MIN, ApCurve
@@ -209,8 +209,7 @@ def m_by_range(
         For a class without a size.
     """
     name = VOXELS_OF if class_name is None else class_name
-    if name not in SIZES:
-        raise InputError("fit", "object", f"one of {', '.join(SIZES)}", shown(name))
+    require_name("fit", "object", name, SIZES)
     length, width, tall = SIZES[name]
     middle = tall / 2.0
     pose = Pose((0.0, 0.0, middle if height is None else height))

@@ -9,7 +9,7 @@ from functools import cache, partial
 from pathlib import Path
 from types import MappingProxyType
 
-from pe_core.base.errors import InputError, shown
+from pe_core.base.errors import InputError, one_of, shown
 from pe_core.base.plugins import (
     call_plugin,
     find_plugin,
@@ -112,7 +112,7 @@ def scene_output(name: str) -> SceneOutput:
         return scene_outputs()[name]
     if name in OF_EXAMPLE or find_plugin(OUTPUT, name) is not None:
         return _plugin_output(name)
-    raise InputError("export", "output", f"one of {', '.join(scene_outputs())}", shown(name))
+    raise InputError("export", "output", one_of(scene_outputs(), name), shown(name))
 
 
 def scene_files(study: Study, name: str, range_m: float | None = None) -> tuple[Written, list[str]]:

@@ -17,7 +17,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from pe_core.base.errors import InputError, shown
+from pe_core.base.errors import InputError, one_of, shown
 from pe_core.base.files import is_reserved
 from pe_core.scene import Vehicle
 from pe_core.study import Study, load_study_data, study_from_dict
@@ -209,4 +209,4 @@ def _index(elements: list[Any], part: str, setting: TriedKey, source: str) -> in
     if part.isdecimal() and int(part) < len(elements):
         return int(part)
     choices = [str(name) for name in names if name is not None] or [f"0 to {len(elements) - 1}"]
-    raise InputError(source, setting.key, f"one of {', '.join(choices)}", shown(part))
+    raise InputError(source, setting.key, one_of(choices, part), shown(part))

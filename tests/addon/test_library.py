@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -18,12 +19,13 @@ from blender_addon import (
     preferences_panel,
     sensor_cache,
 )
-from blender_addon.engine import graphics
+from blender_addon.engine import app, graphics
 from blender_addon.housing import KEY
 from blender_addon.overlay.snapshot import view_of
 from tests.addon import scenes
 
 BLEND = library.FOLDER / "sensors.blend"
+ROOT = Path(__file__).parents[2]
 CATALOGS = library.FOLDER / "blender_assets.cats.txt"
 MAX_BYTES = 600_000
 KINDS = ("lidar", "camera")
@@ -192,7 +194,8 @@ def test_dialogs_begin_in_the_folder_of_results(enabled, tmp_path):
 
 def test_the_website_is_the_manifest_s():
     manifest = tomllib.loads((library.FOLDER.parent / "blender_manifest.toml").read_text())
-    assert manifest["website"] == library.WEBSITE
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert manifest["website"] == project["urls"]["Homepage"] == app.WEBSITE
 
 
 def test_a_script_that_registers_us_gets_no_library(addon):

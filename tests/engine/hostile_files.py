@@ -97,7 +97,7 @@ def special() -> dict[str, Case]:
             f"{reader}: endless": (reader, link("/dev/zero", suffix), "found a device"),
             f"{reader}: terminal": (reader, link("/dev/tty", suffix), "expected a"),
             f"{reader}: a socket": (reader, listening(suffix), "found a socket"),
-            f"{reader}: nowhere": (reader, link("/none/at/all", suffix), "an existing file"),
+            f"{reader}: nowhere": (reader, link("/none/at/all", suffix), "no such file"),
             f"{reader}: itself": (reader, link(f"link{suffix}", suffix), "a readable file"),
             f"{reader}: sparse": (reader, sparse(suffix), f"at most {most} bytes, found 10.0 GB"),
         }

@@ -89,7 +89,7 @@ def test_boxes_in_memory_are_exported_too(write, tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ('"labels"', '"none.csv"', "none.csv: file: expected an existing file, found no such file"),
+        ('"labels"', '"none.csv"', "none.csv: no such file"),
         ('"labels"', "3", "prior.boxes: expected the name of a file, found 3"),
         (
             '"labels"',

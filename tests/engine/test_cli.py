@@ -9,7 +9,8 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_tools.cli.verbs import main
+from pe_core.version import WEBSITE
+from pe_tools.cli.verbs import GROUPS, main
 from tests.engine import shapes
 
 
@@ -82,8 +83,8 @@ def test_sensors_lists_the_catalogue_and_shows_one(capsys):
 @pytest.mark.parametrize(
     ("argv", "status", "message"),
     [
-        (["score", "none.toml"], 1, "pe: none.toml: file: expected an existing file"),
-        (["sensors", "Pandar"], 1, "pe: catalogue: model: expected a name such as"),
+        (["score", "none.toml"], 1, "pe: none.toml: no such file"),
+        (["sensors", "Pandar"], 1, "pe: catalogue: model: expected one of"),
         (["score"], 2, "usage"),
         (["fly"], 2, "usage"),
         (["score", "x.toml", "--workers", "many"], 2, "whole number"),
@@ -101,12 +102,47 @@ def test_exit_status(argv, status, message, capsys):
         assert len(err.strip().splitlines()) == 1
 
 
+@pytest.mark.parametrize(
+    ("line", "nearest"),
+    [
+        ("scoer", "expected score, or"),
+        ("score car.toml --sampels 3", "expected --samples, or"),
+        ("export car.toml --to gltff -o x", "such as gltf, "),
+        ("optimize car.toml --method portfollio", "expected portfolio, or"),
+        ("score car.toml --weather foog", "expected fog, or one of rain"),
+        ("sensors Pandar46", "such as Pandar64, "),
+        ("rigs kiti", "such as kitti, "),
+        ("requirements r151_mving", "such as r151_moving"),
+        ("sweep car.toml --set optimize.sed=1 -o x", "such as seed, "),
+    ],
+)
+def test_a_name_that_is_nearly_right_has_the_right_one_named(line, nearest, study, capsys):
+    more = (
+        '[[weather]]\nname = "fog"\nfog_mor_m = 100\n[[weather]]\nname = "rain"\nrain_mm_h = 25\n'
+    )
+    study.write_text(study.read_text() + more)
+    try:
+        status = main([word.replace("car.toml", str(study)) for word in line.split()])
+    except SystemExit as stop:
+        status = stop.code
+    assert status in (1, 2) and nearest in capsys.readouterr().err
+
+
+def test_the_help_has_every_verb_in_its_group_and_a_link(capsys):
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    text = capsys.readouterr().out
+    listed = {name for names in GROUPS.values() for name in names.split()}
+    assert {name for name in listed if f"\n    {name}" not in text} == set()
+    assert "\n  more\n" not in text and WEBSITE in text
+
+
 PATHS = (
     *("compare {}", "review {} -o r", "score {}", "check {}", "optimize {}", "explain {}"),
     *("sweep {} -o s", "sweep car.toml -o {}", "score car.toml -o {}", "optimize --resume {}"),
     *("import {} -o x", "import car.toml -o {}", "export car.toml --to csv -o {}"),
     *("export car.toml --to ros -o {}", "new {} -o x", "new car.npz -o {}", "rigs kitti -o {}"),
-    *("check car.toml --csv {}", "review car.toml -o {}", "fit {}", "front {}"),
+    *("check car.toml --csv {}", "review car.toml -o {}", "fit {}"),
     "rigs kitti --mesh {} -o x",
 )
 """Every path on the command line."""

@@ -38,7 +38,7 @@ WITH_PATHS = [
 ]
 """Pages in which names of files and folders of the code stand between backticks."""
 PAGES = [
-    *(ROOT / name for name in ("README.md", "ARCHITECTURE.md", "CHANGELOG.md")),
+    *sorted(ROOT.glob("*.md")),
     *sorted((ROOT / "docs").rglob("*.md")),
     *(ROOT / room / "README.md" for room in ("benchmarks", "blend_assets")),
 ]

@@ -93,10 +93,7 @@ def test_a_study_whose_areas_are_in_no_file_is_not_saved_alone(tmp_path):
 
 
 BAD = {
-    "a file that is not there": (
-        {"area": "none.npz"},
-        "none.npz: file: expected an existing file, found",
-    ),
+    "a file that is not there": ({"area": "none.npz"}, "study.toml: none.npz: no such file"),
     "a part that is none": (
         {"area": "areas.npz", "parts": ["upper"]},
         "optimize.mount[0].parts: expected one of front half, lower in areas.npz, found 'upper'",

@@ -184,7 +184,7 @@ def test_a_cover_takes_decibels_and_a_bumper_blocks():
     lossy = catalog.from_table("lossy", {**catalog.to_table(sensor.model), "cover_loss_db": 2.0})
     same = kinds.measure_objects(pe.Sensor("x", lossy, sensor.pose), target)[0]
     assert through == pytest.approx(same, rel=1e-9)
-    with pytest.raises(pe.InputError, match="covers: expected a part such as bumper"):
+    with pytest.raises(pe.InputError, match="covers: expected bumper, or one of body"):
         pe.Vehicle(triangles, parts, names, covers={"bumber": 2.0})
     with pytest.raises(pe.InputError, match=r"covers\.bumper: expected a loss from 0 to 100 dB"):
         pe.Vehicle(triangles, parts, names, covers={"bumper": -2.0})

@@ -207,7 +207,7 @@ BAD = {
     ),
     "no row": ({"criterion": {"pixels_high": 0}}, "above 0"),
     "key": ({"zone": {"x": [3, 4], "y": [0, 1], "stepp": 1}}, "unknown key"),
-    "preset": ({"preset": "r000"}, "pe requirements"),
+    "preset": ({"preset": "r000"}, "26 names, such as r15"),
     "ap": ({"body": "pole_ring", "criterion": {"ap": 0.5}}, "a class"),
     "twice": ({}, "each name once"),
     "mounting": ({"under": {"mounting": True}}, "tolerance"),

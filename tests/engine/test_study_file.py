@@ -145,7 +145,7 @@ def test_bad_studies_are_refused(write):
 
 
 def test_a_study_that_is_not_there(tmp_path):
-    with pytest.raises(pe.InputError, match=r"none\.toml: file: expected an existing file"):
+    with pytest.raises(pe.InputError, match=r"none\.toml: no such file"):
         pe.load_study(tmp_path / "none.toml")
 
 

@@ -15,7 +15,7 @@ from importlib import resources
 from types import MappingProxyType
 from typing import Any
 
-from ...base.errors import InputError, shown
+from ...base.values import choice
 from ...geometry.poses import Pose
 from ..housings import scan_above_base
 
@@ -102,9 +102,7 @@ def known_rig(key: str) -> KnownRig:
     InputError
         When there is no rig of that key.
     """
-    if key not in known_rigs():
-        raise InputError("catalogue", "rig", f"one of {', '.join(known_rigs())}", shown(key))
-    return known_rigs()[key]
+    return known_rigs()[choice("catalogue", "rig", key, known_rigs())]
 
 
 def _from_table(key: str, table: Mapping[str, Any]) -> KnownRig:

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.arrays import Flags, Floats, Ints, read_only
-from ...base.errors import InputError, shown
+from ...base.errors import require_name
 from ...base.notebook import ShortRepr
 from ...base.values import Number, Whole
 from ...geometry.grids import PerceptionSpace
@@ -140,11 +140,8 @@ class Spokes:
 
 def density_of(densities: list[ClassDensity], name: str) -> ClassDensity:
     """Return the class of that name; `InputError` where there is none."""
-    for density in densities:
-        if density.name == name:
-            return density
-    names = ", ".join(d.name for d in densities)
-    raise InputError("sight", "class_name", f"one of {names}", shown(name))
+    require_name("sight", "class_name", name, (density.name for density in densities))
+    return next(density for density in densities if density.name == name)
 
 
 def _turned(angles: Floats, aside: Floats, distance: Floats) -> tuple[Floats, Floats]:

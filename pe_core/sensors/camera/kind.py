@@ -11,7 +11,7 @@ from typing import Any, cast
 import numpy as np
 
 from ...base.arrays import Floats
-from ...base.errors import InputError, shown
+from ...base.errors import InputError, require_keys, shown
 from ...base.values import Number, choice, degrees_in_file, listed
 from ...metric.entropy import RTM3D
 from ...scene.objects import Objects
@@ -99,10 +99,7 @@ def lens_table(lens: Lens) -> dict[str, Any]:
 
 def _coefficients(name: str, own: Mapping[str, Any], lens: type[Lens]) -> dict[str, float]:
     known = ("model", LISTED, *lens.coefficients) if lens.coefficients else ("model",)
-    for key in own:
-        if key not in known:
-            expected = f"one of {', '.join(known)}"
-            raise InputError(name, f"distortion.{key}", expected, "an unknown key")
+    require_keys(name, "distortion.", own, known)
     found = {k: own[k] for k in lens.coefficients if k in own}
     if LISTED in own:
         if found:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Floats
-from ...base.errors import InputError, shown
+from ...base.errors import InputError, require_keys, shown
 from ...base.values import Number, degrees_in_file, listed
 from ...metric.entropy import ApCurve
 from ...scene.rig import Sensor
@@ -96,10 +96,7 @@ def _mode(name: str, table: Any, number: int) -> RadarMode:
     who = f"mode {number + 1}"
     if not isinstance(table, Mapping):
         raise InputError(name, who, "a table", shown(table))
-    for key in table:
-        if key not in MODE_FIELDS:
-            expected = f"one of {', '.join(sorted(MODE_FIELDS))}"
-            raise InputError(name, f"{who}: {key}", expected, "an unknown key")
+    require_keys(name, f"{who}: ", table, MODE_FIELDS)
     values: dict[str, Any] = dict.fromkeys(("azimuths", "ranges", "elevations"))
     values |= {"name": who, "scales": 1.0}
     try:

@@ -75,12 +75,6 @@ def require_labels(source: str, shape: tuple[int, ...], dtype: np.dtype[Any], fa
         raise InputError(source, "parts", "whole numbers", f"dtype {dtype}")
 
 
-def fan_size(counts: NDArray[Any]) -> int:
-    """Return the number of triangles that `fan` creates, as a Python int without overflow."""
-    sizes = counts.astype(np.float64) - 2.0
-    return int(sizes[sizes > 0.0].sum())
-
-
 def fan(counts: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Cut polygons of `counts` (P,) corners, all in one list, into triangle fans.
 
@@ -95,11 +89,6 @@ def fan(counts: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     step = np.arange(len(polygons)) - np.repeat(np.cumsum(triangles) - triangles, triangles)
     first = (np.cumsum(sizes) - sizes)[polygons]
     return np.stack([first, first + step + 1, first + step + 2], axis=1), polygons
-
-
-def gathered(points: NDArray[np.float64], corners: NDArray[Any]) -> NDArray[np.float64]:
-    """Triangles (T, 3, 3) of points (N, 3) at valid indices (T, 3)."""
-    return np.take(points, corners, axis=0, mode="clip")  # mode="clip" needs no buffer
 
 
 INSTEAD = "?"

@@ -1,0 +1,229 @@
+#!/usr/bin/env python3
+"""Follow README.md, or a Dockerfile, line by line on a bare Debian, and time each line.
+
+usage: tools/fresh_machine.py [SUITE ...] [--tests] [--dockerfile FILE]
+
+A machine is a new Debian folder with nothing but its essential packages, and a clone of the last
+commit. README.md is followed twice in each suite: as root, and as a user. The lines are those of
+the code blocks below the heading "Get it"; `apt-get` is always root's, and `make test` is left out
+without `--tests`. Lines of the same block share a shell.
+
+The host lends what reaches the network: its resolver, and the files of certificates that its
+environment names. It needs Debian, root and debootstrap; each machine takes 3 GB for a while.
+"""
+
+import argparse
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent
+SUITES = ("bookworm", "trixie")
+USER = "newcomer"
+CERTIFICATES = ("PIP_CERT", "SSL_CERT_FILE", "REQUESTS_CA_BUNDLE")
+BARE_PATH = "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
+# Processes and mounts of a machine end with the script that runs in it, also when it is killed.
+ENTER = ("unshare", "--mount", "--pid", "--fork", "--kill-child")
+MOUNTS = 'mount --rbind /dev "$0/dev" && mount -t proc proc "$0/proc"; exec chroot "$0" "$@"'
+
+
+class Failed(Exception):
+    """A line failed; the message has it, with the end of what it printed."""
+
+
+class Step(NamedTuple):
+    """A line that was followed: how long it took, and how much larger the machine is then."""
+
+    line: str
+    seconds: float
+    megabytes: int
+
+
+class Machine:
+    """A Debian folder that lines are typed into."""
+
+    def __init__(self, folder: Path, user: str = "root") -> None:
+        self.folder, self.user = folder, user
+        self.home = "/root" if user == "root" else f"/home/{user}"
+        self.env = {"PATH": BARE_PATH, "LC_ALL": "C.UTF-8", "DEBIAN_FRONTEND": "noninteractive"}
+        self.env |= self._lent_certificates()
+        if user != "root":
+            self.type(f"useradd --create-home --shell /bin/bash {user}", as_root=True)
+
+    def _lent_certificates(self) -> dict[str, str]:
+        shutil.copyfile("/etc/resolv.conf", self.folder / "etc" / "resolv.conf")
+        lent = {name: os.environ[name] for name in CERTIFICATES if name in os.environ}
+        for name, path in lent.items():
+            shutil.copyfile(path, self.folder / "etc" / f"lent-{name}.pem")
+        return {name: f"/etc/lent-{name}.pem" for name in lent}
+
+    def clone(self, where: str) -> None:
+        """Put a fresh clone of the last commit into the machine."""
+        target = self.folder / where.strip("/")
+        source = ("git", "clone", "--quiet", "--no-hardlinks", "--depth", "1", f"file://{ROOT}")
+        subprocess.run([*source, target], check=True)
+        self.type(f"chown -R {self.user} {shlex.quote(where)}", as_root=True)
+
+    def type(self, line: str, *, where: str = "/", as_root: bool = False) -> str:
+        """Type lines into a shell of the machine; return what they print."""
+        user = "root" if as_root else self.user
+        home = "/root" if as_root else self.home
+        env = [f"{name}={value}" for name, value in {**self.env, "HOME": home}.items()]
+        shell = f"cd {shlex.quote(where)} && {line}"
+        inside = ["setpriv", f"--reuid={user}", f"--regid={user}", "--init-groups"]
+        inside = [] if user == "root" else inside
+        command = ["sh", "-c", MOUNTS, self.folder, *inside, "/usr/bin/env", "-i", *env]
+        run = subprocess.run(
+            [*ENTER, *command, "bash", "-c", shell],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+        )
+        if run.returncode != 0:
+            raise Failed(f"{line}\n{run.stdout[-3000:]}")
+        return run.stdout
+
+    def follow(self, lines: list[str], where: str) -> Iterator[Step]:
+        """Type lines that share a shell one after the other; yield what each of them took."""
+        activated = ""
+        for line in lines:
+            begin, before = time.monotonic(), self.megabytes()
+            said = self.type(activated + line, where=where, as_root=line.startswith("apt-get"))
+            print(said[-1500:], file=sys.stderr, flush=True)
+            seconds = time.monotonic() - begin
+            yield Step(line, seconds, self.megabytes() - before)
+            if found := re.search(r"(^|&& )(\. \S+/activate)$", line):
+                activated = f"{found[2]} && "
+
+    def megabytes(self) -> int:
+        """Return how large the machine is."""
+        run = subprocess.run(["du", "-sxm", self.folder], capture_output=True, text=True)
+        return int(run.stdout.split()[0])
+
+
+def make_base(suite: str, folder: Path) -> Path:
+    """Make a bare Debian of a suite in a folder, and return its path."""
+    script = ROOT / "tools" / "blender_chroot.sh"
+    asked = subprocess.run([script, "--archive"], capture_output=True, text=True, check=True)
+    archive, proxy = asked.stdout.split("\n")[:2]
+    env = {**os.environ, "http_proxy": proxy.removeprefix("proxy ").replace("none", "")}
+    base = folder / suite
+    command = ["debootstrap", "--variant=minbase", suite, base, archive]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=env)
+    return base
+
+
+def copy_of(base: Path, name: str) -> Path:
+    """Return a copy of a bare Debian."""
+    copy = base.with_name(f"{base.name}-{name}")
+    subprocess.run(["cp", "-a", base, copy], check=True)
+    return copy
+
+
+def lines_of_readme(text: str) -> list[str]:
+    """Return the lines to type below "Get it", without their comments."""
+    section = re.split(r"^## ", text, flags=re.MULTILINE)
+    chapter = next(part for part in section if part.startswith("Get it"))
+    blocks = re.findall(r"^```sh\n(.*?)^```", chapter, re.MULTILINE | re.DOTALL)
+    typed = (line.partition("  #")[0].strip() for line in "".join(blocks).splitlines())
+    return [line for line in typed if line]
+
+
+def follow_readme(machine: Machine, tests: bool) -> list[Step]:
+    """Follow README.md in a clone in the home of the machine's user."""
+    where = f"{machine.home}/perception-entropy"
+    machine.clone(where)
+    lines = lines_of_readme((ROOT / "README.md").read_text("utf-8"))
+    kept = [line for line in lines if tests or line != "make test"]
+    return list(machine.follow(kept, where))
+
+
+def instructions(text: str) -> Iterator[tuple[str, str]]:
+    """Yield the instructions of a Dockerfile and their arguments; lines are joined."""
+    text = re.sub(r"^\s*#.*\n", "", text, flags=re.MULTILINE).replace("\\\n", " ")
+    for line in filter(None, (line.strip() for line in text.splitlines())):
+        name, _, rest = line.partition(" ")
+        yield name, " ".join(rest.split())
+
+
+def follow_dockerfile(path: Path, folder: Path) -> list[Step]:
+    """Build the image of a Dockerfile in a folder, and run its command with --version."""
+    steps, where, machine = [], "/", None
+    for name, rest in instructions(path.read_text("utf-8")):
+        if name == "FROM":
+            suite = rest.removeprefix("debian:").removesuffix("-slim")
+            machine = Machine(make_base(suite, folder))
+            continue
+        assert machine is not None, "a Dockerfile begins with FROM"
+        if name == "ENV":
+            for pair in shlex.split(rest):
+                key, _, value = pair.partition("=")
+                machine.env[key] = value.replace("$PATH", machine.env["PATH"])
+        elif name == "COPY":
+            machine.clone(rest.split()[-1])  # of the whole checkout
+        elif name == "WORKDIR":
+            machine.type(f"mkdir -p {rest}")
+            where = rest
+        elif name == "RUN":
+            steps += machine.follow([rest], where)
+        elif name == "ENTRYPOINT":
+            words = re.findall(r'"([^"]*)"', rest)
+            steps += machine.follow([shlex.join([*words, "--version"])], where)
+        else:
+            raise Failed(f"{path.name}: {name} is not known here")
+    return steps
+
+
+def table(runs: dict[str, list[Step]]) -> str:
+    """Return the steps of several machines side by side, as a table in Markdown."""
+    lines = [step.line for step in next(iter(runs.values()))]
+    head = f"| line | {' | '.join(runs)} |\n| --- |{' --- |' * len(runs)}\n"
+    rows = []
+    for number, line in enumerate(lines):
+        cells = (f"{s[number].seconds:.0f} s, {s[number].megabytes} MB" for s in runs.values())
+        short = line if len(line) <= 50 else f"{line[:47]}..."
+        rows.append(f"| `{short}` | {' | '.join(cells)} |\n")
+    return head + "".join(rows)
+
+
+def main() -> int:
+    """Run the command line."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("suites", nargs="*", default=SUITES, metavar="SUITE", help="Debian suites")
+    parser.add_argument("--tests", action="store_true", help="type `make test`, too: an hour")
+    parser.add_argument("--dockerfile", type=Path, help="follow this file in place of README.md")
+    options = parser.parse_args()
+    if os.geteuid() != 0 or shutil.which("debootstrap") is None:
+        print("fresh_machine: needs root and debootstrap", file=sys.stderr)
+        return 1
+    runs = {}
+    try:
+        with tempfile.TemporaryDirectory(prefix="pe-fresh-") as scratch:
+            if options.dockerfile is not None:
+                steps = follow_dockerfile(options.dockerfile, Path(scratch))
+                runs[options.dockerfile.name] = steps
+            for suite in () if options.dockerfile else options.suites:
+                base = make_base(suite, Path(scratch))
+                for user in ("root", USER):
+                    machine = Machine(copy_of(base, user), user)
+                    runs[f"{suite}, {user}"] = follow_readme(machine, options.tests)
+                    shutil.rmtree(machine.folder)
+    except Failed as failed:
+        print(f"fresh_machine: this line failed: {failed}", file=sys.stderr)
+        return 1
+    print(table(runs))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -41,7 +41,7 @@ ONE, PERHAPS, SOME = "one", "?", "+"
 
 
 GROUPS = {
-    "begin": "new import rigs sensors curves requirements",
+    "begin": "new set import rigs sensors curves requirements",
     "score": "score explain check compare",
     "place": "optimize sweep fit",
     "show": "review export",

@@ -48,13 +48,10 @@ def values_of(
     }
 
 
-def write_values(
-    settings: PropertyGroup, instance: Any, names: Iterable[str] = (), prefix: str = ""
-) -> None:
+def write_values(settings: PropertyGroup, instance: Any, names: Iterable[str] = ()) -> None:
     """Write the settings of a dataclass to a group of properties: the inverse of `values_of`."""
     for name, setting in _in_panel(type(instance), names):
-        value = property_value(setting, getattr(instance, setting.name))
-        setattr(settings, f"{prefix}{name}", value)
+        setattr(settings, name, property_value(setting, getattr(instance, setting.name)))
 
 
 def _in_panel(cls: Any, names: Iterable[str] = ()) -> Iterator[tuple[str, studies.Setting]]:

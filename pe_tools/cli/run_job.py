@@ -156,15 +156,13 @@ def print_vehicle(study: Study) -> None:
         show(f"{one_line(study.vehicle_line)}\n", sys.stderr)
 
 
-def drive(
-    job: jobs.Job, output: Path | None = None, stream: TextIO | None = None
-) -> jobs.Outcome | None:
-    """Run a job to its end, with progress on `stream` (default: stderr); return its outcome.
+def drive(job: jobs.Job, output: Path | None = None) -> jobs.Outcome | None:
+    """Run a job to its end, with progress on stderr; return its outcome.
 
     The outcome is None if the job was stopped before its first score. During a search, checkpoints
     are saved in `output`: after every round, and when an exception ends the search.
     """
-    reporter, failed = Reporter(stream or sys.stderr), False
+    reporter, failed = Reporter(sys.stderr), False
     saved = None
     if isinstance(job, jobs.OptimizeJob) and output is not None:
         saved = job, jobs.Checkpoint(job), output

@@ -69,18 +69,15 @@ def even_angles(angles: NDArray[np.float64], pixels_per_deg: float) -> NDArray[n
     return np.searchsorted(-between, -places)
 
 
-def hidden_lines(
-    sensor: Sensor, vehicle: Vehicle | None, color: ArrayLike, most: int = RAYS
-) -> Primitives:
-    """Return lines from a sensor to its own vehicle, along at most `most` rays over its field of
-    view.
+def hidden_lines(sensor: Sensor, vehicle: Vehicle | None, color: ArrayLike) -> Primitives:
+    """Return lines from a sensor to its own vehicle, along at most `RAYS` over its field of view.
 
     Cameras see through the vehicle's glass, radars through its covers; None gives no lines.
     """
     body = None if vehicle is None else kind_of(sensor).opaque(vehicle)
     if body is None:
         return Primitives.empty()
-    rays, through_glass = kind_of(sensor).rays(sensor, most), sensor.model.sees_through_glass
+    rays, through_glass = kind_of(sensor).rays(sensor, RAYS), sensor.model.sees_through_glass
     distance = body.first_hit(sensor.pose.position, rays, through_glass).distance
     met = np.isfinite(distance)
     start = np.broadcast_to(sensor.pose.position, (int(met.sum()), 3))

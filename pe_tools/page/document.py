@@ -91,7 +91,6 @@ def write_page(
     contexts: Sequence[ReportContext],
     folder: str | Path,
     *,
-    name: str = PAGE,
     replace: bool = False,
     about: About = NO_INFO,
 ) -> Path:
@@ -101,7 +100,7 @@ def write_page(
     ----------
     contexts, about
         As of `page_bytes`.
-    folder, name
+    folder
     replace : bool
         Whether an existing page is replaced, whoever wrote it.
 
@@ -111,10 +110,10 @@ def write_page(
         When the folder cannot be written, or contains a page that this program did not write or
         that was changed since.
     """
-    folder = jobs.prepare_folder(folder, () if replace else (name,))
-    with jobs.FileSet(folder, (name,) if replace else ()) as files:
-        files.add(name, page_bytes(contexts, about=about))
-    return folder / name
+    folder = jobs.prepare_folder(folder, () if replace else (PAGE,))
+    with jobs.FileSet(folder, (PAGE,) if replace else ()) as files:
+        files.add(PAGE, page_bytes(contexts, about=about))
+    return folder / PAGE
 
 
 def html_file(

@@ -64,7 +64,7 @@ def test_lines_of_the_command_parse():
     command = parser()
     for page, line in LINES:
         words = shlex.split(re.split(r" (?:>|\||&&|;) ?", line)[0])[1:]
-        if words[0].startswith(("VERB", "-", "fit", "front", "review")):
+        if words[0].startswith(("VERB", "-", "fit", "review")):
             continue  # of plugins, or the help
         try:
             command.parse_args(words)

@@ -179,11 +179,11 @@ def curve_plot(
     return canvas.svg()
 
 
-def ticks_around(values: Sequence[float], most: int = 4) -> list[float]:
+def ticks_around(values: Sequence[float]) -> list[float]:
     """Return a few round numbers, the first below all values and the last above."""
     low, high = min(values), max(values)
     width = (high - low) or max(abs(high), 1.0) * 0.1
-    step = next(step for step in round_steps() if width / step <= most)
+    step = next(step for step in round_steps() if width / step <= 4)
     first, last = math.ceil(low / step - 1e-9) - 1, math.floor(high / step + 1e-9) + 1
     return [round(k * step, 12) for k in range(first, last + 1)]
 

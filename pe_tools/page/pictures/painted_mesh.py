@@ -154,9 +154,13 @@ def loft(rings: Sequence[Floats]) -> Floats:
     return triangles[(normal * normal).sum(axis=1) > 1e-18]
 
 
-def rounded_box(half: Floats, bevel: float = 0.12) -> Floats:
+BEVEL = 0.12
+"""Of a box's edges, as a share of its least half size."""
+
+
+def rounded_box(half: Floats) -> Floats:
     """(F, 3, 3) triangles of a box of half sizes (3,) with bevelled edges."""
-    (_, _, z), cut, rings = half.tolist(), bevel * float(half.min()), []
+    (_, _, z), cut, rings = half.tolist(), BEVEL * float(half.min()), []
     for inset, height in ((cut, -z), (0.0, cut - z), (0.0, z - cut), (cut, z)):
         x, y = (half[:2] - inset).tolist()
         a, b = x - cut, y - cut

@@ -46,16 +46,11 @@ PROUD_M = 0.0005
 WINDOW = Paint((0.02, 0.022, 0.025), 0.9)
 
 
-def vehicle_picture(
-    vehicle: pe.Vehicle | None,
-    rig: pe.Rig,
-    size: tuple[int, int] = SIZE,
-    view: Viewpoint | None = None,
-) -> bytes:
+def vehicle_picture(vehicle: pe.Vehicle | None, rig: pe.Rig, size: tuple[int, int]) -> bytes:
     """Return a picture of a rig on its vehicle as a PNG file of a size (width, height) [px].
-    Sensors are drawn in their housings, in default ones if their size is not known. By default the
-    view is from ahead on the right, with the whole vehicle in the picture."""
-    view = view or default_view(vehicle, rig, size)
+    Sensors are drawn in their housings, in default ones if their size is not known. The view is
+    from ahead on the right, with the whole vehicle in the picture."""
+    view = default_view(vehicle, rig, size)
     return graphics.png_bytes(graphics.as_bytes(rendered(vehicle, rig, size, view)))
 
 

@@ -8,6 +8,7 @@ from .checkpoint import BegunSearch as BegunSearch
 from .checkpoint import Checkpoint as Checkpoint
 from .checkpoint import FrontCheckpoint as FrontCheckpoint
 from .checkpoint import FrontJournals as FrontJournals
+from .checkpoint import SearchState as SearchState
 from .checkpoint import front_study as front_study
 from .checkpoint import read_front_search as read_front_search
 from .checkpoint import read_search as read_search

@@ -15,6 +15,8 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import NDArray
 
+from pe_core.geometry.bins import blocks
+
 from ..ranks import SAME, standard_ranks
 from .plan import StatisticsRule
 
@@ -24,6 +26,7 @@ Interval = tuple[float, float]
 
 MIN_GROUP = 3
 """A group of fewer placements has no rank correlation worth the name."""
+PERMUTED_AT_ONCE = 500
 AT_ONCE = 2_000_000
 """Comparisons that are done at once, to limit memory."""
 
@@ -98,6 +101,23 @@ def partial_rho(score: Floats, ap: Floats, given: Floats, members: Sequence[Ints
     return np.mean(parts, axis=0)
 
 
+def permutation_p_beyond(
+    score: Floats, given: Floats, samples: PlacementSamples, rule: StatisticsRule, seed: int
+) -> float:
+    """Return the two-sided p of the partial rho, given a third, as `permutation_p`."""
+    observed = abs(float(partial_rho(score, samples.ap, given, samples.members)))
+    rng, extreme = np.random.default_rng([seed, 2]), 0
+    for block in blocks(rule.permutations, PERMUTED_AT_ONCE):
+        count = block.stop - block.start
+        ap = np.tile(samples.ap, (count, 1))
+        for index in samples.members:
+            ap[:, index] = rng.permuted(ap[:, index], axis=1)
+        x, z = (np.broadcast_to(w, ap.shape) for w in (score, given))
+        found = partial_rho(x, ap, z, samples.members)
+        extreme += int((np.abs(found) >= observed - SAME).sum())
+    return (1 + extreme) / (1 + rule.permutations)
+
+
 def permutation_p(
     score: Floats, samples: PlacementSamples, rule: StatisticsRule, seed: int
 ) -> float:
@@ -152,26 +172,38 @@ def interval(
 
 
 def bca_interval(
-    values: Floats, samples: PlacementSamples, rule: StatisticsRule, seed: int
+    values: Floats,
+    samples: PlacementSamples,
+    rule: StatisticsRule,
+    seed: int,
+    given: Floats | None = None,
 ) -> tuple[Interval, float]:
     """Return the interval of rho, corrected for bias and skewness, and the mean of the bootstraps.
+
+    With a third variable, `given` (P,), it is that of the partial rho.
 
     BCa: Efron, Better bootstrap confidence intervals, JASA 82 (1987). The bootstraps are those of
     `interval`; the acceleration is the jackknife's, a placement left out at a time.
     """
+    every = np.arange(len(values))
+
+    def rho_of(index: Ints, ap: Floats, members: Sequence[Ints]) -> Floats:
+        if given is None:
+            return rho_within(values[index], ap, members)
+        return partial_rho(values[index], ap, given[index], members)
+
     rhos = np.concatenate(
         [
-            rho_within(values[portion.index], portion.ap, samples.members)
+            rho_of(portion.index, portion.ap, samples.members)
             for portion in resamples(samples, rule, seed)
         ]
     )
-    rho = float(rho_within(values, samples.ap, samples.members))
+    rho = float(rho_of(every, samples.ap, samples.members))
     normal = NormalDist()
     below = float((rhos < rho - SAME).mean() + 0.5 * (np.abs(rhos - rho) <= SAME).mean())
     bias = normal.inv_cdf(min(max(below, 1.0 / len(rhos)), 1.0 - 1.0 / len(rhos)))
-    kept = [np.delete(np.arange(len(values)), k) for k in range(len(values))]
-    parts = [(values[index], samples.subset(index)) for index in kept]
-    left_out = np.array([float(rho_within(v, part.ap, part.members)) for v, part in parts])
+    parts = [(index, samples.subset(index)) for k in every for index in [np.delete(every, k)]]
+    left_out = np.array([float(rho_of(index, part.ap, part.members)) for index, part in parts])
     off = left_out.mean() - left_out
     acceleration = float((off**3).sum() / (6.0 * max((off**2).sum(), SAME) ** 1.5))
     levels = []

@@ -1,6 +1,7 @@
 """The second plan: placements that were not used before, equal m, rows and columns."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,11 @@ import pe_core as pe
 from pe_core import catalog
 from pe_core.scene.objects import Objects
 from pe_core.sensors.kernels import ObjectView
+from studies.detectors.analysis import HOLDS, REFUTED, UNDECIDED
 from studies.detectors.placements import placements
 from studies.detectors.plan import FIXED, full_plan
+from studies.detectors.scores import COVERAGE, PRIMARY
+from studies.detectors.second.analysis import BEYOND, second_analysis, tie_verdict
 from studies.detectors.second.law import (
     PUBLISHED,
     of_mean_ap,
@@ -90,3 +94,56 @@ def test_saved_forecast_follows_from_its_errors():
     found = json.loads((FOLDER / "law.json").read_text("utf-8"))
     assert found["published"] == {name: published_law(ap) for name, ap in PUBLISHED.items()}
     assert found["across"]["mean"] == of_mean_ap(found["across"]["classes"], full_plan())
+
+
+def made_up(plan, gain, noise=0.002):
+    """Return results in which rows gain, and AP of good placements follows their entropy."""
+    rng = np.random.default_rng(5)
+    quality = {p.name: rng.normal() for p in good_placements(plan)}
+    results = {}
+    for run in second_runs(plan):
+        rows = len(run.placement.lidar.elevations) if run.placement.lidar else 16
+        ap = 0.7 + gain * np.log2(rows / 16) + 0.02 * quality.get(run.placement.name, 0.0)
+        results[run.name] = {"ap": ap + noise * rng.normal()}
+    scores = {
+        name: {
+            "road": {"entropy": 10.0 - q, "coverage": rng.normal()},
+            "uniform": 0.0,
+            **{t: {"entropy": rng.normal(), "ap": rng.normal()} for t in ("alone", "traffic")},
+            "beams": 1,
+        }
+        for name, q in quality.items()
+    }
+    return results, scores
+
+
+def quickly(plan):
+    rule = replace(plan.study.statistics, permutations=999, resamples=300)
+    return replace(plan, study=replace(plan.study, statistics=rule))
+
+
+def test_verdicts_of_made_up_runs():
+    plan = quickly(full_second_plan())
+    results, scores = made_up(plan, 0.05)
+    found = second_analysis(plan, results, scores)
+    assert found["done"] == found["planned"] == 228
+    arms = found["equal-m"]["minus_first"]
+    assert arms["64"]["mean"] == pytest.approx(0.1, abs=0.01) and arms["64"]["tie"] == REFUTED
+    figures = found["good"]["figures"]
+    assert len(found["good"]["placements"]) == 48
+    assert figures[PRIMARY]["verdict"] == figures[BEYOND]["verdict"] == HOLDS
+    assert figures[PRIMARY]["rho"] > 0.9 > abs(figures[COVERAGE]["rho"])
+    assert figures[COVERAGE]["verdict"] in (UNDECIDED, REFUTED)
+    same = second_analysis(plan, made_up(plan, 0.0)[0], scores)["equal-m"]["minus_first"]
+    assert same["32"]["tie"] == same["64"]["tie"] == HOLDS
+
+
+def test_no_verdict_before_a_part_is_done():
+    plan = quickly(full_second_plan())
+    results, scores = made_up(plan, 0.05)
+    del results["good-bus-48-s2"]
+    found = second_analysis(plan, results, scores)
+    assert found["good"] is None and found["equal-m"]
+    del results["equal-m-64-bus-02-s3"]
+    assert second_analysis(plan, results, scores)["equal-m"] is None
+    assert tie_verdict(-0.005, 0.02, 0.01) == UNDECIDED

@@ -5,14 +5,24 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from pe_core.base import dump_json
+from pe_core.base import dump_json, write_bytes
 from pe_tools import prepare_folder
 from pe_tools.cli import DONE, Answer, count_up_to
 
 from ...command import main, page_parser
-from ...results_file import Json
+from ...results_file import RESULTS, Json, print_progress
 from ..runs import MAX_RUNS, Run, RunFiles, do_runs
-from .plan import SECOND, full_second_plan, quick_second_plan, second_runs
+from ..scores import placement_scores
+from .analysis import second_analysis
+from .plan import (
+    EQUAL_M,
+    GOOD,
+    SECOND,
+    full_second_plan,
+    good_placements,
+    quick_second_plan,
+    second_runs,
+)
 
 
 def validate_second(args: argparse.Namespace, folder: Path) -> Answer:
@@ -26,10 +36,23 @@ def validate_second(args: argparse.Namespace, folder: Path) -> Answer:
         return run_one(plan.study, run)
 
     do_runs(args, files, result_of)
-    done, planned = len(files.read()), len(files.all)
-    if args.json:
-        return dump_json({"done": done, "planned": planned}), DONE
-    return f"{done} of {planned} runs are done", DONE
+    results, scores = files.read(), dict[str, Json]()
+    if len(results) == len(files.all):
+        rigs = [(placement, placement.rig()) for placement in good_placements(plan)]
+        scores = placement_scores(plan.study, rigs, folder, print_progress)
+    found = second_analysis(plan, results, scores)
+    write_bytes(folder / RESULTS, dump_json(found).encode())
+    return dump_json(found) if args.json else _summary(found), DONE
+
+
+def _summary(found: Json) -> str:
+    """Return what is done and what follows, for people."""
+    lines = [f"{found['done']} of {found['planned']} runs are done"]
+    for rows, row in ((found[EQUAL_M] or {}).get("minus_first") or {}).items():
+        lines.append(f"{row['tie']:12} equal m ties: {rows} rows {row['mean']:+.3f} AP")
+    for name, row in ((found[GOOD] or {}).get("figures") or {}).items():
+        lines.append(f"{row['verdict']:12} {name} ranks among the good: rho {row['rho']:+.2f}")
+    return "\n".join(lines)
 
 
 if __name__ == "__main__":

@@ -81,9 +81,13 @@ def arm_placements(plan: SecondPlan) -> list[Placement]:
 def arm_lidar(plan: SecondPlan, rows: int) -> Lidar:
     """Return the LiDAR of so many rows: all have the same number of beams."""
     rule = plan.equal_m
-    top, columns = math.radians(rule["elevation_deg"]), rule["beams"] // rows
-    elevations = np.linspace(-top, top, rows)
-    return Lidar(f"{rows} x {columns}", elevations, columns, rule["max_range_m"])
+    return _lidar(rows, rule["beams"] // rows, rule["elevation_deg"], rule["max_range_m"])
+
+
+@cache
+def _lidar(rows: int, columns: int, top_deg: float, max_range: float) -> Lidar:
+    top = math.radians(top_deg)
+    return Lidar(f"{rows} x {columns}", np.linspace(-top, top, rows), columns, max_range)
 
 
 def second_runs(plan: SecondPlan) -> list[Run]:

@@ -134,13 +134,13 @@ def choose(
     as_json: bool,
     host: Mapping[str, str] | None = None,
     more: Callable[[jobs.TradeOff, Path], None] | None = None,
-    scheduler: str | None = None,
+    executor: str | None = None,
 ) -> Answer:
     """Compute the front of a study, write it, and return the text to print.
 
     The first Ctrl-C, SIGTERM or SIGHUP stops the job: the front so far is written. The second one
     ends at once; the front that was last saved stays. It is saved every few seconds. `more` writes
-    further files to the folder (Blender's). `scheduler` is the address of a Dask scheduler whose
+    further files to the folder (Blender's). `executor` names the executor (`--executor`) whose
     workers evaluate placements; by default processes do.
     """
     if output is not None:
@@ -154,7 +154,7 @@ def choose(
             draw(data, folder)
 
     tell_boxes(job.study)
-    with evaluated_by(job, scheduler), stop_at_first(job.stop) as received:
+    with evaluated_by(job, executor), stop_at_first(job.stop) as received:
         _drive(job, output, host)
         found = job.trade_off
         if found is None:

@@ -83,9 +83,14 @@ def add_run_options(parser: argparse.ArgumentParser, *, search: bool) -> None:
     parser.add_argument("--json", action="store_true", help="print result.json on stdout")
     add_score_options(parser)
     if search:
-        about = "have the workers of a Dask scheduler evaluate placements, tcp://host:8786"
-        parser.add_argument("--scheduler", metavar="ADDRESS", help=about)
+        add_executor_option(parser)
         add_search_options(parser)
+
+
+def add_executor_option(parser: argparse.ArgumentParser) -> None:
+    """Add the option that names an executor to a parser."""
+    about = "who works: dask://HOST:PORT, or MODULE:FUNCTION that returns an executor"
+    parser.add_argument("--executor", metavar="WHO", help=about)
 
 
 def add_search_options(parser: argparse.ArgumentParser) -> None:

@@ -1,13 +1,15 @@
-"""Executors for the runs of a sweep: processes here, or the workers of a Dask cluster."""
+"""Executors of runs and of candidates: processes here, a Dask cluster, or any other executor."""
 
 from __future__ import annotations
 
 import asyncio
+import importlib
 import logging
 import os
 import re
+import sys
 from collections.abc import Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import closing, contextmanager, suppress
 from typing import Any
 
@@ -20,6 +22,8 @@ from ..jobs import Job, ScoreJob
 from ..sweep import LocalWorkers
 from .terminal import tell
 
+FUNCTION = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_]\w*")
+"""Name of a function in a module; no address has one, as its port is a number."""
 ADDRESS = re.compile(r"((tcp|tls)://)?[^/@\s]+:[0-9]{1,5}")
 """Address with a protocol that Dask supports without further libraries."""
 CONNECT_S = 5.0
@@ -27,30 +31,38 @@ CONNECT_S = 5.0
 
 
 @contextmanager
-def workplace(workers: int | None, scheduler: str | None) -> Iterator[LocalWorkers]:
+def workplace(workers: int | None, executor: str | None) -> Iterator[LocalWorkers]:
     """Open the worker pool that the command line asks for; close it at the end.
 
-    `InputError` where no scheduler answers, or the package for it is not installed.
+    `executor` is that of ``--executor``; None: processes here. `InputError` where no scheduler
+    answers, a package is not installed, or what is named makes no executor.
     """
     count = workers or os.cpu_count() or 1
-    if scheduler is None:
+    if executor is None:
         _tell_without_processes(count)
-    with closing(LocalWorkers(count) if scheduler is None else DaskWorkers(scheduler)) as place:
+    with closing(LocalWorkers(count) if executor is None else _named(executor, count)) as place:
         yield place
 
 
+def _named(executor: str, count: int) -> LocalWorkers:
+    """Return the workers of ``dask://HOST:PORT`` or of ``MODULE:FUNCTION``."""
+    if FUNCTION.fullmatch(executor):
+        return ExecutorWorkers(executor, count)
+    return DaskWorkers(executor.removeprefix("dask://"))
+
+
 @contextmanager
-def evaluated_by(job: Job, scheduler: str | None) -> Iterator[None]:
-    """Have the workers of a Dask scheduler evaluate a job's candidates meanwhile; None: processes.
+def evaluated_by(job: Job, executor: str | None) -> Iterator[None]:
+    """Have the workers of an executor evaluate a job's candidates meanwhile; None: processes.
 
     `InputError` as in `workplace`.
     """
-    if scheduler is None:
+    if executor is None:
         if not isinstance(job, ScoreJob):
             _tell_without_processes(job.workers)
         yield
         return
-    with closing(DaskWorkers(scheduler)) as workers:
+    with closing(_named(executor, job.workers or os.cpu_count() or 1)) as workers:
         workers.check()
         job.executor = workers.executor
         yield
@@ -60,6 +72,34 @@ def _tell_without_processes(count: int | None) -> None:
     """Print one line where several workers are wanted and this system has no processes for them."""
     if count != 1 and (reason := no_processes()):
         tell(f"one processor does the work of all: no worker processes here ({reason})")
+
+
+class ExecutorWorkers(LocalWorkers):
+    """The workers of an executor that a function of the user's returns.
+
+    They may be on other machines: they reach no folder of ours.
+    """
+
+    reaches_folders = False
+    threads = 1
+
+    def __init__(self, named: str, count: int) -> None:
+        module, function = named.split(":")
+        if "" not in sys.path:
+            sys.path.insert(0, "")  # as for `python -m`: modules beside the study
+        try:
+            made = getattr(importlib.import_module(module), function)()
+        except Exception as error:  # whatever a module of the user's raises
+            told = " ".join(f"{type(error).__name__}: {error}".split())
+            raise InputError("command line", "executor", f"{named} to return one", told) from None
+        if not isinstance(made, Executor) and not callable(getattr(made, "submit", None)):
+            expected = "a function that returns a concurrent.futures.Executor"
+            raise InputError("command line", "executor", expected, shown(type(made).__name__))
+        self.executor, self._count = made, count
+
+    def width(self) -> int:
+        """Two tasks for each worker that ``--workers`` names."""
+        return 2 * self._count
 
 
 class DaskWorkers(LocalWorkers):
@@ -110,8 +150,8 @@ class DaskWorkers(LocalWorkers):
 def _client_of(address: str) -> Any:
     distributed = required_package("distributed")
     if not ADDRESS.fullmatch(address):
-        expected = "HOST:PORT, tcp://HOST:PORT or tls://HOST:PORT"
-        raise InputError("command line", "scheduler", expected, shown(address))
+        expected = "dask://HOST:PORT, tcp://HOST:PORT, tls://HOST:PORT or MODULE:FUNCTION"
+        raise InputError("command line", "executor", expected, shown(address))
     for name in list(logging.root.manager.loggerDict):  # lost connections are reported here
         if name.partition(".")[0] == "distributed":
             logging.getLogger(name).setLevel(logging.CRITICAL)

@@ -110,7 +110,7 @@ def carry_out(
     as_json: bool,
     host: dict[str, str] | None = None,
     more: More | None = None,
-    scheduler: str | None = None,
+    executor: str | None = None,
 ) -> Answer:
     """Run a job, keep its results, and return what is printed with the exit status.
 
@@ -121,7 +121,7 @@ def carry_out(
     """
     tell_boxes(job.study)
     print_vehicle(job.study)
-    with evaluated_by(job, scheduler), stop_at_first(job.stop) as received:
+    with evaluated_by(job, executor), stop_at_first(job.stop) as received:
         outcome = drive(job, output)
         if outcome is None:
             note = "no score was complete, so nothing was written"

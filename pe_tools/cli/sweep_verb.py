@@ -22,12 +22,14 @@ from ..sweep import RunTask, SweepRun, read_settings, run_all, sweep_runs
 from ..sweep import sweep_table as table
 from ..sweep.sweep_table import BEGUN, DONE, ELSEWHERE, UNWRITTEN, WAITING, SweepRow
 from . import terminal
-from .command import add_score_options, add_search_options, with_options
+from .command import add_executor_option, add_score_options, add_search_options, with_options
 from .executors import workplace
 from .interrupts import Interrupted, Received, stop_at_first
 from .progress_line import Reporter
 from .run_job import folder_or_fallback, refuse_own_folder
 from .terminal import is_terminal, one_line, show, tell
+
+MAX_PARTS = 1_000_000
 
 
 def add_sweep_options(parser: argparse.ArgumentParser) -> None:
@@ -36,13 +38,22 @@ def add_sweep_options(parser: argparse.ArgumentParser) -> None:
     about = "try these values of a key of the study; several: every combination"
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE,...", help=about)
     parser.add_argument("--optimize", action="store_true", help="search in every run; else score")
-    about = "have the workers of a Dask scheduler do it, tcp://host:8786"
-    parser.add_argument("--scheduler", metavar="ADDRESS", help=about)
+    add_executor_option(parser)
+    about = "only these runs, the K-th of N parts, without a table: for array jobs of a cluster"
+    parser.add_argument("--part", type=part_of, metavar="K/N", help=about)
     parser.add_argument("--json", action="store_true", help=f"print {table.SWEEP_JSON} on stdout")
     about = f"write the table as {table.SWEEP_PARQUET}, too"
     parser.add_argument("--parquet", action="store_true", help=about)
     add_score_options(parser, workers="processes")
     add_search_options(parser)
+
+
+def part_of(text: str) -> tuple[int, int]:
+    """Return K and N of "K/N", 1 to N; `argparse.ArgumentTypeError` for another text."""
+    k, slash, n = text.partition("/")
+    if slash and k.isdecimal() and n.isdecimal() and 1 <= int(k) <= int(n) <= MAX_PARTS:
+        return int(k), int(n)
+    raise argparse.ArgumentTypeError(f"expected K/N, as 3/40, found {text!r}")
 
 
 def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal.Answer:
@@ -53,6 +64,8 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
     kind = "optimize" if args.optimize else "score"
     settings = read_settings(args.set)
     runs = sweep_runs(files, settings, lambda study: with_options(study, args))
+    if args.part is not None:
+        runs = runs[args.part[0] - 1 :: args.part[1]]
     names = [table.SWEEP_CSV, table.SWEEP_JSON]
     if args.parquet:
         required_package("pyarrow.parquet")  # before the work
@@ -62,7 +75,7 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
         refuse_own_folder(Path(files[run.study_name]), folder / run.name)
         jobs.check_files(folder / run.name, jobs.result_names(run.study, kind))
     with ExitStack() as places:
-        work = _SweepVerb(runs, kind, folder, places, args.parquet)
+        work = _SweepVerb(runs, kind, folder, places, args.part is None, args.parquet)
         received = work.run(args)
         if received.signum is not None:
             kept = f", {work.count(BEGUN)} begun and kept" if work.count(BEGUN) else ""
@@ -82,15 +95,22 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
 
 
 class _SweepVerb:
-    """A running sweep: its rows by name, and its folder.
+    """A running sweep, or a part of one: its rows by name, and its folder.
 
     `data` is the content of sweep.json; `failed_to_write` says whether something could not be
     written to the folder of the sweep.
     """
 
     def __init__(
-        self, runs: Sequence[SweepRun], kind: str, folder: Path, places: ExitStack, parquet: bool
+        self,
+        runs: Sequence[SweepRun],
+        kind: str,
+        folder: Path,
+        places: ExitStack,
+        writes_table: bool,
+        parquet: bool,
     ) -> None:
+        self._writes_table = writes_table
         self._kind, self._folder, self._places = kind, folder, places
         self._write = partial(table.write_table, kind=kind, parquet=parquet)
         self._fallback: Path | None = None
@@ -131,7 +151,7 @@ class _SweepVerb:
         searches = self._kind == "optimize"
         try:
             with (
-                workplace(args.workers, args.scheduler) as place,
+                workplace(args.workers, args.executor) as place,
                 stop_at_first(lambda: None) as received,
             ):
 
@@ -193,6 +213,9 @@ class _SweepVerb:
     def _write_table(self) -> None:
         """Write the table; if that fails, to the fallback folder."""
         rows = list(self.rows.values())
+        if not self._writes_table:  # other parts write beside it
+            self.data = table.table_data(rows, self._kind)
+            return
         try:
             self.data = self._write(rows, folder=self._folder)
         except InputError as error:

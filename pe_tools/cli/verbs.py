@@ -157,7 +157,7 @@ def _run_job(args: argparse.Namespace) -> Answer:
         front = FrontJob(given, args.workers)
         folder = resumed(front, args)
         output = None if folder is None else Path(folder)
-        return choose(front, output, as_json=args.json, scheduler=args.scheduler)
+        return choose(front, output, as_json=args.json, executor=args.executor)
     begun = run_job.begun_search(args)
     if given is None and begun is None:
         args.usage_error("expected STUDY, or --resume DIR")
@@ -170,8 +170,8 @@ def _run_job(args: argparse.Namespace) -> Answer:
         more_names = more.names if more else ()
         prepare_folder(name, [*result_names(study, args.kind), *more_names])
     output = None if name is None else Path(name)
-    scheduler = getattr(args, "scheduler", None)
-    return run_job.carry_out(job, output, as_json=args.json, more=more, scheduler=scheduler)
+    executor = getattr(args, "executor", None)
+    return run_job.carry_out(job, output, as_json=args.json, more=more, executor=executor)
 
 
 VERBS = (

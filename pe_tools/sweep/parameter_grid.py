@@ -54,6 +54,9 @@ def folder_names(runs: Sequence[tuple[str, Mapping[str, str]]]) -> list[str]:
 PART = r"""(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')"""
 KEY = re.compile(rf"\s*({PART}(?:\.{PART})*)\s*=(.*)", re.DOTALL)
 PARTS = re.compile(PART)
+RANGE = re.compile(r"(\d{1,9}):(\d{1,9})")
+MAX_RUNS = 10_000
+"""A sweep of more runs is taken for a typing error."""
 MAX_PARTS = 30
 SOURCE = "--set"
 OPENING, CLOSING, QUOTES = "[{", "]}", "\"'"
@@ -94,12 +97,22 @@ def _setting(text: str) -> TriedKey:
     path = tuple(part.strip("\"'") for part in PARTS.findall(key))
     if len(path) > MAX_PARTS:
         raise InputError(SOURCE, "text", f"keys of at most {MAX_PARTS} parts", f"{len(path)}")
-    texts = Counter(part.strip() for part in _split(listed))
+    texts = Counter(value for part in _split(listed) for value in _counted(part.strip()))
     if "" in texts:
         raise InputError(SOURCE, key, "values with commas between them", shown(listed))
     if twice := [value for value, count in texts.items() if count > 1]:
         raise InputError(SOURCE, key, "each value once", f"{twice[0]} twice")
     return TriedKey(key, path, {value: _value(value) for value in texts})
+
+
+def _counted(text: str) -> Sequence[str]:
+    """Return the whole numbers from A up to, but not, B of "A:B"; of others the text itself."""
+    if (found := RANGE.fullmatch(text)) is None:
+        return [text]
+    first, end = int(found[1]), int(found[2])
+    if not 0 < end - first <= MAX_RUNS:
+        raise InputError(SOURCE, "range", f"A:B with 1 to {MAX_RUNS:,} numbers", shown(text))
+    return [str(number) for number in range(first, end)]
 
 
 def _split(text: str) -> Iterator[str]:
@@ -129,8 +142,6 @@ def _value(text: str) -> Any:
     return value if plain and len(read) == 1 else text
 
 
-MAX_RUNS = 10_000
-"""A sweep of more runs is taken for a typing error."""
 Made = dict[str, str]
 
 

@@ -106,7 +106,7 @@ def test_a_scheduler_evaluates_the_placements_and_the_front_is_the_same(
 
     monkeypatch.setattr(executors, "DaskWorkers", Workers)
     fronts = []
-    for more in ([], ["--scheduler", "there:8786"]):
+    for more in ([], ["--executor", "there:8786"]):
         assert verbs.main(["optimize", str(file), "--json", "--workers", "1", *more]) == 0
         fronts.append(json.loads(capsys.readouterr().out))
     assert Workers.addresses == ("there:8786",) and Workers.submitted

@@ -110,11 +110,20 @@ def test_what_fits_no_study_is_one_line_before_any_work(study, out, setting, com
     ("more", "complaint"),
     [
         (["--set", "samples=0", "--set", "samples=2048"], "--set: samples: expected each key once"),
-        (["--scheduler", "foo"], "command line: scheduler: expected HOST:PORT, tcp://HOST:PORT or"),
-        (["--scheduler", "ws://a:1"], "command line: scheduler: expected HOST:PORT, tcp://HOST:"),
-        (["--scheduler", "tcp://u:p@127.0.0.1:1"], "command line: scheduler: expected HOST:PORT"),
-        (["--scheduler", "tls://127.0.0.1:1"], "tls://127.0.0.1:1: scheduler: expected a"),
-        (["--scheduler", "tcp://127.0.0.1:1"], "tcp://127.0.0.1:1: scheduler: expected a"),
+        (
+            ["--executor", "foo"],
+            "command line: executor: expected dask://HOST:PORT, tcp://HOST:PORT",
+        ),
+        (["--executor", "ws://a:1"], "command line: executor: expected dask://HOST:PORT, tcp://"),
+        (
+            ["--executor", "tcp://u:p@127.0.0.1:1"],
+            "command line: executor: expected dask://HOST:PORT",
+        ),
+        (["--executor", "no_such:made"], "command line: executor: expected no_such:made to return"),
+        (["--executor", "os:getcwd"], "command line: executor: expected a function that returns a"),
+        (["--set", "optimize.seed=5:5"], "--set: range: expected A:B with 1 to 10,000 numbers"),
+        (["--executor", "tls://127.0.0.1:1"], "tls://127.0.0.1:1: scheduler: expected a"),
+        (["--executor", "tcp://127.0.0.1:1"], "tcp://127.0.0.1:1: scheduler: expected a"),
         (["--set", SEEDS], "--set: runs: expected"),
     ],
 )
@@ -142,7 +151,7 @@ def test_a_peer_that_is_no_scheduler_ends_in_time(greeting, study, out, capsys, 
         Thread(target=answer, daemon=True).start()
         address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
         begun = time.monotonic()
-        assert main(["sweep", str(study), "-o", str(out), "--scheduler", address]) == 1
+        assert main(["sweep", str(study), "-o", str(out), "--executor", address]) == 1
         assert time.monotonic() - begun < HANG_S
         for peer in peers:
             peer.close()
@@ -152,7 +161,7 @@ def test_a_peer_that_is_no_scheduler_ends_in_time(greeting, study, out, capsys, 
 
 def test_a_cluster_without_its_package_says_what_to_install(study, out, capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    assert main(["sweep", str(study), "-o", str(out), "--scheduler", "tcp://a:1"]) == 1
+    assert main(["sweep", str(study), "-o", str(out), "--executor", "tcp://a:1"]) == 1
     assert 'pip install "perception-entropy[cluster]"' in capsys.readouterr().err
 
 
@@ -429,3 +438,33 @@ def test_without_pyarrow_a_line_comes_before_the_work(study, out, monkeypatch, c
     monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
     assert main(["sweep", str(study), "-o", str(out), "--parquet"]) == 1
     assert "[parquet]" in capsys.readouterr().err and not out.exists()
+
+
+def test_parts_in_processes_of_their_own_and_the_same_command_after_them_merge(study, out):
+    """A part writes no table and leaves the other runs alone; what a part did not do is done."""
+    argv = ["sweep", str(study), "--set", "optimize.seed=0:5", "-o", str(out), "--workers", "1"]
+    for part in ("1/3", "3/3"):
+        with Command(*argv, "--part", part) as command:
+            assert command.process.wait(HANG_S) == 0
+    assert not list(out.glob("sweep.*")) and len(list(out.iterdir())) == 3
+    assert main(argv) == 0
+    assert [row["optimize.seed"] for row in table(out)] == ["0", "1", "2", "3", "4"]
+    assert {row["status"] for row in table(out)} == {"done"}
+
+
+def test_an_executor_of_a_function_finds_the_same(study, out, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.py").write_text(
+        "from concurrent.futures import ThreadPoolExecutor\ndef threads():\n"
+        "    return ThreadPoolExecutor(2)\n"
+    )
+    for name, more in (("here", []), ("there", ["--executor", "mine:threads"])):
+        argv = ["sweep", str(study), "--optimize", "-o", str(out / name), "--workers", "2", *more]
+        assert main(argv) == 0
+        argv = ["optimize", str(study), "-o", str(out / f"one {name}"), "--workers", "2", *more]
+        assert main([*argv, "--no-review"]) == 0
+    found = [
+        json.loads((out / name / "result.json").read_text())
+        for name in ("here/car", "there/car", "one here", "one there")
+    ]
+    assert len({json.dumps(each["placements"]) for each in found}) == 1

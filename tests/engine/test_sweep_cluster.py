@@ -125,7 +125,7 @@ def test_a_worker_that_is_killed_costs_no_result(study, cluster, tmp_path, monke
     threading.Thread(target=kill_in_the_middle, args=(cluster,), daemon=True).start()
     came = at_first_result(monkeypatch, lambda: None)
     values, out = f"sensor.roof.position.2={','.join(HEIGHTS)}", tmp_path / "out"
-    argv = ["sweep", str(study), "--set", values, "-o", str(out), "--scheduler", cluster.address]
+    argv = ["sweep", str(study), "--set", values, "-o", str(out), "--executor", cluster.address]
     assert main(argv) == 0
     assert len(came) == len(set(came)) == len(HEIGHTS), "each result once"
     rows = json.loads((out / "sweep.json").read_text())["runs"]
@@ -147,7 +147,7 @@ def test_searches_on_a_cluster_find_what_they_find_here(cluster, tmp_path):
     study = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search)
     path, out = tmp_path / "car.toml", tmp_path / "out"
     pt.export_study(study, path)
-    argv = ["sweep", str(path), "--optimize", "-o", str(out), "--scheduler", cluster.address]
+    argv = ["sweep", str(path), "--optimize", "-o", str(out), "--executor", cluster.address]
 
     assert main(argv) == 0
     whole = pt.OptimizeJob(pe.load_study(path))
@@ -176,7 +176,7 @@ def test_a_scheduler_that_goes_away_is_one_line(study, cluster, tmp_path, monkey
     came = at_first_result(monkeypatch, lambda: cluster.scheduler.send_signal(signal.SIGKILL))
     values, out = f"sensor.roof.position.2={','.join(HEIGHTS)}", tmp_path / "out"
     argv = ["sweep", str(study), "--set", values, "-o", str(out)]
-    assert main([*argv, "--scheduler", cluster.address]) == 1
+    assert main([*argv, "--executor", cluster.address]) == 1
     *_, line = capsys.readouterr().err.splitlines()
     assert line.startswith(f"pe: {cluster.address}: scheduler: expected a scheduler that runs")
     done = len(came)

@@ -18,6 +18,7 @@ from studies.detectors.scores import COVERAGE, PRIMARY
 from studies.detectors.second.analysis import BEYOND, second_analysis, tie_verdict
 from studies.detectors.second.law import (
     PUBLISHED,
+    camera_law,
     of_mean_ap,
     published_law,
     rows_and_beams,
@@ -93,6 +94,8 @@ def test_rows_are_channels_of_each_lidar_that_meet_the_object():
 def test_saved_forecast_follows_from_its_errors():
     found = json.loads((FOLDER / "law.json").read_text("utf-8"))
     assert found["published"] == {name: published_law(ap) for name, ap in PUBLISHED.items()}
+    assert found["cameras"] == camera_law()
+    assert found["cameras"]["a"] == pytest.approx(0.026 / np.log(4.0), abs=1e-4)
     assert found["across"]["mean"] == of_mean_ap(found["across"]["classes"], full_plan())
 
 

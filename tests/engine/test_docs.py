@@ -170,3 +170,10 @@ def test_pictures_are_small():
         assert path.stat().st_size < MAX_STILL_BYTES, path.name
     for path in IMAGES.glob("*.webp"):
         assert path.stat().st_size < MAX_FILM_BYTES, path.name
+
+
+def test_readme_is_one_screen():
+    """It says what is published, and what each platform is: tested, or expected to work."""
+    text = (ROOT / "README.md").read_text("utf-8")
+    assert len(text.splitlines()) <= 90
+    assert "Nothing is published yet" in text and "**Should work:**" in text

@@ -92,7 +92,7 @@ def run_job(args: argparse.Namespace) -> app.Answer:
         as_json=args.json,
         host=bridge.blender_version(),
         more=more,
-        scheduler=getattr(args, "scheduler", None),
+        executor=getattr(args, "executor", None),
     )
 
 
@@ -109,8 +109,8 @@ def choose_sensors(study: pe.Study, args: argparse.Namespace) -> app.Answer:
         with quiet_blender():
             write_front(found, folder)
 
-    scheduler = args.scheduler
-    return app.choose(job, output, as_json=args.json, host=host, more=leave, scheduler=scheduler)
+    executor = args.executor
+    return app.choose(job, output, as_json=args.json, host=host, more=leave, executor=executor)
 
 
 def export_study(args: argparse.Namespace) -> app.Answer:

@@ -63,7 +63,7 @@ def test_a_table_by_range_gives_the_curve_of_what_the_model_measures(tmp_path):
     ("options", "line"),
     [
         ((), "r.csv: line 1: "),
-        (("--model", "no such"), "a name such as"),
+        (("--model", "no such"), "such as Pandar64"),
         (("--model", RADAR, "--kind", "camera"), "kind: expected radar, the kind of Continental"),
         (("--model", RADAR, "--object", "dog"), "object: expected one of car, pedestrian"),
     ],

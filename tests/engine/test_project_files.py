@@ -1,4 +1,4 @@
-"""Files for other programs: citation, forms, workflows, Dockerfiles, and the bare machine's lines."""
+"""Citation, forms, workflows, Dockerfiles, and the lines that a bare machine is given."""
 
 import re
 import sys

@@ -44,6 +44,7 @@ from .search import (
     Objective,
     Option,
     Schedule,
+    SearchRun,
     SearchSpace,
     Selection,
     Slot,
@@ -77,8 +78,8 @@ __all__ += ["KannalaBrandt", "Lidar", "Mesh", "MeshAxes", "Method", "Motion", "M
 __all__ += ["Mounting", "NoGo", "ObjectClass", "ObjectEvaluator", "ObjectScore", "Objective"]
 __all__ += ["Objects", "Option", "PartScore", "PerceptionModel", "PerceptionSpace", "Pinhole"]
 __all__ += ["Pose", "Prior", "Reach", "Reference", "Rig", "RigEvaluator", "Scatter", "Schedule"]
-__all__ += ["Score", "Search", "SearchSpace", "Selection", "Sensor", "SensorScore", "Sight"]
-__all__ += ["Slot", "SlotMount", "State", "Step", "Study", "SurfaceMount", "TargetRule"]
+__all__ += ["Score", "Search", "SearchRun", "SearchSpace", "Selection", "Sensor", "SensorScore"]
+__all__ += ["Sight", "Slot", "SlotMount", "State", "Step", "Study", "SurfaceMount", "TargetRule"]
 __all__ += ["Tolerance", "Vehicle", "Weather", "__version__", "beam_field", "catalog"]
 __all__ += ["cuts_body", "guessed_reference", "load_study", "measure", "measure_objects"]
 __all__ += ["optimize", "requirements", "save_study", "study_from_dict", "study_to_dict"]

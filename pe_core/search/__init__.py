@@ -1,6 +1,7 @@
 """Searches for better placements."""
 
 from ..scoring.score import Evaluation, Objective
+from .ask_tell import SearchRun
 from .dispatch import Call, WorkerDied, evaluate_all, run_tasks, shared_parts
 from .domains import (
     AXES,
@@ -11,9 +12,10 @@ from .domains import (
     standoff_point,
 )
 from .goals import Front, Goals, Start, Stop
+from .journal import EvaluatedRig, Journal
 from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method
 from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
-from .optimize import EvaluatedRig, Journal, Step, optimize
+from .optimize import Step, optimize
 from .parametrization import Candidate, Parametrization, feasible_start, mirrored
 from .payload import Payload, Unreadable, send_payload
 from .processes import LazyProcesses, Processes, no_processes, start_processes
@@ -50,8 +52,8 @@ __all__ += ["SCHEDULED_METHOD", "AnyMount", "Call", "Candidate", "Choice", "Cons
 __all__ += ["DesignSearch", "DesignSpace", "EvaluatedRig", "Evaluation", "Front", "Goals"]
 __all__ += ["Journal", "LazyProcesses", "Method", "MountArea", "Mounting", "NoGo", "Objective"]
 __all__ += ["Option", "Parametrization", "Payload", "Picks", "Processes", "RigRobustness"]
-__all__ += ["RobustObjective", "Robustness", "Schedule", "SearchSpace", "Selection", "Slot"]
-__all__ += ["SlotMount", "Start", "Step", "Stop", "SurfaceMount", "Tolerance", "Unreadable"]
+__all__ += ["RobustObjective", "Robustness", "Schedule", "SearchRun", "SearchSpace", "Selection"]
+__all__ += ["Slot", "SlotMount", "Start", "Step", "Stop", "SurfaceMount", "Tolerance", "Unreadable"]
 __all__ += ["WorkerDied", "above_front", "checked_axes", "checked_bounds", "checked_method"]
 __all__ += ["default_bounds", "evaluate_all", "feasible_start", "mirrored"]
 __all__ += ["mounted_off", "no_processes", "objective_of", "optimize", "pareto_front"]

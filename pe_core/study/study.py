@@ -7,7 +7,7 @@ is why they agree to the bit.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -40,11 +40,13 @@ from ..search import (
     AXES,
     METHODS,
     PAPER_FREE,
+    SCHEDULED_METHOD,
     DesignSpace,
     Goals,
     Mounting,
     Parametrization,
     Schedule,
+    SearchRun,
     SearchSpace,
     Selection,
     Tolerance,
@@ -389,6 +391,14 @@ class Study(Tabular):
         check_pairs(self.rig, search.mounting)
         where = search.free, search.limits, search.mounting, housings_of(self.rig)
         return SearchSpace.on_vehicle(self.rig, self.vehicle, *where, search.goals.fixed)
+
+    def search_run(self, journal: Iterable[Sequence[Any]] = ()) -> SearchRun:
+        """Return the search of this study as a run that is asked and told: `SearchRun`."""
+        search = self.search
+        schedule = search.schedule if search.method == SCHEDULED_METHOD else None
+        options: Any = {"method": search.method, "evaluations": search.evaluations}
+        where = self.rig, self.search_space(), search.seed, schedule
+        return SearchRun(*where, **options, journal=journal)
 
     def coding(self) -> Parametrization:
         """Return the unknowns of the search; `InputError` when it cannot be made."""

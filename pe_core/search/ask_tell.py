@@ -1,0 +1,151 @@
+"""A search that is asked for placements and told their values, by a program of the user's own."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Generator, Iterable, Sequence
+from typing import Any
+
+from ..base.errors import InputError, shown
+from ..base.values import Whole, real
+from ..scene.rig import Rig
+from ..scoring.score import Evaluation
+from .journal import BATCH, EvaluatedRig, Journal
+from .methods import METHODS, Given, checked_method
+from .parametrization import Parametrization, feasible_start
+from .search_space import Schedule, SearchSpace
+
+COUNT = Whole(1)
+
+
+class SearchRun:
+    """A running search: `ask` returns placements, `tell` takes what they are worth.
+
+    It follows its method, its seed and the values alone: told the same, it asks the same.
+
+    Parameters
+    ----------
+    rig, search_space, seed, schedule, method, evaluations
+        As of `optimize`.
+    journal : iterable of (value, bool, str), optional
+        The `journal` of an earlier run of the same search, perhaps from a file of JSON: what that
+        was told is not asked again.
+
+    Attributes
+    ----------
+    best : Rig or None
+        The placement of the lowest `value` told so far; None before the first.
+    evaluations : int
+        Number of values told, those of the journal included.
+    is_done : bool
+        Whether the search is over: nothing is asked any more.
+
+    Raises
+    ------
+    InputError
+        As of `optimize`; or when the journal is of another search.
+    """
+
+    def __init__(
+        self,
+        rig: Rig,
+        search_space: SearchSpace,
+        seed: int = 0,
+        schedule: Schedule | None = None,
+        *,
+        method: str | None = None,
+        evaluations: int = 0,
+        journal: Iterable[Sequence[Any]] = (),
+    ) -> None:
+        name = checked_method("search_run", method, schedule is not None)
+        self._options: tuple[Any, ...] = seed, schedule or Schedule(), 1, BATCH, evaluations
+        self._coding, self._ask = Parametrization(rig, search_space), METHODS[name].ask
+        self._journal = Journal([EvaluatedRig(*entry) for entry in journal])
+        self.best: Rig | None = None
+        self.value, self.evaluations, self.is_done = math.inf, 0, False
+        self._batches = self._questions()
+        self._batch, self._given = next(self._batches), 0
+        self._told: dict[int, float] = {}
+        self._values: list[float] = []
+        self._advance()
+
+    @property
+    def journal(self) -> tuple[EvaluatedRig, ...]:
+        """Every value in the order of the questions; JSON can hold it."""
+        return self._journal.entries
+
+    def ask(self, count: int = 1) -> list[Rig]:
+        """Return at most `count` placements to evaluate, each once.
+
+        None of them, while the method waits for values of those that it has asked for.
+        """
+        first = max(self._given, len(self._values))
+        count = COUNT.checked("search_run", "count", count)
+        self._given = min(first + count, len(self._batch))
+        return self._batch[first : self._given]
+
+    def tell(self, rigs: Sequence[Rig], values: Sequence[float]) -> None:
+        """Take the value of each placement, in any order; lower is better.
+
+        Raises
+        ------
+        InputError
+            When a placement was not asked for, or was told before; or a value is no number.
+        """
+        for rig, value in zip(rigs, values, strict=True):
+            waiting = range(len(self._values), self._given)
+            found = [k for k in waiting if self._batch[k] is rig and k not in self._told]
+            if not found:
+                raise InputError("search_run", "rig", "one that `ask` returned, once", "another")
+            if math.isnan(number := real(value)):
+                raise InputError("search_run", "value", "a number for each rig", shown(value))
+            self._told[found[0]] = number
+        self._advance()
+
+    def _advance(self) -> None:
+        """Take values in the order of the questions; begin the next batch when one is complete."""
+        while not self.is_done:
+            for number in range(len(self._values), len(self._batch)):
+                rig = self._batch[number]
+                if (value := self._journal.replay(rig, 0)) is None:
+                    if number not in self._told:
+                        return
+                    value = Evaluation(self._told[number], False)
+                    self._journal.record(rig, 0, value)
+                self._values.append(value.entropy)
+                self.evaluations += 1
+                if value.entropy < self.value:
+                    self.best, self.value = rig, value.entropy
+            try:
+                self._batch = self._batches.send(self._values)
+            except StopIteration:
+                self.is_done, self._batch = True, []
+            self._given, self._told, self._values = 0, {}, []
+
+    def _questions(self) -> Generator[list[Rig], list[float], None]:
+        """Yield the placements of each question; is sent their values."""
+        start = feasible_start(self._coding, self._options[0])
+        [entropy] = yield [start.rig]
+        left = (self._options[-1] or sys.maxsize) - 1
+        if not self._coding.variables:
+            return
+        questions = self._ask(Given(self._coding, start, entropy, *self._options))
+        question = next(questions, None)
+        while question is not None and left > 0:
+            candidates, cutoff = question.candidates, question.cutoff
+            rigs = [each.rig for each in candidates if each is not None][:left]
+            values = iter((yield rigs))
+            left -= len(rigs)
+            if not left:
+                return
+            answers = [None if c is None else _bounded(next(values), cutoff) for c in candidates]
+            try:
+                question = questions.send(answers)
+            except StopIteration:
+                return
+
+
+def _bounded(value: float, cutoff: float) -> Evaluation:
+    """Return a value as methods are answered everywhere: what is not below the cutoff is alike."""
+    return Evaluation(value, False) if value < cutoff else Evaluation(cutoff, True)

@@ -1,0 +1,139 @@
+"""The journal of a search: all values that it was told, in order.
+
+Methods draw from their seed and follow these values, and nothing else. So they are the state of a
+search, and no other state is ever stored: a search that resumes from a journal ends at the same
+bits as one that was never interrupted.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Executor
+from typing import NamedTuple
+
+from ..base.errors import InputError
+from ..scene.rig import Rig
+from ..scoring.score import Evaluation, Objective
+from .dispatch import evaluate_all
+
+OnTold = Callable[[Rig, int, Evaluation], None]
+"""Takes a rig, the level that it was evaluated on, and its value."""
+DIGEST_BYTES = 4
+"""Length of the digest that identifies a placement."""
+BATCH = 16
+"""Candidates that a method may ask for at once when several are evaluated in parallel."""
+
+
+class EvaluatedRig(NamedTuple):
+    """The value of a placement, and a digest that identifies the placement."""
+
+    entropy: float
+    is_lower_bound: bool
+    digest: str
+
+
+class Journal:
+    """Values that a search was told, in the order of its questions.
+
+    The given entries, of an interrupted search, are replayed: their placements are not evaluated
+    again. `source` names the journal in messages.
+    """
+
+    def __init__(self, entries: Iterable[EvaluatedRig] = (), source: str = "journal") -> None:
+        self._entries, self._position, self._source = list(entries), 0, source
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle the entries: a search that begins anew replays them."""
+        return Journal, (self.entries, self._source)
+
+    @property
+    def entries(self) -> tuple[EvaluatedRig, ...]:
+        """All entries so far; may be read while another thread searches."""
+        return tuple(self._entries)
+
+    def wrap(self, objectives: Sequence[Objective], told: OnTold | None = None) -> list[Objective]:
+        """Return objectives, one for each level of a method, that replay and extend the journal.
+
+        Behind the end of the journal they evaluate with the given objectives. `told` is called with
+        every value, replayed or new, in the order of the questions.
+        """
+        return [JournaledObjective(self, own, k, told) for k, own in enumerate(objectives)]
+
+    def replay(self, rig: Rig, level: int) -> Evaluation | None:
+        """Return the journaled value of the next placement; None behind the end of the journal.
+
+        `InputError` when the journal has another placement here.
+        """
+        if self._position == len(self._entries):
+            return None
+        entry, digest = self._entries[self._position], _digest(rig, level)
+        if entry.digest != digest:
+            expected = "the placements this search asks for (of the same version, on such a system)"
+            field = f"evaluated[{self._position}]"
+            raise InputError(self._source, field, expected, "another")
+        self._position += 1
+        return Evaluation(entry.entropy, entry.is_lower_bound)
+
+    def record(self, rig: Rig, level: int, value: Evaluation) -> None:
+        """Append the value of a placement that is not in the journal yet."""
+        entry = EvaluatedRig(value.entropy, value.is_lower_bound, _digest(rig, level))
+        self._entries.append(entry)
+        self._position += 1
+
+
+class JournaledObjective:
+    """An objective that replays a journal, and records what it evaluates behind the end."""
+
+    def __init__(
+        self, journal: Journal, objective: Objective, level: int = 0, told: OnTold | None = None
+    ) -> None:
+        self._journal, self._objective, self._level, self._told = journal, objective, level, told
+
+    def entropy(self, rig: Rig) -> float:
+        """Return the entropy of a rig, from the journal or from the objective [nats]."""
+        return self._known(rig, lambda: Evaluation(self._objective.entropy(rig), False)).entropy
+
+    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
+        """Return the value of a rig, from the journal or from the objective."""
+        return self._known(rig, lambda: self._objective.evaluate(rig, cutoff))
+
+    def _known(self, rig: Rig, evaluate: Callable[[], Evaluation]) -> Evaluation:
+        value = self._journal.replay(rig, self._level)
+        if value is None:
+            value = evaluate()
+            self._journal.record(rig, self._level, value)
+        if self._told is not None:
+            self._told(rig, self._level, value)
+        return value
+
+    def evaluate_all(
+        self, rigs: Sequence[Rig], cutoff: float, executor: Executor | None
+    ) -> list[Evaluation]:
+        """Evaluate several rigs: the first ones may be in the journal, the others are evaluated.
+
+        Workers are sent the objective without the journal.
+        """
+        replayed = (self._journal.replay(rig, self._level) for rig in rigs)
+        values: list[Evaluation] = []
+        for value in replayed:
+            if value is None:
+                break
+            values.append(value)
+        new_rigs = rigs[len(values) :]
+        new_values = evaluate_all(self._objective, new_rigs, cutoff, executor)
+        for rig, value in zip(new_rigs, new_values, strict=True):
+            self._journal.record(rig, self._level, value)
+        values += new_values
+        if self._told is not None:
+            for rig, value in zip(rigs, values, strict=True):
+                self._told(rig, self._level, value)
+        return values
+
+
+def _digest(rig: Rig, level: int) -> str:
+    """Return a digest of a placement; two placements share one in four billion digests."""
+    poses = ((s.name, s.model.name, s.pose.position, s.pose.rpy) for s in rig)
+    identity = repr((level, *poses)).encode()
+    return hashlib.blake2b(identity, digest_size=DIGEST_BYTES).hexdigest()

@@ -80,7 +80,7 @@ def test_a_change_replaces_one_place_and_leaves_the_rest(path, change, capsys):
 WRONG = {
     "sensor.rof.model=X": "roof",
     "sensor.roof.modle=X": "model",
-    "sensor.roof.model=Pandar46": "'Pandar64'",
+    "sensor.roof.model=Pandar46": "Pandar64, ",
     "optimise.seed=3": "optimize",
     "samples=-3": ">= 0",
     "samples=1,2": "one value",

@@ -13,7 +13,7 @@ from typing import Any, ClassVar, NamedTuple
 import bpy
 
 from .. import bridge, diagnostics, engine_calls, result_staleness, signals, vehicle_cache
-from ..engine import advice, engine_process, jobs, pe
+from ..engine import advice, jobs, pe
 from ..language import shown
 from ..live import FinishedScore, live_state
 from . import running_job
@@ -43,7 +43,7 @@ class Task(NamedTuple):
 
     `finish` writes its result to the scene, `progressed` what it has found so far: it gets the job.
     `outcome` is the job's attribute of the result; None while there is nothing to keep. `rescue`
-    keeps what a job had found whose process ended twice.
+    keeps what a job had found that ended without a result.
     """
 
     job: Any
@@ -150,13 +150,14 @@ class JobOperator(OperatorMixin):
             return {"CANCELLED"}
         if event.type == "ESC" and event.value == "PRESS" and not event.is_repeat:
             running.stop()
-            running.show(context)
-            return {"RUNNING_MODAL"}
-        if is_undo(event):
+            if not running.ended:
+                running.show(context)
+                return {"RUNNING_MODAL"}
+        elif is_undo(event):
             running.refuse_undo(context)
             report(self, "INFO", running_job.NO_UNDO)
             return {"RUNNING_MODAL"}
-        if event.type != "TIMER":
+        elif event.type != "TIMER":
             return {"PASS_THROUGH"}
         scene = bpy.data.scenes.get(running.scene_name)
         if self.task.progressed is not None and scene is not None:
@@ -165,10 +166,10 @@ class JobOperator(OperatorMixin):
             running.show_soon(context)
             return {"PASS_THROUGH"}
         try:
+            lost = running.found is None and not running.seen.dropped
+            if lost and scene is not None and self.task.rescue is not None:
+                self.task.rescue(scene, running.seen)
             if running.error is not None:
-                ended = isinstance(running.error, engine_process.EngineEnded)
-                if ended and scene is not None and self.task.rescue is not None:
-                    self.task.rescue(scene, running.seen)
                 raise running.error
             report_answer(self, self.row.finish(scene, self.task, running.found, running.seen))
             return self._show()

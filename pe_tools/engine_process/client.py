@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from pe_core.base.errors import InputError
+from pe_core.base.files import reason_of
 from pe_core.base.spawning import (
     beginning,
     packages_around,
@@ -34,10 +35,10 @@ EngineCall = tuple[Callable[..., Any], tuple[Any, ...]]
 
 
 class EngineEnded(InputError):
-    """The engine's process ended twice in the middle of the same request."""
+    """The engine's process ended twice in the middle of the same request, or none can start."""
 
-    def __init__(self) -> None:
-        super().__init__("engine", "process", "one that runs until it answers", "one ended twice")
+    def __init__(self, found: str) -> None:
+        super().__init__("engine", "process", "one that runs until it answers", found)
 
 
 @dataclass(slots=True, eq=False)
@@ -52,6 +53,7 @@ class _Awaited:
     step: Take | None
     shared: dict[int, object] = field(default_factory=dict)
     again: bool = False
+    cancels: int = 0
 
 
 class _Sent(NamedTuple):
@@ -160,8 +162,24 @@ class EngineProcess:
         self._awaited.setdefault(topic, []).append(each)
         self._send_request(topic, each)
 
+    def begin(self) -> None:
+        """Start the process where there is none, and have it take what `setup` returns.
+
+        `EngineEnded` where none can be started: too little memory, too many open files.
+        """
+        if self._process is None:
+            try:
+                self._start()
+            except OSError as error:
+                raise EngineEnded(f"none could be started: {reason_of(error)}") from error
+        if self._set_up != (wanted := self._setup()):
+            self._set_up = wanted
+            self._send((SET_UP, wanted))
+
     def cancel(self, topic: str) -> None:
         """Call `cancel` of a topic's job; its result is delivered all the same."""
+        for each in self._awaited.get(topic, ()):
+            each.cancels += 1
         if topic in self._awaited:
             self._send((CANCEL, (topic, False)))
 
@@ -223,11 +241,13 @@ class EngineProcess:
             latest = waiting[-1]
             if latest.again:
                 del self._awaited[topic]
-                latest.fail(EngineEnded())
+                latest.fail(EngineEnded("one ended twice"))
             else:
                 latest.again = True
                 self._awaited[topic] = [latest]
                 self._send_request(topic, latest)
+                for _ in range(latest.cancels):
+                    self._send((CANCEL, (topic, False)))
 
     def _end_process(self, patience_s: float) -> None:
         self._connection.close()  # for the process the sign to end
@@ -238,12 +258,8 @@ class EngineProcess:
         self._process = self._connection = None
 
     def _send_request(self, topic: str, each: _Awaited) -> None:
-        if self._process is None:
-            self._start()
-        if self._set_up != (wanted := self._setup()):
-            self._set_up = wanted
-            self._send((SET_UP, wanted))
         try:
+            self.begin()
             call, new = self._shared.call(each)
         except Exception as error:
             del self._awaited[topic]  # of what was asked before nothing is wanted any more
@@ -260,16 +276,21 @@ class EngineProcess:
 
     def _start(self) -> None:
         context = multiprocessing.get_context("spawn")
-        self._connection, there = context.Pipe()
         self._shared, self._set_up = _SharedObjects(self._shared_types()), None
         self._is_up = False
         own = [(name, sys.modules[name].__path__[0]) for name in self._packages]
         module = f"{__package__}.server"
         code = beginning(module, "serve", [*packages_around(), *own])
-        with without_main(), signals_blocked():
-            self._process = context.Process(target=exec, args=(code, {"arguments": (there,)}))
-            self._process.start()
-        there.close()
+        here, there = context.Pipe()
+        with there:
+            process = context.Process(target=exec, args=(code, {"arguments": (there,)}))
+            try:
+                with without_main(), signals_blocked(), pipe_errors():
+                    process.start()
+            except BaseException:
+                here.close()
+                raise
+        self._process, self._connection = process, here
 
 
 def call_here(

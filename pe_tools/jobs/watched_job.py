@@ -32,8 +32,9 @@ class JobRun:
     It returns the attribute `outcome` of the job.
     """
 
-    def __init__(self, job: Job, outcome: str = "outcome") -> None:
+    def __init__(self, job: Job, outcome: str = "outcome", keep_s: float = KEEP_S) -> None:
         self._job, self._outcome, self._steps = job, outcome, iter(job)
+        self._keep_s = keep_s
         self._seen: object = None
         self._kept_at = time.monotonic()
 
@@ -50,7 +51,7 @@ class JobRun:
         if state == self._seen:
             shown = {}
         self._seen, kept = state, {}
-        if time.monotonic() - self._kept_at > KEEP_S:
+        if time.monotonic() - self._kept_at > self._keep_s:
             self._kept_at = time.monotonic()
             kept = {name: getattr(self._job, name) for name in self._job.kept}
         return JobStep(progress, shown, kept)

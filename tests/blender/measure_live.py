@@ -124,7 +124,7 @@ def main() -> int:
     for checkout in chosen.checkouts:
         with tempfile.TemporaryDirectory() as folder:
             installed = install(chosen.suite, checkout.resolve(), Path(folder))
-            print(checkout, "load %.1f" % psutil.getloadavg()[0])
+            print(f"{checkout}, load {psutil.getloadavg()[0]:.1f}")
             for name, figure in measured(installed, Path(folder), chosen.triangles).items():
                 print(f"  {name:34s} {figure}")
     return 0

@@ -1,6 +1,8 @@
 """The engine in a process of its own: requests are answered, whatever happens to the process."""
 
+import errno
 import math
+import multiprocessing
 import os
 import pickle
 import signal
@@ -176,7 +178,7 @@ def run(engine, watched, step=None):
         if step is not None:
             step()
 
-    return ask(engine, "job", JobRun, watched.job, step=note)
+    return ask(engine, "job", JobRun, watched.job, "outcome", 0.0, step=note)
 
 
 def test_a_search_there_has_the_bits_of_one_here(engine):
@@ -195,10 +197,9 @@ def test_a_search_there_has_the_bits_of_one_here(engine):
     assert watched.seen.evaluations == here.evaluations and watched.job.evaluations == 0
 
 
-def test_a_search_whose_process_is_killed_goes_on_where_it_was(engine, monkeypatch):
+def test_a_search_whose_process_is_killed_goes_on_where_it_was(engine):
     here = OptimizeJob(small_search())
     list(here)
-    monkeypatch.setattr("pe_tools.jobs.watched_job.KEEP_S", 0.0)
     watched, kills, known = WatchedJob(OptimizeJob(small_search())), [], []
 
     def step():
@@ -209,7 +210,7 @@ def test_a_search_whose_process_is_killed_goes_on_where_it_was(engine, monkeypat
 
     got = run(engine, watched, step)
     settled(engine)
-    assert kills and got[0].evaluated == here.outcome.evaluated
+    assert kills and any(known) and got[0].evaluated == here.outcome.evaluated
     assert got[0].after.entropy == here.outcome.after.entropy
 
 
@@ -228,6 +229,62 @@ def test_a_stopped_search_keeps_the_best_and_a_dropped_one_nothing(engine):
         settled(engine)
         assert pressed
         assert (got[0] is None) if presses == 2 else got[0].stopped
+
+
+@pytest.mark.parametrize("presses", [1, 2])
+def test_a_cancel_is_not_lost_with_the_process_that_was_told(engine, presses):
+    watched, stopped = WatchedJob(OptimizeJob(small_search())), []
+
+    def step():
+        if watched.seen.evaluations >= 1 and not stopped:
+            stopped.append(engine.pid)
+            psutil.Process(engine.pid).suspend()  # it takes no more messages
+            for _ in range(presses):
+                engine.cancel("job")
+            killed(engine)
+
+    got = run(engine, watched, step)
+    settled(engine)
+    assert stopped and engine.pid not in stopped
+    assert got == [None], "asked again, it ends before its first score"
+
+
+def test_a_process_that_cannot_start_is_told_in_a_line(engine, monkeypatch):
+    kept = ask(engine, "kept", time.sleep, 60)
+    killed(engine)
+    spawn = multiprocessing.get_context("spawn").Process
+
+    def refuse(self):
+        raise OSError(errno.ENOMEM, os.strerror(errno.ENOMEM))
+
+    open_before = len(os.listdir("/dev/fd")) if os.path.exists("/dev/fd") else 0
+    with monkeypatch.context() as patch:
+        patch.setattr(spawn, "start", refuse)
+        while engine.busy():
+            engine.deliver_all()
+        refused = ask(engine, "new", math.factorial, 3)
+        assert not engine.deliver_all() and engine.pid is None
+    for error in (*kept, *refused):
+        assert isinstance(error, EngineEnded) and "cannot allocate memory" in str(error)
+    if open_before:
+        assert len(os.listdir("/dev/fd")) < open_before, "no pipe is left open"
+    again = ask(engine, "new", math.factorial, 3)
+    settled(engine)
+    assert again == [6]
+
+
+def test_two_owners_do_not_meet(engine):
+    """As two Blenders side by side: the end of one process is nothing to the other."""
+    other = EngineProcess(lambda: {pe.Vehicle: 2}, own_sensors)
+    got = ask(engine, "same topic", time.sleep, 1.0)
+    theirs = ask(other, "same topic", math.factorial, 3)
+    settled(other)
+    assert theirs == [6] and other.pid != engine.pid and engine.busy("same topic")
+    pid, lost = engine.pid, ask(other, "same topic", time.sleep, 60)
+    killed(other)
+    other.stop()
+    settled(engine)
+    assert got == [None] and engine.pid == pid and not lost and other.pid is None
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")

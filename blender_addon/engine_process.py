@@ -22,6 +22,9 @@ FOLLOWS_MOUSE, BEHIND, JOB = engine_process.FOLLOWS_MOUSE, engine_process.BEHIND
 POLL_S = 0.005
 """How often the timer looks for results, while one is awaited."""
 MAX_MODELS = 256
+LIVE_SCORE, OVERLAY = "live score of ", "overlay "
+VIEW_TOPICS = LIVE_SCORE, OVERLAY
+"""How topics begin whose results are drawn, and write nothing into Blender's data."""
 
 
 def _shared_types() -> dict[type, int]:
@@ -56,6 +59,25 @@ def ask(
     _engine.ask(topic, function, arguments, deliver, fail, step=step, lane=lane)
     if not bpy.app.timers.is_registered(deliver_all):
         bpy.app.timers.register(deliver_all, first_interval=POLL_S, persistent=True)
+
+
+def deliver_for_view() -> None:
+    """Before a view is drawn: deliver what it shows. A timer's turn comes after the redraw."""
+    try:
+        _engine.deliver_all(*VIEW_TOPICS)
+    except Exception:  # in what takes a result: the view is drawn all the same
+        traceback.print_exc()
+
+
+def begin(*_: object) -> None:
+    """After a file was opened: start the process where there are sensors, while Blender draws."""
+    sensors = (each.perception_entropy.is_sensor for each in bpy.data.objects)
+    if not bpy.app.background and any(sensors):
+        ask("begin", analysis_calls.clear, (), _ignore, _ignore)
+
+
+def _ignore(_: object) -> None:
+    """Whoever asks next is told what keeps the process from starting."""
 
 
 def deliver_all() -> float | None:

@@ -67,6 +67,7 @@ EVENTS: dict[str, tuple[Function, ...]] = {
     "load_post": (
         sensor_cache.invalidate,
         vehicle_cache.clear,
+        engine_process.begin,
         consistency.after_load,
         change_events.note_change,
         draw_handler.clear,

@@ -31,8 +31,6 @@ ALERT: Rgba = (1.0, 0.84, 0.35, 1.0)
 SENSE_COLORS = {sense: (*color, 1.0) for sense, color in SENSES.items()}
 ARROWS = {BETTER: "\N{DOWNWARDS ARROW}", WORSE: "\N{UPWARDS ARROW}"}
 PLATE_NAME = "live"
-VIEW_TOPICS = "overlay "
-"""How topics begin whose results the 3D view shows of sensors."""
 
 
 class TextRow(NamedTuple):
@@ -60,13 +58,14 @@ def unregister() -> None:
 
 def draw() -> None:
     """Draw into the current 3D view, if it shows overlays; Blender calls this at each redraw."""
+    engine_process.deliver_for_view()
     context = bpy.context
     space, scene = context.space_data, context.scene
     overlays = space is None or space.type != "VIEW_3D" or space.overlay.show_overlays
     box = None
     if scene.perception_entropy.live.on and overlays and viewport.is_lower_left(context):
         state, shown = live_state(scene.name), shown_score(scene)
-        if shown is not None and shown.exact and engine_process.busy(VIEW_TOPICS):
+        if shown is not None and shown.exact and engine_process.busy(engine_process.OVERLAY):
             shown = shown._replace(view_outdated=True)
         exact, figures = shown is not None and shown.exact, []
         if state.score is not None:

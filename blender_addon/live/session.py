@@ -32,7 +32,6 @@ from . import background_figures
 from .state import Baseline, LastRead, LiveScore, LiveState, live_state, states
 
 VEHICLE_MOVES = "The vehicle is moving: scored again when it stops"
-TOPIC = "live score of "
 MOVING = "TRANSFORM_OT_"
 """How the names of Blender's operators begin that move things."""
 
@@ -95,8 +94,9 @@ def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, mov
     needed = None if baseline is None or moving or baseline.summary else baseline.rig
     deliver = partial(take_score, name, request, number, baseline)
     fail = partial(report_failure, name)
-    given, lane = (name, request, needed), engine_process.FOLLOWS_MOUSE
-    engine_process.ask(TOPIC + name, engine_calls.live_score, given, deliver, fail, lane=lane)
+    topic, given = engine_process.LIVE_SCORE + name, (name, request, needed)
+    lane = engine_process.FOLLOWS_MOUSE
+    engine_process.ask(topic, engine_calls.live_score, given, deliver, fail, lane=lane)
     if not moving:
         background_figures.request(scene, request, baseline)
 
@@ -156,7 +156,7 @@ def show_note(name: str, line: str) -> None:
 
 def cancel(name: str) -> None:
     """Drop the request of a scene; one that is in progress will not be shown."""
-    engine_process.drop(TOPIC + name)
+    engine_process.drop(engine_process.LIVE_SCORE + name)
 
 
 def on_toggled() -> None:

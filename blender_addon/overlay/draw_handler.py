@@ -14,7 +14,7 @@ import gpu
 import numpy as np
 from mathutils import Matrix
 
-from .. import bridge, vehicle_cache, viewport
+from .. import bridge, engine_process, vehicle_cache, viewport
 from ..engine import graphics, pe
 from . import labels, scheduler, surroundings
 from .batches import Batches
@@ -82,6 +82,7 @@ def draw() -> None:
     context = bpy.context
     if not _overlays_shown(context):
         return
+    engine_process.deliver_for_view()
     scene = context.scene.name
     eye = _eye(context)
     if eye is not None:

@@ -164,7 +164,7 @@ def _redraw_now() -> None:
 
 
 def _topic(scene: str, layer: str) -> str:
-    return f"overlay {layer} of {scene}"
+    return f"{engine_process.OVERLAY}{layer} of {scene}"
 
 
 def register() -> None:

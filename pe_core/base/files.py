@@ -14,7 +14,7 @@ import os
 import re
 import secrets
 import stat
-import threading
+import time
 import unicodedata
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -39,8 +39,10 @@ _FILE_TYPES = {
     stat.S_IFCHR: "a device",
     stat.S_IFBLK: "a device",
 }
-_writing_files = threading.RLock()
-END_WAIT_S = 5.0
+_writing_files: set[object] = set()
+"""A mark for each call that is writing files, or `ENDING`."""
+ENDING = "ending"
+END_WAIT_S, END_POLL_S = 5.0, 0.01
 """How long a process that ends at once waits for a file that a thread is writing."""
 NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 """Each digit can match in one way only: otherwise the time would grow with the square of a text."""
@@ -139,7 +141,7 @@ def write_all_bytes(files: Mapping[Path, bytes]) -> None:
     # Not the tempfile module: only the owner may read its files, and os.replace keeps that mode.
     token = secrets.token_hex(4)
     temporaries = {p: p.with_name(f".{token}{number}.tmp") for number, p in enumerate(files)}
-    with _writing_files:
+    with _before_the_end():
         try:
             for path, data in files.items():
                 with _writing(path):
@@ -155,7 +157,24 @@ def write_all_bytes(files: Mapping[Path, bytes]) -> None:
 
 def finish_writing() -> None:
     """Wait until no file is being written, and let none begin: the process is about to end."""
-    _writing_files.acquire(timeout=END_WAIT_S)
+    _writing_files.add(ENDING)
+    until = time.monotonic() + END_WAIT_S
+    while len(_writing_files) > 1 and time.monotonic() < until:
+        time.sleep(END_POLL_S)
+
+
+@contextmanager
+def _before_the_end() -> Iterator[None]:
+    """Have `finish_writing` wait for what is written; write nothing after it."""
+    mark = object()
+    _writing_files.add(mark)  # before the look, so that one of the two sees the other
+    try:
+        while ENDING in _writing_files:
+            _writing_files.discard(mark)
+            time.sleep(END_WAIT_S)
+        yield
+    finally:
+        _writing_files.discard(mark)
 
 
 def put_in_place(moves: Mapping[Path, Path]) -> None:

@@ -7,14 +7,15 @@ import multiprocessing.connection
 import os
 import signal
 import sys
-import threading
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from multiprocessing import resource_tracker
 from types import ModuleType
+from typing import Any
 
 from .files import finish_writing
+from .lazy_threads import threads
 
 TERMINAL_SIGNALS = ("SIGINT", "SIGHUP")
 """Signals that a terminal sends to all processes at once; Windows has no SIGHUP.
@@ -94,12 +95,12 @@ def _handlers_held(numbers: Iterable[int]) -> Iterator[None]:
     To block signals is not enough: another thread then gets them, and Python calls their handlers
     in the main thread all the same; in other threads never.
     """
-    here = threading.current_thread() is threading.main_thread()
-    before = {n: signal.getsignal(n) for n in numbers if here and callable(signal.getsignal(n))}
+    before: dict[int, Any] = {}
     came: list[int] = []
     try:
-        for number in before:
-            signal.signal(number, lambda number, _: came.append(number))
+        with suppress(ValueError):  # in another thread no handler can be set
+            for number in (n for n in numbers if callable(signal.getsignal(n))):
+                before[number] = signal.signal(number, lambda number, _: came.append(number))
         yield
     finally:
         for number, handler in before.items():
@@ -138,7 +139,7 @@ def belong_to_parent() -> None:
         multiprocessing.connection.wait([parent.sentinel])
         end_process()
 
-    threading.Thread(target=end_with_parent, daemon=True).start()
+    threads().Thread(target=end_with_parent, daemon=True).start()
 
 
 def end_process() -> None:

@@ -8,16 +8,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import Executor
 from functools import partial, reduce
 from operator import add
-from threading import Lock
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..base.arrays import Floats
 from ..base.errors import InputError, available_bytes, size_text
+from ..base.lazy_threads import threads
 from ..base.values import rounded
 from ..geometry.bins import blocks
 from ..geometry.grids import PerceptionSpace
@@ -156,12 +156,12 @@ class GridScorer:
         self._reached = np.isfinite(-np.inf if self._tops is None else self._tops.max(axis=1))
         self._masses = np.array(outside_masses(densities, space, self._tops))
         self._kernels: dict[KernelKey, GridKernel] = {}  # as many as there are
-        self._lock = Lock()
+        self._lock = threads().RLock()
 
     def entropy(self, rig: Rig, preview: bool = False) -> float:
         """Return the perception entropy alone."""
         require_room_for(self._space, partial(self.needs, list(rig.groups.values())))
-        with self._lock, ThreadPoolExecutor(self._workers) as pool:
+        with self._lock, threads().ThreadPoolExecutor(self._workers) as pool:
             ready = self._ready(rig, pool)
             groups = self._measured(list(rig.groups.values()), ready, pool)
 
@@ -197,7 +197,7 @@ class GridScorer:
         # By the literal formula (eq. 7) a sensor changes the fusion also where it sees nothing.
         is_sparse = self._fusion.model.blind == "floor" and len(rig.sensors) > 1
         parts = parts_of(rig)[: 1 if is_sparse else None]
-        with self._lock, ThreadPoolExecutor(self._workers) as pool:
+        with self._lock, threads().ThreadPoolExecutor(self._workers) as pool:
             ready = self._ready(rig, pool)
             measured = self._measured([[s] for s in rig], ready, pool)
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from functools import cached_property
-from threading import RLock
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arrays import Floats
+from ..base.lazy_threads import threads
 from ..base.values import rounded
 from ..geometry.grids import PerceptionSpace
 from ..metric.entropy import H_BEST, H_BLIND
@@ -66,7 +66,7 @@ class SampledScorer:
         self._zones = {n: (np.flatnonzero(m), rounded(float(np.mean(m)))) for n, m in masks.items()}
         voxels = Voxels(space, self._sample.index, self._sample.centers)
         self._sensors = MeasurementCache(voxels, vehicle, fusion.saturation_count)
-        self._lock = RLock()
+        self._lock = threads().RLock()
 
     @cached_property
     def _digest(self) -> str:

@@ -10,7 +10,6 @@ import ctypes
 import hashlib
 import io
 import pickle
-import threading
 from collections.abc import Iterable
 from concurrent.futures import Executor
 from contextlib import suppress
@@ -19,6 +18,7 @@ from functools import cache
 from typing import Any
 from weakref import WeakKeyDictionary
 
+from ..base.lazy_threads import threads
 from ..base.plugins import optional_package
 
 MAX_OBJECTS = 12
@@ -29,9 +29,6 @@ _INITIAL: dict[str, bytes] = {}
 """In a worker: the payloads that came before their tasks, by key."""
 MAX_PAYLOADS = 4
 """How many of them a worker of a cluster keeps: several searches may share it."""
-_WORKER = threading.local()
-"""The payload that this worker has unpickled, and its key. Threads share none of it, so that no
-thread waits for another."""
 KEPT_BYTES = {-1: 1 << 28, -3: 1 << 25}
 """glibc's M_TRIM_THRESHOLD and M_MMAP_THRESHOLD of a worker: the pages of each array are not made
 anew, which takes a tenth of a search's time; with the thresholds that Dask sets, half [bytes]."""
@@ -136,6 +133,15 @@ def receive(key: str, data: bytes) -> None:
 
 
 @cache
+def _worker() -> Any:
+    """Return the payload that this worker has unpickled, and its key.
+
+    Threads share none of it, so that no thread waits for another.
+    """
+    return threads().local()
+
+
+@cache
 def keep_freed_memory() -> bool:
     """Have this process keep freed memory; False where its C library is not glibc."""
     with suppress(AttributeError, OSError, TypeError):
@@ -150,9 +156,10 @@ def unpickled(packed: PackedPayload, content: bytes) -> Any:
     Raises `Unreadable` when the worker lacks the payload, or does not know a class of it.
     """
     try:
-        if getattr(_WORKER, "key", None) != packed.key:
+        worker = _worker()
+        if getattr(worker, "key", None) != packed.key:
             data = packed.data or _INITIAL[packed.key]
-            _WORKER.objects, _WORKER.key = pickle.loads(data), packed.key
+            worker.objects, worker.key = pickle.loads(data), packed.key
         return _Unpickler(io.BytesIO(content)).load()
     except Exception as error:  # whatever unpickling raises
         raise Unreadable(str(error)) from None
@@ -182,4 +189,4 @@ class _Unpickler(pickle.Unpickler):
     """Unpickles content that refers to objects of this worker's payload by number."""
 
     def persistent_load(self, number: Any) -> Any:
-        return _WORKER.objects[number]
+        return _worker().objects[number]

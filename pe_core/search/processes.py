@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-import threading
 import time
 from collections.abc import Callable, Iterable
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
@@ -12,6 +11,7 @@ from contextlib import suppress
 from typing import Any, TypeVar
 
 from ..base.errors import InputError
+from ..base.lazy_threads import threads
 from ..base.spawning import (
     beginning,
     belong_to_parent,
@@ -38,7 +38,7 @@ class Processes(Executor):
     """
 
     def __init__(self, count: int) -> None:
-        self._count, self._lock = count, threading.Lock()
+        self._count, self._lock = count, threads().RLock()
         self._payload: tuple[str, bytes] | None = None
         self._pool = self._new_pool()
 
@@ -130,7 +130,7 @@ class LazyProcesses:
 
     def __init__(self, count: int | None = None, common: Iterable[object] = ()) -> None:
         self._count, self._common, self._began = count, common, time.monotonic()
-        self._thread: threading.Thread | None = None
+        self._thread: Any = None
         self._processes: Processes | None = None
         self._ended = False
 
@@ -138,7 +138,7 @@ class LazyProcesses:
         """Return the processes; the first call after `SHORT_S` begins to start them."""
         late = time.monotonic() - self._began > SHORT_S
         if late and self._thread is None and not self._ended:
-            self._thread = threading.Thread(target=self._start, daemon=True)
+            self._thread = threads().Thread(target=self._start, daemon=True)
             self._thread.start()
         return self._processes
 

@@ -136,6 +136,8 @@ class EngineProcess:
         self._process: Any = None
         self._connection: Any = None
         self._awaited: dict[str, list[_Awaited]] = {}
+        self._come: list[tuple[int, str, str, bytes]] = []
+        """Number, topic, kind and content of answers that are not delivered yet."""
         self._number, self._is_up = 0, False
         self._shared = _SharedObjects({})
 
@@ -197,20 +199,31 @@ class EngineProcess:
         """Number of the process; None where there is none."""
         return None if self._process is None else self._process.pid
 
-    def deliver_all(self) -> bool:
-        """Deliver what has come; return whether more is awaited."""
+    def deliver_all(self, *beginnings: str) -> bool:
+        """Deliver what has come; return whether more is awaited.
+
+        With `beginnings` of topics, others wait for the next call without, which also finds out
+        whether the process was killed.
+        """
+        killed = False
         try:
             while self._connection is not None and self._connection.poll():
-                number, topic, kind = pickle.loads(self._connection.recv_bytes())
+                head = pickle.loads(self._connection.recv_bytes())
+                self._come.append((*head, self._connection.recv_bytes()))
                 self._is_up = True
-                self._deliver(number, topic, kind, self._connection.recv_bytes())
         except (EOFError, OSError):
+            killed = True
+        for each in [each for each in self._come if each[1].startswith(beginnings or "")]:
+            self._come.remove(each)  # before: who takes it may raise
+            self._deliver(*each)
+        if killed and not beginnings:
             self._ask_again()
         return bool(self._awaited)
 
     def stop(self) -> None:
         """Drop everything, and end the process."""
         self._awaited.clear()
+        self._come.clear()
         if self._process is not None:
             self._end_process(END_S if self._is_up else 0.0)
 

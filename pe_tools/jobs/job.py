@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Executor, Future, wait
@@ -11,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from pe_core.base.errors import InputError
+from pe_core.base.lazy_threads import threads
 from pe_core.base.notebook import Tabular
 from pe_core.base.plugins import optional_package
 from pe_core.geometry.poses import Pose
@@ -432,5 +432,5 @@ def begun(work: Callable[[], T]) -> Future[T]:
         except BaseException as error:  # the waiting thread raises it
             future.set_exception(error)
 
-    threading.Thread(target=fill, daemon=True).start()
+    threads().Thread(target=fill, daemon=True).start()
     return future

@@ -61,8 +61,8 @@ overlay.snapshot: bridge engine live location_query overlay preferences search_c
 overlay.scheduler: analysis_calls engine engine_process overlay overlay.snapshot sensor_cache
     viewport
 overlay.surroundings: engine overlay vehicle_cache viewport
-overlay.draw_handler: bridge engine overlay overlay.scheduler overlay.surroundings vehicle_cache
-    viewport
+overlay.draw_handler: bridge engine engine_process overlay overlay.scheduler
+    overlay.surroundings vehicle_cache viewport
 operators: bridge choices diagnostics engine engine_calls engine_process housing language library
     live location_query overlay overlay.surroundings own_jobs preferences properties
     result_staleness search_curve sensor_cache sensor_kinds signals translation_context

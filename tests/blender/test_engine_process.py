@@ -22,6 +22,15 @@ settings.method, settings.candidates, settings.seed = "random", 12, 3
 """
 SEARCH = "bpy.ops.pe.optimize('INVOKE_DEFAULT')"
 
+THREADS = f"""
+import sys, threading
+from pathlib import Path
+ours = [each for name, each in sys.modules.items() if name.startswith({NAME!r})]
+files = [Path(each.__file__) for each in ours if getattr(each, "__file__", None)]
+kept["threading"] = [str(path) for path in files if b"threading" in path.read_bytes()]
+kept["threads"], kept["modules"] = threading.active_count(), len(files)
+"""
+
 
 def engine_of(stage):
     """The process that serves the window."""
@@ -53,8 +62,9 @@ def test_killed_in_a_drag_and_in_a_search_it_goes_on(stage, installed, tmp_path)
     wait_for_evaluations(stage, 30)
     stage.rest(2.5)  # what it goes on with is sent every two seconds
     engine_of(stage).kill()
-    threads = stage.do("import threading; kept['threads'] = threading.active_count()")
-    assert threads["threads"] == 1, "Blender has none of ours"
+    found = stage.do(THREADS)
+    assert found["threads"] == 1 and not found["threading"], "Blender has none of ours"
+    assert found["modules"] > 100
     stage.wait_until(f"{RUNNING} is None and {SETTINGS}.has_result")
     found = stage.do(f"kept['found'] = ({SETTINGS}.result_entropy, {SETTINGS}.result_words)")
     answer = installed.pe(begun, "optimize", "--json", "--output", tmp_path / "out")

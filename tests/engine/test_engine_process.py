@@ -67,6 +67,24 @@ def test_the_latest_of_a_topic_is_answered_and_lanes_do_not_wait_for_each_other(
     assert not dropped and isinstance(error[0], ValueError) and "server.py" in error[0].__notes__[0]
 
 
+def test_some_topics_are_delivered_before_the_others(engine):
+    """As for a redraw, which starts no process either."""
+    score, other = ask(engine, "score", math.factorial, 4), ask(engine, "other", math.factorial, 3)
+    while not score:
+        assert engine.deliver_all("lively", "score")
+    for _ in range(50):
+        assert engine.deliver_all("score") and not other
+        time.sleep(0.005)
+    settled(engine)
+    assert (score, other) == ([24], [6])
+    again, pid = ask(engine, "score", time.sleep, 0.1), engine.pid
+    killed(engine)
+    time.sleep(0.2)
+    assert engine.deliver_all("score") and engine.pid == pid and not again
+    settled(engine)
+    assert again == [None] and engine.pid != pid
+
+
 def test_what_cannot_be_sent_fails_at_once_and_harms_nothing(engine):
     car = shapes.box_car()
     error = ask(engine, "odd", itemgetter(0), [car, lambda: None])

@@ -6,13 +6,13 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from threading import RLock
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...base.arrays import Floats
 from ...base.errors import InputError
+from ...base.lazy_threads import threads
 from ...geometry.grids import PerceptionSpace
 from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
@@ -91,7 +91,7 @@ class RequirementChecker:
             check_extent(requirement, zone, self._space)
         self._caches = SceneCaches(vehicle)
         self._sets: dict[str, _CheckedSet] = {}
-        self._lock = RLock()
+        self._lock = threads().RLock()
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the arguments: another process makes a checker of its own from them."""

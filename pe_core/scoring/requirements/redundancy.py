@@ -8,13 +8,13 @@ lower than these. The map errs to the safe side as verdicts do.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from threading import RLock
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Ints
+from ...base.lazy_threads import threads
 from ...base.values import Number
 from ...geometry.grids import PerceptionSpace
 from ...scene.rig import Rig
@@ -127,7 +127,7 @@ class Redundancy:
         body = Body("body", size, is_round=True, class_name=known)
         feet = np.column_stack([points[free], np.zeros(int(free.sum()))])
         objects = placed(body, feet, body.headings, False)
-        self._sensors, self._lock = ObjectMeasurementCache(objects, vehicle), RLock()
+        self._sensors, self._lock = ObjectMeasurementCache(objects, vehicle), threads().RLock()
 
     def map(self, rig: Rig) -> RedundancyMap:
         """Return the redundancy map of a rig."""

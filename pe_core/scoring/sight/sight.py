@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from functools import cached_property, partial
-from threading import RLock
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Floats, read_only
 from ...base.errors import InputError
+from ...base.lazy_threads import threads
 from ...base.values import rounded
 from ...geometry.grids import PerceptionSpace
 from ...metric.entropy import H_BLIND, ap_of_entropy
@@ -95,7 +95,7 @@ class Sight:
         self._fusion = Fusion(self._model)
         self._densities: list[ClassDensity] = prior.densities(space)
         self._voxel_sets = VoxelSetCache(space, vehicle, self._fusion)
-        self._lock = RLock()
+        self._lock = threads().RLock()
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the arguments: another process makes one of its own from them."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import cached_property, partial
 from math import inf
-from threading import RLock
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Floats
+from ...base.lazy_threads import threads
 from ...base.values import rounded
 from ...geometry.grids import PerceptionSpace
 from ...metric.entropy import H_BLIND
@@ -89,7 +89,7 @@ class ObjectEvaluator:
         traffic = self.targets.traffic
         self._sensors = ObjectMeasurementCache(self.drawn.objects, vehicle, traffic)
         self._bound_rate, self._unbounded = 1.0, 0
-        self._lock = RLock()
+        self._lock = threads().RLock()
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the arguments: another process makes an evaluator of its own from them."""

@@ -7,12 +7,12 @@ once, and each voxel is compared with the two depths of its bin (`occlusion_map`
 from __future__ import annotations
 
 from dataclasses import dataclass
-from threading import Lock
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Floats, Ints
+from ...base.lazy_threads import threads
 from ...geometry.bins import FACES, CubeFace, Raster, count_up
 from ...geometry.culling import Ends, FaceLook
 from ...geometry.occlusion_map import OcclusionMap
@@ -83,7 +83,7 @@ class VoxelOcclusion:
         self._offsets, self._seen, self._corners = offsets, seen, corners
         self._highest = float(np.abs(offsets[2]).max())
         self._faces: dict[CubeFace, FaceOcclusion] = {}
-        self._lock = Lock()
+        self._lock = threads().RLock()
 
     def classify(self, planes: slice, rows: slice) -> OcclusionFlags:
         """Classify the voxels of some planes (x) and rows (y)."""

@@ -61,9 +61,11 @@ def clear(*_: object) -> None:
 
 
 def emit_moving() -> float | None:
-    """Timer: emit `moving`."""
+    """Timer: emit `moving`, after the redraw of a move, which may take as long as `IDLE_S`."""
+    global _idle_at
     count = _change_count
     signals.moving.emit()
+    _idle_at = time.monotonic() + IDLE_S
     return None if count == _change_count else 0.0
 
 

@@ -12,6 +12,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from pickle import PickleBuffer
 from typing import Any, NamedTuple
 
 from pe_core.base.errors import InputError
@@ -24,7 +25,19 @@ from pe_core.base.spawning import (
     without_main,
 )
 
-from .messages import CANCEL, FAILED, FORGET, SET_UP, STEP, Request, packed, steps_of, unpacked
+from .messages import (
+    CANCEL,
+    FAILED,
+    FORGET,
+    SET_UP,
+    STEP,
+    PackedObject,
+    Request,
+    packed,
+    send,
+    steps_of,
+    unpacked,
+)
 
 FOLLOWS_MOUSE, BEHIND = "mouse", "behind"
 """Lanes: one that never waits for what takes long, and one for all else."""
@@ -71,12 +84,12 @@ class _SharedObjects:
         self._most, self._last = most, 0
         self._known: dict[type, dict[int, _Sent]] = {kind: {} for kind in most}
 
-    def call(self, each: _Awaited) -> tuple[bytes, dict[int, bytes]]:
+    def call(self, each: _Awaited) -> tuple[bytes, dict[int, PackedObject]]:
         """Return a call, pickled, and the shared objects in it that the engine does not have.
 
         Raises whatever its function and arguments raise where they cannot be pickled.
         """
-        new: dict[int, bytes] = {}
+        new: dict[int, PackedObject] = {}
 
         def number_of(part: object, noted: dict[int, object], inside: object = None) -> int | None:
             known = self._known.get(type(part))
@@ -86,8 +99,9 @@ class _SharedObjects:
             if sent is None:
                 self._last += 1
                 sent = _Sent(self._last, part, {})
-                own = sent.inside
-                new[sent.number] = packed(part, lambda inner: number_of(inner, own, part))
+                own, arrays = sent.inside, list[PickleBuffer]()
+                data = packed(part, lambda inner: number_of(inner, own, part), arrays)
+                new[sent.number] = PackedObject(data, arrays)
             known[id(part)] = sent
             noted |= {sent.number: part, **sent.inside}
             return sent.number
@@ -285,7 +299,7 @@ class EngineProcess:
     def _send(self, message: object) -> None:
         # Where the process was killed, `deliver_all` finds that out.
         with suppress(OSError), pipe_errors():
-            self._connection.send_bytes(pickle.dumps(message, pickle.HIGHEST_PROTOCOL))
+            send(self._connection, message)
 
     def _start(self) -> None:
         context = multiprocessing.get_context("spawn")

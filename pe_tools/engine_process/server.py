@@ -17,7 +17,7 @@ from typing import Any
 
 from pe_core.base.spawning import belong_to_parent, end_process
 
-from .messages import CANCEL, FAILED, FORGET, Request, packed, steps_of, unpacked
+from .messages import CANCEL, FAILED, FORGET, Request, packed, received, steps_of, unpacked
 
 
 @dataclass(slots=True)
@@ -102,7 +102,7 @@ class _Server:
         """Take messages until the other side is gone."""
         while True:
             try:
-                message = pickle.loads(self._connection.recv_bytes())
+                message = received(self._connection)
             except (EOFError, OSError):
                 return
             if isinstance(message, Request):
@@ -126,9 +126,9 @@ class _Server:
     def _begin(self, request: Request) -> None:
         call = _RunningRequest(request.number, request.topic, tuple, (), {})
         try:
-            for number, data in request.shared.items():
+            for number, (data, arrays) in request.shared.items():
                 own = self._inside[number] = {}
-                self._shared[number] = unpacked(data, partial(self._object, own))
+                self._shared[number] = unpacked(data, partial(self._object, own), arrays)
             named = unpacked(request.call, partial(self._object, call.numbers))
             call.function, call.arguments = named
         except Exception as error:  # a class that is not known here, too little memory

@@ -103,7 +103,7 @@ def test_a_vehicle_is_sent_once_and_comes_back_as_the_same_object(engine):
 
     class Counted(EngineProcess):
         def _send(self, message):
-            sent.append(len(pickle.dumps(message)))
+            sent.append(len(pickle.dumps(message, pickle.HIGHEST_PROTOCOL)))
             send(self, message)
 
     engine.__class__ = Counted

@@ -99,6 +99,16 @@ def test_a_rest_is_told_last_when_a_redraw_takes_longer_than_the_wait(car, timer
     assert heard == [MOVED, MOVED, RESTED] and not timers.waiting
 
 
+def test_a_drag_is_no_rest_where_a_redraw_takes_longer_than_the_wait(car, timers, heard):
+    for _ in range(5):
+        drag(car.objects["roof"])
+        timers.now += 2.0 * change_events.IDLE_S
+        timers.pass_by(0.1)  # timers are called before the mouse's next event
+    assert heard == [MOVED] * 5
+    timers.pass_by(10.0)
+    assert heard == [MOVED] * 5 + [RESTED] and not timers.waiting
+
+
 @pytest.mark.parametrize("signal", [signals.moving, signals.idle], ids=[MOVED, RESTED])
 def test_a_move_during_a_move_s_signal_is_reported_too(car, timers, heard, signal):
     """Timers run before Blender's update of a move; who listens may bring it about."""

@@ -20,7 +20,6 @@ import time
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 import psutil
 
@@ -263,12 +262,9 @@ def longest(stage: Stage) -> str:
 
 def memory(stage: Stage) -> str:
     """Return the memory of Blender and of the processes that it has started."""
-    found: list[Any] = []
-    for each in psutil.process_iter(["name", "memory_info", "cmdline"]):
-        line = " ".join(each.info["cmdline"] or ())
-        if "blender" in (each.info["name"] or "") or "spawn_main" in line:
-            found.append(f"{each.info['memory_info'].rss / 2**20:.0f} MB")
-    return ", ".join(found)
+    blender = psutil.Process(stage.do("import os; kept['pid'] = os.getpid()")["pid"])
+    family = [blender, *blender.children(recursive=True)]
+    return ", ".join(f"{each.memory_info().rss / 2**20:.0f} MB" for each in family)
 
 
 def told(values: Sequence[float]) -> str:

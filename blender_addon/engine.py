@@ -63,29 +63,6 @@ def __getattr__(name: str) -> object:
     return import_module(f"{package.__name__}.{room}")
 
 
-__all__ = [
-    "Flags",
-    "Floats",
-    "Ints",
-    "Singles",
-    "advice",
-    "app",
-    "catalog",
-    "engine_process",
-    "exchange",
-    "formats",
-    "geometry",
-    "graphics",
-    "jobs",
-    "kinds",
-    "outputs",
-    "page",
-    "pe",
-    "requirements",
-    "scoring",
-    "search",
-    "sight",
-    "studies",
-    "text",
-    "wording",
-]
+__all__ = ["Flags", "Floats", "Ints", "Singles", "advice", "app", "catalog", "engine_process"]
+__all__ += ["exchange", "formats", "geometry", "graphics", "jobs", "kinds", "outputs", "page", "pe"]
+__all__ += ["requirements", "scoring", "search", "sight", "studies", "text", "wording"]

@@ -25,23 +25,9 @@ from .readout_text import (
 from .sense_icons import sense_icon
 from .state import FinishedScore, ShownScore, live_state, shown_figures, shown_score
 
-__all__ = [
-    "BETTER",
-    "SAME",
-    "WORSE",
-    "FinishedScore",
-    "ShownScore",
-    "figure_rows",
-    "live_lines",
-    "live_state",
-    "nats_text",
-    "register",
-    "sense_icon",
-    "sense_of",
-    "shown_score",
-    "text_of",
-    "unregister",
-]
+__all__ = ["BETTER", "SAME", "WORSE", "FinishedScore", "ShownScore", "figure_rows", "live_lines"]
+__all__ += ["live_state", "nats_text", "register", "sense_icon", "sense_of", "shown_score"]
+__all__ += ["text_of", "unregister"]
 
 
 def figure_rows(scene: bpy.types.Scene, *, live: bool) -> list[FigureRow]:

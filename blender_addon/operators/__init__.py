@@ -47,57 +47,14 @@ from .panel_rows import own_fields, reference_label
 from .query_location import answer
 from .requirements import ShownSource, ShownVerdict, shown_verdicts, source_of
 
-__all__ = [
-    "BETTER",
-    "CLASSES",
-    "FIX_LABELS",
-    "SAME",
-    "WORSE",
-    "Offer",
-    "ShownScore",
-    "ShownSource",
-    "ShownVerdict",
-    "after_of",
-    "answer",
-    "brief",
-    "compare_variants",
-    "conditions",
-    "costs_nothing",
-    "edit_sensors",
-    "exports",
-    "figure_rows",
-    "first_steps",
-    "holder_of",
-    "is_updated",
-    "kind_label",
-    "known_makers",
-    "known_rigs",
-    "listed_sensors",
-    "live_lines",
-    "look_through",
-    "makers",
-    "models",
-    "mounts",
-    "nats_text",
-    "offers",
-    "own_fields",
-    "place_sensor",
-    "reference_label",
-    "register",
-    "running_job",
-    "sense_icon",
-    "sense_of",
-    "shown_score",
-    "shown_state",
-    "shown_verdicts",
-    "source_of",
-    "text_of",
-    "unregister",
-    "upright",
-    "variants",
-    "warnings_outdated",
-    "whats_new",
-]
+__all__ = ["BETTER", "CLASSES", "FIX_LABELS", "SAME", "WORSE", "Offer", "ShownScore", "ShownSource"]
+__all__ += ["ShownVerdict", "after_of", "answer", "brief", "compare_variants", "conditions"]
+__all__ += ["costs_nothing", "edit_sensors", "exports", "figure_rows", "first_steps", "holder_of"]
+__all__ += ["is_updated", "kind_label", "known_makers", "known_rigs", "listed_sensors"]
+__all__ += ["live_lines", "look_through", "makers", "models", "mounts", "nats_text", "offers"]
+__all__ += ["own_fields", "place_sensor", "reference_label", "register", "running_job"]
+__all__ += ["sense_icon", "sense_of", "shown_score", "shown_state", "shown_verdicts", "source_of"]
+__all__ += ["text_of", "unregister", "upright", "variants", "warnings_outdated", "whats_new"]
 
 
 def register() -> None:

@@ -29,29 +29,9 @@ from .rigs import KnownSensor as KnownSensor
 from .rigs import known_rig as known_rig
 from .rigs import known_rigs as known_rigs
 
-__all__ = [
-    "OTHER_LABELS",
-    "OWN",
-    "Entry",
-    "KnownRig",
-    "KnownSensor",
-    "add",
-    "add_file",
-    "added",
-    "entries",
-    "from_table",
-    "housing",
-    "known_rig",
-    "known_rigs",
-    "load",
-    "matching",
-    "names",
-    "remove",
-    "replace_added",
-    "rig_on",
-    "scan_above_base",
-    "to_table",
-]
+__all__ = ["OTHER_LABELS", "OWN", "Entry", "KnownRig", "KnownSensor", "add", "add_file", "added"]
+__all__ += ["entries", "from_table", "housing", "known_rig", "known_rigs", "load", "matching"]
+__all__ += ["names", "remove", "replace_added", "rig_on", "scan_above_base", "to_table"]
 
 PAPER_FILE = "paper.toml"
 """File with the paper's sensors, which come first in lists."""

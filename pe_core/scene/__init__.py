@@ -9,22 +9,6 @@ from .vehicle import Vehicle
 from .vehicle_description import Reference, guessed_reference, vehicle_line
 from .vehicle_state import Motion, State
 
-__all__ = [
-    "BodyShape",
-    "Housing",
-    "Motion",
-    "Objects",
-    "PerceptionSpace",
-    "Pose",
-    "Reference",
-    "Rig",
-    "Sensor",
-    "State",
-    "Vehicle",
-    "cuts_body",
-    "guessed_reference",
-    "rotate",
-    "rotation_matrix",
-    "rpy_from_matrix",
-    "vehicle_line",
-]
+__all__ = ["BodyShape", "Housing", "Motion", "Objects", "PerceptionSpace", "Pose", "Reference"]
+__all__ += ["Rig", "Sensor", "State", "Vehicle", "cuts_body", "guessed_reference", "rotate"]
+__all__ += ["rotation_matrix", "rpy_from_matrix", "vehicle_line"]

@@ -1,7 +1,7 @@
 """What the two sides send each other, and how large objects are sent once.
 
 A request is pickled. An object of a type that is shared stands in it as a number; it comes, pickled
-itself, with the first request that refers to it. Its large arrays are sent as they are in memory.
+itself, with the first request that refers to it. Its arrays are sent as they are in memory.
 """
 
 from __future__ import annotations
@@ -20,12 +20,9 @@ CANCEL, FORGET, SET_UP = "cancel", "forget", "set up"
 """Besides requests: end a topic's job at its next step; forget objects by their numbers; call a
 function before later requests are taken."""
 
-LARGE_BYTES = 1 << 16
-"""Arrays of more are not copied into what is pickled."""
-
 
 class PackedObject(NamedTuple):
-    """A shared object, pickled, and its large arrays."""
+    """A shared object, pickled, and its arrays."""
 
     data: bytes
     arrays: list[PickleBuffer]
@@ -65,16 +62,9 @@ def packed(
     number_of: Callable[[object], int | None],
     arrays: list[PickleBuffer] | None = None,
 ) -> bytes:
-    """Pickle content; objects with a number are referred to by it, large arrays put aside."""
-
-    def is_small(part: PickleBuffer) -> bool:
-        if arrays is None or part.raw().nbytes < LARGE_BYTES:
-            return True
-        arrays.append(part)
-        return False
-
-    file = io.BytesIO()
-    pickler = _Packer(file, pickle.HIGHEST_PROTOCOL, buffer_callback=is_small)
+    """Pickle content; objects with a number are referred to by it, arrays put into a list."""
+    file, aside = io.BytesIO(), None if arrays is None else arrays.append
+    pickler = _Packer(file, pickle.HIGHEST_PROTOCOL, buffer_callback=aside)
     pickler.persistent_id = number_of  # type: ignore[method-assign]
     pickler.dump(content)
     return file.getvalue()

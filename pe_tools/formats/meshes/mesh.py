@@ -23,8 +23,6 @@ MAX_TRIANGLES = 25_000_000
 """Maximum triangles of a mesh: cars have up to some millions."""
 TRIANGLE_BYTES = 320
 """Maximum memory of a triangle while it is read (measured): corners, copies, indices."""
-TEXT_UNFOLDS = 20
-"""Memory of a byte of a text mesh after reading (measured on files of other programs)."""
 
 
 def make_mesh(source: str, triangles: ArrayLike, parts: ArrayLike, names: Sequence[str]) -> Mesh:

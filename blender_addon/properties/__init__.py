@@ -33,21 +33,9 @@ from .view import PE_LiveSettings, PE_ViewSettings
 VIEW_ROWS = rows_of(ViewSettings)
 """Fields of the settings of the 3D view, by property."""
 
-__all__ = [
-    "AXIS_LABELS",
-    "CLASSES",
-    "DEFAULT_MODEL",
-    "DEFAULT_REGION",
-    "FREE_BY_DEFAULT",
-    "ROWS",
-    "VIEW_ROWS",
-    "DeclaredRow",
-    "SensorFigures",
-    "StoredWarning",
-    "declared_rows",
-    "figures_of_sensor",
-    "model_suggestions",
-]
+__all__ = ["AXIS_LABELS", "CLASSES", "DEFAULT_MODEL", "DEFAULT_REGION", "FREE_BY_DEFAULT", "ROWS"]
+__all__ += ["VIEW_ROWS", "DeclaredRow", "SensorFigures", "StoredWarning", "declared_rows"]
+__all__ += ["figures_of_sensor", "model_suggestions"]
 
 CLASSES = (
     PE_CurveSettings,

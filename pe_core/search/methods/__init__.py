@@ -38,12 +38,5 @@ def checked_method(source: str, name: object, scheduled: bool = False) -> str:
     return choice(source, "method", name, tuple(METHODS))
 
 
-__all__ = [
-    "DEFAULT_METHOD",
-    "METHODS",
-    "SCHEDULED_METHOD",
-    "Given",
-    "Method",
-    "Question",
-    "checked_method",
-]
+__all__ = ["DEFAULT_METHOD", "METHODS", "SCHEDULED_METHOD", "Given", "Method", "Question"]
+__all__ += ["checked_method"]

@@ -52,6 +52,7 @@ def command_lines():
                 continue
             for line in text.splitlines():
                 typed = line.removeprefix("$ ").partition("  #")[0].strip()
+                typed = typed.replace("$SLURM_ARRAY_TASK_ID", "1")  # of a job's script
                 if typed.startswith("pe ") and "..." not in typed and "$(" not in typed:
                     yield page.relative_to(ROOT).as_posix(), typed
 

@@ -84,7 +84,7 @@ def test_the_stand_off_is_that_of_its_kind_unless_said(bare):
 
 def test_an_unknown_model_is_refused_and_changes_nothing(bare):
     before = len(bare.objects)
-    with pytest.raises(RuntimeError, match="a name such as"):
+    with pytest.raises(RuntimeError, match="names, such as"):
         bpy.ops.pe.place_sensor(model="Pandar66")
     assert len(bare.objects) == before
 

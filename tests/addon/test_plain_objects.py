@@ -156,7 +156,7 @@ def test_models_that_a_file_does_not_tell_are_chosen(car, tmp_path):
     assert bpy.ops.pe.choose_models(filepath=str(path), rows=rows) == {"FINISHED"}
     assert scenes.study().rig["roof"].model.name == "HDL-64E"
     rows[0]["model"] = "No Such"
-    with pytest.raises(RuntimeError, match="model: expected a name such as"):
+    with pytest.raises(RuntimeError, match="model: expected one of"):
         bpy.ops.pe.choose_models(filepath=str(path), rows=rows)
 
 

@@ -326,5 +326,5 @@ def test_a_variant_that_cannot_be_scored_is_reported_and_the_others_are(ideas):
     assert [row.has_result for row in ideas.perception_entropy.variants] == [False, True]
     unknown(ideas.perception_entropy.variants[1])
     ideas.perception_entropy.variants[1].score_json = ""
-    with pytest.raises(RuntimeError, match=r"variant .Variant.*a name such as"):
+    with pytest.raises(RuntimeError, match=r"variant .Variant.*names, such as"):
         bpy.ops.pe.compare_variants()

@@ -179,7 +179,7 @@ def test_what_is_asked_for_holds_against_what_is_found(tmp_path):
     [
         ("none.obj", [], "no such file"),
         ("car.blend", [], "suffix"),
-        ("box.obj", ["--sensor", "Pandar640"], "a name such as"),
+        ("box.obj", ["--sensor", "Pandar640"], "such as Pandar64, "),
         ("dot.obj", [], "one point"),
         ("box.obj", ["--scale", "0.0001"], "a vehicle"),
     ],

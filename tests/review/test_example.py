@@ -71,7 +71,8 @@ def test_it_shows_the_verdicts_of_the_example_s_requirements_and_all_are_met(sho
 
 
 def test_it_is_linked():
-    for place, folder in ((ROOT / "README.md", "docs/"), (ROOT / "docs" / "review.md", "")):
-        text = place.read_text("utf-8")
-        assert f"({folder}reviews/{PAGE.name})" in text
-        assert f"({folder}images/four_corners_review.png)" in text
+    readme, page = (
+        path.read_text("utf-8") for path in (ROOT / "README.md", ROOT / "docs" / "review.md")
+    )
+    assert f"(docs/reviews/{PAGE.name})" in readme and f"(reviews/{PAGE.name})" in page
+    assert "(images/four_corners_review.png)" in page

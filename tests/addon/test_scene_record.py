@@ -26,6 +26,7 @@ NOT_OF_A_SCENE = {
     "study.selection.max_of_kind",
     "study.prior.boxes",  # needs a file of labels
     "study.prior.density",
+    "study.prior.grid",  # of Python and of files
 }
 """Fields that no scene sets: its vehicle is in the ground frame, a panel has fewer settings."""
 
@@ -88,7 +89,7 @@ def rich(car):
     bpy.context.object.location = (0.0, 0.0, 9.0)
     settings.space_x, settings.space_interval, settings.clearance = (-40.0, 40.0), 0.2, 0.03
     settings.space_y, settings.space_z = (-20.0, 20.0), (0.0, 3.0)
-    settings.prior = "highway"
+    settings.prior, settings.returns = "highway", "road"
     assert bpy.ops.pe.add_focus(region="front") == {"FINISHED"}
     settings.targets, settings.traffic, settings.scenes = "objects", True, 24
     settings.ap_model = "scans"

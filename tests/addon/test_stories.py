@@ -31,6 +31,7 @@ def without_run(data: dict) -> dict:
     data = json.loads(text.dump_json(data))
     del data["run"]
     for score in (data["before"], data["after"]):
+        score.pop("figures", None)  # beside it in result.json
         score.pop("scatter", None)  # for the error of a difference: no part of result.json
     return data
 

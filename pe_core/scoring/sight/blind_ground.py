@@ -21,11 +21,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
 
-from ...base.arrays import Flags, Floats, ReadOnlyDict, read_only
+from ...base.arrays import Flags, Floats, Ints, ReadOnlyDict, read_only
 from ...base.notebook import ShortRepr
 from ...base.values import rounded
 from ...geometry.grids import GroundGrid, PerceptionSpace
@@ -144,6 +145,7 @@ class BlindSector:
     bearing: float
 
 
+@cache
 def sector_cells() -> GroundCells:
     """Return the squares round the circle on which blind sectors are measured."""
     count = math.ceil(SECTOR_RADIUS_M / STEP_M) + math.ceil(1.0 / STEP_M)
@@ -151,15 +153,22 @@ def sector_cells() -> GroundCells:
     return GroundCells(low, low, low + STEP_M, low + STEP_M, STEP_M)
 
 
-def widest_sector(cells: GroundCells, blind: Flags, height: float) -> BlindSector:
-    """Return the widest sector of blind squares (NX, NY) on the circle of `SECTOR_RADIUS_M`."""
-    count = math.ceil(2.0 * math.pi * SECTOR_RADIUS_M / ARC_STEP_M)
+@cache
+def _circle() -> tuple[Ints, Ints]:
+    """Return the squares (N,), (N,) of `sector_cells` that points of the circle lie in."""
+    cells, count = sector_cells(), math.ceil(2.0 * math.pi * SECTOR_RADIUS_M / ARC_STEP_M)
     angles = [2.0 * math.pi * k / count for k in range(count)]
     i, j = (
         np.floor((SECTOR_RADIUS_M * np.array([turn(a) for a in angles]) - low[0]) / cells.step)
         for turn, low in ((math.cos, cells.x0), (math.sin, cells.y0))
     )
-    clear = np.flatnonzero(~blind[i.astype(np.int64), j.astype(np.int64)])
+    return i.astype(np.int64), j.astype(np.int64)
+
+
+def widest_sector(blind: Flags, height: float) -> BlindSector:
+    """Return the widest sector of blind `sector_cells` (NX, NY) on the circle."""
+    i, j = _circle()
+    count, clear = len(i), np.flatnonzero(~blind[i, j])
     if not len(clear):
         return BlindSector(height, 360.0, 0.0)
     steps = np.diff(clear, append=clear[0] + count)

@@ -186,7 +186,7 @@ class Sight:
         """
         cells = sector_cells()
         found = ((h, self._blind_of(cells, rig, h, False)[0]) for h in SECTOR_HEIGHTS_M)
-        return tuple(widest_sector(cells, blind, height) for height, blind in found)
+        return tuple(widest_sector(blind, height) for height, blind in found)
 
     def in_traffic(self, rig: Rig) -> TrafficAp | None:
         """Return the expected AP of the prior's objects in traffic.

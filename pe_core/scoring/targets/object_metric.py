@@ -181,7 +181,7 @@ class ObjectSums:
             for name, mask in self._zones.items()
             if name in BY_DISTANCE
         }
-        whole = self.expected_ap(entropies), self._scatter(ap, None)
+        whole = rounded(self._mean(ap, None)), self._scatter(ap, None)
         return TrafficAp(*whole, self._drawn.scenes, rings)
 
     def scatter(self, entropies: Floats, visible: Bools) -> Scatter:

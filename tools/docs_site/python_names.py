@@ -13,7 +13,7 @@ import pe_core as pe
 import pe_tools as pt
 
 FOLDER = "reference/python"
-EXAMPLES = Path(__file__).resolve().parents[2] / "docs" / "python_names.md"
+EXAMPLES = Path(__file__).with_name("names_by_example.txt")
 ROOMS = {
     "pe_core.study": ("study", "Studies", "Everything that a run needs, and its file."),
     "pe_core.scene": (
@@ -70,7 +70,7 @@ def entry(name: str, target: str) -> str:
 
 @functools.cache
 def examples() -> dict[str, str]:
-    """Return the example of each name, a block of a session, from docs/python_names.md."""
+    """Return the example of each name, a block of a session."""
     text = EXAMPLES.read_text("utf-8")
     return dict(re.findall(r"^### (\S+)\n\n(```pycon\n.*?```\n)", text, re.M | re.S))
 

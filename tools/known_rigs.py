@@ -19,8 +19,6 @@ import pe_tools as pt  # noqa: E402
 from pe_core import catalog  # noqa: E402
 from pe_tools.cli import study_of_rig  # noqa: E402
 
-SEPARATOR, SEVERAL = ", ", "The rigs of the paper"
-"""Between keys; what the rigs of one source are called together."""
 PAGE = ROOT / "docs" / "known_rigs.md"
 SAMPLES = 65_536
 WINDOWS = ("rear_window", "windows_left", "windows_right", "windshield")
@@ -35,18 +33,15 @@ Published rigs, as `pe rigs` lists them, in Blender's panel *Variants*, and as s
 
 ```sh
 pe rigs                                     # the list
-pe rigs waymo                               # its sensors, and where the figures come from
+pe rigs waymo                               # its sensors, its source, and what has to be known of it
 pe rigs waymo -o study.toml --mesh car.npz  # a study, stretched onto a vehicle
 ```
 
-Scored at default settings on {SAMPLES:,} voxels, each rig alone in the open and on a vehicle of
-`blend_assets`: stretched from its own vehicle's box onto that one's, or as published where the
-size of its own is not known. Entropies in nats, lower is better, with their standard errors;
-coverage in percent. They are of these placements on that body, with this prior: no verdict on the
-vehicles they come from. nuScenes without its five radars, as this page had it before radars were a
-kind: 2.843 ± 0.004 in the open, 2.869 ± 0.005 on the sedan. The rigs of MAN TruckScenes (six
-radars) and of EDGAR have radars, too; no positions of theirs were found in a source that could be
-read, so neither is here. Written by `tools/known_rigs.py`; a test scores two of the rows again.
+Scored at default settings on {SAMPLES:,} voxels, each rig alone in the open and on a vehicle of `blend_assets`:
+stretched from its own vehicle's box, or as published where that is not known. Entropies in nats, lower is better, with
+their standard errors; coverage in percent. They are of these placements on that body, with this prior: no verdict on the
+vehicles they come from. No published positions of MAN TruckScenes' and EDGAR's sensors were found. Written by
+`tools/known_rigs.py`.
 
 | rig | LiDARs | cameras | radars | in the open | coverage | vehicle | on it | coverage | occluded |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -112,34 +107,10 @@ def figures(score: pe.Score) -> tuple[str, str]:
     return f"{score.entropy:.3f} ± {score.stderr:.3f}", f"{100.0 * score.coverage:.1f}"
 
 
-def sources() -> list[str]:
-    """Return where the figures come from, a line a source, and what has to be known of each rig."""
-    lines, by_source = ["", "## Sources", ""], dict[str, dict[str, catalog.KnownRig]]()
-    for key, rig in catalog.known_rigs().items():
-        by_source.setdefault(rig.source, {})[key] = rig
-    for source, rigs in by_source.items():
-        first = next(iter(rigs.values()))
-        titles = f"{first.title}** ({first.vehicle})" if len(rigs) == 1 else f"{SEVERAL}**"
-        lines.append(f"- **{titles}: {source}. {' '.join(_notes(rigs))}")
-    return lines
-
-
-def _notes(rigs: dict[str, catalog.KnownRig]) -> list[str]:
-    """Return the sentences of the rigs' notes, with the keys of those that one is of."""
-    keys: dict[str, list[str]] = {}
-    for key, rig in rigs.items():
-        for sentence in rig.note.split(". "):
-            keys.setdefault(sentence.rstrip("."), []).append(f"`{key}`")
-    return [
-        f"{sentence}{'' if len(of) == len(rigs) else f' ({SEPARATOR.join(of)})'}."
-        for sentence, of in keys.items()
-    ]
-
-
 def main() -> int:
     """Write the page."""
     lines = [line(scored(key)) for key in catalog.known_rigs()]
-    PAGE.write_text(HEAD + "\n".join([*lines, *sources()]) + "\n", "utf-8")
+    PAGE.write_text(HEAD + "\n".join(lines) + "\n", "utf-8")
     print(PAGE)
     return 0
 

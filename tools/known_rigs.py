@@ -33,14 +33,15 @@ Published rigs, as `pe rigs` lists them, in Blender's panel *Variants*, and as s
 
 ```sh
 pe rigs                                     # the list
-pe rigs waymo                               # its sensors, its source, and what has to be known of it
+pe rigs waymo                               # its sensors, its source, what is to be known
 pe rigs waymo -o study.toml --mesh car.npz  # a study, stretched onto a vehicle
 ```
 
-Scored at default settings on {SAMPLES:,} voxels, each rig alone in the open and on a vehicle of `blend_assets`:
-stretched from its own vehicle's box, or as published where that is not known. Entropies in nats, lower is better, with
-their standard errors; coverage in percent. They are of these placements on that body, with this prior: no verdict on the
-vehicles they come from. No published positions of MAN TruckScenes' and EDGAR's sensors were found. Written by
+Scored at default settings on {SAMPLES:,} voxels, each rig alone in the open and on a vehicle of
+`blend_assets`: stretched from its own vehicle's box, or as published where that is not known.
+Entropies in nats, lower is better, with their standard errors; coverage in percent. They are of
+these placements on that body, with this prior: no verdict on the vehicles they come from. No
+published positions of MAN TruckScenes' and EDGAR's sensors were found. Written by
 `tools/known_rigs.py`.
 
 | rig | LiDARs | cameras | radars | in the open | coverage | vehicle | on it | coverage | occluded |

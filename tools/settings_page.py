@@ -7,7 +7,6 @@
 from __future__ import annotations
 
 import json
-import re
 import sys
 from pathlib import Path
 
@@ -33,12 +32,12 @@ from pe_core.study import (  # noqa: E402
 PAGE = ROOT / "docs" / "settings.md"
 HEAD = """# Settings
 
-Numbers and switches of a study, as the engine declares them: written by `tools/settings_page.py`.
-`optimize.seed` is the key `seed` of `[optimize]`. Angles are in degrees in a file.
-[study.md](study.md) explains the file, its lists and tables.
+Numbers and switches of a study: `optimize.seed` is the key `seed` of `[optimize]`. Angles are in
+degrees. [study.md](study.md) explains the file. Blender's panels have most of them, with the same
+text as tooltip.
 
-| key | values, and default | meaning | in Blender's panel |
-| --- | --- | --- | --- |
+| key | values, and default | meaning |
+| --- | --- | --- |
 """
 
 
@@ -49,10 +48,9 @@ def page() -> str:
 
 def row(key: str, setting: Setting) -> str:
     """Return the row of one setting: its type with unit, range and default in one cell."""
-    panel = "" if setting.panel is None else setting.panel.label
     parts = type_text(setting.rule), range_text(setting.rule), default_text(setting)
     values = ", ".join(part for part in parts if part)
-    return re.sub(" +", " ", f"| `{key}` | {values} | {setting.text} | {panel} |\n")
+    return f"| `{key}` | {values} | {setting.text} |\n"
 
 
 def type_text(rule: object) -> str:

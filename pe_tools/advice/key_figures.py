@@ -9,7 +9,7 @@ from typing import Any
 from pe_core.scene.rig import Rig
 from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.score import FAR_M, NEAR_M, Score, TrafficAp
-from pe_core.scoring.sight import BLIND_TO_M, BlindSector, Sight, ends_with_space
+from pe_core.scoring.sight import BLIND_TO_M, BlindSector, Sight
 from pe_tools.wording import percent
 
 from .mount_checks import occluded_shares
@@ -176,7 +176,4 @@ def key_figures(
     if sight.targets.are_objects:
         return KeyFigures(*found)
     name = class_of(sight.prior, class_name)
-    reach = sight.reach(rig, name)
-    ahead = float(reach.distance[0])  # the first bearing is straight ahead
-    at_least = ahead > 0.0 and bool(ends_with_space(reach, reach.distance)[0])
-    return KeyFigures(*found, name, ahead, at_least)
+    return KeyFigures(*found, name, *sight.reach_ahead(rig, name))

@@ -33,7 +33,9 @@ def test_a_lidar_reaches_as_far_as_its_beams():
 
 
 def test_where_the_space_ends_a_reach_is_at_least():
-    reach = sight.Sight(SPACE, UNIFORM).reach(pe.Rig([dense_lidar(200.0, 720)]), "any", bearings=4)
+    own, rig = sight.Sight(SPACE, UNIFORM), pe.Rig([dense_lidar(200.0, 720)])
+    reach = own.reach(rig, "any", bearings=4)
+    assert own.reach_ahead(rig, "any") == (60.0, True)
     assert reach.limit == pytest.approx([60.0, 20.0, 60.0, 20.0])
     assert np.array_equal(reach.distance, reach.limit)
 
@@ -73,8 +75,9 @@ def test_inside_a_vehicle_nothing_is_found():
     assert reach.distance.max() > 0.0
     with pytest.raises(pe.InputError, match="prior: weights: expected some weight outside"):
         pe.Evaluator(SPACE, UNIFORM, hall)
-    reach = sight.Sight(SPACE, UNIFORM, hall).reach(pe.Rig([dense_lidar(9.0, 60)]), "any")
-    assert not reach.distance.any()
+    inside, rig = sight.Sight(SPACE, UNIFORM, hall), pe.Rig([dense_lidar(9.0, 60)])
+    assert not inside.reach(rig, "any").distance.any()
+    assert inside.reach_ahead(rig, "any") == (0.0, False)
 
 
 def test_a_reach_is_that_of_every_voxel_in_the_sector():
@@ -82,7 +85,9 @@ def test_a_reach_is_that_of_every_voxel_in_the_sector():
     space = pe.PerceptionSpace((-45, 45), (-15, 15), (0, 3), 0.25)
     prior, car = pe.Prior.road(), shapes.box_car()
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(96, 900), (0.0, 0.0, 1.9))])
-    found = sight.Sight(space, prior, car).reach(rig, "pedestrian", ap=0.5)
+    own = sight.Sight(space, prior, car)
+    found = own.reach(rig, "pedestrian", ap=0.5)
+    assert own.reach_ahead(rig, "pedestrian") == (found.distance[0], False)
     density = prior.densities(space)[1]
     x, y = space.centers(0)[:, None], space.centers(1)
     for bearing in (2, 36, 0, 70)[: tries(2, 4)]:

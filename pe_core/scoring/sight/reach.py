@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -83,14 +83,15 @@ class Reach(ShortRepr):
 class Spokes:
     """Voxels along bearings: `index` (V, 3), and the `ring` (V,) of each, R rings a bearing.
 
-    None is in the vehicle or beyond the space. `limit` (B,) is where the space ends.
+    None is in the vehicle or beyond the space. `limit` (B,) is where the space ends; `mass` (B, R)
+    are the voxels of each ring and of those that it is smoothed with.
     """
 
     bearings: Floats
     limit: Floats
     index: Ints
     ring: Ints
-    rings: int
+    mass: Floats
 
     @classmethod
     def of(
@@ -114,28 +115,35 @@ class Spokes:
             i, j, k = np.moveaxis(np.where(inside[..., None], index, 0), -1, 0)
             inside &= space.centers(2)[k] >= tops[i, j]
         ring = np.flatnonzero(inside) // VOXELS
-        return cls(read_only(angles), read_only(limit), index[inside], ring, rings)
+        mass = _smoothed(inside.sum(axis=2, dtype=float))
+        return cls(read_only(angles), read_only(limit), index[inside], ring, mass)
+
+    @property
+    def ahead(self) -> Spokes:
+        """The voxels that `distance` needs for the first bearing alone."""
+        count, rings = self.mass.shape
+        near = np.isin(self.ring // rings, (0, 1, count - 1))
+        return replace(self, index=self.index[near], ring=self.ring[near])
 
     def distance(self, ap: Floats, min_ap: float) -> Floats:
         """Return the distance (B,) up to which the AP (V,) of voxels is at least `min_ap` [m]."""
-        shape = len(self.bearings), self.rings
-        weights = (ap, np.ones(len(ap)))
-        by_ring = [np.bincount(self.ring, w, math.prod(shape)).reshape(shape) for w in weights]
-        sums, mass = (self._smoothed(np.asarray(w, dtype=float)) for w in by_ring)
-        enough = (mass > 0.0) & (mass >= FEW * mass.max())
-        mean = sums / np.where(enough, mass, np.inf)
+        shape = self.mass.shape
+        sums = _smoothed(np.bincount(self.ring, ap, math.prod(shape)).reshape(shape))
+        enough = (self.mass > 0.0) & (self.mass >= FEW * self.mass.max())
+        mean = sums / np.where(enough, self.mass, np.inf)
         ends = [_end_of_longest(row, min_ap) for row in mean]
         return np.minimum(np.round(np.array(ends) * RING_M, DECIMALS), self.limit)
 
-    def _smoothed(self, values: Floats) -> Floats:
-        """Sums (B, R) over rings and bearings beside each; fewer rings at the ends."""
-        half = int(SMOOTHED_M / RING_M) // 2
-        padded = np.pad(values, ((0, 0), (half, half)))
-        near = [padded[:, k : k + values.shape[1]] for k in range(2 * half + 1)]
-        total: Floats = np.sum(near, axis=0)
-        if 2.0 * math.pi / len(total) > BESIDE_RAD * (1.0 + 1e-9):
-            return total
-        return 2.0 * total + np.roll(total, 1, axis=0) + np.roll(total, -1, axis=0)
+
+def _smoothed(values: Floats) -> Floats:
+    """Sums (B, R) over rings and bearings beside each; fewer rings at the ends."""
+    half = int(SMOOTHED_M / RING_M) // 2
+    padded = np.pad(values, ((0, 0), (half, half)))
+    near = [padded[:, k : k + values.shape[1]] for k in range(2 * half + 1)]
+    total: Floats = np.sum(near, axis=0)
+    if 2.0 * math.pi / len(total) > BESIDE_RAD * (1.0 + 1e-9):
+        return total
+    return 2.0 * total + np.roll(total, 1, axis=0) + np.roll(total, -1, axis=0)
 
 
 def density_of(densities: list[ClassDensity], name: str) -> ClassDensity:

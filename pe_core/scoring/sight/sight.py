@@ -38,7 +38,7 @@ from .blind_ground import (
     widest_sector,
 )
 from .ground_cells import GroundCells, widened
-from .reach import AP, BEARINGS, Reach, Spokes, density_of, object_reach
+from .reach import AP, AT_LEAST_M, BEARINGS, Reach, Spokes, density_of, object_reach
 from .visibility import (
     GroundSight,
     VisibleShares,
@@ -55,6 +55,8 @@ WITHIN_M = 10.0
 """How far from the body blind ground is looked for, unless one says otherwise [m]."""
 SAMPLES = 65_536
 """Number of voxels for the AP by class."""
+MIN_AP, BEARINGS_SHOWN = 0.5, 72
+"""From which AP an object counts as found, and along how many bearings, unless one says so."""
 
 
 class Sight:
@@ -226,8 +228,8 @@ class Sight:
         rig: Rig,
         class_name: str,
         *,
-        ap: float = 0.5,
-        bearings: int = 72,
+        ap: float = MIN_AP,
+        bearings: int = BEARINGS_SHOWN,
         preview: bool = False,
     ) -> Reach:
         """Return the distance up to which objects of a class are found, in all directions.
@@ -270,6 +272,19 @@ class Sight:
             return Reach(
                 class_name, min_ap, spokes.bearings, whole, alone, spokes.limit, approximate
             )
+
+    def reach_ahead(self, rig: Rig, class_name: str) -> tuple[float, bool]:
+        """Return `reach` by voxels straight ahead [m], and whether it ends with the space."""
+        density = density_of(self._densities, class_name)
+        with self._lock:
+            measured = self._voxel_sets.voxels(
+                ("ahead", class_name),
+                lambda: Spokes.of(self.space, self._tops, density, BEARINGS_SHOWN).ahead,
+            )
+            m, _ = measured.measured(rig, False)
+            spokes = measured.voxels
+            found = float(spokes.distance(self._ap(rig, m, list(m)), MIN_AP)[0])
+            return found, bool(0.0 < found >= spokes.limit[0] - AT_LEAST_M)
 
     def expected_ap(self, rig: Rig) -> dict[str, float]:
         """Return the expected AP of the fused rig by class: the prior's mean over voxels.

@@ -72,49 +72,46 @@ def pixels(sensor, ray_of, finer, objects, vehicle, traffic):
     return counts
 
 
-def visible_shares(sensor, ray_of, objects, vehicle, traffic, want=10_000):
-    """(N,) share of the rays to each object that nothing hides, NaN of objects hardly in the view.
+def visible_shares(sensor, ray_of, objects, vehicle, want=10_000):
+    """(2, N) shares of the rays to each object that nothing hides, NaN of objects hardly in view.
 
-    Rays through every pixel find the object's part of the picture; about `want` rays to the
+    The first row: what the vehicle hides is hidden; the second: what the others of its scene do,
+    too. Rays through every pixel find the object's part of the picture; about `want` rays to the
     object, evenly spread over that part, decide.
     """
     origin, turn = np.array(sensor.pose.position), oracle.rotation(*sensor.pose.rpy)
-    camera, shares = sensor.model, np.full(len(objects), np.nan)
+    camera, shares = sensor.model, np.full((2, len(objects)), np.nan)
 
-    def hits(across, down, triangles):
+    def through(across, down):
         places = [w.ravel() for w in np.meshgrid(across, down)]
         rays = ray_of(*places)
         some = np.flatnonzero(~np.isnan(rays[:, 0]))
-        rays = rays[some] @ turn.T
-        distance = first_hits(origin, rays, triangles)
-        met = np.isfinite(distance)
-        return [w[some[met]] for w in places], rays[met], distance[met]
+        return [w[some] for w in places], rays[some] @ turn.T
 
     def hidden(rays, distance, triangles):
         return first_hits(origin, rays, triangles) < distance
 
+    (across, down), every = through(
+        *(np.arange(0.5, size, 1.0) for size in (camera.width, camera.height))
+    )
     for item in range(len(objects)):
         own = box_triangles(objects, item)
-        coarse = [np.arange(0.5, size, 1.0) for size in (camera.width, camera.height)]
-        (x, y), _, _ = hits(*coarse, own)
-        if len(x) < 48:
+        met = np.isfinite(first_hits(origin, every, own))
+        if met.sum() < 48:
             continue
-        low, high = (np.array([f(x), f(y)]) for f in (np.min, np.max))
-        low, high = low - 2.0, high + 2.0
-        finer = math.sqrt(want / len(x))
-        rows = [np.arange(a + 0.5 / finer, b, 1.0 / finer) for a, b in zip(low, high, strict=True)]
-        rows = [
-            w[(w > 0.0) & (w < s)] for w, s in zip(rows, (camera.width, camera.height), strict=True)
-        ]
-        _, rays, distance = hits(*rows, own)
-        before = np.zeros(len(rays), bool)
-        if vehicle is not None:
-            before |= hidden(rays, distance, vehicle.triangles)
-        if traffic:
-            for other in np.flatnonzero(objects.scenes == objects.scenes[item]):
-                if other != item:
-                    before |= hidden(rays, distance, box_triangles(objects, other))
-        shares[item] = 1.0 - before.mean()
+        finer, rows = math.sqrt(want / met.sum()), []
+        for w, size in ((across[met], camera.width), (down[met], camera.height)):
+            finely = np.arange(w.min() - 2.0 + 0.5 / finer, w.max() + 2.0, 1.0 / finer)
+            rows.append(finely[(finely > 0.0) & (finely < size)])
+        rays = through(*rows)[1]
+        distance = first_hits(origin, rays, own)
+        rays, distance = rays[np.isfinite(distance)], distance[np.isfinite(distance)]
+        before = hidden(rays, distance, vehicle.triangles)
+        shares[0, item] = 1.0 - before.mean()
+        for other in np.flatnonzero(objects.scenes == objects.scenes[item]):
+            if other != item:
+                before |= hidden(rays, distance, box_triangles(objects, other))
+        shares[1, item] = 1.0 - before.mean()
     return shares
 
 

@@ -74,6 +74,7 @@ STUDIES = Path(__file__).parent / "hostile_studies"
 STUDY = tomllib.loads((STUDIES / "study.toml").read_text("utf-8"))
 MORE = tomllib.loads((STUDIES / "more.toml").read_text("utf-8"))
 """A study with the tables that the first one lacks."""
+PINHOLE = {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 90.0}
 SPACE = shapes.small_space()
 BOXES = {"boxes": "boxes.csv", "origin": [0.0, 0.0, 0.0], "focus": []}
 
@@ -165,10 +166,23 @@ ALL = [
 ]
 
 
+def plain(sensor):
+    """The sensor; in place of a camera whose lens bends, one that is read at once."""
+    return {**sensor, "model": PINHOLE} if "distortion" in sensor["model"] else sensor
+
+
 def complaint_about(path, value, folder, base=STUDY):
-    """What is wrong with how a value at a path is taken or refused; None where nothing is."""
+    """What is wrong with how a value at a path is taken or refused; None where nothing is.
+
+    What takes long to read stays where the path leads to it: the mesh, and lenses that bend.
+    """
     if path[0] != "vehicle" and base is not MORE:
         base = {key: value for key, value in base.items() if key != "vehicle"}
+    if path[0] != "sensor":
+        plain = [
+            s | {"model": PINHOLE} if "distortion" in s["model"] else s for s in base["sensor"]
+        ]
+        base = base | {"sensor": plain}
     data = changed(path, value, base)
     try:
         line = refused(lambda: study_from_dict(data, "study.toml", folder), *names_of(path))
@@ -200,8 +214,8 @@ def test_a_fault_of_a_hostile_value_is_seen(folder, monkeypatch):
     assert complaint_about(place, "x", folder).startswith("ZeroDivisionError")
 
 
-STEP = tries(3, 1)
-"""By default every key is given every third value, each key others than the one before it."""
+STEP = tries(6, 3)
+"""In CI every key is given every third value, each key others than the one before it."""
 
 
 def test_a_file_is_refused_in_the_same_way(folder):

@@ -28,7 +28,6 @@ from pe_tools.sweep.parameter_grid import MAX_NAME_LENGTH, folder_names
 from tests.engine import shapes
 from tests.engine.processes import Command
 from tests.limits import HANG_S
-from tests.thorough import THOROUGH
 
 pytestmark = pytest.mark.usefixtures("few_errors")
 
@@ -276,11 +275,8 @@ def searched(study):
     return job.outcome
 
 
-ENDINGS = [signal.SIGTERM, signal.SIGKILL, *([signal.SIGHUP] if THOROUGH else [])]
-
-
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
-@pytest.mark.parametrize("ending", ENDINGS)
+@pytest.mark.parametrize("ending", [signal.SIGTERM, signal.SIGKILL])
 @pytest.mark.usefixtures("heeded_signals")
 def test_a_sweep_that_is_ended_keeps_what_is_under_way(study, out, ending, capsys, noted):
     argv = ["sweep", str(study), "--optimize", "--set", "optimize.seed=3,4", "--workers", "1"]

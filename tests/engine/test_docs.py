@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 import pe_core as pe
-from pe_core.study.requirement_file import presets
 
 ROOT = Path(__file__).parents[2]
 FIGURES = ROOT / "docs" / "figures"
@@ -144,11 +143,6 @@ def test_entries_of_the_catalogue_without_a_source_are_the_three_it_tells_of():
     assert all(e.source not in ("", "same") for e in pe.catalog.entries().values())
     no_product = [e.name for e in pe.catalog.entries().values() if "no product" in e.source]
     assert len(no_product) == 3
-
-
-def test_the_page_of_requirements_names_every_preset():
-    page = (ROOT / "docs" / "requirements.md").read_text("utf-8")
-    assert not [name for name in presets() if f"`{name}`" not in page]
 
 
 GUIDE = (ROOT / "docs" / "guide.md").read_text("utf-8")

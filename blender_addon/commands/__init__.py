@@ -21,6 +21,7 @@ from .scene_verbs import (
     add_objects_options,
     check_scene_requirements,
     compare_variants,
+    drive_by_scene,
     explain_study,
     export_study,
     list_variants,
@@ -99,6 +100,11 @@ def parser(prog: str) -> argparse.ArgumentParser:
     app.add_check_options(check)
     add_variant_option(check)
     check.set_defaults(function=check_scene_requirements)
+    about = "when tracks of what moves are confirmed; 3: some too late"
+    driven = verbs.add_parser("drive-by", help=about)
+    app.add_drive_by_options(driven)
+    add_variant_option(driven)
+    driven.set_defaults(function=drive_by_scene)
     listing = verbs.add_parser("variants", help="list the variants in the file")
     listing.add_argument("--json", action="store_true", help="print JSON")
     listing.set_defaults(function=list_variants)

@@ -130,6 +130,11 @@ def check_scene_requirements(args: argparse.Namespace) -> app.Answer:
     return app.check_study(opened_study(args.variant), args)
 
 
+def drive_by_scene(args: argparse.Namespace) -> app.Answer:
+    """Drive stories by the scene's rig; the exit status says whether all are confirmed in time."""
+    return app.drive_by_study(opened_study(args.variant), args)
+
+
 def explain_study(args: argparse.Namespace) -> app.Answer:
     """Describe the scene's score as text, or query a location."""
     return app.explain(app.with_options(opened_study(args.variant), args), args)

@@ -29,6 +29,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..base.arrays import Floats, Ints
 from .entropy import BLIND_PRECISION, H_BLIND, ApCurve, entropy_of, precision_of
+from .frames import Frames
 
 CurveOf = str | ApCurve
 """An AP curve: the name of a kind of sensor ("lidar", "camera"), or the curve itself."""
@@ -55,6 +56,10 @@ class Curves(Protocol):
     @property
     def blind(self) -> str:
         """Rule for blind sensors."""
+
+    @property
+    def frames(self) -> Frames | None:
+        """Frames that an entropy is of; None: one."""
 
     def curve(self, kind: str) -> ApCurve:
         """Return the AP curve of a kind of sensor."""
@@ -112,7 +117,7 @@ class Fusion:
         if kind not in self._tables:
             curve = self.curve(kind)
             precision = precision_of(np.arange(self.saturation_count(kind) + 1), curve)
-            entropy = entropy_of(late_fusion([precision], self.model.blind))
+            entropy = entropy_of(self.fused([kind], [precision]))
             self._tables[kind] = CountTables(precision, entropy)
         return self._tables[kind]
 
@@ -126,11 +131,22 @@ class Fusion:
             return np.take(self.tables(kind).precision, m, mode="clip")
         return precision_of(m, self.curve(kind))
 
-    def entropies(self, groups: Sequence[Measurement]) -> tuple[Floats, NDArray[np.bool_]]:
+    def fused(self, kinds: Sequence[CurveOf], precisions: Sequence[Floats]) -> Floats:
+        """Fused 1 / sigma^2 of groups: late fusion (eq. 7), over the model's frames (eq. T2)."""
+        frames = self.model.frames
+        if frames is None:
+            return late_fusion(precisions, self.model.blind)
+        floor = BLIND_PRECISION if self.model.blind == "floor" else 0.0
+        return frames.fused(kinds, [p - floor for p in precisions], floor)
+
+    def entropies(
+        self, groups: Sequence[Measurement], kinds: Sequence[CurveOf] | None = None
+    ) -> tuple[Floats, NDArray[np.bool_]]:
         """Entropy H of every voxel [nats], and whether any group sees it.
 
         H is looked up at voxels that only one group with integer m sees, and computed at all
-        others. A blind group changes nothing, except by the literal formula (eq. 7).
+        others. A blind group changes nothing, except by the literal formula (eq. 7). `kinds` are
+        those of the groups where their curves do not say it; they have the rates of frames.
         """
         ignores_blind = self.model.blind == "floor"
         counting = (g for g in groups if is_whole(g[1]) and ignores_blind)
@@ -147,7 +163,8 @@ class Fusion:
             visible |= by_others
             seen = np.flatnonzero(by_others | (not ignores_blind))  # faster than by flags
             precisions = [self.precision(m.take(seen), kind) for kind, m in groups]  # eqs. 4 and 5
-            np.put(entropies, seen, entropy_of(late_fusion(precisions, self.model.blind)))
+            fused = self.fused(kinds or [kind for kind, _ in groups], precisions)
+            np.put(entropies, seen, entropy_of(fused))
         return entropies, visible
 
 
@@ -194,6 +211,8 @@ class PlaneFusion:
 
     def entropies(self, groups: Sequence[Group], plane: int) -> Floats:
         """Entropy H (ny, nz) of the voxels of one of the planes [nats]."""
+        if self._fusion.model.frames is not None:
+            return self._over_frames(groups, plane)
         counts, areas = _planes(groups, plane)
         blind = 1 if self._fusion.model.blind == "floor" else len(groups)
         if len(counts) == 1:
@@ -210,6 +229,14 @@ class PlaneFusion:
                 precision[own.start - rows.start : own.stop - rows.start] += added
             entropies[rows] = entropy_of(precision)
         return entropies
+
+    def _over_frames(self, groups: Sequence[Group], plane: int) -> Floats:
+        """Entropy H (ny, nz) over the model's frames: what each group adds is summed by frame."""
+        precisions = [np.full(self._shape, BLIND_PRECISION) for _ in groups]
+        for (kind, _), precision, group in zip(groups, precisions, groups, strict=True):
+            rows, m = _on_plane(group, plane)
+            precision[rows] += self.added(kind, m)
+        return entropy_of(self._fusion.fused([kind for kind, _ in groups], precisions))
 
     def seen(self, groups: Sequence[Group], plane: int) -> NDArray[np.bool_]:
         """Whether any group sees the voxels (ny, nz) of one of the planes."""

@@ -174,7 +174,7 @@ class GridScorer:
 
     def summary(self, rig: Rig, preview: bool = False) -> SummaryScore:
         """Return the score without the part by sensor."""
-        whole = self.score(rig)
+        whole = self.score(rig, by_sensor=False)
         figures = whole.entropy, whole.coverage, whole.stderr, whole.per_class, whole.per_zone
         return SummaryScore(*figures, whole.voxels)
 
@@ -190,13 +190,16 @@ class GridScorer:
         """Return the mean of several rigs' entropies, or the highest, whatever the cutoff."""
         return Evaluation(mean_or_worst(self.entropies(rigs), worst), False)
 
-    def score(self, rig: Rig, preview: bool = False, watch: Watch | None = None) -> Score:
-        """Return the full score."""
+    def score(
+        self, rig: Rig, preview: bool = False, watch: Watch | None = None, by_sensor: bool = True
+    ) -> Score:
+        """Return the full score; without the part by sensor if that is not asked for."""
         require_room_for(self._space, partial(self.needs, [[s] for s in rig]))
         progress = ScoreProgress(watch, len(self._blocks))
         # By the literal formula (eq. 7) a sensor changes the fusion also where it sees nothing.
-        is_sparse = self._fusion.model.blind == "floor" and len(rig.sensors) > 1
-        parts = parts_of(rig)[: 1 if is_sparse else None]
+        alike = self._fusion.model.blind == "floor" and self._fusion.model.frames is None
+        is_sparse = by_sensor and alike and len(rig.sensors) > 1
+        parts = parts_of(rig)[: 1 if is_sparse or not by_sensor else None]
         with self._lock, threads().ThreadPoolExecutor(self._workers) as pool:
             ready = self._ready(rig, pool)
             measured = self._measured([[s] for s in rig], ready, pool)
@@ -218,9 +221,9 @@ class GridScorer:
         columns = np.concatenate([columns for _, columns, _ in reduced], axis=1)
         whole = by_part[parts[0]]
         if is_sparse:
-            by_sensor = np.sum([by_sensor for _, _, by_sensor in reduced], axis=0)
+            sums_by_sensor = np.sum([sums for _, _, sums in reduced], axis=0)
             blind = H_BLIND * float(self._masses.sum())
-            more = parts_by_sums(rig, float(whole.entropy.sum()), blind, by_sensor)
+            more = parts_by_sums(rig, float(whole.entropy.sum()), blind, sums_by_sensor)
             by_part |= {members: Sums(*row) for members, row in more.items()}
         return Score(
             self._mean(whole.entropy),
@@ -228,7 +231,7 @@ class GridScorer:
             0.0,
             self._classes(whole),
             self._zones(columns),
-            {s.name: self._sensor(s, rig, by_part, ready[s.name]) for s in rig},
+            {s.name: self._sensor(s, rig, by_part, ready[s.name]) for s in rig if by_sensor},
             self._space.size,
             ground_map(columns),
         )

@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from ..base.arrays import ReadOnlyDict
 from ..base.errors import InputError, shown
@@ -21,6 +22,7 @@ from ..base.setting import OneOf, Panel, setting
 from ..base.table_reader import Table, load_toml
 from ..base.values import A_NAME, choice
 from ..metric.entropy import ApCurve
+from ..metric.frames import Frames
 from .kind import KINDS, ClassCurves, kind_named
 
 PAPER, SCANS = "paper", "scans"
@@ -145,6 +147,8 @@ class PerceptionModel:
         Curves of whole objects, m counted on the object, in place of the model's.
     model : {"paper", "scans", "bevfusion", "centerpoint"}
         Curves of the other objects: the kind's own, or of LiDARs those fitted to detectors.
+    frames : Frames, optional
+        Frames that an entropy is of, and the process noise between them; one frame by default.
     **curves : ApCurve
         By kind, ``lidar=ApCurve(0.2, 0.5)``; a kind's own by default. They are attributes as well:
         ``model.lidar`` is ``model.curve("lidar")``.
@@ -160,6 +164,7 @@ class PerceptionModel:
     """Curves by kind, only those that differ from the kind's own."""
     objects: ClassCurves
     model: str = MODEL
+    frames: Frames | None = None
 
     def __init__(
         self,
@@ -167,9 +172,11 @@ class PerceptionModel:
         *,
         objects: ClassCurves | None = None,
         model: str = PAPER,
+        frames: Frames | None = None,
         **curves: ApCurve,
     ) -> None:
         put = object.__setattr__
+        put(self, "frames", frames)
         put(self, "model", choice("ap", "model", model, CURVE_MODELS))
         put(self, "blind", choice("fusion", "blind", blind, BLIND_RULES))
         put(self, "other_curves", _checked_curves(curves))
@@ -202,9 +209,16 @@ class PerceptionModel:
             raise InputError(SOURCE, field, expected, "none")
         return curve
 
-    def with_model(self, model: str) -> PerceptionModel:
-        """Return this with the curves of objects of another model."""
-        return PerceptionModel(self.blind, objects=self.objects, model=model, **self.other_curves)
+    def of_class(self, name: str) -> PerceptionModel:
+        """Return this with the process noise of one class, for frames."""
+        if self.frames is None:
+            return self
+        return self.with_model(self.model, self.frames.of_class(name))
+
+    def with_model(self, model: str, frames: Frames | None = None) -> PerceptionModel:
+        """Return this with the curves of objects of another model, over frames if any are given."""
+        own: Any = {"objects": self.objects, "model": model, "frames": frames, **self.other_curves}
+        return PerceptionModel(self.blind, **own)
 
     @property
     def curves(self) -> dict[str, ApCurve]:

@@ -51,7 +51,7 @@ def read_model(curves: Table, fusion: Table) -> PerceptionModel:
     for kind, table in tables.items():
         own = table.table(CLASSES)
         objects[kind] = {name: read_curve(own.table(name)) for name in own.names}
-    by_kind = {kind: read_curve(table, default.curve(kind)) for kind, table in tables.items()}
+    by_kind: Any = {kind: read_curve(table, default.curve(kind)) for kind, table in tables.items()}
     blind = fusion.text("blind", default.blind, BLIND_RULES)
     chosen = read_settings(curves, PerceptionModel)["model"]
     model = PerceptionModel(blind, objects=objects, model=chosen, **by_kind)

@@ -18,6 +18,8 @@ from ..base.notebook import ShortRepr, Tabular
 from ..base.setting import OneOf, Panel, check_settings, setting
 from ..base.values import A_NAME, A_PATH, Whole
 from ..geometry.grids import PerceptionSpace
+from ..metric.frames import Frames
+from ..motion import Confirmation, DriveBy, Story, drive_by
 from ..prior import HIGHWAY_CLASSES, ROAD_CLASSES
 from ..prior.prior import Prior
 from ..scene.mesh import MeshAxes, require_vehicle_size
@@ -205,7 +207,8 @@ class Study(Tabular):
     not name is free as in the paper. `selection` says which sensors it may have instead of those of
     `rig`, and what they cost. `targets` says what is evaluated, `requirements` what has to be met,
     `conditions` the states of the vehicle and the weathers that count, `returns` which beams of the
-    rig's LiDARs return.
+    rig's LiDARs return. `frames` are those that the entropy over frames is of, `confirmation` says
+    when a track is confirmed, in `stories` of what moves.
 
     Raises
     ------
@@ -249,6 +252,9 @@ class Study(Tabular):
         ),
         scored=True,
     )
+    frames: Frames = field(default_factory=Frames)
+    confirmation: Confirmation = field(default_factory=Confirmation)
+    stories: tuple[Story, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "requirements", checked_requirements(self.requirements))
@@ -316,8 +322,16 @@ class Study(Tabular):
         """Return the `Sight` of this study: what its rigs see of the ground."""
         with self._naming_vehicle():
             return Sight(
-                self.space, self.prior, self.vehicle, model=self.model, targets=self.targets
+                *(self.space, self.prior, self.vehicle),
+                model=self.model,
+                targets=self.targets,
+                frames=self.frames,
+                samples=self.samples,
             )
+
+    def drive_by(self, story: Story, rig: Rig | None = None) -> DriveBy:
+        """Return a story as a rig, the study's by default, sees it."""
+        return drive_by(story, rig or self.rig, self.vehicle, self.model, self.confirmation)
 
     def checker(self, as_drawn: RequirementChecker | None = None) -> RequirementChecker:
         """Return what holds rigs to the study's requirements.
@@ -422,6 +436,7 @@ FIELDS: dict[str, type] = {"rig": Rig, "space": PerceptionSpace, "prior": Prior,
 FIELDS |= {"model": PerceptionModel, "axes": MeshAxes, "selection": Selection}
 FIELDS |= {"targets": TargetRule, "vehicle": Vehicle, "reference": Reference}
 FIELDS |= {"conditions": Conditions, "passthrough": Passthrough}
+FIELDS |= {"frames": Frames, "confirmation": Confirmation, "stories": tuple}
 OPTIONAL = ("vehicle", "reference", "passthrough")
 
 

@@ -30,6 +30,8 @@ from ..base.values import A_NAME, A_PATH, ANY
 from ..geometry.grids import PerceptionSpace
 from ..geometry.poses import Pose
 from ..metric.entropy import ApCurve
+from ..metric.frames import Frames
+from ..motion import Confirmation, Story
 from ..prior.prior import Focus
 from ..scene.mesh import MeshAxes, require_vehicle_size
 from ..scene.rig import Rig, Sensor, SensorModel
@@ -77,6 +79,7 @@ from .search_file import (
     selection_tables,
 )
 from .study import Search, Study
+from .time_file import read_stories, read_time, story_table, time_table
 
 OWN_MODEL = "own"
 """Name of an own model in a choice that has no name."""
@@ -156,6 +159,8 @@ def study_to_dict(study: Study) -> dict[str, Any]:
         "passthrough": passthrough_table(study.passthrough),
         "requirement": [requirement_table(each) for each in study.requirements] or None,
         **condition_tables(study.conditions),
+        "time": time_table(study.frames, study.confirmation) or None,
+        "story": [story_table(each) for each in study.stories] or None,
         "optimize": search_table(study.search, is_choice=bool(study.selection.choices)),
         **selection_tables(study.selection, _model_value),
     }
@@ -184,6 +189,7 @@ def _read_study(table: Table, folder: Path) -> Study:
         if (mount := own.text("mount", None, rule=A_NAME)) is not None:
             on[sensor.name] = mount
         own.finish()
+    frames, confirmation = read_time(table.table("time"))
     study = Study(
         Rig(mounted),
         vehicle,
@@ -200,6 +206,9 @@ def _read_study(table: Table, folder: Path) -> Study:
         read_requirements(table, folder),
         read_conditions(table),
         **_read_measurement(table.table("measurement")),
+        frames=frames,
+        confirmation=confirmation,
+        stories=read_stories(table.tables("story")),
     )
     study.designs()
     if study.requirements:
@@ -369,6 +378,8 @@ SECTIONS = (
     StudyTable("measurement", Study, MEASUREMENT, part="metric"),
     StudyTable("ap", PerceptionModel),
     StudyTable("reference", Reference),
+    StudyTable("time", Frames),
+    StudyTable("time", Confirmation),
     StudyTable("optimize", Search, part="search"),
     StudyTable("optimize", Schedule, part="schedule"),
     StudyTable("optimize", Constraints, part="constraints"),
@@ -388,6 +399,7 @@ SECTIONS = (
     StudyTable("requirement.under", Under, rows=True),
     StudyTable("weather", Weather, rows=True),
     StudyTable("state", State, OF_STATE, rows=True),
+    StudyTable("story", Story, rows=True),
     StudyTable("state.body", State, BODY, rows=True),
     StudyTable("state.move", Motion, rows=True),
 )

@@ -133,6 +133,8 @@ class KeyFigures:
         How far ahead of the origin an object is found with an AP of 0.5 or more [m]; 0: it is not.
     at_least : bool
         Whether the perception space ends there: the true reach may be longer.
+    over_frames : float or None
+        Entropy over the study's frames [nats]; None for one frame.
     """
 
     traffic: TrafficAp | None
@@ -143,6 +145,7 @@ class KeyFigures:
     class_name: str | None = None
     reach_m: float | None = None
     at_least: bool = False
+    over_frames: float | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Return the figures as plain JSON data."""
@@ -173,7 +176,8 @@ def key_figures(
     """
     blind = sight.blind(rig, max(height, sight.space.z[0]))
     found = sight.in_traffic(rig), sight.blind_sectors(rig), blind.area, blind.height, blind.within
+    over_frames = sight.over_frames(rig)
     if sight.targets.are_objects:
-        return KeyFigures(*found)
+        return KeyFigures(*found, over_frames=over_frames)
     name = class_of(sight.prior, class_name)
-    return KeyFigures(*found, name, *sight.reach_ahead(rig, name))
+    return KeyFigures(*found, name, *sight.reach_ahead(rig, name), over_frames)

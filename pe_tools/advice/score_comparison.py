@@ -216,6 +216,9 @@ def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...
     for sectors in zip(*(figures.sectors for figures in columns), strict=True):
         tall = f"{sectors[0].height:g} m tall, at {SECTOR_RADIUS_M:g} m"
         rows.append(ComparedRow("rig", tall, SECTOR, tuple(s.width for s in sectors), none))
+    over_frames = tuple(f.over_frames for f in columns)
+    if any(value is not None for value in over_frames):
+        rows.append(ComparedRow("rig", "over frames", ENTROPY, over_frames, none))
     height_text = f"{columns[0].height:g} m tall, within {columns[0].within:g} m"
     rows.append(ComparedRow("rig", height_text, BLIND, tuple(f.blind_m2 for f in columns), none))
     if (name := columns[0].class_name) is not None:

@@ -15,6 +15,8 @@ from .command import as_typed as as_typed
 from .command import count_up_to as count_up_to
 from .command import run as run
 from .command import with_options as with_options
+from .drive_by_verb import add_drive_by_options as add_drive_by_options
+from .drive_by_verb import drive_by_study as drive_by_study
 from .exchange_verbs import SUFFIXES as SUFFIXES
 from .exchange_verbs import add_export_options as add_export_options
 from .exchange_verbs import add_rigs_verb as add_rigs_verb

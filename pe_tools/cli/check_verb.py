@@ -21,12 +21,11 @@ from ..advice import curve_note
 from ..jobs import CheckJob
 from ..wording import aligned, margin_text, reason_text, unseen_text
 from .command import add_curve_option, with_curves
+from .drive_by_verb import story_lines
 from .interrupts import stop_at_first
 from .run_job import drive, print_vehicle
-from .terminal import DONE, Answer, tell
+from .terminal import DONE, NOT_MET, Answer, tell
 
-NOT_MET = 3
-"""Exit status of a check with a requirement that is not met."""
 STOPPED = "stopped before"
 """Why a requirement has no verdict after Ctrl-C."""
 ALL = "all"
@@ -95,8 +94,8 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
     if args.csv is not None:
         require_new(Path(args.csv), replace=args.replace, inputs=inputs)
     study, unchecked = with_presets(with_curves(study, args), args.preset)
-    if not study.requirements and args.redundancy is None:
-        expected = "[[requirement]] in the study, --preset ID, or --redundancy M"
+    if not (study.requirements or study.stories) and args.redundancy is None:
+        expected = "[[requirement]] or [[story]] in the study, --preset ID, or --redundancy M"
         raise InputError("check", "requirements", expected, "none")
     print_vehicle(study)
     if note := curve_note([study.model]):
@@ -107,7 +106,9 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
     verdicts = job.verdicts
     if args.csv is not None:
         write_bytes(Path(args.csv), verdicts_csv(verdicts).encode(errors="backslashreplace"))
-    status = received.status(DONE if all(v.met for v in verdicts) else NOT_MET)
+    driven = [study.drive_by(story) for story in study.stories] if job.complete else []
+    met = all(v.met for v in verdicts) and all(each.is_met for each in driven)
+    status = received.status(DONE if met else NOT_MET)
     unchecked |= dict.fromkeys(job.missing, STOPPED)
     wanted = args.suggest and status == NOT_MET
     suggested = suggestions(study) if wanted else {}
@@ -121,9 +122,11 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
             "unchecked": unchecked,
             "suggestions": {name: own and own.text for name, own in suggested.items()},
             "redundancy": None if seen is None else seen.to_dict(),
+            "stories": [each.to_dict() for each in driven],
         }
         return dump_json(finite(data)), status
     lines = verdict_lines(verdicts, unchecked) if verdicts or unchecked else []
+    lines += story_lines(driven) if driven else []
     none = "no placement of one sensor, or linked pair, that was tried is enough"
     for name, own in suggested.items():
         lines.append(f"{name}: met with {own.text}" if own else f"{name}: {none}")

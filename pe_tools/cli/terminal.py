@@ -23,7 +23,7 @@ from ..advice import (
 from ..jobs import Outcome, condition_lines, searched_on, sureness_lines
 from ..wording import margin_text, sectors_text, traffic_text
 
-DONE, BAD_INPUT, USAGE, INTERRUPTED = 0, 1, 2, 130
+DONE, BAD_INPUT, USAGE, NOT_MET, INTERRUPTED = 0, 1, 2, 3, 130
 Answer = tuple[str, int]
 """What a verb prints on stdout, and its exit status."""
 
@@ -166,7 +166,9 @@ def figure_lines(figures: Sequence[KeyFigures]) -> list[str]:
     """Return what stands beside the entropy of one rig, or of start and result."""
     found = [traffic_text(each.traffic) for each in figures]
     blind = [sectors_text(each.sectors) for each in figures]
+    over = [f"{w:.4f}" for each in figures if (w := each.over_frames) is not None]
     return [
+        *([f"entropy over frames  {' -> '.join(over)} nats"] if over else []),
         f"expected AP in traffic  {' -> '.join(found)}",
         f"widest blind sector at {SECTOR_RADIUS_M:g} m  {' -> '.join(blind)}",
     ]

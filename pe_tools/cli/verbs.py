@@ -29,6 +29,7 @@ from .command import (
     run,
     with_options,
 )
+from .drive_by_verb import add_list_option, drive_by
 from .explain_verbs import add_compare_options, add_explain_options, compare, explain, named_by_file
 from .new_verb import add_new_verb
 from .set_verb import add_set_options, set_keys
@@ -42,7 +43,7 @@ ONE, PERHAPS, SOME = "one", "?", "+"
 
 GROUPS = {
     "begin": "new set import rigs sensors curves requirements",
-    "score": "score explain check compare",
+    "score": "score explain check compare drive-by",
     "place": "optimize sweep fit",
     "show": "review export",
     "this program": "doctor completion",
@@ -197,6 +198,13 @@ VERBS = (
         add_check_options,
         ONE,
         check,
+    ),
+    Verb(
+        "drive-by",
+        "when tracks of what moves are confirmed; 3: some too late",
+        add_list_option,
+        PERHAPS,
+        drive_by,
     ),
     Verb(
         "compare",

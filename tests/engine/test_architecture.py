@@ -27,10 +27,11 @@ ROOMS = {
         "sensors": {"base", "metric", "geometry", "scene"},
         "catalog": {"base", "geometry", "scene", "sensors"},
         "scoring": {"base", "metric", "geometry", "scene", "prior", "sensors"},
+        "motion": {"base", "metric", "scene", "sensors", "scoring"},
         "search": {"base", "geometry", "scene", "scoring"},
         "study": {
             *("base", "metric", "geometry", "scene", "prior", "sensors", "catalog"),
-            *("scoring", "search"),
+            *("scoring", "motion", "search"),
         },
         "public": {
             *("version", "base", "metric", "scene", "prior", "sensors", "catalog", "scoring"),
@@ -70,7 +71,7 @@ ROOMS = {
 STOREYS = 8
 MAX_CHAIN_LENGTH = 30
 """Of pe_core: storeys of rooms, and files in a row of which each imports the next, at most."""
-MAX_LINES = 79_703
+MAX_LINES = 90_000
 """Of the product: every file of our own in both packages and the add-on."""
 LIBRARIES = {
     "collada": {"pe_tools/formats"},

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,15 +15,17 @@ from ...base.errors import InputError
 from ...base.lazy_threads import threads
 from ...base.values import rounded
 from ...geometry.grids import PerceptionSpace
-from ...metric.entropy import H_BLIND, ap_of_entropy
+from ...metric.entropy import H_BLIND, ap_of_entropy, perception_entropy
+from ...metric.frames import Frames
 from ...metric.fusion import Fusion
 from ...prior.prior import ClassDensity, Prior
 from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
 from ...sensors import PerceptionModel
+from ..evaluator import Evaluator
 from ..sampling import VoxelSample, draw
 from ..scenarios import fused_early
-from ..score import TrafficAp
+from ..score import RigEvaluator, TrafficAp
 from ..targets import OBJECTS, ObjectEvaluator, TargetRule, sample_objects
 from ..targets.object_metric import LoneObjects
 from .blind_ground import (
@@ -76,6 +79,10 @@ class Sight:
     targets : TargetRule, optional
         Whether the study is scored on voxels (default) or objects. For objects, `reach` is that of
         lone objects, as in the score; for voxels, that of the class's voxels.
+    frames : Frames, optional
+        Frames that `over_frames` is of; one by default.
+    samples : int
+        Voxels that it is evaluated on; 0: all.
 
     Raises
     ------
@@ -91,8 +98,11 @@ class Sight:
         *,
         model: PerceptionModel | None = None,
         targets: TargetRule | None = None,
+        frames: Frames | None = None,
+        samples: int = 0,
     ) -> None:
         self.space, self.prior, self.vehicle = space, prior, vehicle
+        self.frames, self._samples = frames or Frames(), samples
         self._model, self.targets = model or PerceptionModel(), targets or TargetRule()
         self._fusion = Fusion(self._model)
         self._densities: list[ClassDensity] = prior.densities(space)
@@ -102,7 +112,8 @@ class Sight:
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the arguments: another process makes one of its own from them."""
         what = self.space, self.prior, self.vehicle
-        return partial(type(self), *what, model=self._model, targets=self.targets), ()
+        options: Any = {"frames": self.frames, "samples": self._samples}
+        return partial(type(self), *what, model=self._model, targets=self.targets, **options), ()
 
     def ground(
         self,
@@ -201,6 +212,45 @@ class Sight:
                 return self._objects_in_traffic.expected_ap(rig)
             except InputError:
                 return None
+
+    def over_frames(self, rig: Rig) -> float | None:
+        """Return the perception entropy over frames, eqs. T1 and T2 [nats]; None for one frame.
+
+        Voxels are scored once for each process noise that occurs: a class's part is that of its
+        own noise.
+        """
+        if self.frames.frames == 1:
+            return None
+        with self._lock:
+            parts = [
+                (names, scorer.summary(rig)) for names, scorer in self._scorers_over_frames.items()
+            ]
+        if len(parts) == 1:
+            return parts[0][1].entropy
+        shares = [
+            (score.per_class[name].entropy, score.per_class[name].share)
+            for names, score in parts
+            for name in names
+            if name in score.per_class
+        ]
+        entropies, weights = np.array(shares).T
+        return rounded(perception_entropy(entropies, weights))
+
+    @cached_property
+    def _scorers_over_frames(self) -> Mapping[tuple[str, ...], RigEvaluator]:
+        """Evaluators over frames, by the classes that have their process noise."""
+        where = self.space, self.prior, self.vehicle
+        frames, own = self.frames, self._model.model
+        if self.targets.are_objects:
+            model = self._model.with_model(own, frames)
+            return {(): ObjectEvaluator(*where, targets=self.targets, model=model)}
+        classes: dict[Frames, tuple[str, ...]] = {}
+        for name in self.prior.class_names:
+            classes[frames.of_class(name)] = (*classes.get(frames.of_class(name), ()), name)
+        return {
+            names: Evaluator(*where, samples=self._samples, model=self._model.with_model(own, each))
+            for each, names in classes.items()
+        }
 
     def _blind_cells(
         self, rig: Rig, height: float, within: float, preview: bool

@@ -61,12 +61,13 @@ class FusedObjects:
     """Fuses measurements of objects by a perception model; objects without weight are left out."""
 
     def __init__(self, objects: Objects, weights: Floats, model: PerceptionModel) -> None:
-        self._model, self._fusion, self._count = model, Fusion(model), len(objects)
+        self._model, self._count = model, len(objects)
         self._rows = {
             name: rows
             for c, name in enumerate(objects.class_names)
             if len(rows := np.flatnonzero((objects.labels == c) & (weights > 0.0)))
         }
+        self._fusion = {name: Fusion(model.of_class(name)) for name in self._rows}
 
     def check(self, rig: Rig) -> None:
         """Raise `InputError` for a sensor with a curve of its own, or a class without one."""
@@ -96,7 +97,8 @@ class FusedObjects:
             measured = [
                 (self._model.object_curve(kind, name), total[rows]) for kind, total in groups
             ]
-            entropies[rows], visible[rows] = self._fusion.entropies(measured)
+            kinds = [kind for kind, _ in groups]
+            entropies[rows], visible[rows] = self._fusion[name].entropies(measured, kinds)
         return entropies, visible
 
 

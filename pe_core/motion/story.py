@@ -1,0 +1,212 @@
+"""Stories: what moves round the vehicle, and how the vehicle has to stop for it.
+
+At time 0 the vehicle, driving on at its speed, is where the story says: `anchor` is its foremost
+(or rearmost) plane then. Positions are metres beyond that plane, and to the left of the centre
+line, on the ground that does not move.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..base.arrays import Floats
+from ..base.errors import InputError, shown
+from ..base.files import decode_text, read_bytes
+from ..base.setting import FLAG, OneOf, check_settings, read_settings, setting
+from ..base.table_reader import Table, load_toml
+from ..base.values import A_NAME, Number, listed, vector
+from ..scene.objects import Objects
+from ..scene.vehicle import Vehicle
+from ..scoring.requirements.bodies import BODIES, Body
+
+FRONT, REAR = "front", "rear"
+KMH = 3.6
+SECOND = Number(-600.0, 600.0, unit="s", noun="time")
+METRE = Number(-1000.0, 1000.0, unit="m", noun="position")
+FILE = Path(__file__).with_name("stories.toml")
+MAX_FRAMES = 6000
+
+
+@dataclass(frozen=True, slots=True)
+class Actor:
+    """A body of a story, and its path: (time [s], x [m], y [m]), straight between them.
+
+    Before the first and after the last it stands. `watched`: whether it has to be confirmed; else
+    it only occludes.
+    """
+
+    name: str
+    body: Body
+    path: tuple[tuple[float, float, float], ...]
+    watched: bool = True
+    heading: float = 0.0
+    """While it stands [rad]."""
+
+    def __post_init__(self) -> None:
+        who = f"body {A_NAME.checked('story', 'name', self.name)!r}"
+        rows = [vector(who, "path", row, 3, METRE) for row in listed(self.path) or []]
+        times = [SECOND.checked(who, "path", row[0]) for row in rows]
+        if not rows or times != sorted(set(times)):
+            raise InputError(who, "path", "[s, m, m] at times that increase", shown(self.path))
+        object.__setattr__(self, "path", tuple(rows))
+        if self.watched and self.body.class_name is None:
+            raise InputError(who, "body", "one of a class of objects", self.body.name)
+
+    def at(self, times: Floats) -> tuple[Floats, Floats]:
+        """Return positions (K, 2) [m] and headings (K,) [rad] at some times."""
+        t, x, y = np.array(self.path).T
+        where = np.column_stack([np.interp(times, t, x), np.interp(times, t, y)])
+        leg = np.clip(np.searchsorted(t, times, side="right") - 1, 0, max(len(t) - 2, 0))
+        headings = np.full(len(times), self.heading)
+        if len(t) > 1:
+            moving = (np.diff(x) != 0.0) | (np.diff(y) != 0.0)
+            along = np.where(moving, np.arctan2(np.diff(y), np.diff(x)), self.heading)
+            headings = along[leg]
+        return where, headings
+
+
+@dataclass(frozen=True, slots=True)
+class Story:
+    """A scene in time: the vehicle's own speed, how it stops, and what moves.
+
+    Raises
+    ------
+    InputError
+        When a number is out of its range, or there is no body to watch.
+    """
+
+    name: str
+    title: str = ""
+    source: str = ""
+    preset: str = ""
+    speed_kmh: float = setting(30.0, Number(0.0, 250.0, unit="km/h"), "Own speed")
+    deceleration: float = setting(
+        6.0, Number(0.0, 15.0, above=True, unit="m/s^2"), "Deceleration of a full braking [m/s^2]"
+    )
+    latency_s: float = setting(
+        0.5, Number(0.0, 10.0, unit="s"), "Time from a confirmed track to the brakes [s]"
+    )
+    before_s: float = setting(
+        0.0, Number(0.0, 60.0, unit="s"), "How long before the last moment it has to be confirmed"
+    )
+    chance: float = setting(0.9, Number(0.5, 0.999), "Probability of a confirmed track")
+    rate_hz: float = setting(10.0, Number(1.0, 100.0, unit="Hz"), "Frames in a second")
+    start_s: float = setting(-6.0, Number(-600.0, 0.0, unit="s"), "Time of the first frame")
+    end_s: float = setting(0.0, Number(-600.0, 600.0, unit="s"), "Time of the last frame")
+    anchor: str = setting(FRONT, OneOf((FRONT, REAR)), "Plane of the vehicle that the story meets")
+    actors: tuple[Actor, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        who = f"story {A_NAME.checked('story', 'name', self.name)!r}"
+        check_settings(self, who)
+        if not any(actor.watched for actor in self.actors):
+            raise InputError(who, "body", "at least one that is watched", "none")
+        frames = (self.end_s - self.start_s) * self.rate_hz
+        if not 1.0 <= frames <= MAX_FRAMES:
+            expected = f"1 to {MAX_FRAMES} frames from start_s to end_s"
+            raise InputError(who, "end_s", expected, f"{frames:g}")
+
+    @property
+    def times(self) -> Floats:
+        """Times (K,) of the frames [s]."""
+        count = int((self.end_s - self.start_s) * self.rate_hz + 1e-6) + 1
+        return np.round(self.start_s + np.arange(count) / self.rate_hz, 9)
+
+    @property
+    def speed(self) -> float:
+        """Own speed [m/s]; backwards it is negative."""
+        return (self.speed_kmh if self.anchor == FRONT else -self.speed_kmh) / KMH
+
+    @property
+    def brake_s(self) -> float:
+        """The last moment at which a track has to be confirmed to stop before the anchor [s].
+
+        The vehicle stops within ``v latency + v^2 / (2 a)``: a time of ``latency + v / (2 a)``.
+        """
+        return -(self.latency_s + abs(self.speed) / (2.0 * self.deceleration))
+
+    def positions(self, vehicle: Vehicle | None) -> tuple[Floats, Floats]:
+        """Return positions (A, K, 2) and headings (A, K) of the actors in the ground frame."""
+        low, high = (-2.3, 2.3) if vehicle is None else (float(b[0]) for b in vehicle.bounds)
+        sign, plane = (1.0, high) if self.anchor == FRONT else (-1.0, low)
+        moved = self.speed * self.times
+        where, headings = [], []
+        for actor in self.actors:
+            at, heading = actor.at(self.times)
+            x = plane + sign * at[:, 0] - moved
+            where.append(np.column_stack([x, at[:, 1]]))
+            headings.append(heading if sign > 0.0 else math.pi - heading)
+        return np.array(where), np.array(headings)
+
+    def objects(self, vehicle: Vehicle | None) -> Objects:
+        """Return the actors as objects, one after the other, a scene for each frame."""
+        where, headings = self.positions(vehicle)
+        names = sorted({actor.body.class_name or OTHER for actor in self.actors})
+        sizes = np.array([actor.body.box for actor in self.actors])
+        frames = len(self.times)
+        lift = np.array([actor.body.low for actor in self.actors]) + sizes[:, 2] / 2.0
+        z = np.broadcast_to(lift[:, None, None], (*where.shape[:2], 1))
+        labels = [names.index(actor.body.class_name or OTHER) for actor in self.actors]
+        return Objects(
+            np.concatenate([where, z], axis=2).reshape(-1, 3),
+            np.repeat(sizes, frames, axis=0),
+            headings.ravel(),
+            np.repeat(labels, frames),
+            names,
+            np.tile(np.arange(frames), len(self.actors)),
+        )
+
+
+OTHER = "other"
+"""Class of bodies that only occlude."""
+
+
+def read_story(table: Table, name: str) -> Story:
+    """Return a story from its table; a `preset` is changed by the other keys."""
+    preset = table.text("preset", "")
+    base = None
+    if preset:
+        if preset not in stories():
+            raise table.error("preset", f"one of {', '.join(stories())}", preset)
+        base = stories()[preset]
+    values = read_settings(table, Story, default=base)
+    texts: dict[str, Any] = {
+        key: table.text(key, getattr(base, key, "")) for key in ("title", "source")
+    }
+    if table.text("name", name) != name:
+        raise table.error("name", f"{name!r}, as the table", table.text("name"))
+    actors = tuple(_read_actor(row) for row in table.tables("body"))
+    table.finish()
+    with table.naming():
+        return Story(
+            name, **texts, preset=preset, **values, actors=actors or (base.actors if base else ())
+        )
+
+
+def _read_actor(table: Table) -> Actor:
+    kind = table.text("body")
+    shape = BODIES.get(kind)
+    if shape is None:
+        size: Any = table.numbers("size", 3)
+        shape = Body(kind, size, class_name=table.text("class", "") or None)
+    watched = FLAG.checked(table.source, table.field("watched"), table.raw("watched", True))
+    name, heading = table.text("name", kind), math.radians(table.number("heading_deg", 0.0))
+    path = listed(table.raw("path")) or []
+    table.finish()
+    with table.naming():
+        return Actor(name, shape, tuple(path), watched, heading)
+
+
+@cache
+def stories() -> Mapping[str, Story]:
+    """Return the stories that are shipped, by name."""
+    table = Table(load_toml(FILE, "stories", decode_text(read_bytes(FILE))), FILE.name)
+    read = {name: read_story(table.table(name), name) for name in table.names}
+    return {name: replace(story, preset=name) for name, story in read.items()}

@@ -1,0 +1,103 @@
+"""`pe drive-by`: stories of what moves round the vehicle, and when its tracks are confirmed."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+from pe_core.base import dump_json
+from pe_core.base.errors import InputError
+from pe_core.base.files import decode_text, read_bytes, require_new, write_bytes
+from pe_core.base.table_reader import Table, load_toml
+from pe_core.motion import DriveBy, SeenBody, Story, stories
+from pe_core.study import Study, load_study
+from pe_core.study.time_file import read_stories
+
+from ..wording import aligned
+from .run_job import print_vehicle
+from .terminal import DONE, NOT_MET, Answer, tell
+
+ALL = "all"
+TOML = ".toml"
+
+
+def add_drive_by_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of ``drive-by`` to a parser."""
+    about = "a story of the study, a shipped one, or a TOML file with [[story]]; all: each shipped"
+    parser.add_argument("--story", action="append", default=[], metavar="NAME", help=about)
+    parser.add_argument("--json", action="store_true", help="print JSON, with AP frame by frame")
+    parser.add_argument("-o", "--output", metavar="FILE", help="write the JSON to a file")
+    parser.add_argument("--replace", action="store_true", help="replace a file that is there")
+
+
+def add_list_option(parser: argparse.ArgumentParser) -> None:
+    """Add the options of ``drive-by`` for study files."""
+    add_drive_by_options(parser)
+    parser.add_argument("--list", action="store_true", help="list the shipped stories")
+
+
+def drive_by(args: argparse.Namespace) -> Answer:
+    """Drive the stories of a study file by its rig; the exit status says whether all are met."""
+    if args.list:
+        return "\n".join(aligned([[n, s.title, s.source] for n, s in stories().items()])), DONE
+    if args.study is None:
+        args.usage_error("expected STUDY, or --list")
+    return drive_by_study(load_study(args.study), args, [Path(args.study)])
+
+
+def drive_by_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] = ()) -> Answer:
+    """Drive stories by a study's rig: those that are named, else the study's own.
+
+    `inputs` are files that no output replaces.
+    """
+    if args.output is not None:
+        require_new(Path(args.output), replace=args.replace, inputs=inputs)
+    chosen = _chosen(study, args.story)
+    print_vehicle(study)
+    driven = [study.drive_by(story) for story in chosen]
+    text = dump_json(
+        {"met": all(d.is_met for d in driven), "stories": [d.to_dict() for d in driven]}
+    )
+    if args.output is not None:
+        write_bytes(Path(args.output), text.encode())
+        tell(f"wrote {args.output}")
+    status = DONE if all(each.is_met for each in driven) else NOT_MET
+    return text if args.json else "\n".join(story_lines(driven)), status
+
+
+def _chosen(study: Study, names: Sequence[str]) -> list[Story]:
+    known = {**stories(), **{story.name: story for story in study.stories}}
+    chosen: dict[str, Story] = {} if names else {story.name: story for story in study.stories}
+    for name in names:
+        if name == ALL:
+            chosen |= stories()
+        elif name.endswith(TOML):
+            table = Table(load_toml(name, "stories", decode_text(read_bytes(Path(name)))), name)
+            chosen |= {story.name: story for story in read_stories(table.tables("story"))}
+            table.finish()
+        elif name in known:
+            chosen[name] = known[name]
+        else:
+            raise InputError("drive-by", "--story", f"one of {', '.join(known)}", name)
+    if not chosen:
+        expected = "[[story]] in the study, or --story NAME (--list lists them)"
+        raise InputError("drive-by", "story", expected, "none")
+    return list(chosen.values())
+
+
+def story_lines(driven: Sequence[DriveBy]) -> list[str]:
+    """Return stories as a table: a row for each watched body."""
+    chances = sorted({chance for each in driven for body in each.bodies for chance in body.moments})
+    head = ["", "story", "body", *(f"confirmed {c:.0%}" for c in chances), "lost", "margin"]
+    rows = [[*_row(each, body, chances)] for each in driven for body in each.bodies]
+    met = sum(each.is_met for each in driven)
+    return [*aligned([head, *rows]), f"{met} of {len(driven)} stories confirmed in time"]
+
+
+def _row(driven: DriveBy, body: SeenBody, chances: Sequence[float]) -> list[str]:
+    moments = [body.moments.get(chance) for chance in chances]
+    texts = ["never" if m is None else f"{m.time_s:+.1f} s, {m.distance_m:.1f} m" for m in moments]
+    margin = "-" if body.margin_s is None else f"{body.margin_s:+.1f} s"
+    met = "met" if body.is_met else "NOT MET"
+    return [met, driven.story.name, body.name, *texts, f"{body.lost_s:.1f} s", margin]

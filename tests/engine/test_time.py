@@ -1,0 +1,272 @@
+"""Entropy over frames, tracks and stories: equations T1 to T5, bits of the paper, the command."""
+
+import itertools
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+import pe_tools as pt
+from pe_core.metric.entropy import BLIND_PRECISION, ap_of_entropy
+from pe_core.metric.frames import Frames, predicted, steady, updated
+from pe_core.motion import Actor, Confirmation, Story, drive_by, stories
+from pe_core.motion.scan import ap_with_latency, scan_factor, scan_lag, seam
+from pe_core.scene.objects import Objects
+from pe_core.scoring.requirements.bodies import BODIES
+from pe_core.scoring.targets.object_metric import FusedObjects
+from pe_core.sensors import ObjectMeasurementCache
+from pe_core.study import study_from_dict, study_to_dict
+from pe_tools.cli.verbs import main
+from tests.engine import shapes
+
+SPACE = pe.PerceptionSpace((-24.0, 24.0), (-12.0, 12.0), (0.0, 2.0), 0.5)
+FORWARD = pe.Camera("cam", 1280, 720, 1.2)
+
+
+def rig():
+    roof = pe.Sensor("roof", pe.catalog.load("Pandar64"), pe.Pose.from_degrees((0, 0, 2.0)))
+    front = pe.Sensor("front", FORWARD, pe.Pose.from_degrees((1.0, 0, 1.5)))
+    return pe.Rig([roof, front])
+
+
+def study(**other):
+    car = shapes.box_car()
+    return pe.Study(rig(), car, SPACE, samples=2048, **other)
+
+
+def test_information_approaches_its_steady_value():
+    added, noise = np.array([1e-3, 0.5, 3.0, 1e4]), 0.1
+    precision = np.full(4, BLIND_PRECISION)
+    for _ in range(20_000):
+        precision = updated(predicted(precision, noise, 0.0), [added])
+    assert np.abs(precision / steady(added, noise) - 1.0).max() < 1e-12
+
+
+def by_definition(frames, rates, added, floor):
+    """Return 1 / sigma^2 of numbers, with exact times: each sensor's frames backwards from 0."""
+    step, ticks = 1.0 / math.lcm(*rates), {}
+    first = -(frames.frames - 1) * math.lcm(*rates) // min(rates)
+    for k, rate in enumerate(rates):
+        for tick in range(0, first - 1, -(math.lcm(*rates) // rate)):
+            ticks.setdefault(tick, []).append(k)
+    precision, last = floor, None
+    for tick in sorted(ticks):
+        if last is not None:
+            precision = max(1.0 / (1.0 / precision + frames.q * (tick - last) * step), floor)
+        precision += sum(added[k] for k in ticks[tick])
+        last = tick
+    return precision
+
+
+@pytest.mark.parametrize("rates", [(10, 10), (10, 30), (10, 13), (5, 20, 7)])
+def test_frames_of_other_rates_are_fused_at_their_times(rates):
+    kinds = [f"kind {k}" for k in range(len(rates))]
+    added = [np.array([0.3 * (k + 1), 0.0, 2.0]) for k in range(len(rates))]
+    frames = Frames(4, 2.0, rates=dict(zip(kinds, map(float, rates), strict=True)))
+    fused = frames.fused(kinds, added, BLIND_PRECISION)
+    for k, value in enumerate(fused):
+        alone = by_definition(frames, rates, [float(a[k]) for a in added], BLIND_PRECISION)
+        assert value == pytest.approx(alone, rel=1e-12)
+
+
+@pytest.mark.parametrize("blind", ["floor", "literal"])
+@pytest.mark.parametrize("kind", ["voxels", "grid", "objects"])
+def test_without_memory_it_is_the_paper_to_the_bit(kind, blind):
+    model = pe.PerceptionModel(blind)
+    targets = pe.TargetRule("objects", scenes=16) if kind == "objects" else pe.TargetRule()
+    scored = study(model=model, targets=targets)
+    scored = replace(scored, samples=0) if kind == "grid" else scored
+    paper = scored.evaluator().entropy(rig())
+    forgetful = replace(scored, frames=Frames(5, math.inf, rates={"camera": 30.0}))
+    assert forgetful.sight().over_frames(rig()) == paper
+    assert scored.sight().over_frames(rig()) is None  # one frame is the entropy itself
+    once = model.with_model(model.model, Frames(1, 1.0))
+    assert replace(scored, model=once).evaluator().entropy(rig()) == paper
+    some = replace(scored, frames=Frames(5, 0.01)).sight().over_frames(rig())
+    more = replace(scored, frames=Frames(9, 0.01)).sight().over_frames(rig())
+    assert more < some < paper
+
+
+def test_a_class_has_its_own_noise():
+    noises = {"pedestrian": 50.0}
+    whole = study(frames=Frames(5, 1.0)).sight().over_frames(rig())
+    mixed = study(frames=Frames(5, 1.0, noises=noises)).sight().over_frames(rig())
+    forgetful = study(frames=Frames(5, 50.0)).sight().over_frames(rig())
+    assert whole < mixed < forgetful
+    same = dict.fromkeys(study().prior.class_names, 1.0)
+    assert study(frames=Frames(5, 9.0, noises=same)).sight().over_frames(rig()) == whole
+
+
+@pytest.mark.parametrize("correlation", [0.0, 0.4, 1.0])
+@pytest.mark.parametrize(("needed", "window"), [(3, 5), (1, 1), (2, 3)])
+def test_tracks_are_those_of_all_outcomes(correlation, needed, window):
+    rule = Confirmation(needed, window, correlation)
+    found = np.random.default_rng(7).random((2, 8))
+    confirmed, kept = np.zeros((2, 8)), np.zeros((2, 8))
+    for row, outcome in itertools.product((0, 1), itertools.product((0, 1), repeat=8)):
+        chance = 1.0
+        for k, hit in enumerate(outcome):
+            p, r = found[row, k], correlation if k else 0.0
+            p = p + r * (1.0 - p) if k and outcome[k - 1] else p * (1.0 - r)
+            chance *= p if hit else 1.0 - p
+        enough = [sum(outcome[max(0, k + 1 - window) : k + 1]) >= needed for k in range(8)]
+        kept[row] += chance * np.array(enough)
+        confirmed[row] += chance * np.maximum.accumulate(enough)
+    assert np.abs(rule.confirmed(found) - confirmed).max() < 1e-14
+    assert np.abs(rule.kept(found) - kept).max() < 1e-14
+
+
+def test_a_track_is_lost_while_it_is_rarely_found():
+    found = np.array([1.0] * 6 + [0.0] * 8 + [1.0] * 6)
+    rule = Confirmation(3, 5, 0.0)
+    assert rule.first(found, 0.9) == 2
+    assert rule.longest_loss(found, 2) == 8  # from the third miss to before the third hit
+    assert rule.first(np.zeros(9), 0.9) is None
+
+
+def test_scan_and_latency_change_nothing_at_rest():
+    ap = np.array([0.2, 0.7])
+    assert (scan_factor(np.zeros(3), 10.0) == 1.0).all()
+    assert (seam(0.0, 0.05) == 0.0).all() and scan_lag(0.9, 0.1, 10.0) == pytest.approx(0.02)
+    for speed, late in ((0.0, 0.3), (10.0, 0.0)):
+        assert (ap_with_latency(ap, np.full(2, speed), late, 0.5, (0.5, 1, 2, 4)) == ap).all()
+    # beams at steps of Omega / n meet a body that turns with the scan for longer
+    turning = 2.0 * math.pi * 10.0 * 0.2
+    assert scan_factor(turning, 10.0) == pytest.approx(1.25)
+    slow, fast = ap_with_latency(ap, [5.0, 15.0], 0.3, 0.5, (0.5, 1, 2, 4)) / ap
+    assert fast < slow < 1.0
+    assert seam(10.0, 0.05) == pytest.approx(0.5)
+
+
+STANDING = Story(
+    "standing",
+    speed_kmh=0.0,
+    start_s=-1.0,
+    actors=(
+        Actor("adult", BODIES["adult"], ((0.0, 8.0, 1.0),)),
+        Actor("wall", BODIES["car"], ((0.0, 4.0, 0.6),), watched=False),
+    ),
+)
+
+
+def test_a_story_at_rest_is_the_ap_of_objects_in_traffic():
+    car = shapes.box_car()
+    front = float(car.bounds[1][0])
+    boxes = np.array([BODIES[name].box for name in ("adult", "car")])
+    centers = [(front + 8.0, 1.0, boxes[0, 2] / 2), (front + 4.0, 0.6, boxes[1, 2] / 2)]
+    names = ("pedestrian", "car")
+    objects = Objects(centers, boxes, [0.0, 0.0], [0, 1], names, [0, 0])
+    m = ObjectMeasurementCache(objects, car, True).measure(rig())
+    entropies, _ = FusedObjects(objects, np.ones(2), pe.PerceptionModel()).entropies(rig(), m)
+    seen = drive_by(STANDING, rig(), car)
+    assert len(seen.bodies) == 1
+    assert np.abs(seen.bodies[0].ap - ap_of_entropy(entropies)[0]).max() < 1e-12
+    alone = replace(STANDING, actors=STANDING.actors[:1])
+    assert drive_by(alone, rig(), car).bodies[0].ap[0] > seen.bodies[0].ap[0]
+
+
+def test_bodies_move_as_the_vehicle_drives_on():
+    car, moving = shapes.box_car(), replace(STANDING, speed_kmh=36.0)
+    where, _ = moving.positions(car)
+    front = float(car.bounds[1][0])
+    assert where[0, 0] == pytest.approx((front + 18.0, 1.0))
+    assert where[0, -1] == pytest.approx((front + 8.0, 1.0))
+    reverse = replace(STANDING, speed_kmh=36.0, anchor="rear").positions(car)[0]
+    assert reverse[0, 0] == pytest.approx((float(car.bounds[0][0]) - 18.0, 1.0))
+    crossing = Actor("child", BODIES["child"], ((-1.0, 0.0, -2.0), (0.0, 0.0, 0.0)))
+    turned = replace(moving, actors=(crossing,)).positions(car)
+    assert turned[1][0] == pytest.approx(math.pi / 2)
+    assert moving.brake_s == pytest.approx(-(0.5 + 10.0 / 12.0))
+
+
+def test_what_hides_a_child_makes_it_late():
+    hidden = stories()["crossing_child"]
+    open_road = replace(hidden, actors=hidden.actors[:1])
+    car = shapes.box_car()
+    late, early = (drive_by(s, rig(), car).bodies[0] for s in (hidden, open_road))
+    assert (late.confirmed <= early.confirmed + 1e-12).all()
+    assert late.confirmed[-12] < early.confirmed[-12]
+    assert late.by_sensor.keys() == {"roof", "front"}
+
+
+def test_a_study_keeps_its_frames_tracks_and_stories(tmp_path):
+    own = replace(STANDING, name="own", title="a title")
+    changed = replace(stories()["cut_in"], speed_kmh=50.0)
+    noted = study(
+        frames=Frames(5, 2.0, noises={"car": 1.5}, rates={"camera": 30.0}),
+        confirmation=Confirmation(2, 4, 0.5),
+        stories=(own, changed, stories()["roundabout"]),
+    )
+    data = study_to_dict(replace(noted, vehicle=None))
+    read = study_from_dict(data)
+    for name in ("frames", "confirmation", "stories"):
+        assert getattr(read, name) == getattr(noted, name)
+    assert data["story"][1:] == [{"preset": "cut_in", "speed_kmh": 50.0}, {"preset": "roundabout"}]
+
+
+BAD = [
+    ({"time": {"frames": 0}}, "frames"),
+    ({"time": {"rates": {"camera": 0.0}}}, "camera"),
+    ({"time": {"needed": 4, "window": 3}}, "needed"),
+    ({"story": [{"preset": "none"}]}, "preset"),
+    ({"story": [{"name": "x"}]}, "body"),
+    ({"story": [{"preset": "cut_in"}, {"preset": "cut_in"}]}, "name"),
+    ({"story": [{"name": "x", "body": [{"body": "child", "path": [[0, 0]]}]}]}, "path"),
+    (
+        {"story": [{"name": "x", "body": [{"body": "child", "path": [[1, 0, 0], [0, 0, 0]]}]}]},
+        "path",
+    ),
+    (
+        {"story": [{"name": "x", "body": [{"body": "child", "path": [[0, 0, 0]], "watched": 1}]}]},
+        "watched",
+    ),
+    (
+        {
+            "story": [
+                {"name": "x", "body": [{"body": "rock", "size": [1, 1, 1], "path": [[0, 0, 0]]}]}
+            ]
+        },
+        "body",
+    ),
+]
+
+
+def test_bad_input_is_one_line():
+    data = study_to_dict(replace(study(), vehicle=None))
+    for more, field in BAD:
+        with pytest.raises(pe.InputError) as caught:
+            study_from_dict(data | more)
+        assert field in caught.value.field and "\n" not in str(caught.value)
+
+
+@pytest.fixture
+def file(tmp_path):
+    car = shapes.box_car()
+    pt.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
+    pt.export_study(study(stories=(stories()["cyclist_from_right"],)), tmp_path / "study.toml")
+    return tmp_path / "study.toml"
+
+
+def test_the_command_says_when_each_body_is_confirmed(file, tmp_path, capsys):
+    status = main(["drive-by", str(file), "--json", "-o", str(tmp_path / "out.json")])
+    data = json.loads(capsys.readouterr().out)
+    (story,) = data["stories"]
+    whole = study().drive_by(stories()["cyclist_from_right"])
+    assert story == json.loads(json.dumps(whole.to_dict()))
+    assert json.loads((tmp_path / "out.json").read_text()) == data
+    assert status == (0 if whole.is_met else 3)
+    assert main(["drive-by", str(file), "--story", "all"]) == 3  # the child behind the cars
+    assert "crossing_child" in capsys.readouterr().out
+    assert main(["check", str(file), "--json"]) == status
+    assert json.loads(capsys.readouterr().out)["stories"] == data["stories"]
+    assert main(["drive-by", "--list"]) == 0
+    assert len(capsys.readouterr().out.splitlines()) == len(stories())
+    own = tmp_path / "own.toml"
+    own.write_text('[[story]]\npreset = "crossing_child"\nspeed_kmh = 10.0\n')
+    assert main(["drive-by", str(file), "--story", str(own), "--json"]) in (0, 3)
+    slow = json.loads(capsys.readouterr().out)["stories"][0]["bodies"][0]["margin_s"]
+    assert slow is None or slow > -2.0
+    assert main(["drive-by", str(file), "--story", "none"]) == 1

@@ -1,0 +1,109 @@
+"""Real tracks: moments by hand, which tracks count, persistence, saved conclusions."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pe_core.scene.objects import Objects
+from studies.pages import PAGE, render
+from studies.road.logs import CLASSES, Log
+from studies.tracks import __main__ as study
+from studies.tracks.moments import (
+    HOLDS,
+    OPEN,
+    REFUTED,
+    Moments,
+    compared,
+    pairs_of,
+    persistence,
+    tracks_of,
+    verdict,
+)
+
+FOLDER = Path(__file__).parents[2] / "docs/validity/tracks"
+
+
+def seen(text):
+    return np.array([letter == "x" for letter in text])
+
+
+@pytest.mark.parametrize(
+    ("text", "first", "confirmed", "lost"),
+    [
+        (".....", None, None, 0.0),
+        ("..x..x...", 2, None, 0.0),
+        ("..x.xx...", 2, 5, 0.0),
+        ("xxx....x", 0, 2, 0.4),
+        ("..xxx.x...xx", 2, 4, 0.3),
+    ],
+)
+def test_moments_by_hand(text, first, confirmed, lost):
+    found = Moments.of(seen(text))
+    assert (found.first, found.confirmed) == (first, confirmed)
+    assert found.lost_s == pytest.approx(lost)
+
+
+def log_of(rows):
+    """Return a log of boxes (frame, track, x, points)."""
+    frames, tracks, x, points = np.array(rows).T
+    count = len(rows)
+    centers = np.column_stack([x, np.zeros(count), np.ones(count)])
+    sizes = np.tile([4.0, 2.0, 1.5], (count, 1))
+    boxes = Objects(centers, sizes, np.zeros(count), [0] * count, CLASSES, frames.astype(int))
+    return Log("a log", boxes, points.astype(int), tracks.astype(int))
+
+
+def test_a_track_that_is_seen_at_once_does_not_count():
+    late = [(k, 0, 40.0 - k, 9 * (k > 6)) for k in range(20)]
+    at_once = [(k, 1, 20.0, 30) for k in range(20)]
+    gap = [(k, 2, 30.0, 0) for k in range(20) if k != 10]
+    log = log_of(late + at_once + gap)
+    assert sorted(map(len, tracks_of(log))) == [9, 10, 20, 20]
+    m = np.where(log.tracks == 1, 30.0, np.where(log.objects.scenes > 9, 8.0, 0.0))
+    pairs = [p for p in pairs_of(log, m, 5) if p.real.confirmed is not None]
+    assert [(p.name, p.ring, p.late("first"), p.late("confirmed")) for p in pairs] == [
+        ("car", 2, pytest.approx(0.3), pytest.approx(0.3))
+    ]
+
+
+def test_figures_of_many_tracks():
+    rows = [(k, t, 40.0, 9 * (k > 6)) for t in range(12) for k in range(30)]
+    log = log_of(rows)
+    m = np.where((log.objects.scenes > 7 + log.tracks % 3) & (log.tracks < 11), 9.0, 0.0)
+    cell = compared(pairs_of(log, m, 5))
+    assert (cell["tracks"], cell["both"]) == (12, 11)
+    assert cell["confirmed_s"][0] == pytest.approx(0.2) and cell["near"][0] == 1.0
+    assert cell["missed"][0] == pytest.approx(1 / 12, abs=1e-3) and cell["invented"][0] == 0.0
+
+
+def test_persistence_is_that_of_the_chain():
+    rng, p, r = np.random.default_rng(3), 0.4, 0.6
+    rows = []
+    for track in range(40):
+        hit = rng.random() < p
+        for k in range(100):
+            hit = rng.random() < (p + r * (1 - p) if hit else p * (1 - r))
+            rows.append((k, track, 40.0, 9 * hit))
+    found = persistence(log_of(rows), np.ones(len(rows)), 5)["car"]
+    assert found["correlation"] == pytest.approx(r, abs=0.06)
+
+
+def test_verdicts_follow_the_interval():
+    assert verdict([0.0, -0.1, 0.1], -0.5, 0.5) == HOLDS
+    assert verdict([0.9, 0.6, 1.1], -0.5, 0.5) == REFUTED
+    assert verdict([0.4, 0.2, 0.6], -0.5, 0.5) == verdict(None, -0.5, 0.5) == OPEN
+
+
+def test_the_page_is_that_of_the_saved_figures():
+    found = json.loads((FOLDER / "results.json").read_text())
+    values = {"found": found, "rows": study.rows(found), "goals": study.goals(found)}
+    assert (FOLDER / PAGE).read_text() == render(Path(study.__file__).parent, values)
+    linked = [
+        own["correlation"]
+        for by_n in found["persistence"].values()
+        for name, own in by_n["5"].items()
+        if name in ("car", "pedestrian")
+    ]
+    assert min(linked) > 0.65 and max(linked) < 0.85  # the default of [time] correlation

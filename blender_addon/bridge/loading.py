@@ -93,6 +93,7 @@ def record_of_study(study: pe.Study) -> SceneRecord:
         passthrough=study.passthrough,
         requirements=study.requirements,
         conditions=study.conditions,
+        time=studies.InTime(study.frames, study.confirmation, study.stories),
     )
 
 
@@ -223,6 +224,7 @@ def _write_settings(settings: PropertyGroup, record: SceneRecord) -> None:
             write_values(row, curve)
     write_reference(settings, record.reference)
     write_passthrough(settings, record.passthrough)
+    settings.time_text = studies.time_text(record.time)
 
 
 def _write_mounts(scene: Scene, mounts: Mapping[str, search.AnyMount]) -> None:

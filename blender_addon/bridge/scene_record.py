@@ -70,6 +70,7 @@ class SceneRecord:
     passthrough: exchange.Passthrough | None
     requirements: tuple[Requirement, ...]
     conditions: pe.Conditions
+    time: studies.InTime
 
 
 def study_from_scene(
@@ -154,6 +155,7 @@ def record_of_scene(
         passthrough=studies.passthrough_of_text(settings.passthrough, "scene"),
         requirements=requirements_of(settings),
         conditions=conditions_of(settings),
+        time=studies.time_of_text(settings.time_text, "scene"),
     )
 
 
@@ -188,6 +190,7 @@ def study_of(record: SceneRecord) -> pe.Study:
         targets=record.targets,
         requirements=record.requirements,
         conditions=record.conditions,
+        **record.time._asdict(),
     )
 
 

@@ -126,6 +126,8 @@ class PE_SceneSettings(StudyFields, ResultFields, CheckFields, FrontFields, Prop
         options={"HIDDEN"},
     )
 
+    time_text: text("Time", "Frames, tracks and stories of the study, as JSON", options={"HIDDEN"})
+
     axles_known: switch(
         "Axles",
         "Set the positions of the axles: the rear axle is the origin of Autoware, "

@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..base.setting import changed_settings, read_settings, settings_of
-from ..base.table_reader import Table
+from ..base.table_reader import Table, dump_json, parse_json
 from ..base.values import degrees_in_file
 from ..metric.frames import Frames
 from ..motion import Actor, Confirmation, Story, read_story, stories
 from ..scoring.requirements.bodies import BODIES
 
 BY_NAME = ("noises", "rates")
+
+
+class InTime(NamedTuple):
+    """The fields of a study that these tables hold."""
+
+    frames: Frames = Frames()
+    confirmation: Confirmation = Confirmation()
+    stories: tuple[Story, ...] = ()
 
 
 def read_time(table: Table) -> tuple[Frames, Confirmation]:
@@ -29,6 +37,24 @@ def time_table(frames: Frames, confirmation: Confirmation) -> dict[str, Any]:
     """Return the table [time] without what has its default."""
     mappings = {key: dict(getattr(frames, key)) for key in BY_NAME if getattr(frames, key)}
     return changed_settings(frames) | changed_settings(confirmation) | mappings
+
+
+def time_text(time: InTime) -> str:
+    """Return both tables as JSON text, as a scene keeps them; empty for the defaults."""
+    table = {
+        "time": time_table(time.frames, time.confirmation) or None,
+        "story": [story_table(each) for each in time.stories] or None,
+    }
+    kept = {key: value for key, value in table.items() if value is not None}
+    return dump_json(kept) if kept else ""
+
+
+def time_of_text(text: str, source: str) -> InTime:
+    """Read the text of `time_text`, or raise `InputError`."""
+    table = Table(parse_json(source, text, infinite=True) if text else {}, source)
+    time = InTime(*read_time(table.table("time")), read_stories(table.tables("story")))
+    table.finish()
+    return time
 
 
 def read_stories(tables: Sequence[Table]) -> tuple[Story, ...]:

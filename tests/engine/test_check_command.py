@@ -64,7 +64,7 @@ def test_the_exit_status_says_whether_all_are_met(study, capsys):
     assert found["met"] == 1 and found["requirements"][1]["margin_m"] < 0.0
     study.write_text(STUDY.split("[[requirement]]")[0])
     assert main(["check", str(study)]) == 1
-    assert "[[requirement]] in the study" in capsys.readouterr().err
+    assert "check: requirements: expected" in capsys.readouterr().err
 
 
 @pytest.mark.usefixtures("heeded_signals")

@@ -2,9 +2,7 @@
 
 import dataclasses
 import json
-import math
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -31,28 +29,6 @@ SENSORS = {
     "roof": pe.SensorScore(4.0, 0.8, 0.42, 1000, 75, {"hood": 15, "roof": 60}),
     "spare": pe.SensorScore(9.0, 0.1, 0.0, 0, 0, {}),
 }
-
-
-def test_a_score_in_words():
-    zones = {"front": part(1.234, 0.98), "rear": part(5.0, 0.62), "far": part(9.5, 0.4)}
-    assert advice.words(score(zones=zones, sensors=SENSORS)) == (
-        "85% of where objects are is seen",
-        "best ahead (1.23 nats, 98% seen), worst beyond 40 m (9.50 nats, 40% seen)",
-        "roof: without it 0.42 nats worse",
-        "  7.5% of its beams occluded: roof 6.0%, hood 1.5%",
-        "spare: without it no worse",
-    )
-
-
-def test_a_sensor_in_phrases():
-    zones = {"front": 0.61, "rear": 0.02, "far": 0.3}
-    assert advice.sensor_words(SENSORS["roof"], zones=zones) == (
-        "without it 0.42 nats worse",
-        "sees most ahead (61%), least behind (2.0%)",
-        "7.5% of its beams occluded: roof 6.0%, hood 1.5%",
-    )
-    blind = dict.fromkeys(zones, 0.0)
-    assert advice.sensor_words(SENSORS["spare"], zones=blind, alone=True) == ("the only sensor",)
 
 
 def test_the_table_has_a_row_a_sensor():
@@ -83,23 +59,6 @@ def test_a_loss_is_reported_where_it_costs_most():
     assert losses["front"] > losses["rear"] == 0.0 and rows["camera"].zone_loss >= losses["front"]
     both = losses["near"], losses["mid"], losses.get("far", 0.0)
     assert min(both) <= rows["camera"].loss <= max(both)  # a mean over the rings, which cover all
-
-
-@pytest.mark.parametrize(
-    ("by_part", "text"),
-    [
-        ({"roof": 250}, "25% of its beams occluded by roof"),
-        ({"roof": 245, "mirror": 5}, "25% of its beams occluded by roof"),  # 2 % of them: not named
-        (
-            {"a": 50, "b": 50, "c": 40, "d": 30},
-            "17% of its beams occluded: a 5.0%, b 5.0%, c 4.0%, ...",
-        ),
-        ({}, ""),
-    ],
-)
-def test_what_stops_a_sensor(by_part, text):
-    own = pe.SensorScore(4.0, 0.8, 0.1, 1000, sum(by_part.values()), by_part)
-    assert advice.occluded_words(None, own) == text
 
 
 def test_pixels_are_looked_for_where_no_score_counts_them():
@@ -172,20 +131,6 @@ CONE = replace(CAR, ap=0.2, points={}, reach=dict.fromkeys(SECTORS, 0.0))
 def scored(ap=0.33, traffic=True, **classes):
     found = pe.ObjectScore(ap, 0.004, 80, 8, traffic, {"car": CAR, "cone": CONE} | classes)
     return pe.Score(3.0, 0.5, 0.1, {}, {}, {}, 0, objects=found)
-
-
-def test_words_of_a_score_on_objects():
-    assert advice.words(scored()) == (
-        "50% of the objects are seen, by weight (80 objects in 8 scenes, in traffic)",
-        "expected AP 0.33 +- 0.004: car 0.45, cone 0.20",
-        "car: 100%, 90%, 50% get 1, 5, 20 points or more; "
-        "found alone (AP 0.5) up to 26 m ahead, 12 m left; not behind, right",
-        "cone: found alone (AP 0.5) nowhere ahead, behind, left or right",
-    )
-    far = replace(CAR, reach=REACH | {"front": 80.0})
-    assert "up to 80 m and more ahead, 12 m left" in advice.words(scored(car=far))[2]
-    assert [advice.lone_reach(m) for m in (0.2, 25.6, 80.0)] == ["nowhere", "26 m", "≥ 80 m"]
-    assert "80 objects, none occludes another" in advice.words(scored(traffic=False))[0]
 
 
 def test_a_score_comes_back_from_its_data():
@@ -301,27 +246,6 @@ def test_they_are_those_of_sight(study):
     assert found.sectors == look.blind_sectors(study.rig)
     assert advice.key_figures(look, study.rig).class_name == "pedestrian"
     assert advice.KeyFigures.from_dict(json.loads(json.dumps(found.to_dict()))) == found
-
-
-def test_straight_ahead(study):
-    look = study.sight()
-    sight = SimpleNamespace(
-        prior=look.prior,
-        space=look.space,
-        targets=look.targets,
-        blind=look.blind,
-        in_traffic=look.in_traffic,
-        blind_sectors=look.blind_sectors,
-    )
-    for distance, limit, at_least in ((43.2, 80.0, False), (79.6, 80.0, True), (0.0, 0.0, False)):
-        reach = SimpleNamespace(
-            bearings=np.radians([0.0, 180.0]),
-            distance=np.array([distance, 9.0]),
-            limit=np.array([limit, math.inf]),
-        )
-        sight.reach = lambda *_, reach=reach: reach
-        figures = advice.key_figures(sight, study.rig)
-        assert (figures.reach_m, figures.at_least) == (distance, at_least)
 
 
 def in_traffic(near):

@@ -60,7 +60,7 @@ screenshots: .venv/dev.stamp  ## make docs/images in a real window; ARGS="guide"
 
 # The library of the detectors takes 1.6 GB: CI alone has it, and else who asks for it.
 .venv/dev.stamp: .venv/run.stamp
-	@tools/make_venv.sh blender,test,meshes,rerun,argoverse,docs,dev$(if $(CI),$(comma)studies) $@
+	@tools/make_venv.sh blender,test,meshes,argoverse,docs,dev$(if $(CI),$(comma)studies) $@
 
 .venv/docs.stamp: .venv/run.stamp
 	@tools/make_venv.sh blender,docs,notebook $@

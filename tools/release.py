@@ -37,7 +37,7 @@ BPY_VERSIONS = ("4.2", "4.5")
 """Versions of Blender as a Python module that `--install` gets: the LTS versions of Python 3.11."""
 DEBIAN_SUITES = ("trixie", "sid")
 """Suites of Debian whose Blenders `--install` gets: 4.3 and 5.x."""
-EXTRAS = ("notebook", "parquet", "completion", "cluster", "rerun", "argoverse", "meshes")
+EXTRAS = ("notebook", "cluster", "argoverse", "meshes")
 """Extras of users, each of which is installed into an empty environment of its own."""
 EXAMPLE = ROOT / "examples" / "robotaxi_sedan" / "1_roof.toml"
 PAGE = ROOT / "tools" / "repository_page.html"

@@ -78,20 +78,13 @@ def _condition_lines(table: studies.ConditionTable | None) -> list[str]:
 def store_text(
     scene: Scene, study: pe.Study, score: pe.Score, seen: advice.Outlook | None = None
 ) -> None:
-    """Store a result's sentences: on the rig, and on each of its sensors."""
+    """Store a result's sentences on the rig, and the figures of each of its sensors."""
     settings, sensors = scene.perception_entropy, {}
     for row in advice.sensor_rows(score, study.rig, study.vehicle, seen):
-        zones = None if seen is None or score.objects else seen.shares.zones[row.name]
-        sensor_score, sensor = score.per_sensor[row.name], study.rig[row.name]
-        words = advice.sensor_words(
-            sensor_score, sensor, study.vehicle, zones, alone=row.loss is None
-        )
         _, loss, where, _ = row.cells
         parts = tuple(row.occluded_by.items())[:PARTS_NAMED]
         figures = settings.result_sensors[row.name]
-        sensors[row.name] = figures._replace(
-            parts=parts, loss=loss, where=where, words=tuple(words)
-        )
+        sensors[row.name] = figures._replace(parts=parts, loss=loss, where=where)
     settings.result_sensors = {**settings.result_sensors, **sensors}
     settings.result_words = "\n".join(advice.rig_words(score, seen, study.rig))
 

@@ -46,7 +46,6 @@ class SensorFigures(NamedTuple):
     parts: tuple[tuple[str, float], ...] = ()
     loss: str = ""
     where: str = ""
-    words: tuple[str, ...] = ()
 
 
 class StoredWarning(NamedTuple):
@@ -66,12 +65,10 @@ class StoredWarning(NamedTuple):
 
 
 class FrontRow(NamedTuple):
-    """A design of a Pareto front: its price, entropy [nats], objectives, and its variant's key."""
+    """A design of a Pareto front: its name, its variant's key, and its figures."""
 
     name: str
     key: int
-    price: float
-    entropy: float
     figures: str
 
 

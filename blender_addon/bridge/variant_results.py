@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -162,16 +161,9 @@ def store_front(scene: Scene, trade_off: jobs.TradeOff, surroundings: str) -> No
         variant.note = variant.note or _note(design, settings.currency)
         met = f" ({design.met_text})" if design.met_text else ""
         figures = ", ".join(f"{n} {v:.4g}" for n, v in design.figures.items())
-        entropy = 0.0 if math.isnan(design.entropy) else design.entropy
-        named = f"{design.name}{met}", variant.key, design.price, entropy
-        rows.append(FrontRow(*named, figures.replace("_", " ")))
-    count = len(trade_off.designs) + len(trade_off.refused)
-    more = "all there are" if trade_off.is_complete else "of more"
+        rows.append(FrontRow(f"{design.name}{met}", variant.key, figures.replace("_", " ")))
     note = f"; {trade_off.requirements_note}" if trade_off.requirements_note else ""
-    names = ", ".join(trade_off.objectives).replace("_", " ")
-    looked = f"Pareto front of {names}" if names else ""
-    told = f"{trade_off.searched} searched of {count} looked at, {more}"
-    front = StoredFront(tuple(rows), f"{looked or told}{note}", trade_off.hardware_note)
+    front = StoredFront(tuple(rows), f"{trade_off.told}{note}", trade_off.hardware_note)
     store(settings, "front_shown", front)
     mark_active(scene, before)
 

@@ -207,7 +207,7 @@ def sentences(names: list[str], rows: tuple[advice.ComparedRow, ...], letters: i
     """Return sentences on the best variant by row, wrapped into lines of `letters` letters."""
     scored = [row for row in rows if row.factor and row.group != advice.TRAFFIC]
     apart = advice.disagreement(names, rows)
-    lines = (apart, *advice.ranking(names, scored), *advice.win_words(names, scored))
+    lines = (apart, *advice.ranking(names, scored))
     return [line for sentence in lines if sentence for line in wrap(sentence, letters)]
 
 

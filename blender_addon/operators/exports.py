@@ -178,9 +178,9 @@ def export_scene(
     return run(own_jobs.scene_job(study, row.name, path, range_m or None, replace), asked_in_window)
 
 
-@operator("Render Review", unless=_unless_running, **dialog(".png"))
+@operator("Render Review", unless=_unless_running, **dialog(".svg"))
 def render_review(context: bpy.types.Context, filepath: str, asked_in_window: bool) -> Answer:
-    """Score the present sensors and write a picture of the rig (.png)"""
+    """Score the present sensors and write a picture of the rig (.svg)"""
     path = chosen_file(filepath)
     study = bridge.study_as_drawn(context.scene)
     jobs.prepare_folder(path.parent)  # fail before the work, not after

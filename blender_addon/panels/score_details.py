@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import bpy
-from bpy.types import Context, Object, PropertyGroup, UILayout
+from bpy.types import Context, PropertyGroup, UILayout
 
 from ..choices import BEFORE_MOVE, PINNED
 from ..language import draw_label, shown
 from ..operators import answer, live_lines, reference_label, sense_of, text_of
-from ..properties import figures_of_sensor
 from .layout import BUTTON_PX, columns, draw_sentence, draw_stale_mark, panel
 from .sensor_lists import draw_sensor_table
 
@@ -49,7 +48,7 @@ def live(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
 @panel("Explain", closed=False)
 def explain(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """The score in words, and the answer of a location query"""
-    settings, obj = context.scene.perception_entropy, context.active_object
+    settings = context.scene.perception_entropy
     layout.operator("pe.ask_place", icon="EYEDROPPER")
     draw_answer(layout, context)
     if settings.has_result and settings.result_words:
@@ -66,20 +65,6 @@ def explain(layout: UILayout, settings: PropertyGroup, context: Context) -> None
             draw_sentence(lines, context, text[:1].upper() + text[1:], icon="DOT")
     if settings.has_result:
         draw_sensor_table(layout, context)
-    if obj is not None and obj.perception_entropy.is_sensor:
-        draw_sensor_text(layout, context, obj)
-
-
-def draw_sensor_text(layout: UILayout, context: Context, obj: Object) -> None:
-    """Draw sentences on one sensor of the last result."""
-    figures = figures_of_sensor(obj)
-    if figures is None:
-        return
-    box = layout.box().column(align=True)
-    box.label(text=obj.name, icon="EMPTY_DATA", translate=False)
-    alone = f"sees {figures.coverage:.1%} of where objects are"
-    for line in (alone, *figures.words):
-        draw_sentence(box, context, line[:1].upper() + line[1:], icon="DOT")
 
 
 def draw_answer(layout: UILayout, context: Context) -> None:

@@ -104,7 +104,7 @@ def goals(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     draw_declared(layout, settings, "goals", KEPT)
     draw_declared(layout, settings, "optimize.front")
     layout.operator("pe.choose_sensors", text="Find Front", icon="FCURVE")
-    if settings.front and settings.front[0].figures:
+    if settings.front:
         draw_front(layout, settings, context)
 
 

@@ -122,48 +122,17 @@ def draw_options(layout: UILayout, obj: Object) -> None:
 
 
 def draw_front(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
-    """Draw the Pareto front: price, entropy and name, with a button for each design's variant."""
+    """Draw the Pareto front: two lines a design, its variant and its figures."""
     column = layout.box().column(align=True)
     if settings.front_note:
         draw_sentence(column, context, settings.front_note, icon="INFO")
-    if settings.front[0].figures:
-        draw_front_of_objectives(column, settings, context)
-        return
-    _draw_design(column.row(), "BLANK1", (settings.currency or "Price", "Entropy", "Design"))
-    for row in settings.front:
-        icon = "RADIOBUT_ON" if row.key == settings.variant_key else "RADIOBUT_OFF"
-        line = column.row()
-        figures = (f"{row.price:,.7g}", f"{row.entropy:.2f}", row.name)
-        _draw_design(line, icon, figures, row.key)
-    draw_label(column, settings.front_told)
-
-
-def draw_front_of_objectives(column: UILayout, settings: PropertyGroup, context: Context) -> None:
-    """Draw a front of several objectives: two lines a design, its name and its figures."""
     for row in settings.front:
         icon = "RADIOBUT_ON" if row.key == settings.variant_key else "RADIOBUT_OFF"
         line = column.row()
         line.operator("pe.switch_variant", text="", icon=icon, emboss=False).key = row.key
         line.label(text=row.name, translate=False)
         draw_sentence(column, context, row.figures, icon="BLANK1")
-    draw_label(column, settings.front_told)
-
-
-def _draw_design(
-    line: UILayout, icon: str, texts: tuple[str, str, str], key: int | None = None
-) -> None:
-    """Draw a line of the table: a button that switches to the variant, if there is one."""
-    if key is None:
-        line.label(text="", icon=icon)
-        line.active = False
-    else:
-        line.operator("pe.switch_variant", text="", icon=icon, emboss=False).key = key
-    figures, name = columns(line, 0.5)
-    for text in texts[:2]:
-        cell = figures.row()
-        cell.alignment = "RIGHT"
-        draw_label(cell, text)
-    draw_label(name, texts[2])
+    draw_sentence(column, context, settings.front_told)
 
 
 CLASSES = (PE_MT_known_rigs, variants_rows, variants, selection)

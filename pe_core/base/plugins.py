@@ -28,22 +28,18 @@ SHIPPED = {
     "mesh.usda": "pe_tools.formats.meshes.usd:read_usd",
     "mesh.usdc": "pe_tools.formats.meshes.usd:read_usd",
     "mesh.usdz": "pe_tools.formats.meshes.usd:read_usd",
-    "library.picture": "pe_tools.page.pictures.picture_file:picture_output",
-    "library.rerun": "pe_tools.outputs.recording:write",
+    "library.picture": "pe_tools.page.pictures.vehicle_picture:picture_output",
     "verb.review": "pe_tools.page:add_verbs",
 }
 """Plugins of this distribution: module and attribute, by the plugin's name."""
 EXTRAS = {
     "mesh": "meshes",
-    "library.rerun": "rerun",
     "pyarrow.feather": "argoverse",
     "matplotlib": "notebook",
     "pandas": "notebook",
     "pyarrow": "argoverse",
-    "pyarrow.parquet": "parquet",
     "tqdm.auto": "notebook",
     "distributed": "cluster",
-    "shtab": "completion",
 }
 """The extra that installs what a plugin, or a sort of plugins, or a verb needs."""
 

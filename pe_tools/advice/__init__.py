@@ -12,15 +12,7 @@ from .key_figures import KeyFigures, SensorRow, key_figures, loss_text, sensor_r
 from .location import AskedPlace, SensorAtPlace, ask_place
 from .mount_checks import check_mirror_image, occluded_shares
 from .mounting_places import place_name, plain_name, sensor_labels
-from .ranking import (
-    Notation,
-    costs_nothing,
-    disagreement,
-    gain_sentence,
-    ranking,
-    search_cost,
-    win_words,
-)
+from .ranking import costs_nothing, disagreement, gain_sentence, ranking, search_cost
 from .score_comparison import (
     OTHER_HARDWARE,
     TRAFFIC,
@@ -30,7 +22,7 @@ from .score_comparison import (
     hardware_note,
 )
 from .summary import Outlook, class_of, lone_reach, object_words, objects_looked_at, outlook
-from .summary_text import WHERE, occluded_words, rig_words, sensor_words, words
+from .summary_text import WHERE, rig_words
 from .warnings import (
     condition_warnings,
     curve_note,
@@ -41,12 +33,12 @@ from .warnings import (
 )
 
 __all__ = ["BLIND_TO_M", "FRAGILE", "OTHER_HARDWARE", "PROVISIONAL", "UNMET", "WHERE", "Advice"]
-__all__ += ["AskedPlace", "ComparedRow", "KeyFigures", "Notation", "Outlook", "SensorAtPlace"]
+__all__ += ["AskedPlace", "ComparedRow", "KeyFigures", "Outlook", "SensorAtPlace"]
 __all__ += ["SensorRow", "ask_place", "check_mirror_image", "class_of", "compare"]
 __all__ += ["compare_figures", "condition_warnings", "costs_nothing", "curve_note"]
 __all__ += ["curve_warnings", "fragile", "hardware_note", "hidden_sensors", "hidden_words"]
 __all__ += ["joined", "key_figures", "lone_reach", "loss_text", "object_words", "objects_looked_at"]
-__all__ += ["occluded_shares", "occluded_words", "off_by", "outlook", "percent", "place_name"]
+__all__ += ["occluded_shares", "off_by", "outlook", "percent", "place_name"]
 __all__ += [
     "TRAFFIC",
     "disagreement",
@@ -58,4 +50,4 @@ __all__ += [
     "sensor_labels",
     "sensor_rows",
 ]
-__all__ += ["sensor_table", "sensor_words", "unmet", "warnings", "win_words", "words"]
+__all__ += ["sensor_table", "unmet", "warnings"]

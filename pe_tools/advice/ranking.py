@@ -1,12 +1,9 @@
-"""Several rigs in sentences: which is better overall, by zone and class, and what a search cost."""
+"""Several rigs in sentences: which is better, and what a search cost."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from itertools import combinations
-from typing import NamedTuple
+from collections.abc import Sequence
 
 from pe_core.scene.rig import Rig
 from pe_core.scoring.score import Score
@@ -17,150 +14,45 @@ from .location import WAYS
 from .score_comparison import AP, BLIND, COVERAGE, ENTROPY, MIN_CHANGE, SECTOR, TRAFFIC, ComparedRow
 from .summary_text import WHERE
 
-MAX_PAIRS = 3
-"""Up to this number, pairs that are alike behind the best are named; of more, only the number."""
 ZONES_NAMED = 2
 SENSORS_NAMED = 3
 NOTHING = "It cost nothing"
 
 
-class _Measure(NamedTuple):
-    """How a measure is called, its units after a value and after a difference, its decimals."""
-
-    noun: str
-    unit: str
-    unit_of_gap: str
-    digits: int
-    wins: str
-
-
 RANKED = {
-    ENTROPY: _Measure("entropy", " nats", " nats", 2, "is better by entropy"),
-    COVERAGE: _Measure("coverage", "", " points", 1, "sees more"),
-    AP: _Measure("expected AP", "", "", 3, "has the highest expected AP"),
+    ENTROPY: ("entropy", 1.0, 2, " nats", " nats"),
+    COVERAGE: ("coverage", 100.0, 1, "%", " points"),
+    AP: ("expected AP", 1.0, 3, "", ""),
 }
+"""Measures that rank rigs: name, factor, decimals, units after a value and after a difference."""
 
 
-@dataclass(frozen=True, slots=True)
-class Notation:
-    """How the sentences write figures.
+def ranking(names: Sequence[str], rows: Sequence[ComparedRow]) -> tuple[str, ...]:
+    """Return a sentence for each measure: the best of several rigs, and how much worse others are.
 
-    `number` formats a number with a number of decimals, `share` a share, 0 to 1, in percent;
-    `plus_minus` is the sign before a standard error.
+    `names` are those of the rigs in the order of the values of `rows`, the result of `compare`.
     """
-
-    number: Callable[[float, int], str] = lambda value, digits: f"{value:.{digits}f}"
-    share: Callable[[float], str] = lambda share: f"{100.0 * share:.1f}%"
-    plus_minus: str = "+-"
-
-
-PLAIN = Notation()
-
-
-def ranking(
-    names: Sequence[str], rows: Sequence[ComparedRow], notation: Notation = PLAIN
-) -> tuple[str, ...]:
-    """Describe which of several rigs is better overall: by entropy, by coverage, by AP.
-
-    `names` are those of the rigs in the order of the values of `rows`, the result of `compare`. The
-    result is a paragraph for each measure; none for fewer than two rigs.
-    """
-    whole = {row.measure: row for row in rows if row.group == "rig"}
-    if len(names) < 2:
-        return ()
     return tuple(
-        " ".join(_RankingSentences(names, whole[m], notation).sentences())
-        for m in RANKED
-        if m in whole
+        _ranked(names, row)
+        for row in rows
+        if row.group == "rig" and row.measure in RANKED and len(row.order) > 1
     )
 
 
-def win_words(names: Sequence[str], rows: Sequence[ComparedRow]) -> tuple[str, ...]:
-    """Return a sentence for each rig and measure with a zone or class in which the rig is the best.
-
-    Only significant differences count. The parameters are those of `ranking`.
-    """
-    if len(names) < 2:
-        return ()
-    return tuple(
-        f"{name} {words.wins} {where}."
-        for k, name in enumerate(names)
-        for measure, words in RANKED.items()
-        if (where := _where(rows, measure, k))
-    )
-
-
-def _where(rows: Sequence[ComparedRow], measure: str, k: int) -> str:
-    """Return the zones and classes in which rig `k` wins: "ahead and behind; for car and truck"."""
-    texts = []
-    for group, all_text in (("zone", "in every zone"), ("class", "for every class")):
-        rows_of_group = [row for row in rows if (row.group, row.measure) == (group, measure)]
-        won = [WHERE.get(row.name, row.name) for row in rows_of_group if row.winner == k]
-        if won and len(won) == len(rows_of_group) > 1:
-            texts.append(all_text)
-        elif won:
-            texts.append(f"{'for ' if group == 'class' else ''}{joined(won)}")
-    return "; ".join(texts)
-
-
-class _RankingSentences:
-    """The sentences about one figure of several rigs."""
-
-    def __init__(self, names: Sequence[str], row: ComparedRow, notation: Notation) -> None:
-        self._names, self._row, self._notation = names, row, notation
-        self._words, self._in_percent = RANKED[row.measure], row.measure == COVERAGE
-
-    def sentences(self) -> Iterator[str]:
-        """Yield the best rigs, how much worse the others are, and the pairs that are alike."""
-        names, row, order = self._names, self._row, self._row.order
-        if len(order) < 2:
-            return
-        best = [k for k in order if not row.differ(order[0], k)]
-        rest = [k for k in order if k not in best]
-        yield f"Overall {self._leaders(best, bool(rest))}."
-        for i, j in combinations(best, 2):
-            if row.differ(i, j):
-                yield f"{names[j]} is worse than {names[i]}, by {self._gap(i, j)}."
-        if rest:
-            gaps = [f"{names[k]} by {self._gap(best[0], k)}" for k in rest]
-            than = f" than {names[best[0]]}" if len(best) > 1 else ""
-            yield f"Worse{than}: {joined(gaps)}."
-        alike = [(i, j) for i, j in combinations(order, 2) if j in rest and not row.differ(i, j)]
-        if len(alike) > MAX_PAIRS:
-            yield f"{len(alike)} other pairs are alike."
-        elif alike:
-            pairs = "; ".join(f"{names[i]} and {names[j]}" for i, j in alike)
-            yield f"Alike are also {pairs}."
-
-    def _leaders(self, best: Sequence[int], has_rest: bool) -> str:
-        row, leaders, words = self._row, [self._names[k] for k in best], self._words
-        values = [value for k in best if (value := row.values[k]) is not None]
-        share, number = self._notation.share, self._notation.number
-        texts = [share(v) if self._in_percent else number(v, words.digits) for v in values]
-        figures = f"{joined(texts)}{words.unit}"
-        better = f"{'lower' if row.lower_is_better else 'higher'} is better"
-        if len(leaders) == 1:
-            return f"{leaders[0]} is best by {words.noun}: {figures}, {better}"
-        also = ", and better than the others" if has_rest else ""
-        if error := max(row.errors[i][j] for i in best for j in best):
-            subject = "the difference" if len(best) == 2 else "a difference at most"
-            shown = f"{self._difference(error)}{words.unit_of_gap}"
-            better = f"{better}; standard error of {subject} {shown}"
-        return f"{joined(leaders)} are alike by {words.noun}{also}: {figures}, {better}"
-
-    def _gap(self, one: int, other: int) -> str:
-        a, b = self._row.values[one], self._row.values[other]
-        assert a is not None and b is not None
-        error = self._row.errors[one][other]
-        error_text = f" {self._notation.plus_minus} {self._difference(error)}" if error else ""
-        return f"{self._difference(abs(a - b))}{error_text}{self._words.unit_of_gap}"
-
-    def _difference(self, value: float) -> str:
-        """Format a difference or an error, of shares in percentage points. A value that would be
-        shown as 0 is rounded up to the last digit."""
-        digits = self._words.digits
-        shown = 100.0 * value if self._in_percent else value
-        return self._notation.number(max(shown, 10.0**-digits) if shown else 0.0, digits)
+def _ranked(names: Sequence[str], row: ComparedRow) -> str:
+    noun, factor, digits, unit, unit_of_gap = RANKED[row.measure]
+    values = {k: factor * value for k, value in enumerate(row.values) if value is not None}
+    first = row.order[0]
+    best = [k for k in row.order if not row.differ(first, k)]
+    worse = []
+    for k in (k for k in row.order if k not in best):
+        error = factor * row.errors[first][k]
+        plus_minus = f" +- {max(error, 10.0**-digits):.{digits}f}" if error else ""
+        worse.append(f"{names[k]} by {abs(values[k] - values[first]):.{digits}f}{plus_minus}")
+    better = f"{'lower' if row.lower_is_better else 'higher'} is better"
+    shown = joined([f"{names[k]} ({values[k]:.{digits}f}{unit})" for k in best])
+    told = f"By {noun} {shown} {'is best' if len(best) == 1 else 'are alike'}; {better}."
+    return f"{told} Worse: {joined(worse)}{unit_of_gap}." if worse else told
 
 
 def disagreement(names: Sequence[str], rows: Sequence[ComparedRow]) -> str:

@@ -13,41 +13,25 @@ from typing import Any
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
-from pe_core.search.goals import OBJECTIVES
+from pe_core.search.goals import AP, ENTROPY, OBJECTIVES, PRICE
 from pe_core.study import mounts_table
 
 from .. import jobs
 from .executors import evaluated_by
 from .interrupts import Interrupted, stop_at_first
 from .progress_line import Reporter
-from .run_job import tell_boxes, write_somewhere
+from .run_job import tell_boxes, written
 from .terminal import BAD_INPUT, DONE, Answer, tell
 
 
 def front_summary(chosen: jobs.TradeOff) -> str:
-    """Return the front as a table, with the pose of each sensor: price, entropy, coverage; or the
-    figures of several objectives."""
-    if not chosen.objectives:
-        unit = chosen.study.selection.currency
-        heads = [f"price [{unit}]" if unit else "price", "entropy", "coverage"]
-        rows = [_figures(design) for design in chosen.front]
-        return "\n".join([*_table(chosen, heads, rows, 6), "", *search_notes(chosen)])
+    """Return the front as a table: the objectives of each design, and the pose of each sensor."""
     named = [name for name in chosen.objectives if all(name in d.figures for d in chosen.front)]
     named += [name for d in chosen.front[:1] for name in d.figures if name not in named]
-    labels = [OBJECTIVES[name] for name in named]
-    heads = [f"{label} [{unit}]" if unit else label for label, unit in labels]
-    rows = [[f"{d.figures[name]:,.4g}" for name in named] for d in chosen.front]
-    lines = _table(chosen, heads, rows, 2)
-    if not chosen.study.search.goals.front.objectives:  # of choices, by expected AP
-        return "\n".join([*lines, "", *search_notes(chosen)])
-    count = f"{len(chosen.front)} on the front of {', '.join(label for label, _ in labels)}"
-    return "\n".join([*lines, "", count, *_more_notes(chosen)])
-
-
-def _table(
-    chosen: jobs.TradeOff, heads: Sequence[str], rows: Sequence[Sequence[str]], margin: int
-) -> list[str]:
-    """Return figures of the front right-aligned, each before its design and its sensors' poses."""
+    units = {name: OBJECTIVES[name][1] for name in named}
+    units[PRICE] = chosen.study.selection.currency
+    heads = [f"{OBJECTIVES[n][0]} [{units[n]}]" if units[n] else OBJECTIVES[n][0] for n in named]
+    rows = [[_figure(design, name) for name in named] for design in chosen.front]
     widths = [max(map(len, column)) for column in zip(heads, *rows, strict=True)]
 
     def line(cells: Sequence[str], name: str) -> str:
@@ -57,24 +41,15 @@ def _table(
     lines = [line(heads, "design")]
     for row, design in zip(rows, chosen.front, strict=True):
         met = f" ({design.met_text})" if design.met_text else ""
-        lines += [line(row, f"{design.name}{met}"), *_placed(design, " " * (sum(widths) + margin))]
-    return lines
+        lines += [line(row, f"{design.name}{met}"), *_placed(design, " " * (sum(widths) + 2))]
+    return "\n".join([*lines, "", *search_notes(chosen)])
 
 
 def search_notes(chosen: jobs.TradeOff) -> Iterator[str]:
-    """Yield sentences about the search: numbers of designs, early stop, infeasible designs."""
-    count, searched = len(chosen.designs) + len(chosen.refused), chosen.searched
-    more = "of more" if chosen.stopped else "of more, by local search"
-    every = "all that the limits allow" if chosen.is_complete else more
-    yield f"{len(chosen.front)} on the front; {searched} searched of {count} looked at ({every})"
-    if not searched:
-        figures = "figures" if chosen.objectives else "entropies"
-        yield f"none was searched in full: {figures} are those of a first look"
-    yield from _more_notes(chosen)
-
-
-def _more_notes(chosen: jobs.TradeOff) -> Iterator[str]:
-    """Yield what the designs make of requirements, an early stop, and infeasible designs."""
+    """Yield sentences about the search: numbers of designs, requirements, infeasible designs."""
+    yield chosen.told
+    if not chosen.searched:
+        yield "none was searched in full: figures are those of a first look"
     if chosen.requirements_note:
         yield chosen.requirements_note
     yield from chosen.notes
@@ -84,10 +59,13 @@ def _more_notes(chosen: jobs.TradeOff) -> Iterator[str]:
         yield f"no place for {name}: {why}"
 
 
-def _figures(design: jobs.Design) -> list[str]:
-    coverage = "-" if design.score is None else f"{design.score.coverage:.1%}"
-    entropy = "infeasible" if design.is_led_in else f"{design.entropy:.4f}"
-    return [f"{design.price:,.10g}", entropy, coverage]
+def _figure(design: jobs.Design, name: str) -> str:
+    value = design.figures[name]
+    if name == PRICE:
+        return f"{value:,.10g}"
+    if design.is_led_in:
+        return "infeasible"
+    return f"{value:.4f}" if name in (AP, ENTROPY) else f"{value:,.4g}"
 
 
 def _placed(design: jobs.Design, margin: str) -> Iterator[str]:
@@ -162,11 +140,7 @@ def choose(
             raise Interrupted(received.signum or signal.SIGINT, note)
         chosen, status, data = found, DONE, jobs.front_dict(found, host)
         if output is not None:
-            folder = write_somewhere(output, write)
-            told = "not in any file" if folder is None else f"in {folder}"
-            if folder != output:
-                status = BAD_INPUT
-                tell(f"the results are {told}")
+            status = DONE if written(write, output) else BAD_INPUT
         text = dump_json(data) if as_json else front_summary(chosen)
         return text, status or received.status(DONE)
 

@@ -40,8 +40,8 @@ KEEP, ANY = "keep", "any"
 """Values of `--blind-ground`: the study's key, or none."""
 STOPS = {"stop_at": "target", "stop_after": "seconds", "stop_gain": "gain"}
 """Fields of `Stop` by option."""
-FILES, FOLDERS = ("STUDY", "FILE", "MESH", "PATH", "TABLE"), ("DIR",)
-"""Metavars of arguments that are files, and of those that are folders."""
+PATHS = ("STUDY", "FILE", "MESH", "PATH", "TABLE", "DIR")
+"""Metavars of arguments that are files or folders."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -54,7 +54,7 @@ class Parser(argparse.ArgumentParser):
             if word.startswith("-"):
                 self.error(f"{word}: expected {one_of(self._option_string_actions, word)}")
         for action in self._actions:
-            if (where := action.metavar) in (*FILES, *FOLDERS):
+            if (where := action.metavar) in PATHS:
                 given = getattr(found, action.dest, None)
                 for path in [given] if isinstance(given, str) else given or ():
                     named_path("command line", "/".join(action.option_strings) or where, path)

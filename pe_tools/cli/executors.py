@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import asyncio
 import importlib
 import logging
 import os
 import re
 import sys
-from collections.abc import Iterator, Mapping
-from concurrent.futures import Executor, ThreadPoolExecutor
+from collections.abc import Iterator
+from concurrent.futures import Executor
 from contextlib import closing, contextmanager, suppress
 from typing import Any
 
@@ -156,36 +155,8 @@ def _client_of(address: str) -> Any:
         if name.partition(".")[0] == "distributed":
             logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
-        _require_scheduler(distributed, address)
         return distributed.Client(address, timeout=CONNECT_S, set_as_default=False)
     except Exception as error:  # an unknown name, a closed port, tls without certificates
         told = str(error).splitlines() or [type(error).__name__]
         expected = f"a scheduler that answers within {CONNECT_S:g} s"
         raise InputError(address, "scheduler", expected, told[0]) from None
-
-
-def _require_scheduler(distributed: Any, address: str) -> None:
-    """Raise an error unless a scheduler answers in time.
-
-    A client waits ten minutes for a peer that is none, without an ear for signals, and one that
-    failed to connect reports that once more when it is deleted. So it is made for a scheduler only.
-    """
-
-    async def kind_of_peer() -> str:
-        security = distributed.Security().get_connection_args("client")
-        comm = await distributed.comm.connect(address, timeout=CONNECT_S, **security)
-        try:
-            await comm.write({"op": "identity", "reply": True})
-            answer = await comm.read()
-        finally:
-            comm.abort()
-        return str(answer.get("type")) if isinstance(answer, Mapping) else ""
-
-    # A thread of its own: a notebook, or whatever calls this, may have a loop that runs already.
-    with ThreadPoolExecutor(1) as thread:
-        try:
-            kind = thread.submit(asyncio.run, asyncio.wait_for(kind_of_peer(), CONNECT_S)).result()
-        except TimeoutError as error:
-            raise TimeoutError(str(error) or "no answer") from None
-    if kind != "Scheduler":
-        raise ValueError(f"a {kind}" if kind.isidentifier() else "another program")

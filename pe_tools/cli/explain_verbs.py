@@ -104,14 +104,14 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
     seen = advice.outlook(study.sight(), study.rig, name)
     scored_rig = outcome.after, study.rig, study.vehicle, seen
     rows = advice.sensor_rows(*scored_rig)
+    of_rig = advice.rig_words(outcome.after, seen, study.rig, outcome.warnings)
     data = {
         "score": outcome.after.to_dict(),
         **seen.to_dict(),
         "sensors": [row.to_dict() for row in rows],
-        "words": list(advice.words(*scored_rig, outcome.warnings)),
+        "words": list(of_rig),
         "warnings": [each.to_dict() for each in outcome.warnings],
     }
-    of_rig = advice.rig_words(outcome.after, seen, study.rig, outcome.warnings)
     lines = *of_rig, *advice.sensor_table(rows)
     score = outcome.after
     what = "perception" if score.objects is None else "object"
@@ -137,7 +137,7 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
         "same_vehicle": alike,
     }
     names = list(scores)
-    said = [*advice.ranking(names, rows), *advice.win_words(names, rows)]
+    said = list(advice.ranking(names, rows))
     models = ([sensor.model for sensor in study.rig] for study in studies.values())
     curves = advice.curve_note(study.model for study in studies.values())
     data["notes"] = notes = [note for note in (advice.hardware_note(models), curves) if note]

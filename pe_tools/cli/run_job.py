@@ -1,14 +1,11 @@
-"""Run a job of a verb's options, and keep its results whatever happens: a fallback folder."""
+"""Run a job of a verb's options, and keep its results."""
 
 from __future__ import annotations
 
 import argparse
-import shutil
 import signal
 import sys
-import tempfile
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, TextIO
 
@@ -22,72 +19,15 @@ from .interrupts import Interrupted, stop_at_first
 from .progress_line import Reporter
 from .terminal import BAD_INPUT, DONE, Answer, one_line, printable, show, summary, tell
 
-PREFIX = "perception-entropy-"
-"""Prefix of the name of a fallback folder."""
 
-
-@contextmanager
-def fallback_folder() -> Iterator[Path]:
-    """Make a folder among the system's temporary files; it is removed again if it stays empty.
-
-    `InputError` where no folder can be made there.
-    """
+def written(write: Callable[[Path], object], folder: Path) -> bool:
+    """Write to a folder; return whether that worked. If not, what goes wrong is printed."""
     try:
-        folder = Path(tempfile.mkdtemp(prefix=PREFIX))
-    except OSError as error:
-        where = "folder for temporary files"
-        raise InputError("system", where, "a folder that can be written", error) from None
-    try:
-        yield folder
-    finally:
-        if not any(path.is_file() for path in folder.rglob("[!.]*")):
-            shutil.rmtree(folder, ignore_errors=True)
-
-
-@contextmanager
-def folder_or_fallback(folder: Path | None) -> Iterator[Path]:
-    """Yield the folder, or a `fallback_folder` for None."""
-    if folder is not None:
-        yield folder
-        return
-    with fallback_folder() as other:
-        yield other
-
-
-def write_somewhere(
-    output: Path,
-    write: Callable[[Path], object],
-    failed: Callable[[Path], None] = lambda _folder: None,
-) -> Path | None:
-    """Write to a folder; if that fails, to a fallback folder. Return which one it was.
-
-    What goes wrong is printed; `failed` is then called with that folder.
-    """
-    for place in (output, None):
-        try:
-            with folder_or_fallback(place) as folder:
-                write(folder)
-            return folder
-        except InputError as error:
-            tell(str(error))
-            failed(folder)
-    return None
-
-
-def save_to_fallback(text: str) -> str:
-    """Save a text that could not be printed; return a message with its path."""
-    try:
-        with fallback_folder() as folder:
-            path = folder / "output.txt"
-            try:
-                path.write_text(text, encoding="utf-8", errors="backslashreplace")
-            except OSError:
-                with suppress(OSError):
-                    path.unlink(missing_ok=True)
-                raise
-    except (InputError, OSError) as error:
-        return f"it could not be kept either: {error}"
-    return f"what it would have said is in {path}"
+        write(folder)
+    except InputError as error:
+        tell(str(error))
+        return False
+    return True
 
 
 Data = dict[str, Any]
@@ -115,9 +55,8 @@ def carry_out(
     """Run a job, keep its results, and return what is printed with the exit status.
 
     The first Ctrl-C, SIGTERM or SIGHUP stops the job: the best placement so far is scored and kept.
-    The second one ends at once and keeps the best placement without its score. Results that cannot
-    be written to `output` go to a fallback folder; its path is printed on stderr, and the status is
-    1.
+    The second one ends at once and keeps the best placement without its score. Where results cannot
+    be written to `output`, a line on stderr says so, and the status is 1.
     """
     tell_boxes(job.study)
     print_vehicle(job.study)
@@ -178,10 +117,9 @@ def drive(job: jobs.Job, output: Path | None = None) -> jobs.Outcome | None:
                     tell(f"{error}; the search goes on")
                 failed = True
     except BaseException:
-        if saved is not None and len(saved[0].history) > 1:
-            folder = write_somewhere(saved[2], saved[1].save)
-            if folder is not None:
-                tell(f"the best placement so far is in {folder / STUDY}")
+        is_kept = saved and len(saved[0].history) > 1 and written(saved[1].save, saved[2])
+        if saved and is_kept:
+            tell(f"the best placement so far is in {saved[2] / STUDY}")
         raise
     finally:
         reporter.clear()
@@ -191,34 +129,21 @@ def drive(job: jobs.Job, output: Path | None = None) -> jobs.Outcome | None:
 def keep(
     outcome: jobs.Outcome, output: Path, host: dict[str, str] | None, more: More | None
 ) -> tuple[int, Data]:
-    """Write the results to a folder; if that fails, to a fallback folder whose path is printed.
-
-    Returns the exit status and the content of result.json.
-    """
-    data, kept = jobs.result_dict(outcome, host), list[Path]()
+    """Write the results to a folder; return the exit status and the content of result.json."""
+    data = jobs.result_dict(outcome, host)
     names = more.names if more else ()
 
     def write(folder: Path) -> None:
         nonlocal data
         jobs.prepare_folder(folder, names)  # the user may have added a file meanwhile
         data = jobs.write_outcome(outcome, folder, host, names)
-        kept.append(folder)
         if more is not None:
             more.write(outcome, data, folder)
 
-    def failed(folder: Path) -> None:
-        if folder in kept:
-            for name, aside in jobs.set_aside_files_of_other_runs(folder).items():
-                tell(f"{folder / name}: of an earlier run; it is {aside} now")
-
-    folder = write_somewhere(output, write, failed)
-    if folder is None:
-        tell(f"all else is in {kept[0]}" if kept else "the results are not in any file")
+    is_whole = written(write, output)
     for name in jobs.files_of_other_runs(output):  # checkpoints may lie beside an older result
         tell(f"{output / name}: not of this run")
-    if folder not in (None, output):
-        tell(f"the results are in {folder}")
-    return (DONE if folder == output else BAD_INPUT), data
+    return (DONE if is_whole else BAD_INPUT), data
 
 
 def print_answer(text: str, status: int, out: TextIO | None) -> int:
@@ -228,7 +153,7 @@ def print_answer(text: str, status: int, out: TextIO | None) -> int:
     error = show(f"{shown}\n", out) if text else None
     if error is None or isinstance(error, BrokenPipeError):  # as `head` closes the pipe
         return status
-    tell(f"output: {getattr(error, 'strerror', None) or error}; {save_to_fallback(text)}")
+    tell(f"output: {getattr(error, 'strerror', None) or error}")
     return status or BAD_INPUT
 
 

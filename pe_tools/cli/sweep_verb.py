@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
-from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -13,20 +12,19 @@ from typing import Any
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
-from pe_core.base.plugins import required_package
 from pe_core.study import SEARCH
 
 from .. import jobs
 from ..advice import curve_note, hardware_note
 from ..sweep import RunTask, SweepRun, read_settings, run_all, sweep_runs
 from ..sweep import sweep_table as table
-from ..sweep.sweep_table import BEGUN, DONE, ELSEWHERE, UNWRITTEN, WAITING, SweepRow
+from ..sweep.sweep_table import BEGUN, DONE, UNWRITTEN, WAITING, SweepRow
 from . import terminal
 from .command import add_executor_option, add_score_options, add_search_options, with_options
 from .executors import workplace
 from .interrupts import Interrupted, Received, stop_at_first
 from .progress_line import Reporter
-from .run_job import folder_or_fallback, refuse_own_folder
+from .run_job import refuse_own_folder
 from .terminal import is_terminal, one_line, show, tell
 
 MAX_PARTS = 1_000_000
@@ -42,8 +40,6 @@ def add_sweep_options(parser: argparse.ArgumentParser) -> None:
     about = "only these runs, the K-th of N parts, without a table: for array jobs of a cluster"
     parser.add_argument("--part", type=part_of, metavar="K/N", help=about)
     parser.add_argument("--json", action="store_true", help=f"print {table.SWEEP_JSON} on stdout")
-    about = f"write the table as {table.SWEEP_PARQUET}, too"
-    parser.add_argument("--parquet", action="store_true", help=about)
     add_score_options(parser, workers="processes")
     add_search_options(parser)
 
@@ -67,26 +63,22 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
     if args.part is not None:
         runs = runs[args.part[0] - 1 :: args.part[1]]
     names = [table.SWEEP_CSV, table.SWEEP_JSON]
-    if args.parquet:
-        required_package("pyarrow.parquet")  # before the work
-        names.append(table.SWEEP_PARQUET)
     folder = jobs.prepare_folder(args.output, names)
     for run in runs:  # before the work
         refuse_own_folder(Path(files[run.study_name]), folder / run.name)
         jobs.check_files(folder / run.name, jobs.result_names(run.study, kind))
-    with ExitStack() as places:
-        work = _SweepVerb(runs, kind, folder, places, args.part is None, args.parquet)
-        received = work.run(args)
-        if received.signum is not None:
-            kept = f", {work.count(BEGUN)} begun and kept" if work.count(BEGUN) else ""
-            note = f"{work.done} runs are done{kept}; the same command goes on"
-            raise Interrupted(received.signum, note)
+    work = _SweepVerb(runs, kind, folder, args.part is None)
+    received = work.run(args)
+    if received.signum is not None:
+        kept = f", {work.count(BEGUN)} begun and kept" if work.count(BEGUN) else ""
+        note = f"{work.done} runs are done{kept}; the same command goes on"
+        raise Interrupted(received.signum, note)
     notes = [
         hardware_note([s.model for s in run.study.rig] for run in runs),
         curve_note(run.study.model for run in runs),
     ]
     rows = list(work.rows.values())
-    missing = [row for row in rows if row.status in (ELSEWHERE, UNWRITTEN)]
+    missing = [row for row in rows if row.status == UNWRITTEN]
     where = (f"{row.run.name}: {row.status}: {row.message}" for row in missing)
     lines = [*table.table_lines(rows, kind), *where, *filter(None, notes)]
     text = dump_json(work.data) if args.json else "\n".join(lines)
@@ -102,18 +94,11 @@ class _SweepVerb:
     """
 
     def __init__(
-        self,
-        runs: Sequence[SweepRun],
-        kind: str,
-        folder: Path,
-        places: ExitStack,
-        writes_table: bool,
-        parquet: bool,
+        self, runs: Sequence[SweepRun], kind: str, folder: Path, writes_table: bool
     ) -> None:
         self._writes_table = writes_table
-        self._kind, self._folder, self._places = kind, folder, places
-        self._write = partial(table.write_table, kind=kind, parquet=parquet)
-        self._fallback: Path | None = None
+        self._kind, self._folder = kind, folder
+        self._write = partial(table.write_table, kind=kind)
         self.failed_to_write = False
         self.rows: dict[str, SweepRow] = {}
         for run in runs:
@@ -191,27 +176,17 @@ class _SweepVerb:
             show(f"{one_line(line)}\n", sys.stderr)
 
     def _keep(self, name: str, found: jobs.Outcome) -> tuple[str, str]:
-        """Write a run's results; if that fails, to the fallback folder.
-
-        Return status and message of the row of the run.
-        """
+        """Write a run's results; return status and message of the row of the run."""
         try:
             jobs.write_outcome(found, self._folder / name)
             return DONE, ""
         except InputError as error:
             self.failed_to_write = True
             self._print_failure(name, error)
-        for other in jobs.files_of_other_runs(self._folder / name):
-            self._print_failure(name, f"{other} there is not of this run")
-        try:
-            jobs.write_outcome(found, self._fall_back() / name)
-            return ELSEWHERE, f"its results are in {self._fall_back() / name}"
-        except InputError as error:
-            self._print_failure(name, error)
             return UNWRITTEN, str(error)
 
     def _write_table(self) -> None:
-        """Write the table; if that fails, to the fallback folder."""
+        """Write the table; a failure is printed once."""
         rows = list(self.rows.values())
         if not self._writes_table:  # other parts write beside it
             self.data = table.table_data(rows, self._kind)
@@ -219,22 +194,10 @@ class _SweepVerb:
         try:
             self.data = self._write(rows, folder=self._folder)
         except InputError as error:
-            first, self.failed_to_write = not self.failed_to_write, True
-            if first:
+            if not self.failed_to_write:
                 self._print_failure("", error)
-            try:
-                self.data = self._write(rows, folder=self._fall_back())
-            except InputError as second:
-                if first:
-                    self._print_failure("", second)
-                self.data = table.table_data(rows, self._kind)
-
-    def _fall_back(self) -> Path:
-        """Return the fallback folder of the sweep; report it at its creation."""
-        if self._fallback is None:
-            self._fallback = self._places.enter_context(folder_or_fallback(None))
-            self._print_failure("", f"what cannot be written there is in {self._fallback}")
-        return self._fallback
+            self.failed_to_write = True
+            self.data = table.table_data(rows, self._kind)
 
     def _print_failure(self, name: str, what: InputError | str) -> None:
         self._reporter.clear()

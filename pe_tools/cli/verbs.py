@@ -29,11 +29,10 @@ from .command import (
     run,
     with_options,
 )
+from .doctor_verb import add_doctor_verb
 from .drive_by_verb import add_list_option, drive_by
 from .explain_verbs import add_compare_options, add_explain_options, compare, explain, named_by_file
 from .new_verb import add_new_verb
-from .set_verb import add_set_options, set_keys
-from .setup_verbs import add_setup_verbs
 from .sweep_verb import add_sweep_options, sweep
 from .terminal import Answer, open_missing_streams, tell
 
@@ -42,11 +41,11 @@ ONE, PERHAPS, SOME = "one", "?", "+"
 
 
 GROUPS = {
-    "begin": "new set import rigs sensors curves requirements",
+    "begin": "new import rigs sensors curves requirements",
     "score": "score explain check compare drive-by",
     "place": "optimize sweep fit",
     "show": "review export",
-    "this program": "doctor completion",
+    "this program": "doctor",
 }
 """Verbs by their groups in the help; what is in none of them is listed last."""
 
@@ -90,7 +89,7 @@ class Verb(NamedTuple):
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status.
 
-    0: done; 1: bad input, or results in a fallback folder; 2: usage; 3: a requirement is not met;
+    0: done; 1: bad input, or results that cannot be written; 2: usage; 3: a requirement is not met;
     128 plus the number of a signal.
     """
     open_missing_streams()
@@ -123,7 +122,7 @@ def parser() -> argparse.ArgumentParser:
     exchange_verbs.add_rigs_verb(verbs)
     add_requirements_verb(verbs)
     add_new_verb(verbs)
-    add_setup_verbs(verbs, parser)
+    add_doctor_verb(verbs)
     for plugin in find_plugins("verb"):
         _add_plugin_verbs(plugin, verbs)
     run_job.add_page_option(verbs.choices["optimize"])
@@ -233,7 +232,6 @@ VERBS = (
         "",
         exchange_verbs.import_study,
     ),
-    Verb("set", "change keys of a study file; its comments stay", add_set_options, ONE, set_keys),
     Verb(
         "sweep",
         "run many studies, or one with many changes",

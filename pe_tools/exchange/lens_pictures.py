@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pe_core.base.arrays import Floats
 from pe_core.sensors.camera import BrownConrady, FTheta, KannalaBrandt, Lens, Pinhole
 
 Size = tuple[int, int]
@@ -141,51 +140,3 @@ def alike(a: Picture, b: Picture) -> bool:
     else:
         return False
     return all(abs(x - y) <= ALIKE_PX for x, y in pairs)
-
-
-LAST_SQUARE = 10.0
-"""Maximum r^2 to which nuScenes' devkit applies the distortion."""
-PLACES = 2000
-NOTICED_PX = 0.1
-
-
-def with_fourth(
-    picture: Picture, radial: tuple[float, float, float, float], tangential: tuple[float, float]
-) -> tuple[Picture, str]:
-    """Return a pinhole with a distortion k1 to k4 and p1, p2, and a note on the error of the fit.
-
-    The Brown-Conrady model has no fourth polynomial coefficient, so a quotient is fitted as far as
-    the image's corner; without a size, the image is symmetric about the principal point. The note
-    is empty if the error is below `NOTICED_PX`.
-    """
-    lens = picture.lens
-    square = _squares(math.hypot(lens.cx / lens.fx, lens.cy / lens.fy), radial)
-    wanted = 1.0 + _power_sum(square, radial)
-    # With a numerator and a denominator of three terms each, the equation is linear after
-    # multiplication by the denominator: least squares.
-    last = float(square[-1])
-    powers = np.stack([(square / last) ** n for n in (1, 2, 3)], axis=1)
-    system = np.hstack([powers, -wanted[:, None] * powers])
-    solution = np.linalg.lstsq(system, wanted - 1.0, rcond=None)[0]
-    scale = np.array([last, last**2, last**3])
-    top, bottom = solution[:3] / scale, solution[3:] / scale
-    fitted = (1.0 + _power_sum(square, top)) / (1.0 + _power_sum(square, bottom))
-    error_px = float(np.abs((fitted - wanted) * np.sqrt(square)).max()) * max(lens.fx, lens.fy)
-    values = *top[:2], *tangential, top[2], *bottom
-    distorted = BrownConrady(lens.fx, lens.fy, lens.cx, lens.cy, None, *map(float, values))
-    note = f"its sixth coefficient is taken in to within {error_px:.1f} px"
-    return Picture(distorted, picture.size), note if error_px > NOTICED_PX else ""
-
-
-def _squares(corner: float, radial: tuple[float, ...]) -> Floats:
-    """Return r^2 from the axis to the image corner, or as far as the distortion is monotonic."""
-    square = np.linspace(0.0, LAST_SQUARE, PLACES + 1)[1:]
-    reached = np.sqrt(square) * (1.0 + _power_sum(square, radial))
-    inside = (np.diff(reached, prepend=0.0) > 0.0) & (reached <= corner)
-    count = len(square) if inside.all() else max(int(np.argmin(inside)), 1)
-    return np.linspace(0.0, float(square[min(count, len(square) - 1)]), PLACES + 1)[1:]
-
-
-def _power_sum(square: Floats, values: tuple[float, ...] | Floats) -> Floats:
-    """Return the sum of values[n - 1] * square**n, n from 1."""
-    return np.asarray(sum(value * square**n for n, value in enumerate(values, 1)))

@@ -20,7 +20,7 @@ from pe_core.study.passthrough import json_entry
 
 from . import frames
 from .foreign_values import Export, FileTexts, json_of, json_rows
-from .lens_pictures import Picture, with_fourth
+from .lens_pictures import Picture
 from .passthrough import entry_row
 from .portable import PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
@@ -120,8 +120,7 @@ def _bent(row: Table, picture: Picture) -> tuple[Picture, str]:
         expected = "4 to 6 numbers: k1, k2, p1, p2, k3, k4"
         raise row.error("camera_distortion", expected, shown(values))
     k1, k2, p1, p2, k3, k4 = [*map(float, coefficients), 0.0, 0.0][:6]
-    if k4:
-        return with_fourth(picture, (k1, k2, k3, k4), (p1, p2))
     lens = picture.lens
     intrinsics = lens.fx, lens.fy, lens.cx, lens.cy
-    return Picture(BrownConrady(*intrinsics, None, k1, k2, p1, p2, k3)), ""
+    note = "its sixth coefficient, of r^8, is left out" if k4 else ""
+    return Picture(BrownConrady(*intrinsics, None, k1, k2, p1, p2, k3)), note

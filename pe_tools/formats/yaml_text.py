@@ -83,15 +83,6 @@ class YamlText:
             data[name] = self._plain(value, (*path, name))
         return data if is_table else list(data.values())
 
-    def line(self, path: KeyPath) -> int:
-        """Return the number of the line in which a value begins."""
-        return int(self._nodes[path][1].start_mark.line) + 1
-
-    def word(self, path: KeyPath) -> str:
-        """Return a value as it is written; empty for one that is absent, a mapping or a list."""
-        value = self._nodes.get(path, (None, None))[1]
-        return value.value if value is not None and isinstance(value.value, str) else ""
-
     def comments(self) -> dict[KeyPath, str]:
         """Return the comments after keys of mappings, on the key's line, by path."""
         return {p: c for p in self._nodes if (c := self._comment(p)[1])}

@@ -36,7 +36,6 @@ from .results import placements as placements
 from .results import result_dict as result_dict
 from .results import result_names as result_names
 from .results import runners_up as runners_up
-from .results import set_aside_files_of_other_runs as set_aside_files_of_other_runs
 from .results import write_outcome as write_outcome
 from .score_and_optimize import OptimizeJob as OptimizeJob
 from .score_and_optimize import ScoreJob as ScoreJob

@@ -60,18 +60,17 @@ def check_objectives(study: Study, names: Sequence[str]) -> None:
 
 
 class FrontFigures:
-    """Computes the objectives of rigs of one study; a rig is evaluated once. `evaluator` is that of
-    the search; `in_traffic` evaluates the expected AP of a study whose objective it is."""
+    """Computes the objectives of rigs of one study, all but the price; a rig is evaluated once.
+    `evaluator` is that of the search; `in_traffic` evaluates the AP of a study that goes by it."""
 
     def __init__(
         self,
         study: Study,
         names: Sequence[str],
         evaluator: RigEvaluator,
-        price: float = 0.0,
         in_traffic: RigEvaluator | None = None,
     ) -> None:
-        self._given = study, tuple(names), evaluator, price, in_traffic
+        self._given = study, tuple(names), evaluator, in_traffic
         self._in_traffic = in_traffic
         self.names, self._study, self._evaluator = tuple(names), study, evaluator
         tolerance, seed = study.search.tolerance, study.search.seed
@@ -80,13 +79,11 @@ class FrontFigures:
         asks = {MARGIN, BLIND_ZONES} & set(names)
         self._checker = study.checker() if asks else None
         self._known: dict[tuple[object, ...], dict[str, float]] = {}
-        self._price = price
         self._of: dict[str, Callable[[Rig], float]] = {
             ENTROPY: self._objective.entropy,
             AP: self._ap,
             BLIND_GROUND: self._blind_ground,
             HEIGHT: height_of,
-            PRICE: lambda _: self._price,
             WORST_LOSS: self._worst_loss,
             MARGIN: lambda rig: self._zones(rig)[0],
             BLIND_ZONES: lambda rig: self._zones(rig)[1],

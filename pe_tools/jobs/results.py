@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Collection, Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +42,6 @@ from .job import HistoryRow, Outcome
 from .searched_figure import IN_NATS, SearchedFigure, searched_figure
 from .study_export import inputs_of, study_text, study_writers
 
-EARLIER = ".earlier"
 FIGURES = ("entropy", "stderr", "coverage")
 
 
@@ -220,24 +218,6 @@ def files_of_other_runs(folder: Path) -> list[str]:
         return [n for n, digest in digests.items() if digest and digest != named.get(n)]
     except (AttributeError, KeyError, TypeError, ValueError):
         return []
-
-
-def set_aside_files_of_other_runs(folder: Path) -> dict[str, str]:
-    """Rename files of an earlier run beside a new result: ``optimized.earlier.blend``.
-
-    If a later file of a run cannot be written, for instance on a full disk, the user would mistake
-    the file of an earlier run for a part of the new result. No file is removed; one stays if it
-    cannot be renamed or the new name is taken. Return new names by old name.
-    """
-    renamed = {}
-    for name in files_of_other_runs(folder):
-        path = folder / name
-        aside = path.with_name(f"{path.stem}{EARLIER}{path.suffix}")
-        with suppress(OSError):
-            if not aside.exists():
-                path.rename(aside)
-                renamed[name] = aside.name
-    return renamed
 
 
 def history_csv(history: tuple[HistoryRow, ...], figure: SearchedFigure = IN_NATS) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -25,7 +26,7 @@ from pe_core.search import (
     pose_values,
     standoff_point,
 )
-from pe_core.search.goals import AP, ENTROPY
+from pe_core.search.goals import AP, ENTROPY, OBJECTIVES, PRICE
 from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Study
 
@@ -111,31 +112,38 @@ class Design(ShortRepr):
 
     Attributes
     ----------
-    name, price, models
+    name, models
         `models` are those of the sensors that the study lets choose; None for one that is left out.
     study : Study
         The design as a study, with the best placement found and without choices.
-    entropy : float
-        Of that placement [nats]: that of the score, or, for a design that was only screened, that
-        of the search; NaN after a screening by expected AP.
+    figures : mapping of str to float
+        Its objectives by name, and the price of choices. Of a design that was only screened, the
+        study's objective alone; of a search by expected AP, the entropy as well.
     score : Score, optional
         Without a ground map; None for a design that was only screened, which has no verdicts
         either.
     warnings : tuple of Advice
     verdicts : tuple of Verdict
-    figures : mapping of str to float
-        Its objectives by name, on a front of several. By expected AP: price, AP, and the entropy.
     """
 
     name: str
-    price: float
     models: Models
     study: Study
-    entropy: float
+    figures: Mapping[str, float]
     score: Score | None = None
     warnings: tuple[Advice, ...] = ()
     verdicts: tuple[Verdict, ...] = ()
-    figures: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def price(self) -> float:
+        """The price of its sensors; 0 without choices."""
+        return self.figures.get(PRICE, 0.0)
+
+    @property
+    def entropy(self) -> float:
+        """Of its placement [nats], that of the score; NaN after a screening by expected AP."""
+        given = self.figures.get(ENTROPY, math.nan)
+        return given if self.score is None else self.score.entropy
 
     @property
     def broken(self) -> tuple[str, ...]:
@@ -155,8 +163,8 @@ class Design(ShortRepr):
 
     @property
     def is_led_in(self) -> bool:
-        """Whether `entropy` is no entropy: the screening found no placement to keep."""
-        return self.score is None and is_infeasible(self.entropy)
+        """Whether its value is no figure: the screening found no placement to keep."""
+        return self.score is None and is_infeasible(self.value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,9 +176,9 @@ class TradeOff(Tabular):
     study : Study
         The study with its choices.
     designs : tuple of Design
-        All evaluated designs with a feasible placement, cheapest first.
+        All evaluated designs with a feasible placement, by their objectives.
     front : tuple of Design
-        Designs that no other design beats in both price and entropy (or AP), cheapest first. Only
+        Designs that no other design beats in all objectives. Only
         designs that were searched are compared, if there are any; if the search keeps requirements,
         only those of them that break the fewest.
     refused : mapping of name to str
@@ -179,7 +187,7 @@ class TradeOff(Tabular):
         Whether all designs within the limits were evaluated, and whether the job was stopped early.
     seconds : float
     objectives : tuple of str
-        Of a front of several objectives; none: it is that of price and entropy.
+        Those of the front, by default price and entropy (or AP).
     """
 
     study: Study
@@ -193,7 +201,7 @@ class TradeOff(Tabular):
 
     def _rows(self) -> list[dict[str, Any]]:
         return [
-            {"design": d.name, "price": d.price, "entropy [nats]": d.entropy, **d.figures}
+            {"design": d.name, "entropy [nats]": d.entropy, **d.figures}
             | {"on the front": d in self.front, "requirements": d.met_text or None}
             for d in self.designs
         ]
@@ -202,6 +210,17 @@ class TradeOff(Tabular):
     def searched(self) -> int:
         """How many designs were searched in full."""
         return sum(design.score is not None for design in self.designs)
+
+    @property
+    def told(self) -> str:
+        """What is on the front, and of how many designs."""
+        labels = ", ".join(OBJECTIVES[name][0] for name in self.objectives)
+        of_all = f"{len(self.front)} on the front of {labels}"
+        if not self.study.selection.choices or self.study.search.goals.front.objectives:
+            return of_all
+        count, more = len(self.designs) + len(self.refused), "of more"
+        every = "all that the limits allow" if self.is_complete else more
+        return f"{of_all}; {self.searched} searched of {count} looked at ({every})"
 
     @property
     def requirements_note(self) -> str:
@@ -224,6 +243,6 @@ class TradeOff(Tabular):
     @property
     def hardware_note(self) -> str:
         """What limits a front by entropy of designs with other sensors; empty for others."""
-        if self.objectives and ENTROPY not in self.objectives:
+        if ENTROPY not in self.objectives:
             return ""
         return hardware_note([s.model for s in design.study.rig] for design in self.front)

@@ -1,9 +1,5 @@
-"""Export of the scene: solids, footprints, glTF, recordings and ego masks (no import)."""
+"""Export of the scene: solids, glTF, ego masks and a picture (no import)."""
 
-from ..graphics import color_text as color_text
-from .footprints import GroundFootprint as GroundFootprint
-from .footprints import GroundPlan as GroundPlan
-from .footprints import ground_plan as ground_plan
 from .output_formats import OF_EXAMPLE as OF_EXAMPLE
 from .output_formats import SceneOutput as SceneOutput
 from .output_formats import export_scene as export_scene

@@ -21,7 +21,7 @@ from pe_core.base.plugins import (
 from pe_core.study import Study
 
 from ..exchange import Written, write_files
-from . import footprints, masks, scene_gltf
+from . import masks, scene_gltf
 from .request import OutputRequest
 
 
@@ -61,19 +61,17 @@ _ROWS = (
     SceneOutput(
         "solids", "Fields of View as Solids (glTF, STL)", "solids", scene_gltf.write_solids, True
     ),
-    SceneOutput("footprints", "Footprints on the Ground (SVG)", footprints.FILE, footprints.write),
     SceneOutput("gltf", "Whole Scene (glTF)", scene_gltf.FILE, scene_gltf.write),
-    SceneOutput("rerun", "Rerun Recording", "scene.rrd", partial(_with_library, "rerun", "Rerun")),
     SceneOutput("masks", "Ego Masks (PNG, CSV)", "masks", masks.write, True, has_range=False),
     SceneOutput(
         "picture",
-        "Picture (PNG)",
-        "picture.png",
+        "Picture (SVG)",
+        "picture.svg",
         partial(_with_library, "picture", "picture"),
         has_range=False,
     ),
 )
-OF_EXAMPLE = ("footprints-dxf", "nebula")
+OF_EXAMPLE = ("footprints", "footprints-dxf", "nebula", "rerun")
 """Outputs of the plugin that is shipped as an example."""
 EXAMPLE = "the plugin perception-entropy-outputs: pip install examples/plugin"
 OUTPUT = "output"

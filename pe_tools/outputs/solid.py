@@ -10,7 +10,6 @@ import numpy as np
 
 from pe_core.base.arrays import Flags, Floats, Ints
 from pe_core.scene import PerceptionSpace, Rig, Sensor, Vehicle, rotate
-from pe_core.scoring.sight.ground_cells import chained
 from pe_core.sensors import MeasurementCache, Voxels, kind_of
 
 NEAREST_M = 1e-3
@@ -135,32 +134,6 @@ def mounted_view(
         hits = body.first_hit(position, directions, through)
         ends = np.clip(hits.distance, NEAREST_M, reach)
     return MountedView(np.asarray(sensor.pose.position), directions, patch.faces, reach, ends)
-
-
-def level_outlines(solid: Solid, height: float) -> tuple[Floats, ...]:
-    """Return the closed outlines (N, 2) of a solid's cross-section at a height [m]. The inside is
-    on the left. The last point repeats the first. A corner at exactly this height counts as
-    above."""
-    above = solid.points[solid.faces][..., 2] >= height
-    cut = above.any(axis=1) & ~above.all(axis=1)
-    faces, above = solid.faces[cut], above[cut]
-    # Counter-clockwise from outside: an outline comes in where an edge leads down through the
-    # plane, and goes on to the triangle beside where one leads up.
-    down, up = _leading(faces, above), _leading(faces, ~above)
-    # The points (E, 2) where edges (E, 2) cross a height [m].
-    start, end = solid.points[down[:, 0]], solid.points[down[:, 1]]
-    share = (height - start[:, 2]) / (end[:, 2] - start[:, 2])
-    points = start[:, :2] + share[:, None] * (end - start)[:, :2]
-    numbers, back = (edge.min(axis=1) * len(solid.points) + edge.max(axis=1) for edge in (down, up))
-    row = {number: k for k, number in enumerate(numbers.tolist())}
-    return tuple(points[[row[number] for number in loop]] for loop in chained(numbers, back))
-
-
-def _leading(faces: Ints, first: Ints) -> Ints:
-    """Return the edge (T, 2) of each triangle that runs from a flagged to an unflagged corner."""
-    corner = np.argmax(first & ~np.roll(first, -1, axis=1), axis=1)
-    row = np.arange(len(faces))
-    return np.stack([faces[row, corner], faces[row, (corner + 1) % 3]], axis=1)
 
 
 def voxel_solid(name: str, cubes: Flags, lowest: Floats, side: float) -> Solid | None:

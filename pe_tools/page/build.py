@@ -202,12 +202,12 @@ def write_front_page(data: Mapping[str, Any], folder: Path) -> None:
 
 
 def front_page(data: Mapping[str, Any]) -> bytes:
-    """Return the page of a front: of its objectives, or of price and entropy."""
-    names = [*data.get("objectives", ("price", "entropy"))]
+    """Return the page of a front."""
+    names = list(data["objectives"])
     designs = [d for d in data["designs"] if all(_figure(d, name) is not None for name in names)]
     front = [design for design in designs if design["on_front"]]
     others = [design for design in designs if not design["on_front"]]
-    figures = [design.get("figures", {}) for design in front]
+    figures = [design["figures"] for design in front]
     shared = set(figures[0]).intersection(*figures) if figures else set()
     columns = [*names, *(name for name in OBJECTIVES if name in shared and name not in names)]
     values = {name: [_figure(design, name) or 0.0 for design in front] for name in columns}
@@ -247,5 +247,5 @@ def front_page(data: Mapping[str, Any]) -> bytes:
 
 
 def _figure(design: DesignRow, name: str) -> float | None:
-    value = design.get("figures", design).get(name)
+    value = design["figures"].get(name)
     return None if value is None else float(value)

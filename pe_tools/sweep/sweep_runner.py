@@ -80,7 +80,7 @@ def _begun(job: OptimizeJob, folder: Path) -> Callable[[], None]:
 
     def save() -> None:
         if checkpoint.due():
-            with suppress(InputError):  # the search continues; its results are saved elsewhere
+            with suppress(InputError):  # the search continues
                 checkpoint.save(folder)
 
     return save

@@ -31,12 +31,12 @@ def job_of(small, monkeypatch):
 
 OPERATORS = {
     "page.html": ("export_review", {}),
-    "picture.png": ("render_review", {}),
+    "picture.svg": ("render_review", {}),
     "scene.glb": ("export_scene", {"output": "gltf", "range_m": 5.0}),
 }
 STAGES = {
     "page.html": ["scoring", "page"],
-    "picture.png": ["scoring", "picture"],
+    "picture.svg": ["scoring", "picture"],
     "scene.glb": ["exporting"],
 }
 

@@ -9,8 +9,6 @@ from blender_addon.engine import outputs
 from tests.addon import scenes
 from tests.addon.command_line import run_here
 
-NEED_LIBRARIES = ("rerun",)
-
 
 @pytest.fixture
 def seen(car):
@@ -26,7 +24,7 @@ def exported(tmp_path, name, **options):
     return path
 
 
-@pytest.mark.parametrize("name", [n for n in outputs.scene_outputs() if n not in NEED_LIBRARIES])
+@pytest.mark.parametrize("name", [*outputs.scene_outputs()])
 def test_every_output_of_the_panel_is_that_of_the_engine(seen, tmp_path, name):
     path = exported(tmp_path, name, range_m=5.0)
     files, _ = outputs.scene_files(scenes.study(), name, 5.0)

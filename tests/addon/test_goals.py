@@ -54,7 +54,7 @@ def test_the_panel_finds_the_front_of_the_job(asked):
     assert {row.key for row in settings.variants} >= {row.key for row in settings.front}
     figures = front_dict(job.trade_off)["designs"][0]["figures"]
     assert settings.front[0].figures == ", ".join(f"{n} {v:.4g}" for n, v in figures.items())
-    assert settings.front_told == "Pareto front of entropy, height"
+    assert settings.front_told == f"{len(names)} on the front of entropy, height"
     [row] = [each for each in settings.variants if each.key == settings.front[0].key]
     study = bridge.study_of_variant(asked, row, scenes.depsgraph())
     assert study.rig["roof"].pose == job.trade_off.front[0].study.rig["roof"].pose

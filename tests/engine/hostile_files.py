@@ -22,7 +22,7 @@ from tests.engine.mesh_files import FACES, HUGE, POINTS, glb_file, gltf, npz_byt
 
 Maker = Callable[[Path], Path]
 Case = tuple[str, Maker, str | None]
-SUFFIXES = {"mesh": ".obj", "boxes": ".csv", "angles": ".xml", "table": ".csv", "study": ".toml"}
+SUFFIXES = {"mesh": ".obj", "boxes": ".csv", "angles": ".csv", "table": ".csv", "study": ".toml"}
 LIMITS = {"mesh": "2,147,483,648", "boxes": "2,147,483,648"}
 
 
@@ -296,22 +296,10 @@ def laughs() -> str:
 
 
 def angles() -> dict[str, Case]:
-    """Channel angles: XML that unfolds, depth, digits."""
-    default = f'<!DOCTYPE a [<!ATTLIST b x CDATA "{"x" * 100_000}">]><a>{"<b/>" * 100_000}</a>'
-    flow = "lasers:\n- {laser_id: 0, rot_correction: %s, vert_correction: 0}\n"
+    """Channel angles: digits, and long names."""
     files = {
-        "a billion laughs": (laughs(), "XML without definitions"),
-        "laughs in UTF-16": (laughs().encode("utf-16"), "expected"),
-        "a long default": (default, "XML without definitions"),
-        "an outer file": ('<!DOCTYPE a [<!ENTITY x SYSTEM "/dev/zero">]><a>&x;</a>', "definitions"),
-        "deep XML": ("<a>" * 100_000, "elements at most 100 deep"),
         "digits": ("elevation\n" + "9" * 1_000_000 + "x\n", "a finite number"),
         "a unit of a million": (f"elevation{'_deg' * 200_000}x\n", "a column named elevation"),
-        "an id of 5,000": (flow.replace("_id: 0", f"_id: {HUGE}") % 0, "a whole number"),
-        "YAML of braces": ("lasers:\n- " + "{" * 100_000, "too many levels"),
-        "YAML digits": (flow % ("9" * 100_000 + "x"), "a finite number"),
-        "much YAML": (flow % ("9" * 1_000_000), "YAML of at most 262,144 characters"),
-        "YAML 1e308": (flow % "1e308", "an azimuth offset within"),
     }
     return {f"angles: {k}": ("angles", holding("a", d), words) for k, (d, words) in files.items()}
 

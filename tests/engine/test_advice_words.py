@@ -68,9 +68,7 @@ def test_pixels_are_looked_for_where_no_score_counts_them():
     shares = advice.occluded_shares(sensor, uncounted, shapes.box_car())
     edge = sensor.model.focal_px * 0.05 / 1.45  # pixels below the middle where the bonnet ends
     assert shares == {"body": pytest.approx((540 - edge) / 1080, abs=0.02)}
-    words = advice.occluded_words(sensor, uncounted, shapes.box_car())
-    assert words == f"{100 * shares['body']:.0f}% of its pixels occluded by body"
-    assert advice.occluded_words(sensor, uncounted) == ""
+    assert advice.occluded_shares(sensor, uncounted, None) == {}
 
 
 def test_side_by_side():
@@ -186,8 +184,8 @@ def test_what_is_reported_of_it(stopped, coverage, warned, stderr, lines):
     score = pe.Score(2.0, 0.6, stderr, {}, {}, own, 9)
     warnings = [pt.Advice(INSIDE, code) for code in warned]
     assert advice.hidden_words(advice.hidden_sensors(RIG, score, warnings)) == lines
-    assert advice.words(score, RIG, warnings=warnings)[: len(lines)] == lines
-    assert not advice.words(score)[0].startswith("camera")
+    assert advice.rig_words(score, None, RIG, warnings)[: len(lines)] == lines
+    assert not advice.rig_words(score)[0].startswith("camera")
 
 
 def test_several_are_one_line_a_kind_and_the_dead_come_first():

@@ -79,7 +79,6 @@ LIBRARIES = {
     "ruamel": {"pe_tools/formats"},
     "trimesh": {"pe_tools/formats"},
     "pyarrow": {"pe_tools/exchange"},
-    "rerun": {"pe_tools/outputs"},
     "matplotlib": {"pe_tools/plot.py"},
     "jinja2": {"pe_tools/page", "pe_tools/cli"},
     "markupsafe": {"pe_tools/page"},

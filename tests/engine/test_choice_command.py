@@ -26,14 +26,17 @@ def file(tmp_path):
 def test_the_table_tells_price_entropy_and_where_each_sensor_sits(file, tmp_path, capsys):
     assert verbs.main(["optimize", str(file), "-o", str(tmp_path / "out")]) == 0
     out = capsys.readouterr().out.splitlines()
-    assert out[0].split() == ["price", "[EUR]", "entropy", "coverage", "design"]
+    assert out[0].split() == ["price", "[EUR]", "entropy", "[nats]", "design"]
     data = json.loads((tmp_path / "out" / "front.json").read_text())
     first = next(row for row in data["designs"] if row["on_front"])
     assert out[1].split()[:2] == ["2", f"{first['entropy']:.4f}"]
-    assert out[1].endswith(f"%  {mounting.CAN}")
+    assert out[1].endswith(f"  {mounting.CAN}")
     assert out[2].strip() == f"roof: {mounting.CAN}; (-0.43, 0, 1.478) m"
     count = len(data["front"])
-    assert out[-2] == f"{count} on the front; 3 searched of 3 looked at (all that the limits allow)"
+    assert out[-2] == (
+        f"{count} on the front of price, entropy; "
+        "3 searched of 3 looked at (all that the limits allow)"
+    )
     assert out[-1] == advice.OTHER_HARDWARE and data["notes"] == [advice.OTHER_HARDWARE]
     page = (tmp_path / "out" / "front.html").read_text("utf-8")
     assert "cameras and radars were not tested" in page

@@ -178,7 +178,7 @@ def test_no_memory_for_a_thread_is_one_line(study, monkeypatch, capsys):
 OUTPUTS = {
     "check": "check car.toml --preset all --csv {}",
     "export a rig": "export car.toml --to csv -o {}",
-    "export a scene": "export car.toml --to footprints -o {}",
+    "export a scene": "export car.toml --to gltf -o {}",
     "import": "import rig.csv --from csv -o {}",
     "new": "new car.npz -o {}",
     "rigs": "rigs kitti -o {}",

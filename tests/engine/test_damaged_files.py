@@ -22,7 +22,7 @@ from tests.engine.mesh_files import (
     stl_ascii,
     stl_binary,
 )
-from tests.engine.test_angle_files import BLOCK, FLOW, HESAI, XML
+from tests.engine.test_angle_files import HESAI
 from tests.engine.test_box_files import CSV, KITTI, nuscenes_box
 from tests.thorough import tries
 
@@ -43,9 +43,6 @@ GOOD = {
     "nuscenes": (pt.read_boxes, "a", json.dumps([nuscenes_box(), nuscenes_box()]).encode()),
     "hesai": (read_angles, "a", HESAI.encode()),
     "columns": (read_angles, "a", b"elevation,azimuth_offset\n5,1\n-3,-1\n"),
-    "xml": (read_angles, "a", XML.encode()),
-    "yaml, flow": (read_angles, "a", FLOW.encode()),
-    "yaml, block": (read_angles, "a", BLOCK.encode()),
     "table": (read_ap_table, "a", b"m,ap,n\n1,0.2,9\n10,0.5,8\n100,0.8,7\n"),
 }
 

@@ -385,7 +385,7 @@ def test_the_command_writes_and_reads(tmp_path, capsys, monkeypatch):
         ("prius.urdf", None, "urdf"),
         ("PRIUS.URDF", None, "urdf"),
         ("objects.json", None, "carla"),
-        ("plan.svg", None, "footprints"),
+        ("scene.glb", None, "gltf"),
         ("prius.urdf", "urdf", "urdf"),
         ("rig", "ros", None),
         ("rig.launch.xml", "ros", "ros"),

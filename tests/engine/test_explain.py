@@ -45,7 +45,7 @@ def test_explain_as_json(study, capsys):
     score = loaded.evaluator().score(loaded.rig)
     assert data["score"] == score.to_dict() and data["warnings"] == []
     seen = advice.outlook(loaded.sight(), loaded.rig)
-    assert data["words"] == list(advice.words(score, loaded.rig, loaded.vehicle, seen))
+    assert data["words"] == list(advice.rig_words(score, seen, loaded.rig))
     assert {name: data[name] for name in seen.to_dict()} == json.loads(json.dumps(seen.to_dict()))
     assert data["reach"]["class"] == "pedestrian"
 

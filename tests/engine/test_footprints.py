@@ -1,5 +1,6 @@
 """Footprints on the ground: as large as geometry says, and drawn where they are."""
 
+import importlib
 import math
 from xml.etree import ElementTree
 
@@ -8,7 +9,7 @@ import pytest
 
 import pe_core as pe
 from pe_tools.outputs import OutputRequest, scene_files
-from pe_tools.outputs.footprints import ground_plan, outline_from_above
+from pe_tools.outputs.solid import voxel_solid
 
 from .shapes import box, box_car, camera, lidar_on_roof, small_lidar
 
@@ -23,38 +24,47 @@ def area(outlines):
     return sum(float((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()) / 2.0 for a, b in edges)
 
 
-def plan_of(*sensors, vehicle=None, range_m=RANGE):
-    return ground_plan(OutputRequest(pe.Study(pe.Rig(sensors), vehicle), range_m))
+@pytest.fixture(scope="module", autouse=True)
+def plugin(example_plugin):
+    return importlib.import_module("entropy_outputs.footprints")
 
 
-def test_a_camera_that_looks_down_sees_its_picture_on_the_ground():
+@pytest.fixture
+def plan_of(plugin):
+    def plan(*sensors, vehicle=None, range_m=RANGE):
+        return plugin.ground_plan(OutputRequest(pe.Study(pe.Rig(sensors), vehicle), range_m))
+
+    return plan
+
+
+def test_a_camera_that_looks_down_sees_its_picture_on_the_ground(plan_of):
     down = camera(90.0, position=(1.0, 2.0, 3.0), rotation=(0.0, 90.0, 0.0))
     (one,) = plan_of(down)[0].footprints
     assert area(one.outlines) == pytest.approx(6.0 * 6.0 * 1080 / 1920, rel=1e-3)
     assert np.vstack(one.outlines).mean(axis=0) == pytest.approx([1.0, 2.0], abs=0.05)
 
 
-def test_a_lidar_sees_a_ring_from_its_lowest_beam_to_its_range():
+def test_a_lidar_sees_a_ring_from_its_lowest_beam_to_its_range(plan_of):
     (one,) = plan_of(lidar_on_roof(small_lidar()))[0].footprints
     inner = 1.8 / math.tan(math.radians(25.0))
     assert area(one.outlines) == pytest.approx(math.pi * (RANGE**2 - 1.8**2 - inner**2), rel=1e-3)
     assert sorted(area([loop]) > 0.0 for loop in one.outlines) == [False, True]
 
 
-def test_a_wall_hides_the_ground_behind_it():
+def test_a_wall_hides_the_ground_behind_it(plan_of):
     wall = pe.Vehicle(box((5.0, -12.0, -3.0), (5.5, 12.0, 4.0)))
     eye = camera(90.0, position=(0.0, 0.0, 1.0))
     (one,) = plan_of(eye, vehicle=wall)[0].footprints
     assert np.vstack(one.outlines)[:, 0].max() == pytest.approx(5.0, abs=1e-3)
 
 
-def test_the_body_s_outline_is_that_from_above():
-    outline = outline_from_above(box_car())
+def test_the_body_s_outline_is_that_from_above(plugin):
+    outline = plugin.outline_from_above(box_car())
     assert area(outline) == pytest.approx(4.6 * 1.8, rel=0.01)
     assert np.abs(np.vstack(outline)).max(axis=0) == pytest.approx([2.3, 0.9], abs=0.02)
 
 
-def test_what_sees_no_ground_is_reported():
+def test_what_sees_no_ground_is_reported(plan_of):
     up = camera(rotation=(0.0, -90.0, 0.0), name="up")
     plan, lines = plan_of(up)
     assert plan.footprints[0].outlines == ()
@@ -95,3 +105,11 @@ def test_the_sheet_holds_the_plan_and_a_legend_and_is_30_m_wide():
     legend = layer(drawing, "Legend")
     assert float(legend.find(f"{SVG}rect").get("x")) == -14.0
     assert float(legend.find(f"{SVG}text").get("x")) == -12.5
+
+
+def test_a_corner_at_the_very_height_of_a_cut_counts_as_above(plugin):
+    """Of a cube from 0 to 1 m a cut at 1 m has its outline, and one at 0 m has none."""
+    cube = voxel_solid("cube", np.ones((1, 1, 1), bool), np.zeros(3), 1.0)
+    (ring,) = plugin.level_outlines(cube, 1.0)
+    assert ring.min(axis=0).tolist() == [0.0, 0.0] and ring.max(axis=0).tolist() == [1.0, 1.0]
+    assert plugin.level_outlines(cube, 0.0) == ()

@@ -7,7 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.engine.hostile_files import all_cases
+import pe_core as pe
+from pe_tools.formats.xml_text import parse_xml
+from pe_tools.formats.yaml_text import parse_yaml
+from tests.engine.hostile_files import all_cases, laughs
 from tests.limits import HANG_S
 
 """Nothing is measured by this: it ends a reader that hangs, so that the test can say which."""
@@ -52,3 +55,21 @@ def test_hostile_files_are_refused_in_one_line(tmp_path_factory):
     outcomes = outcomes_of(cases, tmp_path_factory.mktemp)
     faults = {name: fault_of(outcomes.get(name), words) for name, (_, _, words) in cases.items()}
     assert {name: fault for name, fault in faults.items() if fault} == {}
+
+
+@pytest.mark.parametrize(
+    ("parse", "text", "words"),
+    [
+        (parse_xml, laughs().encode(), "XML without definitions"),
+        (parse_xml, laughs().encode("utf-16"), "expected"),
+        (parse_xml, b'<!DOCTYPE a [<!ENTITY x SYSTEM "/dev/zero">]><a>&x;</a>', "definitions"),
+        (parse_xml, b"<a>" * 100_000, "elements at most 100 deep"),
+        (parse_yaml, "a:\n- " + "{" * 100_000, "too many levels"),
+        (parse_yaml, "a: " + "9" * 1_000_000, "YAML of at most 262,144 characters"),
+        (parse_yaml, "a: &x [1]\nb: *x\n", "YAML without aliases"),
+    ],
+)
+def test_texts_that_unfold_are_refused_in_one_line(parse, text, words):
+    with pytest.raises(pe.InputError, match=words) as caught:
+        parse("file", text)
+    assert "\n" not in str(caught.value) and len(str(caught.value)) < 600

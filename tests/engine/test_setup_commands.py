@@ -1,4 +1,4 @@
-"""What installs and builds: `pe doctor`, `pe completion`, and the tools behind `make`."""
+"""What installs and builds: `pe doctor`, and the tools behind `make`."""
 
 import argparse
 import json
@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from pe_core.version import __version__
-from pe_tools.cli import setup_verbs
-from pe_tools.cli.setup_verbs import PACKAGES, SHELLS, extra_text
-from pe_tools.cli.verbs import main, parser
+from pe_tools.cli import doctor_verb
+from pe_tools.cli.doctor_verb import PACKAGES, extra_text
+from pe_tools.cli.verbs import main
 from tests.engine.test_docs import ROOT
 
 sys.path.insert(0, str(ROOT / "tools"))
@@ -38,7 +38,7 @@ def test_the_extras_are_those_that_the_project_offers():
 
 def test_versions_and_what_is_missing_are_said(monkeypatch):
     versions = {"pycollada": "0.9.3", "usd-core": "25.5"}
-    monkeypatch.setattr(setup_verbs, "_version", versions.get)
+    monkeypatch.setattr(doctor_verb, "_version", versions.get)
     assert extra_text("meshes") == "pycollada 0.9.3, usd-core 25.5"
     del versions["usd-core"]
     assert extra_text("meshes") == 'missing: pip install "perception-entropy[meshes]"'
@@ -56,62 +56,17 @@ def doctor(capsys, *more):
     return capsys.readouterr().out
 
 
-def test_the_doctor_finds_blenders_and_hides_the_home_folder(tmp_path, monkeypatch, capsys):
-    """Without a window and without an error, whatever $BLENDER is."""
+def test_the_doctor_finds_blender_and_hides_the_home_folder(tmp_path, monkeypatch, capsys):
     fake_blender(tmp_path, "echo 'Blender 4.5.1 LTS'")
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.delenv("BLENDER", raising=False)
     found = json.loads(doctor(capsys, "--json"))
-    assert found["blenders"] == {"PATH": "4.5.1 LTS (~/blender)"}
+    assert found["blender"] == "~/blender" and found["processors"] >= 1
     assert found["perception_entropy"] == __version__ and found["numpy"] == np.__version__
-    assert found["processors"] >= 1 and found["temporary_folder"].endswith("(writable)")
     assert found["python"].startswith(".".join(map(str, sys.version_info[:3])))
     monkeypatch.setenv("BLENDER", "/nowhere/blender-5")
-    lines = doctor(capsys).splitlines()
-    assert "  $BLENDER  none: /nowhere/blender-5 is no program" in lines
-    fake_blender(tmp_path, "exit 3")
-    monkeypatch.setenv("BLENDER", str(tmp_path / "blender"))
-    assert "  $BLENDER  ~/blender tells no version" in doctor(capsys).splitlines()
-    (tmp_path / "blender").unlink()
-    assert "  PATH      none" in doctor(capsys).splitlines()
-
-
-@pytest.mark.parametrize("shell", SHELLS)
-def test_the_script_of_a_shell_has_every_verb(shell, capsys):
-    pytest.importorskip("shtab")
-    assert main(["completion", shell]) == 0
-    script = capsys.readouterr().out
-    (verbs,) = (action.choices for action in parser()._actions if action.metavar == "VERB")
-    assert {"new", "doctor", "score", "review"} <= set(verbs)
-    assert [verb for verb in verbs if verb not in script] == []
-    assert "--samples" in script or "samples" in script
-
-
-def test_bash_completes_verbs_options_and_files(tmp_path, capsys):
-    """In a real bash, with the script as it is printed."""
-    pytest.importorskip("shtab")
-    bash = shutil.which("bash")
-    if bash is None:
-        pytest.skip("there is no bash")
-    assert main(["completion", "bash"]) == 0
-    (tmp_path / "pe.bash").write_text(capsys.readouterr().out)
-    (tmp_path / "study.toml").touch()
-    code = (
-        "source pe.bash; try() { COMP_WORDS=(pe $@); COMP_CWORD=$#; COMPREPLY=(); "
-        'f=$(complete -p pe | sed "s/.*-F \\([^ ]*\\).*/\\1/"); '
-        '$f pe "${!#}" "${@:$#-1:1}"; echo "${COMPREPLY[@]}"; }; '
-        "try opt; try score --samp; try score stu; try completion f"
-    )
-    run = subprocess.run([bash, "-c", code], cwd=tmp_path, capture_output=True, text=True)
-    assert run.stdout.split("\n")[:4] == ["optimize", "--samples", "study.toml", "fish"], run
-
-
-def test_without_the_library_a_line_says_what_to_install(monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "shtab", None)
-    assert main(["completion", "fish"]) == 1
-    told = capsys.readouterr()
-    assert 'pip install "perception-entropy[completion]"' in told.err and not told.out
+    assert "none: /nowhere/blender-5 is no program" in doctor(capsys)
 
 
 def test_a_release_without_its_blenders_installs_them_or_says_how(tmp_path, monkeypatch):

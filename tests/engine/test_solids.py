@@ -16,7 +16,6 @@ from pe_tools.outputs.solid import (
     free_solid,
     hidden_solid,
     joined,
-    level_outlines,
     mounted_view,
     voxel_solid,
     whole_solid,
@@ -95,14 +94,6 @@ def test_a_wall_takes_what_lies_behind_it():
     free = free_solid("free", view)
     assert free.volume == pytest.approx(10.0 * 10.0 * 1080 / 1920 * 5.0 / 3.0, rel=1e-3)
     assert hidden_solid("hidden", view).points[:, 0].min() == pytest.approx(5.0, abs=1e-6)
-
-
-def test_a_corner_at_the_very_height_of_a_cut_counts_as_above():
-    """Of a cube from 0 to 1 m a cut at 1 m has its outline, and one at 0 m has none."""
-    cube = voxel_solid("cube", np.ones((1, 1, 1), bool), np.zeros(3), 1.0)
-    (ring,) = level_outlines(cube, 1.0)
-    assert ring.min(axis=0).tolist() == [0.0, 0.0] and ring.max(axis=0).tolist() == [1.0, 1.0]
-    assert level_outlines(cube, 0.0) == ()
 
 
 def test_cubes_that_touch_along_an_edge_are_joined_by_a_third():

@@ -10,14 +10,10 @@ from typing import Any
 import ezdxf
 from ezdxf import units
 
-from pe_tools.outputs import (
-    BLIND,
-    GroundFootprint,
-    OutputRequest,
-    SceneOutput,
-    color_text,
-    ground_plan,
-)
+from pe_tools.graphics import color_text
+from pe_tools.outputs import BLIND, OutputRequest, SceneOutput
+
+from .footprints import GroundFootprint, ground_plan
 
 FILE = "footprints.dxf"
 MM = 1000.0

@@ -1,131 +1,17 @@
-"""USD (.usd, .usda, .usdc, .usdz): layers checked and counted, then read by usd-core."""
+"""USD (.usd, .usda, .usdc, .usdz): read by usd-core."""
 
 from __future__ import annotations
 
-import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pxr import Ar, Sdf, Tf, Usd, UsdGeom, UsdUtils
+from pxr import Tf, Usd, UsdGeom, UsdUtils
 
 from pe_core.base.errors import InputError
-from pe_core.base.files import MESH_BYTES
 
 from .mesh import FoundMesh, Piece, fan, found, placed
-
-MAX_LAYERS = 1_000
-MAX_PRIMS = 200_000
-"""Maximum prims of a stage; repeated instances count each time."""
-MAX_DEPTH = 1_000
-"""Maximum nesting of brackets in a text layer."""
-PACKAGE, TEXT_MAGIC = ".usdz", b"#usda"
-CHUNK_BYTES = 1 << 24
-STEPS = np.zeros(256, np.int8)
-for _open, _close in ("()", "[]", "{}"):
-    STEPS[ord(_open)], STEPS[ord(_close)] = 1, -1
-
-
-class _UsdLayers:
-    """Opened layers, and the number of prims below each of their prims.
-
-    None may be missing, no regular file, not USD or too deeply nested; references may not form a
-    circle, nor layers and prims be more than the limits: else `InputError`.
-    """
-
-    def __init__(self, source: str) -> None:
-        self._source = source
-        self._layers: dict[str, Any] = {}
-        self._counts: dict[tuple[str, Any], int] = {}
-
-    def prims_below(self, name: str, path: Any, above: tuple[tuple[str, Any], ...]) -> int:
-        """Number of prims of a prim of a layer, with all references."""
-        key = (name, path)
-        if key in above:
-            raise InputError(self._source, "references", "no cycle", f"a cycle with {name}")
-        if key not in self._counts:
-            if len(above) > MAX_DEPTH:
-                raise InputError(self._source, "references", f"at most {MAX_DEPTH} deep", "more")
-            self._counts[key] = self._count(name, path, (*above, key))
-        return self._counts[key]
-
-    def _count(self, name: str, path: Any, above: tuple[tuple[str, Any], ...]) -> int:
-        layer = self._layer(name)
-        if path == Sdf.Path.absoluteRootPath:
-            specs = list(layer.rootPrims)
-            total = sum(
-                self.prims_below(str(layer.ComputeAbsolutePath(sublayer)), path, above)
-                for sublayer in layer.subLayerPaths
-            )
-        else:
-            spec = layer.GetPrimAtPath(path)
-            specs, total = ([] if spec is None else [spec]), 0
-        while specs:
-            spec = specs.pop()
-            total += 1
-            for to, inner in self._referred(name, layer, spec):
-                total += self.prims_below(to, inner, above)
-            specs += list(spec.nameChildren)
-            for variants in spec.variantSets.values():
-                specs += [variant.primSpec for variant in variants.variants.values()]
-            if total > MAX_PRIMS:
-                found = "more, counted with all references"
-                raise InputError(self._source, "prims", f"at most {MAX_PRIMS:,}", found)
-        return total
-
-    def _referred(self, name: str, layer: Any, spec: Any) -> Iterator[tuple[str, Any]]:
-        """Yield the layer and prim of every reference and payload of a prim."""
-        for references in (spec.referenceList, spec.payloadList):
-            for reference in references.GetAddedOrExplicitItems():
-                layer_name = (
-                    str(layer.ComputeAbsolutePath(reference.assetPath))
-                    if reference.assetPath
-                    else name
-                )
-                inner = reference.primPath
-                if inner.isEmpty:
-                    default = self._layer(layer_name).defaultPrim
-                    inner = Sdf.Path(f"/{default}") if default else Sdf.Path.absoluteRootPath
-                yield layer_name, inner
-
-    def _layer(self, name: str) -> Any:
-        if name not in self._layers:
-            if len(self._layers) >= MAX_LAYERS:
-                raise InputError(self._source, "layers", f"at most {MAX_LAYERS:,}", "more")
-            package = Ar.SplitPackageRelativePathOuter(name)[0] if "[" in name else name
-            _check_file(self._source, Path(package))
-            try:
-                layer = Sdf.Layer.FindOrOpen(name)
-            except Tf.ErrorException as error:
-                lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-                raise InputError(name, "file", "USD", [*lines, "an error"][0]) from error
-            if layer is None:
-                raise InputError(name, "file", "USD", "another file")
-            self._layers[name] = layer
-        return self._layers[name]
-
-
-def _check_file(source: str, path: Path) -> None:
-    """Raise `InputError` unless a layer's file exists, is regular and not too deeply nested."""
-    if not path.exists():
-        raise InputError(source, "references", "existing files", f"no file at {path}")
-    if not path.is_file():
-        raise InputError(path, "file", "a regular file", "something else")
-    if path.stat().st_size > MESH_BYTES:
-        raise InputError(path, "size", f"at most {MESH_BYTES:,} bytes", f"{path.stat().st_size:,}")
-    if path.suffix.lower() == PACKAGE and not zipfile.is_zipfile(path):
-        raise InputError(path, "file", "a whole package (.usdz)", "one that is cut short")
-    with path.open("rb") as file:
-        if file.read(len(TEXT_MAGIC)) != TEXT_MAGIC:
-            return
-        depth = 0
-        while chunk := file.read(CHUNK_BYTES):
-            depths = depth + np.cumsum(STEPS[np.frombuffer(chunk, np.uint8)], dtype=np.int64)
-            if int(depths.max()) > MAX_DEPTH:
-                raise InputError(path, "brackets", f"at most {MAX_DEPTH:,} deep", "more")
-            depth = int(depths[-1])
-
 
 HIDDEN_PURPOSES = ("guide", "proxy")
 
@@ -140,7 +26,6 @@ def read_usd(path: Path, _data: bytes) -> FoundMesh:
     source = str(path)
     diagnostics = UsdUtils.CoalescingDiagnosticDelegate()  # while it exists, USD prints nothing
     try:
-        _UsdLayers(source).prims_below(source, Sdf.Path.absoluteRootPath, ())
         stage = Usd.Stage.Open(source)
         if errors := stage.GetCompositionErrors():
             problem = " ".join(str(errors[0]).split())

@@ -1,4 +1,7 @@
-"""Rendering: cast rays, shade paint and ground under sun and sky, antialias the edges."""
+"""Rendering: cast rays, shade paint and ground under sun and sky, antialias the edges.
+
+Rays cast from a lamp far away show what the sun illuminates; everything else is in its shadow.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pe_core.base.arrays import Flags, Floats
+from pe_core.base.arrays import Flags, Floats, Ints
 
 from ... import graphics
-from .illumination import skylight, sun_position, sunlight
 from .painted_mesh import unit
 from .ray_scene import GROUND, NOTHING, SKY, RayCamera, RayHits, RayScene
 
@@ -26,6 +27,14 @@ KNEE = 0.75
 OUTSIDE_LENS = (0.11, 0.115, 0.125)
 """Colour outside the image circle of a lens; sRGB."""
 
+SUN_M = 1000.0
+"""Distance of the lamp that stands for the sun."""
+SHADOW = 12.0
+"""Ground farther than this from every solid is in no shadow, in heights of the solid."""
+SURFACE_OFFSET_M = 0.02
+"""Distance from a surface at which its light is evaluated."""
+STANDS_M = 0.5
+"""A solid whose lowest point is higher takes no sky from the ground."""
 SUBPIXELS = ((-0.375, -0.125), (-0.125, 0.375), (0.125, -0.375), (0.375, 0.125))
 """Rays within a pixel at an edge: no two in one row or column."""
 EDGE_COSINE = 0.92
@@ -52,40 +61,58 @@ class Environment:
 def render(camera: RayCamera, scene: RayScene, environment: Environment) -> Floats:
     """(H, W, 3) sRGB, 0 to 1: the picture of a scene; pixels at edges are means of several rays."""
     shape = camera.height, camera.width
-    light = sun_position(scene, environment.sun)
     hits = scene.first_hits(camera, camera.directions())
-    sun = sunlight(scene, hits, light)
-    sky = skylight(scene, hits, (camera.width, camera.height))
-    colors = shade(hits, environment, sun, sky, camera.pixel_rad)
+    sun = sunlight(scene, hits, environment.sun)
+    colors = shade(hits, environment, sun, skylight(scene, hits), camera.pixel_rad)
     edges = np.flatnonzero(_edges(hits, sun, shape))
     row, column = np.divmod(edges, camera.width)
     total = np.zeros((len(edges), 3))
     for right, down in SUBPIXELS:
         rays = camera.rays_through(column + 0.5 + right, row + 0.5 + down)
         subpixel = scene.first_hits(camera, rays)
-        sun_there = sunlight(scene, subpixel, light)
-        sky_there = _skylight_at(subpixel, sky, hits, edges, shape)
-        total += shade(subpixel, environment, sun_there, sky_there, camera.pixel_rad)
+        light = sunlight(scene, subpixel, environment.sun), skylight(scene, subpixel)
+        total += shade(subpixel, environment, *light, camera.pixel_rad)
     colors[edges] = total / len(SUBPIXELS)
     return colors.reshape(*shape, 3)
 
 
-def _skylight_at(
-    subpixel: RayHits, sky: Floats, hits: RayHits, edges: NDArray[np.int64], shape: tuple[int, int]
-) -> Floats:
-    """(E,) skylight of rays within pixels: that of neighbouring pixels on the same surface."""
-    row, column = np.divmod(edges, shape[1])
-    total, weight = 1e-6 * sky[edges], np.full(len(edges), 1e-6)
-    for dy in (-1, 0, 1):
-        for dx in (-1, 0, 1):
-            i, j = np.clip(row + dy, 0, shape[0] - 1), np.clip(column + dx, 0, shape[1] - 1)
-            pixel = i * shape[1] + j
-            same = (hits.surface[pixel] == subpixel.surface).astype(float)
-            along = (hits.normals[pixel] * subpixel.normals).sum(axis=1)
-            same *= np.maximum(along, 0.0) ** 4
-            total += same * sky[pixel]
-            weight += same
-    return total / weight
+def sunlight(scene: RayScene, hits: RayHits, direction: Floats) -> Floats:
+    """(N,) share of full light from a sun in a direction (3,): 0 in the shade."""
+    sun = unit(direction) * SUN_M
+    light = np.zeros(len(hits.surface))
+    pixels = np.flatnonzero(hits.is_surface)
+    points, normals = hits.points[pixels], hits.normals[pixels]
+    slope = (unit(sun - points) * normals).sum(axis=1)
+    facing = slope > 0.0
+    pixels, points, slope = pixels[facing], points[facing], slope[facing]
+    near = np.flatnonzero(_may_be_shaded(scene, hits, pixels))
+    lit = np.ones(len(pixels), bool)
+    lit[near] = scene.lit(sun, points[near] + SURFACE_OFFSET_M * normals[facing][near])
+    light[pixels] = slope * lit
+    return light
+
+
+def skylight(scene: RayScene, hits: RayHits) -> Floats:
+    """(N,) share of the sky that surfaces see: the ground beside a solid less."""
+    sky, at = np.ones(len(hits.surface)), np.flatnonzero(hits.surface == GROUND)
+    points = hits.points[at, :2]
+    for low, high in (solid.mesh.bounds for solid in scene.solids):
+        if low[2] < STANDS_M:
+            away = np.maximum(np.maximum(low[:2] - points, points - high[:2]), 0.0)
+            away = np.hypot(away[:, 0], away[:, 1])
+            sky[at] *= 0.3 + 0.7 * away / np.hypot(away, 0.4 * float(high[2]))
+    return sky
+
+
+def _may_be_shaded(scene: RayScene, hits: RayHits, pixels: Ints) -> Flags:
+    """Return which pixels show a solid, or ground as near to one as shadows are long."""
+    near = hits.surface[pixels] > GROUND
+    x, y = hits.points[pixels, 0], hits.points[pixels, 1]
+    for low, high in (solid.mesh.bounds for solid in scene.solids):
+        far = SHADOW * float(high[2])
+        inside = (x > low[0] - far) & (x < high[0] + far) & (y > low[1] - far) & (y < high[1] + far)
+        near |= inside & (hits.surface[pixels] == GROUND)
+    return near
 
 
 def _edges(hits: RayHits, sun: Floats, shape: tuple[int, int]) -> Flags:

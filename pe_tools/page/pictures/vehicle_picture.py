@@ -6,7 +6,7 @@ Sensors are drawn in their colours, with housings of the size that data sheets s
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from markupsafe import Markup
@@ -15,8 +15,8 @@ import pe_core as pe
 from pe_core import catalog, scene
 from pe_core.base.arrays import Floats
 
-from ... import graphics
-from ..report_context import ReportContext
+from ... import graphics, jobs
+from ..report_context import MAX_TRIANGLES, ReportContext
 from .painted_mesh import Paint, PaintedMesh, lathe, painted_vehicle, rounded_box
 from .ray_scene import RayScene, Viewpoint
 from .rendering import Environment, render
@@ -34,6 +34,13 @@ FLOOR = graphics.linear_of_srgb(np.array([0.905, 0.912, 0.92]))
 SUN = np.array([0.45, -0.62, 1.05])
 NO_VEHICLE_BOUNDS = (np.array([-2.0, -1.0, 0.0]), np.array([2.0, 1.0, 1.5]))
 """Bounds that the picture shows without a vehicle [m]."""
+SCALE, LINE_PX = 5.0 / 3.0, 24.0
+"""Of the pixels in a picture's file; height of a line below it [px of `SIZE`]."""
+HEAD = (
+    '<svg xmlns="http://www.w3.org/2000/svg" font-family="Arial, Helvetica, sans-serif" '
+    'font-size="15" fill="#1b1f24"'
+)
+STYLE = "<style>.number { fill: #fff; font-weight: bold }</style>"
 LABEL_RISE, RADIUS = 46.0, 15.0
 """Distance of a number above its sensor, and radius of its disc [px]."""
 LABEL_SPACING = 34.0
@@ -123,7 +130,13 @@ def labelled_picture(context: ReportContext, alt: str) -> LabelledVehicle:
     png = context.cached("still", lambda: vehicle_picture(vehicle, rig, SIZE))
     width, height = map(float, SIZE)
     canvas = Canvas(width, height, alt)
-    canvas.picture(png, (0.0, 0.0, width, height))
+    _draw(canvas, png, vehicle, rig)
+    return LabelledVehicle(canvas.svg(), sensor_key(rig))
+
+
+def _draw(canvas: Canvas, png: bytes, vehicle: pe.Vehicle | None, rig: pe.Rig) -> None:
+    """Draw a picture with the number of each sensor."""
+    canvas.picture(png, (0.0, 0.0, float(SIZE[0]), float(SIZE[1])))
     for label in labels(vehicle, rig, default_view(vehicle, rig)):
         # Draw a disc with a number, and a line to its sensor: dashed if the vehicle hides it.
         end, disc, color = label.end, label.disc, graphics.color_text(label.color)
@@ -134,7 +147,42 @@ def labelled_picture(context: ReportContext, alt: str) -> LabelledVehicle:
             canvas.add("circle", cx=end[0], cy=end[1], r=4.0, fill=color, stroke="#1b1f24")
         canvas.add("circle", cx=disc[0], cy=disc[1], r=RADIUS, fill=color, stroke="#1b1f24")
         canvas.text(disc[0], disc[1] + 6.0, str(label.number), text_anchor="middle", css="number")
-    return LabelledVehicle(canvas.svg(), sensor_key(rig))
+
+
+def picture_file(study: pe.Study, outcome: jobs.Outcome | None = None) -> bytes:
+    """Return the picture of a study's rig on its vehicle as an SVG file, with numbers and their
+    key; above it the figures of an outcome."""
+    vehicle, rig = study.vehicle, study.rig
+    if vehicle is not None:
+        vehicle, _ = graphics.simplified(vehicle, MAX_TRIANGLES)
+    width, height = map(float, SIZE)
+    canvas = Canvas(width, height + LINE_PX * (len(rig) + 1), "The vehicle with its sensors")
+    canvas.add("rect", width=width, height=canvas.height, fill="#fff")
+    size = round(SCALE * SIZE[0]), round(SCALE * SIZE[1])
+    _draw(canvas, vehicle_picture(vehicle, rig, size), vehicle, rig)
+    for number, name, model, color in sensor_key(rig):
+        down = height + LINE_PX * number
+        canvas.add("circle", cx=LINE_PX, cy=down - 5.0, r=6.0, fill=color, stroke="#1b1f24")
+        canvas.text(2.0 * LINE_PX, down, f"{number}  {name} ({model})")
+    for number, line in enumerate([] if outcome is None else _figures(outcome), 1):
+        canvas.text(LINE_PX, LINE_PX * (number + 0.5), line)
+    return str(canvas.svg()).replace("<svg", HEAD, 1).replace(">", f">{STYLE}", 1).encode()
+
+
+def picture_output(request: Any) -> tuple[dict[str, bytes], list[str]]:
+    """Return the picture of an `OutputRequest`, which has no figures, as files by name."""
+    return {"picture.svg": picture_file(request.study)}, []
+
+
+def _figures(outcome: jobs.Outcome) -> list[str]:
+    """Return entropy and coverage, of a search before and after; first what it searched for."""
+    both = [outcome.before, outcome.after][outcome.kind == "score" :]
+    arrow = " \N{RIGHTWARDS ARROW} "
+    lines = [] if outcome.in_traffic is None else [f"{each.ap:.3f}" for each in outcome.in_traffic]
+    lines = [f"Expected AP in traffic {arrow.join(lines)} (higher is better)"] if lines else []
+    entropy, coverage = ([f"{s.entropy:.3f}" for s in both], [f"{s.coverage:.1%}" for s in both])
+    lines.append(f"Perception entropy {arrow.join(entropy)} nats (lower is better)")
+    return [*lines, f"Coverage {arrow.join(coverage)}"]
 
 
 class NumberLabel(NamedTuple):

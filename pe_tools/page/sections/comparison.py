@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -25,7 +24,6 @@ from .score import hidden_sensor_lines
 
 NO_PRICE = "no price"
 SIDES = {"front": "ahead", "rear": "behind", "left": "left", "right": "right"}
-PAGE_NOTATION = advice.Notation(number, plus_minus="±")
 METRE_DIGITS, DEGREE_DIGITS = 3, 2
 MAP_ENDS = ("8 nats less here", "8 nats less here")
 
@@ -113,8 +111,7 @@ def _summary_lines(
     names = [macros().bold_study(context) for context in contexts]
     if apart := advice.disagreement(names, rows):
         yield apart
-    yield from advice.ranking(names, rows, PAGE_NOTATION)
-    yield from advice.win_words(names, [replace(row, name=escaped(row.name)) for row in rows])
+    yield from (line.replace(" +- ", " ± ") for line in advice.ranking(names, rows))
     for name, context in zip(names, contexts, strict=True):
         yield from (f"{name}: {line}." for line in hidden_sensor_lines(context))
     if len({context.study.vehicle_line for context in contexts}) > 1:

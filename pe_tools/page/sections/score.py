@@ -77,14 +77,7 @@ def hidden_sensor_lines(context: ReportContext) -> list[str]:
 
 def warnings_and_text(context: ReportContext) -> dict[str, Any]:
     """Return the warnings about the study, and its score as text."""
-    lines: list[tuple[str, list[str]]] = []
-    for line in advice.words(
-        context.after, context.rig, context.vehicle, context.outlook, context.outcome.warnings
-    ):
-        if line.startswith(" ") and lines:
-            lines[-1][1].append(line.strip())
-        else:
-            lines.append((line.strip(), []))
+    lines = advice.rig_words(context.after, context.outlook, context.rig, context.outcome.warnings)
     shown, error_m = context.display_vehicle
     simplified = shown is not context.vehicle
     return {"lines": lines, "simplified": simplified, "shown": shown, "error_m": error_m}

@@ -16,8 +16,7 @@ import rerun.blueprint as rrb
 from pe_core import Sensor
 from pe_core.scene import rotate
 from pe_core.sensors import kind_of
-
-from ..exchange import (
+from pe_tools.exchange import (
     MAX_BEAMS,
     Written,
     portable_sensors,
@@ -25,10 +24,11 @@ from ..exchange import (
     straight,
     with_pictures,
 )
-from ..graphics import COVERAGE, ENTROPY, Rgb, drawing_of, ground_map, sensor_colors
-from .glb import view_wires
-from .request import BLIND, BODY, GLASS, OutputRequest, plain_names
-from .solid import blind_volume, mounted_view
+from pe_tools.graphics import COVERAGE, ENTROPY, Rgb, drawing_of, ground_map, sensor_colors
+from pe_tools.outputs import SceneOutput
+from pe_tools.outputs.glb import view_wires
+from pe_tools.outputs.request import BLIND, BODY, GLASS, OutputRequest, plain_names
+from pe_tools.outputs.solid import blind_volume, mounted_view
 
 FILE, APPLICATION = "scene.rrd", "perception_entropy"
 WORLD, VEHICLE, SENSORS, BEAMS, GROUND = "world", "vehicle", "sensors", "beams", "ground"
@@ -179,3 +179,6 @@ def _mesh(points: Any, faces: Any, color: list[int]) -> Any:
 def _rgba(color: Rgb) -> list[int]:
     """Return an opaque colour: Rerun 0.23 draws meshes so, whatever their alpha."""
     return [*(round(255 * value) for value in color), 255]
+
+
+OUTPUT = SceneOutput("rerun", "Rerun Recording", FILE, write)

@@ -14,16 +14,16 @@ from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 
-from pe_core.base.arrays import Floats
+from pe_core.base.arrays import Floats, Ints
 from pe_core.base.errors import InputError
 from pe_core.scene import PerceptionSpace, Pose, Vehicle
-from pe_core.scoring.sight.ground_cells import outlines
+from pe_core.scoring.sight.ground_cells import chained, outlines
 from pe_core.sensors import kind_of
-
-from ..exchange import Written
-from ..graphics import Rgb, color_text, sensor_colors_on_paper
-from .request import BLIND, BODY, OutputRequest, plain_names
-from .solid import free_solid, level_outlines, mounted_view
+from pe_tools.exchange import Written
+from pe_tools.graphics import Rgb, color_text, sensor_colors_on_paper
+from pe_tools.outputs import SceneOutput
+from pe_tools.outputs.request import BLIND, BODY, OutputRequest, plain_names
+from pe_tools.outputs.solid import Solid, free_solid, mounted_view
 
 STEP = math.radians(0.5)
 REACH_M = 30.0
@@ -108,6 +108,32 @@ def ground_plan(request: OutputRequest) -> tuple[GroundPlan, list[str]]:
     except InputError as error:
         lines.append(f"no blind ground: {error}")
     return GroundPlan(tuple(footprints), outline_from_above(study.vehicle), blind), lines
+
+
+def level_outlines(solid: Solid, height: float) -> tuple[Floats, ...]:
+    """Return the closed outlines (N, 2) of a solid's cross-section at a height [m]. The inside is
+    on the left. The last point repeats the first. A corner at exactly this height counts as
+    above."""
+    above = solid.points[solid.faces][..., 2] >= height
+    cut = above.any(axis=1) & ~above.all(axis=1)
+    faces, above = solid.faces[cut], above[cut]
+    # Counter-clockwise from outside: an outline comes in where an edge leads down through the
+    # plane, and goes on to the triangle beside where one leads up.
+    down, up = _leading(faces, above), _leading(faces, ~above)
+    # The points (E, 2) where edges (E, 2) cross a height [m].
+    start, end = solid.points[down[:, 0]], solid.points[down[:, 1]]
+    share = (height - start[:, 2]) / (end[:, 2] - start[:, 2])
+    points = start[:, :2] + share[:, None] * (end - start)[:, :2]
+    numbers, back = (edge.min(axis=1) * len(solid.points) + edge.max(axis=1) for edge in (down, up))
+    row = {number: k for k, number in enumerate(numbers.tolist())}
+    return tuple(points[[row[number] for number in loop]] for loop in chained(numbers, back))
+
+
+def _leading(faces: Ints, first: Ints) -> Ints:
+    """Return the edge (T, 2) of each triangle that runs from a flagged to an unflagged corner."""
+    corner = np.argmax(first & ~np.roll(first, -1, axis=1), axis=1)
+    row = np.arange(len(faces))
+    return np.stack([faces[row, corner], faces[row, (corner + 1) % 3]], axis=1)
 
 
 def outline_from_above(vehicle: Vehicle) -> ClosedLines:
@@ -225,3 +251,6 @@ def _legend(plan: GroundPlan, x: float, top: float) -> list[str]:
 
 def _text(x: float, y: float, text: str) -> str:
     return f'<text x="{x:.2f}" y="{y:.2f}" font-size="{TEXT}">{escape(text)}</text>'
+
+
+OUTPUT = SceneOutput("footprints", "Footprints on the Ground (SVG)", FILE, write)

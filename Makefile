@@ -58,9 +58,11 @@ screenshots: .venv/dev.stamp  ## make docs/images in a real window; ARGS="guide"
 .venv/run.stamp: pyproject.toml tools/make_venv.sh
 	@tools/make_venv.sh blender $@
 
-# The library of the detectors takes 1.6 GB: CI alone has it, and else who asks for it.
-.venv/dev.stamp: .venv/run.stamp
+# The library of the detectors takes 1.6 GB: CI alone has it, and else who asks for it. Not after
+# run.stamp, of which it has all: pip would build the project twice.
+.venv/dev.stamp: pyproject.toml tools/make_venv.sh
 	@tools/make_venv.sh blender,test,meshes,argoverse,docs,dev$(if $(CI),$(comma)studies) $@
+	@[ ! -e $@ ] || touch .venv/run.stamp
 
 .venv/docs.stamp: .venv/run.stamp
 	@tools/make_venv.sh blender,docs,notebook $@

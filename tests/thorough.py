@@ -16,15 +16,15 @@ def tries(by_default: int, in_ci: int) -> int:
 
 
 def pairs(first: Iterable, second: Iterable) -> list[tuple]:
-    """Return combinations of two parameters: by default each value once, in CI three times or more.
+    """Return combinations of two parameters: by default each value once, in CI twice or more.
 
     The default is a diagonal: as many combinations as the longer parameter has values. In CI there
-    are three, each a step beside the one before; of at most three columns or rows these are all.
+    are two, the second a step beside the first.
     """
     rows, columns = list(first), list(second)
     if len(rows) < len(columns):
         return [(row, column) for column, row in pairs(columns, rows)]
-    beside = range(min(3, len(columns)) if THOROUGH else 1)
+    beside = range(min(2, len(columns)) if THOROUGH else 1)
     return [
         (row, columns[(k + step) % len(columns)]) for k, row in enumerate(rows) for step in beside
     ]

@@ -166,13 +166,3 @@ def test_the_demo_searches_by_default_for_a_lidar_and_a_camera(addon, tmp_path):
     assert all(sensor.name in moved for sensor in rig)
     assert result["cost"] in better
     assert opened.split()[1] == str(tmp_path / "review.html")
-
-
-def test_the_best_height_lies_above_the_roof_unprompted(sedan):
-    few = {"samples": 4096, "schedule": pe.Schedule(candidates=12), "method": "random"}
-    job = pt.OptimizeJob(replace(sedan, search=replace(sedan.search, **few), samples=4096), 1)
-    for _ in job:
-        pass
-    outcome = job.outcome
-    assert outcome.after.entropy < outcome.before.entropy
-    assert outcome.study.rig.sensors[0].pose.position[2] >= ROOF_M

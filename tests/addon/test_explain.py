@@ -9,7 +9,6 @@ import pytest
 from blender_addon import bridge, diagnostics, location_query, panels
 from blender_addon.engine import advice, pe
 from tests.addon import scenes
-from tests.addon.command_line import run_here
 from tests.addon.layouts import Layout, Window, drawn
 
 
@@ -40,16 +39,6 @@ def carry(scene, change):
     for obj in scene.perception_entropy.vehicle.all_objects:
         change(obj)
     bpy.context.view_layer.update()
-
-
-def test_nothing_is_odd_about_a_car_with_a_lidar_on_its_roof(car):
-    assert told(car) == []
-
-
-def test_the_vehicle_is_reported_in_a_line_under_its_field(car):
-    diagnostics.run_checks()
-    line = "4.00 x 1.80 x 1.30 m, lies along x, 24 triangles, 2 parts"
-    assert car.perception_entropy.vehicle_line == line
 
 
 def test_a_sunk_vehicle_is_lifted_with_the_sensor_on_it(car):
@@ -180,12 +169,6 @@ def test_a_place_is_asked_as_the_engine_does(car):
     assert location_query.answer(car) is None
 
 
-def test_a_place_outside_the_space_is_reported_in_one_line(car):
-    bpy.ops.pe.ask_place(point=(600.0, 3.0, 0.0))
-    (line,) = location_query.answer(car).lines
-    assert "inside the space" in line
-
-
 def test_another_file_brings_no_answer_of_this_one(car):
     bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0))
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
@@ -220,13 +203,6 @@ def test_a_lost_library_is_reported_by_name_and_marks_the_result(car, tmp_path):
     assert "library.blend" in settings.result_missing
     assert settings.result_entropy != pytest.approx(whole, abs=1e-6), "nothing was missing"
     assert '"code": "missing"' in settings.result_json
-
-
-def test_a_lost_library_is_reported_without_a_window(car, tmp_path):
-    path, _ = lost_roof(tmp_path)
-    answer = run_here(path, "score", "--samples", "4096")
-    assert answer.returncode == 0
-    assert "cabin is missing" in answer.stdout + answer.stderr
 
 
 def test_a_driver_that_failed_is_reported_by_name(car):

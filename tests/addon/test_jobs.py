@@ -202,11 +202,11 @@ CHANGES = {
 }
 
 
-ROWS = pytest.mark.parametrize("row", [jobs.SCORE, jobs.OPTIMIZE], ids=lambda row: row.name)
-
-
-@ROWS
-@pytest.mark.parametrize("change", CHANGES)
+@pytest.mark.parametrize(
+    ("row", "change"),
+    [*((jobs.SCORE, each) for each in CHANGES), (jobs.OPTIMIZE, "sensor moved")],
+    ids=lambda of: getattr(of, "name", of),
+)
 def test_a_change_while_a_job_runs_leaves_its_result_stale(car, row, change):
     moving = scenes.add_sensor("other", model="Pandar40", location=(1.9, 0.0, 1.0))
     moving.perception_entropy.free = (False,) * 6
@@ -216,14 +216,7 @@ def test_a_change_while_a_job_runs_leaves_its_result_stale(car, row, change):
     car.frame_set(1)
     finished_after(car, row, lambda: CHANGES[change](car))
     # What the search has placed stands where it put it, wherever it was meanwhile.
-    placed_over = row is jobs.OPTIMIZE and change == "sensor moved"
-    assert car.perception_entropy.result_stale != placed_over
-
-
-@ROWS
-def test_without_a_change_a_job_s_result_stands(car, row):
-    finished_after(car, row, lambda: None)
-    assert not car.perception_entropy.result_stale
+    assert car.perception_entropy.result_stale == (row is jobs.SCORE)
 
 
 def test_the_start_of_a_search_is_not_scored_again_when_it_is_known(car, monkeypatch):

@@ -26,7 +26,7 @@ from blender_addon.overlay import draw_handler, scheduler
 from tests.thorough import tries
 
 ROOT = Path(blender_addon.__file__).parents[1]
-ROUNDS = tries(10, 100)
+ROUNDS = tries(10, 30)
 
 
 SIGNALS = (

@@ -18,13 +18,12 @@ from pe_core.scoring.sight.blind_ground import body_rectangle
 from pe_core.scoring.sight.ground_cells import GroundCells, dilated, squares_touching, widened
 from pe_tools.graphics import simplified
 from tests.engine import oracle, shapes
-from tests.thorough import THOROUGH, tries
 
 ASSETS = Path(__file__).parents[2] / "blend_assets"
 SPACE = pe.PerceptionSpace((-12, 12), (-10, 10), (0, 3), 0.1)
-WITHIN_M = 4.0 if THOROUGH else 2.5
+WITHIN_M = 2.5
 RADIUS = 0.15
-PLACES = tries(80, 200)
+PLACES = 80
 SURE_RADIUS = 0.07
 """What is blind lies within `FAR_M` of a hole in which nothing is seen, at least so large."""
 FAR_M = 0.15 + SURE_RADIUS * math.sqrt(2.0)
@@ -220,7 +219,7 @@ def test_no_unseen_body_stands_where_nothing_is_reported_and_no_edge_is_far_out(
     assert holes.reshape(16, -1).any(axis=1).all()
 
 
-BEARINGS = np.arange(0.0, 360.0, 0.25 if THOROUGH else 0.5)
+BEARINGS = np.arange(0.0, 360.0, 0.5)
 FINE = pe.Lidar("fine", np.radians([-6.0, -4.5, -3.5, -2.5, -1.5, 0.0]), 2400, 60.0)
 """Its beams are 5 cm apart, 20 m away, so that no gap between them is blind."""
 SECTORS = {

@@ -46,7 +46,7 @@ def test_a_bound_is_one_and_is_reported_only_where_it_settles_the_matter(blind):
         pe.Evaluator(SPACE, pe.Prior.road(), VEHICLE, samples=4096, model=model) for _ in range(2)
     )
     bounds = 0
-    for _ in range(tries(10, 25)):
+    for _ in range(10):
         rig = sensors(rng)
         exact = plain.entropy(rig)
         for cutoff in (exact - 1.0, exact - 0.01, exact, exact + 1e-6, exact + 1.0, math.inf):
@@ -72,7 +72,7 @@ def test_a_search_finds_the_same_with_bounds_and_without():
 
     rig = sensors(np.random.default_rng(7))
     space = SearchSpace.on_vehicle(rig, VEHICLE)
-    schedule = pe.Schedule(candidates=tries(2, 5))
+    schedule = pe.Schedule(candidates=2)
     found = []
     for kind in (pe.Evaluator, Plain):
         evaluator = kind(SPACE, pe.Prior.road(), VEHICLE, samples=4096)
@@ -103,7 +103,7 @@ def test_a_bound_on_objects_is_one_and_never_rejects_what_is_better(traffic, bli
     rng, model = np.random.default_rng(9), pe.PerceptionModel(blind=blind)
     evaluator, plain = (on_objects(traffic, model=model) for _ in range(2))
     bounds, elsewhere = 0, sensors(rng)
-    for _ in range(tries(5, 25)):
+    for _ in range(tries(5, 10)):
         rig = sensors(rng)
         exact = plain.entropy(rig)
         for cutoff in (exact - 4.0, exact - 2.0, exact - 1.0, exact, exact + 1e-9, math.inf):

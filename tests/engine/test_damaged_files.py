@@ -26,7 +26,7 @@ from tests.engine.test_angle_files import HESAI
 from tests.engine.test_box_files import CSV, KITTI, nuscenes_box
 from tests.thorough import tries
 
-DAMAGES = tries(80, 300)
+DAMAGES = tries(80, 150)
 WORDS = [b"nan", b"-inf", b"1e308", b"-1", b"0", b"9" * 5000, b"\xff\xfe", b"\0", b"\xed\xa0\x80"]
 WORDS += [b"[", b'"', b"\n", b"\x1b[2J", b"\xe2\x80\xae", b"<!ENTITY a 'b'>", b"&a;", b"1_0", b"\\"]
 

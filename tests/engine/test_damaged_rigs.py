@@ -15,7 +15,7 @@ from tests.engine.test_damaged_files import damaged
 from tests.thorough import tries
 
 AXLE = pe.Reference(-1.31, 0.33)
-DAMAGES = tries(20, 60)
+DAMAGES = tries(20, 40)
 """A file; a longer hunt: `python -m tests.engine.test_damaged_rigs 5000 8`."""
 NUMBER = re.compile(rb"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 ODD = [b"nan", b"inf", b"-inf", b"1e308", b"-1e308", b"1e-320", b"0", b"-1", b"1", b"", b"one"]

@@ -35,11 +35,17 @@ def study(objectives=("entropy", "height"), points=4, **more):
 
 
 @pytest.fixture(scope="module")
-def found():
+def whole():
+    """A job that has found a front."""
     job = FrontJob(study(), 1)
     steps = list(job)
     assert steps[-1].stage == "done" and {s.stage for s in steps} > {"searching 4 points"}
-    return job.trade_off
+    return job
+
+
+@pytest.fixture(scope="module")
+def found(whole):
+    return whole.trade_off
 
 
 def test_no_design_of_the_front_is_beaten_and_its_figures_are_those_of_its_rig(found):
@@ -182,15 +188,13 @@ def test_the_command_line_writes_the_front_of_the_job(found, tmp_path, capsys):
     assert (tmp_path / "out" / "front.html").exists()
 
 
-def test_a_front_that_resumes_is_the_same(found):
-    whole = FrontJob(study(), 1)
-    list(whole)
+def test_a_front_that_resumes_is_the_same(whole):
     again = FrontJob(study(), 1)
     entries = whole.journals.entries()
     again.journals = FrontJournals({n: rows[: len(rows) // 2] for n, rows in entries.items()})
     list(again)
     assert again.journals.entries() == entries
-    one, other = (front_dict(each) for each in (again.trade_off, found))
+    one, other = (front_dict(each) for each in (again.trade_off, whole.trade_off))
     assert {**one, "run": 0} == {**other, "run": 0}
 
 

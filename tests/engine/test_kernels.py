@@ -130,17 +130,17 @@ def test_grid_and_sample_equal_the_definition(model, pose):
     if not on_grid(sensor, SPACE, vehicle).any():  # nothing in view: not of a small cone up there
         return
     rng = np.random.default_rng(number)
-    index = some_voxels(sensor, SPACE, vehicle, rng, tries(300, 600))
+    index = some_voxels(sensor, SPACE, vehicle, rng, 300)
     assert np.count_nonzero(assert_defined(sensor, SPACE, index, vehicle)) > 100
 
 
-@pytest.mark.parametrize("seed", range(tries(2, 6)))
+@pytest.mark.parametrize("seed", range(tries(2, 3)))
 def test_an_upright_lidar_anywhere_on_the_vehicle(seed):
     rng = np.random.default_rng(seed)
     place = rng.uniform((-2.5, -1.0, 0.5), (2.5, 1.0, 2.2)).round(2)
     yaw = float(rng.choice([0.0, rng.uniform(-180, 180)]))
     sensor = pe.Sensor("s", MODELS["paper"], pe.Pose.from_degrees(place, (0.0, 0.0, yaw)))
-    index = some_voxels(sensor, SPACE, CAR, rng, tries(100, 200))
+    index = some_voxels(sensor, SPACE, CAR, rng, 100)
     expected = assert_defined(sensor, SPACE, index, CAR)
     voxels = Voxels(SPACE, index, SPACE.center_of(index))
     few = kind_of(sensor).on_sample(voxels, CAR, 10).measure(sensor, False).m

@@ -5,7 +5,7 @@ import math
 import pytest
 
 import pe_core as pe
-from pe_core.base.values import FINITE, Name, Number, Whole, listed, vector
+from pe_core.base.values import Whole, listed
 from tests.engine import shapes
 
 
@@ -30,24 +30,6 @@ def test_a_study_is_made_of_what_it_is_made_of(key):
     fields = {"rig": pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])} | {key: "road"}
     with pytest.raises(pe.InputError, match=f"study: {key}: expected a .*, found str"):
         pe.Study(**fields)
-
-
-def test_a_name_that_is_too_long_is_quoted_by_its_first_twenty_letters():
-    with pytest.raises(pe.InputError) as caught:
-        Name().checked("x", "name", "abcdefghijklmnopqrstuvwxyz" * 10)
-    assert "found 'abcdefghijklmnopqrst...'" in str(caught.value)
-
-
-def test_the_worst_of_several_numbers_says_what_was_expected():
-    """Beyond the cap the cap is told; before NaN, which is worse than anything, it is not."""
-    rule = Number(0.0, cap=1e3, unit="m")
-    with pytest.raises(pe.InputError, match=r"two finite numbers within \+-1000 m"):
-        vector("x", "y", [1.0, 2e3], 2, rule)
-    with pytest.raises(pe.InputError, match="two finite numbers >= 0 m"):
-        vector("x", "y", [2e3, math.nan], 2, rule)
-    with pytest.raises(pe.InputError, match="two finite numbers >= 0 m"):
-        vector("x", "y", [math.nan, 2e3], 2, rule)
-    assert vector("x", "y", [1, 2.5], 2) == (1.0, 2.5) and FINITE.holds(-1e300)
 
 
 def test_whole_numbers_are_counts_unless_they_may_be_less():

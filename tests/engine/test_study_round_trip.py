@@ -22,7 +22,7 @@ from tests.thorough import tries
 BOX_TABLE = "class,x,y,z,length,width,height,yaw\ncar,9,1,0.7,4,2,1.4,30\ntram,-20,3,2,15,2.5,4,0\n"
 PARTS = ("body", "cabin")
 REPEATABLE = settings(
-    max_examples=tries(20, 80),
+    max_examples=tries(20, 40),
     derandomize=True,
     deadline=None,
     database=None,
@@ -335,7 +335,7 @@ def test_a_random_study_comes_back_from_its_file_equal_in_every_field(data):
     assert dumps(study_to_dict(again)) == dumps(study_to_dict(study))
 
 
-@settings(REPEATABLE, max_examples=tries(8, 30))
+@settings(REPEATABLE, max_examples=tries(8, 15))
 @given(st.data())
 def test_an_exported_study_holds_the_same_prior_and_vehicle(data):
     with TemporaryDirectory() as first, TemporaryDirectory() as second:

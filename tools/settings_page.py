@@ -67,13 +67,13 @@ def type_text(rule: object) -> str:
         case Texts():
             return "list of texts"
         case Pair():
-            return f"two numbers{_unit(rule.rule.unit)}"
+            return f"low, high{_unit(rule.rule.unit)}"
         case Triple():
             return f"three numbers{_unit(rule.rule.unit)}"
         case Whole():
             return f"whole{_unit(rule.unit)}"
         case Number():
-            return f"number{_unit(rule.unit)}"
+            return f"[{rule.unit}]" if rule.unit else "number"
     return str(getattr(rule, "words", type(rule).__name__))
 
 
@@ -97,7 +97,7 @@ def range_text(rule: object) -> str:
         case OneOf() | Several():
             return " or ".join(f'"{text}"' for text in rule.among)
         case Pair():
-            return "low before high"
+            return ""
         case Triple():
             return range_text(rule.rule)
         case Whole():

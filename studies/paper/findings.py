@@ -18,7 +18,7 @@ from pe_core.metric import H_BLIND, POINTPILLARS
 from ..pages import joined, range_text
 from ..results_file import Json, values_of
 from .claims import SMALL_DEG, TEXTS
-from .experiments import CAMERA_ROWS, FITS, LIDAR_ROWS, Effort, best_search, pilot_name
+from .experiments import CAMERA_ROWS, FITS, LIDAR_ROWS, Effort, best_search
 from .paper import (
     EXPECTED_COUNTS,
     HALF_LENGTH_M,
@@ -126,20 +126,6 @@ class Findings:
         claims = {prior: self.claim(key, where, prior) for prior in PRIORS}
         return {prior: self.verdict(claim) for prior, claim in claims.items() if claim}
 
-    def ordering(self, key: str) -> str:
-        """Return the verdicts of a claim in a phrase: at the printed placements, in searches."""
-        phrases = []
-        for where, words in (
-            ("printed", "at the printed placements"),
-            ("searched", "in our search"),
-        ):
-            found = self.verdicts(key, where)
-            for verdict in dict.fromkeys(found.values()):
-                priors = [prior for prior, v in found.items() if v == verdict]
-                under = "every prior" if len(priors) == len(PRIORS) else joined(priors)
-                phrases.append(f"{verdict} {words} under {under}")
-        return "; ".join(phrases)
-
     def orderings(self) -> list[list[str]]:
         """Return the lines of the table of orderings."""
         lines = []
@@ -229,16 +215,6 @@ class Findings:
                 cells = [f"{self.entropy(row, prior):.4f}", f"{bound['in_view']:.1%}"]
                 lines.append([prior, ROW[row].label, *cells, *(f"{e:.2f}" for e in entropies)])
         return lines
-
-    def pilots(self, row: str) -> str:
-        """Return the entropies at which the pilots of a row end, by their corners."""
-        names = {start: pilot_name(row, PRIORS[0], start) for start in ROW[row].starts}
-        ends = {
-            start: self.values[name]["entropy"]
-            for start, name in names.items()
-            if name in self.values
-        }
-        return joined([f"{entropy:.4f} ({start})" for start, entropy in ends.items()])
 
     def varied(self) -> dict[str, list[float]]:
         """Return the entropies of both roof LiDARs by what was changed."""

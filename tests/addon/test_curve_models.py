@@ -21,50 +21,32 @@ def settings(car):
     return found
 
 
-def test_the_panel_and_headless_blender_score_by_it(settings, tmp_path):
-    """A change makes the stored score stale; a provisional curve is told in the panel."""
+@pytest.mark.parametrize(
+    ("key", "first", "then"), [("ap_model", "scans", "paper"), ("returns", "all", "road")]
+)
+def test_panel_and_headless_blender_score_by_what_is_chosen(settings, tmp_path, key, first, then):
+    """A change makes the stored score stale; the panel says which returns and curves it is of."""
     blend = tmp_path / "car.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
     assert bpy.ops.pe.score() == {"FINISHED"}
-    stored = json.loads(settings.result_json)
-    assert stored["ap_model"] == "scans"
+    before = json.loads(settings.result_json)
     told = [row.text for row in settings.result_warnings if row.code == advice.PROVISIONAL]
     assert told == [each.text for each in advice.curve_warnings(scenes.study().model)]
-    settings.ap_model = "paper"
+    setattr(settings, key, then)
     assert result_staleness.fingerprint(bpy.context.scene).text != settings.result_signature
     assert bpy.ops.pe.score() == {"FINISHED"}
-    paper = json.loads(settings.result_json)
-    assert paper["after"]["objects"]["ap"] < stored["after"]["objects"]["ap"]
+    after = json.loads(settings.result_json)
+    assert (before[key], after[key]) == (first, then)
+    assert after["after"]["objects"]["ap"] != before["after"]["objects"]["ap"]
+    codes = [row.code for row in settings.result_warnings]
+    assert ("returns" in codes) == (key == "returns") and "returns" in drawn(scoring_panels.targets)
     del settings  # the file is opened again
-    answer = run_here(blend, "score", "--ap-model", "paper", "--json")
+    answer = run_here(blend, "score", f"--{key.replace('_', '-')}", then, "--json")
     assert answer.returncode == 0, answer.stderr
     by_option = json.loads(answer.stdout)
-    assert by_option["ap_model"] == "paper"
-    assert by_option["after"]["objects"]["ap"] == paper["after"]["objects"]["ap"]
-
-
-def test_returns_as_on_the_road_are_those_of_the_panel_and_of_headless_blender(settings, tmp_path):
-    """A change makes the stored score stale, and the panel says which returns it is of."""
-    blend = tmp_path / "car.blend"
-    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
-    assert bpy.ops.pe.score() == {"FINISHED"}
-    paper = json.loads(settings.result_json)
-    assert paper["returns"] == "all"
-    settings.returns = "road"
-    assert result_staleness.fingerprint(bpy.context.scene).text != settings.result_signature
-    assert bpy.ops.pe.score() == {"FINISHED"}
-    road = json.loads(settings.result_json)
-    assert "returns" in [row.code for row in settings.result_warnings]
-    assert road["returns"] == "road"
-    assert road["after"]["objects"]["ap"] != paper["after"]["objects"]["ap"]
-    assert "returns" in drawn(scoring_panels.targets)
-    del settings  # the file is opened again
-    answer = run_here(blend, "score", "--returns", "road", "--json")
-    assert answer.returncode == 0, answer.stderr
-    by_option = json.loads(answer.stdout)
-    assert by_option["returns"] == "road"
-    assert by_option["after"]["entropy"] == road["after"]["entropy"]
-    assert by_option["after"]["objects"] == road["after"]["objects"]
+    assert by_option[key] == then
+    assert by_option["after"]["objects"] == after["after"]["objects"]
+    assert by_option["after"]["entropy"] == after["after"]["entropy"]
 
 
 @pytest.mark.parametrize(

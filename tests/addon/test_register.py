@@ -23,10 +23,9 @@ from blender_addon import (
 from blender_addon.live import state
 from blender_addon.operators import running_job
 from blender_addon.overlay import draw_handler, scheduler
-from tests.thorough import tries
 
 ROOT = Path(blender_addon.__file__).parents[1]
-ROUNDS = tries(10, 30)
+ROUNDS = 10
 
 
 SIGNALS = (

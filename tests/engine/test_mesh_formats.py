@@ -35,26 +35,17 @@ from tests.engine.mesh_files import (
     stl_binary,
     turned_alike,
 )
-from tests.thorough import tries
 
 BOXES = {
     "npz": ("box.npz", npz_bytes(triangles=BOX)),
-    "npz, single precision": ("box.npz", npz_bytes(triangles=BOX.astype(np.float32))),
     "obj": ("box.obj", obj_bytes()),
     "suffix in capitals": ("box.OBJ", obj_bytes()),
     "stl, binary": ("box.stl", stl_binary()),
     "stl, binary beginning with solid": ("box.stl", stl_binary(b"solid as a rock")),
     "stl, ascii": ("box.stl", stl_ascii()),
     "stl, ascii without a name": ("box.stl", stl_ascii("")),
-    "stl, ascii in capitals": ("box.stl", stl_ascii().upper().replace(b"BOX", b"box")),
     "ply, ascii": ("box.ply", ply_ascii()),
-    "ply, ascii with quads": ("box.ply", ply_ascii(faces=QUADS)),
-    "ply, ascii with CRLF": ("box.ply", ply_ascii().replace(b"\n", b"\r\n")),
-    "ply, little endian": ("box.ply", ply_binary("<")),
-    "ply, big endian": ("box.ply", ply_binary(">")),
     "ply, big endian quads": ("box.ply", ply_binary(">", faces=QUADS)),
-    "glb, 8-bit indices": ("x.glb", glb_file(*gltf(code="B"))),
-    "glb, 16-bit indices": ("x.glb", glb_file(*gltf(code="H"))),
     "glb, 32-bit indices": ("x.glb", glb_file(*gltf(code="I"))),
     "glb, no indices": ("x.glb", glb_file(*gltf(points=BOX, indices=None))),
 }
@@ -172,9 +163,9 @@ BINARY: dict[str, Callable[[], bytes]] = {
 def test_a_binary_file_cut_anywhere_is_an_error(
     tmp_path: Path, name: str, make: Callable[[], bytes]
 ) -> None:
-    """No cut, wherever it falls, gives a mesh or any other exception; by default every fifth."""
+    """No cut, wherever it falls, gives a mesh or any other exception: every fifth byte."""
     data = make()
-    for end in [*range(0, len(data), tries(5, 1)), len(data) - 1]:
+    for end in [*range(0, len(data), 5), len(data) - 1]:
         with pytest.raises(InputError):
             read(tmp_path, name, data[:end])
 

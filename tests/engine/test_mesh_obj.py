@@ -33,11 +33,8 @@ def test_obj_parts(tmp_path: Path, text: str, names: list[str], encoding: str) -
 V = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 OBJ_FORMS = {
     "quad": f"{V}f 1 2 3 4\n",
-    "triangles": f"{V}f 1 2 3\nf 1 3 4\n",
     "faces first": f"f 1 2 3 4\n{V}",
-    "v/vt": f"{V}vt 0 0\nf 1/1 2/1 3/1 4/1\n",
     "v/vt/vn": f"{V}f 1/9/9 2/9/9 3/9/9 4/9/9\n",
-    "v//vn": f"{V}vn 0 0 1\nf 1//1 2//1 3//1 4//1\n",
     "continued": f"{V}f 1 2 \\\n3\\\n 4\n",
     "continued with CRLF": f"{V}f 1 2 \\\r\n3 4\r\n",
     "mixed line endings": "v 0 0 0\rv 1 0 0\r\nv 1 1 0\nv 0 1 0\rf 1 2 3 4",

@@ -12,6 +12,7 @@ from typing import Any
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
+from pe_core.base.plugins import required_package
 from pe_core.study import SEARCH
 
 from .. import jobs
@@ -40,6 +41,8 @@ def add_sweep_options(parser: argparse.ArgumentParser) -> None:
     about = "only these runs, the K-th of N parts, without a table: for array jobs of a cluster"
     parser.add_argument("--part", type=part_of, metavar="K/N", help=about)
     parser.add_argument("--json", action="store_true", help=f"print {table.SWEEP_JSON} on stdout")
+    about = f"write the table as {table.SWEEP_PARQUET}, too"
+    parser.add_argument("--parquet", action="store_true", help=about)
     add_score_options(parser, workers="processes")
     add_search_options(parser)
 
@@ -63,11 +66,14 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
     if args.part is not None:
         runs = runs[args.part[0] - 1 :: args.part[1]]
     names = [table.SWEEP_CSV, table.SWEEP_JSON]
+    if args.parquet:
+        required_package("pyarrow.parquet")  # before the work
+        names.append(table.SWEEP_PARQUET)
     folder = jobs.prepare_folder(args.output, names)
     for run in runs:  # before the work
         refuse_own_folder(Path(files[run.study_name]), folder / run.name)
         jobs.check_files(folder / run.name, jobs.result_names(run.study, kind))
-    work = _SweepVerb(runs, kind, folder, args.part is None)
+    work = _SweepVerb(runs, kind, folder, args.part is None, args.parquet)
     received = work.run(args)
     if received.signum is not None:
         kept = f", {work.count(BEGUN)} begun and kept" if work.count(BEGUN) else ""
@@ -94,11 +100,11 @@ class _SweepVerb:
     """
 
     def __init__(
-        self, runs: Sequence[SweepRun], kind: str, folder: Path, writes_table: bool
+        self, runs: Sequence[SweepRun], kind: str, folder: Path, writes_table: bool, parquet: bool
     ) -> None:
         self._writes_table = writes_table
         self._kind, self._folder = kind, folder
-        self._write = partial(table.write_table, kind=kind)
+        self._write = partial(table.write_table, kind=kind, parquet=parquet)
         self.failed_to_write = False
         self.rows: dict[str, SweepRow] = {}
         for run in runs:

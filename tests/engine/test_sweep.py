@@ -417,3 +417,24 @@ def test_an_executor_of_a_function_finds_the_same(study, out, tmp_path, monkeypa
         for name in ("here/car", "there/car", "one here", "one there")
     ]
     assert len({json.dumps(each["placements"]) for each in found}) == 1
+        expected = "a worker that survives its task, found two that died (BrokenExecutor)"
+        assert line == f"run2: worker: expected {expected}"
+    assert executor.given == [1, 2, 3, 1, 2], "what may be guilty is tried again, alone"
+
+
+def test_a_sweep_is_a_table_of_parquet_too(study, out):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    keys = ["--set", "optimize.seed=1,2", "--set", "space.interval=0.5"]
+    assert main(["sweep", str(study), *keys, "-o", str(out), "--parquet", "--workers", "1"]) == 0
+    found = parquet.read_table(out / "sweep.parquet").to_pylist()
+    rows = table(out)
+    assert [list(row) for row in found] == [list(row) for row in rows]
+    for row, line in zip(found, rows, strict=True):
+        assert row["entropy"] == float(line["entropy"]) and row["run"] == line["run"]
+
+
+def test_without_pyarrow_a_line_comes_before_the_work(study, out, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
+    assert main(["sweep", str(study), "-o", str(out), "--parquet"]) == 1
+    assert "[argoverse]" in capsys.readouterr().err and not out.exists()
+

@@ -1,7 +1,7 @@
-"""Fewer mounting errors in the robustness of a result, where it is not what a test is about.
+"""Less of what stands beside a result, where it is not what a test is about.
 
-Every search ends with the robustness of its result: a sensor is measured anew for each error. In
-small studies that takes longer than the search itself.
+Every search ends with the robustness of its result: a sensor is measured anew for each error. Every
+result has key figures, of many scenes of traffic. In small studies both take longer than the rest.
 """
 
 import importlib
@@ -9,17 +9,29 @@ from dataclasses import replace
 
 import pytest
 
+from pe_core.scoring.sight import sight
+
 ROBUSTNESS = importlib.import_module("pe_core.search.tolerance")
 """The module: its package has a function of this name."""
+WORKSHOP, OBJECTS = ROBUSTNESS.WORKSHOP, sight.ObjectEvaluator
+FEW_SCENES = 16
+
+
+def objects_of_few_scenes(*where, targets, **more):
+    """The objects in traffic of key figures, of few scenes."""
+    few = replace(targets, scenes=min(FEW_SCENES, targets.scenes))
+    return OBJECTS(*where, targets=few, **more)
 
 
 @pytest.fixture
 def few_errors(monkeypatch):
-    """Draw two mounting errors a sensor for the result of a search, instead of six."""
-    monkeypatch.setattr(ROBUSTNESS, "WORKSHOP", replace(ROBUSTNESS.WORKSHOP, draws=2))
+    """Draw two mounting errors a sensor for the result of a search, not six, and few scenes."""
+    monkeypatch.setattr(ROBUSTNESS, "WORKSHOP", replace(WORKSHOP, draws=2))
+    monkeypatch.setattr(sight, "ObjectEvaluator", objects_of_few_scenes)
 
 
 @pytest.fixture
 def all_errors(few_errors, monkeypatch):
     """Draw as many as the command does: for a comparison with another process."""
-    monkeypatch.setattr(ROBUSTNESS, "WORKSHOP", replace(ROBUSTNESS.WORKSHOP, draws=6))
+    monkeypatch.setattr(ROBUSTNESS, "WORKSHOP", WORKSHOP)
+    monkeypatch.setattr(sight, "ObjectEvaluator", OBJECTS)

@@ -78,10 +78,7 @@ def test_several_settings_make_every_combination(study):
 @pytest.mark.parametrize(
     ("setting", "complaint"),
     [
-        (
-            "sensr.roof.model=x",
-            "{study} with sensr.roof.model=x: sensr: expected one of",
-        ),
+        ("sensr.roof.model=x", "{study} with sensr.roof.model=x: sensr: expected one of"),
         ("sensor.rof.model=x", "{study}: sensor.rof.model: expected one of roof, found 'rof'"),
         ("sensor.roof.model=No", "{study} with sensor.roof.model=No: sensor[0].model: expected"),
         ("optimize.sed=1", "{study} with optimize.sed=1: optimize.sed: expected one of"),

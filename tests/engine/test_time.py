@@ -4,6 +4,7 @@ import itertools
 import json
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -270,3 +271,23 @@ def test_the_command_says_when_each_body_is_confirmed(file, tmp_path, capsys):
     slow = json.loads(capsys.readouterr().out)["stories"][0]["bodies"][0]["margin_s"]
     assert slow is None or slow > -2.0
     assert main(["drive-by", str(file), "--story", "none"]) == 1
+
+
+EXAMPLES = Path(__file__).parents[2] / "examples/crossing_child"
+
+
+def test_the_how_to_says_what_the_example_gives():
+    """The rig with the lower entropy is the one that is too late."""
+    page = (EXAMPLES.parents[1] / "docs/howto/when_is_it_seen.md").read_text("utf-8")
+    rows = [line.split("|")[2:5] for line in page.splitlines() if " before, at " in line]
+    margins = []
+    for name, row in zip(("roof", "corners"), rows, strict=True):
+        example = pe.load_study(EXAMPLES / f"{name}.toml")
+        (driven,) = map(example.drive_by, example.stories)
+        (body,) = driven.bodies
+        at = body.moments[0.9]
+        assert float(row[0]) == round(example.evaluator().entropy(example.rig), 2)
+        assert row[1].strip() == f"{-at.time_s:.1f} s before, at {at.distance_m:.1f} m"
+        assert row[2].startswith(f" {driven.margin_s:+.1f} s")
+        margins.append(driven.margin_s)
+    assert float(rows[0][0]) < float(rows[1][0]) and margins[0] < 0.0 <= margins[1]

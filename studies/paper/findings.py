@@ -189,18 +189,6 @@ class Findings:
             lines.append([row_label(row.name), f"{row.entropy:.4f}", *ours, found, mean])
         return lines
 
-    def placements(self) -> list[list[str]]:
-        """Return the lines of the table of placements: the paper's, and our best seed's."""
-        lines = []
-        for row in ROWS:
-            rig, best = study_of(row.name).rig, self.best(row.name)
-            poses = {
-                s.name: {"position": s.pose.position, "rotation": s.pose.rotation_deg} for s in rig
-            }
-            ours = placement_text(best["placements"]) if best else ""
-            lines.append([row_label(row.name), placement_text(poses), ours])
-        return lines
-
     def cameras(self) -> list[list[str]]:
         """Return the lines of the table of the cameras' bounds."""
         lines = []

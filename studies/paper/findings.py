@@ -336,14 +336,6 @@ def row_label(row: str) -> str:
     return f"{ROW[row].experiment} {ROW[row].label}"
 
 
-def placement_text(placements: Mapping[str, Any]) -> str:
-    """Return x, y, z [m] and pitch [deg] of every sensor, as text."""
-    return "; ".join(
-        "({:.2f}, {:.2f}, {:.2f}), {:.1f}°".format(*p["position"], p["rotation"][1])
-        for p in placements.values()
-    )
-
-
 def printed_positions(row: str) -> dict[str, Position]:
     """Return the sensors' positions that the paper prints for a row [m]."""
     return {s.name: s.pose.position for s in study_of(row).rig}

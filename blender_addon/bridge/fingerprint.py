@@ -75,7 +75,8 @@ def _sensor_state(obj: Object, visible: bool) -> SensorState:
         where: object = _numbers(pose_of_matrix(placement) if held is None else held)
     except pe.InputError:  # a sensor that cannot be scored has a fingerprint, too
         where = placement.tolist()
-    curve = (settings.curve_a, settings.curve_b) if settings.own_curve else None
+    numbers = settings.curve_a, settings.curve_b, settings.curve_c
+    curve = numbers if settings.own_curve else None
     return (settings.model, settings.fusion, where, *([curve] if curve else []))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 
 import bpy
 import numpy as np
@@ -237,7 +238,8 @@ def curve_of(settings: PropertyGroup) -> pe.ApCurve | None:
 
 def put_curve(settings: PropertyGroup, curve: pe.ApCurve | None) -> None:
     """Set or remove a sensor's own AP curve; equal values are not written again."""
-    if curve is not None and (settings.curve_a, settings.curve_b) != (curve.a, curve.b):
-        settings.curve_a, settings.curve_b = curve.a, curve.b
+    for name, value in (asdict(curve) if curve else {}).items():
+        if getattr(settings, f"curve_{name}") != value:
+            setattr(settings, f"curve_{name}", value)
     if settings.own_curve != (curve is not None):
         settings.own_curve = curve is not None

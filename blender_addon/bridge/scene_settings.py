@@ -197,7 +197,7 @@ def settings_signature(settings: PropertyGroup) -> list[object]:
     )
     names = [each for each in scored if each not in PLACED and settings.is_property_set(each)]
     values = [_plain(getattr(settings, name)) for name in names]
-    curves = [(row.name, as_typed(row.a), as_typed(row.b)) for row in settings.curves if row.own]
+    curves = [(r.name, *map(as_typed, (r.a, r.b, r.c))) for r in settings.curves if r.own]
     return [*zip(names, values, strict=True), *curves]
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -221,7 +221,7 @@ def write_records(variant: PropertyGroup, records: Sequence[SensorRecord]) -> No
     """Store the records of sensors in a variant."""
     rows = []
     for record in records:
-        curve = None if record.curve is None else (record.curve.a, record.curve.b)
+        curve = None if record.curve is None else astuple(record.curve)
         own = {key: getattr(record, key) for key in STORED}
         rows.append(own | {"pose": record.numbers, "curve": curve})
     variant.sensors = json.dumps(rows)

@@ -76,16 +76,16 @@ def advanced(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
         draw_properties(layout.column(), sensor, ("kind", *own_fields(sensor.kind)))
         if sensor.problem:
             draw_sentence(layout, context, sensor.problem, icon="ERROR")
-    draw_label(layout, "AP = a ln m + b")
+    draw_label(layout, "AP = a ln m - c ln R + b")
     if not settings.curves:
         layout.operator("pe.own_curves")
     for curve in settings.curves:
         row = layout.row(align=True)
         row.prop(curve, "own", text=shown(kind_label(curve.name)), translate=False)
-        pair = row.row(align=True)
-        pair.active = curve.own
-        pair.prop(curve, "a")
-        pair.prop(curve, "b")
+        numbers = row.row(align=True)
+        numbers.active = curve.own
+        for name in "abc":
+            numbers.prop(curve, name)
     column = layout.column()
     draw_label(column, "Space and Voxels")
     draw_declared(column, settings, "space")

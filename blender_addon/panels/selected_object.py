@@ -111,10 +111,10 @@ def own_curve(layout: UILayout, _settings: PropertyGroup, context: Context) -> N
     settings = context.active_object.perception_entropy
     column = layout.column()
     column.active = settings.own_curve
-    draw_label(column, "AP = a ln m + b")
+    draw_label(column, "AP = a ln m - c ln R + b")
     row = column.row(align=True)
-    row.prop(settings, "curve_a")
-    row.prop(settings, "curve_b")
+    for name in "abc":
+        row.prop(settings, f"curve_{name}")
 
 
 def _part_is_shown(context: Context) -> bool:

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
-from ..base.setting import Panel, check_settings, required_setting
+from ..base.setting import Panel, check_settings, required_setting, setting
 from ..base.values import Number
 
 AP_MIN, AP_MAX = 0.001, 0.999
@@ -24,17 +25,30 @@ BLIND_PRECISION = (1.0 / AP_MIN - 1.0) ** -2
 
 SLOPE = Number(1e-12, cap=1e3, noun="slope")
 OFFSET = Number(cap=1e3)
+NEAREST_M = 1.0
+"""Shortest distance R of the range term: in the vehicle there is nothing to find."""
 
 
 @dataclass(frozen=True, slots=True)
 class ApCurve:
-    """AP = a ln m + b of one perception algorithm."""
+    """AP = a ln m - c ln R + b of one perception algorithm; c = 0 is the paper's curve.
+
+    R [m] is the distance from the vehicle's origin, seen from above. Detectors with one camera lose
+    more with range than fewer pixels explain: docs/validity/own/second.md.
+    """
 
     a: float = required_setting(
         SLOPE, "AP = a ln m + b: slope", Panel("a", "a", precision=4), scored=True
     )
     b: float = required_setting(
         OFFSET, "AP = a ln m + b: value at one point", Panel("b", "b", precision=4), scored=True
+    )
+    c: float = setting(
+        0.0,
+        Number(0.0, cap=1e3, noun="slope"),
+        "AP = a ln m - c ln R + b: loss with range R beyond that by m; 0 is the paper",
+        Panel("c", "c", precision=4),
+        scored=True,
     )
 
     def __post_init__(self) -> None:
@@ -43,6 +57,8 @@ class ApCurve:
     @property
     def saturation(self) -> float:
         """Measurement m at which AP reaches its maximum; it is clipped from there on."""
+        if self.c:  # far away it takes more than any count that is stored
+            return math.inf
         exponent = (AP_MAX - self.b) / self.a
         return math.exp(exponent) if exponent < 700.0 else math.inf
 
@@ -59,6 +75,24 @@ def average_precision(m: ArrayLike, curve: ApCurve) -> Floats:
     safe = np.where(measured > 0.0, measured, 1.0)
     ap = np.where(measured > 0.0, curve.a * np.log(safe) + curve.b, AP_MIN)
     return np.clip(ap, AP_MIN, AP_MAX)
+
+
+def ranged(m: Any, curve: ApCurve, distance: Floats) -> Any:
+    """Return m R^(-c/a), whose a ln m + b is a ln m - c ln R + b; m itself where c is 0.
+
+    `distance` are R [m] of the elements of m.
+    """
+    return m * np.maximum(distance, NEAREST_M) ** (-curve.c / curve.a) if curve.c else m
+
+
+def above_floor(ap: Floats, floor: float) -> Floats:
+    """Return max(AP - floor, 0) / (1 - floor): AP as nuScenes counts it; AP itself for 0.
+
+    Its metric leaves out recall and precision up to a floor, 0.1 (arXiv 1903.11027; `calc_ap` of
+    nutonomy/nuscenes-devkit). It is exact for a detector of full precision up to some recall, and
+    for one of the same precision at each recall.
+    """
+    return np.maximum(ap - floor, 0.0) / (1.0 - floor) if floor else ap
 
 
 def sigma_of(ap: ArrayLike) -> Floats:

@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..base.arrays import Floats, Ints
-from .entropy import BLIND_PRECISION, H_BLIND, ApCurve, entropy_of, precision_of
+from .entropy import BLIND_PRECISION, H_BLIND, ApCurve, entropy_of, precision_of, ranged
 from .frames import Frames
 
 CurveOf = str | ApCurve
@@ -111,6 +111,10 @@ class Fusion:
     def curve(self, kind: CurveOf) -> ApCurve:
         """Return the AP curve of a kind, or the curve itself."""
         return kind if isinstance(kind, ApCurve) else self.model.curve(kind)
+
+    def ranged(self, groups: Sequence[Measurement], distance: Floats) -> list[Measurement]:
+        """Return groups with the range terms of their curves; `distance` (N,) is that of m."""
+        return [(kind, ranged(m, self.curve(kind), distance)) for kind, m in groups]
 
     def tables(self, kind: CurveOf) -> CountTables:
         """Return the lookup tables for integer m of a kind."""

@@ -21,8 +21,8 @@ from ..base.lazy_threads import threads
 from ..base.values import rounded
 from ..geometry.bins import blocks
 from ..geometry.grids import PerceptionSpace
-from ..metric.entropy import H_BLIND, ApCurve
-from ..metric.fusion import CurveOf, Fusion, Group, LeaveOneOut, PlaneFusion
+from ..metric.entropy import H_BLIND, ApCurve, ranged
+from ..metric.fusion import CurveOf, Fusion, Group, LeaveOneOut, PlaneFusion, VisibleRows
 from ..prior.prior import ClassDensity
 from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
@@ -271,7 +271,23 @@ class GridScorer:
             positions = [k for k, group_key in enumerate(keys) if group_key == key]
             of_key = [[ready[s.name] for s in groups[k]] for k in positions]
             planes |= zip(positions, self._kernels[key].planes(of_key, pool), strict=True)
-        return [(curve or kind, planes[k]) for k, (kind, curve) in enumerate(keys)]
+        named = [(curve or kind, planes[k]) for k, (kind, curve) in enumerate(keys)]
+        return [(curve, self._ranged(curve, measure)) for curve, measure in named]
+
+    def _ranged(self, named: CurveOf, measure: Planes) -> Planes:
+        """Return the measurement with the range term of its curve: no whole numbers then."""
+        curve = self._fusion.curve(named)
+        distance = np.hypot.outer(self._space.centers(0), self._space.centers(1))
+
+        def with_range(planes: slice) -> VisibleRows:
+            found = measure(planes)
+            if not isinstance(found, VisibleRows):
+                found = VisibleRows(slice(0, found.shape[1]), found)
+            return VisibleRows(
+                found.rows, ranged(found.m, curve, distance[planes, found.rows, None])
+            )
+
+        return with_range if curve.c else measure
 
     def _weighed(
         self, parts: Sequence[Sequence[Group]], planes: slice, *, coverage: bool

@@ -60,6 +60,7 @@ class SampledScorer:
         self._vehicle, self._fusion = vehicle, fusion
         tops = None if vehicle is None else vehicle.top(space)
         self._sample: VoxelSample = draw(densities, space, samples, tops, shift)
+        self._distance = np.hypot(*self._sample.centers[:, :2].T)
         outside_masses(densities, space, tops)  # raises InputError when no weight is left
         x, y = self._sample.centers[:, 0], self._sample.centers[:, 1]
         masks = {name: mask for name, mask in zone_masks(x, y).items() if mask.any()}
@@ -170,12 +171,14 @@ class SampledScorer:
             )
 
     def _entropy_of(self, rig: Rig, measured: Mapping[str, NDArray]) -> float:
-        names = [s.name for s in rig]
-        return rounded(float(np.mean(self._fusion.entropies(fused_early(rig, measured, names))[0])))
+        fused = fused_early(rig, measured, [s.name for s in rig])
+        fused = self._fusion.ranged(fused, self._distance)
+        return rounded(float(np.mean(self._fusion.entropies(fused)[0])))
 
     def _entropies(self, rig: Rig, members: Collection[str]) -> tuple[Floats, NDArray[np.bool_]]:
         """Return entropy and visibility of every sampled voxel, for some of the rig's sensors."""
-        return self._fusion.entropies(fused_early(rig, self._sensors.m, members))
+        fused = fused_early(rig, self._sensors.m, members)
+        return self._fusion.entropies(self._fusion.ranged(fused, self._distance))
 
     def _summary(self, rig: Rig, entropies: Floats, visible: NDArray[np.bool_]) -> SummaryScore:
         entropy, coverage = self._whole(entropies, visible)

@@ -18,9 +18,9 @@ from typing import Any
 from ..base.arrays import ReadOnlyDict
 from ..base.errors import InputError, shown
 from ..base.files import decode_text, read_bytes
-from ..base.setting import OneOf, Panel, setting
+from ..base.setting import OneOf, Panel, changed_settings, check_settings, setting
 from ..base.table_reader import Table, load_toml
-from ..base.values import A_NAME, choice
+from ..base.values import A_NAME, Number, choice
 from ..metric.entropy import ApCurve
 from ..metric.frames import Frames
 from .kind import KINDS, ClassCurves, kind_named
@@ -45,37 +45,32 @@ MODEL: str = setting(
     scored=True,
 )
 """The field of `PerceptionModel`."""
+PROTOCOL_FLOOR: float = setting(
+    0.0,
+    Number(0.0, 1.0, below=True),
+    "Recall and precision up to this do not count in expected AP, as in a protocol: nuScenes "
+    "has 0.1, the paper 0",
+    Panel("protocol_floor", "Protocol Floor", precision=2),
+    scored=True,
+)
+"""The field of `PerceptionModel`."""
 FILE = Path(__file__).with_name("scans.toml")
 DETECTORS_FILE = FILE.with_name("detectors.toml")
 BLIND_RULES = ("floor", "literal")
 SOURCE = "perception model"
 
 
-@dataclass(frozen=True, slots=True)
-class ScanCurves:
-    """The curves from scans, by kind and class, and the runs that they are fitted to."""
-
-    curves: ClassCurves
-    runs: int
-    planned: int
-
-    @property
-    def complete(self) -> bool:
-        """Whether all planned runs are done; until then the curves are provisional."""
-        return self.runs == self.planned
-
-
 @cache
-def scan_curves() -> ScanCurves:
-    """Return the curves of the file that is part of the engine."""
-    table = Table(load_toml(FILE, "curves", decode_text(read_bytes(FILE))), FILE.name)
-    kinds = table.table("curves")
+def scan_curves() -> ClassCurves:
+    """Return the curves from scans, by kind and class, of the file that is part of the engine."""
+    kinds = Table(load_toml(FILE, "curves", decode_text(read_bytes(FILE))), FILE.name)
+    kinds = kinds.table("curves")
     curves = {}
     for kind in kinds.names:
         own = kinds.table(kind)
         rows = {name: own.table(name) for name in own.names}
         curves[kind] = {n: ApCurve(row.number("a"), row.number("b")) for n, row in rows.items()}
-    return ScanCurves(curves, table.whole("runs"), table.whole("planned"))
+    return curves
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +124,7 @@ def curve_source(model: str) -> str:
 def fitted_curves(model: str) -> ClassCurves:
     """Return the curves that a model has in place of the kinds' own, by kind and class."""
     if model == SCANS:
-        return scan_curves().curves
+        return scan_curves()
     rows = detectors()[model].rows if model in detectors() else {}
     return {kind: {n: row.curve for n, row in own.items()} for kind, own in rows.items()}
 
@@ -147,6 +142,8 @@ class PerceptionModel:
         Curves of whole objects, m counted on the object, in place of the model's.
     model : {"paper", "scans", "bevfusion", "centerpoint"}
         Curves of the other objects: the kind's own, or of LiDARs those fitted to detectors.
+    protocol_floor : float
+        Recall and precision up to it do not count where AP is averaged.
     frames : Frames, optional
         Frames that an entropy is of, and the process noise between them; one frame by default.
     **curves : ApCurve
@@ -164,6 +161,7 @@ class PerceptionModel:
     """Curves by kind, only those that differ from the kind's own."""
     objects: ClassCurves
     model: str = MODEL
+    protocol_floor: float = PROTOCOL_FLOOR
     frames: Frames | None = None
 
     def __init__(
@@ -172,12 +170,15 @@ class PerceptionModel:
         *,
         objects: ClassCurves | None = None,
         model: str = PAPER,
+        protocol_floor: float = 0.0,
         frames: Frames | None = None,
         **curves: ApCurve,
     ) -> None:
         put = object.__setattr__
         put(self, "frames", frames)
-        put(self, "model", choice("ap", "model", model, CURVE_MODELS))
+        put(self, "model", model)
+        put(self, "protocol_floor", protocol_floor)
+        check_settings(self, "ap")
         put(self, "blind", choice("fusion", "blind", blind, BLIND_RULES))
         put(self, "other_curves", _checked_curves(curves))
         put(self, "objects", _checked_objects(objects or {}))
@@ -218,7 +219,7 @@ class PerceptionModel:
     def with_model(self, model: str, frames: Frames | None = None) -> PerceptionModel:
         """Return this with the curves of objects of another model, over frames if any are given."""
         own: Any = {"objects": self.objects, "model": model, "frames": frames, **self.other_curves}
-        return PerceptionModel(self.blind, **own)
+        return PerceptionModel(self.blind, protocol_floor=self.protocol_floor, **own)
 
     @property
     def curves(self) -> dict[str, ApCurve]:
@@ -228,8 +229,8 @@ class PerceptionModel:
     def __repr__(self) -> str:
         curves = ", ".join(f"{kind}={curve!r}" for kind, curve in self.curves.items())
         objects = f", objects={dict(self.objects)!r}" if self.objects else ""
-        model = f", model={self.model!r}" if self.model != PAPER else ""
-        return f"PerceptionModel(blind={self.blind!r}, {curves}{objects}{model})"
+        more = "".join(f", {name}={value!r}" for name, value in changed_settings(self).items())
+        return f"PerceptionModel(blind={self.blind!r}, {curves}{objects}{more})"
 
 
 def _checked_curves(curves: Mapping[str, ApCurve]) -> Mapping[str, ApCurve]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..base.plugins import shipped
-from ..base.setting import read_declared, read_settings, settings_table
+from ..base.setting import changed_settings, read_declared, read_settings, settings_table
 from ..base.table_reader import REQUIRED, Table
 from ..base.values import A_NAME, A_PATH, vector
 from ..geometry.grids import PerceptionSpace
@@ -53,8 +53,8 @@ def read_model(curves: Table, fusion: Table) -> PerceptionModel:
         objects[kind] = {name: read_curve(own.table(name)) for name in own.names}
     by_kind: Any = {kind: read_curve(table, default.curve(kind)) for kind, table in tables.items()}
     blind = fusion.text("blind", default.blind, BLIND_RULES)
-    chosen = read_settings(curves, PerceptionModel)["model"]
-    model = PerceptionModel(blind, objects=objects, model=chosen, **by_kind)
+    chosen = read_settings(curves, PerceptionModel)
+    model = PerceptionModel(blind, objects=objects, **chosen, **by_kind)
     curves.finish()
     fusion.finish()
     return model
@@ -62,14 +62,18 @@ def read_model(curves: Table, fusion: Table) -> PerceptionModel:
 
 def curves_table(model: PerceptionModel) -> dict[str, Any]:
     """Return the table [ap]: all curves by kind, and the model and classes that are not default."""
-    named = settings_table(model) if model.model != PerceptionModel().model else {}
-    return named | {
+    return changed_settings(model) | {
         kind: {
-            **settings_table(curve),
-            CLASSES: {n: settings_table(c) for n, c in model.objects.get(kind, {}).items()} or None,
+            **curve_table(curve),
+            CLASSES: {n: curve_table(c) for n, c in model.objects.get(kind, {}).items()} or None,
         }
         for kind, curve in model.curves.items()
     }
+
+
+def curve_table(curve: ApCurve) -> dict[str, Any]:
+    """Return the table of an AP curve, without a range term of 0."""
+    return {key: value for key, value in settings_table(curve).items() if key != "c" or value}
 
 
 def read_curve(table: Table, default: ApCurve | None = None) -> ApCurve:

@@ -62,6 +62,7 @@ from .mounting_file import areas_of, same_model
 from .passthrough import passthrough_table, read_passthrough
 from .requirement_file import mesh_files, read_requirements, requirement_table
 from .scoring_file import (
+    curve_table,
     curves_table,
     prior_table,
     read_curve,
@@ -299,7 +300,7 @@ def _sensor_table(sensor: Sensor, search: Search) -> dict[str, Any]:
         "position": list(sensor.pose.position),
         "rotation": list(sensor.pose.rotation_deg),
         "fusion": sensor.fusion,
-        "ap": None if sensor.curve is None else settings_table(sensor.curve),
+        "ap": None if sensor.curve is None else curve_table(sensor.curve),
         "color": sensor.color,
         "free": list(search.free.get(sensor.name, PAPER_FREE)),
         "bounds": limits or None,

@@ -7,7 +7,7 @@ from pe_core.scoring.sight import BLIND_TO_M
 from pe_tools.wording import joined, percent
 
 from ..wording import off_by
-from .advice import FRAGILE, PROVISIONAL, UNMET, Advice, fragile, unmet
+from .advice import FRAGILE, UNMET, Advice, fragile, unmet
 from .key_figures import KeyFigures, SensorRow, key_figures, loss_text, sensor_rows, sensor_table
 from .location import AskedPlace, SensorAtPlace, ask_place
 from .mount_checks import check_mirror_image, occluded_shares
@@ -32,7 +32,7 @@ from .warnings import (
     warnings,
 )
 
-__all__ = ["BLIND_TO_M", "FRAGILE", "OTHER_HARDWARE", "PROVISIONAL", "UNMET", "WHERE", "Advice"]
+__all__ = ["BLIND_TO_M", "FRAGILE", "OTHER_HARDWARE", "UNMET", "WHERE", "Advice"]
 __all__ += ["AskedPlace", "ComparedRow", "KeyFigures", "Outlook", "SensorAtPlace"]
 __all__ += ["SensorRow", "ask_place", "check_mirror_image", "class_of", "compare"]
 __all__ += ["compare_figures", "condition_warnings", "costs_nothing", "curve_note"]

@@ -14,10 +14,8 @@ FRAGILE = "fragile"
 """Code of the warning that concerns the placement of all sensors."""
 UNMET = "requirement"
 """Code of the warning about a requirement that a search could not keep."""
-PROVISIONAL = "provisional"
-"""Code of the warning about AP curves that rest on a part of their runs."""
-SUBJECTS = {FRAGILE: "placement", UNMET: "placement", PROVISIONAL: "AP curves"}
-SUBJECTS |= {"returns": "returns"}
+SUBJECTS = {FRAGILE: "placement", UNMET: "placement", "returns": "returns"}
+SUBJECTS |= {"range_term": "AP curves", "protocol_floor": "expected AP"}
 """What warnings without a sensor concern, by code; others concern the vehicle."""
 
 

@@ -15,7 +15,7 @@ from pe_core.base.values import listed, rounded, vector
 from pe_core.geometry.grids import PerceptionSpace
 from pe_core.geometry.poses import METRES
 from pe_core.metric import average_precision
-from pe_core.metric.entropy import ap_of_entropy
+from pe_core.metric.entropy import ap_of_entropy, ranged
 from pe_core.metric.fusion import Fusion
 from pe_core.prior.prior import ClassDensity, Prior
 from pe_core.scene.rig import Rig, Sensor
@@ -116,7 +116,9 @@ def ask_place(
     center = space.center_of(np.array([index]))
     sensors = tuple(_at_place(s, center, side, vehicle, model) for s in rig)
     measured = {s.name: np.array([s.m]) for s in sensors}
-    entropies, seen = Fusion(model).entropies(fused_early(rig, measured, list(measured)))
+    fusion, distance = Fusion(model), np.hypot(*center[:, :2].T)
+    fused = fusion.ranged(fused_early(rig, measured, list(measured)), distance)
+    entropies, seen = fusion.entropies(fused)
     x, y, z = (float(v) for v in center[0])
     inside = False
     if vehicle is not None:  # below its top over the column of the voxel
@@ -160,7 +162,8 @@ def _at_place(
     elif not m and vehicle is not None:
         rays = kind.rays_to(sensor, center[0], side)
         part, reason = part_in_the_way(sensor, vehicle, *rays), HIDDEN
-    ap = float(average_precision(m, sensor.curve or model.curve(sensor.kind)))
+    curve = sensor.curve or model.curve(sensor.kind)
+    ap = float(average_precision(ranged(m, curve, np.hypot(*center[0, :2])), curve))
     return SensorAtPlace(sensor.name, sensor.kind, m, unhidden, ap, part, reason)
 
 

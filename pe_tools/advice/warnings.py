@@ -10,12 +10,13 @@ from pe_core.prior.prior import Prior
 from pe_core.scene.rig import Rig, Sensor
 from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.score import Score
-from pe_core.sensors import SCANS, PerceptionModel, kind_of, scan_curves
+from pe_core.sensors import kind_of
 from pe_core.sensors.lidar import ALL
 from pe_core.study.condition_table import ConditionTable
+from pe_core.study.study import Study
 from pe_tools.wording import joined, percent
 
-from .advice import PROVISIONAL, Advice
+from .advice import Advice
 from .mount_checks import SensorAtBody, odd_mounting, odd_place
 from .vehicle_checks import Bodywork, odd_vehicle
 
@@ -64,16 +65,22 @@ def condition_warnings(table: ConditionTable | None) -> tuple[Advice, ...]:
     return tuple(found)
 
 
-def curve_warnings(model: PerceptionModel) -> tuple[Advice, ...]:
-    """Return a warning where curves of objects are those from scans and provisional."""
-    if model.model != SCANS or (fitted := scan_curves()).complete:
-        return ()
-    return (Advice(None, PROVISIONAL, {"runs": fitted.runs, "planned": fitted.planned}),)
+def curve_warnings(study: Study) -> tuple[Advice, ...]:
+    """Return warnings where AP is not the paper's: range terms of curves, a protocol's floor."""
+    found, model = [], study.model
+    ranged = [f"[ap.{kind}]" for kind, curve in model.curves.items() if curve.c]
+    ranged += [f"[ap.{k}.objects.{n}]" for k, own in model.objects.items() for n in own if own[n].c]
+    ranged += [f"that of {s.name!r}" for s in study.rig if s.curve and s.curve.c]
+    if ranged:
+        found.append(Advice(None, "range_term", {"curves": ranged}))
+    if model.protocol_floor:
+        found.append(Advice(None, "protocol_floor", {"floor": model.protocol_floor}))
+    return tuple(found)
 
 
-def curve_note(models: Iterable[PerceptionModel]) -> str:
-    """Return that warning as a line, once for several models; empty where none has it."""
-    return next((each.line for model in models for each in curve_warnings(model)), "")
+def curve_note(studies: Iterable[Study]) -> str:
+    """Return these warnings as lines, once for several studies; empty where none has one."""
+    return "\n".join(dict.fromkeys(each.line for s in studies for each in curve_warnings(s)))
 
 
 MOSTLY = 0.5

@@ -98,7 +98,7 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
         expected = "[[requirement]] or [[story]] in the study, --preset ID, or --redundancy M"
         raise InputError("check", "requirements", expected, "none")
     print_vehicle(study)
-    if note := curve_note([study.model]):
+    if note := curve_note([study]):
         tell(note)
     job = CheckJob(study)
     with stop_at_first(job.stop) as received:

@@ -139,7 +139,7 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     names = list(scores)
     said = list(advice.ranking(names, rows))
     models = ([sensor.model for sensor in study.rig] for study in studies.values())
-    curves = advice.curve_note(study.model for study in studies.values())
+    curves = advice.curve_note(studies.values())
     data["notes"] = notes = [note for note in (advice.hardware_note(models), curves) if note]
     apart = advice.disagreement(names, [*rows, *figure_rows])
     data["words"] = said = [*[apart] * bool(apart), *said]

@@ -81,7 +81,7 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
         raise Interrupted(received.signum, note)
     notes = [
         hardware_note([s.model for s in run.study.rig] for run in runs),
-        curve_note(run.study.model for run in runs),
+        curve_note(run.study for run in runs),
     ]
     rows = list(work.rows.values())
     missing = [row for row in rows if row.status == UNWRITTEN]

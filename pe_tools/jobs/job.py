@@ -371,7 +371,7 @@ class Job:
 
         def work(_: Watch) -> tuple[Advice, ...]:
             found_warnings = warnings(study.rig, study.vehicle, study.space, study.prior, score)
-            return (*self.notes, *curve_warnings(study.model), *found_warnings)
+            return (*self.notes, *curve_warnings(study), *found_warnings)
 
         return (yield from self._beside(work, waiting, to_the_end=True))
 

@@ -237,8 +237,8 @@ class TradeOff(Tabular):
 
     @property
     def notes(self) -> list[str]:
-        """What limits a front: entropies of designs with other sensors, provisional AP curves."""
-        return [note for note in (self.hardware_note, curve_note([self.study.model])) if note]
+        """What limits a front: entropies of other sensors, AP that is not the paper's."""
+        return [note for note in (self.hardware_note, curve_note([self.study])) if note]
 
     @property
     def hardware_note(self) -> str:

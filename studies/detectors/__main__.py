@@ -19,7 +19,7 @@ from ..results_file import RESULTS, Json, print_progress
 from .after_search.analysis import after_search_analysis
 from .after_search.plan import full_after_search_plan, quick_after_search_plan
 from .after_search.searches import searched_placements
-from .afterwards import afterwards, history
+from .afterwards import afterwards
 from .analysis import Results, analysis
 from .cameras.analysis import camera_analysis
 from .cameras.placements import camera_placements
@@ -43,7 +43,7 @@ def validate_own(args: argparse.Namespace, folder: Path) -> Answer:
     folder = prepare_folder(folder)
     plans = _plans(args.quick)
     report = print_progress if args.after_search and not args.page_only else None
-    searched = searched_placements(plans.searches, folder, report)
+    searched = searched_placements(plans.searches, folder / AFTER_SEARCH, report)
     files = _files(plans, folder, searched)
     name = AFTER_SEARCH if args.after_search else CAMERAS if args.cameras else OWN
     do_runs(args, files[name], lambda run: _run(plans, name, run))
@@ -102,7 +102,6 @@ def _study(
     found["ap_curves"] = scan_curves(plans.own, results[OWN])
     found["afterwards"] = afterwards(plans.own, results[OWN], scores[OWN], found["ap_curves"])
     found["answer"] = short_answer(plans.own, found, after, cameras)
-    found["history"] = history(files[OWN].folder, results)
     for name, conclusions in ((OWN, found), (AFTER_SEARCH, after), (CAMERAS, cameras)):
         if name == OWN or scores[name]:
             write_bytes(files[name].folder / RESULTS, dump_json(conclusions).encode())

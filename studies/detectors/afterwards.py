@@ -6,15 +6,13 @@ looked at.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
 import pe_core as pe
 
-from ..results_file import Json, read_json
+from ..results_file import Json
 from .analysis import (
     DesignResults,
     Results,
@@ -27,7 +25,6 @@ from .analysis import (
 )
 from .plan import ACROSS, FIXED, StudyPlan
 from .rank_tests import bca_interval, better_ones, permutation_p, power, rho_within
-from .runs import RUNS, digest_of_files
 from .scan_curves import beam_counts
 from .scores import BEAMS, COVERAGE, EXPECTED_AP, PRIMARY
 
@@ -35,10 +32,6 @@ SHOWN = (PRIMARY, COVERAGE, EXPECTED_AP)
 """Scores that are looked at by ring."""
 STUDIES, STUDY_RESAMPLES = 1000, 1000
 """Made-up studies from which a power is computed, and bootstraps of each one."""
-REPLACED = "replaced"
-"""Folder of the results that were replaced."""
-LOST = ("2961cc86fabd", "6b6e8460e5d0", "cfb485d79bd0")
-"""Commits that runs name and that the repository does not have."""
 
 
 def afterwards(plan: StudyPlan, results: Results, scores: Results, curves: Json) -> Json:
@@ -133,36 +126,3 @@ def _curves_across(plan: StudyPlan, results: Results, curves: Json) -> Json:
     rmse = float(np.sqrt(((expected - design.samples.ap) ** 2).mean()))
     found = rho_of(plan, design.samples, expected)
     return {"placements": len(design.chosen), "rmse": rounded(rmse), **found}
-
-
-def history(folder: Path, groups: Mapping[str, Results]) -> Json:
-    """Return what the files say of results that were replaced, lost commits and digests.
-
-    `groups` has the results of each study by its folder, from `folder`.
-    """
-    runs = groups["."]
-    before = {p.stem: read_json(p) for p in sorted((folder / REPLACED).glob("*.json"))}
-    replaced = {
-        name: {
-            "plan": data["plan"],
-            "jax": data["made"]["jax"],
-            "before": data["ap"],
-            "after": runs[name]["ap"],
-        }
-        for name, data in before.items()
-        if name in runs
-    }
-    told = {name: _told(folder / name / RUNS, found) for name, found in groups.items() if found}
-    return {"replaced": replaced, "groups": told}
-
-
-def _told(folder: Path, results: Results) -> Json:
-    made = [run["made"] for run in results.values()]
-    lost = {commit: sum(each["commit"] == commit for each in made) for commit in LOST}
-    return {
-        "runs": len(results),
-        "sha256": digest_of_files(folder),
-        "plan_alone": sum("digest" not in each for each in made),
-        "digests": sorted({each.get("digest", "") for each in made} - {""}),
-        "lost": {commit: count for commit, count in lost.items() if count},
-    }

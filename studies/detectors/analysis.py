@@ -140,13 +140,20 @@ def of_runs(
 
 def _mixed(plan: StudyPlan, results: Results, name: str) -> DesignResults:
     """Return the placements at which the mixed detector was tested; only fresh ones for `FRESH`."""
-    by_name = {p.name: p for p in placements(plan)}
     wanted = [run for run in runs(plan) if run.placement is None]
+    return of_mixed(name, wanted, placements(plan), results)
+
+
+def of_mixed(
+    name: str, wanted: Sequence[Run], chosen: Sequence[Placement], results: Results
+) -> DesignResults:
+    """Return what a detector for many placements found at them; only at fresh ones for `FRESH`."""
+    by_name = {p.name: p for p in chosen}
     done = [run for run in wanted if run.name in results]
     aps: dict[Placement, list[float]] = {}
     for run in done:
         for placement, found in results[run.name]["placements"].items():
-            if name == MIXED or not found["trained_with"]:
+            if name != FRESH or not found["trained_with"]:
                 aps.setdefault(by_name[placement], []).append(found["ap"])
     return DesignResults(name, list(aps), _samples(aps), len(done), len(wanted))
 

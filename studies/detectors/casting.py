@@ -6,6 +6,7 @@ depend on the scene, so it is computed once for a placement.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +23,8 @@ from .scenes import NOBODY, Scene, scene
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+SceneSource = Callable[[StudyPlan, str, str, str, int], Scene]
+"""Returns a scene, as `scene` does, from plan, vehicle, split, world and number."""
 
 LAYERS_M = (-0.4, 0.15, 0.35, 0.6, 0.9, 1.3, 1.8, 2.6, 4.2)
 """Edges of the voxels' layers [m]."""
@@ -137,10 +140,13 @@ class FreeBeams:
 
 
 class Caster:
-    """Casts the beams of a placement into scenes of a world."""
+    """Casts the beams of a placement into scenes of a world, which `source` returns."""
 
-    def __init__(self, plan: StudyPlan, placement: Placement, world: str) -> None:
+    def __init__(
+        self, plan: StudyPlan, placement: Placement, world: str, source: SceneSource = scene
+    ) -> None:
         self._plan, self._placement, self._world = plan, placement, world
+        self._source = source
         self._beams = [FreeBeams(placement, k) for k in range(len(placement.poses))]
 
     def voxels(self, split: str, number: int) -> RegionVoxels:
@@ -160,7 +166,7 @@ class Caster:
 
     def points(self, split: str, number: int) -> tuple[Scene, Points]:
         """Return a scene, and the points of all LiDARs in it."""
-        content = scene(self._plan, self._placement.vehicle, split, self._world, number)
+        content = self._source(self._plan, self._placement.vehicle, split, self._world, number)
         tree = TriangleTree(content.triangles)
         rule = self._plan.scenes
         positions, beams = [], np.zeros(len(content.labels), np.int64)

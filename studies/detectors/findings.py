@@ -324,9 +324,9 @@ def trainings(runs: Mapping[str, Json]) -> str:
     )
 
 
-def plot_name(design: str, pairs: bool = False) -> str:
-    """Return the file name of a design's plot, or of that of its pairs."""
-    return f"{'pairs_' if pairs else ''}{design.replace(', ', '_')}.png"
+def plot_name(design: str) -> str:
+    """Return the file name of a design's plot."""
+    return f"{design.replace(', ', '_')}.png"
 
 
 def wrong_pairs(found: Json) -> str:

@@ -12,13 +12,13 @@ from .cameras.lifting import Lifting
 from .cameras.network import pictures_network
 from .cameras.plan import CameraPlan
 from .cameras.rendering import Renderer
-from .casting import Caster, RegionObjects
+from .casting import Caster, RegionObjects, SceneSource
 from .detector import Detector, Network, grid_network, points_network, versions
 from .placements import Placement, placements
-from .plan import FIXED, MIXED, POINTS, SPLITS, StudyPlan
+from .plan import FIXED, MIXED, PLAIN, POINTS, SPLITS, StudyPlan
 from .precision import results
 from .runs import Run, run_digest
-from .scenes import CLASSES
+from .scenes import CLASSES, scene
 from .training import tested, train
 
 TRAIN, VALIDATION, TEST = SPLITS
@@ -40,7 +40,9 @@ def run_one(plan: StudyPlan, run: Run) -> Json:
     if run.detector == POINTS:
         network = points_network(FEATURES, plan.region.shape, len(CLASSES))
     if run.placement is None:
-        found = _mixed(plan, run, _detector(plan, network))
+        trained_with, fresh = mixed_placements(plan)
+        chosen, count = [*trained_with, *fresh], plan.mixed["test_scenes"]
+        found = _mixed(plan, run, _detector(plan, network), chosen, count)
     else:
         caster = Caster(plan, run.placement, run.world)
         make = caster.cloud if run.detector == POINTS else caster.voxels
@@ -64,6 +66,15 @@ def run_camera(plan: CameraPlan, run: Run) -> Json:
     return _with_origin(found, run, plan.study, started)
 
 
+def run_layouts(
+    plan: StudyPlan, run: Run, chosen: Sequence[Placement], count: int, source: SceneSource
+) -> Json:
+    """Return the results of the mixed detector at placements in so many scenes of a source."""
+    started = time.process_time()
+    detector = _detector(plan, grid_network(LAYERS, len(CLASSES)))
+    return _with_origin(_mixed(plan, run, detector, chosen, count, source), run, plan, started)
+
+
 def _detector(plan: StudyPlan, network: Network) -> Detector:
     return Detector(network, plan.training.rate, plan.training.average)
 
@@ -83,20 +94,27 @@ def _of_placement(plan: StudyPlan, run: Run, detector: Detector, scenes: BySplit
     return {**found, "training": training}
 
 
-def _mixed(plan: StudyPlan, run: Run, detector: Detector) -> Json:
-    """Train one detector with many placements, and test it with each, and with others."""
-    trained_with, fresh = mixed_placements(plan)
+def _mixed(
+    plan: StudyPlan,
+    run: Run,
+    detector: Detector,
+    chosen: Sequence[Placement],
+    count: int,
+    source: SceneSource = scene,
+) -> Json:
+    """Train one detector with many placements, and test it at some in so many scenes of each."""
+    trained_with, _ = mixed_placements(plan)
     counts = {TRAIN: plan.mixed["scenes"], VALIDATION: plan.scenes.counts[VALIDATION]}
-    casters = [Caster(plan, placement, run.world) for placement in trained_with]
+    casters = [Caster(plan, placement, PLAIN) for placement in trained_with]
     scenes = {
-        split: [casters[k % len(casters)].voxels(split, k) for k in range(count)]
-        for split, count in counts.items()
+        split: [casters[k % len(casters)].voxels(split, k) for k in range(number)]
+        for split, number in counts.items()
     }
     trained, training = train(detector, plan, scenes[TRAIN], scenes[VALIDATION], run.seed)
     by_placement = {}
-    for placement in (*trained_with, *fresh):
-        caster = Caster(plan, placement, run.world)
-        test = [caster.voxels(TEST, k) for k in range(plan.mixed["test_scenes"])]
+    for placement in chosen:
+        caster = Caster(plan, placement, run.world, source)
+        test = [caster.voxels(TEST, k) for k in range(count)]
         found = results(plan, test, tested(detector, trained.weights, plan, test))
         kept = {key: found[key] for key in ("ap", "by_class")}
         by_placement[placement.name] = {**kept, "trained_with": placement in trained_with}

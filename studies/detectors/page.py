@@ -47,7 +47,6 @@ class Study:
 def page(study: Study, outside: Mapping[str, Json]) -> str:
     """Return the page as Markdown; `outside` has the scores of Place3D's placements."""
     plan, found = study.plans.own, study.found
-    replaced, groups = found["history"]["replaced"], found["history"]["groups"].values()
     values = {
         "t": findings,
         "found": found,
@@ -55,8 +54,6 @@ def page(study: Study, outside: Mapping[str, Json]) -> str:
         "alpha": plan.statistics.alpha,
         "tie": plan.statistics.tie_ap,
         "primary": PRIMARY,
-        "changes": [row["after"] - row["before"] for row in replaced.values()],
-        "alone": [sum(g[key] for g in groups) for key in ("plan_alone", "runs")],
         "trainings": study.trainings(OWN),
         "searched": _searched(study),
         "camera": _cameras(study),

@@ -206,15 +206,10 @@ def _pose_source(
 ) -> Callable[[], PoseValues]:
     """Return a function that draws a pose on the roof or at a side, rounded as in a file."""
     low, high = body.bounds
-    corners = body.triangles.reshape(-1, 3)
 
     def roof() -> tuple[float, float, float]:
         x, y = (rng.uniform(low[k] + EDGE_M, high[k] - EDGE_M) for k in range(2))
-        near = np.abs(corners[:, :2] - (x, y)).max(axis=1) <= NEIGHBOURHOOD_M
-        top = _top_at(body, x, y)
-        if near.any():
-            top = max(top, float(corners[near, 2].max()))
-        return x, y, top + rng.uniform(*rule.roof_height_m)
+        return x, y, top_near(body, x, y) + rng.uniform(*rule.roof_height_m)
 
     def side() -> tuple[float, float, float]:
         length, width = (high - low)[:2] + 2.0 * rule.side_gap_m
@@ -233,6 +228,13 @@ def _pose_source(
         return (*rounded, *(round(float(t), 1) for t in tilts), 0.0)
 
     return pose
+
+
+def top_near(body: pe.Vehicle, x: float, y: float) -> float:
+    """Return the height of the highest of the body near a point seen from above [m]."""
+    corners = body.triangles.reshape(-1, 3)
+    near = np.abs(corners[:, :2] - (x, y)).max(axis=1) <= NEIGHBOURHOOD_M
+    return max(_top_at(body, x, y), float(corners[near, 2].max(initial=-np.inf)))
 
 
 def _top_at(body: pe.Vehicle, x: float, y: float) -> float:

@@ -26,6 +26,8 @@ Interval = tuple[float, float]
 
 MIN_GROUP = 3
 """A group of fewer placements has no rank correlation worth the name."""
+STUDENT = {2: 4.302653, 3: 3.182446, 5: 2.570582}
+"""Student's quantile at 0.975 by degrees of freedom."""
 PERMUTED_AT_ONCE = 500
 AT_ONCE = 2_000_000
 """Comparisons that are done at once, to limit memory."""
@@ -241,15 +243,9 @@ def power(
     return sum(is_above() for _ in range(studies)) / studies
 
 
-def student_interval(values: Sequence[float], confidence: float) -> Interval:
-    """Return Student's interval of the mean of three values.
-
-    With two degrees of freedom the quantile at p is (2 p - 1) / sqrt(2 p (1 - p)).
-    """
-    assert len(values) == 3
-    p = (1.0 + confidence) / 2.0
-    quantile = (2.0 * p - 1.0) / math.sqrt(2.0 * p * (1.0 - p))
-    half = quantile * float(np.std(values, ddof=1)) / math.sqrt(len(values))
+def student_interval(values: Sequence[float]) -> Interval:
+    """Return Student's interval (95 %) of the mean of three, four or six values."""
+    half = STUDENT[len(values) - 1] * float(np.std(values, ddof=1)) / math.sqrt(len(values))
     middle = float(np.mean(values))
     return middle - half, middle + half
 

@@ -181,11 +181,6 @@ def run_digest(plan: str, versions: Mapping[str, str]) -> str:
     return _digest_of(itertools.chain(parts, ((name, path.read_bytes()) for name, path in code)))
 
 
-def digest_of_files(folder: Path) -> str:
-    """Return the SHA-256 of the results in a folder, 16 digits: of their names and contents."""
-    return _digest_of((path.name, path.read_bytes()) for path in sorted(folder.glob("*.json")))
-
-
 def _digest_of(parts: Iterable[tuple[str, bytes]]) -> str:
     total = hashlib.sha256()
     for name, content in parts:

@@ -73,18 +73,19 @@ def scene(plan: StudyPlan, vehicle_name: str, split: str, world: str, number: in
     objects = _prior_objects(plan, vehicle_name, split, number)
     distractors = _distractors(plan, vehicle_name, objects, rng)
     if world != TOWN:
-        return _assembled(objects, distractors, None, [])
+        return assembled(objects, distractors, None, [])
     ground = Ground(rng)
     occupied = _joined(objects, distractors)
     parked = _free(Things(*parked_cars(rng)), occupied, vehicle_name)
     objects = _joined(objects, parked)
     houses = house_triangles(rng, np.concatenate([occupied.feet, parked.feet])[:, :2])
-    return _assembled(objects, distractors, ground, houses)
+    return assembled(objects, distractors, ground, houses)
 
 
-def _assembled(
+def assembled(
     objects: Things, distractors: Things, ground: Ground | None, more: list[Floats]
 ) -> Scene:
+    """Return the scene of objects to be found, distractors, ground (None: flat) and houses."""
     triangles, owners = [], []
     for things, are_objects in ((objects, True), (distractors, False)):
         feet = things.feet.copy()

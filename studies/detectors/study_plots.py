@@ -24,12 +24,8 @@ from .page import OWN, Study
 from .plan import CAMERAS, StudyPlan
 from .scores import COMPARED, EXPECTED_AP, HEIGHT, PRIMARY
 
-DISTANCE_BINS = 6
-"""Bins of pairs by how much they differ in AP, with about as many pairs each."""
-PAIR_COLORS = (BLUE, ORANGE, GREY)
 SHOWN = (PRIMARY, EXPECTED_AP, HEIGHT)
 LABELS = ("perception entropy [nats]", "expected AP in traffic", "mean height [m]")
-PAIR_LABELS = ("perception entropy", "expected AP in traffic", "mean height")
 COLORS = (BLUE, ORANGE)
 CURVES, CURVE_LABELS = ("shipped", "scans"), ("shipped curves", "from scans")
 SHOWN_SCENE = ("test", 0)
@@ -41,7 +37,6 @@ def draw_all(study: Study, folder: Path, scores: Results) -> None:
     for design in designs_of(study.plans.own, study.runs[OWN]):
         if design.has_figures:
             ap_against_scores(folder / plot_name(design.name), study.plans.own, design, scores)
-            pairs_by_distance(folder / plot_name(design.name, pairs=True), design, scores)
     if classes := study.found["ap_curves"]["classes"]:
         expected_against_found(folder / "ap_curves.png", classes)
 
@@ -110,31 +105,4 @@ def expected_against_found(path: Path, classes: Mapping[str, dict[str, Any]]) ->
     axes[0].set_ylabel("expected AP in traffic")
     axes[-1].legend(loc="lower right", frameon=False, handletextpad=0.1)
     axes[len(axes) // 2].set_xlabel("AP found")
-    save_plot(figure, path)
-
-
-@styled
-def pairs_by_distance(path: Path, design: DesignResults, scores: Results) -> None:
-    """Draw the share of pairs on one vehicle that a score orders rightly, by their distance."""
-    first, second = np.triu_indices(len(design.chosen), 1)
-    same = design.samples.groups[first] == design.samples.groups[second]
-    first, second = first[same], second[same]
-    distance = design.samples.ap[first] - design.samples.ap[second]
-    edges = np.quantile(np.abs(distance), np.linspace(0.0, 1.0, DISTANCE_BINS + 1))
-    bins = np.clip(np.searchsorted(edges, np.abs(distance), side="right") - 1, 0, DISTANCE_BINS - 1)
-    figure, axes = plt.subplots(figsize=(5.6, 3.3), layout="constrained")
-    axes.axhline(0.5, color=GREY, lw=0.8, ls="--")
-    chosen = {s.name: s for s in COMPARED}
-    for name, label, color in zip(SHOWN, PAIR_LABELS, PAIR_COLORS, strict=True):
-        values = np.array([chosen[name].value(p, scores[p.name]) for p in design.chosen])
-        right = (values[first] - values[second]) * distance > 0.0
-        filled = [k for k in range(DISTANCE_BINS) if (bins == k).any()]
-        middles = [np.median(np.abs(distance)[bins == k]) for k in filled]
-        shares = [right[bins == k].mean() for k in filled]
-        axes.plot(middles, shares, "o-", color=color, ms=4.5, lw=1.2, label=label)
-    axes.set_ylim(0.0, 1.05)
-    axes.set_xlabel("difference of the pair in mean AP")
-    axes.set_ylabel("share of pairs ordered rightly")
-    axes.legend(loc="lower right", frameon=False)
-    remove_frame(axes)
     save_plot(figure, path)

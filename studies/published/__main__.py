@@ -12,7 +12,7 @@ from pe_tools.cli import DONE, Answer
 
 from ..command import main, page_parser
 from ..pages import PAGE, check_page, render
-from ..results_file import RESULTS, Json, compute, read_complete, read_json
+from ..results_file import RESULTS, Json, compute, read_complete
 from .correlations import ValidityResults, correlations, over_papers
 from .findings import page_values, summary
 from .plots import draw_all
@@ -20,7 +20,7 @@ from .scores import BASE, variants
 from .tasks import FULL, QUICK, ValidityEffort, plan
 
 TITLE = "# Do the scores rank placements as detectors do?"
-FOLDER, QUICK_FOLDER = "docs/validity", "validity-quick"
+FOLDER, QUICK_FOLDER = "docs/validity/published", "validity-quick"
 
 
 def validate(args: argparse.Namespace, folder: Path) -> Answer:
@@ -29,7 +29,7 @@ def validate(args: argparse.Namespace, folder: Path) -> Answer:
     check_page(folder, TITLE, "published")
     data = read_results(folder / RESULTS) if args.page_only else _computed(args, folder)
     results = ValidityResults(data)
-    write_bytes(folder / PAGE, page(results, own_answer(folder)).encode())
+    write_bytes(folder / PAGE, page(results).encode())
     draw_all(results, folder)
     return dump_json(data) if args.json else summary(results), DONE
 
@@ -55,15 +55,9 @@ def read_results(path: Path) -> Json:
     return read_complete(path, following, "correlations", "over_papers")
 
 
-def page(results: ValidityResults, own: str) -> str:
-    """Return the page as Markdown; `own` is the answer of our own study."""
-    return render(Path(__file__).parent, page_values(results, own))
-
-
-def own_answer(folder: Path) -> str:
-    """Return the answer of our own study, whose results are in a folder of its own within."""
-    path = folder / "own" / RESULTS
-    return str(read_json(path)["answer"]) if path.exists() else "it is not done here."
+def page(results: ValidityResults) -> str:
+    """Return the page as Markdown."""
+    return render(Path(__file__).parent, page_values(results))
 
 
 if __name__ == "__main__":

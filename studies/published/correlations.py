@@ -216,15 +216,15 @@ class ValidityResults:
         """Return the test of a score over both papers."""
         return next(row for row in self.tests_of(treatment) if row["score"] == score)
 
-    def correlations_of(self, paper: Paper, cls: str, condition: str = CLEAN) -> list[Json]:
-        """Return the correlations of all scores in one paper, with the main treatment."""
-        wanted = (paper.id, condition, cls, *MAIN)
+    def correlations_of(self, paper: Paper, cls: str) -> list[Json]:
+        """Return the correlations of all scores in one paper, clean, with the main treatment."""
+        wanted = (paper.id, CLEAN, cls, *MAIN)
         keys = ("paper", "condition", "class", "reading", "placements")
         return [row for row in self.correlations if tuple(row[key] for key in keys) == wanted]
 
-    def correlation_of(self, paper: Paper, cls: str, score: str, condition: str = CLEAN) -> Json:
+    def correlation_of(self, paper: Paper, cls: str, score: str) -> Json:
         """Return the correlation of one score, with the main treatment."""
-        rows = self.correlations_of(paper, cls, condition)
+        rows = self.correlations_of(paper, cls)
         return next(row for row in rows if row["score"] == score)
 
     def significant(self) -> dict[str, list[str]]:

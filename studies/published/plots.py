@@ -14,17 +14,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from ..pages import rho_text
 from ..plotting import BLUE, GREY, ORANGE, remove_frame, save_plot, styled
 from ..ranks import min_significant_rho
 from ..results_file import Json
-from .correlations import MAIN_CLASS, ValidityResults, detectors_disagree
+from .correlations import MAIN_CLASS, ValidityResults
 from .published import CLEAN, Paper, papers
 
 PAPER_COLORS = (BLUE, ORANGE)
-MAX_BLACK_TEXT_RHO = 0.7
-"""The cell of a larger rho is too dark for black text."""
-DISAGREEMENT_COLOR = "#dddddd"
 DOT_OFFSET = 0.13
 """Dots of the two papers are this far above and below their line."""
 
@@ -33,7 +29,6 @@ def draw_all(results: ValidityResults, folder: Path) -> None:
     """Draw every plot of the page."""
     height(folder / "height.png")
     over_papers(folder / "over_papers.png", results)
-    by_class(folder / "by_class.png", results)
 
 
 @styled
@@ -107,33 +102,3 @@ def _dot(axes: Axes, row: Json, y: float, color: str) -> None:
     if row["mean"] is not None:
         axes.plot([row["lowest"], row["highest"]], [y, y], color=color, lw=2.5, alpha=0.35)
         axes.plot(row["mean"], y, "o", color=color, ms=6)
-
-
-@styled
-def by_class(path: Path, results: ValidityResults) -> None:
-    """Draw rho of every score with every class; grey where the detectors do not agree."""
-    columns = [(paper, cls) for paper in papers() for cls in paper.classes]
-    names = list(dict.fromkeys(r["score"] for c in columns for r in results.correlations_of(*c)))
-    size = (1.15 * len(columns) + 3.2, 0.36 * len(names) + 1.4)
-    figure, axes = plt.subplots(figsize=size, layout="constrained")
-    for x, column in enumerate(columns):
-        for row in results.correlations_of(*column):
-            _cell(axes, x, names.index(row["score"]), row["mean"], detectors_disagree(row))
-    titles = [f"{paper.short}\n{paper.classes[cls]}" for paper, cls in columns]
-    axes.set_xticks(range(len(columns)), titles)
-    axes.set_yticks(range(len(names)), names)
-    axes.tick_params(length=0, top=False, labeltop=True, bottom=False, labelbottom=False)
-    axes.set_xlim(-0.5, len(columns) - 0.5)
-    axes.set_ylim(len(names) - 0.5, -0.5)
-    axes.spines[:].set_visible(False)
-    save_plot(figure, path)
-
-
-def _cell(axes: Axes, x: int, y: int, rho: float | None, disagree: bool) -> None:
-    color = (
-        DISAGREEMENT_COLOR if disagree or rho is None else plt.get_cmap("PuOr")(0.5 - 0.42 * rho)
-    )
-    axes.add_patch(plt.Rectangle((x - 0.48, y - 0.46), 0.96, 0.92, color=color, lw=0))
-    is_dark = abs(rho or 0.0) > MAX_BLACK_TEXT_RHO
-    text_color = GREY if disagree else "white" if is_dark else "black"
-    axes.text(x, y, rho_text(rho), ha="center", va="center", fontsize=8.5, color=text_color)

@@ -19,7 +19,7 @@ from ..results_file import RESULTS, Json, made_by, print_progress, read_json
 from .cameras import hidden_and_seen, read_cameras
 from .logs import CLASSES, Log, read_lidars, read_logs
 from .models import SOLID, STEPS, Fitted, cells_of, crossings, fit, loss
-from .statistics import RESAMPLES, SEED, compared, statements
+from .statistics import REFUTED, RESAMPLES, SEED, compared, statements
 
 FOLDER = "docs/validity/road"
 TITLE = "# Points on the road: predicted and counted"
@@ -159,7 +159,7 @@ class Tables:
         ]
 
     def cells(self) -> list[list[str]]:
-        """Return all cells: boxes, tracks, and each figure before and after."""
+        """Return the cells in which a figure is refuted: boxes, tracks, before and after."""
         rows = []
         for log, by_step in self.found["logs"].items():
             before, after = (by_step[step] for step in self.judged)
@@ -171,7 +171,8 @@ class Tables:
                     bare = "-" if share is None else f"{share:.2f}"
                     head = [log, name, ring, str(cell["boxes"]), str(cell["tracks"]), bare]
                     later = cell.get("poisson")
-                    rows.append([*head, *texts, "-" if later is None else f"{later:+.2f}"])
+                    if any(REFUTED in text for text in texts):
+                        rows.append([*head, *texts, "-" if later is None else f"{later:+.2f}"])
         return rows
 
 
@@ -200,7 +201,7 @@ def _change(before: Json | float | None, after: Json | float | None) -> str:
     return f"{text} ({low:.2f} to {high:.2f}) {MARKS[after['verdict']]}"
 
 
-MARKS = {"holds": "holds", "refuted": "**refuted**", "not decided": "open"}
+MARKS = {"holds": "holds", REFUTED: "**refuted**", "not decided": "open"}
 
 
 def _summary(found: Json) -> str:

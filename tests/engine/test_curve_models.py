@@ -1,6 +1,5 @@
-"""`[ap] model`: curves of whole objects from publications, or of LiDARs from scans."""
+"""`[ap]`: curves of objects from publications or from scans, the range term, the floor."""
 
-import importlib
 import json
 from dataclasses import replace
 
@@ -9,7 +8,12 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.sensors import KINDS, detectors, scan_curves
+from pe_core import catalog
+from pe_core.metric import average_precision
+from pe_core.metric.entropy import ranged
+from pe_core.scoring.score import zone_masks
+from pe_core.scoring.sight import Sight
+from pe_core.sensors import KINDS, ObjectMeasurementCache, detectors, measure, scan_curves
 from pe_core.sensors.kind import SIZES
 from pe_core.study import study_from_dict, study_to_dict
 from pe_tools import advice
@@ -52,22 +56,15 @@ def path(tmp_path):
 
 
 @pytest.fixture
-def provisional(monkeypatch):
-    """As if some runs were missing, whatever the file says."""
-    fitted(monkeypatch, 1)
-
-
-def fitted(monkeypatch, missing):
-    """Let so many runs be missing."""
-    now = scan_curves()
-    other = replace(now, runs=now.planned - missing)
-    module = importlib.import_module("pe_tools.advice.warnings")  # a function has its name
-    monkeypatch.setattr(module, "scan_curves", lambda: other)
+def floored(path):
+    """As `path`, with a protocol's floor, and its warning."""
+    path.write_text(f"{STUDY}[ap]\nprotocol_floor = 0.1\n", "utf-8")
+    return advice.curve_note([pe.load_study(path)])
 
 
 def test_curves_from_scans_are_of_the_road_s_classes_and_of_lidars_alone():
-    assert set(scan_curves().curves) == {"lidar"}
-    assert set(scan_curves().curves["lidar"]) == set(SIZES)
+    assert set(scan_curves()) == {"lidar"}
+    assert set(scan_curves()["lidar"]) == set(SIZES)
     for kind in KINDS:
         assert SCANS.curve(kind) == pe.PerceptionModel().curve(kind)
         for name in SIZES:
@@ -105,7 +102,7 @@ def test_a_study_file_has_the_model_only_where_it_is_another(path):
 def test_the_score_is_that_of_the_curves(path):
     """As if they were written out class by class; voxels are scored as before."""
     study = pe.load_study(path)
-    written = pe.PerceptionModel(objects=scan_curves().curves)
+    written = pe.PerceptionModel(objects=scan_curves())
     by_name, by_value, before = (
         replace(study, model=m).evaluator().score(study.rig) for m in (SCANS, written, study.model)
     )
@@ -119,35 +116,31 @@ def test_the_score_is_that_of_the_curves(path):
 
 
 @pytest.mark.parametrize("verb", ["score", "explain", "compare"])
-def test_provisional_curves_are_one_line_and_the_option_chooses_them(
-    verb, path, provisional, capsys
-):
-    assert main([verb, str(path)]) == 0
-    assert "provisional" not in capsys.readouterr().out
+def test_what_is_not_the_paper_s_is_one_line(verb, path, floored, capsys):
     more = [str(path)] * (verb == "compare")
-    assert main([verb, str(path), *more, "--ap-model", "scans"]) == 0
-    assert capsys.readouterr().out.count("the curves from scans are provisional") == 1
+    assert main([verb, str(path), *more]) == 0
+    assert floored and capsys.readouterr().out.count(floored) == 1
 
 
-def test_a_check_takes_the_curves_and_tells_them(path, provisional, capsys):
+def test_a_check_takes_the_curves_and_tells_the_floor(path, floored, capsys):
     """An adult whom a rig has to find with an AP of 0.6: it does by the curves from scans alone."""
     path.write_text(f"{STUDY}{ADULT}", "utf-8")
     car = shapes.box_car()
     pt.write_mesh(path.parent / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
     assert main(["check", str(path)]) == 3
-    assert "provisional" not in capsys.readouterr().err
+    assert floored not in capsys.readouterr().err
+    path.write_text(f"{STUDY}[ap]\nprotocol_floor = 0.1\n{ADULT}", "utf-8")
     assert main(["check", str(path), "--ap-model", "scans"]) == 0
-    assert capsys.readouterr().err.count("the curves from scans are provisional") == 1
+    assert capsys.readouterr().err.count(floored) == 1
 
 
-def test_the_result_says_which_curves_it_used(path, tmp_path, provisional, capsys):
+def test_the_result_says_which_curves_it_used(path, tmp_path, floored, capsys):
     for model in ("paper", "scans"):
         folder = tmp_path / model
         assert main(["score", str(path), "--ap-model", model, "-o", str(folder)]) == 0
         result = json.loads((folder / "result.json").read_text("utf-8"))
         assert result["ap_model"] == model
-        codes = [each["code"] for each in result["warnings"]]
-        assert codes.count(advice.PROVISIONAL) == (model == "scans")
+        assert [each["code"] for each in result["warnings"]].count("protocol_floor") == 1
         assert pe.load_study(folder / "study.toml").model.model == model
 
 
@@ -169,3 +162,101 @@ def test_curves_of_published_detectors_are_told_with_source_and_span(model, path
     assert f"\n{model}: {known.label}, {known.trust}; {known.source}\n" in told
     assert main(["score", str(path), "--ap-model", model, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["ap_model"] == model
+
+
+FADING = pe.ApCurve(0.055, 0.6, 0.12)
+"""A camera's curve with a range term."""
+
+
+def by_definition(m, curve, distance):
+    """AP = clip(a ln m - c ln R + b, 0.001, 0.999) where m > 0, R at least 1 m; else 0.001."""
+    with np.errstate(divide="ignore"):
+        ap = curve.a * np.log(m) - curve.c * np.log(np.maximum(distance, 1.0)) + curve.b
+    return np.clip(np.where(m > 0.0, ap, 0.001), 0.001, 0.999)
+
+
+@pytest.mark.parametrize("curve", [FADING, pe.ApCurve(0.152, 0.659, 0.3), pe.ApCurve(0.2, 0.1)])
+def test_ap_with_a_range_term_is_that_of_its_definition(curve):
+    m = np.array([0.0, 1.0, 3.5, 120.0, 4000.0])
+    for distance in (0.2, 1.0, 7.5, 80.0):
+        found = average_precision(ranged(m, curve, np.full(5, distance)), curve)
+        assert found == pytest.approx(by_definition(m, curve, distance), abs=1e-12)
+    assert ranged(m, OWN, np.ones(5)) is m and pe.ApCurve(0.2, 0.1, 0.0) == OWN
+    with pytest.raises(pe.InputError):
+        pe.ApCurve(0.2, 0.1, -0.1)
+
+
+@pytest.mark.parametrize("blind", ["floor", "literal"])
+def test_voxels_have_the_range_term_on_the_grid_and_on_a_sample(blind):
+    """Each kind in a group of its own; the entropy of each voxel by definition."""
+    curves = {"camera": FADING, "lidar": pe.ApCurve(0.1, 0.7, 0.2)}
+    model = pe.PerceptionModel(blind, **curves)
+    space = pe.PerceptionSpace((4.0, 12.0), (-3.0, 3.0), (0.0, 2.0), 0.5)
+    roof = shapes.lidar_on_roof(shapes.small_lidar(16, 720), (0.0, 0.0, 1.7), name="roof")
+    front = pe.Sensor("front", catalog.load("Camera 60 deg"), pe.Pose((1.0, 0.0, 1.4)))
+    axes = np.meshgrid(*(space.centers(k) for k in range(3)), indexing="ij")
+    centers = np.stack([w.ravel() for w in axes], axis=1)
+    distance = np.hypot(centers[:, 0], centers[:, 1])
+    for sensors, exact in (([roof], 1e-8), ([roof, front], 5e-4)):  # areas in single precision
+        total = 0.0
+        for sensor in sensors:
+            m = measure(sensor, centers, space.interval).astype(float)
+            ap = by_definition(m, curves[sensor.kind], distance)
+            total += (1.0 / ap - 1.0) ** -2 - (999.0**-2 if blind == "floor" else 0.0)
+        total += 999.0**-2 if blind == "floor" else 0.0
+        entropy = np.mean(1.0 + np.log(2.0 * np.pi) - np.log(total))
+        rig, prior = pe.Rig(sensors), pe.Prior.uniform()
+        for samples, error in ((0, exact), (1 << 12, 0.01)):
+            found = pe.Evaluator(space, prior, model=model, samples=samples)
+            assert found.entropy(rig) == pytest.approx(entropy, abs=error)
+            assert found.score(rig).entropy == pytest.approx(found.entropy(rig), abs=1e-8)
+        assert abs(pe.Evaluator(space, prior).entropy(rig) - entropy) > 0.1
+        sight = Sight(space, prior, model=model)
+        h = (1.0 + np.log(2.0 * np.pi) - np.log(total)).reshape(space.shape)[:, :, 1]
+        ground = sight.ground(rig, height=0.75, step=space.interval)
+        assert ground.entropy == pytest.approx(h, abs=1e-8)
+
+
+def test_objects_have_the_range_term_and_ap_is_averaged_above_the_floor(path):
+    study = pe.load_study(path)
+    study = replace(study, rig=pe.Rig([study.rig["front"]]))
+    evaluator = study.evaluator()
+    drawn = evaluator.drawn
+    m = ObjectMeasurementCache(drawn.objects, study.vehicle, True).measure(study.rig)["front"]
+    distance = np.hypot(*drawn.objects.centers[:, :2].T)
+    curves = dict.fromkeys(SIZES, FADING)
+    ap = by_definition(m, FADING, distance)
+    for floor in (0.0, 0.1):
+        model = pe.PerceptionModel(objects={"camera": curves}, protocol_floor=floor)
+        found = replace(study, model=model).evaluator()
+        above = np.maximum(ap - floor, 0.0) / (1.0 - floor)
+        mean = np.average(above, weights=drawn.weights)
+        traffic = found.expected_ap(study.rig)
+        assert found.score(study.rig).objects.ap == traffic.ap == pytest.approx(mean, abs=1e-8)
+        near = zone_masks(*drawn.objects.centers[:, :2].T)["near"]
+        of_near = np.average(above[near], weights=drawn.weights[near])
+        assert traffic.rings["near"][0] == pytest.approx(of_near, abs=1e-8)
+    assert (above == 0.0).any() and 0.0 < mean < np.average(ap, weights=drawn.weights)
+
+
+def test_a_file_has_both_only_where_they_are_set_and_both_are_told(path, tmp_path, capsys):
+    plain = study_to_dict(pe.load_study(path))["ap"]
+    assert "protocol_floor" not in plain and "c" not in plain["camera"]
+    path.write_text(f"{STUDY}[ap]\nprotocol_floor = 0.1\n[ap.camera.objects.car]\n"
+                    "a = 0.055\nb = 0.6\nc = 0.12\n", "utf-8")  # fmt: skip
+    study = pe.load_study(path)
+    assert study.model.object_curve("camera", "car") == FADING
+    assert study.model.with_model("scans").protocol_floor == 0.1
+    assert study_from_dict(study_to_dict(study), folder=tmp_path).model == study.model
+    assert main(["score", str(path), "--json"]) == 0
+    codes = [each["code"] for each in json.loads(capsys.readouterr().out)["warnings"]]
+    assert {"range_term", "protocol_floor"} <= set(codes)
+    own = [replace(s, curve=FADING) if s.name == "front" else s for s in study.rig]
+    voxels = replace(study, rig=pe.Rig(own), targets=pe.TargetRule())
+    assert "'front'" in advice.curve_note([voxels])
+    assert study_from_dict(study_to_dict(voxels), folder=tmp_path).rig["front"].curve == FADING
+    assert main(["compare", str(path), str(path)]) == 0
+    assert capsys.readouterr().out.count("ap.camera.objects.car") == 1
+    path.write_text(f"{STUDY}[ap]\nprotocol_floor = 1.0\n", "utf-8")
+    with pytest.raises(pe.InputError, match="protocol_floor"):
+        pe.load_study(path)

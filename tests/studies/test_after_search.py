@@ -57,7 +57,7 @@ def test_rigs_are_the_lidars_of_the_studies_that_the_plan_names():
     """Poses and bounds of experiment 4, and of the benchmark's shuttle with its body."""
     paper, bench = load_study(STUDIES / "4_cameras.toml"), PROBLEMS["shuttle of eight"].make()
     for rig, other in zip(PLAN.rigs, (paper, bench), strict=True):
-        ours = study_of(PLAN, rig, "entropy")
+        ours = study_of(PLAN, rig, "entropy", 1)
         lidars = [s for s in other.rig if s.kind == "lidar"]
         assert [s.pose for s in ours.rig] == [s.pose for s in lidars]
         assert [s.model for s in ours.rig] == [s.model for s in lidars]
@@ -69,7 +69,7 @@ def test_rigs_are_the_lidars_of_the_studies_that_the_plan_names():
         assert len({each.clear_housings for each in constraints}) == 1
         assert np.allclose(ours.vehicle.bounds, other.vehicle.bounds)
         assert (own.seed, own.method, own.evaluations) == (1, "portfolio", 0)
-    assert len({study_of(PLAN, PLAN.rigs[0], o).search.objective for o in PLAN.objectives}) == 2
+    assert len({study_of(PLAN, PLAN.rigs[0], o, 1).search.objective for o in PLAN.objectives}) == 2
 
 
 def test_scenes_of_the_bus_are_those_of_the_study_and_the_shuttle_has_its_own():
@@ -81,10 +81,12 @@ def test_scenes_of_the_bus_are_those_of_the_study_and_the_shuttle_has_its_own():
 def test_a_short_search_is_kept_and_its_runs_are_gone_on_with_by_resume_alone(tmp_path):
     """It ends within its bounds, and its file is not searched again."""
     plan, said = quick_after_search_plan(), []
-    assert [p.name for p in searched_placements(plan, tmp_path)] == ["after-shuttle-start"]
-    found = searched_placements(plan, tmp_path, said.append)
+    assert [p.name for p in searched_placements(plan, tmp_path / AFTER_SEARCH)] == [
+        "after-shuttle-start"
+    ]
+    found = searched_placements(plan, tmp_path / AFTER_SEARCH, said.append)
     assert len(said) == 2 and len(found) == 1 + len(plan.objectives)
-    again = searched_placements(plan, tmp_path, lambda line: pytest.fail(line))
+    again = searched_placements(plan, tmp_path / AFTER_SEARCH, lambda line: pytest.fail(line))
     assert again == found
     files = RunFiles(tmp_path / AFTER_SEARCH, plan.study, seed_by_seed(plan.study, found))
     files.write(files.all[0], {"ap": 0.5})
@@ -97,11 +99,11 @@ def test_a_short_search_is_kept_and_its_runs_are_gone_on_with_by_resume_alone(tm
     assert abs(x) <= 3.4 and abs(y) <= 1.4 and 0.4 <= z <= 2.9 and abs(pitch) <= 15.0
     with pytest.raises(InputError, match="plan"):
         changed = replace(plan, study=replace(plan.study, digest="other"))
-        searched_placements(changed, tmp_path)
+        searched_placements(changed, tmp_path / AFTER_SEARCH)
 
 
 def test_runs_come_seed_by_seed():
-    placements = searched_placements(PLAN, FOLDER_OF_DOCS)
+    placements = searched_placements(PLAN, FOLDER_OF_DOCS / AFTER_SEARCH)
     names = [run.name for run in seed_by_seed(PLAN.study, placements)]
     assert len(set(names)) == 18
     assert names[0] == "after-experiment-4-start-s1" and names[-1] == "after-shuttle-expected-ap-s3"
@@ -109,7 +111,7 @@ def test_runs_come_seed_by_seed():
 
 
 def test_student_s_interval_by_hand():
-    low, high = student_interval([1.0, 2.0, 3.0], 0.95)  # t = 4.3027 with two degrees
+    low, high = student_interval([1.0, 2.0, 3.0])  # t = 4.3027 with two degrees
     assert (low, high) == pytest.approx((2.0 - 4.302653 / 3**0.5, 2.0 + 4.302653 / 3**0.5))
 
 
@@ -147,7 +149,7 @@ def test_a_verdict_needs_all_seeds_of_its_comparison_and_a_sentence_both_rigs():
 
 
 def test_the_committed_placements_are_of_this_plan_and_other_pages_tell_the_results():
-    assert len(searched_placements(PLAN, FOLDER_OF_DOCS)) == 6
+    assert len(searched_placements(PLAN, FOLDER_OF_DOCS / AFTER_SEARCH)) == 6
     saved = json.loads((FOLDER_OF_DOCS / AFTER_SEARCH / "results.json").read_text("utf-8"))
     assert saved["done"] == saved["planned"] == 18
     means = [[v["mean"] for v in rig["by_ring"].values()] for rig in saved["rigs"].values()]

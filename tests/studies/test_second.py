@@ -1,4 +1,4 @@
-"""The second plan: placements that were not used before, equal m, rows and columns."""
+"""The second plan: new placements, equal m, rows and columns, real layouts, searches."""
 
 import json
 from dataclasses import replace
@@ -8,14 +8,17 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import catalog
+from pe_core import InputError, catalog
 from pe_core.scene.objects import Objects
 from pe_core.sensors.kernels import ObjectView
+from studies.detectors.after_search.plan import START
+from studies.detectors.after_search.searches import placement_of, searched_placements, study_of
 from studies.detectors.analysis import HOLDS, REFUTED, UNDECIDED
-from studies.detectors.placements import placements
+from studies.detectors.placements import placements, vehicle
 from studies.detectors.plan import FIXED, full_plan
+from studies.detectors.scenes import NOBODY
 from studies.detectors.scores import COVERAGE, PRIMARY
-from studies.detectors.second.analysis import BEYOND, second_analysis, tie_verdict
+from studies.detectors.second.analysis import BEYOND, FINDS_MORE, second_analysis, tie_verdict
 from studies.detectors.second.law import (
     PUBLISHED,
     camera_law,
@@ -24,15 +27,26 @@ from studies.detectors.second.law import (
     rows_and_beams,
     weighted,
 )
+from studies.detectors.second.layouts import LAYOUTS, Layouts
 from studies.detectors.second.plan import (
+    EQUAL_M,
+    GOOD,
+    SEARCHES,
     arm_placements,
     full_second_plan,
     good_placements,
+    parts_of,
     quick_second_plan,
     second_runs,
 )
+from tests.studies.conftest import study
+from tests.studies.test_detectors import in_a_process
+from tests.studies.test_road import write_log
+from tests.thorough import THOROUGH
 
 FOLDER = Path(__file__).parents[2] / "docs/validity/own/second"
+DIGEST = "8c1ca3a05d1ff702"
+"""Of the plan as it was before its first run."""
 
 
 def test_the_good_placements_see_all_round_and_are_new():
@@ -41,7 +55,7 @@ def test_the_good_placements_see_all_round_and_are_new():
     assert len(good) == 96 and all(p.all_round for p in good)
     known = {p.poses for p in placements(full_plan()) if p.design == FIXED}
     assert not known & {p.poses for p in good}
-    assert plan.study.digest != full_plan().digest
+    assert plan.study.digest == DIGEST
     names = [run.name for run in second_runs(plan)]
     assert len(names) == len(set(names)) == 36 + 192
     assert names[0] == "equal-m-16-sedan-01-s1" and names[36] == "good-sedan-01-s1"
@@ -99,8 +113,23 @@ def test_saved_forecast_follows_from_its_errors():
     assert found["across"]["mean"] == of_mean_ap(found["across"]["classes"], full_plan())
 
 
-def made_up(plan, gain, noise=0.002):
-    """Return results in which rows gain, and AP of good placements follows their entropy."""
+def parts(plan):
+    """Return the runs of each part, as if each search had ended where it starts."""
+    searches = plan.searches
+    found = [
+        placement_of(rig, what, rig.poses, seed)
+        for rig in searches.rigs
+        for what in searches.whats
+        for seed in (searches.search_seeds if what != START else [None])
+    ]
+    return parts_of(plan, found)
+
+
+def made_up(plan, gain, noise=0.002, far=0.1):
+    """Return results in which rows gain, and AP of good placements follows their entropy.
+
+    Searches by expected AP find more by `far`, but for the nearest ring.
+    """
     rng = np.random.default_rng(5)
     quality = {p.name: rng.normal() for p in good_placements(plan)}
     results = {}
@@ -108,6 +137,15 @@ def made_up(plan, gain, noise=0.002):
         rows = len(run.placement.lidar.elevations) if run.placement.lidar else 16
         ap = 0.7 + gain * np.log2(rows / 16) + 0.02 * quality.get(run.placement.name, 0.0)
         results[run.name] = {"ap": ap + noise * rng.normal()}
+    for run in parts(plan)[LAYOUTS]:
+        ap = {name: 0.5 + 0.02 * q + noise * rng.normal() for name, q in quality.items()}
+        found = {name: {"ap": v, "trained_with": False} for name, v in ap.items()}
+        results[run.name] = {"placements": found}
+    near, *others = plan.study.precision.rings
+    for run in parts(plan)[SEARCHES]:
+        ap = 0.6 + far * ("expected-ap" in run.name) + noise * rng.normal()
+        rings = {near: {"car": 0.6}} | {ring: {"car": ap} for ring in others}
+        results[run.name] = {"ap": ap, "by_ring": rings}
     scores = {
         name: {
             "road": {"entropy": 10.0 - q, "coverage": rng.normal()},
@@ -128,25 +166,105 @@ def quickly(plan):
 def test_verdicts_of_made_up_runs():
     plan = quickly(full_second_plan())
     results, scores = made_up(plan, 0.05)
-    found = second_analysis(plan, results, scores)
-    assert found["done"] == found["planned"] == 228
-    arms = found["equal-m"]["minus_first"]
+    found = second_analysis(plan, parts(plan), results, scores)
+    counts = {EQUAL_M: [36, 36], GOOD: [192, 192], LAYOUTS: [3, 3], SEARCHES: [84, 84]}
+    assert found["parts"] == counts
+    arms = found[EQUAL_M]["minus_first"]
     assert arms["64"]["mean"] == pytest.approx(0.1, abs=0.01) and arms["64"]["tie"] == REFUTED
-    figures = found["good"]["figures"]
-    assert len(found["good"]["placements"]) == 48
-    assert figures[PRIMARY]["verdict"] == figures[BEYOND]["verdict"] == HOLDS
-    assert figures[PRIMARY]["rho"] > 0.9 > abs(figures[COVERAGE]["rho"])
-    assert figures[COVERAGE]["verdict"] in (UNDECIDED, REFUTED)
-    same = second_analysis(plan, made_up(plan, 0.0)[0], scores)["equal-m"]["minus_first"]
-    assert same["32"]["tie"] == same["64"]["tie"] == HOLDS
+    assert len(found[GOOD]["placements"]) == 48
+    for figures in (found[GOOD]["figures"], found[LAYOUTS]["figures"]):
+        assert figures[PRIMARY]["verdict"] == figures[BEYOND]["verdict"] == HOLDS
+        assert figures[PRIMARY]["rho"] > 0.9 > abs(figures[COVERAGE]["rho"])
+        assert figures[COVERAGE]["verdict"] in (UNDECIDED, REFUTED)
+    near, *others = found[SEARCHES]["minus_entropy"].values()
+    assert near["mean"] == 0.0 and near["verdict"] == UNDECIDED
+    assert all(row["verdict"] == FINDS_MORE[1] and len(row["by_rig"]) == 6 for row in others)
+    same = second_analysis(plan, parts(plan), made_up(plan, 0.0, far=-0.1)[0], scores)
+    assert all(row["tie"] == HOLDS for row in same[EQUAL_M]["minus_first"].values())
+    assert list(same[SEARCHES]["minus_entropy"].values())[1]["verdict"] == FINDS_MORE[-1]
 
 
 def test_no_verdict_before_a_part_is_done():
     plan = quickly(full_second_plan())
     results, scores = made_up(plan, 0.05)
-    del results["good-bus-48-s2"]
-    found = second_analysis(plan, results, scores)
-    assert found["good"] is None and found["equal-m"]
-    del results["equal-m-64-bus-02-s3"]
-    assert second_analysis(plan, results, scores)["equal-m"] is None
+    for name, part in (
+        ("good-bus-48-s2", GOOD),
+        ("equal-m-64-bus-02-s3", EQUAL_M),
+        ("layouts-grid-mixed-s3", LAYOUTS),
+        ("after-bus-4-entropy-k3-s2", SEARCHES),
+    ):
+        rest = {run: found for run, found in results.items() if run != name}
+        found = second_analysis(plan, parts(plan), rest, scores)
+        assert [n for n in found["parts"] if found[n] is None] == [part]
+    unsearched = parts_of(plan, [])
+    assert second_analysis(plan, unsearched, results, scores)[SEARCHES] is None
     assert tie_verdict(-0.005, 0.02, 0.01) == UNDECIDED
+
+
+def rows_of_a_log():
+    """Return 41 frames: a car at 20 m, one that meets the vehicle, a bollard, a sign; a person."""
+    always = [
+        ("a", "REGULAR_VEHICLE", 9, 20.0, 0.0, np.pi / 2),
+        ("b", "REGULAR_VEHICLE", 9, 3.0, 0.0, 0.0),
+        ("c", "BOLLARD", 9, -15.0, 3.0, 0.0),
+        ("d", "SIGN", 9, -15.0, 9.0, 0.0),
+    ]
+    rows = [(frame, *row) for frame in range(41) for row in always]
+    return rows + [(frame, "e", "PEDESTRIAN", 9, 0.0, 12.0, 0.0) for frame in (20, 21)]
+
+
+def test_real_layouts_are_every_twentieth_frame_with_feet_on_the_ground(tmp_path):
+    write_log(tmp_path / "one", rows_of_a_log())
+    layouts, plan = Layouts(tmp_path), full_second_plan().study
+    assert len(layouts) == 3
+    scenes = [layouts(plan, "sedan", "test", LAYOUTS, k) for k in range(3)]
+    assert [s.labels.tolist() for s in scenes] == [[0], [0, 1], [0]], "one car meets the vehicle"
+    assert scenes[1].centers.tolist() == [[20.0, 0.0], [0.0, 12.0]]
+    low = scenes[0].triangles[scenes[0].owners == 0].reshape(-1, 3).min(0)
+    assert low[2] == 0.0 and low[:2] == pytest.approx([19.0, -2.0]), "turned to the side"
+    others = scenes[0].triangles[scenes[0].owners == NOBODY].reshape(-1, 3)
+    assert others.max(0) == pytest.approx([-13.0, 4.0, 1.5]), "the bollard alone"
+    write_log(tmp_path / "no" / "two", [(0, "a", "SIGN", 9, 9.0, 0.0, 0.0)])
+    with pytest.raises(InputError, match="category"):
+        Layouts(tmp_path / "no")
+
+
+def test_searches_start_on_the_roof_of_three_vehicles():
+    searches = full_second_plan().searches
+    assert [rig.name for rig in searches.rigs] == [
+        f"{name}_{count}" for name in ("sedan", "bus", "shuttle") for count in (2, 4)
+    ]
+    for rig in searches.rigs:
+        assert len(rig.poses) == int(rig.name[-1])
+        ours = [study_of(searches, rig, o, seed) for o in searches.objectives for seed in (1, 3)]
+        assert [s.search.seed for s in ours] == [1, 3, 1, 3]
+        assert all(s.search.method == "portfolio" and not s.search.evaluations for s in ours)
+        body = vehicle(rig.vehicle)
+        for x, y, z, *angles in rig.poses:
+            hit = body.first_hit_from(np.array([x, y, z]), np.array([[0.0, 0.0, -1.0]]))
+            assert 0.05 < hit.distance[0] < 0.3 and angles == [0.0, 0.0, 0.0]
+    names = [run.name for run in parts(full_second_plan())[SEARCHES]]
+    assert len(names) == len(set(names)) == 84
+
+
+def test_short_searches_are_kept_by_their_seed(tmp_path):
+    plan = quick_second_plan()
+    found = searched_placements(plan.searches, tmp_path, lambda line: None)
+    assert [p.name for p in found][:3] == [
+        "after-sedan-2-start", "after-sedan-2-entropy-k1", "after-sedan-2-entropy-k2"
+    ]  # fmt: skip
+    assert len({p.poses for p in found}) > 1, "some search moved"
+    assert searched_placements(plan.searches, tmp_path) == found
+    run = study("detectors.second", "--quick", "--searches", "--runs", 0, "--output", tmp_path)
+    assert run.returncode == 0 and "0 of 5 runs of searches are done" in run.stdout
+
+
+@pytest.mark.skipif(not THOROUGH, reason="a detector is trained: with CI=true")
+def test_the_quick_study_of_layouts_runs_whole(tmp_path):
+    write_log(tmp_path / "logs" / "one", rows_of_a_log())
+    quick = ("studies.detectors.second", "--quick", "--output", tmp_path / "out")
+    answer = in_a_process("-m", *quick, "--layouts", tmp_path / "logs")
+    assert answer.returncode == 0, answer.stderr
+    assert "1 of 1 runs of layouts are done" in answer.stdout
+    kept = json.loads((tmp_path / "out/runs/layouts-grid-mixed-s1.json").read_text("utf-8"))
+    assert list(kept["placements"]) == [p.name for p in good_placements(quick_second_plan())]

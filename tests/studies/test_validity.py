@@ -8,9 +8,8 @@ from types import SimpleNamespace
 import pytest
 
 from studies.published import correlations, scores
-from studies.published.__main__ import own_answer, page, read_results
+from studies.published.__main__ import page, read_results
 from studies.published.correlations import LAYOUTS, RankComparison, ValidityResults, comparisons
-from studies.published.findings import placements_for
 from studies.published.published import CLEAN, DEGREES, RADIANS, paper_of, papers
 from studies.published.scores import BASE, box_triangles, variants
 from studies.published.tasks import QUICK, plan
@@ -121,7 +120,7 @@ def test_every_rho_of_the_page_is_in_the_results(quick):
 def test_every_picture_of_the_page_is_there(quick):
     page = (quick.folder / "README.md").read_text("utf-8")
     pictures = re.findall(r"!\[[^]]+\]\(([^)]+)\)", page)
-    assert len(pictures) == 3
+    assert len(pictures) == 2
     for name in pictures:
         assert (quick.folder / name).read_bytes().startswith(b"\x89PNG"), name
 
@@ -137,13 +136,44 @@ def test_a_changed_score_is_noticed(quick, tmp_path):
 
 def test_the_page_of_the_docs_is_that_of_its_results():
     """Whole: correlations are worked out again from the scores, and every word from them."""
-    data = read_results(ROOT / "docs" / "validity" / "results.json")
-    results = ValidityResults(data)
-    assert (ROOT / "docs" / "validity" / "README.md").read_text("utf-8") == page(
-        results, own_answer(ROOT / "docs" / "validity")
+    folder = ROOT / "docs" / "validity" / "published"
+    results = ValidityResults(read_results(folder / "results.json"))
+    assert (folder / "README.md").read_text("utf-8") == page(results)
+
+
+def test_the_page_of_all_studies_has_their_figures():
+    folder = ROOT / "docs" / "validity"
+    own, road, law, published = (
+        json.loads((folder / name).read_text("utf-8"))
+        for name in ("own/results.json", "road/results.json", "own/second/law.json",
+                     "published/results.json")
+    )  # fmt: skip
+    told = " ".join((folder / "README.md").read_text("utf-8").split())
+    statements, afterwards = own["statements"], own["afterwards"]
+    rows = [s["figures"] for s in (statements[0], statements[2], statements[3])]
+    rows += [afterwards["beyond_coverage"]]
+    for row in rows:
+        low, high = row["interval"]
+        assert f"rho {row['rho']:+.2f} ({low:+.2f} to {high:+.2f})" in told
+    pairs = afterwards["fewer_beams"]
+    wrong = pairs["wrong"]["perception entropy, road prior"]
+    assert f"{wrong} of {pairs['blind']} such pairs" in told
+    low, high = afterwards["minus_beams"]["interval"]
+    assert f"{afterwards['minus_beams']['share']:+.3f} ({low:+.3f} to {high:+.3f})" in told
+    default, kept = (
+        {row["figure"]: (row["inside"], sum(row["cells"].values()), row["verdict"]) for row in rows}
+        for rows in road["statements"].values()
     )
-
-
-def test_placements_needed_are_those_of_fishers_z():
-    """By hand: 3 + 1.06 (2.8016 / atanh 0.5)^2 = 30.6."""
-    assert placements_for(0.5) == 31 and placements_for(0.9) < placements_for(0.7) < 31
+    for figure in ("ratio", "none"):
+        (before, of, first), (after, _, last) = default[figure], kept[figure]
+        assert f'{before} of {of} cells, `returns = "road"` {after} of {of} |' in told
+        assert first == last == "refuted"
+    assert default["rho"] == kept["rho"] == (4, 6, "not decided")
+    found, w = law["across"]["mean"], law["w"]
+    low, high = found["interval"]
+    assert f"RMSE {found['difference']:.4f} ({low:+.4f} to {high:+.4f})" in told
+    assert f"worth {w / (1 - w):.1f} columns, w {w:.2f}" in told
+    results = ValidityResults(read_results(folder / "published" / "results.json"))
+    opposite = len(results.opposite_in_papers())
+    assert f"none of {len(results.scores)}; {opposite} change their sign" in told
+    assert not results.significant()["always"] and published["over_papers"]

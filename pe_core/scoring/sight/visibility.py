@@ -213,8 +213,11 @@ K = TypeVar("K", bound=HasSize)
 class MeasuredVoxels(Generic[P]):
     """A set of voxels, and the sensors measured on them."""
 
-    def __init__(self, voxels: P, sensors: MeasurementCache) -> None:
-        self.voxels, self._sensors = voxels, sensors
+    def __init__(
+        self, voxels: P, sensors: MeasurementCache, fusion: Fusion, centers: Floats
+    ) -> None:
+        self.voxels, self._sensors, self._fusion = voxels, sensors, fusion
+        self._distance = np.hypot(*centers[:, :2].T)
 
     @property
     def size(self) -> int:
@@ -222,9 +225,15 @@ class MeasuredVoxels(Generic[P]):
         return len(self.voxels.index)
 
     def measured(self, rig: Rig, preview: bool) -> tuple[dict[str, NDArray], bool]:
-        """Return m of the rig's sensors by name, (V,) each, and whether any is approximate."""
+        """Return m of the rig's sensors by name, (V,) each, and whether any is approximate.
+
+        It has the range terms of their curves.
+        """
         self._sensors.measure(rig, preview)
-        return self._sensors.m, any(m.approximate for m in self._sensors.last.values())
+        named = [(s.curve or s.kind, self._sensors.m[s.name]) for s in rig]
+        terms = self._fusion.ranged(named, self._distance)
+        m = {s.name: of_sensor for s, (_, of_sensor) in zip(rig, terms, strict=True)}
+        return m, any(m.approximate for m in self._sensors.last.values())
 
 
 class VoxelSetCache:
@@ -243,7 +252,7 @@ class VoxelSetCache:
             voxels = Voxels(self._space, chosen.index, self._space.center_of(chosen.index))
             count = self._fusion.saturation_count
             sensors = MeasurementCache(voxels, self._vehicle, count, self.kernel_cache)
-            return MeasuredVoxels(chosen, sensors)
+            return MeasuredVoxels(chosen, sensors, self._fusion, voxels.centers)
 
         return self.cached(key, measurable)
 

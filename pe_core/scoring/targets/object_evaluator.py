@@ -85,7 +85,7 @@ class ObjectEvaluator:
         self.drawn: SampledObjects = sample_objects(prior, space, vehicle, self.targets, shift)
         self.samples = len(self.drawn.objects)
         self._fused = FusedObjects(self.drawn.objects, self.drawn.weights, self._model)
-        self._sums = ObjectSums(self.drawn)
+        self._sums = ObjectSums(self.drawn, self._model.protocol_floor)
         traffic = self.targets.traffic
         self._sensors = ObjectMeasurementCache(self.drawn.objects, vehicle, traffic)
         self._bound_rate, self._unbounded = 1.0, 0

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ...base.arrays import Floats, Ints
 from ...base.errors import InputError
 from ...base.values import rounded
-from ...metric.entropy import H_BEST, H_BLIND, ap_of_entropy
+from ...metric.entropy import H_BEST, H_BLIND, above_floor, ap_of_entropy
 from ...metric.fusion import Fusion, early_fusion
 from ...scene.objects import Objects
 from ...scene.rig import Rig
@@ -62,6 +62,7 @@ class FusedObjects:
 
     def __init__(self, objects: Objects, weights: Floats, model: PerceptionModel) -> None:
         self._model, self._count = model, len(objects)
+        self._distance = np.hypot(*objects.centers[:, :2].T)
         self._rows = {
             name: rows
             for c, name in enumerate(objects.class_names)
@@ -97,15 +98,20 @@ class FusedObjects:
             measured = [
                 (self._model.object_curve(kind, name), total[rows]) for kind, total in groups
             ]
+            measured = self._fusion[name].ranged(measured, self._distance[rows])
             kinds = [kind for kind, _ in groups]
             entropies[rows], visible[rows] = self._fusion[name].entropies(measured, kinds)
         return entropies, visible
 
 
 class ObjectSums:
-    """Means over the objects: all of them, by class, by zone."""
+    """Means over the objects: all of them, by class, by zone.
 
-    def __init__(self, drawn: SampledObjects) -> None:
+    AP is averaged above the floor of a protocol.
+    """
+
+    def __init__(self, drawn: SampledObjects, floor: float = 0.0) -> None:
+        self._floor = floor
         self._objects, self._weights, self._drawn = drawn.objects, drawn.weights, drawn
         x, y = drawn.objects.centers[:, 0], drawn.objects.centers[:, 1]
         self._zones = {n: mask for n, mask in zone_masks(x, y).items() if self._mass(mask) > 0.0}
@@ -154,7 +160,7 @@ class ObjectSums:
 
         `points` are m of the LiDARs; `reach` returns how far lone objects of a class are found.
         """
-        ap = ap_of_entropy(entropies)
+        ap = self._ap(entropies)
         total = np.sum(points, axis=0) if points else None
         per_class = {}
         for name, mask in self._classes.items():
@@ -173,11 +179,11 @@ class ObjectSums:
 
     def expected_ap(self, entropies: Floats) -> float:
         """Return the expected AP of all objects, by their weights."""
-        return rounded(self._mean(ap_of_entropy(entropies), None))
+        return rounded(self._mean(self._ap(entropies), None))
 
     def by_ring(self, entropies: Floats) -> TrafficAp:
         """Return the expected AP of all objects and of those in each ring."""
-        ap = ap_of_entropy(entropies)
+        ap = self._ap(entropies)
         rings = {
             name: (rounded(self._mean(ap, mask)), self._scatter(ap, mask))
             for name, mask in self._zones.items()
@@ -194,7 +200,7 @@ class ObjectSums:
         measures = {
             "entropy": entropies,
             "coverage": visible.astype(float),
-            "ap": ap_of_entropy(entropies),
+            "ap": self._ap(entropies),
         }
         parts = {("rig", ""): np.ones(len(entropies), bool)}
         parts |= {("zone", name): mask for name, mask in self._zones.items()}
@@ -206,6 +212,9 @@ class ObjectSums:
             if measure != "ap" or part[0] != "zone"
         }
         return Scatter(self._digest, by_figure)
+
+    def _ap(self, entropies: Floats) -> Floats:
+        return above_floor(ap_of_entropy(entropies), self._floor)
 
     @cached_property
     def _digest(self) -> str:

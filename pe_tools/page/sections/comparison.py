@@ -118,7 +118,7 @@ def _summary_lines(
         yield "The vehicles differ."
     if note := advice.hardware_note([s.model for s in context.rig] for context in contexts):
         yield escaped(note)
-    if note := advice.curve_note(context.study.model for context in contexts):
+    if note := advice.curve_note(context.study for context in contexts):
         yield f"{escaped(note)}."
     if error := max(context.after.stderr for context in contexts):
         yield (

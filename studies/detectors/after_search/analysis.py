@@ -81,7 +81,7 @@ def _difference(plan: AfterSearchPlan, before: Aps, after: Aps) -> Json:
     data: Json = {"differences": [round(d, 4) for d in found], "mean": mean, "interval": None}
     if len(found) < len(before) or len(found) != INTERVAL_SEEDS:
         return data
-    low, high = student_interval(found, plan.confidence)
+    low, high = student_interval(found)
     return {**data, "interval": [round(low, 4), round(high, 4)]}
 
 

@@ -33,9 +33,10 @@ class SearchedRig:
     bounds: AxisRanges
     clear_housings: bool
 
-    def placement_name(self, what: str) -> str:
-        """Return the name of a placement by what found it."""
-        return f"after-{self.name}-{what}".replace("_", "-")
+    def placement_name(self, what: str, seed: int | None = None) -> str:
+        """Return the name of a placement by what found it, with its seed if there are several."""
+        name = f"after-{self.name}-{what}".replace("_", "-")
+        return name if seed is None else f"{name}-k{seed}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,13 +49,15 @@ class AfterSearchPlan:
     study: StudyPlan
     rigs: tuple[SearchedRig, ...]
     objectives: tuple[str, ...]
-    search_seed: int
+    search_seeds: tuple[int, ...]
     samples: int
     """Voxels on which start and result of a search are scored."""
     evaluations: int
     """Of a search; 0: as many as the method takes."""
-    confidence: float
-    """Of the intervals."""
+
+    def named_seed(self, seed: int) -> int | None:
+        """Return the seed of a search as names have it: None if there is one."""
+        return seed if len(self.search_seeds) > 1 else None
 
     @property
     def whats(self) -> tuple[str, ...]:
@@ -76,10 +79,9 @@ def full_after_search_plan() -> AfterSearchPlan:
         ),
         rigs=tuple(_rig(name, data[name]) for name in TITLES),
         objectives=tuple(data["search"]["objectives"]),
-        search_seed=data["search"]["seed"],
+        search_seeds=(data["search"]["seed"],),
         samples=data["search"]["samples"],
         evaluations=0,
-        confidence=data["confidence"],
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -23,14 +24,14 @@ POSITION_DIGITS, ANGLE_DIGITS = 3, 2
 """Of a placement [m, deg]: what is scored and cast is what the file says."""
 
 
-def study_of(plan: AfterSearchPlan, rig: SearchedRig, objective: str) -> pe.Study:
+def study_of(plan: AfterSearchPlan, rig: SearchedRig, objective: str, seed: int) -> pe.Study:
     """Return the study whose search is run: the shipped defaults, but for what the plan says."""
     sensors = placement_of(rig, START, rig.poses).rig()
     axes = tuple(rig.bounds) or PAPER_FREE
     search = pe.Search(
         {sensor.name: axes for sensor in sensors},
         {sensor.name: rig.bounds for sensor in sensors if rig.bounds},
-        seed=plan.search_seed,
+        seed=seed,
         evaluations=plan.evaluations,
         objective=objective,
         mounting=pe.Mounting(constraints=pe.Constraints(clear_housings=rig.clear_housings)),
@@ -38,21 +39,23 @@ def study_of(plan: AfterSearchPlan, rig: SearchedRig, objective: str) -> pe.Stud
     return pe.Study(sensors, vehicle(rig.vehicle), samples=plan.samples, search=search)
 
 
-def placement_of(rig: SearchedRig, what: str, poses: tuple[PoseValues, ...]) -> Placement:
+def placement_of(
+    rig: SearchedRig, what: str, poses: tuple[PoseValues, ...], seed: int | None = None
+) -> Placement:
     """Return a placement of a rig by what found it."""
-    name = rig.placement_name(what)
+    name = rig.placement_name(what, seed)
     return Placement(name, rig.vehicle, poses, False, AFTER_SEARCH, rig.model)
 
 
 def searched_placements(
     plan: AfterSearchPlan, folder: Path, report: Callable[[str], None] | None = None
 ) -> list[Placement]:
-    """Return the placements of all rigs; searches that the study's folder does not have are run.
+    """Return the placements of all rigs; searches that the folder does not have are run.
 
     `report` takes a line for each. Without it none is run, and placements that are not there are
     left out. A file of another plan is an `InputError`.
     """
-    path = folder / AFTER_SEARCH / PLACEMENTS
+    path = folder / PLACEMENTS
     kept: Json = {"plan": plan.study.digest, "searches": {}}
     if path.exists():
         kept = read_json(path)
@@ -61,16 +64,17 @@ def searched_placements(
     placements = []
     for rig in plan.rigs:
         placements.append(placement_of(rig, START, rig.poses))
-        for objective in plan.objectives:
-            key = f"{rig.name}, {objective}"
+        for objective, seed in itertools.product(plan.objectives, plan.search_seeds):
+            named = plan.named_seed(seed)
+            key = f"{rig.name}, {objective}" + (f", {named}" if named else "")
             if key not in kept["searches"] and report is not None:
                 report(f"searching {key}")
-                kept["searches"][key] = _search(plan, rig, objective)
+                kept["searches"][key] = _search(plan, rig, objective, seed)
                 path.parent.mkdir(parents=True, exist_ok=True)
                 write_bytes(path, dump_json(kept).encode())
             if key in kept["searches"]:
                 poses = tuple(map(tuple, kept["searches"][key]["poses"]))
-                placements.append(placement_of(rig, objective, poses))
+                placements.append(placement_of(rig, objective, poses, named))
     return placements
 
 
@@ -82,9 +86,9 @@ class _SearchIdentity:
     seed: int
 
 
-def _search(plan: AfterSearchPlan, rig: SearchedRig, objective: str) -> Json:
+def _search(plan: AfterSearchPlan, rig: SearchedRig, objective: str, seed: int) -> Json:
     """Run a search; return what was found, as JSON data."""
-    job = pt.OptimizeJob(study_of(plan, rig, objective))
+    job = pt.OptimizeJob(study_of(plan, rig, objective, seed))
     for _ in job:
         pass
     outcome = job.outcome
@@ -94,14 +98,14 @@ def _search(plan: AfterSearchPlan, rig: SearchedRig, objective: str) -> Json:
     shown = placement_of(rig, objective, poses).listed()
     return {
         "method": outcome.start.search.method,
-        "seed": plan.search_seed,
+        "seed": seed,
         "evaluations": outcome.evaluations,
         "entropy": [outcome.before.entropy, outcome.after.entropy],
         "expected_ap": in_traffic and [score.ap for score in in_traffic],
         "x y z roll pitch yaw": shown["x y z roll pitch yaw"],
         "poses": [list(pose) for pose in poses],
         "seconds": round(outcome.seconds, 1),
-        "made": made_by(_SearchIdentity(objective, plan.search_seed)),
+        "made": made_by(_SearchIdentity(objective, seed)),
     }
 
 

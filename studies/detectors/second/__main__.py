@@ -11,47 +11,65 @@ from pe_tools.cli import DONE, Answer, count_up_to
 
 from ...command import main, page_parser
 from ...results_file import RESULTS, Json, print_progress
+from ..after_search.searches import searched_placements
 from ..runs import MAX_RUNS, Run, RunFiles, do_runs
 from ..scores import placement_scores
 from .analysis import second_analysis
+from .layouts import LAYOUTS, Layouts
 from .plan import (
     EQUAL_M,
     GOOD,
+    SEARCHES,
     SECOND,
     full_second_plan,
     good_placements,
+    parts_of,
     quick_second_plan,
-    second_runs,
 )
 
 
 def validate_second(args: argparse.Namespace, folder: Path) -> Answer:
     """Do the runs that are asked for; return how many are done."""
     plan = quick_second_plan() if args.quick else full_second_plan()
-    files = RunFiles(prepare_folder(folder), plan.study, second_runs(plan))
+    folder, good = prepare_folder(folder), good_placements(plan)
+    report = print_progress if args.searches and not args.page_only else None
+    searched = searched_placements(plan.searches, folder, report)
+    parts = parts_of(plan, searched)
+    layouts = Layouts(Path(args.layouts)) if args.layouts else None
 
     def result_of(run: Run) -> Json:
-        from ..one_run import run_one  # TensorFlow is loaded when a run is missing
+        from ..one_run import run_layouts, run_one  # TensorFlow is loaded when a run is missing
 
-        return run_one(plan.study, run)
+        if layouts is not None:
+            return run_layouts(plan.study, run, good, len(layouts), layouts)
+        return run_one(plan.searches.study if args.searches else plan.study, run)
 
-    do_runs(args, files, result_of)
-    results, scores = files.read(), dict[str, Json]()
-    if len(results) == len(files.all):
-        rigs = [(placement, placement.rig()) for placement in good_placements(plan)]
+    wanted = parts[EQUAL_M] + parts[GOOD]
+    if layouts or args.searches:
+        wanted = parts[LAYOUTS if layouts else SEARCHES]
+    do_runs(args, RunFiles(folder, plan.study, wanted), result_of)
+    results = RunFiles(folder, plan.study, [run for runs in parts.values() for run in runs]).read()
+    scores = dict[str, Json]()
+    if any(all(run.name in results for run in parts[name]) for name in (GOOD, LAYOUTS)):
+        rigs = [(placement, placement.rig()) for placement in good]
         scores = placement_scores(plan.study, rigs, folder, print_progress)
-    found = second_analysis(plan, results, scores)
+    found = second_analysis(plan, parts, results, scores)
     write_bytes(folder / RESULTS, dump_json(found).encode())
     return dump_json(found) if args.json else _summary(found), DONE
 
 
 def _summary(found: Json) -> str:
     """Return what is done and what follows, for people."""
-    lines = [f"{found['done']} of {found['planned']} runs are done"]
+    lines = [
+        f"{done} of {of} runs of {name} are done" for name, (done, of) in found["parts"].items()
+    ]
     for rows, row in ((found[EQUAL_M] or {}).get("minus_first") or {}).items():
         lines.append(f"{row['tie']:12} equal m ties: {rows} rows {row['mean']:+.3f} AP")
-    for name, row in ((found[GOOD] or {}).get("figures") or {}).items():
-        lines.append(f"{row['verdict']:12} {name} ranks among the good: rho {row['rho']:+.2f}")
+    for part, where in ((GOOD, "among the good"), (LAYOUTS, "in real layouts")):
+        for name, row in ((found[part] or {}).get("figures") or {}).items():
+            lines.append(f"{row['verdict']:12} {name} ranks {where}: rho {row['rho']:+.2f}")
+    for ring, row in ((found[SEARCHES] or {}).get("minus_entropy") or {}).items():
+        lines.append(f"{row['verdict']} in {ring}: {row['mean']:+.3f} AP")
     return "\n".join(lines)
 
 
@@ -62,6 +80,11 @@ if __name__ == "__main__":
         (f"docs/validity/own/{SECOND}", "validity-second-quick"),
         "a few runs of few scenes, in minutes",
     )
+    which = parser.add_mutually_exclusive_group()
+    about = "part 3 instead of parts 2 and 1: test in real layouts, of the logs in this folder"
+    which.add_argument("--layouts", metavar="FOLDER", help=about)
+    about = "part 4 instead: its searches, unless they are done, and its runs"
+    which.add_argument("--searches", action="store_true", help=about)
     parser.add_argument("--resume", action="store_true", help="go on where the folder's runs end")
     about = "do at most so many runs now"
     parser.add_argument("--runs", type=count_up_to(MAX_RUNS), metavar="N", help=about)

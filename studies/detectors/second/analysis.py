@@ -2,32 +2,57 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
+
 import numpy as np
+from numpy.typing import NDArray
 
 from ...ranks import holm
 from ...results_file import Json
-from ..analysis import HOLDS, REFUTED, UNDECIDED, Results, of_runs
-from ..rank_tests import bca_interval, partial_rho, permutation_p, permutation_p_beyond, rho_within
+from ..analysis import HOLDS, REFUTED, UNDECIDED, Results, mean_ap_in, of_mixed, of_runs
+from ..rank_tests import (
+    PlacementSamples,
+    bca_interval,
+    partial_rho,
+    permutation_p,
+    permutation_p_beyond,
+    rho_within,
+    student_interval,
+)
+from ..runs import Run
 from ..scores import COVERAGE, EXPECTED_AP, PRIMARY
-from .plan import EQUAL_M, GOOD, SecondPlan, arm_lidar, second_runs
+from .layouts import LAYOUTS
+from .plan import EQUAL_M, GOOD, SEARCHES, SecondPlan, arm_lidar, good_placements, layout_runs
 
 BEYOND = "perception entropy beyond coverage"
-STUDENT_3 = 3.1824
-"""Student's quantile at 0.975 for three degrees of freedom: four placements."""
+FINDS_MORE = {-1: "entropy finds more", 1: "expected AP finds more"}
 
 
-def second_analysis(plan: SecondPlan, results: Results, scores: Results) -> Json:
-    """Return the runs done and planned, and of each part that is done its figures and verdicts."""
-    of_part = {
-        name: [run for run in second_runs(plan) if run.design == name] for name in (EQUAL_M, GOOD)
+def second_analysis(
+    plan: SecondPlan, parts: Mapping[str, Sequence[Run]], results: Results, scores: Results
+) -> Json:
+    """Return the runs done and planned, and of each part that is done its figures and verdicts.
+
+    `parts` has the runs of each part, as far as they are known; `scores` are those of part 1's
+    placements, empty while none is wanted.
+    """
+    conclusions: dict[str, Callable[[], Json]] = {
+        EQUAL_M: lambda: _arms(plan, parts[EQUAL_M], results),
+        GOOD: lambda: _good(plan, parts[GOOD], results, scores),
+        LAYOUTS: lambda: _layouts(plan, results, scores),
+        SEARCHES: lambda: _searches(plan, results),
     }
-    done = {name: all(run.name in results for run in planned) for name, planned in of_part.items()}
-    return {
-        "done": len(results),
-        "planned": sum(map(len, of_part.values())),
-        EQUAL_M: _arms(plan, results) if done[EQUAL_M] else None,
-        GOOD: _good(plan, results, scores) if done[GOOD] and scores else None,
-    }
+    done = {name: sum(run.name in results for run in parts[name]) for name in parts}
+    rig_runs = len(plan.searches.study.training.seeds) * (
+        1 + len(plan.searches.objectives) * len(plan.searches.search_seeds)
+    )
+    planned = {name: len(parts[name]) for name in parts}
+    planned[SEARCHES] = len(plan.searches.rigs) * rig_runs
+    found: Json = {"parts": {name: [done[name], planned[name]] for name in parts}}
+    for name, conclusion in conclusions.items():
+        known = done[name] == planned[name] and (scores or name in (EQUAL_M, SEARCHES))
+        found[name] = conclusion() if known else None
+    return found
 
 
 def tie_verdict(low: float, high: float, tie: float) -> str:
@@ -37,9 +62,8 @@ def tie_verdict(low: float, high: float, tie: float) -> str:
     return REFUTED if low > tie or high < -tie else UNDECIDED
 
 
-def _arms(plan: SecondPlan, results: Results) -> Json:
+def _arms(plan: SecondPlan, runs: Sequence[Run], results: Results) -> Json:
     """Return AP by rows, and the differences from the first arm with their intervals."""
-    runs = [run for run in second_runs(plan) if run.design == EQUAL_M]
     rows, aps = plan.equal_m["rows"], {}
     for count in rows:
         lidar = arm_lidar(plan, count)
@@ -48,8 +72,7 @@ def _arms(plan: SecondPlan, results: Results) -> Json:
     found: Json = {"ap": {str(n): ap.round(4).tolist() for n, ap in aps.items()}, "minus_first": {}}
     for count in rows[1:]:
         less = aps[count] - aps[rows[0]]
-        half = STUDENT_3 * float(less.std(ddof=1)) / np.sqrt(len(less))
-        low, high = float(less.mean() - half), float(less.mean() + half)
+        low, high = student_interval(less)
         found["minus_first"][str(count)] = {
             "mean": round(float(less.mean()), 4),
             "interval": [round(low, 4), round(high, 4)],
@@ -58,29 +81,82 @@ def _arms(plan: SecondPlan, results: Results) -> Json:
     return found
 
 
-def _good(plan: SecondPlan, results: Results, scores: Results) -> Json:
+def _good(plan: SecondPlan, runs: Sequence[Run], results: Results, scores: Results) -> Json:
     """Return rho of each figure with the AP of the last seed, in the half chosen by the first."""
-    runs = [run for run in second_runs(plan) if run.design == GOOD]
     whole = of_runs(GOOD, runs, results)
     index, half = whole.samples.better_half()
-    rule, seed = plan.study.statistics, plan.study.seed
     value = {name: all_of[index] for name, all_of in whole.all_values(scores).items()}
-    found: Json = {"placements": [whole.chosen[k].name for k in index], "figures": {}}
-    coverage, p_values = value[COVERAGE], {}
+    return {
+        "placements": [whole.chosen[k].name for k in index],
+        "figures": _figures(plan, value, half),
+    }
+
+
+def _layouts(plan: SecondPlan, results: Results, scores: Results) -> Json:
+    """Return rho of each figure with the AP in real layouts, over all placements."""
+    whole = of_mixed(LAYOUTS, layout_runs(plan), good_placements(plan), results)
+    ap = whole.samples.ap
+    return {
+        "ap": [round(float(v), 4) for v in (ap.min(), np.median(ap), ap.max())],
+        "noise": round(whole.samples.noise, 4),
+        "figures": _figures(plan, whole.all_values(scores), whole.samples),
+    }
+
+
+def _figures(
+    plan: SecondPlan, value: Mapping[str, NDArray[np.float64]], samples: PlacementSamples
+) -> Json:
+    """Return rho, interval, p and verdict of each figure, values (P,) by score."""
+    rule, seed = plan.study.statistics, plan.study.seed
+    found, coverage, p_values = dict[str, Json](), value[COVERAGE], {}
     for name in (PRIMARY, EXPECTED_AP, COVERAGE):
-        rho = float(rho_within(value[name], half.ap, half.members))
-        interval, _ = bca_interval(value[name], half, rule, seed)
-        p_values[name] = permutation_p(value[name], half, rule, seed)
-        found["figures"][name] = {"rho": rho, "interval": interval}
-    rho = float(partial_rho(value[PRIMARY], half.ap, coverage, half.members))
-    interval, _ = bca_interval(value[PRIMARY], half, rule, seed, coverage)
-    p_values[BEYOND] = permutation_p_beyond(value[PRIMARY], coverage, half, rule, seed)
-    found["figures"][BEYOND] = {"rho": rho, "interval": interval}
+        rho = float(rho_within(value[name], samples.ap, samples.members))
+        interval, _ = bca_interval(value[name], samples, rule, seed)
+        p_values[name] = permutation_p(value[name], samples, rule, seed)
+        found[name] = {"rho": rho, "interval": interval}
+    rho = float(partial_rho(value[PRIMARY], samples.ap, coverage, samples.members))
+    interval, _ = bca_interval(value[PRIMARY], samples, rule, seed, coverage)
+    p_values[BEYOND] = permutation_p_beyond(value[PRIMARY], coverage, samples, rule, seed)
+    found[BEYOND] = {"rho": rho, "interval": interval}
     for (name, p), corrected in zip(p_values.items(), holm(list(p_values.values())), strict=True):
-        row = found["figures"][name]
-        row |= {"p": p, "p_holm": corrected}
-        row["verdict"] = rank_verdict(row, rule.alpha, plan.good["useful_rho"])
+        found[name] |= {"p": p, "p_holm": corrected}
+        found[name]["verdict"] = rank_verdict(found[name], rule.alpha, plan.good["useful_rho"])
     return found
+
+
+def _searches(plan: SecondPlan, results: Results) -> Json:
+    """Return by ring the AP after searches by expected AP minus that after those by entropy."""
+    searches, found = plan.searches, dict[str, Json]()
+    entropy, expected_ap = searches.objectives
+    for ring in plan.study.precision.rings:
+        by_rig = {}
+        for rig in searches.rigs:
+            after = {
+                objective: [
+                    mean_ap_in(ring)(results[f"{rig.placement_name(objective, seed)}-s{own}"])
+                    for seed in searches.search_seeds
+                    for own in searches.study.training.seeds
+                ]
+                for objective in searches.objectives
+            }
+            less = float(np.mean(after[expected_ap]) - np.mean(after[entropy]))
+            by_rig[rig.name] = round(less, 4)
+        found[ring] = _over_rigs(list(by_rig.values())) | {"by_rig": by_rig}
+    return {"minus_entropy": found}
+
+
+def _over_rigs(less: Sequence[float]) -> Json:
+    """Return mean, interval over the rigs and verdict of differences of AP."""
+    mean = round(float(np.mean(less)), 4)
+    if len(less) < 2:  # of the quick plan
+        return {"mean": mean, "interval": None, "verdict": UNDECIDED}
+    low, high = student_interval(less)
+    sign = int(low > 0.0) - int(high < 0.0)
+    return {
+        "mean": mean,
+        "interval": [round(low, 4), round(high, 4)],
+        "verdict": FINDS_MORE.get(sign, UNDECIDED),
+    }
 
 
 def rank_verdict(row: Json, alpha: float, useful: float) -> str:

@@ -95,12 +95,12 @@ class FusedObjects:
         if not groups:
             return entropies, visible
         for name, rows in self._rows.items():
+            fusion, kinds = self._fusion[name], [kind for kind, _ in groups]
             measured = [
                 (self._model.object_curve(kind, name), total[rows]) for kind, total in groups
             ]
-            measured = self._fusion[name].ranged(measured, self._distance[rows])
-            kinds = [kind for kind, _ in groups]
-            entropies[rows], visible[rows] = self._fusion[name].entropies(measured, kinds)
+            ranged = fusion.ranged(measured, self._distance[rows])
+            entropies[rows], visible[rows] = fusion.entropies(ranged, kinds)
         return entropies, visible
 
 

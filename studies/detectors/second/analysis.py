@@ -72,7 +72,7 @@ def _arms(plan: SecondPlan, runs: Sequence[Run], results: Results) -> Json:
     found: Json = {"ap": {str(n): ap.round(4).tolist() for n, ap in aps.items()}, "minus_first": {}}
     for count in rows[1:]:
         less = aps[count] - aps[rows[0]]
-        low, high = student_interval(less)
+        low, high = student_interval(less.tolist())
         found["minus_first"][str(count)] = {
             "mean": round(float(less.mean()), 4),
             "interval": [round(low, 4), round(high, 4)],

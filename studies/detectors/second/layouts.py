@@ -43,8 +43,9 @@ class Layouts:
         key = vehicle_name, number
         if key not in self._scenes:
             log, frame = self._frames[number]
-            parts = [_things(log, frame, vehicle_name, names) for names in (CLASSES, (BOLLARD,))]
-            self._scenes[key] = assembled(*parts, None, [])
+            objects = _things(log, frame, vehicle_name, CLASSES)
+            bollards = _things(log, frame, vehicle_name, (BOLLARD,))
+            self._scenes[key] = assembled(objects, bollards, None, [])
         return self._scenes[key]
 
 

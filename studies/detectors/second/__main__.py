@@ -12,6 +12,7 @@ from pe_tools.cli import DONE, Answer, count_up_to
 from ...command import main, page_parser
 from ...results_file import RESULTS, Json, print_progress
 from ..after_search.searches import searched_placements
+from ..rank_tests import MIN_GROUP
 from ..runs import MAX_RUNS, Run, RunFiles, do_runs
 from ..scores import placement_scores
 from .analysis import second_analysis
@@ -50,7 +51,8 @@ def validate_second(args: argparse.Namespace, folder: Path) -> Answer:
     do_runs(args, RunFiles(folder, plan.study, wanted), result_of)
     results = RunFiles(folder, plan.study, [run for runs in parts.values() for run in runs]).read()
     scores = dict[str, Json]()
-    if any(all(run.name in results for run in parts[name]) for name in (GOOD, LAYOUTS)):
+    ranked = [parts[name] for name in (GOOD, LAYOUTS) if plan.good["each"] >= MIN_GROUP]
+    if any(all(run.name in results for run in part) for part in ranked):
         rigs = [(placement, placement.rig()) for placement in good]
         scores = placement_scores(plan.study, rigs, folder, print_progress)
     found = second_analysis(plan, parts, results, scores)

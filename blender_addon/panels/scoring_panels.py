@@ -80,9 +80,8 @@ def advanced(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
     if not settings.curves:
         layout.operator("pe.own_curves")
     for curve in settings.curves:
-        row = layout.row(align=True)
-        row.prop(curve, "own", text=shown(kind_label(curve.name)), translate=False)
-        numbers = row.row(align=True)
+        layout.prop(curve, "own", text=shown(kind_label(curve.name)), translate=False)
+        numbers = layout.row(align=True)
         numbers.active = curve.own
         for name in "abc":
             numbers.prop(curve, name)

@@ -6,6 +6,7 @@ to 8 and counts as the probability that a detector finds the body at the frame.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -69,6 +70,11 @@ class SeenBody:
     def is_met(self) -> bool:
         """Whether it is confirmed in time."""
         return self.margin_s is not None and self.margin_s >= 0.0
+
+    @property
+    def shown_margin_s(self) -> float | None:
+        """The margin as it is shown, rounded to the safe side [s]."""
+        return None if self.margin_s is None else math.floor(self.margin_s * 10.0) / 10.0
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain JSON data."""

@@ -98,6 +98,6 @@ def story_lines(driven: Sequence[DriveBy]) -> list[str]:
 def _row(driven: DriveBy, body: SeenBody, chances: Sequence[float]) -> list[str]:
     moments = [body.moments.get(chance) for chance in chances]
     texts = ["never" if m is None else f"{m.time_s:+.1f} s, {m.distance_m:.1f} m" for m in moments]
-    margin = "-" if body.margin_s is None else f"{body.margin_s:+.1f} s"
+    margin = "-" if body.margin_s is None else f"{body.shown_margin_s:+.1f} s"
     met = "met" if body.is_met else "NOT MET"
     return [met, driven.story.name, body.name, *texts, f"{body.lost_s:.1f} s", margin]

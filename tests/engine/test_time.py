@@ -5,6 +5,7 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from pe_core.scoring.targets.object_metric import FusedObjects
 from pe_core.sensors import ObjectMeasurementCache
 from pe_core.study import study_from_dict, study_to_dict
 from pe_tools.cli.verbs import main
+from pe_tools.page.sections.visibility import drive_by as drive_by_section
 from tests.engine import shapes
 
 SPACE = pe.PerceptionSpace((-24.0, 24.0), (-12.0, 12.0), (0.0, 2.0), 0.5)
@@ -291,3 +293,12 @@ def test_the_how_to_says_what_the_example_gives():
         assert row[2].startswith(f" {driven.margin_s:+.1f} s")
         margins.append(driven.margin_s)
     assert float(rows[0][0]) < float(rows[1][0]) and margins[0] < 0.0 <= margins[1]
+
+
+def test_the_page_has_a_strip_for_each_body():
+    story = replace(stories()["crossing_child"], rate_hz=2.0)
+    data = drive_by_section(SimpleNamespace(study=study(stories=(story,)), rig=rig()))
+    ((driven, body, strip),) = data["strips"]
+    assert (driven.story, body.name) == (story, "child")
+    assert strip.count("</text>") >= 4 and "must brake" in strip and "roof" in strip
+    assert drive_by_section(SimpleNamespace(study=study(), rig=rig())) is None

@@ -27,7 +27,14 @@ from .score import (
     warnings_and_text,
 )
 from .traceability import assumptions, copy_script, reproduction
-from .visibility import dimensions, redundancy, requirement_verdicts, sensor_details, visibility
+from .visibility import (
+    dimensions,
+    drive_by,
+    redundancy,
+    requirement_verdicts,
+    sensor_details,
+    visibility,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +77,7 @@ SECTIONS = (
     Section("view", "3-D view", scene3d.view, scripts=scene3d.scripts),
     Section("plan", "Dimensions", dimensions),
     Section("requirements", "Requirements", requirement_verdicts),
+    Section("drive-by", "Seen in time", drive_by),
     Section("conditions", "Conditions", conditions),
     Section("maps", "Visibility", visibility),
     Section("redundancy", "Redundancy", redundancy),

@@ -13,6 +13,7 @@ from ..pictures.ground_plan import COVERAGE, ENTROPY, LAYERS, count_map, differe
 from ..pictures.reference_figures import count_text, worst_bodies
 from ..pictures.sensor_views import sensor_view
 from ..pictures.sight_plans import blind_plan, reach_plan, reach_text, requirement_plan, side_text
+from ..pictures.time_strip import time_strip
 from ..pictures.vehicle_picture import sensor_key
 from ..report_context import MAP_STEP_M, ReportContext
 
@@ -99,6 +100,17 @@ def redundancy(context: ReportContext) -> dict[str, Any] | None:
     counts += [(f"{n} kinds", (1, n)) for n in range(2, int(seen.kinds.max(initial=0)) + 1)]
     sizes = {"error": "", "height_m": HEIGHT_M, "within_m": WITHIN_M}
     return {**sizes, "maps": drawn, "counts": counts, "share": seen.share}
+
+
+def drive_by(context: ReportContext) -> dict[str, Any] | None:
+    """Return the stories of a study, as its rig sees them; None for a study without stories."""
+    driven = [context.study.drive_by(each, context.rig) for each in context.study.stories]
+    strips = [
+        (each, body, time_strip(each.story, body, f"{body.name} in {each.story.name} over time"))
+        for each in driven
+        for body in each.bodies
+    ]
+    return {"driven": driven, "strips": strips} if driven else None
 
 
 def requirement_verdicts(context: ReportContext) -> dict[str, Any] | None:

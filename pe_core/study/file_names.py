@@ -11,12 +11,10 @@ OPTIMIZED = "optimized.blend"
 """The file that Blender adds."""
 REVIEW_PAGE = "review.html"
 """The review page."""
-CONDITIONS = "conditions.csv"
-"""The table of a study's conditions."""
 SEARCH, RUNNERS_UP = "search.json", tuple(f"runner_up_{k}.toml" for k in (1, 2, 3))
 """Checkpoint of a search, from which it can be resumed, and studies of other optima it found."""
 BESIDE_RESULT = (
-    *(STUDY, MESH, AREAS, BOXES, GRID, HISTORY, CONDITIONS, SEARCH),
+    *(STUDY, MESH, AREAS, BOXES, GRID, HISTORY, SEARCH),
     *(*RUNNERS_UP, OPTIMIZED, REVIEW_PAGE),
 )
 """All files that belong to a result.json."""

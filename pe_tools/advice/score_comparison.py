@@ -177,11 +177,6 @@ class ComparedRow:
             return 1
         return -1 if self.differ(0, k) else 0
 
-    @property
-    def winner(self) -> int | None:
-        """Index of the value that is significantly better than all others, if there is one."""
-        return self.best.index(True) if sum(self.best) == 1 else None
-
     def differ(self, one: int, other: int) -> bool:
         """Whether two values, given by index, differ significantly; False where one is missing."""
         a, b = self.values[one], self.values[other]

@@ -30,7 +30,6 @@ from .job import StartEnd as StartEnd
 from .job import best_so_far as best_so_far
 from .results import add_to_result as add_to_result
 from .results import condition_lines as condition_lines
-from .results import conditions_csv as conditions_csv
 from .results import files_of_other_runs as files_of_other_runs
 from .results import placements as placements
 from .results import result_dict as result_dict

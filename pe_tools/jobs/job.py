@@ -154,10 +154,13 @@ class Outcome(Tabular):
     figures: tuple[KeyFigures, KeyFigures] | None = None
 
     def _rows(self) -> list[dict[str, Any]]:
+        told = [{}, {}] if self.figures is None else [_beside(each) for each in self.figures]
         ends = (("before", self.start, self.before), ("after", self.study, self.after))
         return [
-            {"": when, "entropy [nats]": score.entropy, "coverage": score.coverage, **row}
-            for when, study, score in ends[self.kind == "score" :]
+            {"": when, "entropy [nats]": score.entropy, "coverage": score.coverage, **beside, **row}
+            for (when, study, score), beside in list(zip(ends, told, strict=True))[
+                self.kind == "score" :
+            ]
             for row in study.rig._rows()
         ]
 
@@ -173,6 +176,15 @@ class Outcome(Tabular):
         if self.kind == "score" or self.figures is None:
             return ""
         return search_cost(self.before, self.after, *self.figures)
+
+
+def _beside(figures: KeyFigures) -> dict[str, Any]:
+    """Return the figures beside the entropy, as a table has them."""
+    return {
+        "AP in traffic": None if figures.traffic is None else figures.traffic.ap,
+        "blind sector [deg]": figures.sectors[0].width if figures.sectors else None,
+        "blind ground [m2]": figures.blind_m2,
+    }
 
 
 T = TypeVar("T")

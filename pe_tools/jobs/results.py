@@ -22,7 +22,6 @@ from pe_core.study.file_names import (
     AREAS,
     BESIDE_RESULT,
     BOXES,
-    CONDITIONS,
     GRID,
     HISTORY,
     MESH,
@@ -42,8 +41,6 @@ from .job import HistoryRow, Outcome
 from .searched_figure import IN_NATS, SearchedFigure, searched_figure
 from .study_export import inputs_of, study_text, study_writers
 
-FIGURES = ("entropy", "stderr", "coverage")
-
 
 def result_names(study: Study, kind: str) -> list[str]:
     """Return the names of the files that a run of this kind (score or optimize) writes."""
@@ -52,7 +49,7 @@ def result_names(study: Study, kind: str) -> list[str]:
     areas = bool(areas_of(study.search.mounting))
     with_study = [STUDY, *[MESH] * vehicle, *[AREAS] * areas, *given]
     of_search = [HISTORY, SEARCH, *RUNNERS_UP] * (kind == "optimize")
-    return [*with_study, *of_search, *[CONDITIONS] * bool(study.conditions), RESULT]
+    return [*with_study, *of_search, RESULT]
 
 
 def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[str, Any]:
@@ -177,9 +174,6 @@ def write_outcome(
         for name, each in runners_up(outcome).items():
             writers[name] = study_text(each).encode()
         writers[SEARCH] = SearchState(outcome.start, outcome.inputs).to_bytes(outcome.evaluated)
-    if outcome.conditions is not None:
-        text = conditions_csv(outcome.conditions)
-        writers[CONDITIONS] = text.encode(errors="backslashreplace")
     add_to_result(data, folder, writers, unwanted=set(BESIDE_RESULT) - set(later))
     return data
 
@@ -239,31 +233,6 @@ def runners_up(outcome: Outcome) -> dict[str, Study]:
     ends = None if found is None else found.endings
     rigs = [] if ends is None else [each.rig for each in ends.runners_up]
     return {n: outcome.start.with_rig(rig) for n, rig in zip(RUNNERS_UP, rigs, strict=False)}
-
-
-def conditions_csv(table: ConditionTable) -> str:
-    """Return a row for each condition: figures, entropy without each sensor, figures by class.
-
-    In a study on objects the figures are AP and the reach ahead of lone objects [m], too.
-    """
-    classes = list(dict.fromkeys(name for row in table.rows for name in row.per_class))
-    with_ap = any(row.ap is not None for row in table.rows)
-    heads = ["state", "weather", "weight", *FIGURES, *["ap"] * with_ap]
-    heads += [f"without {name}" for name in table.sensors]
-    heads += [f"entropy of {name}" for name in classes]
-    for figure in ("ap of", "reach ahead for") if with_ap else ():
-        heads += [f"{figure} {name}" for name in classes]
-    lines: list[list[object]] = [[*heads]]
-    for row in table.rows:
-        figures = [getattr(row, key) for key in FIGURES] + [row.ap] * with_ap
-        without = [row.without[name] for name in table.sensors]
-        by_class = [row.per_class.get(name, "") for name in classes]
-        line: list[object] = [row.state, row.weather, row.weight, *figures, *without, *by_class]
-        if with_ap:
-            line += [(row.ap_per_class or {}).get(name, "") for name in classes]
-            line += [(row.reach or {}).get(name, {}).get("front", "") for name in classes]
-        lines.append(line)
-    return csv_text(lines)
 
 
 def condition_lines(table: ConditionTable) -> list[str]:

@@ -22,7 +22,7 @@ from ..exchange import Written
 from ..graphics import png_bytes
 from .request import OutputRequest, plain_names
 
-SUMMARY, BY_PART = "masks.json", "occluded_by_part.csv"
+SUMMARY = "masks.json"
 DECIMALS = 6
 """Of shares and angles [deg]."""
 
@@ -45,12 +45,7 @@ def write(request: OutputRequest) -> tuple[Written, list[str]]:
         if mask.azimuths is not None:
             files[f"{file}.csv"] = _table(mask)
         summaries.append(_shares(sensor, mask, vehicle, f"{file}.png"))
-    rows: list[list[object]] = [["sensor", "part", "rays", "share"]]
-    for summary in summaries:
-        for part, rays in summary["rays_by_part"].items():
-            rows.append([summary["sensor"], part, rays, f"{summary['by_part'][part]:.6f}"])
-    summary_text = dump_json({"masks": summaries})
-    return {SUMMARY: summary_text.encode(), BY_PART: csv_text(rows).encode(), **files}, lines
+    return {SUMMARY: dump_json({"masks": summaries}).encode(), **files}, lines
 
 
 def _shares(sensor: Sensor, mask: EgoMask, vehicle: Vehicle | None, file: str) -> dict[str, Any]:

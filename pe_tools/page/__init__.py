@@ -77,7 +77,7 @@ def _add_fit(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
         help=f"points whose AP differs by less than this from the largest one are saturated "
         f"(default {SATURATION})",
     )
-    fit.add_argument("-o", "--output", metavar="DIR", help="folder for ap.toml and ap.html")
+    fit.add_argument("-o", "--output", metavar="DIR", help="folder for ap.toml")
     fit.add_argument("--json", action="store_true", help="print JSON on stdout")
     fit.set_defaults(function=_later("fit", "fitting"))
 

@@ -1,4 +1,4 @@
-"""The verb ``pe fit``: a and b of AP = a ln m + b from a table, a snippet for a study, a page."""
+"""The verb ``pe fit``: a and b of AP = a ln m + b from a table, and a snippet for a study."""
 
 from __future__ import annotations
 
@@ -16,12 +16,9 @@ from pe_tools.formats import CurveFit, fit_ap_curve, m_by_range, study_snippet
 from ..cli import DONE, Answer
 from ..formats import read_ap_table
 from ..jobs import FileSet, prepare_folder
-from .document import html_file
-from .markup import render
-from .pictures.charts import curve_plot
 
-SNIPPET, PAGE = "ap.toml", "ap.html"
-"""The files that the verb writes."""
+SNIPPET = "ap.toml"
+"""The file that the verb writes."""
 MAX_FILE_NAME = 255
 
 
@@ -40,10 +37,9 @@ def fit(args: argparse.Namespace) -> Answer:
     snippet = study_snippet(replace(curve_fit, table=named), kind, args.object)
     data = fit_data(curve_fit)
     if args.output is not None:
-        folder = prepare_folder(args.output, (SNIPPET, PAGE))
+        folder = prepare_folder(args.output, (SNIPPET,))
         with FileSet(folder) as files:
             files.add(SNIPPET, snippet.encode())
-            files.add(PAGE, fit_page(curve_fit, shortened(table.stem, MAX_FILE_NAME)))
     text = dump_json(data) if args.json else f"{_summary(curve_fit)}\n\n{snippet}"
     return text, DONE
 
@@ -73,13 +69,6 @@ def _summary(fit: CurveFit) -> str:
         f"rms of AP  {fit.rms:.4f}\n"
         f"points  {used} of {total}{left_out}"
     )
-
-
-def fit_page(fit: CurveFit, title: str) -> bytes:
-    """Return the page of a fit: points, curve, points left out."""
-    plot = curve_plot(fit.curve, fit.table.m, fit.table.ap, fit.used, f"AP against m of {title}")
-    lines = _summary(fit).splitlines()
-    return html_file(title, render("fit.html", title=title, plot=plot, lines=lines))
 
 
 def shortened(name: str, max_length: int) -> str:

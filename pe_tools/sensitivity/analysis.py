@@ -27,11 +27,11 @@ from .flatness import (
     flatness,
 )
 from .fresh_samples import STEEP_AP, STEEP_NATS, Difference, FreshSamples
-from .optima import BETWEEN, DESCENT, EXAMINED, MAX_RUNNERS_UP, Archive, Basins, Endings, RunnerUp
+from .optima import BETWEEN, EXAMINED, Archive, Basins, Endings, RunnerUp
 
 SHARE = 8
 """The analysis evaluates at most the search's evaluations divided by this."""
-ENDINGS_NEED = EXAMINED * (1 + len(BETWEEN)) + MAX_RUNNERS_UP * DESCENT
+ENDINGS_NEED = EXAMINED * (1 + len(BETWEEN))
 """Evaluations that the endings of a search take at most, about."""
 NAMED = 4
 """How many axes, constraints or runners-up a line names."""

@@ -11,14 +11,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain, islice
+from itertools import chain
 from typing import Any
 
 from pe_core.base.values import degrees_in_file
 from pe_core.scene.rig import Rig
 from pe_core.scoring.score import Evaluation
-from pe_core.search import Candidate, Parametrization
-from pe_core.search.domains import METRE, RADIAN, SHARE
+from pe_core.search import Parametrization
 from pe_core.search.search_space import SearchSpace
 from pe_core.study.requirement_search import is_infeasible
 
@@ -33,11 +32,6 @@ EXAMINED = 16
 """Placements of the archive that are evaluated on the fresh samples, the best first."""
 BETWEEN = (0.25, 0.5, 0.75)
 """Shares of the way between two placements at which a hill is looked for."""
-FIRST_STEP = {METRE: 0.08, RADIAN: 0.07, SHARE: 0.0}
-"""First step of the descent of a runner-up [m, rad: 4 deg]; slots are not changed."""
-HALVINGS = 2
-DESCENT = 40
-"""Evaluations of the descent of one runner-up at most."""
 
 
 def is_near(one: Rig, other: Rig) -> bool:
@@ -148,11 +142,7 @@ class Basins:
             if not self._is_separate(rig, [self._samples.reference]):
                 same += 1
             elif len(found) < MAX_RUNNERS_UP and self._is_separate(rig, found):
-                lower = self._descended(rig)
-                if self._is_separate(lower, [self._samples.reference, *found]):
-                    found.append(lower)
-                else:
-                    same += 1
+                found.append(rig)
         runners_up = []
         for rig in found:
             moved = tuple(s.name for s in rig if s.pose != self._samples.reference[s.name].pose)
@@ -195,27 +185,3 @@ class Basins:
                 return None
             way.append(rig)
         return way
-
-    def _descended(self, rig: Rig) -> Rig:
-        """Return the placement after a short compass search, which only takes what is better."""
-        coding = Parametrization(rig, self._space)
-        best, left, scale = coding.start, DESCENT, 1.0
-        for _ in range(HALVINGS + 1):
-            around = (c for c in self._around(coding, best, scale) if coding.allowed(c.rig))
-            asked = list(islice(around, left))
-            left -= len(asked)
-            self._samples.evaluate(candidate.rig for candidate in asked)
-            for candidate in asked:
-                if self._samples.change(candidate.rig, best.rig).mean < 0.0:
-                    best = candidate
-            scale /= 2.0
-        return best.rig
-
-    def _around(self, coding: Parametrization, at: Candidate, scale: float) -> Iterator[Candidate]:
-        for number, variable in enumerate(coding.variables):
-            for sign in (-scale, scale):
-                if FIRST_STEP[variable.unit]:
-                    vector = list(at.vector)
-                    step = sign * FIRST_STEP[variable.unit]
-                    vector[number] = variable.clipped(vector[number] + step)
-                    yield coding.candidate(vector)

@@ -210,8 +210,8 @@ def test_another_optimum_is_told_from_the_flank_of_the_same_one():
     endings = Basins(Wells(best), given.search_space()).endings(archive.placements())
     assert (endings.examined, endings.same_basin, len(endings.runners_up)) == (4, 2, 1)
     [other] = endings.runners_up
-    assert other.rig["roof"].pose.position[0] == pytest.approx(1.2, abs=0.03)
-    assert other.behind.mean == pytest.approx(0.1, abs=0.002) and other.moved == ("roof",)
+    assert other.rig["roof"].pose.position[0] == 1.05  # the best of its basin that was evaluated
+    assert other.behind.mean == pytest.approx(0.1225) and other.moved == ("roof",)
 
 
 def test_it_is_in_result_json_on_the_terminal_and_read_back(outcome):

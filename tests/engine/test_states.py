@@ -12,7 +12,6 @@ from pe_core.base.table_reader import Table
 from pe_core.study import Conditions, condition_table, study_from_dict, study_to_dict
 from pe_core.study.condition_table import study_objective
 from pe_core.study.conditions import read_conditions, state_table
-from pe_tools.jobs import conditions_csv
 from pe_tools.page.markup import render
 from pe_tools.page.sections.score import table_values
 from tests.engine import shapes
@@ -148,8 +147,6 @@ def test_the_table_has_the_figures_of_each_condition_scored_alone():
     html = render("conditions.html", **table_values(table))
     assert html.count("heat worst") in (1, 2) and f"{abs(table.mean):.4f}" in html
     assert "without mirror" in html and "open, fog" in html
-    rows = conditions_csv(table).splitlines()
-    assert len(rows) == 5 and rows[0].startswith("state,weather,weight,entropy,stderr,coverage")
     data = table.to_dict()
     assert data["worst"]["entropy"] == max(alone) and len(data["rows"]) == 4
 

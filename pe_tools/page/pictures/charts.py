@@ -5,14 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 
-import numpy as np
 from markupsafe import Markup
-from numpy.typing import NDArray
 
-import pe_core as pe
-from pe_core.base.arrays import Floats
-
-from ... import sensitivity as sure
 from ..markup import MINUS, number
 from .svg import Canvas
 
@@ -78,48 +72,6 @@ def step_curve(
     return canvas.svg()
 
 
-def cost_bars(found: sure.Sensitivity, status: dict[str, str], alt: str) -> Markup:
-    """Return what one step back and forth costs, a row for each axis of each sensor. `status` says
-    what the search does with an axis, where that is more than to move it."""
-    width, left, right, row_height, group, top = 484.0, 120.0, 444.0, 18.0, 30.0, 10.0
-    sensors = list(dict.fromkeys(row.sensor for row in found.axes))
-    costs = [row.cost[step] for row in found.axes for step in (-sure.NEAR, sure.NEAR)]
-    least = LEAST_AP if found.by_ap else LEAST_NATS
-    low = min(-least, *(each.mean - each.stderr for each in costs))
-    high = max(least, *(each.mean + each.stderr for each in costs))
-    to_x = linear_map(low, high, left, right)
-    height = top + len(sensors) * group + len(found.axes) * row_height + 26.0
-    canvas = Canvas(width, height, alt, "curve flatness")
-    step = next(u for u in round_steps() if int(high / u) + int(-low / u) <= 5)
-    for k in range(-int(-low / step), int(high / step) + 1):
-        x = to_x(k * step)
-        grid = {"x1": x, "x2": x, "y1": top, "y2": height - 26.0}
-        canvas.add("line", css="grid" if k else "axis", **grid)
-        text = f"{round(k * step, 6):+g}".replace("-", MINUS) if k else "0"
-        canvas.text(x, height - 7.0, text, text_anchor="middle")
-    canvas.text(width - 4.0, height - 7.0, "AP" if found.by_ap else "nats", text_anchor="end")
-    y = top
-    for sensor in sensors:
-        y += group
-        canvas.text(4.0, y - 8.0, sensor, css="name")
-        for row in (each for each in found.axes if each.sensor == sensor):
-            note = f" ({status[row.status]})" if row.status in status else ""
-            canvas.text(left - 8.0, y + 11.0, f"{row.axis}{note}", text_anchor="end")
-            for at, cost in ((y + 2.0, row.cost[-sure.NEAR]), (y + 8.0, row.cost[sure.NEAR])):
-                _draw_cost(canvas, to_x, at, cost)
-            y += row_height
-    return canvas.svg()
-
-
-def _draw_cost(canvas: Canvas, to_x: AxisMap, y: float, cost: sure.Difference) -> None:
-    """Draw a bar, and its standard error as a line."""
-    a, b = sorted((to_x(0.0), to_x(cost.mean)))
-    css = "rise" if cost.mean >= 0.0 else "fall"
-    canvas.add("rect", css=css, x=a, y=y, width=max(b - a, 0.5), height=5.0)
-    ends = {"x1": to_x(cost.mean - cost.stderr), "x2": to_x(cost.mean + cost.stderr)}
-    canvas.add("line", css="error", y1=y + 2.5, y2=y + 2.5, **ends)
-
-
 Points = Sequence[tuple[float, float]]
 
 
@@ -146,36 +98,6 @@ def pareto_plot(front: Points, others: Points, labels: tuple[str, str], alt: str
     middle = (top + bottom) / 2.0
     turned = f"rotate(-90 14 {middle:.0f})"
     canvas.text(14.0, middle, labels[1], transform=turned, **style)
-    return canvas.svg()
-
-
-def curve_plot(
-    curve: pe.ApCurve, m: Floats, ap: Floats, used: NDArray[np.bool_], alt: str
-) -> Markup:
-    """Return AP against the measurement on a logarithmic axis: the curve, and the points of a fit;
-    those left out are empty circles."""
-    width, height, left, right, top, bottom = 480.0, 330.0, 62.0, 466.0, 12.0, 286.0
-    canvas = Canvas(width, height, alt, "fronts")
-    low, high = (math.log10(end) for end in (m[m > 0.0].min() / 1.5, m.max() * 1.5))
-    to_x, to_y = linear_map(low, high, left, right), linear_map(0.0, 1.0, bottom, top)
-    for power in range(math.ceil(low), math.floor(high) + 1):
-        canvas.add("line", x1=to_x(power), x2=to_x(power), y1=top, y2=bottom)
-        canvas.text(to_x(power), bottom + 16.0, f"{10.0**power:g}", text_anchor="middle")
-    for tick in (0.0, 0.2, 0.4, 0.6, 0.8, 1.0):
-        canvas.add("line", x1=left, x2=right, y1=to_y(tick), y2=to_y(tick))
-        canvas.text(left - 6.0, to_y(tick) + 4.0, f"{tick:g}", text_anchor="end")
-    drawn = [low + (high - low) * k / 199.0 for k in range(200)]
-    heights = (min(max(curve.a * math.log(10.0) * at + curve.b, 0.001), 0.999) for at in drawn)
-    line = [(to_x(at), to_y(height)) for at, height in zip(drawn, heights, strict=True)]
-    canvas.path([np.array(line)], closed=False, css="fit")
-    for x, y, is_used in zip(m, ap, used, strict=True):
-        if x > 0.0:
-            css = {} if is_used else {"css": "beaten"}
-            canvas.add("circle", cx=to_x(math.log10(x)), cy=to_y(float(y)), r=4.0, **css)
-    canvas.text(
-        (left + right) / 2.0, height - 8.0, "measurement, m", text_anchor="middle", css="label"
-    )
-    canvas.text(14.0, top + 4.0, "AP", css="label")
     return canvas.svg()
 
 

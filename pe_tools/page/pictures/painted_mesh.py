@@ -125,14 +125,12 @@ def corner_normals(triangles: Floats) -> Floats:
 def _equal_corners(corners: Floats) -> tuple[Ints, Ints, Ints]:
     """Return an order that groups equal corners, and start and size of each corner's group."""
     cell = np.round(corners / WELD_M).astype(np.int64)
-    number = (cell[:, 0] * 73_856_093) ^ (cell[:, 1] * 19_349_663) ^ (cell[:, 2] * 83_492_791)
-    order = np.argsort(number, kind="stable")
-    row = number[order]
-    first = np.concatenate([[True], row[1:] != row[:-1]])
-    run = np.cumsum(first) - 1
-    begins = np.flatnonzero(first)
-    sizes = np.diff(np.append(begins, len(row)))
-    return order, begins[run], sizes[run]
+    _, group = np.unique(cell, axis=0, return_inverse=True)
+    group = group.reshape(-1)
+    order = np.argsort(group, kind="stable")
+    sizes = np.bincount(group)
+    ordered = group[order]
+    return order, (np.cumsum(sizes) - sizes)[ordered], sizes[ordered]
 
 
 def lathe(profile: Sequence[tuple[float, float]], around: int = AROUND) -> Floats:

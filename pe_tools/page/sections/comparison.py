@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from functools import partial
 from typing import Any, NamedTuple
 
 from markupsafe import Markup
@@ -16,7 +15,7 @@ from pe_core import catalog
 from pe_core import sensors as kinds
 
 from ... import advice
-from ..markup import capitalized, escaped, macros, number, price_text
+from ..markup import escaped, macros, price_text
 from ..pictures.ground_plan import difference_map
 from ..pictures.vehicle_picture import labelled_picture
 from ..report_context import ReportContext
@@ -98,7 +97,6 @@ def comparison(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
             )
             for other in others
         ],
-        "voxel_ap": _voxel_ap(contexts),
         "blind": [context.outlook.blind for context in contexts],
         "sides": SIDES,
     }
@@ -125,20 +123,6 @@ def _summary_lines(
             f"Scores are based on samples, with a standard error up to {error:.4f} nats. ± is the "
             "standard error of a difference, which is smaller where studies share the sample."
         )
-
-
-def _voxel_ap(contexts: Sequence[ReportContext]) -> list[list[str]]:
-    """Return the expected AP by class of studies on voxels; scores on objects have their own."""
-    if any(context.study.targets.are_objects for context in contexts):
-        return []
-    by_class = [
-        context.cached("ap", partial(context.sight.expected_ap, context.rig))
-        for context in contexts
-    ]
-    return [
-        [capitalized(n), *(number(each[n], 3) if n in each else "none" for each in by_class)]
-        for n in by_class[0]
-    ]
 
 
 def sensor_differences(contexts: Sequence[ReportContext]) -> dict[str, Any]:

@@ -7,11 +7,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 from markupsafe import Markup
 
-import pe_core as pe
 from pe_core import metric, scene
 from pe_core import sensors as kinds
 from pe_core.scoring.sight import SECTOR_RADIUS_M
@@ -20,13 +19,11 @@ from pe_core.study.condition_table import ConditionTable
 from ... import advice, jobs
 from ... import sensitivity as sure
 from ..markup import capitalized, escaped, joined, macros, number
-from ..pictures.charts import cost_bars, step_curve
+from ..pictures.charts import step_curve
 from ..pictures.vehicle_picture import labelled_picture
 from ..report_context import ReportContext
 
 SIDES = {"front": "ahead", "rear": "behind", "left": "on the left", "right": "on the right"}
-LOSS_SAMPLES = 65_536
-"""Voxels on which coverage and zones without a sensor are evaluated."""
 PALE, DARK = (255, 255, 255), (242, 165, 120)
 """Colours of the lowest and of the highest entropy."""
 STATUS = {
@@ -101,35 +98,11 @@ def objects(context: ReportContext) -> dict[str, Any] | None:
     }
 
 
-class SensorLoss(NamedTuple):
-    """The rig without one of its sensors: rise of the entropy, as scored [nats], and coverage that
-    is lost, 0 to 1; the zone in which the entropy rises most (empty: in none), and by how much."""
-
-    sensor: str
-    rise: float
-    uncovered: float
-    zone: str
-    zone_rise: float
-
-
 def sensor_loss(context: ReportContext) -> dict[str, Any]:
     """Return the loss of each sensor, the largest rise first; none for a single sensor."""
-    losses: list[SensorLoss] = []
-    if len(context.rig) > 1:
-        evaluator = context.study.evaluator(LOSS_SAMPLES)
-        whole = evaluator.summary(context.rig)
-        for name, own in context.after.per_sensor.items():
-            left = evaluator.summary(pe.Rig([s for s in context.rig if s.name != name]))
-            rises = {
-                zone: part.entropy - whole.per_zone[zone].entropy
-                for zone, part in left.per_zone.items()
-            }
-            zone = max(rises, key=lambda zone: rises[zone], default="")
-            rise = rises.get(zone, 0.0)
-            lost = own.lost, whole.coverage - left.coverage, zone if rise > 0.0 else "", rise
-            losses.append(SensorLoss(name, *lost))
-    losses.sort(key=lambda loss: -loss.rise)
-    return {"losses": losses, "max_rise": max([1e-9, *(loss.rise for loss in losses)])}
+    rows = advice.sensor_rows(context.after, context.rig, context.vehicle, context.outlook)
+    losses = sorted(rows, key=lambda row: -(row.loss or 0.0)) if len(rows) > 1 else []
+    return {"losses": losses, "max_rise": max([1e-9, *(row.loss or 0.0 for row in losses)])}
 
 
 def conditions(context: ReportContext) -> dict[str, Any] | None:
@@ -221,12 +194,9 @@ def sensitivity(context: ReportContext) -> dict[str, Any] | None:
     found = context.outcome.sensitivity
     if found is None:
         return None
-    noted = {key: text for key, text in STATUS.items() if key not in ("free", "surface")}
-    alt = "What a step of each sensor along each axis costs; the figures are in the table below."
     return {
         "found": found,
         "what": jobs.searched_on(context.start)[1],
-        "picture": cost_bars(found, noted, alt),
         "status": STATUS,
         "steps": sorted({step for row in found.axes for step in row.cost}),
         "gain_text": sure.gain_text,

@@ -16,12 +16,14 @@ from studies.detectors.after_search.searches import placement_of, searched_place
 from studies.detectors.analysis import HOLDS, REFUTED, UNDECIDED
 from studies.detectors.placements import placements, vehicle
 from studies.detectors.plan import FIXED, full_plan
+from studies.detectors.scan_curves import counts_of
 from studies.detectors.scenes import NOBODY
 from studies.detectors.scores import COVERAGE, PRIMARY
 from studies.detectors.second.analysis import BEYOND, FINDS_MORE, second_analysis, tie_verdict
 from studies.detectors.second.law import (
     PUBLISHED,
     camera_law,
+    judged_arms,
     of_mean_ap,
     published_law,
     rows_and_beams,
@@ -103,6 +105,27 @@ def test_rows_are_channels_of_each_lidar_that_meet_the_object():
     expected = sum(((puck.elevations > a) & (puck.elevations < b)).sum() for a, b in spans)
     assert rows[0] == expected and beams[0] > rows[0]
     assert rows[1] == beams[1] == 0.0  # behind the first
+
+
+@pytest.mark.parametrize(("true", "verdict"), [(0.5, REFUTED), (0.74, HOLDS)])
+def test_arms_whose_ap_follows_a_law_are_forecast_by_that_law(true, verdict):
+    """Numbers of rows and beams as if each placement had met ten objects."""
+    plan, rng = full_second_plan(), np.random.default_rng(3)
+    chosen = arm_placements(plan)
+    rows = [rng.integers(2, 5, 10) * len(p.lidar.elevations) // 16 for p in chosen]
+    beams = [rng.uniform(20.0, 30.0, 10) * 4.0 for _ in chosen]
+    weights = np.ones(10)
+    by_w = [
+        {"car": counts_of([(weighted(r, m, w), weights) for r, m in zip(rows, beams, strict=True)])}
+        for w in (0.5, 0.74)
+    ]
+    curve = pe.ApCurve(0.1, 0.2)
+    ap = by_w[true != 0.5]["car"].expected_ap(curve)
+    found = judged_arms(plan, chosen, by_w, {"car": ap})
+    assert list(found["rows"]) == ["32", "64"] and found["verdict"] == verdict
+    right = "m_w" if verdict == HOLDS else "paper"
+    assert all(row["rmse"][right] < 0.001 for row in found["rows"].values())
+    assert found["rows"]["64"]["rmse"][{"m_w": "paper", "paper": "m_w"}[right]] > 0.004
 
 
 def test_saved_forecast_follows_from_its_errors():

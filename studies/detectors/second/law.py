@@ -8,7 +8,7 @@ first plan's design *fixed* and forecast its design *across*.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -24,12 +24,13 @@ from pe_tools.cli import DONE, Answer, Parser
 
 from ...command import main
 from ...results_file import Json, print_progress
-from ..analysis import plain_design
+from ..analysis import HOLDS, REFUTED, UNDECIDED, ApOf, of_runs, plain_design
 from ..placements import Placement, vehicle
 from ..plan import ACROSS, FIXED, StudyPlan, full_plan
 from ..runs import RunFiles, runs
 from ..scan_curves import BeamCounts, counts_of, fitted_curve
 from ..scores import scored_objects
+from .plan import EQUAL_M, SECOND, SecondPlan, full_second_plan, second_runs
 
 Floats = NDArray[np.float64]
 
@@ -139,28 +140,83 @@ def forecast(plan: StudyPlan, folder: Path, w: float) -> Json:
     whole = plain_design(plan, [FIXED, ACROSS], results)
     is_across = np.array([p.design == ACROSS for p in whole.chosen])
     fixed, across = np.flatnonzero(~is_across), np.flatnonzero(is_across)
-    data: Json = {"fitted": len(fixed), "judged": len(across), "classes": {}}
     by_w = weighted_counts(plan, whole.chosen, (PAPER_W, w))
-    for name in by_w[0]:
-        design = plain_design(
-            plan,
-            [FIXED, ACROSS],
-            results,
-            lambda found, of=name: found["by_class"][of],  # type: ignore[misc]
-        )
-        ap, row = design.samples.ap, {}
+    aps = {
+        name: plain_design(plan, [FIXED, ACROSS], results, mean_ap_of(name)).samples.ap
+        for name in by_w[0]
+    }
+    data: Json = {"fitted": len(fixed), "judged": len(across)}
+    data["classes"] = by_class(by_w, aps, fixed, across)
+    data["placements"] = [whole.chosen[k].name for k in across]
+    return {**data, "mean": of_mean_ap(data["classes"], plan)}
+
+
+def arms(plan: SecondPlan, folder: Path, w: float) -> Json | None:
+    """Return the forecast of the arms of part 2 from those with the fewest rows; None while open.
+
+    m_w is better when its RMSE of AP by class is lower for each of the other arms, and refuted when
+    it is higher for each.
+    """
+    wanted = [run for run in second_runs(plan) if run.design == EQUAL_M]
+    results = RunFiles(folder, plan.study, wanted).read()
+    if len(results) < len(wanted):
+        return None
+    chosen = of_runs(EQUAL_M, wanted, results).chosen
+    by_w = weighted_counts(plan.study, chosen, (PAPER_W, w))
+    aps = {name: of_runs(EQUAL_M, wanted, results, mean_ap_of(name)).samples.ap for name in by_w[0]}
+    return judged_arms(plan, chosen, by_w, aps)
+
+
+def judged_arms(
+    plan: SecondPlan,
+    chosen: Sequence[Placement],
+    by_w: Sequence[Mapping[str, BeamCounts]],
+    aps: Mapping[str, Floats],
+) -> Json:
+    """Return RMSE of AP by class of each forecast arm with the paper's m and with m_w, the verdict.
+
+    `by_w` has the counts with both, `aps` (P,) the AP found, by class.
+    """
+    first, *others = plan.equal_m["rows"]
+    arm = np.array([0 if p.lidar is None else len(p.lidar.elevations) for p in chosen])
+    found: Json = {"rows": {}}
+    for rows in others:
+        parts = by_class(by_w, aps, np.flatnonzero(arm == first), np.flatnonzero(arm == rows))
+        errors = {
+            label: [e for c in parts.values() for e in c[label]["errors"]] for label in LABELS
+        }
+        rmse = {k: round(float(np.sqrt(np.mean(np.square(v)))), 4) for k, v in errors.items()}
+        found["rows"][str(rows)] = {"rmse": rmse, "classes": parts}
+    lower = [row["rmse"]["m_w"] < row["rmse"]["paper"] for row in found["rows"].values()]
+    found["verdict"] = HOLDS if all(lower) else UNDECIDED if any(lower) else REFUTED
+    return found
+
+
+def mean_ap_of(name: str) -> ApOf:
+    """Return what takes the AP of a class from what a run has found."""
+    return lambda found: float(found["by_class"][name])
+
+
+def by_class(
+    by_w: Sequence[Mapping[str, BeamCounts]],
+    aps: Mapping[str, Floats],
+    fitted: NDArray[np.int64],
+    judged: NDArray[np.int64],
+) -> Json:
+    """Return by class the curves that are fitted to some placements, and the errors at others."""
+    found: Json = {}
+    for name, ap in aps.items():
+        found[name] = {}
         for label, counts in zip(LABELS, by_w, strict=True):
-            curve = fitted_curve(counts[name].subset(fixed), ap[fixed])
-            error = counts[name].subset(across).expected_ap(curve) - ap[across]
-            row[label] = {
+            curve = fitted_curve(counts[name].subset(fitted), ap[fitted])
+            error = counts[name].subset(judged).expected_ap(curve) - ap[judged]
+            found[name][label] = {
                 "a": round(curve.a, 4),
                 "b": round(curve.b, 4),
                 "rmse": round(float(np.sqrt((error**2).mean())), 4),
                 "errors": [round(float(e), 4) for e in error],
             }
-        data["classes"][name] = row
-    data["placements"] = [whole.chosen[k].name for k in across]
-    return {**data, "mean": of_mean_ap(data["classes"], plan)}
+    return found
 
 
 def of_mean_ap(classes: Json, plan: StudyPlan) -> Json:
@@ -191,6 +247,7 @@ def law(args: argparse.Namespace, folder: Path) -> Answer:
         "w": w,
         "cameras": camera_law(),
         "across": forecast(full_plan(), Path(OWN), w),
+        "arms": arms(full_second_plan(), Path(OWN) / SECOND, w),
     }
     write_bytes(folder / "law.json", dump_json(found).encode())
     return dump_json(found), DONE

@@ -128,7 +128,8 @@ class Spokes:
     def distance(self, ap: Floats, min_ap: float) -> Floats:
         """Return the distance (B,) up to which the AP (V,) of voxels is at least `min_ap` [m]."""
         shape = self.mass.shape
-        sums = _smoothed(np.bincount(self.ring, ap, math.prod(shape)).reshape(shape))
+        by_ring = np.bincount(self.ring, ap, math.prod(shape)).astype(float)
+        sums = _smoothed(by_ring.reshape(shape))
         enough = (self.mass > 0.0) & (self.mass >= FEW * self.mass.max())
         mean = sums / np.where(enough, self.mass, np.inf)
         ends = [_end_of_longest(row, min_ap) for row in mean]

@@ -26,8 +26,6 @@ from studies.detectors.runs import RunFiles, seed_by_seed
 from studies.detectors.scenes import scene
 from studies.paper.paper import STUDIES
 from tests.studies.conftest import ROOT, study
-from tests.studies.test_detectors import in_a_process
-from tests.thorough import THOROUGH
 
 PLAN = full_after_search_plan()
 DIGEST = "21f71ed6d5e047cc"
@@ -158,12 +156,3 @@ def test_the_committed_placements_are_of_this_plan_and_other_pages_tell_the_resu
     told = (ROOT / "docs" / "optimize.md").read_text("utf-8")
     gains = [row["mean"] for rig in saved["rigs"].values() for row in rig["after"].values()]
     assert all(f"{gain:+.3f}" in told for gain in gains), "and the documentation its figures"
-
-
-@pytest.mark.skipif(not THOROUGH, reason="three detectors are trained: with CI=true")
-def test_the_quick_study_runs_whole(tmp_path):
-    quick = ("studies.detectors", "--quick", "--after-search", "--output", tmp_path)
-    answer = in_a_process("-m", *quick)
-    assert answer.returncode == 0, answer.stderr
-    assert "3 of 3 runs before and after a search are done" in answer.stdout
-    assert "## After a search" in (tmp_path / "README.md").read_text("utf-8")

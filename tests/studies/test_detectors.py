@@ -54,8 +54,17 @@ DIGEST = "33306cc19714a1fa"
 """Of the plan that the study began with. A changed plan is another study, with its own results."""
 SCENE = "bdedc09a393d7688"
 """Digest of what a placement sees in a scene: results of several sessions belong together."""
+QUICKLY = """
+import json, runpy, sys
+folder, *options = sys.argv[1:]
+for option in options:
+    sys.argv = ["detectors", "--quick", "--resume", "--output", folder, option]
+    try:
+        runpy.run_module("studies.detectors", run_name="__main__")
+    except SystemExit as end:
+        assert not end.code, (option, end.code)
+"""
 TOWN_RUN = """
-import json
 from dataclasses import replace
 from studies.detectors.one_run import run_one
 from studies.detectors.placements import placements
@@ -231,52 +240,41 @@ def test_files_of_another_plan_are_refused(tmp_path):
         files.read()
 
 
-def in_a_process(*command):
+def in_a_process(script, *arguments):
     """Run Python beside this one: what TensorFlow loads would end a later picture of bpy's."""
-    if importlib.util.find_spec("tensorflow") is None:
-        pytest.skip("tensorflow is not installed")
-    return subprocess.run(
-        [sys.executable, *map(str, command)],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        timeout=HANG_S,
-    )
-
-
-@pytest.mark.skipif(not THOROUGH, reason="six detectors are trained: with CI=true")
-@pytest.mark.parametrize(
-    ("option", "run", "count"),
-    [
-        (("--runs", "4"), "runs/fixed-sedan-01-s1.json", "4 of 4 runs are done"),
-        (("--cameras",), "cameras/runs/cameras-sedan-01-s1.json", "2 of 2 runs of cameras"),
-    ],
-)
-def test_the_quick_study_runs_whole_and_a_repeated_run_has_the_same_results(
-    tmp_path, option, run, count
-):
-    quick = ("studies.detectors", "--quick", "--resume", "--output", tmp_path, *option)
-    answer = in_a_process("-m", *quick)
+    command = [sys.executable, "-c", script, *map(str, arguments)]
+    answer = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=HANG_S)
     assert answer.returncode == 0, answer.stderr
-    assert count in answer.stdout
-    again = tmp_path / run
-    first = json.loads(again.read_text("utf-8"))
-    again.unlink()
-    assert in_a_process("-m", *quick).returncode == 0
-    second = json.loads(again.read_text("utf-8"))
-    for data in (first, second):
+    return answer.stdout
+
+
+@pytest.mark.skipif(not THOROUGH, reason="ten detectors are trained: with CI=true")
+@pytest.mark.skipif(not importlib.util.find_spec("tensorflow"), reason="there is no TensorFlow")
+def test_the_quick_studies_run_whole_and_repeated_runs_have_the_same_results(tmp_path):
+    """All in one process, but for what is repeated."""
+    said = in_a_process(QUICKLY + TOWN_RUN, tmp_path, "--runs=4", "--cameras", "--after-search")
+    for told in ("4 of 4 runs", "2 of 2 runs of cameras", "3 of 3 runs before and after a search"):
+        assert f"{told} are done" in said
+    assert "## After a search" in (tmp_path / "README.md").read_text("utf-8")
+    step = json.loads(said.splitlines()[-1])
+    assert step["training"]["epochs"] == 2 and 0.0 <= step["ap"] <= 1.0
+    made = {k: step["made"][k] for k in ("python", "numpy", "tensorflow")}
+    assert step["made"]["digest"] == run_digest(quick_plan().digest, made)
+    names = ("runs/fixed-sedan-01-s1.json", "cameras/runs/cameras-sedan-01-s1.json")
+    first = results_of_runs(tmp_path, names)
+    for name in names:
+        (tmp_path / name).unlink()
+    in_a_process(QUICKLY, tmp_path, "--runs=4", "--cameras")
+    assert results_of_runs(tmp_path, names) == first
+    assert all(0.0 < data["ap"] < 1.0 for data in first)
+
+
+def results_of_runs(folder, names):
+    """What two runs of the same detector have in common."""
+    found = [json.loads((folder / name).read_text("utf-8")) for name in names]
+    for data in found:
         del data["seconds"], data["training"]["training_seconds"]
-    assert first == second and 0.0 < first["ap"] < 1.0
-
-
-@pytest.mark.skipif(not THOROUGH, reason="a detector is trained: with CI=true")
-def test_the_steps_run_with_their_world_and_detector():
-    answer = in_a_process("-c", TOWN_RUN)
-    assert answer.returncode == 0, answer.stderr
-    data = json.loads(answer.stdout)
-    assert data["training"]["epochs"] == 2 and 0.0 <= data["ap"] <= 1.0
-    made = {k: data["made"][k] for k in ("python", "numpy", "tensorflow")}
-    assert data["made"]["digest"] == run_digest(quick_plan().digest, made)
+    return found
 
 
 def saved(*folders):

@@ -97,5 +97,5 @@ def quick_camera_plan() -> CameraPlan:
         study=quickly(plan.study),
         count={True: 1, False: 1},
         model=replace(plan.model, width=plan.model.width // 2, height=plan.model.height // 2),
-        scenes={"train": 16, "validation": 4, "test": 8},
+        scenes={"train": 8, "validation": 4, "test": 4},
     )

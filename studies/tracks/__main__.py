@@ -127,6 +127,7 @@ def rows(found: Json) -> list[list[str]]:
         for log, by_model in found["logs"].items()
         for n in map(str, POINTS)
         for name in by_model["default"][n]
+        if name.startswith(("all", "car", "pedestrian"))
         for model in by_model
         if "near" in (cell := by_model[model][n].get(name, {}))
     ]

@@ -78,5 +78,5 @@ def stop() -> None:
     diagnostics.postpone_checks()
     change_events.unregister()
     consistency.unregister()
-    vehicle_cache.clear()
+    vehicle_cache.shared.clear()
     sensor_cache.invalidate()

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from . import engine_calls
-from .engine import advice, catalog, geometry, graphics, pe, sight, text
+from .engine import advice, geometry, graphics, pe, sight, text
 from .engine_calls import Problem
 from .overlay.layer_cache import LayerCache
 from .overlay.layers import LAYERS
@@ -23,12 +23,6 @@ def key_figures(
     place, how = (problem.space, problem.prior, problem.vehicle), (problem.model, problem.targets)
     look = _sight.made(problem.key, lambda: sight.Sight(*place, model=how[0], targets=how[1]))
     return [advice.key_figures(look, rig, height, class_name) for rig in rigs]
-
-
-def known_rig_score(problem: Problem, known_rig: catalog.KnownRig) -> pe.SummaryScore:
-    """Return the live score of a known rig on this vehicle, by an evaluator of its own."""
-    rig = catalog.rig_on(known_rig, problem.vehicle)
-    return engine_calls.make_evaluator(problem).summary(rig, preview=False)
 
 
 def warnings(

@@ -7,9 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-
-VERSION = 1
-"""Of what is stored in a .blend file: files of newer versions are said to be newer."""
+from typing import NamedTuple
 
 Range = tuple[float, float]
 """Low and high bound [m]."""
@@ -24,7 +22,7 @@ CUSTOM = "custom"
 ROAD, HIGHWAY, UNIFORM, FROM_BOXES = "road", "highway", "uniform", "boxes"
 ON_SURFACE, ON_SLOTS = "SURFACE", "SLOTS"
 """Kinds of mounts."""
-BY_PARTS, BY_MATERIAL, BY_GROUP = "PARTS", "MATERIAL", "GROUP"
+BY_PARTS, BY_GROUP = "PARTS", "GROUP"
 """Which faces a surface is made of."""
 
 PRIORS = (
@@ -78,11 +76,25 @@ REGION_ITEMS = tuple((each.key, each.label, each.description) for each in REGION
 """In the form of a Blender menu."""
 
 
-BEFORE_MOVE, PINNED = 0, -1
-"""What the live score is compared with; any other number is the key of a variant."""
+class LimitBox(NamedTuple):
+    """An axis-aligned box in the ground frame [m], and whether it is a no-go area."""
 
-NO_ANCHOR = "NONE"
-"""No known rig is scored beside the live score."""
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    forbidden: bool = False
+
+
+class FocusRegion(NamedTuple):
+    """A focus weight: its areas [m]; classes None: all."""
+
+    name: str
+    factor: float
+    areas: tuple[FocusArea, ...]
+    classes: tuple[str, ...] | None = None
+
+
+BEFORE_MOVE = 0
+"""What the live score is compared with; any other number is the key of a variant."""
 
 
 def free_name(wanted: str, taken: set[str]) -> str:

@@ -8,30 +8,19 @@ written.
 
 from __future__ import annotations
 
-import sys
-
 import bpy
 
 from . import bridge, sensor_cache
 
 
 def after_load(*_: object) -> None:
-    """After a file was opened: repair it, and say if it is of a newer version."""
-    for scene in bpy.data.scenes:
-        if newer := bridge.newer_version_message(scene):
-            print(f"perception_entropy: {newer}", file=sys.stderr)
-    bridge.sync_own_sensors()
+    """After a file was opened: repair it."""
     bridge.clear_mirrors()
     repair_scenes()
 
 
 def before_save(*_: object) -> None:
-    """Before a file is saved: new and appended scenes are of this version.
-
-    Mirror images of sensors that have just moved follow before they are written.
-    """
-    for scene in bpy.data.scenes:
-        bridge.mark_version(scene)
+    """Before a file is saved: mirror images of sensors that have just moved follow."""
     repair_scenes()
 
 

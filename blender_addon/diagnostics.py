@@ -1,14 +1,18 @@
 """Warnings about the scene, and a score explained in words: both by the engine's process.
 
 Checks run some time after the scene became idle, so that they do not slow down further moves. How
-far a rig sees is computed after a score.
+far a rig sees is computed after a score, and after a file with a result was opened. Words are of
+this session: a file keeps the figures.
 """
 
 from __future__ import annotations
 
+import json
+from typing import NamedTuple
+
 import bpy
 
-from . import analysis_calls, bridge, engine_process, sensor_cache, signals, vehicle_cache, viewport
+from . import analysis_calls, bridge, engine_process, sensor_cache, signals, vehicle_cache
 from .engine import advice, jobs, pe
 
 IDLE_DELAY_S = 1.0
@@ -17,25 +21,45 @@ WARNINGS, EXPLANATION = "warnings", "words"
 """Topics of requests."""
 
 
-_outdated = False
-"""Whether something has moved since the warnings were found."""
+class Explanation(NamedTuple):
+    """A result in words, of the rig and of the search; and a row of a table for each sensor."""
+
+    signature: str
+    rig: tuple[str, ...]
+    search: tuple[str, ...]
+    rows: dict[str, advice.SensorRow]
 
 
-def warnings_outdated() -> bool:
-    """Whether the shown warnings are of before the last move."""
-    return _outdated
+_explained: dict[str, Explanation] = {}
+_vehicle_lines: dict[str, str] = {}
+"""What is known of the scenes' results, and of their vehicles in a line; by the scene's name."""
+
+
+def clear(*_: object) -> None:
+    """Another file is opened."""
+    _explained.clear()
+    _vehicle_lines.clear()
+
+
+def vehicle_line(scene: bpy.types.Scene) -> str:
+    """Return the scene's vehicle in a line; empty until it was checked."""
+    return _vehicle_lines.get(scene.name, "")
+
+
+def explanation(scene: bpy.types.Scene) -> Explanation | None:
+    """Return the words of the scene's result; None until they are known."""
+    found, signature = _explained.get(scene.name), scene.perception_entropy.result_signature
+    return found if found is not None and found.signature == signature else None
 
 
 def schedule_checks() -> None:
     """Run the checks after a delay, if nothing moves until then."""
-    _mark_outdated(True)
     if not bpy.app.background and not bpy.app.timers.is_registered(run_checks):
         bpy.app.timers.register(run_checks, first_interval=IDLE_DELAY_S)
 
 
 def postpone_checks() -> None:
     """Something moves: do not run the checks yet."""
-    _mark_outdated(True)
     if bpy.app.timers.is_registered(run_checks):
         bpy.app.timers.unregister(run_checks)
 
@@ -44,7 +68,6 @@ def run_checks() -> None:
     """Check the open scene in the background; store the warnings in its settings."""
     scene = bpy.context.scene
     if not bridge.sensor_objects(scene) and scene.perception_entropy.vehicle is None:
-        _mark_outdated(False)
         return
     depsgraph = bpy.context.evaluated_depsgraph_get()
     own, name = bridge.scene_advice(scene), scene.name
@@ -60,33 +83,51 @@ def run_checks() -> None:
             line, warnings = found
             settings = bpy.data.scenes[name].perception_entropy
             bridge.store_warnings(settings, (*own, *warnings))
-            if settings.vehicle_line != line:
-                settings.vehicle_line = line
-            _mark_outdated(not bpy.app.background and bpy.app.timers.is_registered(run_checks))
+            _vehicle_lines[name] = line
             signals.view_changed.emit()
 
     given = sensors, vehicle, space
     engine_process.ask(WARNINGS, analysis_calls.warnings, given, deliver, lambda _: None)
+    _explain_stored(scene, depsgraph)
 
 
-def _mark_outdated(behind: bool) -> None:
-    """Note whether warnings are of before a move, and redraw the panels that show it."""
-    global _outdated
-    if behind != _outdated and not bpy.app.background:
-        _outdated = behind
-        viewport.redraw_editors()
+def _explain_stored(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """Explain the result of a file that was opened, or that undo brought back."""
+    settings = scene.perception_entropy
+    known = settings.result is None or explanation(scene) is not None
+    if known or settings.result_stale or bridge.shown_state(scene):
+        return
+    try:
+        vehicle = vehicle_cache.shared.read(scene, depsgraph).vehicle
+        study = bridge.study_from_scene(scene, depsgraph, vehicle)
+    except pe.InputError:  # a score reports it
+        return
+    outcome = bridge.stored_outcome(scene, study, json.loads(settings.result_json)["after"])
+    if outcome is not None:
+        explain_score(scene, outcome, settings.result_signature)
 
 
 def explain_score(scene: bpy.types.Scene, outcome: jobs.Outcome, signature: str) -> None:
-    """Explain a result in words, in the background; do nothing without a window."""
-    if bpy.app.background:
-        return
-    study, score, name = outcome.study, outcome.after, scene.name
+    """Explain a result in words; how far the rig sees follows in the background, in a window."""
+    name = scene.name
+    _explained[name] = _words(outcome, signature)
 
     def deliver(seen: advice.Outlook) -> None:
-        scene = bpy.data.scenes.get(name)
-        if scene is not None and scene.perception_entropy.result_signature == signature:
-            bridge.store_text(scene, study, score, seen)
+        if name in _explained and _explained[name].signature == signature:
+            _explained[name] = _words(outcome, signature, seen)
             signals.view_changed.emit()
 
-    engine_process.ask(EXPLANATION, analysis_calls.outlook, (study,), deliver, lambda _: None)
+    if not bpy.app.background:
+        given = (outcome.study,)
+        engine_process.ask(EXPLANATION, analysis_calls.outlook, given, deliver, lambda _: None)
+
+
+def _words(
+    outcome: jobs.Outcome, signature: str, seen: advice.Outlook | None = None
+) -> Explanation:
+    """Return an outcome in words; without `seen`, not how far its rig sees."""
+    study, score = outcome.study, outcome.after
+    rows = advice.sensor_rows(score, study.rig, study.vehicle, seen)
+    words = advice.rig_words(score, seen, study.rig)
+    search = tuple(jobs.sureness_lines(outcome))
+    return Explanation(signature, words, search, {row.name: row for row in rows})

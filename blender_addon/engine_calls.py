@@ -17,7 +17,6 @@ So previews save up to 83 ms a move.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -52,20 +51,18 @@ class Problem(NamedTuple):
 
 @dataclass(frozen=True)
 class ScoreRequest:
-    """A rig to be scored; approximately, as a preview, where `preview`; `moving`: not idle."""
+    """A rig to be scored; approximately, as a preview, while something is `moving`."""
 
     problem: Problem
     rig: pe.Rig
-    preview: bool
     prior_key: Hashable = None
     moving: bool = False
 
 
 class ScoredRig(NamedTuple):
-    """A rig's score, how long it took [s], and that of the baseline where it was asked for."""
+    """A rig's score, and that of the baseline where it was asked for."""
 
     summary: pe.SummaryScore
-    seconds: float
     baseline: pe.SummaryScore | None = None
 
 
@@ -77,10 +74,8 @@ def live_score(scene_name: str, request: ScoreRequest, baseline: pe.Rig | None) 
     """Return the summary score of a rig; only sensors that have moved are measured again."""
     kept = _evaluators.setdefault(scene_name, text.RecentCache())
     evaluator = kept.made(request.problem.key, lambda: make_evaluator(request.problem))
-    before = None if baseline is None else evaluator.summary(baseline, preview=request.preview)
-    begun = time.perf_counter()
-    summary = evaluator.summary(request.rig, preview=request.preview)
-    return ScoredRig(summary, time.perf_counter() - begun, before)
+    before = None if baseline is None else evaluator.summary(baseline, preview=request.moving)
+    return ScoredRig(evaluator.summary(request.rig, preview=request.moving), before)
 
 
 def make_evaluator(problem: Problem) -> pe.RigEvaluator:

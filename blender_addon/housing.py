@@ -2,8 +2,7 @@
 
 The mesh is the sensor's, not an object beside it: it is selected, copied, hidden and deleted with
 the sensor, and a sensor never occludes its own beams. Surfaces are made as plain arrays first.
-Outer sizes are the housing's; what is inside them is a maker's usual proportion, not a drawing of
-the maker's.
+Outer sizes are the housing's; windows and lenses are where they usually are.
 """
 
 from __future__ import annotations
@@ -24,8 +23,6 @@ BODY, TRIM, GLASS, MARK = range(4)
 """What a face is made of."""
 CIRCLE_POINTS = 48
 """Points of a circle."""
-CORNER_POINTS = 6
-"""Points of a rounded corner."""
 MARK_M = 0.001
 """How far the arrow that says where ahead is stands out."""
 
@@ -63,58 +60,35 @@ def surface_of(housing: pe.Housing, has_lens: bool) -> Surface:
     elif housing.shape == "cylinder":
         surface = can(housing.size, housing.optical_center[2])
     else:
-        surface = visor(housing.size)
+        surface = box(housing.size, housing.size[0] / 2.0)
     return surface.moved(-np.array(housing.optical_center))
 
 
 def can(size: Sequence[float], center: float) -> Surface:
     """An upright can, its window round the optical centre; its base is in z = 0."""
-    radius, height = size[0] / 2.0, size[2]
-    top = height - MARK_M
-    bevel, inset = 0.04 * size[0], 0.02 * size[0]
-    half = min(0.26 * height, center - 0.12 * height, top - center - 0.1 * height)
-    half = max(half, 0.08 * height)
-    low, high = max(center - half, 2.0 * bevel), min(center + half, top - 2.0 * bevel)
-    profile = [(radius - bevel, 0.0, BODY), (radius, bevel, BODY), (radius, low, TRIM)]
-    profile += [(radius - inset, low, GLASS), (radius - inset, high, TRIM)]
-    profile += [(radius, high, BODY), (radius, top - bevel, BODY), (radius - bevel, top, BODY)]
-    rings = [Ring(_circle(r, z), made_of) for r, z, made_of in profile]
+    radius, top = size[0] / 2.0, size[2] - MARK_M
+    half = min(0.26 * size[2], 0.9 * center, 0.9 * (top - center))
+    bands = ((0.0, BODY), (center - half, GLASS), (center + half, BODY), (top, BODY))
+    rings = [Ring(_circle(radius, z), made_of) for z, made_of in bands]
     return loft(rings) + arrow(-0.05 * radius, top, 0.55 * radius)
 
 
-def visor(size: Sequence[float]) -> Surface:
-    """A box with a window in its front; its base is in z = 0."""
-    front, back = size[0] / 2.0, -size[0] / 2.0
-    wide, high = size[1], size[2] - MARK_M
-    bevel, frame = 0.06 * min(size), 0.1 * min(wide, high)
-    section = _BoxSections(wide, high)
-    rings = [Ring(section(back, bevel)), Ring(section(back + bevel, 0.0))]
-    rings += [Ring(section(front - bevel, 0.0)), Ring(section(front, bevel), TRIM)]
-    rings += [Ring(section(front, frame), TRIM), Ring(section(front - 0.5 * bevel, frame), GLASS)]
-    return loft(rings) + arrow(0.0, high, 0.28 * size[0])
+def box(size: Sequence[float], face: float, front: int = GLASS) -> Surface:
+    """A box to the place x of its front, which is made of that; its base is in z = 0."""
+    half, high = size[1] / 2.0, size[2] - MARK_M
+    corners = np.array([(half, high), (-half, high), (-half, 0.0), (half, 0.0)])
+    rings = [(-size[0] / 2.0, BODY), (face, front)]
+    made = [Ring(np.column_stack([np.full(4, x), corners]), made_of) for x, made_of in rings]
+    return loft(made) + arrow(-0.3 * size[0], high, 0.35 * min(size[0], size[1]))
 
 
 def camera(size: Sequence[float]) -> Surface:
     """A small box with a lens ahead; its base is in z = 0."""
-    front, back = size[0] / 2.0, -size[0] / 2.0
-    face = front - 0.35 * size[0]
-    wide, high = size[1], size[2] - MARK_M
-    bevel, radius = 0.08 * min(size), 0.36 * min(wide, high)
-    section = _BoxSections(wide, high)
-    rings = [Ring(section(back, bevel)), Ring(section(back + bevel, 0.0))]
-    rings += [Ring(section(face - bevel, 0.0)), Ring(section(face, bevel))]
-    return (
-        loft(rings) + lens(radius, face, front, high / 2.0) + arrow(0.6 * back, high, 0.35 * wide)
-    )
-
-
-def lens(radius: float, start: float, end: float, height: float) -> Surface:
-    """A barrel along x with its glass a little behind its rim."""
-    deep = 0.25 * (end - start)
-    profile = [(radius, start, TRIM), (radius, end, TRIM), (0.82 * radius, end, TRIM)]
-    profile += [(0.74 * radius, end - deep, GLASS), (0.4 * radius, end - 0.7 * deep, GLASS)]
+    front, face = size[0] / 2.0, 0.15 * size[0]
+    radius, high = 0.36 * min(size[1], size[2]), size[2] - MARK_M
+    profile = [(radius, face, TRIM), (radius, front, TRIM), (0.8 * radius, front, GLASS)]
     rings = [Ring(_circle(r, x)[:, [2, 0, 1]], made_of) for r, x, made_of in profile]
-    return loft(rings).moved(np.array([0.0, 0.0, height]))
+    return box(size, face, BODY) + loft(rings).moved(np.array([0.0, 0.0, high / 2.0]))
 
 
 def arrow(x: float, z: float, length: float) -> Surface:
@@ -151,26 +125,6 @@ def _circle(radius: float, height: float) -> Floats:
     angle = np.arange(CIRCLE_POINTS) * (2.0 * np.pi / CIRCLE_POINTS)
     flat = radius * np.cos(angle), radius * np.sin(angle)
     return np.stack([*flat, np.full(CIRCLE_POINTS, height)], axis=1)
-
-
-class _BoxSections:
-    """Sections of a box across x, with round corners: at a place, so much smaller on each side."""
-
-    def __init__(self, wide: float, high: float) -> None:
-        self.wide, self.high = wide, high
-        self.round = 0.14 * min(wide, high)
-
-    def __call__(self, x: float, smaller: float) -> Floats:
-        """(N, 3) points, counter-clockwise from ahead."""
-        radius = max(self.round - smaller, 0.2 * self.round)
-        half = np.array([self.wide, self.high]) / 2.0 - smaller - radius
-        rows = []
-        for number, (right, up) in enumerate(((1, 1), (-1, 1), (-1, -1), (1, -1))):
-            for angle in (number + np.arange(CORNER_POINTS) / (CORNER_POINTS - 1)) * (np.pi / 2.0):
-                y = right * half[0] + radius * np.cos(angle)
-                z = up * half[1] + radius * np.sin(angle)
-                rows.append((x, y, z + self.high / 2.0))
-        return np.array(rows)
 
 
 KEY = "pe_housing"

@@ -9,13 +9,11 @@ as it is.
 from __future__ import annotations
 
 import ast
-import re
 from functools import cache
 from pathlib import Path
 
 import bpy
 
-from . import preferences
 from .engine import pe
 from .translation_context import CONTEXT
 
@@ -26,7 +24,6 @@ LOCALES = {"de": "de", "ja": "ja", "zh_HANS": "zh", "zh_CN": "zh"}
 """How Blender's locales begin, and their languages. zh_HANT, traditional Chinese, has none."""
 CONTEXTS = (CONTEXT, "*")
 """Contexts in which Blender looks a message up: ours, and that of tooltips and of categories."""
-LENGTH = re.compile(r"(?<![\d.,])(\d{1,2}\.\d{1,3}) m(?![\w²³/])")
 NAME = __package__ or __name__
 
 
@@ -82,23 +79,13 @@ def language_of_locale(locale: str) -> str:
 
 
 def shown(text: str) -> str:
-    """Return a text that is drawn or reported, in the interface's language and units."""
-    return with_unit(catalog(current()).get(text, text))
+    """Return a text that is drawn or reported, in the interface's language."""
+    return catalog(current()).get(text, text)
 
 
 def draw_label(layout: bpy.types.UILayout, text: str, icon: str = "NONE") -> None:
-    """Draw a label in the interface's language and units."""
+    """Draw a label in the interface's language."""
     layout.label(text=shown(text), icon=icon, translate=False)
-
-
-def with_unit(text: str) -> str:
-    """Return a text with its lengths in the unit of the preferences: "0.35 m" as "350 mm".
-
-    Only lengths with decimals and below 100 m are dimensions; others are distances and stay.
-    """
-    if getattr(preferences.stored(), "length_unit", "M") != "MM":
-        return text
-    return LENGTH.sub(lambda length: f"{1000.0 * float(length[1]):.0f} mm", text)
 
 
 def register() -> None:

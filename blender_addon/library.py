@@ -1,4 +1,4 @@
-"""The extension's assets: the library of sensors in Blender's browser, and the example."""
+"""The extension's preferences and assets: the library of sensors, and the example."""
 
 from __future__ import annotations
 
@@ -6,13 +6,17 @@ from pathlib import Path
 
 import bpy
 
-from . import preferences
-
 NAME = "Perception Entropy"
 FOLDER = Path(__file__).resolve().parent / "assets"
 EXAMPLES = (FOLDER / "examples", FOLDER.parents[1] / "blend_assets")
 """Where the example is: in the extension, or in a checkout of the project."""
 EXAMPLE = "sedan.blend"
+
+
+def stored() -> bpy.types.AddonPreferences | None:
+    """Return the preferences; None where the add-on is not enabled in Blender's own."""
+    addon = bpy.context.preferences.addons.get(__package__)
+    return None if addon is None else addon.preferences
 
 
 def example_file() -> Path | None:
@@ -42,7 +46,7 @@ def _is_ours(library: bpy.types.UserAssetLibrary) -> bool:
 
 def register() -> None:
     """Show the library as the preferences say; without preferences, where there is a window."""
-    chosen = preferences.stored()
+    chosen = stored()
     if not bpy.app.background if chosen is None else chosen.show_library:
         show()
 

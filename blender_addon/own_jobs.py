@@ -26,13 +26,8 @@ class WrittenFiles:
 
     @property
     def text(self) -> str:
-        """One line that names the written files."""
-        return f"Wrote {', '.join(path.name for path in self.paths)}"
-
-    @property
-    def folder(self) -> Path:
-        """The folder of the first file."""
-        return self.paths[0].parent
+        """One line that names the written files, and their folder."""
+        return f"Wrote {', '.join(path.name for path in self.paths)} in {self.paths[0].parent}"
 
 
 class ExportStopped(Exception):

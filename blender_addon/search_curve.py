@@ -7,7 +7,7 @@ score.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import bpy
 
@@ -67,12 +67,10 @@ def drop(scene: str) -> None:
     searches.pop(scene, None)
 
 
-@dataclass(frozen=True, slots=True)
-class SearchCurve:
-    """A staircase of the best entropy from the start to now, as plain numbers and text.
+class SearchCurve(NamedTuple):
+    """A staircase of the best figure from the start to now, as plain numbers and text.
 
-    `points` go from (0, 1), the start, to the right; 1 is the upper end of the axis. `low`, `high`
-    and `last` label the ends of the axes, `title` and `aside` are written above.
+    `points` go from (0, 1), the start, to the right; 1 is the upper end of the axis.
     """
 
     points: tuple[tuple[float, float], ...]

@@ -12,30 +12,24 @@ Listener = Callable[[], None]
 
 
 class Signal:
-    """An event that can be emitted, and the functions that are called then."""
+    """An event that can be emitted; its listeners are called in the order of their connection."""
 
     def __init__(self) -> None:
-        self._listeners: list[Listener] = []
+        self.listeners: tuple[Listener, ...] = ()
 
     def connect(self, listener: Listener) -> None:
         """Call a function at each emit; once, however often it is connected."""
-        if listener not in self._listeners:
-            self._listeners.append(listener)
+        if listener not in self.listeners:
+            self.listeners += (listener,)
 
     def disconnect(self, listener: Listener) -> None:
         """Call a function no longer; do nothing if it is not connected."""
-        if listener in self._listeners:
-            self._listeners.remove(listener)
+        self.listeners = tuple(each for each in self.listeners if each != listener)
 
     def emit(self) -> None:
-        """Call all listeners, in the order in which they were connected."""
-        for listener in tuple(self._listeners):
+        """Call all listeners."""
+        for listener in self.listeners:
             listener()
-
-    @property
-    def listeners(self) -> tuple[Listener, ...]:
-        """The connected functions, in the order of the calls."""
-        return tuple(self._listeners)
 
 
 study_changed = Signal()
@@ -47,9 +41,6 @@ moving = Signal()
 """A sensor or the vehicle is moving: emitted by a timer, a moment after each move."""
 idle = Signal()
 """Nothing has moved for a moment: emitted once after the last move."""
-
-requirement_chosen = Signal()
-"""Another requirement is selected in the list."""
 
 live_toggled = Signal()
 """The live score was switched on or off."""

@@ -40,11 +40,11 @@ class VehicleCache:
         """A count that rises whenever a vehicle may have changed."""
         return self._version
 
-    def invalidate(self) -> None:
+    def invalidate(self, *_: object) -> None:
         """Invalidate the vehicles: their objects may have changed."""
         self._version += 1
 
-    def clear(self) -> None:
+    def clear(self, *_: object) -> None:
         """Drop everything: another file is opened."""
         self._vehicles.clear()
         self._digests.clear()
@@ -142,13 +142,3 @@ def invalidate_if_updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
     """After an update: invalidate the vehicles where it was one of theirs."""
     if vehicle_updated(scene, depsgraph):
         shared.invalidate()
-
-
-def invalidate(*_: object) -> None:
-    """After undo or redo: any object may be another one."""
-    shared.invalidate()
-
-
-def clear(*_: object) -> None:
-    """Before another file is opened: drop all vehicles."""
-    shared.clear()

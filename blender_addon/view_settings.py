@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from .choices import BEFORE_MOVE, PINNED
+from .choices import BEFORE_MOVE
 from .engine import graphics, studies
 
 DEFAULT_CLASS = "pedestrian"
@@ -17,18 +17,15 @@ REDUNDANCY = "REDUNDANCY"
 """Quantity of the ground map: what one lost sensor leaves, or how many kinds see a place."""
 COUNTED = (graphics.SENSORS, REDUNDANCY)
 """Quantities that are numbers of sensors or kinds: they have no range of colours."""
-RANGES = {"ENTROPY": "entropy_range", "COVERAGE": "coverage_range"}
-"""The setting that holds a fixed range of colours, by quantity."""
 SENSORS_LEFT, KINDS, KINDS_LEFT = "SENSORS_LEFT", "KINDS", "KINDS_LEFT"
-FITTED, WHOLE, FIXED = "FITTED", "WHOLE", "FIXED"
+FITTED, WHOLE = "FITTED", "WHOLE"
 """The range of values that the colours of the ground map cover."""
 SELECTED, ALL, RIG = "SELECTED", "ALL", "RIG"
 BY_STATE, BY_SENSOR, BY_CHANNEL = "STATE", "SENSOR", "CHANNEL"
-EVERY_NTH = "EVERY"
 HEIGHTS_M = {AVERAGE: None, "H0": 0.0, "H50": 0.5, "H100": 1.0, "H150": 1.5}
 MIN_LENGTH_M = 0.1
 
-OPACITY, SHARE, ENTROPY = studies.Number(0.05, 1.0), studies.Number(0.0, 1.0), studies.Number()
+OPACITY = studies.Number(0.05, 1.0)
 METRES, LENGTH = studies.Number(0.5, unit="m"), studies.Number(MIN_LENGTH_M, unit="m")
 BODY, COUNT, KEY = studies.Number(0.01, 5.0, unit="m"), studies.Whole(1), studies.Whole(0)
 
@@ -95,22 +92,13 @@ class ViewSettings:
          "the highest 2 % of its places. Kept from the first score on, until it is fitted again"),
         (WHOLE, "Whole", "From what nobody sees to what is seen best: the same colours in every "
          "scene, and on review pages"),
-        (FIXED, "Fixed", "Between two values that you set"),
     )  # fmt: skip
     ground_fits: int = _value(0, KEY, "Fits", "How often the range of the colours was fitted again")
-    entropy_range: tuple[float, float] = _value(
-        (16.7, -11.0), studies.Pair(ENTROPY), "Entropy",
-        "Entropy at the dark and at the bright end [nats]", precision=1,
-    )  # fmt: skip
-    coverage_range: tuple[float, float] = _value(
-        (0.0, 1.0), studies.Pair(SHARE), "Coverage",
-        "Coverage at the dark and at the bright end, 0 to 1", precision=2,
-    )  # fmt: skip
     ground_difference: bool = _switch(
         False,
         "Difference",
         "Show where the rig is better (blue) or worse (orange) than the rig that Live is compared "
-        "with: before the last move, pinned sensors, or a variant",
+        "with: before the last move, or a variant",
     )
     show_blind: bool = _switch(
         True,
@@ -181,14 +169,8 @@ class ViewSettings:
         "Channels",
         "Channels whose beams are drawn",
         ("FEW", "Few", "A few channels from the highest to the lowest"),
-        ("ONE", "One", "A single channel"),
-        (EVERY_NTH, "Every nth", "Every nth channel"),
         ("ALL", "All", "All channels"),
     )
-    channel: int = _value(
-        1, COUNT, "Channel", "Number of the channel; the lowest is 1", when="channels=ONE"
-    )
-    every: int = _value(4, COUNT, "Every", "2: every second channel", when="channels=EVERY")
     beam_colors: str = _menu(
         BY_SENSOR,
         "Color By",
@@ -232,7 +214,6 @@ class ViewSettings:
     )
     show_legend: bool = _switch(True, "Legend", "Explain the colours in the lower right corner")
     layers: frozenset[str] = frozenset()
-    palette: graphics.Palette = graphics.VIEWPORT
 
     @property
     def ground_height_m(self) -> float | None:
@@ -243,11 +224,6 @@ class ViewSettings:
     def blind_height_m(self) -> float:
         """Height of an object on blind ground [m]."""
         return HEIGHTS_M[self.blind_height] or 0.0
-
-    @property
-    def channel_number(self) -> int:
-        """The number that `channels` asks for: the channel's, or of every nth its step."""
-        return self.every if self.channels == EVERY_NTH else self.channel
 
 
 @dataclass(frozen=True, slots=True)
@@ -261,9 +237,9 @@ class LiveSettings:
         "idle, on a sample of voxels. Score evaluates all voxels",
     )
     against: int = _value(
-        BEFORE_MOVE, studies.Whole(PINNED), "Compared With",
-        "Reference of the live score: 0, the sensors before the last move; -1, the pinned sensors; "
-        "otherwise the key of a variant",
+        BEFORE_MOVE, studies.Whole(0), "Compared With",
+        "Reference of the live score: 0, the sensors before the last move; otherwise the "
+        "key of a variant",
     )  # fmt: skip
     figures: bool = _switch(
         True,

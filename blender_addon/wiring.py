@@ -28,14 +28,14 @@ from . import (
     viewport,
 )
 from .live import session
-from .operators import inset, look_through, requirements, upright
+from .operators import inset, look_through
 from .overlay import draw_handler, scheduler
 
 Function = Callable[..., None]
 
 AFTER_STEP = (
     sensor_cache.invalidate,
-    vehicle_cache.invalidate,
+    vehicle_cache.shared.invalidate,
     session.on_restored,
     change_events.note_change,
 )
@@ -56,9 +56,10 @@ EVENTS: dict[str, tuple[Function, ...]] = {
     "redo_post": AFTER_STEP,
     "load_pre": (
         sensor_cache.invalidate,
-        vehicle_cache.clear,
+        vehicle_cache.shared.clear,
         change_events.clear,
         session.clear,
+        diagnostics.clear,
         result_staleness.clear,
         location_query.clear,
         scheduler.clear,
@@ -66,7 +67,7 @@ EVENTS: dict[str, tuple[Function, ...]] = {
     ),
     "load_post": (
         sensor_cache.invalidate,
-        vehicle_cache.clear,
+        vehicle_cache.shared.clear,
         engine_process.begin,
         consistency.after_load,
         change_events.note_change,
@@ -90,12 +91,10 @@ LISTENERS: tuple[tuple[signals.Signal, tuple[signals.Listener, ...]], ...] = (
         ),
     ),
     (signals.view_changed, (session.on_view_changed, scheduler.schedule)),
-    (signals.requirement_chosen, (requirements.look_at_worst, scheduler.schedule)),
     (
         signals.moving,
         (
             look_through.restore_lost,
-            upright.on_moving,
             consistency.repair_scenes,
             diagnostics.postpone_checks,
             scheduler.on_moving,

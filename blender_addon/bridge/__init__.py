@@ -17,11 +17,9 @@ from .mirroring import (
     mirrored_pose,
     unlink_mirror,
 )
-from .mounting import LimitBox, bounds_box, mount_faces, mount_key, mount_of_row, no_go_boxes
-from .outcome import blender_version, store_outcome, store_text, store_warnings
-from .own_sensors import add_own_sensor, remove_own_sensors, sync_own_sensors
-from .plain_objects import plain_objects, put_objects, sensors_of_objects
-from .prior import focus_rows, prior_from_scene, prior_key
+from .mounting import bounds_box, mount_faces, mount_key, mount_of_row, no_go_boxes
+from .own_sensors import add_own_sensor, line_of, read_line, remove_own_sensors, sync_own_sensors
+from .prior import focus_regions, prior_from_scene, prior_key
 from .requirements import (
     after_of,
     edit_row,
@@ -33,6 +31,17 @@ from .requirements import (
     stored_verdict,
     with_mesh_files_of,
     write_row,
+)
+from .result import (
+    Front,
+    Result,
+    ResultViews,
+    begin_with,
+    blender_version,
+    figures_of_sensor,
+    sensor_loss,
+    store_outcome,
+    store_warnings,
 )
 from .rig import (
     color_of,
@@ -79,15 +88,6 @@ from .sensor_records import (
     same_sensors,
     write_records,
 )
-from .stored import (
-    SensorFigures,
-    StoredChecks,
-    StoredFront,
-    StoredResult,
-    StoredWarning,
-    figures_of_sensor,
-    stored_fields,
-)
 from .transform_constraints import holder_of
 from .variant_results import (
     FigureRule,
@@ -106,6 +106,7 @@ from .variant_results import (
     store_search,
     store_variant_score,
     store_variant_scores,
+    stored_outcome,
     write_figures,
 )
 from .variants import (
@@ -120,7 +121,6 @@ from .variants import (
     variant_named,
 )
 from .vehicle import layers_of, vehicle_from_collection, visible_members
-from .versions import mark_version, newer_version_message
 from .view_camera import (
     CAMERA_FROM_SENSOR,
     look_back,

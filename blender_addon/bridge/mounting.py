@@ -1,23 +1,23 @@
 """Where a search may put the sensors of a scene: mounts, pairs, groups and constraints.
 
-A mount's faces are painted, or have a certain material. The faces and boxes that the 3D view shows
+A mount's faces are those of parts, or painted. The faces and boxes that the 3D view shows
 are computed here, too.
 """
 
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
-from bpy.types import Collection, Depsgraph, Material, Mesh, Object, PropertyGroup, Scene
+from bpy.types import Collection, Depsgraph, Mesh, Object, PropertyGroup, Scene
 
-from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, ON_SLOTS, ON_SURFACE
+from ..choices import BY_PARTS, ON_SLOTS, ON_SURFACE, LimitBox
 from ..engine import pe, search, studies
 from .rig import pose_of
 from .scene_settings import values_of
 from .sensor_records import SensorRecord, bounds_by_axis
-from .transform_constraints import free_axes, limit_constraints, search_bounds
+from .transform_constraints import free_axes
 from .vehicle import drawn_meshes, placed_triangles, triangles_of
 
 MountSettings: TypeAlias = PropertyGroup
@@ -106,11 +106,10 @@ def groups_of(records: Sequence[SensorRecord]) -> tuple[tuple[str, ...], ...]:
 
     The first by name leads; one that is on a mount comes before the others.
     """
-    racks: dict[tuple[str, str], list[SensorRecord]] = {}
+    racks: dict[str, list[SensorRecord]] = {}
     for record in records:
-        if record.visible and (record.rack or record.parent_rack):
-            key = ("rack", record.rack) if record.rack else ("parent", record.parent_rack)
-            racks.setdefault(key, []).append(record)
+        if record.visible and record.rack:
+            racks.setdefault(record.rack, []).append(record)
     ordered = (
         sorted(members, key=lambda record: (not record.mount, record.name))
         for members in racks.values()
@@ -178,11 +177,11 @@ def painted_area(vehicle: Collection, depsgraph: Depsgraph, mount: PropertyGroup
     """Return a mount's faces (F, 3, 3) [m], with modifiers, parents and instances applied.
 
     They equal triangles of the engine's vehicle to the bit. The array is empty if no face is
-    painted or has the material.
+    painted.
     """
     areas = []
     for obj, ground_from_object in drawn_meshes(vehicle, depsgraph):
-        if not _may_have(obj, mount):
+        if mount.group not in obj.vertex_groups:
             continue
         mesh = obj.to_mesh()
         is_painted = _chosen(obj, mesh, mount)
@@ -193,20 +192,9 @@ def painted_area(vehicle: Collection, depsgraph: Depsgraph, mount: PropertyGroup
     return np.concatenate([area for _, area in areas]) if areas else np.empty((0, 3, 3))
 
 
-def _may_have(obj: Object, mount: PropertyGroup) -> bool:
-    """Whether an evaluated object has the vertex group or the material of a mount."""
-    if mount.faces == BY_GROUP:
-        return mount.group in obj.vertex_groups
-    return mount.faces == BY_MATERIAL and bool(_slots_of(obj, mount.material))
-
-
 def _chosen(obj: Object, mesh: Mesh, mount: PropertyGroup) -> np.ndarray:
     """Return a mask (F,) of the triangles of a mesh that belong to the mount."""
     count = len(mesh.loop_triangles) if mesh.loop_triangles else _triangulated(mesh)
-    if mount.faces == BY_MATERIAL:
-        index = np.empty(count, np.int32)
-        mesh.loop_triangles.foreach_get("material_index", index)
-        return np.isin(index, _slots_of(obj, mount.material))
     corners = np.empty(3 * count, np.int32)
     mesh.loop_triangles.foreach_get("vertices", corners)
     return _painted(mesh, obj.vertex_groups[mount.group].index)[corners.reshape(-1, 3)].all(axis=1)
@@ -226,46 +214,18 @@ def _triangulated(mesh: Mesh) -> int:
     return len(mesh.loop_triangles)
 
 
-def _slots_of(obj: Object, material: Material | None) -> list[int]:
-    """Return the indices of a material among an object's slots."""
-    slots = (slot.material for slot in obj.material_slots)
-    return [n for n, each in enumerate(slots) if each is not None and each.original == material]
-
-
 def area_problem(mount: PropertyGroup) -> pe.InputError:
     """Return the error of a surface that has no faces."""
-    if mount.faces == BY_GROUP:
-        expected = "faces of the vehicle that are painted in it, with weights above 0.5"
-        return _of_mount(mount, f"vertex group {mount.group!r}", expected)
-    if mount.material is None:
-        return _of_mount(mount, "material", "a material of the vehicle", found="none chosen")
-    return _of_mount(mount, f"material {mount.material.name!r}", "faces of the vehicle with it")
-
-
-def _of_mount(
-    mount: PropertyGroup, field: str, expected: str, found: str = "none"
-) -> pe.InputError:
-    return pe.InputError("scene", f"mount {mount.name!r}: {field}", expected, found)
-
-
-class LimitBox(NamedTuple):
-    """An axis-aligned box in the ground frame [m], and whether it is a no-go area."""
-
-    low: tuple[float, ...]
-    high: tuple[float, ...]
-    forbidden: bool
+    field = f"mount {mount.name!r}: vertex group {mount.group!r}"
+    expected = "faces of the vehicle that are painted in it, with weights above 0.5"
+    return pe.InputError("scene", field, expected, "none")
 
 
 def mount_key(row: PropertyGroup) -> Hashable:
     """Return a cache key of a mount's faces, besides the vehicle; None for a list of slots."""
     if row.kind != ON_SURFACE:
         return None
-    said: dict[str, Hashable] = {
-        BY_PARTS: tuple(part_names(row)),
-        BY_MATERIAL: row.material.name_full if row.material else None,
-        BY_GROUP: row.group,
-    }
-    return row.faces, said[row.faces]
+    return row.faces, tuple(part_names(row)) if row.faces == BY_PARTS else row.group
 
 
 def mount_faces(
@@ -281,14 +241,13 @@ def mount_faces(
 def bounds_box(
     obj: Object, sensor: pe.Sensor, vehicle: pe.Vehicle | None, around: np.ndarray | None = None
 ) -> LimitBox | None:
-    """Return the box of a sensor's own bounds and constraints; None for one without any.
+    """Return the box of a sensor's own bounds; None for one without any.
 
     On a fixed axis the box has no extent. On a free axis without bounds it has the default bounds;
     for a sensor on a surface it spans the faces `around` (F, 3, 3) and the sensor.
     """
     settings = obj.perception_entropy
-    bounds = bounds_by_axis(settings.bounded, settings.bounds_low, settings.bounds_high)
-    limits = search_bounds(sensor, vehicle, bounds, limit_constraints(obj))
+    limits = bounds_by_axis(settings.bounded, settings.bounds_low, settings.bounds_high)
     if not set("xyz") & set(limits):
         return None
     usual, free = search.default_bounds(sensor, vehicle), free_axes(obj)

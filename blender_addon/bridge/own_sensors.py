@@ -154,16 +154,17 @@ def read_line(text: str, refused_as: str) -> dict[str, Any]:
 
 def lens_text(table: Mapping[str, Any]) -> str:
     """Return the lens of a camera's table as a line of text; empty without lens keys."""
-    return _line({key: table[key] for key in LINE_KEYS if key in table})
+    return line_of({key: table[key] for key in LINE_KEYS if key in table})
 
 
-def _line(table: Mapping[str, Any]) -> str:
+def line_of(table: Mapping[str, Any]) -> str:
+    """Return a table as a line of text, with the keys of a study file."""
     return ", ".join(f"{key} = {_value(value)}" for key, value in table.items())
 
 
 def _value(value: Any) -> str:
     if isinstance(value, Mapping):
-        return f"{{ {_line(value)} }}"
+        return f"{{ {line_of(value)} }}"
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(_value, value))}]"
     if isinstance(value, bool):
@@ -175,6 +176,6 @@ CONVERSIONS = {"lidar": (_lidar_table, _lidar_figures), "camera": (_camera_table
 """By kind: from an own sensor to a table of the catalogue, and from such a table to properties."""
 OTHER = (
     lambda row: read_line(row.keys, "keys"),
-    lambda table: {"keys": _line({key: table[key] for key in table if key != "kind"})},
+    lambda table: {"keys": line_of({key: table[key] for key in table if key != "kind"})},
 )
 """Of a kind without fields of its own: a line of text has its keys."""

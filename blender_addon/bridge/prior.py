@@ -9,7 +9,7 @@ from dataclasses import replace
 import bpy
 from bpy.types import PropertyGroup, Scene
 
-from ..choices import CUSTOM, FROM_BOXES, HIGHWAY, REGIONS, ROAD, UNIFORM, FocusArea
+from ..choices import CUSTOM, FROM_BOXES, HIGHWAY, REGIONS, ROAD, UNIFORM, FocusArea, FocusRegion
 from ..engine import formats, pe
 from .scene_settings import as_typed
 
@@ -42,12 +42,10 @@ def prior_key(scene: Scene) -> str:
     return repr(prior_signature(scene))
 
 
-def focus_rows(
-    scene: Scene,
-) -> tuple[tuple[str, float, tuple[FocusArea, ...], tuple[str, ...] | None], ...]:
-    """Return name, factor, areas and classes (None: all) of each focus weight."""
+def focus_regions(scene: Scene) -> tuple[FocusRegion, ...]:
+    """Return the focus weights of a scene, wrong ones included."""
     rows = scene.perception_entropy.focus
-    return tuple((row.name, as_typed(row.factor), _areas(row), _classes(row)) for row in rows)
+    return tuple(FocusRegion(r.name, as_typed(r.factor), _areas(r), _classes(r)) for r in rows)
 
 
 def write_prior(settings: PropertyGroup, prior: pe.Prior) -> None:

@@ -56,28 +56,24 @@ def full_table(row: PropertyGroup) -> TableData:
     It is cached, and not to be changed.
     """
     try:
-        return _full_table(row.name, row.table)
+        return _full_table(row.name, row.table)[0]
     except pe.InputError:
         return {}
 
 
 @lru_cache(maxsize=256)
-def _full_table(name: str, table: str) -> TableData:
-    """Return the table of a row of that name; panels ask for it again for each field."""
-    return studies.requirement_file.full_table(_read(name, _loaded(name, table)))
+def _full_table(name: str, table: str) -> tuple[TableData, str]:
+    """Return the table of a row of that name, and what its verdict is called after.
+
+    Panels ask for it again for each field.
+    """
+    requirement = _read(name, _loaded(name, table))
+    return studies.requirement_file.full_table(requirement), requirement.after
 
 
 def after_of(row: PropertyGroup) -> str:
     """Return what a row's verdict is called after; empty where that is nothing, or is unknown."""
-    try:
-        return _after(row.name, row.table)
-    except pe.InputError:
-        return ""
-
-
-@lru_cache(maxsize=256)
-def _after(name: str, table: str) -> str:
-    return _read(name, _loaded(name, table)).after
+    return _full_table(row.name, row.table)[1] if full_table(row) else ""
 
 
 def write_row(row: PropertyGroup, requirement: Requirement) -> None:
@@ -113,7 +109,7 @@ def with_mesh_files_of(study: pe.Study, folder: Path) -> pe.Study:
 def edit_row(row: PropertyGroup, change: Callable[[TableData], None]) -> None:
     """Change a row's full table; a change that makes it wrong is not made, and the row says why."""
     try:
-        table = deepcopy(_full_table(row.name, row.table))
+        table = deepcopy(_full_table(row.name, row.table)[0])
         change(table)
         preset = table.pop("preset", None)
         requirement = _read(row.name, table)

@@ -37,7 +37,7 @@ from .sensor_records import (
     record_of_sensor,
     rig_of,
 )
-from .transform_constraints import Limits, search_bounds, unlocked_axes
+from .transform_constraints import unlocked_axes
 from .vehicle import vehicle_from_collection
 
 AnyMount = search.AnyMount  # the record has fields of these names
@@ -170,7 +170,7 @@ def study_of(record: SceneRecord) -> pe.Study:
     search_of_rig = replace(
         record.search,
         free={sensor.name: unlocked_axes(sensor.free, sensor.locked) for sensor in counted},
-        limits=_limits(counted, rig, record.vehicle, mounting),
+        limits=_limits(counted, mounting),
         mounting=mounting,
         goals=goals_of_sensors(record.search.goals, counted, mounting),
     )
@@ -195,17 +195,11 @@ def study_of(record: SceneRecord) -> pe.Study:
 
 
 def _limits(
-    records: Sequence[SensorRecord], rig: pe.Rig, vehicle: pe.Vehicle, mounting: pe.Mounting
-) -> dict[str, Limits]:
+    records: Sequence[SensorRecord], mounting: pe.Mounting
+) -> dict[str, dict[str, tuple[float, float]]]:
     """Return bounds by sensor; a sensor in a slot, or one that follows another, has none."""
-    limits = {}
-    for record in records:
-        if mounting.unbounded(record.name):
-            continue
-        sensor = rig[record.name]
-        if bounds := search_bounds(sensor, vehicle, bounds_of(record), record.constraints):
-            limits[record.name] = bounds
-    return limits
+    own = {r.name: bounds_of(r) for r in records if not mounting.unbounded(r.name)}
+    return {name: bounds for name, bounds in own.items() if bounds}
 
 
 def check_scene(scene: Scene) -> None:

@@ -9,8 +9,8 @@ from bpy.types import Object, Scene
 from ..engine import catalog, graphics
 from .apply_variant import inactive_sensors
 from .mirroring import is_copy
+from .result import rename_figures
 from .rig import color_of
-from .stored import rename_figures
 
 
 def assign_colors(scene: Scene, sensors: Sequence[Object]) -> None:

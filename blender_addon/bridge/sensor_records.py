@@ -27,7 +27,7 @@ from .rig import (
     view_layer_of,
 )
 from .scene_settings import as_typed, pair_as_typed
-from .transform_constraints import AxisLimit, limit_constraints, locked_axes
+from .transform_constraints import locked_axes
 
 NO_BOUNDS, ZEROS = (False,) * len(search.AXES), (0.0,) * len(search.AXES)
 PAPER_FREE = tuple(axis in search.PAPER_FREE for axis in search.AXES)
@@ -50,9 +50,8 @@ class SensorRecord:
 
     The last fields belong to the sensor's object and are not stored with a variant: a variant's
     record takes them from the object that the variant would use if it were applied. `locked` axes
-    and `constraints` restrict the search, `parent_rack` is a parent that is a rack, `options` are
-    the models to choose from, `may_be_left_out` allows designs without the sensor, and one that
-    `stays` is moved by no search. `color` is the sensor's own.
+    restrict the search, `options` are the models to choose from, `may_be_left_out` allows designs
+    without the sensor, and one that `stays` is moved by no search. `color` is the sensor's own.
     """
 
     name: str
@@ -73,8 +72,6 @@ class SensorRecord:
     intrinsics: Any = None  # the engine's model, where the catalogue may not have it
 
     locked: tuple[str, ...] = ()
-    constraints: tuple[AxisLimit, ...] = ()
-    parent_rack: str = ""
     options: tuple[ModelOption, ...] = ()
     may_be_left_out: bool = False
     stays: bool = False
@@ -153,12 +150,9 @@ def _object_fields(obj: Object | None) -> dict[str, Any]:
     """Return the fields of a record that belong to the object; empty without an object."""
     if obj is None:
         return {}
-    settings, parent = obj.perception_entropy, obj.parent
-    on_rack = parent is not None and parent.perception_entropy.is_rack
+    settings = obj.perception_entropy
     return {
         "locked": locked_axes(obj),
-        "constraints": limit_constraints(obj),
-        "parent_rack": parent.name if on_rack else "",
         "options": tuple(ModelOption(o.model, as_typed(o.price)) for o in settings.options),
         "may_be_left_out": settings.may_be_left_out,
         "stays": settings.stays,

@@ -1,36 +1,22 @@
 """Blender's own restrictions of a sensor's pose: locks, constraints, animations and drivers.
 
-Locks and Limit constraints narrow the bounds of a search. An animation, a driver or another
-constraint defines the sensor's pose, so that a search of that sensor is impossible.
+A lock fixes an axis in a search. An animation, a driver or a constraint defines the sensor's pose,
+so that a search of that sensor is impossible.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple, cast
+from typing import cast
 
 import bpy
 from bpy.types import Object
 
-from ..engine import pe, search
-from .scene_settings import as_typed
+from ..engine import search
 
-LOCATION, ROTATION = "LIMIT_LOCATION", "LIMIT_ROTATION"
 AXIS_LABELS = dict(zip(search.AXES, ("X", "Y", "Z", "Roll", "Pitch", "Yaw"), strict=True))
-Limits = dict[str, tuple[float, float]]
-"""Bounds by axis [m or rad]."""
 PLACING = ("location", "rotation", "delta_location", "delta_rotation")
 """First parts of the data paths that place an object."""
-BOUNDING = "LIMIT_"
-"""First part of the types of constraints that hold an object only outside their limits."""
-
-
-class AxisLimit(NamedTuple):
-    """The range of one axis by a Limit constraint [m or rad]; None for an open end."""
-
-    axis: str
-    low: float | None
-    high: float | None
 
 
 def locked_axes(obj: Object) -> tuple[str, ...]:
@@ -50,64 +36,6 @@ def unlocked_axes(free: Iterable[bool], locked: Iterable[str]) -> tuple[str, ...
     return tuple(axis for axis, ticked in pairs if ticked and axis not in locked)
 
 
-def limit_constraints(obj: Object) -> tuple[AxisLimit, ...]:
-    """Return the limits that an object's enabled Limit constraints set in the ground frame."""
-    return tuple(_axis_limits(obj))
-
-
-def search_bounds(
-    sensor: pe.Sensor, vehicle: pe.Vehicle | None, bounds: Limits, constraints: Iterable[AxisLimit]
-) -> Limits:
-    """Return the bounds of a sensor: the typed bounds intersected with its Limit constraints.
-
-    `InputError` when the intersection is empty.
-    """
-    default = search.default_bounds(sensor, vehicle)
-    limits = dict(bounds)
-    for axis, constraint_low, constraint_high in constraints:
-        low, high = limits.get(axis, default[axis])
-        low = low if constraint_low is None else constraint_low
-        high = high if constraint_high is None else constraint_high
-        if axis in limits:
-            low, high = max(low, limits[axis][0]), min(high, limits[axis][1])
-        if low > high:
-            expected = "bounds and constraints that leave something between them"
-            field = f"sensor {sensor.name!r}: {AXIS_LABELS[axis]}"
-            raise pe.InputError("scene", field, expected, f"{low:g} to {high:g}")
-        limits[axis] = (low, high)
-    return {axis: limits[axis] for axis in search.AXES if axis in limits}
-
-
-def _axis_limits(obj: Object) -> Iterator[AxisLimit]:
-    for constraint in obj.constraints:
-        if not constraint.enabled or constraint.influence <= 0.0:
-            continue
-        if not _is_in_ground_frame(obj, constraint):
-            continue
-        if constraint.type == LOCATION:
-            axes, switches = search.AXES[:3], [(f"use_min_{a}", f"use_max_{a}") for a in "xyz"]
-        elif constraint.type == ROTATION:
-            axes, switches = search.AXES[3:], [(f"use_limit_{a}",) * 2 for a in "xyz"]
-        else:
-            continue
-        for axis, a, (has_low, has_high) in zip(axes, "xyz", switches, strict=True):
-            low = (
-                as_typed(getattr(constraint, f"min_{a}")) if getattr(constraint, has_low) else None
-            )
-            high = (
-                as_typed(getattr(constraint, f"max_{a}")) if getattr(constraint, has_high) else None
-            )
-            if low is not None or high is not None:
-                yield AxisLimit(axis, low, high)
-
-
-def _is_in_ground_frame(obj: Object, constraint: bpy.types.Constraint) -> bool:
-    """Return whether a constraint limits coordinates of the ground frame, not of its own one."""
-    return constraint.owner_space == "WORLD" or (
-        constraint.owner_space == "LOCAL" and obj.parent is None
-    )
-
-
 def holder_of(obj: Object) -> str:
     """Return a text that names what overrides an object's transform; "" for nothing."""
     if obj.library is not None:
@@ -121,11 +49,7 @@ def holders(obj: Object) -> Iterator[str]:
         if path.startswith(PLACING):
             yield f"an animation or a driver of its {path}"
     for constraint in obj.constraints:
-        if (
-            constraint.enabled
-            and constraint.influence > 0.0
-            and not constraint.type.startswith(BOUNDING)
-        ):
+        if constraint.enabled and constraint.influence > 0.0:
             yield f"a constraint that holds it, {constraint.name!r}"
 
 

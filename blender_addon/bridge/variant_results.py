@@ -6,19 +6,17 @@ import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from bpy.types import Depsgraph, Scene
 
 from ..engine import advice, jobs, pe
 from ..view_settings import HEIGHTS_M
 from .fingerprint import Fingerprint
-from .outcome import store_outcome
+from .result import Front, FrontRow, score_from_dict, scored_data, store_outcome
 from .scene_diagnostics import check_placeable, scene_advice
 from .sensor_records import SensorRecord, records_of, records_of_scene, rig_of
-from .stored import FrontRow, StoredFront, store
 from .variants import Variant, find_or_add_variant, mark_active, study_of_variant
-from .versions import score_from_dict, scored_data
 
 BEFORE = "Before choosing"
 MAX_NAME_LENGTH = 60
@@ -105,7 +103,7 @@ def copy_scene_score(scene: Scene, variant: Variant, now: Fingerprint) -> None:
 
 def copy_score(source: Variant, to: Variant) -> None:
     """Copy the score of one variant to another."""
-    to.figures_json, to.figures_of = source.figures_json, source.figures_of
+    to.figures_json = source.figures_json
     if source.has_result:
         _write_figures(to, json.loads(source.score_json))
         to.signature, to.stale = source.signature, source.stale
@@ -117,7 +115,7 @@ def _write_figures(variant: Variant, figures: dict) -> None:
 
 
 def score_of(variant: Variant) -> pe.Score:
-    """Return a variant's stored score without the scores of its sensors."""
+    """Return a variant's stored score."""
     return score_from_dict(json.loads(variant.score_json))
 
 
@@ -163,8 +161,8 @@ def store_front(scene: Scene, trade_off: jobs.TradeOff, surroundings: str) -> No
         figures = ", ".join(f"{n} {v:.4g}" for n, v in design.figures.items())
         rows.append(FrontRow(f"{design.name}{met}", variant.key, figures.replace("_", " ")))
     note = f"; {trade_off.requirements_note}" if trade_off.requirements_note else ""
-    front = StoredFront(tuple(rows), f"{trade_off.told}{note}", trade_off.hardware_note)
-    store(settings, "front_shown", front)
+    front = Front(tuple(rows), f"{trade_off.told}{note}", trade_off.hardware_note)
+    settings.front_json = front.to_json()
     mark_active(scene, before)
 
 
@@ -210,14 +208,13 @@ def figures_signature(scene: Scene, now: Fingerprint) -> str:
 
 def write_figures(variant: Variant, figures: advice.KeyFigures, signature: str) -> None:
     """Store key figures with a variant."""
-    variant.figures_json, variant.figures_of = json.dumps(figures.to_dict()), signature
+    variant.figures_json = json.dumps({"of": signature, "figures": figures.to_dict()})
 
 
 def figures_of(variant: Variant, signature: str) -> advice.KeyFigures | None:
     """Return a variant's key figures; None if none with this signature are stored."""
-    if not variant.figures_json or variant.figures_of != signature:
-        return None
-    return advice.KeyFigures.from_dict(json.loads(variant.figures_json))
+    kept = json.loads(variant.figures_json or "{}")
+    return advice.KeyFigures.from_dict(kept["figures"]) if kept.get("of") == signature else None
 
 
 def restore_result(
@@ -233,14 +230,17 @@ def restore_result(
     if not variant.has_result or variant.signature != now.surroundings:
         return None
     study = study_of_variant(scene, variant, depsgraph)
-    figures = json.loads(variant.score_json)
-    per_sensor = {name: pe.SensorScore(**row) for name, row in figures["per_sensor"].items()}
-    score = replace(score_from_dict(figures), per_sensor=per_sensor)
-    if set(score.per_sensor) != {sensor.name for sensor in study.rig}:
-        return None  # an object has another name than the sensor that was scored
-    warnings = scene_advice(scene)
-    known = figures.get("figures")
-    beside = None if known is None else (advice.KeyFigures.from_dict(known),) * 2
-    outcome = jobs.Outcome("score", study, study, score, score, warnings=warnings, figures=beside)
-    store_outcome(scene, outcome, now.text)
+    outcome = stored_outcome(scene, study, json.loads(variant.score_json))
+    if outcome is not None:
+        store_outcome(scene, outcome, now.text)
     return outcome
+
+
+def stored_outcome(scene: Scene, study: pe.Study, figures: dict[str, Any]) -> jobs.Outcome | None:
+    """Return the outcome of a stored score; None where it is of sensors of other names."""
+    score = score_from_dict(figures)
+    if set(score.per_sensor) != {sensor.name for sensor in study.rig}:
+        return None
+    known, warnings = figures.get("figures"), scene_advice(scene)
+    beside = None if known is None else (advice.KeyFigures.from_dict(known),) * 2
+    return jobs.Outcome("score", study, study, score, score, warnings=warnings, figures=beside)

@@ -17,8 +17,6 @@ import bpy
 from ..engine import app, page, pe
 from .open_file import flush, take_over_process
 from .scene_verbs import (
-    OBJECTS,
-    add_objects_options,
     check_scene_requirements,
     compare_variants,
     drive_by_scene,
@@ -27,7 +25,6 @@ from .scene_verbs import (
     list_variants,
     review_scene,
     run_job,
-    sweep_scene,
 )
 
 __all__ = ["flush", "in_blender", "main", "register", "take_over_process", "unregister"]
@@ -87,11 +84,9 @@ def parser(prog: str) -> argparse.ArgumentParser:
     app.add_page_option(optimize)
     about = "write the scene as a study with its mesh, or its rig for another program"
     export = verbs.add_parser("export", help=about)
-    app.add_export_options(export, also_study=True, more=[OBJECTS])
+    app.add_export_options(export, also_study=True)
     add_variant_option(export)
     export.set_defaults(function=export_study)
-    about = "write a study of the scene, with its own cameras and empties as the sensors"
-    add_objects_options(verbs.add_parser("import", help=about))
     explain = verbs.add_parser("explain", help="the score in words, or one place of it")
     app.add_explain_options(explain)
     add_variant_option(explain)
@@ -119,10 +114,6 @@ def parser(prog: str) -> argparse.ArgumentParser:
     page.add_review_options(review)
     app.add_score_options(review)
     review.set_defaults(function=review_scene)
-    sweep = verbs.add_parser("sweep", help="run the scene, or variants, with many changes")
-    sweep.add_argument("variants", nargs="*", metavar="NAME", help="variants (default: the scene)")
-    app.add_sweep_options(sweep)
-    sweep.set_defaults(function=sweep_scene)
     app.add_sensors_verb(verbs)
     app.add_rigs_verb(verbs)
     return top

@@ -10,60 +10,16 @@ from pathlib import Path
 import bpy
 
 from .. import bridge, result_staleness
-from ..engine import app, catalog, exchange, jobs, page, pe, studies, text
+from ..engine import app, jobs, page, pe, studies
 from .open_file import (
     OPTIMIZED,
     from_file,
     opened_scene,
     opened_study,
     quiet_blender,
-    save_copy,
     write_front,
     write_optimized,
 )
-
-OBJECTS, LIDAR = "blender", "lidar"
-
-
-def add_objects_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of ``import`` to a parser."""
-    parser.add_argument("-o", "--output", required=True, metavar="STUDY", help="study to write")
-    about = "an object's model, for those that say none; any number"
-    parser.add_argument("--model", action="append", default=[], metavar="NAME=MODEL", help=about)
-    parser.add_argument("--replace", action="store_true", help="replace a study that is there")
-    parser.set_defaults(function=import_objects)
-
-
-def import_objects(args: argparse.Namespace) -> app.Answer:
-    """Write a study of the scene's vehicle, with its cameras and empties as the sensors."""
-    scene, output = bpy.context.scene, Path(args.output)
-    text.require_new(output, replace=args.replace)
-    with from_file():
-        models = app.chosen_models(args.model)
-        for model in models.values():
-            catalog.load(model)
-        stand_in = exchange.STAND_INS[LIDAR]
-        found, lines = bridge.sensors_of_objects(scene, scene.objects, models, stand_in)
-        rig, reference = pe.Rig(found), bridge.reference_of(scene.perception_entropy)
-        if scene.perception_entropy.vehicle is None:
-            study = pe.Study(rig, reference=reference)
-        else:
-            study = bridge.study_of_rig(scene, bpy.context.evaluated_depsgraph_get(), rig)
-    jobs.export_study(study, output, replace_study=args.replace)
-    for line in lines:
-        app.tell(line)
-    return f"wrote {output}: {len(found)} sensor{'s' if len(found) > 1 else ''}", app.DONE
-
-
-def export_objects(study: pe.Study, args: argparse.Namespace) -> app.Answer:
-    """Save the scene to another file, with a camera or an empty for each sensor."""
-    path = Path(args.output)
-    text.require_new(path, replace=args.replace, inputs=[Path(bpy.data.filepath)])
-    _, lines = bridge.put_objects(bpy.context.scene, study.rig)
-    save_copy(path)
-    for line in lines:
-        app.tell(line)
-    return f"wrote {path}", app.DONE
 
 
 def run_job(args: argparse.Namespace) -> app.Answer:
@@ -116,8 +72,6 @@ def choose_sensors(study: pe.Study, args: argparse.Namespace) -> app.Answer:
 def export_study(args: argparse.Namespace) -> app.Answer:
     """Write the scene as a study file, with the vehicle's mesh; or for another program."""
     study = opened_study(args.variant)
-    if args.to == OBJECTS:
-        return export_objects(study, args)
     if args.to is not None or Path(args.output).suffix in app.SUFFIXES:
         return app.export(study, args)
     path = jobs.prepare_folder(args.output) / studies.STUDY
@@ -173,21 +127,6 @@ def studies_of(scene: bpy.types.Scene, names: Sequence[str]) -> dict[str, pe.Stu
     with from_file():
         rows = {name: bridge.variant_named(scene, name) for name in names}
         return {n: bridge.study_of_variant(scene, row, depsgraph) for n, row in rows.items()}
-
-
-STUDIES = "studies"
-"""The folder, in that of a sweep, for the studies it was made of."""
-
-
-def sweep_scene(args: argparse.Namespace) -> app.Answer:
-    """Write the studies to the sweep's folder, and sweep them as the command ``pe`` would."""
-    by_name = _chosen_studies(args.variants)
-    folder = jobs.prepare_folder(Path(args.output) / STUDIES)
-    files = {}
-    for number, (name, study) in enumerate(by_name.items()):
-        files[name] = folder / f"{number}.toml"
-        jobs.export_study(study, files[name])
-    return app.sweep(files, args)
 
 
 def _chosen_studies(variants: list[str]) -> dict[str, pe.Study]:

@@ -1,4 +1,4 @@
-"""Key figures below a live score: blind ground, reach, expected AP, and a known rig's score.
+"""Key figures below a live score: blind ground, reach and expected AP.
 
 They are requested once the scene is idle. Figures of a rig are computed once.
 """
@@ -6,25 +6,15 @@ They are requested once the scene is idle. Figures of a rig are computed once.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator
-from dataclasses import replace
 from functools import partial
 
 import bpy
 
 from .. import analysis_calls, bridge, engine_process, signals
-from ..choices import NO_ANCHOR
-from ..engine import advice, catalog, pe, text
+from ..engine import advice, pe, text
 from ..engine_calls import Problem, ScoreRequest, rig_key
-from .readout_text import ReadoutLine, figure_lines, known_rig_line
-from .state import (
-    Baseline,
-    FigureRequest,
-    KnownRigScore,
-    LiveScore,
-    ShownFigures,
-    live_state,
-    states,
-)
+from .readout_text import ReadoutLine, figure_lines
+from .state import Baseline, FigureRequest, LiveScore, ShownFigures, live_state, states
 
 figure_cache: text.RecentCache[advice.KeyFigures] = text.RecentCache(24)
 """By problem, rule and rig: those of the last moves, and what they are compared with."""
@@ -46,7 +36,6 @@ def request(scene: bpy.types.Scene, score: ScoreRequest, baseline: Baseline | No
         deliver = partial(_keep, problem, rule, missing)
         topic = f"live figures of {name}"
         engine_process.ask(topic, analysis_calls.key_figures, given, deliver, _failed)
-    _request_known_rig(name, problem, scene.perception_entropy.live.anchor)
 
 
 def request_if_rule_changed(scene: bpy.types.Scene) -> None:
@@ -77,19 +66,16 @@ def figures_of(scene_name: str, score: LiveScore, exact: bool) -> ShownFigures |
 def lines_below(
     scene_name: str, score: LiveScore, exact: bool
 ) -> Iterator[tuple[ReadoutLine, bool]]:
-    """Yield lines of key figures and of a known rig, and whether they are of what is shown."""
-    figures, known_rig = figures_of(scene_name, score, exact), live_state(scene_name).known_rig
+    """Yield lines of key figures, and whether they are of what is shown."""
+    figures = figures_of(scene_name, score, exact)
     for line in () if figures is None else figure_lines(figures):
         if line:
             yield line, figures is not None and figures.current
-    if known_rig is not None and (line := known_rig_line(known_rig, score.summary)):
-        yield line, False
 
 
 def cancel(scene_name: str) -> None:
     """Drop the requests of a scene."""
-    for topic in ("figures", "anchor"):
-        engine_process.drop(f"live {topic} of {scene_name}")
+    engine_process.drop(f"live figures of {scene_name}")
 
 
 def clear() -> None:
@@ -109,26 +95,6 @@ def _keep(
     for rig, found in zip(rigs, figures, strict=True):
         figure_cache.put(_key(problem, rule, rig), found)
     signals.live_score_changed.emit()
-
-
-def _request_known_rig(name: str, problem: Problem, chosen: str) -> None:
-    """Have the chosen rig scored on this vehicle, once for each problem."""
-    state, key = live_state(name), (problem.key, chosen)
-    if chosen == NO_ANCHOR:
-        state.known_rig = None
-    elif state.known_rig is None or state.known_rig.key != key:
-        rig = catalog.known_rig(chosen)
-        state.known_rig = KnownRigScore(key, rig.title)
-        deliver, topic = partial(_deliver_known_rig, name, key), f"live anchor of {name}"
-        given = problem, rig
-        engine_process.ask(topic, analysis_calls.known_rig_score, given, deliver, _failed)
-
-
-def _deliver_known_rig(name: str, key: Hashable, summary: pe.SummaryScore) -> None:
-    state = live_state(name)
-    if state.known_rig is not None and state.known_rig.key == key:
-        state.known_rig = replace(state.known_rig, summary=summary)
-        signals.live_score_changed.emit()
 
 
 def _failed(error: Exception) -> None:

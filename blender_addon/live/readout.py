@@ -17,7 +17,6 @@ from ..language import shown as in_language
 from ..viewport import FAINT, INK, PLATE, SMALL, Rgba
 from . import background_figures
 from .readout_text import BETTER, WORSE, ReadoutLine, TextPiece, readout_of
-from .sense_icons import SENSES
 from .state import LiveScore, ShownScore, live_state, shown_score
 
 LARGE = 17.0
@@ -28,7 +27,7 @@ ZONE_ROWS = 2
 WORD_GAP = 0.3
 MIN_WIDTH, MAX_COLUMNS = 236.0, 64
 ALERT: Rgba = (1.0, 0.84, 0.35, 1.0)
-SENSE_COLORS = {sense: (*color, 1.0) for sense, color in SENSES.items()}
+SENSE_COLORS: dict[int, Rgba] = {BETTER: (0.42, 0.75, 1.0, 1.0), WORSE: (1.0, 0.62, 0.25, 1.0)}
 ARROWS = {BETTER: "\N{DOWNWARDS ARROW}", WORSE: "\N{UPWARDS ARROW}"}
 PLATE_NAME = "live"
 

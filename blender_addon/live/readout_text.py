@@ -7,19 +7,20 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from ..engine import advice, pe, wording
-from .state import KnownRigScore, LiveScore, ShownFigures, ShownScore
+from .state import LiveScore, ShownFigures, ShownScore
 
 MIN_CHANGE = 0.0005
 """Entropies nearer to each other than this are the same in the text [nats]."""
 MIN_ZONE_CHANGE = 0.005
 """A zone is named from this change on [nats]."""
 BETTER, SAME, WORSE = -1, 0, 1
+SENSE_ICONS = {BETTER: "COLORSET_04_VEC", SAME: "NONE", WORSE: "COLORSET_02_VEC"}
+"""Blender's own: blue is better, orange worse, told apart by colour-blind eyes, too."""
 MAX_LABEL_LETTERS = 32
 """Letters of a variant's name that the read-out has room for."""
 MINUS = "\N{MINUS SIGN}"
 BEFORE_SEARCH = "before the search"
 PENDING = "AP in traffic, blind ground, reach: being computed"
-BEFORE = "Before this move: "
 NO_FIGURE, ARROW = "\N{EN DASH}", " \N{RIGHTWARDS ARROW} "
 
 
@@ -37,11 +38,6 @@ ReadoutLine = tuple[TextPiece, ...]
 def text_of(line: ReadoutLine) -> str:
     """Return a line as plain text."""
     return " ".join(piece.text for piece in line)
-
-
-def sense_of(line: ReadoutLine) -> int:
-    """Return whether a line tells a loss, or else a gain."""
-    return max((piece.sense for piece in line if piece.sense), default=SAME)
 
 
 class ReadoutText(NamedTuple):
@@ -128,18 +124,13 @@ def zone_lines(now: pe.SummaryScore, before: pe.SummaryScore | None) -> list[Rea
 
 
 def figure_lines(figures: ShownFigures) -> tuple[ReadoutLine, ...]:
-    """Return lines: AP in traffic; blind sectors; blind ground; reach.
-
-    Earlier figures are marked as such; lines may be empty.
-    """
-    now, before = figures.now, figures.before
-    if now is None:
-        return (TextPiece(PENDING),), ()
-    makers = traffic_line, sector_line, blind_line, reach_line
-    lines = tuple(make(now, before) for make in makers)
-    if figures.current:
-        return lines
-    return tuple((TextPiece(f"{BEFORE}{text_of(line)}"),) if line else () for line in lines)
+    """Return lines of the figures to show, with those that they are compared with."""
+    if figures.now is None:
+        return ((TextPiece(PENDING),),)
+    found = [each for each in (figures.before, figures.now) if each is not None]
+    return tuple(
+        (TextPiece(n), TextPiece(text, sense)) for n, text, sense in rows_of_figures(found)
+    )
 
 
 class FigureRow(NamedTuple):
@@ -151,7 +142,7 @@ class FigureRow(NamedTuple):
 
 
 def rows_of_figures(found: Sequence[advice.KeyFigures]) -> list[FigureRow]:
-    """Return rows for the key figures of a rig, or of start and result of a search.
+    """Return rows for the key figures of a rig, or of two rigs: before and now.
 
     The blind sector is the widest for any of the heights.
     """
@@ -165,11 +156,16 @@ def rows_of_figures(found: Sequence[advice.KeyFigures]) -> list[FigureRow]:
     tall = f" ({widest[0].height:g} m tall)" if len(found) == 1 and widest[0].width else ""
     areas = [f"{math.ceil(10.0 * figures.blind_m2) / 10.0:.1f}" for figures in found]
     blind = [figures.blind_m2 for figures in found]
+    reached = [figures for figures in found if figures.reach_m is not None]
+    reaches = [f.reach_m for f in reached if f.reach_m is not None]
+    metres = [f"{'≥ ' if f.at_least else ''}{f.reach_m:.0f} m" for f in reached]
+    whose = f" ({reached[-1].class_name})" if reached else ""
     return [
         FigureRow("AP in Traffic", _from_to(aps, error), _sense([-t.ap for t in traffic], 5e-4)),
         FigureRow(", ".join(rings or ("near", "mid", "far")).title(), by_ring or NO_FIGURE),
         FigureRow("Blind Sector", _from_to(widths, tall), _sense([s.width for s in widest], 1.0)),
         FigureRow("Blind Ground", _from_to(areas, " m²"), _sense(blind, 0.05)),
+        FigureRow("Reach Ahead", _from_to(metres, whose), _sense([-m for m in reaches], 0.5)),
     ]
 
 
@@ -183,47 +179,6 @@ def _sense(values: Sequence[float], least: float) -> int:
     return SAME if abs(by) < least else WORSE if by > 0.0 else BETTER
 
 
-def traffic_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> ReadoutLine:
-    """Return "AP in traffic 0.662 (+0.012)   near 0.90, mid 0.72, far 0.43"; empty without it."""
-    if now.traffic is None:
-        return ()
-    was = None if before is None else before.traffic
-    by = None if was is None else now.traffic.ap - was.ap
-    rings = ", ".join(f"{name} {ap:.2f}" for name, (ap, _) in now.traffic.rings.items())
-    return TextPiece(f"AP in traffic {now.traffic.ap:.3f}"), *change_of(by, 3), TextPiece(rings)
-
-
-def sector_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> ReadoutLine:
-    """Return "Widest blind sector 12.3 deg (−2.0) to what is 0.5 m tall, 1 m: none, ..."."""
-    first, *taller = now.sectors
-    if not any(each.width for each in (*now.sectors, *(before.sectors if before else ()))):
-        return (TextPiece(f"No blind sector for what is {first.height:g} m tall or taller"),)
-    by = None if before is None else first.width - before.sectors[0].width
-    rest = "".join(f", {each.height:g} m: {wording.degrees(each.width)}" for each in taller)
-    return (
-        TextPiece(f"Widest blind sector {wording.degrees(first.width)}"),
-        *change_of(by, 1, lower_is_better=True),
-        TextPiece(f"to what is {first.height:g} m tall{rest}"),
-    )
-
-
-def blind_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> ReadoutLine:
-    """Return "81.2 m² blind to what is 0.5 m tall (−3.1)"."""
-    what = f"blind to what is {now.height:g} m tall" if now.height else "blind to what lies flat"
-    by = None if before is None else now.blind_m2 - before.blind_m2
-    return TextPiece(f"{now.blind_m2:.1f} m² {what}"), *change_of(by, 1, lower_is_better=True)
-
-
-def reach_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> ReadoutLine:
-    """Return "Pedestrian detected to 47 m ahead (+2)"; empty without a class."""
-    if now.class_name is None or now.reach_m is None:
-        return ()
-    by = None if before is None or before.reach_m is None else now.reach_m - before.reach_m
-    sign = "\N{GREATER-THAN OR EQUAL TO} " if now.at_least else ""
-    to = f"to {sign}{now.reach_m:.0f} m ahead" if now.reach_m else "nowhere ahead"
-    return TextPiece(f"{now.class_name.capitalize()} detected {to}"), *change_of(by, 0)
-
-
 def change_of(by: float | None, digits: int, *, lower_is_better: bool = False) -> ReadoutLine:
     """Return "(+1.2)" as a gain or a loss; nothing where the change is 0 in these digits."""
     text = "" if by is None else f"{by:+.{digits}f}"
@@ -231,14 +186,3 @@ def change_of(by: float | None, digits: int, *, lower_is_better: bool = False) -
         return ()
     sense = BETTER if (by < 0.0) == lower_is_better else WORSE
     return (TextPiece(f"({text.replace('-', MINUS)})", sense),)
-
-
-def known_rig_line(known_rig: KnownRigScore, now: pe.SummaryScore) -> ReadoutLine:
-    """Return "nuScenes here: 2.867 nats; this is 0.229 worse"; empty until it is scored."""
-    summary = known_rig.summary
-    if summary is None:
-        return ()
-    change, sense = entropy_change(now.entropy, summary.entropy)
-    word = "alike" if sense == SAME else change
-    here = TextPiece(f"{known_rig.title} here: {summary.entropy:.3f} nats; this is")
-    return here, TextPiece(word, sense)

@@ -1,7 +1,4 @@
-"""Requests live scores: an exact one once the scene is idle, and one of each move before.
-
-A move is scored exactly where that is quick enough: by the last exact score, and the budget of the
-preferences. Otherwise its score is a preview.
+"""Requests live scores: an exact one once the scene is idle, a preview of each move before.
 
 A request is read inside Blender's own update, which costs a fraction of a millisecond, and scored
 by the engine's process at once, while Blender draws; only the latest request waits. The score is
@@ -10,7 +7,6 @@ stored between two redraws: panel and read-out show the same one.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 
 import bpy
@@ -20,12 +16,11 @@ from .. import (
     change_events,
     engine_calls,
     engine_process,
-    preferences,
     sensor_cache,
     signals,
     vehicle_cache,
 )
-from ..choices import BEFORE_MOVE, PINNED
+from ..choices import BEFORE_MOVE
 from ..engine import pe
 from ..engine_calls import Problem, ScoredRig, ScoreRequest, rig_key
 from . import background_figures
@@ -84,8 +79,6 @@ def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, mov
         return
     if moving:
         note_move(state, _moving_operator(), request.rig)
-        exact = state.is_exact_within(preferences.live_budget_s(), request.problem.key)
-        request = replace(request, preview=not exact)
     if state.last_read is not None and state.last_read.prior != request.prior_key:
         state.before_move = None  # entropies under two priors cannot be compared
     counts = change_events.change_count(), vehicle_cache.shared.version
@@ -123,7 +116,7 @@ def read_request(
     targets = bridge.targets_of(settings)
     problem_key = prior_key, vehicle_key, space, model, targets
     problem = Problem(problem_key, prior, vehicle, space, model, targets)
-    return ScoreRequest(problem, rig, moving, (prior_key, space, model, targets), moving)
+    return ScoreRequest(problem, rig, (prior_key, space, model, targets), moving)
 
 
 def take_score(
@@ -133,10 +126,8 @@ def take_score(
     state, problem = live_state(name), request.problem.key
     if baseline is not None and scored.baseline is not None:
         baseline.summary = scored.baseline
-    if not request.preview:
-        state.note_cost(problem, request.rig, scored.seconds)
-    given = request.rig, number, problem, not request.moving
-    state.put(LiveScore(scored.summary, baseline, not request.preview, *given))
+    is_exact = not request.moving
+    state.put(LiveScore(scored.summary, baseline, is_exact, request.rig, number, problem))
     signals.live_score_changed.emit()
 
 
@@ -205,7 +196,7 @@ def unregister() -> None:
     clear()
 
 
-MOVE_LABEL, PINNED_LABEL = "before this move", "pinned sensors"
+MOVE_LABEL = "before this move"
 
 
 def note_move(state: LiveState, operator: int, now: pe.Rig | None) -> None:
@@ -242,7 +233,7 @@ def baseline_of(scene: bpy.types.Scene, request: ScoreRequest) -> Baseline | Non
     chosen = state.chosen
     if chosen is not None and request.moving and chosen[0][:2] == (choice, request.problem.key):
         return chosen[1]
-    rig_and_label = _chosen_rig(scene, state, choice)
+    rig_and_label = _chosen_rig(scene, choice)
     if rig_and_label is None:
         state.chosen = None
         return state.before_move
@@ -253,10 +244,8 @@ def baseline_of(scene: bpy.types.Scene, request: ScoreRequest) -> Baseline | Non
     return chosen[1]
 
 
-def _chosen_rig(scene: bpy.types.Scene, state: LiveState, choice: int) -> tuple[pe.Rig, str] | None:
+def _chosen_rig(scene: bpy.types.Scene, choice: int) -> tuple[pe.Rig, str] | None:
     """Return the rig to compare with and its label; None where the last move decides."""
-    if choice == PINNED:
-        return None if state.pinned is None else (state.pinned, PINNED_LABEL)
     for row in scene.perception_entropy.variants if choice != BEFORE_MOVE else ():
         if row.key == choice:
             try:

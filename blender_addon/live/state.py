@@ -5,7 +5,6 @@ A state is made when its scene is first asked for. It holds no object of Blender
 
 from __future__ import annotations
 
-import math
 from collections.abc import Hashable
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -15,7 +14,7 @@ import bpy
 from .. import bridge
 from ..choices import BEFORE_MOVE
 from ..engine import advice, pe
-from ..engine_calls import ScoreRequest, rig_key
+from ..engine_calls import ScoreRequest
 
 
 @dataclass(slots=True, eq=False)
@@ -45,7 +44,7 @@ class LiveScore:
     """The score of a rig by request `number` of its scene.
 
     `exact`: it is no preview, but that of every front end, to the last bit. `problem` identifies
-    vehicle, prior, space and settings. `idle`: nothing moved when the scene was read.
+    vehicle, prior, space and settings.
     """
 
     summary: pe.SummaryScore
@@ -54,7 +53,6 @@ class LiveScore:
     rig: pe.Rig
     number: int = 0
     problem: Hashable = None
-    idle: bool = True
 
     @property
     def before(self) -> pe.SummaryScore | None:
@@ -91,23 +89,6 @@ class LastRead(NamedTuple):
     problem: Hashable
 
 
-class ExactCost(NamedTuple):
-    """How long the last exact score of a problem took in which a sensor had moved [s]."""
-
-    problem: Hashable
-    rig: Hashable
-    seconds: float
-
-
-@dataclass(frozen=True, slots=True)
-class KnownRigScore:
-    """A known rig on this vehicle, scored as the live score is; `summary` is None until then."""
-
-    key: Hashable
-    title: str
-    summary: pe.SummaryScore | None = None
-
-
 @dataclass(slots=True)
 class LiveState:
     """What is known of the live score of one scene."""
@@ -117,8 +98,6 @@ class LiveState:
     score: LiveScore | None = None
     exact: LiveScore | None = None
     """The latest score, and the latest exact one of the idle scene."""
-    exact_cost: ExactCost | None = None
-    """What decides whether moves are scored exactly."""
     note: str = ""
     """Why there is no newer score, in one line; empty when there is one, or soon will be."""
     requests: int = 0
@@ -127,14 +106,12 @@ class LiveState:
     operator: int = 0
     """Number of the operator that moves sensors with the mouse; 0 when there is none."""
     before_move: Baseline | None = None
-    pinned: pe.Rig | None = None
-    """Sensors to compare with: those before the last move; those kept for this session."""
+    """The sensors before the last move."""
     chosen: tuple[tuple[Hashable, ...], Baseline] | None = None
-    """The pinned sensors or variant that the settings choose, and what it was made from."""
+    """The variant that the settings choose, and what it was made from."""
     figures: FigureRequest | None = None
     shown_figures: advice.KeyFigures | None = None
     """The last request of key figures, and those that were shown last."""
-    known_rig: KnownRigScore | None = None
     prior: tuple[Hashable, pe.Prior] | None = None
     """The prior that was read last, and its key: a file of boxes takes long to read."""
 
@@ -146,30 +123,17 @@ class LiveState:
     def put(self, score: LiveScore) -> None:
         """Store a new score; the note of why there was none goes."""
         self.score, self.note = score, ""
-        if score.exact and score.idle:
+        if score.exact:
             self.exact = score
-
-    def note_cost(self, problem: Hashable, rig: pe.Rig, seconds: float) -> None:
-        """Note how long an exact score took [s]; the first one includes what is made once."""
-        last, key = self.exact_cost, rig_key(rig)
-        if last is None or last.problem != problem:
-            self.exact_cost = ExactCost(problem, key, math.inf)
-        elif last.rig != key:
-            self.exact_cost = ExactCost(problem, key, seconds)
-
-    def is_exact_within(self, budget_s: float, problem: Hashable) -> bool:
-        """Whether a move can be scored exactly in this time, by the last one that was."""
-        cost = self.exact_cost
-        return cost is not None and cost.problem == problem and cost.seconds <= budget_s
 
     def is_current(self, score: LiveScore) -> bool:
         """Whether a score is the exact one of the scene as it is now; otherwise it is a preview."""
         return score.exact and score.number == self.requests
 
     def switch_off(self) -> None:
-        """Drop what the live score found; finished scores and pinned sensors stay."""
-        self.score = self.exact = self.last_read = self.before_move = self.exact_cost = None
-        self.figures = self.shown_figures = self.known_rig = None
+        """Drop what the live score found; finished scores stay."""
+        self.score = self.exact = self.last_read = self.before_move = None
+        self.figures = self.shown_figures = None
         self.note = ""
 
 
@@ -221,10 +185,11 @@ def shown_score(scene: bpy.types.Scene) -> ShownScore | None:
     is_stored = settings.has_result and not (settings.result_stale or other)
     exact = score is None or state.is_current(score)
     # While something moves it is not known yet whether a result is stale.
-    if is_stored and exact and (score is None or score.idle):
-        stored = settings.result_entropy, settings.result_coverage, settings.result_stderr
-        is_search = settings.result_kind == "optimize" and settings.live.against == BEFORE_MOVE
-        before = settings.result_before if is_search else None
+    if is_stored and exact:
+        result = settings.result
+        stored = result.entropy, result.coverage, result.stderr
+        is_search = result.kind == "optimize" and settings.live.against == BEFORE_MOVE
+        before = result.entropy_before if is_search else None
         return ShownScore(*stored, exact=True, stored=True, before=before)
     if score is None:
         return None

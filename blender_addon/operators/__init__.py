@@ -3,24 +3,6 @@
 Panels take from here the operators, and what menus list.
 """
 
-from ..bridge import after_of, holder_of, shown_state
-from ..diagnostics import warnings_outdated
-from ..live import (
-    BETTER,
-    SAME,
-    WORSE,
-    ShownScore,
-    figure_rows,
-    live_lines,
-    nats_text,
-    sense_icon,
-    sense_of,
-    shown_score,
-    text_of,
-)
-from ..preferences import is_updated
-from ..sensor_cache import sensors as listed_sensors
-from ..sensor_kinds import kind_label
 from . import (
     compare_variants,
     conditions,
@@ -36,25 +18,20 @@ from . import (
     shortcuts,
     upright,
     variants,
-    whats_new,
 )
-from .add_sensor import Offer, brief, known_makers, makers, models, offers
+from .add_sensor import Offer, models, offers
 from .declared import CLASSES
 from .fix_warnings import FIX_LABELS
 from .imports import known_rigs
-from .jobs import costs_nothing
-from .panel_rows import own_fields, reference_label
+from .panel_rows import reference_label
 from .query_location import answer
-from .requirements import ShownSource, ShownVerdict, shown_verdicts, source_of
+from .requirements import ShownVerdict, shown_verdicts
 
-__all__ = ["BETTER", "CLASSES", "FIX_LABELS", "SAME", "WORSE", "Offer", "ShownScore", "ShownSource"]
-__all__ += ["ShownVerdict", "after_of", "answer", "brief", "compare_variants", "conditions"]
-__all__ += ["costs_nothing", "edit_sensors", "exports", "figure_rows", "first_steps", "holder_of"]
-__all__ += ["is_updated", "kind_label", "known_makers", "known_rigs", "listed_sensors"]
-__all__ += ["live_lines", "look_through", "makers", "models", "mounts", "nats_text", "offers"]
-__all__ += ["own_fields", "place_sensor", "reference_label", "register", "running_job"]
-__all__ += ["sense_icon", "sense_of", "shown_score", "shown_state", "shown_verdicts", "source_of"]
-__all__ += ["text_of", "unregister", "upright", "variants", "warnings_outdated", "whats_new"]
+__all__ = ["CLASSES", "FIX_LABELS", "Offer", "ShownVerdict", "answer"]
+__all__ += ["compare_variants", "conditions", "edit_sensors", "exports", "first_steps"]
+__all__ += ["known_rigs", "look_through", "models", "mounts", "offers"]
+__all__ += ["place_sensor", "reference_label", "register", "running_job"]
+__all__ += ["shown_verdicts", "unregister", "upright", "variants"]
 
 
 def register() -> None:

@@ -11,13 +11,13 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from mathutils import Vector
 
-from .. import bridge, preferences
+from .. import bridge
 from ..engine import catalog, kinds, pe
 from ..housing import measured_housing
 from ..properties import DEFAULT_MODEL, model_suggestions
 from ..sensor_kinds import Mount, mount_of
 from .declared import INTERNAL, OperatorResult, operator
-from .surface_pose import is_part, nearest_spot, parts_of
+from .surface_pose import is_part
 
 ROOF_DEPTH_M = 0.1
 """Points this near to the vehicle's highest point belong to the roof."""
@@ -27,20 +27,14 @@ DOWN = (0.0, 0.0, -1.0)
 
 
 def default_location(context: bpy.types.Context, mount: Mount) -> Vector:
-    """Return the 3D cursor; while that is at the origin, a location on the vehicle's roof.
-
-    If the cursor is on the vehicle's surface or near it, the sensor's origin is moved away from
-    the surface by the sensor's stand-off.
-    """
+    """Return the 3D cursor; while that is at the origin, a location on the vehicle's roof."""
     cursor = context.scene.cursor.location
     collection = context.scene.perception_entropy.vehicle
-    if collection is None:
-        return cursor.copy() if cursor.length > 0.0 else Vector((0.0, 0.0, mount.height_m))
-    depsgraph = context.evaluated_depsgraph_get()
     if cursor.length > 0.0:
-        parts = parts_of(collection, depsgraph) or set()
-        spot = nearest_spot(depsgraph, parts, cursor, mount.stand_off_m)
-        return cursor.copy() if spot is None else spot.point + spot.normal * mount.stand_off_m
+        return cursor.copy()
+    if collection is None:
+        return Vector((0.0, 0.0, mount.height_m))
+    depsgraph = context.evaluated_depsgraph_get()
     return Vector(roof_location(bridge.vehicle_from_collection(collection, depsgraph), mount))
 
 
@@ -73,29 +67,14 @@ def offers() -> Iterator[Offer]:
     for kind in kinds.KINDS.values():
         models = catalog.names(kind.name)
         if models:
-            usual = preferences.preferred_model(kind.name) or mount_of(kind.name).usual
+            usual = mount_of(kind.name).usual
             yield Offer(kind.name, kind.label, usual or models[0])
 
 
-def makers(kind: str | None) -> list[str]:
-    """Return the makers of sensors of one kind or all kinds, in the order of the catalogue."""
-    return list(dict.fromkeys(entry.maker for entry in _entries(kind)))
-
-
-def known_makers() -> list[str]:
-    """Return the makers that ship, and the label of sensors that programs and users add."""
-    return list(dict.fromkeys((*makers(None), catalog.OTHER_LABELS[catalog.OWN])))
-
-
-def models(kind: str | None, maker: str | None = None) -> list[str]:
-    """Return the names of sensors of a kind, of one maker or of all."""
-    return [entry.name for entry in _entries(kind) if maker in (None, entry.maker)]
-
-
-def brief(model: str) -> str:
-    """Return a sensor of the catalogue in a few words: channels, field of view, range."""
-    loaded = catalog.load(model)
-    return kinds.kind_of(loaded).summary(loaded)
+def models(kind: str | None) -> list[str]:
+    """Return the names of sensors of a kind, or of all."""
+    found = catalog.entries().values()
+    return [e.name for e in found if e.kind in kinds.KINDS and kind in (None, e.kind)]
 
 
 def tooltip_of(model: str) -> str:
@@ -106,12 +85,6 @@ def tooltip_of(model: str) -> str:
     loaded = catalog.load(model)
     lines = [" ".join(line.split()) for line in kinds.kind_of(loaded).data_sheet(loaded)]
     return "\n".join([model, *lines])
-
-
-def _entries(kind: str | None) -> list[catalog.Entry]:
-    """Return the catalogue's entries of a kind, or of all kinds that the engine has."""
-    found = catalog.entries().values()
-    return [each for each in found if each.kind in kinds.KINDS and kind in (None, each.kind)]
 
 
 def with_data_sheet(about: str, chosen: bpy.types.OperatorProperties) -> str:

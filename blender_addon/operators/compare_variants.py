@@ -11,7 +11,7 @@ import bpy
 from .. import bridge, result_staleness
 from ..engine import advice, pe
 from ..language import draw_label, shown
-from ..live import SAME, sense_icon
+from ..live import SAME, SENSE_ICONS
 from ..own_jobs import ComparedVariant, CompareJob, PendingVariant
 from .declared import INTERNAL, OperatorResult, Told, operator
 from .jobs import JobRow, Task
@@ -164,7 +164,7 @@ def draw_column(column: bpy.types.UILayout, cells: list[TableCell], alignment: s
         row = column.row(align=True)
         row.alignment = alignment
         if cell.change:
-            row.label(text=cell.change, icon_value=sense_icon(cell.sense), translate=False)
+            row.label(text=cell.change, icon=SENSE_ICONS[cell.sense], translate=False)
         draw_label(row, cell.text, "SOLO_ON" if cell.best else other)
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 import bpy
 from bpy.props import IntProperty
 
-from .. import language, preferences, signals
+from .. import language, signals
 from ..choices import free_name
 from ..engine import pe, text
 from ..translation_context import DEFERRED
@@ -280,12 +280,6 @@ def chosen_sensor(context: bpy.types.Context, name: str) -> bpy.types.Object:
     if obj is None or not obj.perception_entropy.is_sensor:
         raise pe.InputError("scene", "active object", "a sensor", obj.name if obj else "none")
     return obj
-
-
-def begin_in_results_folder(operator: Any) -> None:
-    """Have the file dialog of an export begin in the folder of results of the preferences."""
-    named = f"{Path(bpy.data.filepath).stem or 'untitled'}{operator.filename_ext}"
-    operator.filepath = preferences.in_results_folder(operator.filepath, named)
 
 
 def chosen_file(filepath: str) -> Path:

@@ -114,16 +114,6 @@ def mirrored_copy(context: bpy.types.Context, obj: bpy.types.Object) -> bpy.type
     return made
 
 
-@operator("Apply Scale", mode="Sensors are scaled in Object Mode", name=NAME)
-def apply_scale(context: bpy.types.Context, name: str) -> None:
-    """Remove scale and mirroring from this sensor; its position and direction do not change"""
-    obj = context.scene.objects.get(name) if name else context.active_object
-    if obj is None or not obj.perception_entropy.is_sensor:
-        raise Refused("No sensor is selected")
-    obj.matrix_world = rigid(obj.matrix_world)
-    context.view_layer.update()
-
-
 def rigid(matrix: Matrix) -> Matrix:
     """Return a pose (4, 4) without scale: same position and x axis, z as close as possible."""
     ahead = matrix.col[0].to_3d().normalized()

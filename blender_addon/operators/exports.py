@@ -1,13 +1,11 @@
 """Exports: the study, the scene and the rig for other programs, the review picture and page.
 
 What takes long is a job, whose files are written as one set at the end. A file
-dialog's operator ends with it: the job then runs in an operator of its own. The names of the files
-written last are kept here for the panel: they are not part of the .blend file.
+dialog's operator ends with it: the job then runs in an operator of its own.
 """
 
 from __future__ import annotations
 
-import contextlib
 import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import fields
@@ -18,25 +16,13 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from .. import bridge, own_jobs, viewport
-from ..engine import app, exchange, jobs, outputs, page, pe
+from .. import bridge, own_jobs
+from ..engine import app, exchange, jobs, outputs, page
 from ..own_jobs import ExportJob, WrittenFiles
 from . import running_job
-from .declared import (
-    INTERNAL,
-    Answer,
-    OperatorResult,
-    Refused,
-    Stopped,
-    Told,
-    begin_in_results_folder,
-    chosen_file,
-    operator,
-)
+from .declared import INTERNAL, Answer, OperatorResult, Stopped, Told, chosen_file, operator
 from .jobs import JobRow, Task
 
-last: WrittenFiles | None = None
-"""The files written last in this session."""
 _waiting: list[ExportJob] = []
 """The job of a file dialog, until its own operator begins."""
 
@@ -72,31 +58,9 @@ def run(job: ExportJob, asked_in_window: bool) -> Answer:
 
 
 def told_of(written: WrittenFiles) -> Told:
-    """Store the names of written files for the panel; return the report of them."""
-    set_last(written)
+    """Return the report of written files."""
     paths = written.paths
     return Told(f"Wrote {paths[0]}" if len(paths) == 1 else written.text, written.lines)
-
-
-def set_last(written: WrittenFiles | None) -> None:
-    """Store the names of the files written last, and redraw the panels."""
-    global last
-    last = written
-    viewport.redraw_editors()
-
-
-@operator("Open Folder", unless=lambda _context: None if last else "", options=INTERNAL)
-def open_folder(_context: bpy.types.Context) -> OperatorResult:
-    """Open the folder of the last export"""
-    if last is None or not last.folder.is_dir():
-        raise Refused(f"The folder {last.folder if last else ''} was removed")
-    return bpy.ops.wm.path_open(filepath=str(last.folder))
-
-
-@operator("Dismiss", options=INTERNAL)
-def dismiss_written(_context: bpy.types.Context) -> None:
-    """Hide the list of files written last"""
-    set_last(None)
 
 
 def _unless_running(_context: bpy.types.Context) -> str | None:
@@ -115,7 +79,6 @@ def dialog(suffix: str, name: Callable[[Any], str] | None = None) -> dict[str, A
         self.asked_in_window = not bpy.app.background
         if name is not None:
             self.filepath = name(self)
-        begin_in_results_folder(self)
         return ExportHelper.invoke(self, context, event)
 
     found = {"bases": (ExportHelper,), "invoke": invoke, "filename_ext": suffix}
@@ -236,39 +199,19 @@ FORMAT_ITEMS = tuple(
 )
 
 
-def _first_name(self: Any) -> str:
-    self.filepath = self.format_named = ""
-    self.check(None)
-    return str(self.filepath)
-
-
-def _follow_name(self: Any, _context: object) -> bool:
-    """While the dialog is open: a typed name chooses the format, a chosen format the suffix."""
-    before = self.format, self.filepath
-    if self.format != self.format_named:
-        files = exchange.rig_format(self.format).files
-        usual = files[0] if len(files) == 1 else f"{self.format}_rig"
-        path = Path(self.filepath)
-        known = len(files) == 1 and path.suffix and self.filepath
-        self.filepath = str(path.with_suffix(Path(usual).suffix) if known else usual)
-    else:
-        with contextlib.suppress(pe.InputError):
-            self.format = exchange.format_of_file(Path(self.filepath), exchange.FILES)
-    self.format_named = self.format
-    return (self.format, self.filepath) != before
+def rig_file(name: str) -> str:
+    """Return the usual name of a format's file, or of its folder."""
+    files = exchange.rig_format(name).files
+    return files[0] if len(files) == 1 else f"{name}_rig"
 
 
 @operator(
     "Export Rig",
-    **dialog("", _first_name),
-    check=_follow_name,
+    **dialog("", lambda self: rig_file(self.format)),
     format=EnumProperty(
         items=FORMAT_ITEMS,
         name="Format",
-        description="The program and format to write for; the suffix of the file's name follows it",
-    ),
-    format_named=StringProperty(
-        description="The format that the file's name had last", options={"HIDDEN", "SKIP_SAVE"}
+        description="The program and format to write for; by default that of the file's name",
     ),
     replace=REPLACE,
 )
@@ -278,6 +221,8 @@ def export_rig(
     """Write the sensors for another program: URDF, ROS 2, Autoware, nuScenes, CARLA and others"""
     path = chosen_file(filepath)
     told = format if properties.is_property_set("format") or not path.suffix else None
+    if told is not None and len(exchange.rig_format(told).files) == 1:
+        path = path.with_suffix(Path(rig_file(told)).suffix)
     name = exchange.format_of_file(path, exchange.FILES, told)
     row = exchange.rig_format(name)
     study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
@@ -289,7 +234,5 @@ def export_rig(
 
 
 def unregister() -> None:
-    """Drop the list of written files, and the waiting job."""
-    global last
-    last = None
+    """Drop the waiting job."""
     _waiting.clear()

@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import bpy
-from bpy.props import EnumProperty
 
 from .. import bridge, library
 from ..engine import pe
-from ..language import draw_label, shown
-from .declared import Failed, OperatorResult, Refused, operator
+from ..language import shown
+from .declared import Failed, OperatorResult, operator
 from .surface_pose import is_part
 
 VEHICLE = "Vehicle"
@@ -74,50 +73,19 @@ def new_vehicle(scene: bpy.types.Scene, parts: Sequence[bpy.types.Object]) -> bp
     return vehicle
 
 
-def _ask_about_changes(self: Any, context: bpy.types.Context, _event: object) -> OperatorResult:
-    """Ask what to do with changes that are not saved, where there are any."""
+def _ask_about_changes(self: Any, context: bpy.types.Context, event: Any) -> OperatorResult:
+    """Ask where the open file has changes that are not saved."""
     if not bpy.data.is_dirty:
         return self.execute(context)
-    self.changes = "SAVE"
-    title = shown("Save Changes Before Opening?")
-    return context.window_manager.invoke_props_dialog(
-        self, title=title, confirm_text=shown("Open"), translate=False
-    )
+    message = shown("The open file has changes that are not saved; they are lost")
+    return context.window_manager.invoke_confirm(self, event, message=message)
 
 
-def _draw_changes(self: Any, _context: bpy.types.Context) -> None:
-    draw_label(self.layout, "The open file has changes that are not saved", "INFO")
-    self.layout.row().prop(self, "changes", expand=True)
-
-
-@operator(
-    "Open an Example",
-    options=frozenset(),
-    invoke=_ask_about_changes,
-    draw=_draw_changes,
-    changes=EnumProperty(
-        name="Changes",
-        description="What happens to changes of the open file that are not saved",
-        items=(
-            ("SAVE", "Save", "Save the open file, then open the example"),
-            ("DISCARD", "Don't Save", "Open the example; the changes are lost"),
-        ),
-        default="DISCARD",
-        options={"SKIP_SAVE"},
-    ),
-)
-def open_example(_context: bpy.types.Context, changes: str) -> OperatorResult:
+@operator("Open an Example", options=frozenset(), invoke=_ask_about_changes)
+def open_example(_context: bpy.types.Context) -> OperatorResult:
     """Open the example: a sedan with a LiDAR on its roof, as a new file without a name"""
     example = library.example_file()
     if example is None:
         raise Failed("The example is not in this installation of the extension")
-    if changes == "SAVE" and bpy.data.is_dirty:
-        if not bpy.data.filepath:
-            bpy.ops.wm.save_as_mainfile("INVOKE_DEFAULT")
-            raise Refused("Save this file under a name, then open the example again")
-        try:
-            bpy.ops.wm.save_mainfile()
-        except RuntimeError as error:  # a path that cannot be written: Blender's own line
-            raise Failed(str(error).strip().removeprefix("Error: ")) from None
     # As a start-up file it has no name: Save never writes into the extension's folder.
     return bpy.ops.wm.read_homefile(filepath=str(example), load_ui=False)

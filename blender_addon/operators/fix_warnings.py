@@ -93,7 +93,7 @@ FIX_LABELS = {key: label for key, (label, _) in FIXES.items()}
 
 def _check_again(context: bpy.types.Context) -> None:
     context.view_layer.update()
-    context.scene.perception_entropy.result_warnings = ()
+    context.scene.perception_entropy.warnings_json = ""
 
 
 @operator(

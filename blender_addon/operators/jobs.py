@@ -13,7 +13,7 @@ from typing import Any, ClassVar, NamedTuple
 import bpy
 
 from .. import bridge, diagnostics, engine_calls, result_staleness, signals, vehicle_cache
-from ..engine import advice, jobs, pe
+from ..engine import jobs, pe
 from ..language import shown
 from ..live import FinishedScore, live_state
 from . import running_job
@@ -30,7 +30,6 @@ from .declared import (
     Unless,
     declared,
     operator,
-    report,
     report_answer,
     report_error,
 )
@@ -153,10 +152,8 @@ class JobOperator(OperatorMixin):
             if not running.ended:
                 running.show(context)
                 return {"RUNNING_MODAL"}
-        elif is_undo(event):
-            running.refuse_undo(context)
-            report(self, "INFO", running_job.NO_UNDO)
-            return {"RUNNING_MODAL"}
+        elif event.type == "Z" and (event.ctrl or event.oskey):
+            return {"RUNNING_MODAL"}  # undo would take back what the job is about to write
         elif event.type != "TIMER":
             return {"PASS_THROUGH"}
         scene = bpy.data.scenes.get(running.scene_name)
@@ -186,11 +183,6 @@ class JobOperator(OperatorMixin):
         if self.row.show is not None:
             self.row.show()
         return {"FINISHED"}
-
-
-def is_undo(event: bpy.types.Event) -> bool:
-    """Whether the keys of undo or redo were pressed, which Blender ignores while a job runs."""
-    return event.type == "Z" and event.value == "PRESS" and (event.ctrl or event.oskey)
 
 
 Make = Callable[[bpy.types.Scene, pe.Study, bridge.Fingerprint], Task]
@@ -282,20 +274,13 @@ def store_search(
     if bpy.ops.ed.undo_push.poll():  # a script without a window has no undo
         bpy.ops.ed.undo_push(message="Optimize: Keep Variant")
     goes_on = settings.has_result and settings.result_signature == taken.text
-    first = settings.result_before, settings.result_coverage_before, settings.result_figures
-    is_next = goes_on and settings.result_kind == "optimize"
+    first = settings.result if goes_on else None
     gone = bridge.place_rig(scene, outcome.study.rig, outcome.start.rig)
     store_result(scene, outcome, taken.with_rig(outcome.study.rig).text)
-    if is_next:  # of searches in a row: where the first began
-        settings.result_before, settings.result_coverage_before, figures = first
-        settings.result_figures = {**settings.result_figures, "before": figures["before"]}
+    if first is not None and first.kind == "optimize":  # of searches in a row
+        bridge.begin_with(settings, first)
     bridge.mark_active(scene, result_key)
     return gone
-
-
-def costs_nothing(settings: bpy.types.PropertyGroup) -> bool:
-    """Whether the last search made nothing worse."""
-    return advice.costs_nothing(settings.result_cost)
 
 
 def search_line(outcome: jobs.Outcome) -> str:

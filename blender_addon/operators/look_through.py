@@ -1,20 +1,17 @@
-"""Look through a sensor: a camera's view, or a picture of a LiDAR's ranges; and back again.
+"""Look through a sensor: a camera's view, or the picture of another kind in a corner.
 
 While a view shows what a camera sees, Blender overwrites its rotation, and loses whether it was
-orthographic. The states of views are kept in the scene, so that a file saved meanwhile has
-them, and in this module, because undo takes the scene's away.
+orthographic. The states of views are kept here: undo would take them away from the scene.
 """
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 import bpy
 
 from .. import bridge
 from ..sensor_kinds import kind_label, row_of
-from . import sensor_pictures
 from .declared import Refused, chosen_sensor, operator
 from .edit_sensors import NAME
 
@@ -26,20 +23,16 @@ VIEW_FIELDS = (
 """In the order in which they are set: an axis view has to follow its rotation."""
 CAMERA_PERSPECTIVE = "CAMERA"
 
-_states: dict[str, str] = {}
-"""States of the views that look through a sensor, by the scene's name, as stored in the scene."""
+_states: dict[str, dict[int, dict[str, Any]]] = {}
+"""States of the views that look through a sensor, by the scene's name and the view's pointer."""
 
 
 def look_along(scene: bpy.types.Scene, area: bpy.types.Area | None) -> None:
-    """Have a 3D view look through the scene's camera; store its state of before, once."""
+    """Have a 3D view look through the scene's camera; note its state of before, once."""
     if area is None or area.type != "VIEW_3D":
         return
-    settings, space = scene.perception_entropy, area.spaces.active
-    states = json.loads(settings.views_before_look or "[]")
-    if not any(find_view(state) == space for state in states):
-        states.append(state_of(area))
-        settings.views_before_look = json.dumps(states)
-    _states[scene.name] = settings.views_before_look
+    space = area.spaces.active
+    _states.setdefault(scene.name, {}).setdefault(space.as_pointer(), state_of(space))
     space.lock_camera = False  # turning the view would turn the camera away from its sensor
     space.use_local_camera = False
     space.region_3d.view_perspective = CAMERA_PERSPECTIVE
@@ -47,14 +40,11 @@ def look_along(scene: bpy.types.Scene, area: bpy.types.Area | None) -> None:
 
 def restore(scene: bpy.types.Scene) -> None:
     """Restore the views; those that do not show the camera any more stay as they are."""
-    settings = scene.perception_entropy
-    noted = settings.views_before_look or _states.get(scene.name, "[]")
-    settings.views_before_look = ""
-    _states.pop(scene.name, None)
-    for state in json.loads(noted):
-        space = find_view(state)
-        if space is not None:
-            apply_state(space, state)
+    states = _states.pop(scene.name, {})
+    for area in (area for screen in bpy.data.screens for area in screen.areas):
+        space = area.spaces.active
+        if area.type == "VIEW_3D" and space.as_pointer() in states:
+            apply_state(space, states[space.as_pointer()])
 
 
 def restore_lost() -> None:
@@ -67,26 +57,19 @@ def restore_lost() -> None:
             restore(scene)
 
 
-def state_of(area: bpy.types.Area) -> dict[str, object]:
-    """Return the state of a 3D view and its position on the screen, as JSON data."""
-    space, screen = area.spaces.active, area.id_data
+def state_of(space: bpy.types.SpaceView3D) -> dict[str, Any]:
+    """Return the state of a 3D view."""
     look = space.region_3d
-    camera = space.camera.name if space.use_local_camera and space.camera else None
-    return {
-        "space": space.as_pointer(),
-        "screen": screen.name,
-        "area": list(screen.areas).index(area),
-        "local_camera": camera,
-        **{name: getattr(space, name) for name in SPACE_FIELDS},
-        **{name: _json_value(getattr(look, name)) for name in VIEW_FIELDS},
-    }
+    camera = space.camera.name if space.use_local_camera and space.camera else ""
+    own = {name: getattr(space, name) for name in SPACE_FIELDS}
+    return {"local_camera": camera, **own, **{n: _copied(getattr(look, n)) for n in VIEW_FIELDS}}
 
 
-def apply_state(space: bpy.types.SpaceView3D, state: dict[str, object]) -> None:
+def apply_state(space: bpy.types.SpaceView3D, state: dict[str, Any]) -> None:
     """Restore a view's state, its lens and lock included."""
     for name in SPACE_FIELDS:
         setattr(space, name, state[name])
-    camera = bpy.data.objects.get(str(state["local_camera"]))
+    camera = bpy.data.objects.get(state["local_camera"])
     if camera is not None:
         space.use_local_camera = True
         space.camera = camera
@@ -95,24 +78,9 @@ def apply_state(space: bpy.types.SpaceView3D, state: dict[str, object]) -> None:
             setattr(space.region_3d, name, state[name])
 
 
-def find_view(state: dict[str, object]) -> bpy.types.SpaceView3D | None:
-    """Return the view that a state is of; after opening a file, the one at its position."""
-    for screen in bpy.data.screens:
-        for area in screen.areas:
-            space = area.spaces.active
-            if area.type == "VIEW_3D" and space.as_pointer() == state["space"]:
-                return space
-    before = bpy.data.screens.get(str(state["screen"]))
-    if before is None:
-        return None
-    number = int(str(state["area"]))
-    areas = list(before.areas)[number : number + 1]
-    return next((a.spaces.active for a in areas if a.type == "VIEW_3D"), None)
-
-
-def _json_value(value: Any) -> Any:
-    """Return numbers of a vector as a list."""
-    return value if isinstance(value, str | float | bool) else list(value)
+def _copied(value: Any) -> Any:
+    """Return a value that does not change with the view."""
+    return value if isinstance(value, str | float | bool) else tuple(value)
 
 
 @operator("Look Through", mode="Look Through works in Object Mode", name=NAME)
@@ -123,9 +91,7 @@ def look_through(context: bpy.types.Context, name: str) -> str | None:
     sensor = bridge.sensor_from_object(obj, depsgraph)
     row = row_of(sensor.kind)
     if row.pixels is not None:
-        is_vehicle = scene.perception_entropy.vehicle is not None
-        vehicle = bridge.vehicle_of_scene(scene, depsgraph) if is_vehicle else None
-        sensor_pictures.request_image(sensor, vehicle)
+        scene.perception_entropy.view.show_inset = True
         return f"{sensor.name}: {row.legend}"
     if row.camera is None:
         what = kind_label(sensor.kind)

@@ -9,14 +9,11 @@ import bpy
 from bpy.props import EnumProperty, IntProperty
 
 from .. import bridge, signals, vehicle_cache
-from ..choices import BEFORE_MOVE, PINNED, REGION_ITEMS
+from ..choices import REGION_ITEMS
 from ..engine import catalog, kinds, pe, search
-from ..language import shown
-from ..live import live_state
-from ..overlay import layer_cache
 from ..properties import DEFAULT_REGION
-from ..sensor_kinds import own_kinds, row_of
-from ..view_settings import FITTED, FIXED, RANGES
+from ..sensor_kinds import own_kinds
+from ..view_settings import FITTED
 from .declared import INTERNAL, Refused, RowList, operator
 
 FOCUS_ROWS = RowList("focus", "focus_index", "focus")
@@ -56,11 +53,6 @@ def add_own_sensor(context: bpy.types.Context, kind: str) -> None:
     name = f"My {kinds.KINDS[kind].label}"
     row = OWN_ROWS.add(context.scene, name, set(catalog.entries()))
     row.kind = kind
-
-
-def own_fields(kind: str) -> tuple[str, ...]:
-    """Return the properties that the panel shows of an own sensor of a kind."""
-    return row_of(kind).own_fields
 
 
 @operator("Own AP Curves")
@@ -131,18 +123,6 @@ def guess_axles(context: bpy.types.Context) -> str:
     return f"Rear axle at x {reference.rear_axle_x:g} m, z {reference.rear_axle_z:g} m"
 
 
-@operator("Fix Colors")
-def fix_colors(context: bpy.types.Context) -> None:
-    """Keep the present range of the ground map's colours"""
-    view = context.scene.perception_entropy.view
-    items = layer_cache.shown.items(context.scene.name, "ground").values()
-    bounds = next((i.shape.legend.bounds for i in items if i.shape.legend is not None), None)
-    if bounds is None or view.ground_difference or view.ground_quantity not in RANGES:
-        raise Refused("No ground map of entropy or coverage is shown")
-    setattr(view, RANGES[view.ground_quantity], bounds)
-    view.ground_range = FIXED
-
-
 @operator("Fit Colors")
 def fit_colors(context: bpy.types.Context) -> None:
     """Fit the range of the ground map's colours to what is shown now"""
@@ -151,35 +131,21 @@ def fit_colors(context: bpy.types.Context) -> None:
     view.ground_fits += 1
 
 
-REFERENCE_LABELS = {BEFORE_MOVE: "Before the Last Move", PINNED: "Pinned Sensors"}
-PIN = "Pin the sensors as they are now: compare the live score with them from now on"
-
-
 @operator(
     "Compare Live With",
     options=INTERNAL,
-    tooltip=lambda about, chosen: shown(PIN) if chosen.key == PINNED else about,
     key=IntProperty(
         name="Key",
-        description="0: the sensors before the last move; -1: pin the scene's present sensors; "
-        "otherwise the key of a variant",
+        description="0: the sensors before the last move; otherwise the key of a variant",
         options={"HIDDEN", "SKIP_SAVE"},
     ),
 )
 def live_against(context: bpy.types.Context, key: int) -> None:
     """Compare the live score with this reference"""
-    if key == PINNED:
-        state = live_state(context.scene.name)
-        if state.score is None or not state.is_current(state.score):
-            raise Refused("Live has not scored the sensors as they are now yet")
-        state.pinned = state.score.rig
     context.scene.perception_entropy.live.against = key
 
 
 def reference_label(scene: bpy.types.Scene) -> str:
     """Return what the live score of a scene is compared with, for the panel."""
-    choice = scene.perception_entropy.live.against
-    if choice == PINNED and live_state(scene.name).pinned is not None:
-        return REFERENCE_LABELS[PINNED]
     names = {row.key: row.name for row in scene.perception_entropy.variants}
-    return names.get(choice, REFERENCE_LABELS[BEFORE_MOVE])
+    return names.get(scene.perception_entropy.live.against, "Before the Last Move")

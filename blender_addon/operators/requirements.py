@@ -1,25 +1,19 @@
-"""Requirements in the panel: add a preset or an own one, remove, order; look at the worst place."""
+"""Requirements in the panel: add a preset or an own one, remove, order."""
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import bpy
-from bpy.props import EnumProperty, StringProperty
-from bpy_extras.io_utils import ImportHelper
+from bpy.props import EnumProperty
 
 from .. import bridge, signals, vehicle_cache
-from ..engine import pe, requirements, studies, wording
-from ..overlay.layer_cache import shown
+from ..engine import requirements, studies, wording
+from ..overlay.layer_cache import shown_of
 from ..overlay.requirement_zones import VerdictShape
-from ..properties import requirement_fields
-from .declared import OperatorResult, RowList, chosen_file, operator
+from .declared import OperatorResult, RowList, operator
 
 OWN, ALL = "OWN", "ALL"
-LOOK_FROM_M = 9.0
-"""Distance of the view from the worst place."""
 
 
 def _citation(source_name: str, confidence: str) -> str:
@@ -89,28 +83,6 @@ def add_requirement(context: bpy.types.Context, preset: str) -> str:
     return f"Added {len(fitting)} requirements{more}"
 
 
-@operator(
-    "Open Body Mesh",
-    unless=ROWS.unless_selected,
-    signal=signals.study_changed,
-    bases=(ImportHelper,),
-    filter_glob=StringProperty(default="*.glb;*.stl;*.obj;*.ply;*.npz", options={"HIDDEN"}),
-)
-def open_body_mesh(context: bpy.types.Context, filepath: str) -> str:
-    """Choose the file of a closed mesh as the test body of the selected requirement"""
-    settings = context.scene.perception_entropy
-    row = settings.requirements[settings.requirement_index]
-    if row.body != requirement_fields.OWN:
-        row.body = requirement_fields.OWN
-    file, folder = chosen_file(filepath), Path(bpy.data.filepath).parent
-    # Relative to the Blender file's folder, so that both can be moved.
-    is_beside = bpy.data.filepath and file.is_relative_to(folder)
-    row.body_mesh = f"//{file.relative_to(folder).as_posix()}" if is_beside else os.fspath(file)
-    if row.problem:
-        raise pe.InputError("scene", "mesh", "a file that can be a test body", row.problem)
-    return f"{row.name}: the body is {row.body_mesh}"
-
-
 def _add(scene: bpy.types.Scene, made: requirements.Requirement, wanted: str) -> str:
     """Add a row with a requirement; return the name that it got."""
     row = ROWS.add(scene, wanted)
@@ -118,21 +90,6 @@ def _add(scene: bpy.types.Scene, made: requirements.Requirement, wanted: str) ->
     bridge.write_row(row, made)
     row.name = name
     return name
-
-
-class ShownSource(NamedTuple):
-    """What a requirement is after, and its source; both may be empty."""
-
-    check: str
-    text: str
-
-
-def source_of(row: bpy.types.PropertyGroup) -> ShownSource | None:
-    """Return what a row's requirement is after; None where the stored table is damaged."""
-    table = bridge.full_table(row)
-    if not table:
-        return None
-    return ShownSource(bridge.after_of(row), str(table.get("source", "")))
 
 
 def shown_verdicts(scene: bpy.types.Scene) -> dict[str, ShownVerdict]:
@@ -143,7 +100,7 @@ def shown_verdicts(scene: bpy.types.Scene) -> dict[str, ShownVerdict]:
     settings = scene.perception_entropy
     live: dict[str, requirements.Verdict] = {}
     unplaced: dict[str, str] = {}
-    for item in shown.items(scene.name, "requirements").values():
+    for item in shown_of(scene.name, "requirements").values():
         if isinstance(item.shape, VerdictShape):
             live = {verdict.name: verdict for verdict in item.shape.verdicts}
             unplaced = dict(item.shape.unplaced)
@@ -172,35 +129,6 @@ def _stored(row: bpy.types.PropertyGroup) -> ShownVerdict:
     if stored is None or isinstance(stored, str):
         return ShownVerdict(None, "", f"not checked: {stored}" if stored else "")
     return ShownVerdict(stored.met, wording.margin_text(stored), wording.verdict_text(stored))
-
-
-def look_at_worst() -> None:
-    """Listener of `requirement_chosen`: 3D views go to the chosen requirement's worst place."""
-    context = bpy.context
-    settings = context.scene.perception_entropy
-    if context.screen is None or settings.requirement_index >= len(settings.requirements):
-        return
-    row = settings.requirements[settings.requirement_index]
-    worst = _worst(context.scene, row)
-    if worst is None:
-        return
-    for area in context.screen.areas:
-        if area.type == "VIEW_3D":
-            view = area.spaces.active.region_3d
-            if view.view_perspective != "CAMERA":
-                view.view_location = (*worst, 0.0)
-                view.view_distance = LOOK_FROM_M
-
-
-def _worst(scene: bpy.types.Scene, row: bpy.types.PropertyGroup) -> tuple[float, float] | None:
-    for item in shown.items(scene.name, "requirements").values():
-        if isinstance(item.shape, VerdictShape):
-            for verdict in item.shape.verdicts:
-                if verdict.name == row.name:
-                    place: tuple[float, float] | None = verdict.worst
-                    return place
-    stored = bridge.stored_verdict(row)
-    return None if stored is None or isinstance(stored, str) else stored.worst
 
 
 def _requirement(choice: str) -> tuple[requirements.Requirement, str]:

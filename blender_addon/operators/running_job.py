@@ -24,12 +24,8 @@ SHOW_EVERY_S = 0.2
 """How often the progress is drawn: drawing takes time from the work."""
 CURVE_EVERY_S, BEST_EVERY_S = 2.0, 0.5
 """How often the 3D view is redrawn: for the curve, and after a better placement was found."""
-NO_UNDO = "Undo is not possible while a job runs; Esc stops it"
-"""Shown when the keys of undo are pressed."""
 EVENTS_S = 0.3
 """How long windows get events after a job was ended from outside."""
-NOTICE_S = 6.0
-"""How long that is shown."""
 
 
 class RunningJob(jobs.WatchedJob):
@@ -44,7 +40,6 @@ class RunningJob(jobs.WatchedJob):
         self.error: Exception | None = None
         self._shown = self._looked = 0.0
         self._best: tuple[tuple[int, float], ...] = ()
-        self._notice_until = 0.0
         manager = context.window_manager
         self._timer = manager.event_timer_add(TICK_S, window=context.window)
         manager.progress_begin(0.0, 1.0)
@@ -84,16 +79,6 @@ class RunningJob(jobs.WatchedJob):
         if figure.higher_is_better:
             return f"{stage}, best AP {'≈ ' if sampled else ''}{figure.to_figure(entropy):.3f}"
         return f"{stage}, best {'≈ ' if sampled else ''}{entropy:.3f}"
-
-    def refuse_undo(self, context: bpy.types.Context) -> None:
-        """Show beside the progress, for some time, that there is no undo now."""
-        self._notice_until = time.monotonic() + NOTICE_S
-        self.show(context)
-
-    @property
-    def notice(self) -> str:
-        """A notice beside the progress; empty as a rule."""
-        return NO_UNDO if time.monotonic() < self._notice_until else ""
 
     @property
     def on_escape(self) -> str:
@@ -204,8 +189,6 @@ def draw_status(header: bpy.types.Header, _context: bpy.types.Context) -> None:
         bar = row.row()
         bar.ui_units_x = STATUS_BAR_WIDTH
         bar.progress(text=shown(current.text), factor=current.progress.fraction, translate=False)
-        if current.notice:
-            draw_label(row, current.notice, "INFO")
         row.separator_spacer()
 
 

@@ -1,9 +1,9 @@
-"""Pictures of what sensors see: textures for a corner of the 3D view, and an image of ranges."""
+"""Pictures of what sensors see: textures for a corner of the 3D view."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import bpy
 import gpu
@@ -11,9 +11,9 @@ import numpy as np
 from gpu_extras.presets import draw_texture_2d
 from mathutils import Matrix
 
-from .. import engine_process, viewport
-from ..engine import graphics, pe
-from ..sensor_kinds import PIXELS_PER_DEG, Pixels, row_of
+from .. import viewport
+from ..engine import graphics
+from ..sensor_kinds import Pixels
 
 TITLE_PX, PAD_PX = 20.0, 6.0
 TITLE_PLATE, INK = (0.08, 0.08, 0.08, 0.78), (0.92, 0.92, 0.92, 1.0)
@@ -121,83 +121,3 @@ def draw_frame(
     pad = PAD_PX * scale
     viewport.draw_text(title, left + pad, top + pad, viewport.SMALL * scale, INK)
     return left, bottom, right, above
-
-
-RANGE_TOPIC = "ranges"
-SPLIT = 0.34
-"""How much of the 3D view's height the picture takes."""
-
-
-def image_name(sensor: str) -> str:
-    """Return the name of a sensor's image."""
-    return f"{sensor} range"
-
-
-def request_image(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> None:
-    """Have the picture of a sensor's kind made, and put into the sensor's image."""
-    image_of(sensor.name)
-    pixels = row_of(sensor.kind).pixels
-    assert pixels is not None  # asked for those kinds alone
-
-    def deliver(made: Pixels) -> None:
-        store_image(sensor.name, made)
-        show_image(sensor.name)
-
-    engine_process.ask(
-        RANGE_TOPIC,
-        pixels,
-        (sensor, vehicle),
-        deliver,
-        lambda error: print(f"perception entropy: no picture of {sensor.name}: {error}"),
-    )
-
-
-def store_image(sensor: str, pixels: Pixels) -> None:
-    """Put a picture into a sensor's image, and keep it in the file."""
-    image = image_of(sensor)
-    height, width = pixels.shape[:2]
-    if tuple(image.size) != (width, height):
-        image.scale(width, height)
-    cast(Any, image.pixels).foreach_set(np.ascontiguousarray(pixels[::-1]).ravel())
-    image.update()
-    image.pack()
-    viewport.redraw_editors("IMAGE_EDITOR")
-
-
-def image_of(sensor: str) -> bpy.types.Image:
-    """Return the image of a sensor; a new one where there is none."""
-    name = image_name(sensor)
-    image = bpy.data.images.get(name)
-    return image or bpy.data.images.new(name, 360 * PIXELS_PER_DEG, 40 * PIXELS_PER_DEG)
-
-
-def show_image(sensor: str) -> None:
-    """Show the image in an image editor: one that is there, a part of the 3D view, or a window.
-
-    Not while an operator runs: its button belongs to the areas that change.
-    """
-    if bpy.app.background:
-        return
-    windows = bpy.context.window_manager.windows
-    areas = [area for window in windows for area in window.screen.areas]
-    editors = [area for area in areas if area.type == "IMAGE_EDITOR"]
-    area = editors[0] if editors else _new_area(windows[0])
-    if area is not None:
-        area.type = "IMAGE_EDITOR"
-        area.spaces.active.image = image_of(sensor)
-
-
-def _new_area(window: bpy.types.Window) -> bpy.types.Area | None:
-    """Return the lower part of the 3D view, or, where that fills the window, another window."""
-    views = [view for view in window.screen.areas if view.type == "VIEW_3D"]
-    if not views:
-        return None
-    before = set(window.screen.areas)
-    largest = max(views, key=lambda area: area.width * area.height)
-    with bpy.context.temp_override(window=window, area=largest):
-        if bpy.ops.screen.area_split.poll():
-            bpy.ops.screen.area_split(direction="HORIZONTAL", factor=SPLIT)
-            return next(iter(set(window.screen.areas) - before), None)
-        if bpy.ops.wm.window_new() == {"FINISHED"}:
-            return bpy.context.window_manager.windows[-1].screen.areas[0]
-    return None

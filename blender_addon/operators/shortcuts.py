@@ -2,28 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import bpy
 
-
-class Shortcut(NamedTuple):
-    """A key in 3D views: the operator and its properties, the key, and its modifiers."""
-
-    operator: str
-    key: str
-    modifiers: dict[str, bool] = {}
-    properties: dict[str, Any] = {}
-
-
-CTRL_ALT = {"ctrl": True, "alt": True}
-SHORTCUTS = (
-    Shortcut("pe.look_back", "ESC"),
-    Shortcut("wm.context_toggle", "L", CTRL_ALT, {"data_path": "scene.perception_entropy.live.on"}),
-    Shortcut("pe.place_sensor", "P", CTRL_ALT),
-    Shortcut("pe.ghost_variant", "V", CTRL_ALT),
+CTRL_ALT: dict[str, Any] = {"ctrl": True, "alt": True}
+LIVE = {"data_path": "scene.perception_entropy.live.on"}
+SHORTCUTS: tuple[tuple[str, str, dict[str, Any], dict[str, Any]], ...] = (
+    ("pe.look_back", "ESC", {}, {}),
+    ("wm.context_toggle", "L", CTRL_ALT, LIVE),
+    ("pe.place_sensor", "P", CTRL_ALT, {}),
+    ("pe.ghost_variant", "V", CTRL_ALT, {}),
 )
-"""Of Ctrl Alt, Blender uses none of these letters in 3D views."""
+"""Operator, key, modifiers and properties. Of Ctrl Alt, Blender uses none of these letters."""
 
 _items: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
 
@@ -37,11 +28,9 @@ def register() -> None:
 
 def add_to(keymap: bpy.types.KeyMap) -> None:
     """Add the keys to a key map."""
-    for each in SHORTCUTS:
-        item = keymap.keymap_items.new(each.operator, each.key, "PRESS")
-        for name, value in each.modifiers.items():
-            setattr(item, name, value)
-        for name, value in each.properties.items():
+    for operator, key, modifiers, properties in SHORTCUTS:
+        item = keymap.keymap_items.new(operator, key, "PRESS", **modifiers)
+        for name, value in properties.items():
             setattr(item.properties, name, value)
         _items.append((keymap, item))
 

@@ -57,28 +57,6 @@ def spot_on_ray(
     return None
 
 
-def nearest_spot(
-    depsgraph: bpy.types.Depsgraph, parts: set[str], point: Vector, within_m: float
-) -> SurfaceSpot | None:
-    """Return the nearest spot on the parts' surface within a distance; None without one."""
-    best, min_distance = None, within_m
-    for name in sorted(parts):
-        obj = bpy.data.objects[name].evaluated_get(depsgraph)
-        if obj.type != "MESH" or not len(obj.data.polygons):
-            continue
-        ground_from_local = obj.matrix_world
-        local = ground_from_local.inverted_safe() @ point
-        is_found, at, normal, _ = obj.closest_point_on_mesh(local)
-        distance = (ground_from_local @ at - point).length if is_found else min_distance
-        if distance < min_distance:
-            turned = ground_from_local.to_3x3().inverted_safe().transposed() @ normal
-            best, min_distance = (
-                SurfaceSpot(ground_from_local @ at, turned.normalized(), name),
-                distance,
-            )
-    return best
-
-
 NO_HEADING_M = 0.05
 """A place nearer to the vehicle's middle than this has no outward direction: it looks ahead."""
 POSITION_DECIMALS, YAW_STEP_DEG = 3, 1.0

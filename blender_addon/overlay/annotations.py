@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..engine import graphics
+from .regions import box_edges
 
 if TYPE_CHECKING:
     from ..engine import advice, pe
@@ -87,10 +88,8 @@ def location_mark(place: advice.AskedPlace, sensors: Sequence[pe.Sensor]) -> gra
     """Return a mark at a location, and a line to each sensor that sees it or is occluded."""
     center = np.array(place.center)
     answers = {each.name: each for each in place.sensors}
-    corners = center + SIDE_M * (np.array([*np.ndindex(2, 2, 2)]) - 0.5)
-    edges = [(a, b) for a in range(8) for b in range(a + 1, 8) if (a ^ b) in (1, 2, 4)]
     post = np.array([center, center + np.array([0.0, 0.0, POST_M])])
-    mark = np.vstack([*(corners[list(edge)] for edge in edges), post])
+    mark = np.vstack([box_edges(center - SIDE_M / 2.0, center + SIDE_M / 2.0), post])
     lines = [graphics.Primitives.of(mark, MARK)]
     for sensor in sensors:
         answer = answers.get(sensor.name)

@@ -18,7 +18,7 @@ from .. import bridge, engine_process, vehicle_cache, viewport
 from ..engine import graphics, pe
 from . import labels, scheduler, surroundings
 from .batches import Batches
-from .layer_cache import shown
+from .layer_cache import shown_of
 from .layers import LAYERS, WHOLE_RIG, Layer
 
 OFFSET_SHARE = 0.002
@@ -88,7 +88,7 @@ def draw() -> None:
     if eye is not None:
         surroundings.draw_around(context.scene, eye, context.region)
     wanted = [(layer, uploaded(scene, layer, names)) for layer, names in _visible(context)]
-    for key in [k for k in _batches if k[0] == scene and k[2] not in shown.items(*k[:2])]:
+    for key in [k for k in _batches if k[0] == scene and k[2] not in shown_of(*k[:2])]:
         del _batches[key]
     before = gpu.state.blend_get(), gpu.state.depth_test_get(), gpu.state.depth_mask_get()
     gpu.state.blend_set("ALPHA")
@@ -114,7 +114,7 @@ def draw_text() -> None:
         return
     scene = context.scene.name
     visible = [(layer.name, name) for layer, names in _visible(context) for name in names]
-    shapes = [shown.items(scene, layer)[name].shape for layer, name in visible]
+    shapes = [shown_of(scene, layer)[name].shape for layer, name in visible]
     written = [label for shape in shapes for label in shape.labels]
     eye = _eye(context)
     if eye is not None:
@@ -131,7 +131,7 @@ def draw_text() -> None:
 
 def _legend(scene: str, layer: str, name: str) -> graphics.ColorKey | None:
     """Return the legend of a shape, marked where it is a preview and does not say so itself."""
-    item = shown.items(scene, layer)[name]
+    item = shown_of(scene, layer)[name]
     found = item.shape.legend
     if found is None or "preview" in found.title:
         return found
@@ -144,7 +144,7 @@ def uploaded(scene: str, layer: Layer, names: list[str]) -> list[Batches]:
     """Return the batches of a layer; upload new shapes."""
     found = []
     for name in names:
-        shape = shown.items(scene, layer.name)[name].shape
+        shape = shown_of(scene, layer.name)[name].shape
         known = _batches.get((scene, layer.name, name))
         if known is None or known.shape is not shape:
             known = _batches[scene, layer.name, name] = Batches.of(shape)
@@ -166,7 +166,7 @@ def _visible(context: bpy.types.Context) -> Iterator[tuple[Layer, list[str]]]:
     # In a local view there is no layer of the whole rig.
     known = {WHOLE_RIG: not (space and space.type == "VIEW_3D" and space.local_view)}
     for layer in LAYERS:
-        names = list(shown.items(scene, layer.name))
+        names = list(shown_of(scene, layer.name))
         for name in names:
             if name not in known:
                 known[name] = name != through and _sensor_visible(context, name)

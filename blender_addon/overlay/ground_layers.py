@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..engine import Floats, graphics, pe, sight
-from ..view_settings import COUNTED, FIXED, KINDS, KINDS_LEFT, REDUNDANCY, SENSORS_LEFT, WHOLE
+from ..view_settings import COUNTED, KINDS, KINDS_LEFT, REDUNDANCY, SENSORS_LEFT, WHOLE
 
 if TYPE_CHECKING:
     from ..engine import pe, sight
@@ -125,13 +125,6 @@ def _bounds(
     view = request.view
     if view.ground_quantity in COUNTED or view.ground_range == WHOLE:
         return None
-    if view.ground_range == FIXED:
-        fixed = (
-            view.entropy_range
-            if view.ground_quantity == graphics.ENTROPY
-            else (view.coverage_range[0], view.coverage_range[1])
-        )
-        return fixed if fixed[0] != fixed[1] else None
     of = view.ground_quantity, view.ground_height, request.prior_key, view.ground_fits
     return cache.fitted(
         of,

@@ -5,7 +5,7 @@ Plain data, no scene and no GPU. `shown` belongs to the main thread, a `LayerCac
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -26,38 +26,13 @@ class ShownLayer:
     rough: bool
 
 
-class LayerStore:
-    """Shapes that are ready to be drawn, by scene, layer and sensor."""
-
-    def __init__(self) -> None:
-        self._items: dict[tuple[str, str], dict[str, ShownLayer]] = {}
-
-    def items(self, scene: str, layer: str) -> Mapping[str, ShownLayer]:
-        """Return the shapes of a layer in a scene, by the sensor's name."""
-        return self._items.get((scene, layer), {})
-
-    def put(self, scene: str, layer: str, items: Mapping[str, ShownLayer]) -> None:
-        """Replace the shapes of a layer."""
-        self._items[scene, layer] = dict(items)
-
-    def drop(self, scene: str, layer: str) -> None:
-        """Remove the shapes of a layer."""
-        self._items.pop((scene, layer), None)
-
-    def clear(self) -> None:
-        """Remove all shapes."""
-        self._items = {}
-
-    def layers(self, scene: str) -> Iterator[tuple[str, Mapping[str, ShownLayer]]]:
-        """Yield the layers of a scene with their shapes."""
-        yield from ((layer, items) for (of, layer), items in self._items.items() if of == scene)
-
-    def __len__(self) -> int:
-        return sum(map(len, self._items.values()))
+shown: dict[tuple[str, str], Mapping[str, ShownLayer]] = {}
+"""The shapes that the 3D views draw, by scene and layer, then by the sensor's name."""
 
 
-shown = LayerStore()
-"""The shapes that the 3D views draw."""
+def shown_of(scene: str, layer: str) -> Mapping[str, ShownLayer]:
+    """Return the shapes of a layer in a scene, by the sensor's name."""
+    return shown.get((scene, layer), {})
 
 
 T = TypeVar("T")

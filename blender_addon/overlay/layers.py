@@ -75,7 +75,7 @@ def _counted_rig(request: ViewRequest) -> pe.Rig:
 def _ground_keys(request: ViewRequest) -> dict[str, Hashable]:
     settings: tuple[str, ...] = ("ground_quantity", "ground_height", "ground_opacity")
     settings += ("ground_range", "ground_fits", "redundancy_of", "redundancy_height")
-    keys = _rig_keys(*settings, "entropy_range", "coverage_range")(request)
+    keys = _rig_keys(*settings)(request)
     more = id(ground_layers.scored_map(request)), ground_layers.compared_key(request)
     return {name: (key, more) for name, key in keys.items()}
 
@@ -90,7 +90,7 @@ def _blind(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.Laye
         _counted_rig(request), height, within=BLIND_WITHIN_M, preview=request.moving
     )
     body = None if request.vehicle is None else request.vehicle.bounds
-    return ground_layers.blind_ground(found, body, height, request.view.palette)
+    return ground_layers.blind_ground(found, body, height)
 
 
 def _reach_keys(request: ViewRequest) -> dict[str, Hashable]:
@@ -127,8 +127,8 @@ def _reach(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.Laye
 def _beam_keys(request: ViewRequest) -> dict[str, Hashable]:
     view, shown = request.view, request.of_beams()
     budget = graphics.beam_budget([each.sensor for each in shown], view.beam_limit)
-    chosen = view.channels, view.channel_number, view.beam_colors, view.rings, view.beam_length
-    chosen_key = *chosen, budget, view.palette
+    chosen = view.channels, view.beam_colors, view.rings, view.beam_length
+    chosen_key = *chosen, budget
     return {each.sensor.name: (each.key, request.body_key, chosen_key) for each in shown}
 
 
@@ -136,7 +136,7 @@ def _beams(request: ViewRequest, cache: LayerCache, name: str) -> graphics.Layer
     view, shown = request.view, request.of_beams()
     of = next(each for each in shown if each.sensor.name == name)
     budget = graphics.beam_budget([each.sensor for each in shown], view.beam_limit)
-    choice = graphics.BeamChoice(budget, graphics.ChannelMode(view.channels), view.channel_number)
+    choice = graphics.BeamChoice(budget, graphics.ChannelMode(view.channels))
     found = cache.cast(request, of)
     beams = graphics.shown_beams(found, choice)
     colors = _beam_colors(of, view, beams.channel, beams.occluded)
@@ -160,7 +160,7 @@ def _beam_colors(
 ) -> NDArray[np.float32]:
     """(N, 4) colours of beams of these channels."""
     by_sensor = view.beam_colors == BY_SENSOR
-    palette = graphics.sensor_palette(of.color, view.palette) if by_sensor else view.palette
+    palette = graphics.sensor_palette(of.color) if by_sensor else graphics.VIEWPORT
     free, hit = (np.asarray(c, np.float32) for c in (palette.free, palette.occluded))
     colors = np.where(occluded[:, None], hit, free)
     if view.beam_colors == BY_CHANNEL:
@@ -175,7 +175,7 @@ def _beam_legend(view: ViewSettings) -> graphics.ColorKey:
         row = graphics.on_scale(np.linspace(0.0, 1.0, graphics.SWATCHES), graphics.VIRIDIS)
         swatches = tuple((float(red), float(green), float(blue), 1.0) for red, green, blue in row)
         return graphics.ColorKey("Channel", swatches, ("lowest", "highest"))
-    palette = view.palette
+    palette = graphics.VIEWPORT
     occluded = (graphics.with_alpha(palette.occluded, 1.0), "occluded by the vehicle")
     if view.beam_colors == BY_SENSOR:  # free beams have the colours of the labels
         return graphics.ColorKey("Beams", classes=(occluded,))
@@ -342,7 +342,7 @@ LAYERS = (
     Layer(
         "blind",
         "Blind Ground",
-        _rig_keys("blind_height", "palette", prior=True),
+        _rig_keys("blind_height", prior=True),
         _blind,
         1.6,
         rough=True,

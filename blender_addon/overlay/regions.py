@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from ..engine import Floats, graphics
 
 if TYPE_CHECKING:
+    from ..choices import FocusRegion, LimitBox
     from ..engine import pe
-    from .request import FocusRegion, MountFaces, SearchBox
+    from .request import MountFaces
 
 
 MOUNT: graphics.Rgba = (0.36, 0.80, 0.62, 1.0)
@@ -28,7 +29,7 @@ CORNERS = np.array(list(product((0, 1), repeat=3)), float)
 EDGES = [(a, b) for a in range(8) for b in range(a) if np.abs(CORNERS[a] - CORNERS[b]).sum() == 1]
 
 
-def mount_regions(several: Sequence[MountFaces], boxes: Sequence[SearchBox]) -> graphics.LayerShape:
+def mount_regions(several: Sequence[MountFaces], boxes: Sequence[LimitBox]) -> graphics.LayerShape:
     """Return the tint of surfaces with their rims, and boxes."""
     faces, lines, classes = [], [], []
     for each in several:
@@ -88,7 +89,7 @@ def _corners(triangles: Floats) -> NDArray[np.int64]:
     return np.unique(points, axis=0, return_inverse=True)[1].reshape(-1, 3)
 
 
-def box_edges(low: Sequence[float], high: Sequence[float]) -> Floats:
+def box_edges(low: Sequence[float] | Floats, high: Sequence[float] | Floats) -> Floats:
     """Return ends (24, 3) of a box's edges; it may be flat, or a line."""
     corners = np.array(low) + CORNERS * (np.array(high) - np.array(low))
     return corners[np.array(EDGES)].reshape(-1, 3)

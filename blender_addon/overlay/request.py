@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ..choices import FocusRegion, LimitBox
 from ..engine import graphics
 from ..view_settings import ALL, ViewSettings
 
@@ -48,25 +49,6 @@ class MountFaces:
 
 
 @dataclass(frozen=True, slots=True)
-class SearchBox:
-    """A box of bounds or a no-go area (`forbidden`): its lowest and highest corner [m]."""
-
-    low: tuple[float, ...]
-    high: tuple[float, ...]
-    forbidden: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class FocusRegion:
-    """A focus weight: its areas ((x low, x high), (y low, y high)) [m]; classes None: all."""
-
-    name: str
-    factor: float
-    areas: tuple[tuple[tuple[float, float], tuple[float, float]], ...]
-    classes: tuple[str, ...] | None = None
-
-
-@dataclass(frozen=True, slots=True)
 class ViewRequest:
     """A snapshot of a scene: everything that the layers depend on.
 
@@ -93,7 +75,7 @@ class ViewRequest:
     searching: bool = False
     place: advice.AskedPlace | None = None
     mounts: tuple[MountFaces, ...] = ()
-    boxes: tuple[SearchBox, ...] = ()
+    boxes: tuple[LimitBox, ...] = ()
     focus: tuple[FocusRegion, ...] = ()
     compared: tuple[pe.Sensor, ...] = ()
     compared_name: str = ""

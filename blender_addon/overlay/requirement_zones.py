@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..engine import Floats, graphics, requirements, wording
+from .regions import box_edges
 
 Verdict = requirements.Verdict
 
@@ -139,10 +140,9 @@ def _worst_mark(
     """Return the edges of the body's box at a place; without a body a cross."""
     length, width, height = body.size if body is not None else (0.4, 0.4, 0.0)
     low = body.low if body is not None else ON_GROUND_M
-    corners = np.array([*np.ndindex(2, 2, 2)], float) - [0.5, 0.5, 0.0]
-    corners = corners * [length, width, height] + [x, y, low]
-    edges = [(a, b) for a in range(8) for b in range(a + 1, 8) if (a ^ b) in (1, 2, 4)]
-    return graphics.Primitives.of(np.vstack([corners[list(edge)] for edge in edges]), color)
+    half = (length / 2.0, width / 2.0)
+    ends = (x - half[0], y - half[1], low), (x + half[0], y + half[1], low + height)
+    return graphics.Primitives.of(box_edges(*ends), color)
 
 
 def _margin_line(verdict: Verdict) -> tuple[graphics.Primitives, graphics.Tag] | None:

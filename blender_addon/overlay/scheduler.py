@@ -13,7 +13,7 @@ import bpy
 
 from .. import analysis_calls, engine_process, sensor_cache, viewport
 from ..engine import graphics, pe
-from .layer_cache import ShownLayer, shown
+from .layer_cache import ShownLayer, shown, shown_of
 from .layers import LAYERS, Layer
 from .request import ViewRequest
 from .snapshot import SnapshotReader
@@ -117,11 +117,11 @@ def _request(scene: str, layer: Layer, request: ViewRequest) -> None:
     if not keys:
         engine_process.drop(_topic(scene, layer.name))
         if _requested.pop((scene, layer.name), None) is not None:
-            shown.drop(scene, layer.name)
+            shown.pop((scene, layer.name), None)
             viewport.redraw_editors()
         return
     rough = request.moving and layer.rough
-    have = shown.items(scene, layer.name)
+    have = shown_of(scene, layer.name)
     wanted = {
         name: item
         for name, item in have.items()
@@ -135,11 +135,11 @@ def _request(scene: str, layer: Layer, request: ViewRequest) -> None:
     def deliver(shapes: list[graphics.LayerShape]) -> None:
         made = dict(zip(missing, shapes, strict=True))
         items = {n: wanted.get(n) or ShownLayer(key, made[n], rough) for n, key in keys.items()}
-        shown.put(scene, layer.name, items)
+        shown[scene, layer.name] = items
         _redraw_together()
 
     def fail(problem: Exception) -> None:
-        shown.drop(scene, layer.name)
+        shown.pop((scene, layer.name), None)
         viewport.redraw_editors()
         if not isinstance(problem, pe.InputError):  # a score reports what is wrong with the scene
             raise problem

@@ -10,12 +10,13 @@ from typing import Any, NamedTuple
 import bpy
 import numpy as np
 
-from .. import bridge, location_query, preferences, search_curve, sensor_cache, vehicle_cache
+from .. import bridge, location_query, search_curve, sensor_cache, vehicle_cache
+from ..choices import LimitBox
 from ..engine import graphics, pe, studies
 from ..live import live_state
-from ..view_settings import MIN_LENGTH_M, RANGES, ViewSettings
+from ..view_settings import MIN_LENGTH_M, ViewSettings
 from .layers import LAYERS
-from .request import FocusRegion, MountFaces, SceneSensor, SearchBox, ViewRequest
+from .request import MountFaces, SceneSensor, ViewRequest
 
 BEST_SO_FAR = "best so far"
 SLOW_S = 0.05
@@ -72,7 +73,7 @@ class SnapshotReader:
             compared=compared,
             compared_name=compared_name,
             has_result=scene.perception_entropy.has_result,
-            focus=tuple(FocusRegion(*row) for row in bridge.focus_rows(scene)),
+            focus=bridge.focus_regions(scene),
             reference=bridge.reference_of(scene.perception_entropy),
             **_requirements(scene),
         )
@@ -137,10 +138,8 @@ def view_of(scene: bpy.types.Scene) -> ViewSettings:
     settings = scene.perception_entropy
     values = {name: getattr(settings.view, name) for name in studies.settings_of(ViewSettings)}
     on = [each.name for each in LAYERS if settings.show_overlay and values[f"show_{each.name}"]]
-    for name in RANGES.values():
-        values[name] = tuple(values[name])
     length_m = max(MIN_LENGTH_M, values.pop("beam_length"))  # also where it is not a number
-    more = {"layers": frozenset(on), "palette": preferences.palette(), "beam_length": length_m}
+    more = {"layers": frozenset(on), "beam_length": length_m}
     return ViewSettings(**values, **more)
 
 
@@ -165,9 +164,9 @@ def _boxes(
     sensors: tuple[SceneSensor, ...],
     vehicle: pe.Vehicle | None,
     mounts: tuple[MountFaces, ...],
-) -> tuple[SearchBox, ...]:
+) -> tuple[LimitBox, ...]:
     """Return no-go areas, and bounds of selected sensors; a search reports what is wrong there."""
-    found: list[bridge.LimitBox] = []
+    found: list[LimitBox] = []
     faces = {each.name: each.triangles for each in mounts}
     with contextlib.suppress(pe.InputError):
         found += bridge.no_go_boxes(scene)
@@ -177,7 +176,7 @@ def _boxes(
                 around = faces.get(obj.perception_entropy.mount)
                 box = bridge.bounds_box(obj, each.sensor, vehicle, around)
                 found += [] if box is None else [box]
-    return tuple(SearchBox(*box) for box in found)
+    return tuple(found)
 
 
 def _scored(

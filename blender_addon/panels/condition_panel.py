@@ -49,7 +49,7 @@ def conditions(layout: UILayout, settings: PropertyGroup, context: Context) -> N
         draw_declared(layout, settings.weathers[settings.weather_index], "weather")
     if settings.states or settings.weathers:
         draw_properties(layout, settings, ("search_conditions",))
-    for line in settings.result_conditions.splitlines():
+    for line in settings.result.conditions if settings.has_result else ():
         draw_sentence(layout, context, line)
 
 

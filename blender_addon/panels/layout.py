@@ -12,9 +12,11 @@ import blf
 import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
+from ..engine import advice
 from ..language import draw_label, shown
-from ..operators import FIX_LABELS, SAME, sense_icon, warnings_outdated
-from ..properties import ROWS, DeclaredRow, StoredWarning, declared_rows
+from ..live import SAME, SENSE_ICONS
+from ..operators import FIX_LABELS
+from ..properties import ROWS, DeclaredRow, declared_rows
 
 DrawPanel = Callable[[UILayout, PropertyGroup, Context], None]
 DrawHeader = Callable[[UILayout, Context], None]
@@ -127,7 +129,7 @@ def _draw_row(layout: UILayout, settings: PropertyGroup, row: DeclaredRow) -> No
         cells = layout.row(align=True)
         cells.use_property_split = False
         low, high = getattr(settings, row.name)
-        cells.alert = low >= high
+        cells.alert = low > high
         draw_label(cells, settings.bl_rna.properties[row.name].name)
         for index in (0, 1):
             cells.prop(settings, row.name, index=index, text="")
@@ -179,24 +181,15 @@ def columns(layout: UILayout, factor: float) -> tuple[UILayout, UILayout]:
     return split.row(), split.row()
 
 
-LETTER_PX = 6.2
-"""Mean width of a letter, at a scale of 1."""
 BESIDE_PX, ICON_PX = 72, 20
 """Width of borders and the tab's name, and of an icon, at a scale of 1."""
 BUTTON_PX = 26
 """Width of a small button beside a sentence, at a scale of 1."""
 POPUP_PX = 340
 """Width of a panel that is called as a popup, at a scale of 1."""
-MIN_LETTERS = 10
 MIN_ROOM_PX = 40
 """A sidebar can be made narrower than any word."""
 FONT = 0
-
-
-def letters_per_line(context: Context) -> int:
-    """Return the approximate number of letters in a line of the sidebar."""
-    room = context.region.width / _scale(context) - BESIDE_PX - ICON_PX
-    return max(MIN_LETTERS, int(room / LETTER_PX))
 
 
 def wrapped(context: Context, text: str, beside_px: float = 0.0) -> tuple[str, ...]:
@@ -267,27 +260,16 @@ def draw_sentence(
         text, icon = text.strip(), "BLANK1"
     column = layout.column(align=True)
     column.scale_y = 0.8
-    has_icon = icon != "NONE" or sense != SAME
-    rest = "BLANK1" if has_icon else "NONE"
-    beside_px += ICON_PX if has_icon else 0.0
+    icon = icon if sense == SAME else SENSE_ICONS[sense]
+    rest = "NONE" if icon == "NONE" else "BLANK1"
+    beside_px += 0.0 if icon == "NONE" else ICON_PX
     for k, line in enumerate(wrapped(context, shown(text), beside_px)):
-        if not k and sense != SAME:
-            column.label(text=line, icon_value=sense_icon(sense), translate=False)
-        else:
-            column.label(text=line, icon=rest if k else icon, translate=False)
+        column.label(text=line, icon=rest if k else icon, translate=False)
 
 
-def draw_warning(layout: UILayout, context: Context, warning: StoredWarning) -> None:
-    """Draw a warning, the part that causes it as a button, and a button that fixes it.
-
-    After a move it is dimmed and marked until the checks have run again.
-    """
-    text = warning.text[:1].upper() + warning.text[1:]
-    if warnings_outdated():
-        layout = layout.column(align=True)
-        layout.active = False
-        text = f"Before this move: {text[:1].lower()}{text[1:]}"
-    draw_sentence(layout, context, text, icon="ERROR")
+def draw_warning(layout: UILayout, context: Context, warning: advice.Advice) -> None:
+    """Draw a warning, the part that causes it as a button, and a button that fixes it."""
+    draw_sentence(layout, context, warning.text[:1].upper() + warning.text[1:], icon="ERROR")
     if not (warning.fix in FIX_LABELS or warning.part):
         return
     row = layout.row(align=True)
@@ -301,4 +283,5 @@ def draw_warning(layout: UILayout, context: Context, warning: StoredWarning) -> 
         mend = row.operator(
             "pe.mend", text=shown(FIX_LABELS[warning.fix]), icon="TOOL_SETTINGS", translate=False
         )
-        mend.fix, mend.subject, mend.amount = warning.fix, warning.subject, warning.amount
+        mend.fix, mend.subject = warning.fix, warning.subject or ""
+        mend.amount = (*warning.amount, 0.0, 0.0, 0.0)[:3]

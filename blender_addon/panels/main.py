@@ -5,42 +5,15 @@ from __future__ import annotations
 import bpy
 from bpy.types import Context, PropertyGroup, Scene, UILayout
 
-from ..choices import VERSION
+from ..bridge import Result, shown_state
+from ..diagnostics import vehicle_line
+from ..engine import advice
 from ..language import draw_label, shown
-from ..operators import (
-    BETTER,
-    SAME,
-    WORSE,
-    ShownScore,
-    costs_nothing,
-    exports,
-    figure_rows,
-    is_updated,
-    listed_sensors,
-    nats_text,
-    offers,
-    running_job,
-    sense_icon,
-    shown_score,
-    shown_state,
-)
-from .layout import BUTTON_PX, columns, draw_declared, draw_sentence, draw_warning, panel
+from ..live import BETTER, SAME, SENSE_ICONS, WORSE, ShownScore, figure_rows, nats_text, shown_score
+from ..operators import offers, running_job
+from ..sensor_cache import sensors as listed_sensors
+from .layout import columns, draw_declared, draw_sentence, draw_warning, panel
 from .sensor_lists import draw_sensors
-from .sensor_menus import KIND, PE_MT_add_sensor
-
-
-def draw_written(layout: UILayout, context: Context) -> None:
-    """Draw which files the last export wrote, warnings, and a button for their folder."""
-    written = exports.last
-    if written is None:
-        return
-    box = layout.box().column(align=True)
-    row = box.row()
-    draw_sentence(row.column(align=True), context, written.text, "CHECKMARK", BUTTON_PX)
-    row.operator("pe.dismiss_written", text="", icon="X", emboss=False)
-    for line in written.lines:
-        draw_sentence(box, context, line, icon="ERROR")
-    box.operator("pe.open_folder", icon="FILE_FOLDER")
 
 
 def draw_actions(layout: UILayout, settings: PropertyGroup) -> None:
@@ -53,7 +26,7 @@ def draw_actions(layout: UILayout, settings: PropertyGroup) -> None:
         row.operator("pe.optimize", icon="ORIENTATION_GIMBAL")
         return
     row.progress(
-        text=shown(running_job.current.notice or running_job.current.text),
+        text=shown(running_job.current.text),
         factor=running_job.current.progress.fraction,
         translate=False,
     )
@@ -109,43 +82,44 @@ def draw_changed(layout: UILayout, *, is_changed: bool) -> None:
 def draw_stored(layout: UILayout, context: Context) -> None:
     """Draw the stored result: figures with names and units, and whether they are current."""
     settings = context.scene.perception_entropy
+    result = settings.result
     column = layout.box().column(align=True)
     column.active = not settings.result_stale
-    error = f" ± {max(settings.result_stderr, 1e-3):.3f}" if settings.result_stderr else ""
-    draw_figure(column, "Entropy", f"{nats_text(settings.result_entropy)}{error} nats")
-    if settings.result_kind == "optimize":
-        draw_changes(column, context, settings)
+    error = f" ± {max(result.stderr, 1e-3):.3f}" if result.stderr else ""
+    draw_figure(column, "Entropy", f"{nats_text(result.entropy)}{error} nats")
+    if result.kind == "optimize":
+        draw_changes(column, result)
     else:
-        draw_figure(column, "Coverage", f"{settings.result_coverage:.1%}")
+        draw_figure(column, "Coverage", f"{result.coverage:.1%}")
     draw_key_figures(column, settings, live=False)
-    if settings.result_kind == "optimize":
-        sense = BETTER if costs_nothing(settings) else WORSE
-        for text, mark in ((settings.result_gain, SAME), (settings.result_cost, sense)):
-            if text:
-                draw_sentence(column, context, text, sense=mark)
-    samples = "On all voxels" if not settings.result_stderr else "On a sample"
+    sense = BETTER if advice.costs_nothing(result.cost) else WORSE
+    for text, mark in ((result.gain, SAME), (result.cost, sense)):
+        if text:
+            draw_sentence(column, context, text, sense=mark)
+    samples = "On all voxels" if not result.stderr else "On a sample"
     draw_label(column, f"{samples}, as scored", "CHECKMARK")
     draw_changed(layout, is_changed=settings.result_stale)
-    if settings.result_ap:
-        draw_figure(column, "Expected AP", settings.result_ap)
-    for name in ("mounted_off", "sensor_lost"):
-        if text := getattr(settings, f"result_{name}"):
-            draw_figure(column, name.replace("_", " ").title(), text)
+    for name, text in (
+        ("Expected AP", result.ap),
+        ("Mounted Off", result.robustness("rise")),
+        ("Sensor Lost", result.robustness("loss")),
+    ):
+        if text:
+            draw_figure(column, name, text)
     state = layout.column(align=True)
-    if settings.result_fragile:
-        text = settings.result_fragile
+    if text := result.fragile:
         draw_sentence(state, context, text[:1].upper() + text[1:], icon="ERROR")
-    for line in settings.result_missing.splitlines():
+    for line in result.missing:
         draw_sentence(state, context, f"Scored without it: {line}", icon="ERROR")
 
 
-def draw_changes(layout: UILayout, context: Context, settings: PropertyGroup) -> None:
+def draw_changes(layout: UILayout, result: Result) -> None:
     """Draw what the last search changed, gains and losses marked, and what it cost."""
-    by = settings.result_entropy - settings.result_before
-    text = nats_text(settings.result_before, by)
+    by = result.entropy - result.entropy_before
+    text = nats_text(result.entropy_before, by)
     draw_figure(layout, "Before", text, sense_of_change(by, MIN_NATS))
-    by = 100.0 * (settings.result_coverage - settings.result_coverage_before)
-    text = f"{settings.result_coverage:.1%}  ({by:+.1f})"
+    by = 100.0 * (result.coverage - result.coverage_before)
+    text = f"{result.coverage:.1%}  ({by:+.1f})"
     draw_figure(layout, "Coverage", text, sense_of_change(-by, MIN_POINTS))
 
 
@@ -162,10 +136,7 @@ def draw_figure(layout: UILayout, name: str, value: str, sense: int = SAME) -> N
     """Draw a figure with its name; a gain or a loss is marked."""
     left, right = columns(layout, 0.34)
     draw_label(left, name)
-    if sense == SAME:
-        draw_label(right, value)
-    else:
-        right.label(text=value, icon_value=sense_icon(sense), translate=False)
+    draw_label(right, value, SENSE_ICONS[sense])
 
 
 STEPS = {1: "Choose the vehicle", 2: "Add a sensor"}
@@ -203,8 +174,8 @@ def draw_vehicle(layout: UILayout, context: Context) -> None:
         column = layout.column(align=True)
         column.operator("pe.use_selected", icon="RESTRICT_SELECT_OFF")
         column.operator("pe.open_example", icon="FILE_BLEND")
-    if settings.vehicle is not None and settings.vehicle_line:
-        draw_sentence(layout, context, settings.vehicle_line)
+    if settings.vehicle is not None and (line := vehicle_line(context.scene)):
+        draw_sentence(layout, context, line)
     if step == 2:
         asked, button = columns(layout, 0.5)
         draw_label(asked, "Front at the arrow?")
@@ -214,18 +185,12 @@ def draw_vehicle(layout: UILayout, context: Context) -> None:
 @panel("Perception Entropy", closed=False)
 def main(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Vehicle, sensors, score and search"""
-    if settings.version > VERSION:
-        newer = "Saved by a newer version of the extension: its new settings are not shown"
-        draw_sentence(layout, context, newer, icon="ERROR")
     draw_actions(layout, settings)  # first: nothing that comes late moves them
-    if is_updated():
-        layout.operator("pe.whats_new", icon="INFO")
     draw_vehicle(layout, context)
     draw_step(layout, context, 2)
     draw_add(layout, settings)
     draw_sensors(layout, context)
     draw_result(layout, context)
-    draw_written(layout, context)
 
 
 @panel(
@@ -237,7 +202,7 @@ def main(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
 def warnings(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """What is wrong with the vehicle and the sensors, and buttons that correct it"""
     found = settings.result_warnings
-    for subject in dict.fromkeys(["", *(warning.subject for warning in found)]):
+    for subject in dict.fromkeys([None, *(warning.subject for warning in found)]):
         own = [warning for warning in found if warning.subject == subject]
         if not own:
             continue
@@ -249,7 +214,7 @@ def warnings(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
 
 
 def draw_add(layout: UILayout, settings: PropertyGroup) -> None:
-    """Draw a row: the kind; add its usual sensor, place it by pointing, and a menu of all."""
+    """Draw a row: the kind; add its usual sensor, place it by pointing, or search all."""
     by_kind = {offer.kind: offer for offer in offers()}  # a plugin's kind may have gone
     offer = by_kind.get(settings.kind_to_add) or next(iter(by_kind.values()))
     row = layout.row(align=True)
@@ -257,8 +222,7 @@ def draw_add(layout: UILayout, settings: PropertyGroup) -> None:
     row.operator("pe.add_sensor", text="Add", icon="ADD").model = offer.usual
     button = row.operator("pe.place_sensor", text="Place", icon="RESTRICT_SELECT_OFF")
     button.model = offer.usual
-    row.context_string_set(KIND, offer.kind)
-    row.menu(PE_MT_add_sensor.bl_idname, text="", icon="DOWNARROW_HLT")
+    row.operator("pe.search_sensor", text="", icon="VIEWZOOM").kind = offer.kind
 
 
 @panel("Export and Import")
@@ -271,9 +235,6 @@ def export(layout: UILayout, settings: PropertyGroup, _context: Context) -> None
     row = layout.row(align=True)
     row.operator("pe.export_rig", text="Export Rig", icon="FILE_TICK")
     row.operator("pe.import_rig", text="Import Rig", icon="FILE_FOLDER")
-    row = layout.row(align=True)
-    row.operator("pe.sensors_to_objects", text="To Objects", icon="OUTLINER_OB_CAMERA")
-    row.operator("pe.sensors_from_objects", text="From Objects", icon="OUTLINER_OB_EMPTY")
     layout.operator_menu_enum("pe.export_scene", "output", text="Export Scene", icon="SCENE_DATA")
     row = layout.row()
     row.prop(settings, "axles_known", text="Axles")
@@ -286,8 +247,6 @@ def draw_export(menu: bpy.types.Menu, _context: Context) -> None:
     """File > Export."""
     menu.layout.operator("pe.export_study", text="Study (Perception Entropy, .toml)")
     menu.layout.operator("pe.export_rig", text="Rig of Sensors (Perception Entropy)")
-    text = "Sensors as Cameras and Empties (Perception Entropy)"
-    menu.layout.operator("pe.sensors_to_objects", text=shown(text), translate=False)
     text = "Fields of View and Scene (Perception Entropy)"
     menu.layout.operator_menu_enum("pe.export_scene", "output", text=shown(text), translate=False)
 
@@ -296,8 +255,6 @@ def draw_import(menu: bpy.types.Menu, _context: Context) -> None:
     """File > Import."""
     menu.layout.operator("pe.import_study", text="Study (Perception Entropy, .toml)")
     menu.layout.operator("pe.import_rig", text="Rig of Sensors (Perception Entropy)")
-    text = "Cameras and Empties as Sensors (Perception Entropy)"
-    menu.layout.operator("pe.sensors_from_objects", text=shown(text), translate=False)
 
 
 CLASSES = (main,)

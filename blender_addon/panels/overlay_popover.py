@@ -10,7 +10,7 @@ from bpy.types import Context, PropertyGroup
 from ..language import draw_label, shown
 from ..operators import reference_label
 from ..properties import VIEW_ROWS
-from ..view_settings import FIXED, RANGES
+from ..view_settings import COUNTED
 from .layout import is_asked, panel
 
 UILayout: TypeAlias = bpy.types.UILayout
@@ -24,50 +24,30 @@ def view(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
     column = layout.column()
     column.active = settings.show_overlay
     view = settings.view
-    for name in LAYERS:
-        column.prop(view, f"show_{name}")
-        if name in CHOICES:
-            choices = column.column(align=True)
-            choices.active = getattr(view, f"show_{name}")
-            _draw_rows(_indented(choices), settings, CHOICES[name])
-    row = column.row()
-    row.prop(view, "show_labels")
-    row.prop(view, "show_legend")
-    column.prop(view, "show_inset")
-
-
-def _draw_rows(
-    layout: UILayout, settings: OverlaySettings, rows: tuple[tuple[str, ...], ...]
-) -> None:
-    """Draw rows of settings: menus without their label, and what is asked for now alone."""
-    view = settings.view
-    for names in rows:
-        cells = layout.row(align=True)
-        for name in names:
-            if name == COLORS:
-                _draw_colors(layout, settings)
-            elif is_asked(view, VIEW_ROWS[name].when):
-                kind = view.bl_rna.properties[name].type
-                is_named = name in EXPANDED or kind not in ("ENUM", "STRING")
-                form: dict[str, Any] = (
-                    {} if is_named else {"text": ""}
-                )  # no text: none on the buttons, either
-                cells.prop(view, name, expand=name in EXPANDED, slider=name in SLIDERS, **form)
+    choices = column
+    for name, row in VIEW_ROWS.items():
+        if name.startswith("show_"):
+            column.prop(view, name)
+            choices = _indented(column)
+            choices.active = getattr(view, name)
+        elif name == COLORS:
+            _draw_colors(choices, settings)
+        elif name not in ELSEWHERE and is_asked(view, row.when):
+            # No text of a menu: none on its buttons, either.
+            is_menu = view.bl_rna.properties[name].type in ("ENUM", "STRING")
+            form: dict[str, Any] = {"text": ""} if is_menu and name not in EXPANDED else {}
+            choices.prop(view, name, expand=name in EXPANDED, slider=name in SLIDERS, **form)
 
 
 def _draw_colors(layout: UILayout, settings: OverlaySettings) -> None:
     """Draw the range of the ground map's colours, and the compared rig."""
     view = settings.view
-    if view.ground_quantity not in RANGES:
+    if view.ground_quantity in COUNTED:
         return
     if not view.ground_difference:
         row = layout.row(align=True)
         row.prop(view, "ground_range", text="")
-        if view.ground_range == FIXED:
-            for index in (0, 1):
-                row.prop(view, RANGES[view.ground_quantity], index=index, text="")
         row.operator("pe.fit_colors", text="", icon="FILE_REFRESH")
-        row.operator("pe.fix_colors", text="", icon="PINNED")
     row = layout.row(align=True)
     row.prop(view, "ground_difference", toggle=True)
     if view.ground_difference:
@@ -93,32 +73,9 @@ def draw_in_header(self: bpy.types.Header, context: Context) -> None:
     part.popover(panel=view.__name__, text="")
 
 
-LAYERS = (
-    *("ground", "blind", "reach", "requirements", "mounts", "focus", "frustums"),
-    *("beams", "heat", "axles", "front", "ghosts", "place"),
-)
-"""Layers with a switch, from the ground up."""
-COLORS = "colors"
-CHOICES: dict[str, tuple[tuple[str, ...], ...]] = {
-    "ground": (
-        ("ground_quantity",),
-        ("redundancy_of", "redundancy_height"),
-        ("ground_height", "ground_opacity"),
-        (COLORS,),
-    ),
-    "blind": (("blind_height",),),
-    "reach": (("reach_class",), ("reach_of",)),
-    "frustums": (("footprints", "view_range"),),
-    "beams": (
-        ("beams_of",),
-        ("channels",),
-        ("channel", "every"),
-        ("beam_colors",),
-        ("beam_length", "beam_limit"),
-        ("rings",),
-    ),
-}
-"""Rows of settings below the switch of a layer."""
+COLORS = "ground_range"
+ELSEWHERE = ("ground_difference", "ground_fits", "ghost_key")
+"""Drawn with the colours, or set by buttons in another place."""
 SLIDERS = {"ground_opacity"}
 EXPANDED = {"ground_quantity", "blind_height", "reach_of", "beams_of", "channels"}
 """Menus whose entries are buttons beside each other."""

@@ -6,9 +6,10 @@ from typing import Any
 
 from bpy.types import Context, PropertyGroup, UILayout
 
+from ..bridge import after_of, full_table
 from ..language import draw_label
-from ..operators import ShownSource, after_of, shown_verdicts, source_of
-from ..properties.requirement_fields import AREA, BODIES_ASKED, OF_GROUND, OWN, RING, SEVERAL
+from ..operators import shown_verdicts
+from ..properties.requirement import BODIES_ASKED, OF_GROUND
 from .layout import (
     columns,
     draw_declared,
@@ -83,70 +84,37 @@ def draw_requirement(layout: UILayout, context: Context, row: PropertyGroup) -> 
         draw_sentence(layout, context, text, icon=ICONS[verdict.met])
     if row.problem:
         draw_sentence(layout, context, row.problem, icon="ERROR")
-    if (source := source_of(row)) is None:
+    if not (table := full_table(row)):
         draw_sentence(layout, context, "The stored table is damaged: remove the requirement")
         return
-    _draw_source(layout, context, source)
+    _draw_source(layout, context, after_of(row), str(table.get("source", "")))
     draw_properties(layout, row, ("asks",))
     if row.asks == BODIES_ASKED:
-        draw_properties(layout, row, ("body",))
-        if row.body == SEVERAL:
-            draw_properties(layout, row, ("bodies",))
-        if row.body == OWN:
-            column = layout.column(align=True)
-            if row.body_mesh:
-                _draw_mesh_file(column, row)
-                draw_properties(column, row, ("body_up", "body_forward", "body_scale"))
-            else:
-                column.prop(row, "body_size")
-                draw_properties(layout, row, ("body_round",))
-                _draw_mesh_file(layout, row)
-            draw_properties(layout, row, ("body_low", "body_class", "body_name"))
-        draw_properties(layout, row, ("headings",))
+        draw_properties(layout, row, ("bodies", "headings"))
     _draw_zone(layout, row)
     _draw_criterion(layout, row)
     draw_declared(layout, row, "requirement.under")
 
 
-def _draw_source(layout: UILayout, context: Context, source: ShownSource) -> None:
+def _draw_source(layout: UILayout, context: Context, check: str, source: str) -> None:
     """Draw what the requirement is after, and its source where that is opened."""
-    if not source.text:
+    if not source:
         return
     header, inside = layout.panel("PE_requirement_source", default_closed=True)
-    if source.check:
-        header.label(text=f"After {source.check}", translate=False)
+    if check:
+        header.label(text=f"After {check}", translate=False)
     else:
         draw_label(header, "Source")
     if inside is not None:
-        draw_sentence(inside, context, source.text)
-
-
-def _draw_mesh_file(layout: UILayout, row: PropertyGroup) -> None:
-    """Draw the mesh file with a button for the file browser.
-
-    A property of a file has such a button of its own, but bpy ends when one with callbacks is set.
-    """
-    line = layout.row(align=True)
-    draw_properties(line, row, ("body_mesh",))
-    line.operator("pe.open_body_mesh", text="", icon="FILEBROWSER")
+        draw_sentence(inside, context, source)
 
 
 def _draw_zone(layout: UILayout, row: PropertyGroup) -> None:
-    """Draw the zone: its shape with the fields of it, and what is less often changed."""
-    draw_properties(layout, row, ("shape",))
-    if row.shape == AREA:
-        for axis in "xy":
-            _draw_pair(layout, row, axis)
-    elif row.shape == RING:
-        _draw_pair(layout, row, "ring")
-    else:
-        draw_properties(layout, row, ("corners",))
-    draw_properties(layout, row, ("step",))
-    _, inside = _section(layout, "PE_requirement_planes", "Height and Planes")
+    """Draw the zone: its shape with its places, and what is less often changed."""
+    draw_properties(layout, row, ("shape", "zone", "step"))
+    inside = _section(layout, "PE_requirement_planes", "Height and Planes")
     if inside is not None:
-        _draw_pair(inside, row, "z")
         draw_declared(inside, row, "requirement.zone", ("step",))
-        draw_properties(inside, row, ("eyes",))
 
 
 def _draw_criterion(layout: UILayout, row: PropertyGroup) -> None:
@@ -155,21 +123,15 @@ def _draw_criterion(layout: UILayout, row: PropertyGroup) -> None:
         draw_properties(layout, row, OF_GROUND)
         return
     draw_properties(layout, row, ("sensors", "kinds"))
-    _, inside = _section(layout, "PE_requirement_criterion", "Points, Pixels, Shares")
+    inside = _section(layout, "PE_requirement_criterion", "Points, Pixels, Shares")
     if inside is not None:
-        draw_properties(inside, row, ("of",))
         draw_declared(inside, row, "requirement.criterion", ("sensors", "kinds", *OF_GROUND))
 
 
-def _section(layout: UILayout, name: str, title: str) -> tuple[UILayout, UILayout | None]:
+def _section(layout: UILayout, name: str, title: str) -> UILayout | None:
     header, inside = layout.panel(name, default_closed=True)
     draw_label(header, title)
-    return header, inside
-
-
-def _draw_pair(layout: UILayout, row: PropertyGroup, name: str) -> None:
-    pair = layout.column(align=True)
-    draw_properties(pair, row, (f"{name}_from", f"{name}_to"))
+    return inside
 
 
 CLASSES = (requirements_rows, requirements)

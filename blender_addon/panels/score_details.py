@@ -5,9 +5,10 @@ from __future__ import annotations
 import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
-from ..choices import BEFORE_MOVE, PINNED
+from ..choices import BEFORE_MOVE
+from ..diagnostics import explanation
 from ..language import draw_label, shown
-from ..operators import answer, live_lines, reference_label, sense_of, text_of
+from ..operators import answer, reference_label
 from .layout import BUTTON_PX, columns, draw_sentence, draw_stale_mark, panel
 from .sensor_lists import draw_sensor_table
 
@@ -21,7 +22,6 @@ class PE_MT_live_against(bpy.types.Menu):
     def draw(self, context: Context) -> None:
         layout = self.layout
         layout.operator("pe.live_against", text="Before the Last Move").key = BEFORE_MOVE
-        layout.operator("pe.live_against", text="Pin These Sensors", icon="PINNED").key = PINNED
         variants = context.scene.perception_entropy.variants
         if variants:
             layout.separator()
@@ -36,13 +36,7 @@ def live(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
     draw_label(name, "Compared With")
     label = reference_label(context.scene)
     menu.menu(PE_MT_live_against.bl_idname, text=shown(label), translate=False)
-    live = context.scene.perception_entropy.live
-    name, field = columns(layout, 0.4)
-    draw_label(name, "Known Rig")
-    field.prop(live, "anchor", text="")
-    layout.prop(live, "figures")
-    for line in live_lines(context.scene):
-        draw_sentence(layout, context, text_of(line), sense=sense_of(line))
+    layout.prop(context.scene.perception_entropy.live, "figures")
 
 
 @panel("Explain", closed=False)
@@ -51,16 +45,16 @@ def explain(layout: UILayout, settings: PropertyGroup, context: Context) -> None
     settings = context.scene.perception_entropy
     layout.operator("pe.ask_place", icon="EYEDROPPER")
     draw_answer(layout, context)
-    if settings.has_result and settings.result_words:
+    if (words := explanation(context.scene)) is not None:
         lines = layout.column(align=True)
         lines.active = not settings.result_stale
-        for line in settings.result_words.splitlines():
+        for line in words.rig:
             draw_sentence(lines, context, line[:1].upper() + line[1:], icon="DOT")
-    if settings.has_result and settings.result_sureness:
-        lines = layout.box().column(align=True)
-        lines.active = not settings.result_stale
-        draw_label(lines, "How sure the search is")
-        for line in settings.result_sureness.splitlines():
+        if words.search:
+            lines = layout.box().column(align=True)
+            lines.active = not settings.result_stale
+            draw_label(lines, "How sure the search is")
+        for line in words.search:
             text = line.strip()
             draw_sentence(lines, context, text[:1].upper() + text[1:], icon="DOT")
     if settings.has_result:
@@ -85,20 +79,21 @@ PART_SHARE, NARROW_PART_SHARE = 0.5, 0.3
 
 def _breakdown_is_shown(context: Context) -> bool:
     settings = context.scene.perception_entropy
-    return settings.has_result and len(settings.result_parts) > 0
+    return settings.has_result and len(settings.result.parts) > 0
 
 
 @panel("By Zone and Class", poll=_breakdown_is_shown)
 def breakdown(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
     """Entropy and coverage by zone of the ground, and by class of object"""
+    result = settings.result
     draw_stale_mark(layout, settings)
     column = layout.box().column(align=True)
     column.active = not settings.result_stale
     for is_class, title in ((False, "Zone"), (True, "Class")):
-        has_ap = is_class and bool(settings.result_ap)
+        has_ap = is_class and bool(result.ap)
         more = ("AP", "ahead") if has_ap else ()
         draw_part_row(column, title, "nats", "seen", *more, header=True)
-        for part in settings.result_parts:
+        for part in result.parts:
             if part.is_class == is_class:
                 more = (part.ap, part.reach) if has_ap else ()
                 digits = 0 if has_ap else 1  # four figures have to fit

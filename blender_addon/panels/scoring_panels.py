@@ -8,7 +8,7 @@ from bpy.types import Context, PropertyGroup, UILayout
 
 from ..choices import CUSTOM, FROM_BOXES, OBJECTS, REGIONS
 from ..language import draw_label, shown
-from ..operators import kind_label, own_fields
+from ..sensor_kinds import kind_label, row_of
 from .layout import (
     columns,
     draw_declared,
@@ -73,7 +73,7 @@ def advanced(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
     draw_list(layout, own_sensors_rows, settings, names, buttons, rows=2, menu="kind")
     if settings.own_index < len(settings.own_sensors):
         sensor = settings.own_sensors[settings.own_index]
-        draw_properties(layout.column(), sensor, ("kind", *own_fields(sensor.kind)))
+        draw_properties(layout.column(), sensor, ("kind", *row_of(sensor.kind).own_fields))
         if sensor.problem:
             draw_sentence(layout, context, sensor.problem, icon="ERROR")
     draw_label(layout, "AP = a ln m - c ln R + b")

@@ -6,12 +6,11 @@ from typing import Any
 
 from bpy.types import Context, PropertyGroup, UILayout
 
-from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, EXPECTED_AP, OBJECTS, ON_SLOTS, RANDOM
-from ..language import shown
-from .layout import columns, draw_declared, draw_list, draw_properties, panel, row_list
+from ..choices import BY_GROUP, BY_PARTS, EXPECTED_AP, OBJECTS, ON_SLOTS, RANDOM
+from .layout import draw_declared, draw_list, draw_properties, panel, row_list
 from .variant_panels import draw_front
 
-ICONS = {BY_PARTS: "OBJECT_DATA", BY_MATERIAL: "MATERIAL", BY_GROUP: "WPAINT_HLT"}
+ICONS = {BY_PARTS: "OBJECT_DATA", BY_GROUP: "WPAINT_HLT"}
 KEPT = ("keep_blind_ground", "keep_blind_sector", "keep_traffic_ap")
 FIRST = ("objective", *KEPT)
 ELSEWHERE = (
@@ -38,25 +37,9 @@ def search(layout: UILayout, settings: PropertyGroup, _context: Context) -> None
 
 @row_list("PE_UL_mounts")
 def mounts_rows(_context: Context, layout: UILayout, _settings: Any, item: Any) -> None:
-    """The mounts: name, faces or slots"""
-    name, what = columns(layout, 0.6)
+    """The mounts: faces or slots, and name"""
     icon = SLOTS_ICON if item.kind == ON_SLOTS else ICONS[item.faces]
-    name.prop(item, "name", text="", emboss=False, icon=icon)
-    what.alignment = "RIGHT"
-    made = made_of(item)
-    what.label(text="" if made == item.name else shown(made), translate=False)
-
-
-def made_of(mount: PropertyGroup) -> str:
-    """Return in a word or two which faces or slots a mount has."""
-    if mount.kind == ON_SLOTS:
-        return mount.slots.name if mount.slots else "no collection"
-    if mount.faces == BY_MATERIAL:
-        return mount.material.name if mount.material else "no material"
-    if mount.faces == BY_GROUP:
-        return mount.group or "no group"
-    names = [row.part.name for row in mount.parts if row.part]
-    return names[0] if len(names) == 1 else f"{len(names)} parts"
+    layout.prop(item, "name", text="", emboss=False, icon=icon)
 
 
 @panel("Mounts", parent="PE_PT_search", count="mounts")
@@ -80,8 +63,8 @@ def draw_mount(layout: UILayout, mount: PropertyGroup) -> None:
         for row in mount.parts:
             column.prop(row, "part", text="")
         column.operator("pe.mount_parts", icon="RESTRICT_SELECT_OFF")
-    named = {BY_PARTS: (), BY_MATERIAL: ("material",), BY_GROUP: ("group",)}[mount.faces]
-    draw_properties(layout, mount, named)
+    else:
+        draw_properties(layout, mount, ("group",))
     draw_declared(layout, mount, "optimize.mount")
 
 
@@ -93,7 +76,7 @@ def constraints(layout: UILayout, _settings: PropertyGroup, context: Context) ->
     obj = context.active_object
     if obj is not None and not obj.perception_entropy.is_sensor:
         layout.label(text=f"{obj.name}:", translate=False)
-        draw_properties(layout, obj.perception_entropy, ("is_no_go", "is_rack"))
+        draw_properties(layout, obj.perception_entropy, ("is_no_go",))
 
 
 @panel("Goals", parent="PE_PT_search")
@@ -104,7 +87,7 @@ def goals(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     draw_declared(layout, settings, "goals", KEPT)
     draw_declared(layout, settings, "optimize.front")
     layout.operator("pe.choose_sensors", text="Find Front", icon="FCURVE")
-    if settings.front:
+    if settings.front.rows:
         draw_front(layout, settings, context)
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from bpy.types import Context, Object, PropertyGroup, UILayout
 
+from ..bridge import holder_of
 from ..language import draw_label, shown
-from ..operators import holder_of
 from ..properties import AXIS_LABELS
 from .layout import draw_sentence, panel
 

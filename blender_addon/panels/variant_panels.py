@@ -102,7 +102,7 @@ def selection(layout: UILayout, settings: PropertyGroup, context: Context) -> No
     draw_properties(limits, settings, (*own, "currency"))
     draw_declared(limits, settings, "selection", ("currency",))
     layout.operator("pe.choose_sensors", icon="VIEWZOOM")
-    if settings.front:
+    if settings.front.rows:
         draw_front(layout, settings, context)
 
 
@@ -122,17 +122,17 @@ def draw_options(layout: UILayout, obj: Object) -> None:
 
 
 def draw_front(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
-    """Draw the Pareto front: two lines a design, its variant and its figures."""
-    column = layout.box().column(align=True)
-    if settings.front_note:
-        draw_sentence(column, context, settings.front_note, icon="INFO")
-    for row in settings.front:
+    """Draw the Pareto front: a button for each design's variant, its name and its figures."""
+    column, front = layout.box().column(align=True), settings.front
+    if front.note:
+        draw_sentence(column, context, front.note, icon="INFO")
+    for row in front.rows:
         icon = "RADIOBUT_ON" if row.key == settings.variant_key else "RADIOBUT_OFF"
         line = column.row()
         line.operator("pe.switch_variant", text="", icon=icon, emboss=False).key = row.key
         line.label(text=row.name, translate=False)
         draw_sentence(column, context, row.figures, icon="BLANK1")
-    draw_sentence(column, context, settings.front_told)
+    draw_sentence(column, context, front.told)
 
 
 CLASSES = (PE_MT_known_rigs, variants_rows, variants, selection)

@@ -8,7 +8,6 @@ from __future__ import annotations
 import bpy
 from bpy.props import PointerProperty
 
-from ..bridge import SensorFigures, StoredWarning, figures_of_sensor
 from ..sensor_kinds import DEFAULT_MODEL
 from ..view_settings import ViewSettings
 from .callbacks import model_suggestions
@@ -34,8 +33,8 @@ VIEW_ROWS = rows_of(ViewSettings)
 """Fields of the settings of the 3D view, by property."""
 
 __all__ = ["AXIS_LABELS", "CLASSES", "DEFAULT_MODEL", "DEFAULT_REGION", "FREE_BY_DEFAULT", "ROWS"]
-__all__ += ["VIEW_ROWS", "DeclaredRow", "SensorFigures", "StoredWarning", "declared_rows"]
-__all__ += ["figures_of_sensor", "model_suggestions"]
+__all__ += ["VIEW_ROWS", "DeclaredRow", "declared_rows"]
+__all__ += ["model_suggestions"]
 
 CLASSES = (
     PE_CurveSettings,

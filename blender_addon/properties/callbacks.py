@@ -41,11 +41,6 @@ def select_object_by_index(_settings: PropertyGroup, number: int) -> None:
         layer.objects.active = objects[number]
 
 
-def requirement_chosen(_settings: PropertyGroup, _context: Context) -> None:
-    """Update callback of the list of requirements: the view goes to the chosen one."""
-    signals.requirement_chosen.emit()
-
-
 def switched(_settings: PropertyGroup, _context: Context) -> None:
     """Update callback of the switch of the live score."""
     signals.live_toggled.emit()

@@ -8,9 +8,9 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from bpy.types import Collection, Context, Material, Object, PropertyGroup
+from bpy.types import Collection, Context, Object, PropertyGroup
 
-from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, ON_SLOTS, ON_SURFACE, REGION_ITEMS, free_name
+from ..choices import BY_GROUP, BY_PARTS, ON_SLOTS, ON_SURFACE, REGION_ITEMS, free_name
 from ..engine import geometry, kinds, pe
 from ..sensor_kinds import OwnCamera, OwnLidar, OwnTable, own_kinds
 from .callbacks import changed, model_suggestions, redraw
@@ -91,7 +91,6 @@ KINDS = (
 
 FACES = (
     (BY_PARTS, "Parts", "Objects of the vehicle, all of their faces"),
-    (BY_MATERIAL, "Material", "All faces of the vehicle that have a material"),
     (BY_GROUP, "Painted", "Faces of the vehicle's meshes whose corners all weigh more than a half "
      "in a vertex group"),
 )  # fmt: skip
@@ -148,9 +147,6 @@ class PE_MountSettings(SurfaceMountFields, PropertyGroup):
     kind: menu("Kind", "Surface or slots", KINDS, update=redraw)
     faces: menu("Faces", "How the faces of the vehicle are chosen", FACES, update=redraw)
     parts: rows("Parts", "Objects whose faces belong to the mount", PE_MountPart)
-    material: pointer(
-        "Material", "Faces of the vehicle with this material", Material, update=redraw
-    )
     group: text(
         "Vertex Group",
         "Faces with a weight above 0.5 at all corners, painted in Weight Paint",
@@ -166,22 +162,25 @@ class PE_MountSettings(SurfaceMountFields, PropertyGroup):
     )
 
 
+class Switched:
+    """A row that can be switched off."""
+
+    enabled: switch("Used", "Count this row", True, update=changed)
+
+
 StateFields: Any = group_of(geometry.State)
 WeatherFields: Any = group_of(kinds.Weather)
 
 
-class PE_State(StateFields, PropertyGroup):
+class PE_State(StateFields, Switched, PropertyGroup):
     """A state of the vehicle: a frame of the scene, and the motions that were read there."""
 
-    enabled: switch("Used", "Score this state, too", True, update=changed)
     frame: whole("Frame", "Frame of the scene that shows this state", -1, min=-1)
     table: text("Motions", "Motions as JSON", update=changed)
 
 
-class PE_Weather(WeatherFields, PropertyGroup):
+class PE_Weather(WeatherFields, Switched, PropertyGroup):
     """A weather. At most one of rain, snow and fog is above 0."""
-
-    enabled: switch("Used", "Score this weather, too", True, update=changed)
 
 
 class PE_Variant(PropertyGroup):
@@ -197,8 +196,7 @@ class PE_Variant(PropertyGroup):
     note: text("Note", "Note about the variant")
     sensors: text("Sensors", "All sensors, as JSON")
     score_json: text("Score", "The full score: zones, classes, sensors")
-    figures_json: text("Figures", "Blind ground, reach ahead and expected AP")
-    figures_of: text("Figures Of", "Vehicle, prior, settings, height and class of the figures")
+    figures_json: text("Figures", "Blind ground, reach, expected AP, and what they are of")
     signature: text("Signature", "Vehicle, prior and settings of the score")
     stale: switch("Stale", "Vehicle, prior or settings have changed since the variant was scored")
 

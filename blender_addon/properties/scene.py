@@ -11,15 +11,8 @@ from bpy.types import Collection, PropertyGroup
 from .. import bridge
 from ..choices import PRIORS
 from ..engine import search
-from .callbacks import (
-    changed,
-    kinds_to_add,
-    redraw,
-    requirement_chosen,
-    select_object_by_index,
-    selected_object_index,
-)
-from .declared import scene_group
+from .callbacks import changed, kinds_to_add, redraw, select_object_by_index, selected_object_index
+from .declared import mixin, scene_group
 from .fields import menu, pointer, rows, switch, text, whole
 from .list_rows import (
     PE_CurveSettings,
@@ -44,17 +37,36 @@ PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) 
 
 
 StudyFields: Any = scene_group()
-ResultFields: Any = bridge.stored_fields(bridge.StoredResult, "result_shown")
-CheckFields: Any = bridge.stored_fields(bridge.StoredChecks, "checks_shown")
-FrontFields: Any = bridge.stored_fields(bridge.StoredFront, "front_shown")
+LISTS = (
+    ("focus", "focus_index", "Regions and classes with another weight", PE_FocusSettings),
+    ("own_sensors", "own_index", "Sensor models that only this file has", PE_OwnSensorSettings),
+    ("mounts", "mount_index", "Surfaces or slots for sensors", PE_MountSettings),
+    ("requirements", "requirement_index", "Zones where bodies have to be seen", PE_Requirement),
+    ("states", "state_index", "States of the vehicle: frames of the scene", PE_State),
+    ("weathers", "weather_index", "Weathers in which the rig is scored, too", PE_Weather),
+    ("variants", "variant_index", "Saved sets of sensors for this vehicle", PE_Variant),
+)
+"""Lists of rows: the properties of the rows and of the selected row's place, what they are, and a
+row's group."""
 
 
-class PE_SceneSettings(StudyFields, ResultFields, CheckFields, FrontFields, PropertyGroup):
+def _lists() -> Any:
+    """Return a mixin with the lists."""
+    properties = {}
+    for name, index, about, group in LISTS:
+        label = name.replace("_", " ").title()
+        properties[name] = rows(label, about, group)
+        drawn = redraw if name == "requirements" else None  # the view shows the selected one
+        properties[index] = whole(f"{label}: Selected", "Row of the list", min=0, update=drawn)
+    return mixin("Lists", properties)
+
+
+ListFields: Any = _lists()
+
+
+class PE_SceneSettings(StudyFields, ListFields, bridge.ResultViews, PropertyGroup):
     """The study's settings, and the last result."""
 
-    version: whole(
-        "Version", "Version of the stored settings; 0: older than versions, or not saved yet", min=0
-    )
     kind_to_add: menu("Kind", "Kind of sensor that Add and Place put on the vehicle", kinds_to_add)
     vehicle: pointer(
         "Vehicle",
@@ -71,40 +83,19 @@ class PE_SceneSettings(StudyFields, ResultFields, CheckFields, FrontFields, Prop
         options=PATH_OPTIONS,
         update=changed,
     )
-    focus: rows(
-        "Focus",
-        "Regions and classes with a higher or lower weight than in the prior",
-        PE_FocusSettings,
-    )
-    focus_index: whole("Selected Focus", "Row of the list whose settings are shown", min=0)
     curves: rows("AP Curves", "AP by measurement, for each kind of sensor", PE_CurveSettings)
-    own_sensors: rows("Own Sensors", "Sensor models that only this file has", PE_OwnSensorSettings)
-    own_index: whole("Selected Own Sensor", "Row of the list whose figures are shown", min=0)
-    mounts: rows("Mounts", "Surfaces or slots for sensors", PE_MountSettings)
     selected_sensor: whole(
         "Selected Sensor",
         "Place of the selected sensor among the scene's objects",
         get=selected_object_index,
         set=select_object_by_index,
     )
-    mount_index: whole("Selected Mount", "Row of the list whose settings are shown", min=0)
-    requirements: rows("Requirements", "Zones in which test bodies have to be seen", PE_Requirement)
-    requirement_index: whole(
-        "Requirement",
-        "The 3D view goes to the worst place of the requirement",
-        min=0,
-        update=requirement_chosen,
-    )
-    states: rows("States", "States of the vehicle: frames of the scene", PE_State)
-    state_index: whole("State", "Row of the list", min=0)
     drawn_frame: whole(
         "Drawn at Frame",
         "Frame at which the vehicle is as it is drawn: scores and files are of it",
         1,
         min=0,
     )
-    weathers: rows("Weathers", "Weathers in which the rig is scored, too", PE_Weather)
-    weather_index: whole("Weather", "Row of the list", min=0)
     method: menu("Method", "Method of the search", METHODS, default=search.DEFAULT_METHOD)
     start_variants: switch(
         "From Variants", "Searches also start from all other variants; all starts share the budget"
@@ -145,21 +136,13 @@ class PE_SceneSettings(StudyFields, ResultFields, CheckFields, FrontFields, Prop
         "Before Looking", "Camera and size of pictures before a sensor was looked through, as JSON"
     )
 
-    views_before_look: text(
-        "Views Before Looking", "3D views as they were before a sensor was looked through, as JSON"
-    )
-
-    result_shown: text("Shown Result", "Figures of the panel, as JSON")
-    checks_shown: text("Checks", "Warnings, as JSON")
-    front_shown: text("Front", "The last Pareto front, as JSON")
-    has_result: switch("Has Result", "A score is stored")
+    warnings_json: text("Checks", "Warnings, as JSON")
+    front_json: text("Front", "The last Pareto front, as JSON")
     result_json: text("Result", "The last result in full, as result.json holds it")
     result_signature: text(
         "Signature", "Identifies the scored scene, to find out whether the result is still valid"
     )
     result_stale: switch("Stale", "The scene has changed since the result was made")
 
-    variants: rows("Variants", "Saved sets of sensors for this vehicle", PE_Variant)
-    variant_index: whole("Selected Variant", "Selected row of the list", min=0)
     variant_key: whole("Active Variant", "Key of the scene's active variant; 0: none")
     variant_changed: switch("Changed", "The scene differs from its active variant")

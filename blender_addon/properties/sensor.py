@@ -184,7 +184,6 @@ class PE_ObjectSettings(GroundPose, CurveFields, PropertyGroup):
         search=racks_of_scene,
         search_options={"SUGGESTION"},
     )
-    is_rack: switch("Is a Rack", "Sensors that are parented to this object move as one in a search")
     is_no_go: switch(
         "No-Go Area",
         "In a search, no part of a sensor may be in the box round this object",
@@ -203,11 +202,6 @@ class PE_ObjectSettings(GroundPose, CurveFields, PropertyGroup):
         options={"HIDDEN"},
     )
 
-    stands_when_dropped: switch(
-        "Stands When Dropped",
-        "Stands upright on the surface when it is dropped from the asset browser",
-        options={"HIDDEN"},
-    )
     is_parked: switch(
         "Is Inactive",
         "This sensor is inactive, because only other variants have it",

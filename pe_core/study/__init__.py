@@ -17,7 +17,7 @@ from ..base.setting import (
 from ..base.values import Angle, Name, Number, Whole
 from ..search import METHODS, SCHEDULED_METHOD, Robustness
 from . import requirement_file, requirement_search
-from .condition_table import ConditionTable, condition_table
+from .condition_table import ConditionScore, ConditionTable, condition_table
 from .conditions import Conditions, StateInWeather, state_from_dict, state_table
 from .file_names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW_PAGE, SCHEMA, SEARCH, STUDY
 from .mounting_file import mounts_table
@@ -39,7 +39,7 @@ from .time_file import InTime, time_of_text, time_text
 
 __all__ = ["AREAS", "MESH", "METHODS", "OBJECTIVES", "OPTIMIZED", "REQUIRED", "RESULT"]
 __all__ += ["REVIEW_PAGE", "SCHEDULED_METHOD", "SCHEMA", "SEARCH", "STUDY"]
-__all__ += ["Angle", "ConditionTable", "Conditions", "Name", "Number", "OneOf"]
+__all__ += ["Angle", "ConditionScore", "ConditionTable", "Conditions", "Name", "Number", "OneOf"]
 __all__ += ["Pair", "Panel", "Robustness", "Search", "Setting", "Several", "StateInWeather"]
 __all__ += ["Study", "Texts", "Toggle", "Triple", "Whole"]
 __all__ += ["condition_table", "is_switch", "load_study", "load_study_data", "menu_of"]

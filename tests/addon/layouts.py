@@ -55,8 +55,7 @@ class Layout:
 def drawn(cls, **context) -> Layout:
     """Return what a panel or a menu draws in a context of these members."""
     layout = Layout()
-    own = {"maker": cls.maker} if hasattr(cls, "maker") else {}
-    cls.draw(SimpleNamespace(layout=layout, **own), SimpleNamespace(**context))
+    cls.draw(SimpleNamespace(layout=layout), SimpleNamespace(**context))
     return layout
 
 

@@ -104,8 +104,11 @@ def seen_rig(car) -> bpy.types.Scene:
 def drawn(scene) -> dict[str, dict[str, LayerShape]]:
     """Return what the 3D view shows of a scene: shapes by layer, then by sensor."""
     scheduler.update()
-    layers = shown.layers(scene.name)
-    return {layer: {n: item.shape for n, item in items.items()} for layer, items in layers}
+    return {
+        layer: {n: item.shape for n, item in items.items()}
+        for (of, layer), items in shown.items()
+        if of == scene.name
+    }
 
 
 def study():

@@ -3,7 +3,6 @@
 import bpy
 import numpy as np
 import pytest
-from mathutils import Vector
 
 from blender_addon import sensor_kinds
 from blender_addon.engine import catalog
@@ -79,18 +78,3 @@ def test_stands_on_the_roof_of_the_example_vehicles(addon, vehicle, model):
     below = body.first_hit(place, [(0.0, 0.0, -1.0)]).distance[0]
     assert below == pytest.approx(mount.stand_off_m, abs=0.006)  # rounded to a centimetre
     assert not np.isfinite(body.first_hit(place, [(1.0, 0.0, 0.0)]).distance).any()
-
-
-@pytest.mark.parametrize("normal", [(0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)])
-def test_a_cursor_in_the_surface_is_where_it_stands(scene, normal):
-    """The cursor snapped to roof, side or front: the origin is clear of it along the normal."""
-    scenes.add_car(scene)
-    bpy.context.view_layer.update()
-    middle, half = Vector((0.0, 0.0, 0.55)), Vector((2.0, 0.9, 0.35))
-    if normal[2]:
-        middle, half = Vector((-0.3, 0.0, 1.2)), Vector((1.0, 0.8, 0.3))
-    surface = middle + Vector(n * h for n, h in zip(normal, half, strict=True))
-    scene.cursor.location = surface
-    bpy.ops.pe.add_sensor(model="Pandar64")
-    assert (bpy.context.object.location - surface).length == pytest.approx(0.15, abs=1e-5)
-    assert (bpy.context.object.location - surface).normalized().dot(Vector(normal)) > 0.9999

@@ -30,8 +30,7 @@ choices:
 sensor_kinds: engine
 view_settings: choices engine
 translation_context:
-preferences: engine
-language: engine preferences translation_context
+language: engine translation_context
 own_catalog: engine
 properties: bridge choices engine sensor_kinds signals view_settings
 bridge: choices engine sensor_kinds view_settings
@@ -46,17 +45,16 @@ consistency: bridge sensor_cache
 viewport: language
 result_staleness: bridge sensor_cache signals vehicle_cache
 diagnostics: analysis_calls bridge engine engine_process sensor_cache signals vehicle_cache
-    viewport
 location_query: bridge engine engine_process sensor_cache signals vehicle_cache
 housing: engine sensor_cache sensor_kinds
-library: preferences
-preferences_panel: engine language library own_catalog preferences properties sensor_kinds
+library:
+preferences_panel: engine language library own_catalog properties
     signals translation_context
 live: analysis_calls bridge change_events choices engine engine_calls engine_process language
-    preferences sensor_cache signals vehicle_cache viewport
+    sensor_cache signals vehicle_cache viewport
 search_curve: engine viewport
-overlay: engine engine_calls view_settings viewport
-overlay.snapshot: bridge engine live location_query overlay preferences search_curve sensor_cache
+overlay: choices engine engine_calls view_settings viewport
+overlay.snapshot: bridge choices engine live location_query overlay search_curve sensor_cache
     vehicle_cache view_settings
 overlay.scheduler: analysis_calls engine engine_process overlay overlay.snapshot sensor_cache
     viewport
@@ -64,10 +62,11 @@ overlay.surroundings: engine overlay vehicle_cache viewport
 overlay.draw_handler: bridge engine engine_process overlay overlay.scheduler
     overlay.surroundings vehicle_cache viewport
 operators: bridge choices diagnostics engine engine_calls engine_process housing language library
-    live location_query overlay overlay.surroundings own_jobs preferences properties
-    result_staleness search_curve sensor_cache sensor_kinds signals translation_context
+    live location_query overlay overlay.surroundings own_jobs properties
+    result_staleness search_curve sensor_kinds signals translation_context
     vehicle_cache view_settings viewport
-panels: choices language operators properties view_settings
+panels: bridge choices diagnostics engine language live operators properties sensor_cache
+    sensor_kinds view_settings
 commands: bridge engine result_staleness
 wiring: bridge change_events consistency diagnostics engine_process housing live location_query
     operators overlay.draw_handler overlay.scheduler result_staleness sensor_cache signals

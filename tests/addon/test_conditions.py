@@ -146,9 +146,9 @@ def test_showing_another_state_makes_no_score_stale_and_a_change_there_does(car)
 
 def test_a_score_made_while_another_state_is_shown_is_current(car):
     settings = scored_with_a_state(car)
-    drawn = settings.result_entropy
+    drawn = settings.result.entropy
     car.frame_set(OPEN_FRAME)
-    assert bpy.ops.pe.score() == {"FINISHED"} and settings.result_entropy == drawn
+    assert bpy.ops.pe.score() == {"FINISHED"} and settings.result.entropy == drawn
     assert bpy.ops.pe.save_variant() == {"FINISHED"}
     first, second = settings.variants
     assert bridge.records_of(first) == bridge.records_of(second)  # both as drawn

@@ -62,7 +62,7 @@ def test_a_job_the_command_lines_and_the_panel_find_the_same_bits(settings, tmp_
         assert own == {name: found[0][name] for name in found[0] if name not in ALONE}
     assert (inside / "history.csv").read_bytes() == (outside / "history.csv").read_bytes()
     first, last = (each.ap for each in job.outcome.in_traffic)
-    told = [settings.result_figures[which]["traffic"]["ap"] for which in ("before", "after")]
+    told = [settings.result.figures[which]["traffic"]["ap"] for which in ("before", "after")]
     assert told == [first, last]
 
 
@@ -102,7 +102,7 @@ def test_the_panels_show_what_an_objective_needs_and_found(settings):
     settings.evaluations = 2
     assert bpy.ops.pe.optimize() == {"FINISHED"}
     shown = layouts.drawn(main.main, **vars(layouts.Window(scene))).texts("label")
-    first, last = (settings.result_figures[w]["traffic"]["ap"] for w in ("before", "after"))
+    first, last = (settings.result.figures[w]["traffic"]["ap"] for w in ("before", "after"))
     row = shown[shown.index("AP in Traffic") + 1]
     assert row == f"{first:.3f} \N{RIGHTWARDS ARROW} {last:.3f}"
     settings.objective = "entropy"
@@ -116,13 +116,14 @@ def test_choices_by_ap_are_variants_with_their_figures(settings):
         row = bpy.data.objects["roof"].perception_entropy.options.add()
         row.model, row.price = model, price
     assert bpy.ops.pe.choose_sensors() == {"FINISHED"}
-    assert [row.figures.split()[::2] for row in settings.front] == [
-        ["price", "ap", "entropy"] for _ in settings.front
+    assert [row.figures.split()[::2] for row in settings.front.rows] == [
+        ["price", "ap", "entropy"] for _ in settings.front.rows
     ]
-    assert settings.front_note == "" and "front of price, expected AP; 2 " in settings.front_told
+    front = settings.front
+    assert front.note == "" and "front of price, expected AP; 2 " in front.told
     settings.objective = "entropy"
     assert bpy.ops.pe.choose_sensors() == {"FINISHED"}
-    assert len(settings.front) == 2 and settings.front_note == pt.advice.OTHER_HARDWARE
+    assert len(settings.front.rows) == 2 and settings.front.note == pt.advice.OTHER_HARDWARE
 
 
 def test_variants_with_other_hardware_are_compared_with_a_note(settings):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from blender_addon import bridge, diagnostics, location_query, panels
-from blender_addon.engine import advice, pe
+from blender_addon.engine import advice, jobs, pe
 from tests.addon import scenes
 from tests.addon.layouts import Layout, Window, drawn
 
@@ -15,7 +15,7 @@ from tests.addon.layouts import Layout, Window, drawn
 def told(scene):
     """What is odd, by whose it is: (subject, code)."""
     diagnostics.run_checks()
-    return [(row.subject, row.code) for row in scene.perception_entropy.result_warnings]
+    return [(row.subject or "", row.code) for row in scene.perception_entropy.result_warnings]
 
 
 def mend(scene, code):
@@ -23,7 +23,8 @@ def mend(scene, code):
     diagnostics.run_checks()
     rows = scene.perception_entropy.result_warnings
     row = next(each for each in rows if each.code == code)
-    done = bpy.ops.pe.mend(fix=row.fix, subject=row.subject, amount=row.amount)
+    amount = (*row.amount, 0.0, 0.0, 0.0)[:3]
+    done = bpy.ops.pe.mend(fix=row.fix, subject=row.subject or "", amount=amount)
     bpy.context.view_layer.update()
     return done
 
@@ -103,11 +104,11 @@ def test_words_are_the_engines(car):
     bpy.ops.pe.score()
     study = scenes.study()
     score = study.evaluator().score(study.rig)
-    assert car.perception_entropy.result_words.splitlines() == list(advice.rig_words(score))
-    own = bridge.figures_of_sensor(car.objects["roof"])
+    told = diagnostics.explanation(car)
+    assert told.rig == advice.rig_words(score)
     shares = advice.occluded_shares(study.rig["roof"], score.per_sensor["roof"], study.vehicle)
-    assert dict(own.parts) == pytest.approx(shares)
-    assert own.parts, "a score without a part in the way proves nothing here"
+    assert dict(told.rows["roof"].occluded_by) == pytest.approx(shares)
+    assert shares, "a score without a part in the way proves nothing here"
 
 
 def test_the_table_has_every_sensor_of_the_score(car):
@@ -122,9 +123,13 @@ def test_the_table_has_every_sensor_of_the_score(car):
     study = scenes.study()
     seen = advice.outlook(study.sight(), study.rig)
     score = study.evaluator().score(study.rig)
-    bridge.store_text(car, study, score, seen)
-    assert any(f.where != "-" for f in car.perception_entropy.result_sensors.values())
-    assert not any("without it" in line for line in car.perception_entropy.result_words.split("\n"))
+    outcome = jobs.Outcome("score", study, study, score, score)
+    diagnostics._explained[car.name] = diagnostics._words(
+        outcome, car.perception_entropy.result_signature, seen
+    )
+    told = diagnostics.explanation(car)
+    assert any(row.zone for row in told.rows.values())
+    assert not any("without it" in line for line in told.rig)
     for width in (240, 600):
         window, layout = Window(car, car.objects["roof"]), Layout()
         window.region.width = width
@@ -199,9 +204,9 @@ def test_a_lost_library_is_reported_by_name_and_marks_the_result(car, tmp_path):
     assert ("", "missing") in told(scene)
     bpy.ops.pe.score()
     settings = scene.perception_entropy
-    assert "cabin is missing" in settings.result_missing
-    assert "library.blend" in settings.result_missing
-    assert settings.result_entropy != pytest.approx(whole, abs=1e-6), "nothing was missing"
+    assert "cabin is missing" in settings.result.missing[0]
+    assert "library.blend" in settings.result.missing[0]
+    assert settings.result.entropy != pytest.approx(whole, abs=1e-6), "nothing was missing"
     assert '"code": "missing"' in settings.result_json
 
 
@@ -211,7 +216,7 @@ def test_a_driver_that_failed_is_reported_by_name(car):
     scenes.depsgraph().update()
     assert ("roof", "driver") in told(car)
     bpy.ops.pe.score()
-    assert "driver of its location did not run" in car.perception_entropy.result_missing
+    assert "driver of its location did not run" in car.perception_entropy.result.missing[0]
 
 
 def test_warnings_of_before_a_move_say_so_until_it_is_looked_over(car, monkeypatch):

@@ -4,7 +4,7 @@ import bpy
 import pytest
 
 import pe_core as pe
-from blender_addon import bridge
+from blender_addon import bridge, diagnostics
 from pe_core.search import Goals
 from pe_tools import jobs
 from pe_tools.jobs import FrontJob, front_dict
@@ -50,12 +50,12 @@ def test_the_panel_finds_the_front_of_the_job(asked):
     list(job)
     assert bpy.ops.pe.choose_sensors() == {"FINISHED"}
     names = [design.name for design in job.trade_off.front]
-    assert [row.name for row in settings.front] == names
-    assert {row.key for row in settings.variants} >= {row.key for row in settings.front}
+    assert [row.name for row in settings.front.rows] == names
+    assert {row.key for row in settings.variants} >= {row.key for row in settings.front.rows}
     figures = front_dict(job.trade_off)["designs"][0]["figures"]
-    assert settings.front[0].figures == ", ".join(f"{n} {v:.4g}" for n, v in figures.items())
-    assert settings.front_told == f"{len(names)} on the front of entropy, height"
-    [row] = [each for each in settings.variants if each.key == settings.front[0].key]
+    assert settings.front.rows[0].figures == ", ".join(f"{n} {v:.4g}" for n, v in figures.items())
+    assert settings.front.told == f"{len(names)} on the front of entropy, height"
+    [row] = [each for each in settings.variants if each.key == settings.front.rows[0].key]
     study = bridge.study_of_variant(asked, row, scenes.depsgraph())
     assert study.rig["roof"].pose == job.trade_off.front[0].study.rig["roof"].pose
 
@@ -75,4 +75,4 @@ def test_runners_up_are_variants_and_their_lines_are_in_the_scene(asked, monkeyp
     assert bpy.ops.pe.optimize() == {"FINISHED"}
     settings = asked.perception_entropy
     assert "Runner-up 1" in {row.name for row in settings.variants}
-    assert "1 cm or 1 deg" in settings.result_sureness
+    assert "1 cm or 1 deg" in "\n".join(diagnostics.explanation(settings.id_data).search)

@@ -43,11 +43,11 @@ def test_result_is_shown(car):
     bpy.ops.pe.score()
     settings, data = car.perception_entropy, stored(car)
     assert settings.has_result and not settings.result_stale
-    assert settings.result_entropy == pytest.approx(data["entropy"], abs=1e-6)
+    assert settings.result.entropy == pytest.approx(data["entropy"], abs=1e-6)
     roof = bridge.figures_of_sensor(car.objects["roof"])
     assert roof is not None and roof.beams == 16 * 1800
     assert roof.occluded == data["after"]["per_sensor"]["roof"]["occluded"] > 0
-    assert "cabin" in dict(roof.parts)
+    assert "cabin" in roof.occluded_by
     front = bridge.figures_of_sensor(car.objects["front"])
     told = data["after"]["per_sensor"]["front"]
     assert (front.beams, front.occluded) == (told["beams"], told["occluded"]), "rays of its picture"
@@ -67,7 +67,7 @@ def test_warnings_are_stored_as_the_result_has_them(car):
         *((None, "height"), ("roof", "inside"))
     ]
     assert [(row.subject, row.code, row.values) for row in rows] == [
-        (each["subject"] or "", each["code"], each["values"]) for each in told
+        (each["subject"], each["code"], each["values"]) for each in told
     ]
     assert rows[0].fix == "move_vehicle"
     assert list(rows[0].amount) == pytest.approx(told[0]["amount"])
@@ -80,8 +80,8 @@ def test_what_a_search_cost_is_stored_and_shown(car):
     expected = finished(pt.OptimizeJob(scenes.study()))
     assert bpy.ops.pe.optimize() == {"FINISHED"}
     settings = car.perception_entropy
-    assert settings.result_cost == expected.cost
-    told = [settings.result_figures[which] for which in ("before", "after")]
+    assert settings.result.cost == expected.cost
+    told = [settings.result.figures[which] for which in ("before", "after")]
     assert told == [figures.to_dict() for figures in expected.figures]
     labels = " ".join(layouts.drawn(main.main, **vars(layouts.Window(car))).texts("label"))
     up = [f"{math.ceil(10.0 * figures.blind_m2) / 10.0:.1f}" for figures in expected.figures]
@@ -236,10 +236,10 @@ def test_the_start_of_a_search_is_not_scored_again_when_it_is_known(car, monkeyp
 
 def test_before_is_where_the_first_of_several_searches_began(car):
     bpy.ops.pe.score()
-    first = car.perception_entropy.result_entropy
+    first = car.perception_entropy.result.entropy
     for _ in range(2):
         bpy.ops.pe.optimize()
-        assert car.perception_entropy.result_before == first
+        assert car.perception_entropy.result.entropy_before == first
         car.perception_entropy.seed += 1
 
 
@@ -291,10 +291,10 @@ def test_a_second_stop_leaves_all_as_it_was(car):
 def test_zones_and_classes_are_kept_for_the_panel(car):
     bpy.ops.pe.score()
     after = stored(car)["after"]
-    rows = {row.name: row for row in car.perception_entropy.result_parts}
+    rows = {row.name: row for row in car.perception_entropy.result.parts}
     assert {n.lower() for n, row in rows.items() if row.is_class} == set(after["per_class"])
     assert sum(not row.is_class for row in rows.values()) == len(after["per_zone"])
     assert rows["Ahead"].coverage == pytest.approx(after["per_zone"]["front"]["coverage"])
     assert rows["Car"].entropy == pytest.approx(after["per_class"]["car"]["entropy"])
     bpy.ops.pe.score()
-    assert len(car.perception_entropy.result_parts) == len(rows)
+    assert len(car.perception_entropy.result.parts) == len(rows)

@@ -1,6 +1,6 @@
 """The live score: previews while the hand moves, exact once it rests, and nothing left behind."""
 
-import math
+import json
 from dataclasses import replace
 
 import bpy
@@ -8,18 +8,15 @@ import pytest
 
 import blender_addon
 from blender_addon import (
-    analysis_calls,
     bridge,
     change_events,
     engine_calls,
     engine_process,
-    preferences,
     result_staleness,
     signals,
 )
-from blender_addon.choices import BEFORE_MOVE, PINNED
-from blender_addon.engine import advice, catalog
-from blender_addon.live import readout, readout_text, session, state
+from blender_addon.engine import advice
+from blender_addon.live import background_figures, readout, readout_text, session, state
 from blender_addon.live.state import ShownFigures
 from tests.addon import scenes
 
@@ -44,7 +41,6 @@ def live(monkeypatch, car):
     """The car with a second sensor, in a window, the live score switched on."""
     scenes.add_sensor("front", model="Camera 60 deg", location=(1.9, 0.0, 1.2))
     monkeypatch.setattr(engine_calls, "SAMPLES", SAMPLES)
-    monkeypatch.setattr(preferences, "LIVE_BUDGET_MS", 0.0)  # but where it is tested
     for module in (change_events, session):
         monkeypatch.setattr(module, "bpy", Window)
     drag(car.objects["roof"])  # from here on it is known what there is
@@ -106,37 +102,14 @@ def test_a_drag_is_previewed_exact_at_rest_and_compared_with_where_it_began(live
     assert not is_exact(live), "asked for, not there yet"
 
 
-def test_moves_are_exact_where_the_budget_allows_it(live, monkeypatch):
-    """The last time decides; what is exact in a move is no score of the idle scene."""
-    roof, of_scene = live.objects["roof"], state.live_state(live.name)
-    drag(roof)
-    rest()
-    start, cost = reading(live).summary, of_scene.exact_cost.seconds
-    assert 0.0 < cost < 60.0
-    monkeypatch.setattr(preferences, "LIVE_BUDGET_MS", 1e6)
-    for _ in range(2):
-        drag(roof)
-        assert reading(live).exact and not reading(live).idle and not reading(live).summary.preview
-        assert told(reading(live).summary) == told(exact()) and reading(live).before == start
-        assert of_scene.exact.summary == start
-    monkeypatch.setattr(preferences, "LIVE_BUDGET_MS", 0.0)
-    drag(roof)
-    assert reading(live).summary.preview
-    live.perception_entropy.prior = "highway"  # another problem: its cost is not known
-    rest()
-    assert of_scene.exact_cost.seconds == math.inf
-
-
 def test_a_stored_result_is_not_shown_while_something_moves(live, monkeypatch):
     """Whether it is stale is known once the scene is idle."""
-    monkeypatch.setattr(preferences, "LIVE_BUDGET_MS", 1e6)
-    live.perception_entropy.has_result = True
-    live.perception_entropy.result_stale = False
+    bpy.ops.pe.score()
     drag(live.objects["roof"])
     rest()
     live.perception_entropy.result_stale = False
     drag(live.objects["roof"])
-    assert reading(live).exact and not state.shown_score(live).stored
+    assert not reading(live).exact and not state.shown_score(live).stored
 
 
 def test_a_hand_that_rests_for_a_moment_does_not_begin_a_new_drag(live, monkeypatch):
@@ -184,24 +157,6 @@ def test_of_two_moves_in_a_row_the_first_one_s_end_is_scored_later(live, monkeyp
     )
 
 
-def test_pinned_sensors_stay_what_it_is_compared_with(live):
-    start = reading(live).summary
-    bpy.ops.pe.live_against(key=PINNED)
-    for _ in range(2):
-        drag(live.objects["roof"])
-        assert reading(live).before == start or reading(live).before is None
-        rest()
-        assert told(reading(live).before) == told(start)
-        assert reading(live).baseline.label == session.PINNED_LABEL
-    live.perception_entropy.prior = "uniform"
-    rest()
-    moved = reading(live).rig
-    assert told(reading(live).before) != told(start), "scored again under the new prior"
-    assert told(reading(live).summary) == told(exact()) and reading(live).rig == moved
-    bpy.ops.pe.live_against(key=BEFORE_MOVE)
-    assert reading(live).before is None
-
-
 def test_a_variant_is_what_it_is_compared_with(live):
     start = exact()
     bpy.ops.pe.save_variant()
@@ -223,7 +178,7 @@ def test_one_score_is_shown_at_a_time(live, monkeypatch):
     bpy.ops.pe.score()
     rest()
     score, settings = state.shown_score(live), live.perception_entropy
-    assert score.stored and score.exact and score.entropy == settings.result_entropy
+    assert score.stored and score.exact and score.entropy == settings.result.entropy
     drag(live.objects["roof"])
     now = reading(live).summary
     assert state.shown_score(live)[:5] == (now.entropy, now.coverage, now.stderr, False, False)
@@ -248,7 +203,7 @@ def test_after_undo_and_redo_the_result_that_came_back_is_shown(live):
     bpy.ops.ed.undo()
     scene = bpy.context.scene
     shown = state.shown_score(scene)
-    assert shown.stored and shown.entropy == scene.perception_entropy.result_entropy != moved
+    assert shown.stored and shown.entropy == scene.perception_entropy.result.entropy != moved
     assert state.live_state(scene.name).note == ""
     rows = readout.rows_of(reading(scene), "", shown)
     assert rows[0].words[0][0] == f"{readout_text.nats_text(shown.entropy)} nats"
@@ -261,16 +216,21 @@ def test_after_undo_and_redo_the_result_that_came_back_is_shown(live):
 def test_a_search_s_gain_is_that_of_its_result(live):
     bpy.ops.pe.score()
     settings = live.perception_entropy
-    settings.result_kind, settings.result_before = "optimize", settings.result_entropy + 0.25
+    data = json.loads(settings.result_json)
+    data["kind"], data["before"]["entropy"] = "optimize", data["entropy"] + 0.25
+    settings.result_json = json.dumps(data)
     rest()
     text = readout_text.readout_of(reading(live), state.shown_score(live))
     assert (text.change, text.against) == ("0.250 better", "compared with before the search")
-    bpy.ops.pe.live_against(key=PINNED)
+    assert bpy.ops.pe.save_variant() == {"FINISHED"}
+    bpy.ops.pe.live_against(key=live.perception_entropy.variants[0].key)
     assert state.shown_score(live).before is None, "compared with something else"
 
 
 def lines(scene):
-    return [readout_text.text_of(line) for line in blender_addon.live.live_lines(scene)]
+    score, shown = state.live_state(scene.name).score, state.shown_score(scene)
+    below = background_figures.lines_below(scene.name, score, shown.exact)
+    return [readout_text.text_of(line) for line, _ in below]
 
 
 def figure_texts(shown):
@@ -285,8 +245,7 @@ def test_figures_below_the_score_are_the_engine_s_and_of_before_while_it_moves(l
     assert lines(live) == figure_texts(ShownFigures(first, None, True))
     monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
     drag(live.objects["roof"], 0.6)
-    told = figure_texts(ShownFigures(first))
-    assert lines(live) == told and all(line.startswith("Before this move: ") for line in told)
+    assert lines(live) == figure_texts(ShownFigures(first)), "of before this move"
     rest()
     second = advice.key_figures(looking, reading(live).rig, **of)
     assert second != first
@@ -297,24 +256,7 @@ def test_figures_below_the_score_are_the_engine_s_and_of_before_while_it_moves(l
     assert lines(live) == figure_texts(ShownFigures(second, first, True))
     settings.targets = "objects"
     rest()
-    assert [line for line in lines(live) if "ahead" in line] == [], "those are in the score"
-
-
-def test_a_known_rig_is_scored_on_this_vehicle_once(live, monkeypatch):
-    live.perception_entropy.live.anchor = "kitti"
-    study = replace(scenes.study(), samples=SAMPLES)
-    known = catalog.known_rig("kitti")
-    rig = catalog.rig_on(known, study.vehicle)
-    there = study.evaluator().score(rig).entropy
-    now = reading(live).summary.entropy
-    by = f"{abs(now - there):.3f} {'worse' if now > there else 'better'}"
-    assert lines(live) == [f"KITTI here: {there:.3f} nats; this is {by}"]
-    monkeypatch.setattr(analysis_calls, "known_rig_score", lambda *_: pytest.fail("scored again"))
-    drag(live.objects["roof"])
-    rest()
-    assert lines(live)[0].startswith(f"KITTI here: {there:.3f} nats")
-    live.perception_entropy.live.anchor = "NONE"
-    assert lines(live) == []
+    assert lines(live)[-1].endswith(readout_text.NO_FIGURE), "reaches are in the score"
 
 
 def test_only_what_moved_is_measured_and_the_vehicle_is_not_read(live, monkeypatch):

@@ -6,8 +6,7 @@ import bpy
 import pytest
 
 from blender_addon import panels
-from blender_addon.engine import catalog
-from blender_addon.panels import menus, sensor_menus
+from blender_addon.panels import menus
 from tests.addon import layouts, scenes
 
 
@@ -47,15 +46,3 @@ def test_every_button_of_the_menu_is_an_operator(addon):
 @pytest.mark.parametrize(("name", "draw"), panels.PLACES)
 def test_entries_are_added_and_removed(addon, name, draw):
     assert draw in getattr(bpy.types, name)._dyn_ui_initialize()
-
-
-def test_each_sensor_is_below_its_maker_in_a_search(addon):
-    """The search visits a menu's class once, without what a button passes to it."""
-    listed = layouts.drawn(sensor_menus.PE_MT_add_sensor).texts("menu")
-    assert len(listed) == len(set(listed)) > 5
-    found = {}
-    for name in listed:
-        menu = getattr(bpy.types, name)
-        texts = layouts.drawn(menu).texts("operator")
-        found |= {text.partition("   ")[0]: menu.bl_label for text in texts}
-    assert found == {name: entry.maker for name, entry in catalog.entries().items()}

@@ -42,17 +42,13 @@ def test_the_four_corners_of_file_study_and_variant_are_one(addon, tmp_path):
         row.enabled = False
     plain = replace(there, requirements=(), search=replace(there.search, requirements=None))
     pt.export_study(plain, tmp_path / "study.toml")
-    assert bpy.ops.pe.save_variant() == {"FINISHED"}
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "corners.blend"))
-    out = {name: tmp_path / name for name in ("blender", "swept", "pe")}
+    out = {name: tmp_path / name for name in ("blender", "pe")}
     search = ["optimize", "--no-review", "-o", str(out["blender"]), *FAST]
     assert main(search, "pe", io.StringIO()) == 0
-    more = ["--optimize", "--set", "optimize.seed=0", "-o", str(out["swept"]), *FAST]
-    assert main(["sweep", "Variant", *more], "pe", io.StringIO()) == 0
     alone = ["optimize", "--no-review", str(tmp_path / "study.toml"), "-o", str(out["pe"]), *FAST]
     with contextlib.redirect_stdout(io.StringIO()):
         assert pe_main(alone) == 0
-    (out["swept"],) = (path.parent for path in out["swept"].rglob("result.json"))
     first, *others = (result(folder) for folder in out.values())
     assert len(first["history"]) > 1 and len(first["mounts"]) == 2
     for other in others:

@@ -1,4 +1,4 @@
-"""Mounts in Blender: painted areas, materials, slots, ties, locks, bounds, constraints."""
+"""Mounts in Blender: painted areas, slots, ties, locks, bounds, constraints."""
 
 import bpy
 import numpy as np
@@ -78,23 +78,6 @@ def test_painted_faces_come_with_modifiers_and_instances_and_places(roof):
     assert among(area.triangles, vehicle)
 
 
-def test_a_material_is_an_area(roof):
-    cabin, row = bpy.data.objects["cabin"], roof.perception_entropy.mounts["roof area"]
-    paint, glass = (bpy.data.materials.new(name) for name in ("paint", "glass"))
-    cabin.data.materials.append(paint)
-    cabin.data.materials.append(glass)
-    cabin.data.polygons[1].material_index = 1  # the top
-    row.faces, row.material = "MATERIAL", glass
-    bpy.context.view_layer.update()
-    assert np.all(np.abs(faces()[:, :, 2] - TOP_M) < 1e-6) and len(faces()) == 2
-    row.material = bpy.data.materials.new("unused")
-    with pytest.raises(pe.InputError, match="material 'unused': expected faces of the vehicle"):
-        scenes.study()
-    row.material = None
-    with pytest.raises(pe.InputError, match="material: expected a material of the vehicle"):
-        scenes.study()
-
-
 def test_a_start_that_is_not_on_its_mount_is_reported(roof):
     bpy.data.objects["roof"].location.z += 0.1
     bpy.context.view_layer.update()
@@ -157,17 +140,6 @@ def test_sensors_on_a_rack_move_as_one(car):
     assert np.subtract(place_of("left"), place_of("eye")) == pytest.approx(before, abs=2e-5)
 
 
-def test_sensors_on_one_empty_that_is_a_rack_are_a_group(car):
-    arm = bpy.data.objects.new("arm", None)
-    car.collection.objects.link(arm)
-    for name, y in (("left", 0.4), ("eye", 0.5)):
-        scenes.add_sensor(name, CAN, location=(0.0, y, 2.2)).parent = arm
-    bpy.context.view_layer.update()
-    assert scenes.study().search.mounting.groups == ()
-    arm.perception_entropy.is_rack = True
-    assert scenes.study().search.mounting.groups == (("eye", "left"),)
-
-
 def test_locks_hold_a_coordinate(car):
     sensor = bpy.data.objects["roof"]
     sensor.lock_location[0] = sensor.lock_rotation[1] = True
@@ -182,31 +154,6 @@ def test_a_lock_on_a_surface_is_reported(roof):
     bpy.data.objects["roof"].lock_location[1] = True
     with pytest.raises(RuntimeError, match=r"sensor 'roof': expected no lock .* a lock of Y"):
         bpy.ops.pe.optimize()
-
-
-def test_limit_constraints_are_bounds(car):
-    sensor = bpy.data.objects["roof"]
-    limit = sensor.constraints.new("LIMIT_LOCATION")
-    limit.use_min_x, limit.min_x, limit.use_max_z, limit.max_z = True, -0.6, True, 1.9
-    limits = scenes.study().search.limits["roof"]
-    assert limits["x"] == (-0.6, 2.0) and limits["z"] == (0.2, 1.9) and set(limits) == {"x", "z"}
-    own = sensor.perception_entropy
-    own.bounded[0], own.bounds_low[0], own.bounds_high[0] = True, -1.0, -0.2
-    assert scenes.study().search.limits["roof"]["x"] == (-0.6, -0.2)
-    turn = sensor.constraints.new("LIMIT_ROTATION")
-    turn.use_limit_y, turn.min_y, turn.max_y = True, -0.1, 0.2
-    assert scenes.study().search.limits["roof"]["pitch"] == pytest.approx((-0.1, 0.2))
-    limit.enabled = turn.enabled = False
-    assert scenes.study().search.limits["roof"] == {"x": (-1.0, -0.2)}
-
-
-def test_bounds_and_constraints_that_leave_nothing_are_reported(car):
-    sensor = bpy.data.objects["roof"]
-    own, limit = sensor.perception_entropy, sensor.constraints.new("LIMIT_LOCATION")
-    own.bounded[0], own.bounds_low[0], own.bounds_high[0] = True, -1.0, -0.7
-    limit.use_min_x, limit.min_x = True, -0.6
-    with pytest.raises(pe.InputError, match="sensor 'roof': X: expected bounds and constraints"):
-        scenes.study()
 
 
 def test_what_every_placement_keeps_to(car):

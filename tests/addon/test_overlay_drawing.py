@@ -9,7 +9,7 @@ import pytest
 from blender_addon import bridge, engine_process, vehicle_cache
 from blender_addon.engine import graphics, pe, sight
 from blender_addon.overlay import draw_handler, scheduler, surroundings
-from blender_addon.overlay.layer_cache import shown
+from blender_addon.overlay.layer_cache import shown_of
 from tests.addon import scenes
 
 
@@ -84,7 +84,7 @@ def test_nothing_is_read_cast_or_worked_out_while_drawing(window, rig, monkeypat
         (scheduler, "update"),
     ):
         monkeypatch.setattr(owner, name, lambda *_, **__: pytest.fail(forbidden))
-    sheet = shown.items(rig.name, "ground")[""].shape.sheet
+    sheet = shown_of(rig.name, "ground")[""].shape.sheet
     assert "mesh" in vars(sheet), "its triangles would be made by the first redraw"
     rig.objects["roof"].location.x += 0.5  # even when the scene has moved on
     redraw()

@@ -3,7 +3,6 @@
 from types import SimpleNamespace
 
 import bpy
-import pytest
 
 from blender_addon.overlay import layers
 from blender_addon.panels import overlay_popover
@@ -28,22 +27,11 @@ def test_every_setting_of_the_view_is_offered(car):
     """In one state of the popover or another: none can be set by scripts alone."""
     view = car.perception_entropy.view
     shown = set()
-    for view.channels in ("FEW", "ONE", "EVERY", "ALL"):
-        shown |= set(offered(car))
-    view.ground_range = "FIXED"
     for view.ground_quantity in ("ENTROPY", "COVERAGE", "REDUNDANCY"):
         shown |= set(offered(car))
     of_group = {p.identifier for p in view.bl_rna.properties} - {"rna_type", "name"}
     of_group -= {"ghost_key", "ground_fits"}  # by buttons: in the list of variants, Fit Colors
     assert of_group <= shown
-
-
-@pytest.mark.parametrize(("channels", "number"), [("ONE", "channel"), ("EVERY", "every")])
-def test_the_number_of_a_channel_is_asked_for_where_it_means_something(car, channels, number):
-    car.perception_entropy.view.channels = channels
-    assert number in offered(car)
-    car.perception_entropy.view.channels = "ALL"
-    assert number not in offered(car)
 
 
 def test_the_header_has_a_switch_and_the_button_once(car):

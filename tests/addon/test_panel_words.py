@@ -6,6 +6,7 @@ import bpy
 import pytest
 
 from blender_addon import bridge
+from blender_addon.engine import advice
 from blender_addon.panels import CLASSES, layout, main, sensor_lists
 from tests.addon import layouts, scenes
 
@@ -57,8 +58,7 @@ def test_score_live_and_optimize_stand_first_and_late_lines_have_their_room(car)
     shown = drawn_of(car).texts("label")
     assert "Changed since it was scored" in shown
     assert {*counts, len(shown)} == {counts[0]}, "as many lines before, after and when it is stale"
-    told = "roof", "clear", {"gap": 0.6}, "", "", (0.0, 0.0, 0.0)
-    settings.result_warnings = (bridge.StoredWarning(*told),)
+    bridge.store_warnings(settings, [advice.Advice("roof", "clear", {"gap": 0.6})])
     assert len(drawn_of(car).texts("label")) == counts[0], "warnings move nothing"
     assert main.warnings.poll(layouts.Window(car))
 

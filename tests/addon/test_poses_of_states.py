@@ -34,7 +34,7 @@ def parked(car):
 
 def told(scene):
     """The lines of the panel below the lists of conditions."""
-    return scene.perception_entropy.result_conditions.splitlines()
+    return list(scene.perception_entropy.result.conditions)
 
 
 def test_panel_headless_and_pe_agree_to_the_bit(parked, tmp_path):

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import bridge
+from blender_addon import bridge, sensor_kinds
 from tests.addon import scenes
 
 ARS, PARKING = "Continental ARS408-21", "Parking module 2.5 m"
@@ -50,6 +50,7 @@ def test_objects_of_the_vehicle_are_covers(front):
 @pytest.mark.parametrize("name", ["front", "parking"])
 def test_looking_through_shows_range_over_azimuth(front, name):
     assert bpy.ops.pe.look_through(name=name) == {"FINISHED"}
-    image = bpy.data.images[f"{name} range"]
-    values = np.array(image.pixels[:]).reshape(image.size[1], image.size[0], 4)
+    assert bpy.context.scene.perception_entropy.view.show_inset
+    study = scenes.study()
+    values = sensor_kinds.field_pixels(study.rig[name], study.vehicle)
     assert len(np.unique(values[..., :3].reshape(-1, 3), axis=0)) >= 2

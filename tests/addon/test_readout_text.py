@@ -50,16 +50,37 @@ def figures(**changed):
     return advice.KeyFigures(**told | changed)
 
 
+def rows(now, before=None):
+    lines = readout_text.figure_lines(ShownFigures(now, before, True))
+    return {name.text: (figure.text, figure.sense) for name, figure in lines}
+
+
 def test_each_gain_and_each_loss_of_the_figures_has_its_colour():
     """More blind ground is a loss, however much farther objects are detected."""
-    before = figures(blind_m2=24.0, reach_m=45.0, ap=0.7, widths=(13.0, 0.0))
+    before = figures(blind_m2=24.0, reach_m=45.0, ap=0.7, widths=(14.0, 0.0))
     shown = ShownFigures(figures(blind_m2=53.0), before, True)
-    traffic, sector, blind, reach = readout_text.figure_lines(shown)
-    assert [piece.sense for piece in traffic] == [SAME, WORSE, SAME]
-    assert [piece.sense for piece in sector] == [SAME, BETTER, SAME]
-    assert [piece.sense for piece in blind] == [SAME, WORSE]
-    assert [piece.sense for piece in reach] == [SAME, BETTER]
-    rows = [readout.row_of(line) for line in (blind, reach)]
-    assert rows[0].words[1][1] == readout.SENSE_COLORS[WORSE]
-    assert rows[1].words[1][1] == readout.SENSE_COLORS[BETTER]
-    assert readout_text.sense_of(blind) == WORSE and readout_text.sense_of(blind[:1]) == SAME
+    lines = {line[0].text: line for line in readout_text.figure_lines(shown)}
+    assert [line[1].sense for line in lines.values()] == [WORSE, SAME, BETTER, WORSE, BETTER]
+    drawn = [readout.row_of(lines[name]) for name in ("Blind Ground", "Reach Ahead")]
+    assert drawn[0].words[1][1] == readout.SENSE_COLORS[WORSE]
+    assert drawn[1].words[1][1] == readout.SENSE_COLORS[BETTER]
+
+
+def test_figures_in_words():
+    assert rows(figures()) == {
+        "AP in Traffic": ("0.617 ± 0.005", SAME),
+        "Near": ("0.90", SAME),
+        "Blind Sector": ("12.1 deg (0.5 m tall)", SAME),
+        "Blind Ground": ("81.3 m²", SAME),
+        "Reach Ahead": ("47 m (pedestrian)", SAME),
+    }
+    before = figures(blind_m2=84.3, reach_m=45.0, ap=0.6, widths=(14.0, 0.0))
+    told = rows(figures(), before)
+    assert told["Reach Ahead"] == ("45 m \N{RIGHTWARDS ARROW} 47 m (pedestrian)", BETTER)
+    assert told["Blind Sector"][0] == "14.0 deg \N{RIGHTWARDS ARROW} 12.1 deg"
+    told = rows(replace(figures(reach_m=80.0, at_least=True), traffic=None))
+    assert told["AP in Traffic"][0] == readout_text.NO_FIGURE
+    assert told["Reach Ahead"][0] == "≥ 80 m (pedestrian)"
+    assert rows(figures(reach_m=None, class_name=None))["Reach Ahead"][0] == readout_text.NO_FIGURE
+    pending = readout_text.figure_lines(ShownFigures())
+    assert pending == ((readout_text.TextPiece(readout_text.PENDING),),)

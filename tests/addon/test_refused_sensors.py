@@ -34,19 +34,13 @@ def test_scale_and_mirroring_are_mended_by_the_button(roof, scale):
     roof.scale = scale
     said = refusal(roof)
     assert "Ctrl-A > Scale" in said
-    assert bpy.ops.pe.apply_scale(name="roof") == {"FINISHED"}
+    assert bpy.ops.pe.mend(fix="apply_scale", subject="roof") == {"FINISHED"}
     assert refusal(roof) == "" and tuple(roof.scale) == pytest.approx((1, 1, 1), abs=1e-6)
     after = np.array(roof.matrix_world)
     assert after[:3, 3] == pytest.approx(before[:3, 3], abs=1e-6)
     looks = before[:3, 0] * np.sign(scale[0])  # mirrored along x it looks the other way
     assert after[:3, 0] == pytest.approx(looks, abs=1e-6)
     assert after[:3, 2] == pytest.approx(before[:3, 2], abs=1e-6)
-
-
-def test_only_sensors_are_mended(car):
-    car.objects["body"].scale = (2.0, 2.0, 2.0)
-    assert bpy.ops.pe.apply_scale(name="body") == {"CANCELLED"}
-    assert tuple(car.objects["body"].scale) == (2.0, 2.0, 2.0)
 
 
 def test_a_part_of_a_name_is_taken_for_the_only_one_it_is_in(roof):

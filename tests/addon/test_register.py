@@ -29,7 +29,6 @@ ROUNDS = 10
 
 
 SIGNALS = (
-    signals.requirement_chosen,
     signals.study_changed,
     signals.view_changed,
     signals.moving,
@@ -117,7 +116,7 @@ def test_rounds_leave_nothing_behind(unregistered, view3d):
         assert len(view3d.handles) == 4
         for timer in TIMERS:  # a change just before it is switched off
             bpy.app.timers.register(timer)
-        blender_addon.operators.listed_sensors(bpy.context.scene)
+        sensor_cache.sensors(bpy.context.scene)
         kept = kept or traces()
         assert traces() == kept
         blender_addon.unregister()

@@ -126,8 +126,7 @@ def rich(car):
     for name, y in (("arm", 0.4), ("arm end", 0.5)):
         scenes.add_sensor(name, CAN, location=(0.0, y, 2.2)).perception_entropy.rack = "r"
     for name, y in (("bar", -0.4), ("bar end", -0.5)):
-        scenes.add_sensor(name, CAN, location=(0.5, y, 2.2)).parent = bpy.data.objects["no_go"]
-    bpy.data.objects["no_go"].perception_entropy.is_rack = True
+        scenes.add_sensor(name, CAN, location=(0.5, y, 2.2)).perception_entropy.rack = "bar"
     eye = scenes.add_sensor("eye", "Camera 60 deg", location=(2.1, 0.0, 1.0))
     own = eye.perception_entropy
     own.own_curve, own.curve_a, own.curve_b = True, 0.15, 0.05
@@ -135,8 +134,7 @@ def rich(car):
     own.bounded[2], own.bounds_low[2], own.bounds_high[2] = True, 0.5, 1.5
     own.bounded[5], own.bounds_low[5], own.bounds_high[5] = True, -10.0, 10.0
     eye.lock_rotation[0] = True
-    limit = eye.constraints.new("LIMIT_LOCATION")
-    limit.use_max_x, limit.max_x = True, 2.2
+    own.bounded[0], own.bounds_low[0], own.bounds_high[0] = True, 1.5, 2.2
     for model, price in (("Camera 60 deg", 100.0), ("Camera 90 deg", 120.0)):
         option = own.options.add()
         option.model, option.price = model, price

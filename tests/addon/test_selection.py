@@ -62,15 +62,15 @@ def test_each_design_of_the_front_is_a_variant_and_nothing_moves(offered):
     assert bpy.ops.pe.choose_sensors() == {"FINISHED"}
     settings = offered.perception_entropy
     assert offered.objects["roof"].perception_entropy.model == LARGE
-    assert [row.name for row in settings.front] == [d.name for d in job.trade_off.front]
-    assert [row.name for row in settings.front] == [CAN, LARGE]
-    assert settings.front_told == job.trade_off.told
+    assert [row.name for row in settings.front.rows] == [d.name for d in job.trade_off.front]
+    assert [row.name for row in settings.front.rows] == [CAN, LARGE]
+    assert settings.front.told == job.trade_off.told
     rows = {row.key: row for row in settings.variants}
-    for row, design in zip(settings.front, job.trade_off.front, strict=True):
+    for row, design in zip(settings.front.rows, job.trade_off.front, strict=True):
         kept = json.loads(rows[row.key].score_json)
         assert kept["entropy"] == design.entropy
         assert not rows[row.key].stale
-    assert bpy.ops.pe.switch_variant(key=settings.front[0].key) == {"FINISHED"}
+    assert bpy.ops.pe.switch_variant(key=settings.front.rows[0].key) == {"FINISHED"}
     assert offered.objects["roof"].perception_entropy.model == CAN
     assert len(offered.objects["roof"].perception_entropy.options) == 2
 
@@ -81,7 +81,7 @@ def test_a_design_without_a_sensor_is_a_variant_without_it(offered):
     offer("eye", ("Camera 60 deg", 1.0), left_out=True)
     bpy.ops.pe.choose_sensors()
     settings = offered.perception_entropy
-    cheapest = settings.front[0]
+    cheapest = settings.front.rows[0]
     assert (cheapest.name, cheapest.figures.split(",")[0]) == (CAN, "price 7.3")
     bpy.ops.pe.switch_variant(key=cheapest.key)
     assert [s.name for s in scenes.study().rig] == ["roof"]
@@ -126,7 +126,7 @@ def test_the_command_leaves_the_front_and_a_scene_with_its_designs(offered, tmp_
     assert "blender" in data["run"]["versions"]
     assert len(list((out / "designs").glob("*.toml"))) == 2
     bpy.ops.wm.open_mainfile(filepath=str(out / "optimized.blend"))
-    names = [row.name for row in bpy.context.scene.perception_entropy.front]
+    names = [row.name for row in bpy.context.scene.perception_entropy.front.rows]
     assert names == data["front"]
 
 

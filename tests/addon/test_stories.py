@@ -71,7 +71,7 @@ def test_place_score_optimize_check_and_export(scene, tmp_path, small_pictures):
     assert any("Coverage" in label for label in labels)
 
     # Optimize: what the engine finds is placed, scored and kept; undo takes the poses back.
-    first = settings.result_entropy
+    first = settings.result.entropy
     expected = finished(jobs.OptimizeJob(scenes.study()))
     bpy.ops.ed.undo_push(message="before")
     assert bpy.ops.pe.optimize("EXEC_DEFAULT", True) == {"FINISHED"}
@@ -82,10 +82,10 @@ def test_place_score_optimize_check_and_export(scene, tmp_path, small_pictures):
     assert finished(jobs.ScoreJob(scenes.study())).after == expected.after
     bpy.ops.ed.undo()
     scene, settings = bpy.context.scene, bpy.context.scene.perception_entropy
-    assert poses() == start and settings.result_entropy == first
+    assert poses() == start and settings.result.entropy == first
     assert names(settings.variants) == ["Before optimize", "Optimized, seed 0"]
     bpy.ops.pe.switch_variant(key=settings.variants[1].key)
-    assert poses() == found and settings.result_entropy == pytest.approx(expected.after.entropy)
+    assert poses() == found and settings.result.entropy == pytest.approx(expected.after.entropy)
 
     # Check: rows of verdicts are the engine's.
     bpy.ops.pe.add_requirement(preset="OWN")
@@ -272,7 +272,7 @@ def test_undo_save_and_reload(car, tmp_path):
     settings.own_sensors[0].channels = 5
     consistency.repair_scenes()  # as Blender's timer does: each sensor has a colour
     bpy.ops.pe.score()
-    before, entropy = poses(), settings.result_entropy
+    before, entropy = poses(), settings.result.entropy
     table = pe.study_to_dict(scenes.study())
     blend = str(tmp_path / "car.blend")
     bpy.ops.wm.save_as_mainfile(filepath=blend)
@@ -281,7 +281,7 @@ def test_undo_save_and_reload(car, tmp_path):
     bpy.ops.wm.open_mainfile(filepath=blend)
     scene, settings = bpy.context.scene, bpy.context.scene.perception_entropy
     assert poses() == before and pe.study_to_dict(scenes.study()) == table
-    assert settings.has_result and settings.result_entropy == entropy
+    assert settings.has_result and settings.result.entropy == entropy
     assert len(pe.catalog.load("My LiDAR").elevations) == 5
     assert names(settings.variants) == ["Variant"] and bridge.active_variant(scene) is not None
     result_staleness.update_result()

@@ -6,7 +6,7 @@ import bpy
 import pytest
 
 import pe_core as pe
-from blender_addon import bridge, engine_calls, result_staleness
+from blender_addon import bridge, diagnostics, engine_calls, result_staleness
 from blender_addon.live import session
 from pe_tools import advice
 from pe_tools.jobs import ScoreJob
@@ -40,14 +40,14 @@ def test_the_panel_scores_objects_as_the_command_line_does(settings, tmp_path):
         pass
     assert bpy.ops.pe.score() == {"FINISHED"}
     stored = json.loads(settings.result_json)
-    assert stored["after"] == bridge.versions.scored_data(job.outcome.after, job.outcome.figures[1])
+    assert stored["after"] == bridge.result.scored_data(job.outcome.after, job.outcome.figures[1])
     objects = job.outcome.after.objects
-    assert settings.result_ap.startswith(f"{objects.ap:.3f}")
-    shown = {row.name: (row.ap, row.reach) for row in settings.result_parts if row.is_class}
+    assert settings.result.ap.startswith(f"{objects.ap:.3f}")
+    shown = {row.name: (row.ap, row.reach) for row in settings.result.parts if row.is_class}
     car = objects.per_class["car"]
     assert shown["Car"] == (f"{car.ap:.2f}", advice.lone_reach(car.reach["front"]))
-    assert "expected AP" in settings.result_words
-    score = bridge.versions.score_from_dict(stored["after"])
+    assert "expected AP" in "\n".join(diagnostics.explanation(settings.id_data).rig)
+    score = bridge.result.score_from_dict(stored["after"])
     assert score.objects == objects
     settings.scenes = 9
     assert result_staleness.fingerprint(bpy.context.scene).text != settings.result_signature

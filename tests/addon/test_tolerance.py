@@ -38,13 +38,13 @@ def outcome(rise, loss, warnings=()):
 def test_what_a_search_tells_of_it_is_stored_for_the_panel(settings, car):
     told = advice.fragile(0.25, 0.01, 0.01, 0.005, tolerant=True)
     bridge.store_outcome(car, outcome(0.25, 1.5, told), "signature")
-    assert settings.result_mounted_off == "+0.000 \N{RIGHTWARDS ARROW} +0.250 nats"
-    assert settings.result_sensor_lost == "+0.000 \N{RIGHTWARDS ARROW} +1.500 nats"
-    assert settings.result_fragile == told[0].text
+    assert settings.result.robustness("rise") == "+0.000 \N{RIGHTWARDS ARROW} +0.250 nats"
+    assert settings.result.robustness("loss") == "+0.000 \N{RIGHTWARDS ARROW} +1.500 nats"
+    assert settings.result.fragile == told[0].text
     assert not len(settings.result_warnings)  # none of the vehicle
     bridge.store_outcome(car, outcome(0.01, None), "signature")
-    assert settings.result_mounted_off and not settings.result_sensor_lost
-    assert not settings.result_fragile
+    assert settings.result.robustness("rise") and not settings.result.robustness("loss")
+    assert not settings.result.fragile
 
 
 def test_a_score_takes_away_what_a_search_told(settings, car):
@@ -54,4 +54,4 @@ def test_a_score_takes_away_what_a_search_told(settings, car):
     job = pt.ScoreJob(study)
     list(job)
     bridge.store_outcome(car, job.outcome, "signature")
-    assert settings.result_mounted_off == settings.result_sensor_lost == ""
+    assert settings.result.robustness("rise") == settings.result.robustness("loss") == ""

@@ -12,11 +12,12 @@ import pytest
 import blender_addon
 import pe_core as pe
 from blender_addon import bridge, housing, operators, panels, properties, sensor_kinds
+from blender_addon.engine import advice
 from blender_addon.operators import models, offers
 from pe_core import catalog
 from pe_core import sensors as kinds
 from tests.addon import scenes
-from tests.addon.layouts import Layout, Window, drawn
+from tests.addon.layouts import Layout, Window
 from tests.engine.toy_kind import RING
 
 PRESET = "Parking Ring"
@@ -47,19 +48,8 @@ def test_it_is_offered_beside_the_others(ring_kind):
     settings.kind_to_add = "toyring"
     panels.main.draw_add(layout, settings)
     assert layout.notes == [
-        *(("prop", "kind_to_add"), ("operator", "Add"), ("operator", "Place")),
-        *((panels.sensor_menus.KIND, "toyring"), ("menu", "PE_MT_add_sensor")),
+        *(("prop", "kind_to_add"), ("operator", "Add"), ("operator", "Place"), ("operator", ""))
     ]
-
-
-def test_its_menu_lists_its_presets(ring_kind):
-    menus = panels.sensor_menus
-    kind = {menus.KIND: "toyring"}
-    layout = drawn(menus.PE_MT_add_sensor, **kind)
-    assert layout.texts("operator") == ["Search..."]
-    assert layout.texts("menu") == [menus.MAKER_MENUS["Own"].bl_idname]
-    text = f"{PRESET}   range 12 m"
-    assert drawn(menus.MAKER_MENUS["Own"], **kind).texts("operator") == [text]
 
 
 def test_the_operator_scores_it_as_the_engine_does(ring_kind, ring):
@@ -79,7 +69,7 @@ def test_the_panel_shows_what_was_stored(ring_kind, ring):
     panels.sensor_lists.draw_sensors(layout, Window(ring_kind))
     assert list(filter(None, layout.texts("operator"))) == ["bumper", "roof"]
     shown = layout.texts("label")
-    assert shown[shown.index(PRESET) + 1] == own.loss != ""
+    assert shown[shown.index(PRESET) + 1] == advice.loss_text(own.lost) != ""
 
 
 def test_the_search_moves_it(ring_kind, ring):
@@ -90,8 +80,8 @@ def test_the_search_moves_it(ring_kind, ring):
     start = scenes.study().rig["bumper"].pose
     assert bpy.ops.pe.optimize() == {"FINISHED"}
     settings = ring_kind.perception_entropy
-    assert settings.result_kind == "optimize"
-    assert settings.result_entropy < settings.result_before
+    assert settings.result.kind == "optimize"
+    assert settings.result.entropy < settings.result.entropy_before
     assert scenes.study().rig["bumper"].pose != start
 
 
@@ -123,7 +113,7 @@ def test_an_own_sensor_of_it_is_defined_by_its_keys(ring_kind):
     assert row.problem == "" and catalog.load(row.name).range_m == 7.5
     assert bridge.add_own_sensor(ring_kind, "Other Ring", {"kind": "toyring", "range_m": 3.0})
     assert ring_kind.perception_entropy.own_sensors[-1].keys == "range_m = 3.0"
-    assert operators.own_fields("toyring") == ("keys",)
+    assert sensor_kinds.row_of("toyring").own_fields == ("keys",)
     assert operators.kind_label("toyring") == "Toy Ring"
     row.keys = "range_m = "
     assert "keys" in row.problem, "a line that cannot be read is refused by the engine"
@@ -136,21 +126,18 @@ def test_without_a_picture_of_its_kind_looking_through_says_so(ring_kind, ring):
 
 
 def test_a_row_gives_it_a_picture_a_housing_and_fields(ring_kind, ring, monkeypatch):
-    pixels = np.full((4, 8, 4), 0.25, np.float32)
     box = pe.Housing("box", (0.5, 0.4, 0.3), (0.0, 0.0, 0.15), "a test")
     row = sensor_kinds.KindRow(
         sensor_kinds.OTHER.mount,
         lambda _model: box,
         own_fields=("max_range",),
-        pixels=lambda _sensor, _vehicle: pixels,
+        pixels=lambda _sensor, _vehicle: np.full((4, 8, 4), 0.25, np.float32),
         legend="all grey",
     )
     monkeypatch.setitem(sensor_kinds.ROWS, "toyring", row)
     assert bpy.ops.pe.look_through(name="bumper") == {"FINISHED"}
-    image = bpy.data.images["bumper range"]
-    assert tuple(image.size) == (8, 4)
-    np.testing.assert_allclose(np.array(image.pixels[:]), 0.25, atol=0.01)
-    assert operators.own_fields("toyring") == ("max_range",)
+    assert bpy.context.scene.perception_entropy.view.show_inset
+    assert sensor_kinds.row_of("toyring").own_fields == ("max_range",)
     surface = housing.model_surface(PRESET)
     np.testing.assert_allclose(np.ptp(surface.points, axis=0), (0.5, 0.4, 0.3), atol=0.01)
 

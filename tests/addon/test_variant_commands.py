@@ -91,15 +91,3 @@ def test_a_search_keeps_its_start_and_its_result_in_the_file_that_it_leaves(blen
     rows = bpy.context.scene.perception_entropy.variants
     assert [row.name for row in rows] == ["Low", "High", "Optimized, seed 0"]
     assert rows["High"].has_result and rows[-1].entropy < rows["High"].entropy
-
-
-def test_variants_are_swept_with_changes(blend, tmp_path):
-    out = tmp_path / "out"
-    sweep = ("sweep", "Low", "--set", "sensor.roof.model=HDL-64E,Pandar64", *FEW, "--json")
-    answer = run_here(blend, *sweep, "-o", out)
-    assert answer.returncode == 0, answer.stderr
-    rows = {row["changes"]["sensor.roof.model"]: row for row in json.loads(answer.stdout)["runs"]}
-    study = pe.load_study(out / rows["Pandar64"]["run"] / "study.toml")
-    assert (study.rig["roof"].model.name, study.rig["roof"].pose.position[2]) == ("Pandar64", 1.75)
-    assert rows["Pandar64"]["entropy"] == study.evaluator().score(study.rig).entropy
-    assert rows["HDL-64E"]["entropy"] != rows["Pandar64"]["entropy"]

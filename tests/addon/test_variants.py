@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import bridge, result_staleness
+from blender_addon import bridge, diagnostics, result_staleness
 from blender_addon.bridge import apply_variant
 from blender_addon.engine import advice
 from blender_addon.operators import compare_variants
@@ -220,7 +220,7 @@ def test_a_variant_that_is_switched_to_shows_its_own_result(ideas):
         settings = ideas.perception_entropy
         found = json.loads(settings.result_json)
         kept = {k: found[k] for k in ("entropy", "coverage", "after", "placements", "inputs")}
-        return kept, settings.result_shown, settings.result_stale
+        return kept, diagnostics.explanation(ideas), settings.result_stale
 
     bpy.ops.pe.score()
     first = shown()

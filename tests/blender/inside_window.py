@@ -51,7 +51,7 @@ def view3d():
 def fill_the_window():
     """First step: one large 3D view with its sidebar."""
     window, area, _ = view3d()
-    window.scene.perception_entropy.has_result = False  # the file may come with one
+    window.scene.perception_entropy.result_json = ""  # the file may come with one
     look = area.spaces.active.region_3d
     look.view_location, look.view_distance = VIEW_CENTER_M, VIEW_DISTANCE_M
     look.view_rotation = Euler(VIEW_ROTATION).to_quaternion()
@@ -118,11 +118,10 @@ def report_state():
         "places": {each.name: list(each.matrix_world.translation) for each in sensors},
         "running": running_job.current is not None,
         "better_found": running_job.current is not None and better_found(running_job.current.seen),
-        "notice": running_job.current.notice if running_job.current else "",
-        "kind": found.result_kind,
+        "kind": found.result and found.result.kind,
         "has_result": found.has_result,
-        "entropy": found.result_entropy,
-        "coverage": found.result_coverage,
+        "entropy": found.result and found.result.entropy,
+        "coverage": found.result and found.result.coverage,
         "stale": found.result_stale,
         "live": live_reading(scene),
         "variants": [row.name for row in found.variants],
@@ -137,10 +136,8 @@ def report_state():
         "camera": scene.camera.name if scene.camera else None,
         "perspective": view3d()[1].spaces.active.region_3d.view_perspective,
         "view": view_seen(),
-        "pictures": pictures_shown(),
-        "own_results": [
-            s.name for s in sensors if s.name in scene.perception_entropy.result_sensors
-        ],
+        "inset": scene.perception_entropy.view.show_inset,
+        "own_results": [s.name for s in sensors if found.result and s.name in found.result.sensors],
     }
     write("state.json", state)
     report_copied()
@@ -175,14 +172,6 @@ def view_seen():
         "along_axis": look.is_orthographic_side_view,
         "numbers": numbers,
     }
-
-
-def pictures_shown():
-    """Names of the images that image editors of any window show."""
-    windows = bpy.context.window_manager.windows
-    areas = [area for window in windows for area in window.screen.areas]
-    editors = [area.spaces.active for area in areas if area.type == "IMAGE_EDITOR"]
-    return [editor.image.name for editor in editors if editor.image and editor.image.packed_file]
 
 
 def pose_of(matrix):

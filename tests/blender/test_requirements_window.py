@@ -24,10 +24,10 @@ window.view_layer.objects.active = camera
 bpy.ops.ed.undo_push(message="held to requirements")
 """
 READ = f"""
-from {NAME}.overlay.layer_cache import shown
+from {NAME}.overlay.layer_cache import shown_of
 kept["legend"] = next((
     [item.shape.legend.title, [text for _, text in item.shape.legend.classes]]
-    for item in shown.items(window.scene.name, "requirements").values()
+    for item in shown_of(window.scene.name, "requirements").values()
     if hasattr(item.shape, "verdicts")
 ), ["", []])
 """

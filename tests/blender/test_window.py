@@ -29,7 +29,6 @@ def test_add_score_and_optimize_beside_the_window_esc_keeps_the_best_and_undo_br
 
     window.point_at_view()
     window.key("ctrl+z")
-    window.wait_for(lambda: "Esc" in window.state["notice"], EFFECT_TIMEOUT_S, "why undo waits")
     assert window.state["running"] and window.state["places"] == start
     window.key("Escape")
     window.wait_for(lambda: not window.state["running"], SCORE_TIMEOUT_S, "the search to stop")

@@ -49,7 +49,9 @@ class Criterion:
     kinds: int = setting(
         1, COUNT, "These sensors are of at least so many kinds", Panel("kinds", "Kinds", soft_max=3)
     )
-    of: tuple[str, ...] = setting((), NAMES, "Only these kinds of sensors count; by default all")
+    of: tuple[str, ...] = setting(
+        (), NAMES, "Only these kinds of sensors count; by default all", Panel("of", "Only Kinds")
+    )
     points: int = setting(
         1,
         COUNT,

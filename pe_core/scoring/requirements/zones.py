@@ -101,7 +101,10 @@ class Zone:
     )
     spots: tuple[PlacePair, ...] = setting((), CornersRule(1), "Single places")
     z: tuple[float, float] = setting(
-        (0.0, 0.0), Pair(HEIGHT, same=True), "Heights of the foot of the body above the ground"
+        (0.0, 0.0),
+        Pair(HEIGHT, same=True),
+        "Heights of the foot of the body above the ground",
+        Panel("z", "Heights"),
     )
     step: float = setting(
         STEP_M,
@@ -122,7 +125,10 @@ class Zone:
         Panel("near_side", "Near Side", menu=SIDES_MENU),
     )
     eyes: float | None = setting(
-        None, Number(cap=1e3, unit="m"), "The x of the driver's eyes, for the plane eyes"
+        None,
+        Number(cap=1e3, unit="m"),
+        "The x of the driver's eyes, for the plane eyes",
+        Panel("eyes", "Driver's Eyes X", min=-1e3),
     )
 
     def __post_init__(self) -> None:

@@ -1,31 +1,10 @@
-"""Files of newer versions, and vehicles that are another file's."""
+"""Vehicles that are another file's."""
 
 import bpy
 import pytest
 
-from blender_addon import bridge, choices
+from blender_addon import bridge
 from tests.addon import scenes
-from tests.addon.command_line import run_here
-
-
-def test_a_saved_file_has_its_version(car, tmp_path):
-    assert car.perception_entropy.version == 0
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "new.blend"))
-    assert car.perception_entropy.version == choices.VERSION
-
-
-def test_a_newer_file_is_reported_in_one_line_and_keeps_its_version(car, tmp_path):
-    path = tmp_path / "newer.blend"
-    car.perception_entropy.version = choices.VERSION + 6
-    bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    bpy.ops.wm.open_mainfile(filepath=str(path))
-    scene = bpy.context.scene
-    assert scene.perception_entropy.version == choices.VERSION + 6
-    assert "newer version" in bridge.newer_version_message(scene)
-    answer = run_here(path, "score", "--samples", "4096")
-    assert answer.returncode == 0
-    told = [line for line in answer.stderr.splitlines() if "newer version" in line]
-    assert len(told) == 1 and answer.stdout
 
 
 def linked_car(tmp_path):
@@ -56,8 +35,8 @@ def test_a_linked_vehicle_is_the_vehicle(car, tmp_path):
     scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))
     assert_same(scenes.study(), expected)
     bpy.ops.pe.score()
-    parts = bridge.figures_of_sensor(scene.objects["roof"]).parts
-    assert "cabin [library.blend]" in dict(parts)
+    parts = bridge.figures_of_sensor(scene.objects["roof"]).occluded_by
+    assert "cabin [library.blend]" in parts
 
 
 def test_parts_of_a_linked_vehicle_are_selected_and_it_is_not_turned(car, tmp_path):

@@ -1,5 +1,7 @@
 """What the live read-out says, word by word."""
 
+from dataclasses import replace
+
 from blender_addon.engine import advice, pe, sight
 from blender_addon.live import readout, readout_text, state
 from blender_addon.live.readout_text import BETTER, SAME, WORSE

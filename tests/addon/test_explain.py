@@ -219,26 +219,6 @@ def test_a_driver_that_failed_is_reported_by_name(car):
     assert "driver of its location did not run" in car.perception_entropy.result.missing[0]
 
 
-def test_warnings_of_before_a_move_say_so_until_it_is_looked_over(car, monkeypatch):
-    car.objects["roof"].location.z = 3.0
-    bpy.context.view_layer.update()
-    bpy.ops.pe.score()
-    window = Window(car, car.objects["roof"])
-
-    def line():
-        shown = drawn(panels.main.warnings, **vars(window))
-        return " ".join(shown.texts("label"))
-
-    assert "Before this move" not in line()
-    app = type("App", (), {"background": False, "timers": Unregistered})
-    monkeypatch.setattr(diagnostics, "bpy", type("Bpy", (), {"app": app, "data": bpy.data}))
-    diagnostics.postpone_checks()
-    assert "Before this move" in line()
-    monkeypatch.setattr(diagnostics.bpy, "context", bpy.context, raising=False)
-    diagnostics.run_checks()
-    assert "Before this move" not in line() and "clear of the vehicle" in line()
-
-
 class Unregistered:
     """Blender's timers, of which none runs."""
 

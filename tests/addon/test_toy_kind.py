@@ -11,7 +11,7 @@ import pytest
 
 import blender_addon
 import pe_core as pe
-from blender_addon import bridge, housing, operators, panels, properties, sensor_kinds
+from blender_addon import bridge, housing, panels, properties, sensor_kinds
 from blender_addon.engine import advice
 from blender_addon.operators import models, offers
 from pe_core import catalog
@@ -114,7 +114,7 @@ def test_an_own_sensor_of_it_is_defined_by_its_keys(ring_kind):
     assert bridge.add_own_sensor(ring_kind, "Other Ring", {"kind": "toyring", "range_m": 3.0})
     assert ring_kind.perception_entropy.own_sensors[-1].keys == "range_m = 3.0"
     assert sensor_kinds.row_of("toyring").own_fields == ("keys",)
-    assert operators.kind_label("toyring") == "Toy Ring"
+    assert sensor_kinds.kind_label("toyring") == "Toy Ring"
     row.keys = "range_m = "
     assert "keys" in row.problem, "a line that cannot be read is refused by the engine"
     bridge.remove_own_sensors()

@@ -78,7 +78,8 @@ def _ask_about_changes(self: Any, context: bpy.types.Context, event: Any) -> Ope
     if not bpy.data.is_dirty:
         return self.execute(context)
     message = shown("The open file has changes that are not saved; they are lost")
-    return context.window_manager.invoke_confirm(self, event, message=message)
+    manager = context.window_manager
+    return manager.invoke_confirm(self, event, message=message, translate=False)
 
 
 @operator("Open an Example", options=frozenset(), invoke=_ask_about_changes)

@@ -33,9 +33,9 @@ from .requirements import (
     write_row,
 )
 from .result import (
-    Front,
     Result,
     ResultViews,
+    ShownFront,
     begin_with,
     blender_version,
     figures_of_sensor,

@@ -197,7 +197,7 @@ class FrontRow(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Front:
+class ShownFront:
     """The last Pareto front, cheapest first; how it was found, and what limits a comparison."""
 
     rows: tuple[FrontRow, ...] = ()
@@ -210,10 +210,10 @@ class Front:
 
 
 @lru_cache(maxsize=16)
-def front_of(text: str) -> Front:
+def front_of(text: str) -> ShownFront:
     """Return the front in a text; one without designs in an empty text."""
     data = json.loads(text or "{}")
-    return Front(**{**data, "rows": tuple(FrontRow(*row) for row in data.get("rows", ()))})
+    return ShownFront(**{**data, "rows": tuple(FrontRow(*row) for row in data.get("rows", ()))})
 
 
 class ResultViews:
@@ -239,7 +239,7 @@ class ResultViews:
         return warnings_of(self.warnings_json)
 
     @property
-    def front(self) -> Front:
+    def front(self) -> ShownFront:
         """The last Pareto front."""
         return front_of(self.front_json)
 

@@ -13,7 +13,7 @@ from bpy.types import Depsgraph, Scene
 from ..engine import advice, jobs, pe
 from ..view_settings import HEIGHTS_M
 from .fingerprint import Fingerprint
-from .result import Front, FrontRow, score_from_dict, scored_data, store_outcome
+from .result import FrontRow, ShownFront, score_from_dict, scored_data, store_outcome
 from .scene_diagnostics import check_placeable, scene_advice
 from .sensor_records import SensorRecord, records_of, records_of_scene, rig_of
 from .variants import Variant, find_or_add_variant, mark_active, study_of_variant
@@ -161,7 +161,7 @@ def store_front(scene: Scene, trade_off: jobs.TradeOff, surroundings: str) -> No
         figures = ", ".join(f"{n} {v:.4g}" for n, v in design.figures.items())
         rows.append(FrontRow(f"{design.name}{met}", variant.key, figures.replace("_", " ")))
     note = f"; {trade_off.requirements_note}" if trade_off.requirements_note else ""
-    front = Front(tuple(rows), f"{trade_off.told}{note}", trade_off.hardware_note)
+    front = ShownFront(tuple(rows), f"{trade_off.told}{note}", trade_off.hardware_note)
     settings.front_json = front.to_json()
     mark_active(scene, before)
 

@@ -10,7 +10,7 @@ PRESETS = (
     *("r158_camera", "r151_moving", "ncap26_reverse_static", "r159_longitudinal"),
     *("park_aid_front", "perceptor_ground"),
 )
-SHOWN = OURS.format("overlay.layer_cache") + ".shown.items(window.scene.name, 'requirements')"
+SHOWN = OURS.format("overlay.layer_cache") + ".shown_of(window.scene.name, 'requirements')"
 
 EXACT = f"not any(v.preview for item in {SHOWN}.values() for v in item.shape.verdicts)"
 

@@ -266,6 +266,7 @@ def result_schema() -> dict[str, Any]:
         **{
             "sensitivity": {"type": ["object", "null"]},
             "stop_reason": {"type": ["string", "null"]},
+            "seed_scatter": {"type": ["number", "null"]},
         },
     }
     place = {"position": numbers(3), "rotation": numbers(3)}

@@ -75,6 +75,8 @@ class Step(ShortRepr):
         Whether this candidate became the incumbent, or the incumbent was evaluated on a new level.
     level : int
         The objective that evaluated it: methods that raise the number of voxels have several.
+    ends : tuple of float
+        Where independent descents of the search ended so far [nats].
     """
 
     best: Rig
@@ -84,6 +86,7 @@ class Step(ShortRepr):
     round: int
     improved: bool
     level: int = 0
+    ends: tuple[float, ...] = ()
 
 
 def optimize(
@@ -171,7 +174,7 @@ def _steps(
             answers.append(answer)
             done += 1
             fraction = max(done / question.total, (step.evaluations + 1) / budget)
-            yield (step := _next_step(step, candidate, answer, question.round, fraction))
+            yield (step := _next_step(step, candidate, answer, question, fraction))
             if step.evaluations == budget:
                 return
         try:
@@ -199,7 +202,11 @@ def _evaluated(
 
 
 def _next_step(
-    step: Step, candidate: Candidate | None, answer: Evaluation | None, number: int, fraction: float
+    step: Step,
+    candidate: Candidate | None,
+    answer: Evaluation | None,
+    question: Question,
+    fraction: float,
 ) -> Step:
     """Return the step after a candidate; None where no feasible candidate was sampled."""
     best, entropy, count, improved = step.best, step.entropy, step.evaluations, False
@@ -208,4 +215,5 @@ def _next_step(
         improved = answer.entropy < entropy
         if improved:
             best, entropy = candidate.rig, answer.entropy
-    return Step(best, entropy, count, min(fraction, 1.0), number, improved, step.level)
+    place = min(fraction, 1.0), question.round, improved, step.level
+    return Step(best, entropy, count, *place, question.ends)

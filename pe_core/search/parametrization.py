@@ -143,8 +143,8 @@ class Parametrization:
     """The design variables of a search, and the rigs that vectors of them stand for.
 
     `variables` are in the rig's order of sensors; one that follows another has none. `blocks` has
-    the positions in the vector of each sensor's variables. `start` is the rig as it is, `rules`
-    what no placement may break.
+    the positions in the vector of each sensor's variables, `models` the names of their models.
+    `start` is the rig as it is, `rules` what no placement may break.
 
     Raises
     ------
@@ -155,6 +155,7 @@ class Parametrization:
 
     variables: tuple[DesignVariable, ...]
     blocks: tuple[range, ...]
+    models: tuple[str, ...]
     start: Candidate
     rules: tuple[Rule, ...]
 
@@ -167,6 +168,8 @@ class Parametrization:
         self._domains = {each.name: _domain(each, space, surfaces) for each in free}
         self.variables = tuple(v for domain in self._domains.values() for v in domain.variables)
         self.blocks = tuple(_blocks(self._domains.values()))
+        moved = (name for name, domain in self._domains.items() if domain.variables)
+        self.models = tuple(rig[name].model.name for name in moved)
         vector = tuple(value for domain in self._domains.values() for value in domain.start)
         self.start = Candidate(rig, vector)
         self.rules = rules_of(rig, space, self._moving(), self._clear(), self._domains)

@@ -41,6 +41,7 @@ from .score_and_optimize import ScoreJob as ScoreJob
 from .searched_figure import SearchedFigure as SearchedFigure
 from .searched_figure import searched_figure as searched_figure
 from .searched_figure import searched_on as searched_on
+from .stopping import scatter_text as scatter_text
 from .stopping import stop_text as stop_text
 from .stopping import sureness_lines as sureness_lines
 from .study_export import export_study as export_study

@@ -125,6 +125,8 @@ class Outcome(Tabular):
         Where each start of a search ended, if it had several.
     stop_reason : str
         Why the search ended before its budget did: "target", "seconds", "gain", or empty.
+    seed_scatter : float or None
+        Within what a search with another seed would probably end: `seed_scatter`.
     in_traffic : tuple of ObjectScore, or None
         Of a search by expected AP: start and result on objects in traffic.
     figures : (KeyFigures, KeyFigures), or None
@@ -150,6 +152,7 @@ class Outcome(Tabular):
     sensitivity: Sensitivity | None = None
     starts: tuple[StartEnd, ...] = ()
     stop_reason: str = ""
+    seed_scatter: float | None = None
     in_traffic: tuple[ObjectScore, ObjectScore] | None = None
     figures: tuple[KeyFigures, KeyFigures] | None = None
 

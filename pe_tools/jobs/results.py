@@ -100,6 +100,7 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
             for end in outcome.starts
         ]
         data["stop_reason"] = outcome.stop_reason or None
+        data["seed_scatter"] = outcome.seed_scatter
     data |= {
         "evaluations": outcome.evaluations,
         "stopped": outcome.stopped,

@@ -35,7 +35,7 @@ from ..sensitivity import Archive, FreshSamples, analyse, fresh_objectives, is_a
 from .candidate_workers import ExecutorSource, candidate_workers
 from .job import HistoryRow, Job, Outcome, Progress, ProgressSteps, StartEnd, begun, best_so_far
 from .searched_figure import IN_AP, searched_figure, searched_samples
-from .stopping import TARGET, StopWatch
+from .stopping import TARGET, StopWatch, seed_scatter
 
 
 class _Scored(NamedTuple):
@@ -111,6 +111,8 @@ class OptimizeJob(Job):
         Where the starts ended so far, if the study has further ones.
     stop_reason : str
         Why the search ended before its budget did, by a rule of the study; empty otherwise.
+    descents : tuple of float
+        Where the independent descents of the search ended (`Step.ends`).
     """
 
     shown, kept = ("history", "_ended", "evaluations"), ("journal",)
@@ -133,6 +135,7 @@ class OptimizeJob(Job):
         self.ends: list[StartEnd] = []
         self._ended: list[HistoryRow] = []
         self.stop_reason = ""
+        self.descents: tuple[float, ...] = ()
         self._archive = Archive()
         self._helpers: ExecutorSource = _nothing
         self._first: HistoryRow | None = None
@@ -230,6 +233,7 @@ class OptimizeJob(Job):
             sensitivity,
             tuple(self.ends),
             self.stop_reason,
+            seed_scatter(self.descents),
             (first.in_traffic, last.in_traffic) if first.in_traffic and last.in_traffic else None,
             (figures[0], figures[-1]) if figures else None,
         )
@@ -351,7 +355,7 @@ class OptimizeJob(Job):
                 break
 
     def _note(self, step: Step) -> None:
-        self.evaluations, self.round = step.evaluations, step.round
+        self.evaluations, self.round, self.descents = step.evaluations, step.round, step.ends
         figure = searched_figure(self.study)
         self._progress = Progress(
             "optimizing", step.fraction, step.entropy, step.evaluations, figure

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections import deque
 from collections.abc import Sequence
+from statistics import stdev
 
+from pe_core.base.values import rounded
 from pe_core.search import Objective, Step, Stop
+from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Study
 
 from ..sensitivity import sensitivity_lines
@@ -15,6 +19,8 @@ from .searched_figure import IN_NATS, SearchedFigure, searched_figure
 
 TARGET, SECONDS, GAIN = "target", "seconds", "gain"
 """Reasons, as result.json names them."""
+APART = 2.0
+"""Within so many standard deviations of the descents of one search, another seed's result lies."""
 
 
 class StopWatch:
@@ -70,6 +76,22 @@ def stop_text(reason: str, study: Study) -> str:
     }.get(reason, "")
 
 
+def seed_scatter(ends: Sequence[float]) -> float | None:
+    """Return within what another seed would probably end [nats], by where descents of one search
+    ended that shared nothing but their start; None where they are fewer than two, or infeasible."""
+    if len(ends) < 2 or not all(map(math.isfinite, ends)) or any(map(is_infeasible, ends)):
+        return None
+    return rounded(APART * stdev(ends))
+
+
+def scatter_text(outcome: Outcome) -> str:
+    """Return how far from a result another seed would end, as text; empty where nothing tells."""
+    if outcome.seed_scatter is None:
+        return ""
+    unit = "of expected AP" if searched_figure(outcome.start).higher_is_better else "nats"
+    return f"another seed would probably end within {outcome.seed_scatter:.3f} {unit}"
+
+
 def sureness_lines(outcome: Outcome) -> list[str]:
     """Describe how sure a search is of its result; empty for a score."""
     figure = searched_figure(outcome.start)
@@ -78,5 +100,5 @@ def sureness_lines(outcome: Outcome) -> list[str]:
         name = f"the start {end.name}" if end.name else "the given start"
         at = figure.amount(f"{figure.to_figure(end.entropy):.4f}")
         lines.append(f"{name} ended at {at}, on the sample of the search")
-    text = stop_text(outcome.stop_reason, outcome.start)
-    return [*lines, text] if text else lines
+    told = scatter_text(outcome), stop_text(outcome.stop_reason, outcome.start)
+    return [*lines, *filter(None, told)]

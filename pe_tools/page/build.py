@@ -148,7 +148,7 @@ def outcome_of_folder(
         if figure.higher_is_better and (table := result.get(figure.key)) is not None:
             from_dict = pe.ObjectScore.from_dict
             in_traffic = from_dict(table["before"]), from_dict(table["after"])
-        reason = str(result.get("stop_reason") or "")
+        reason, scatter = str(result.get("stop_reason") or ""), result.get("seed_scatter")
         warnings = tuple(
             replace(advice.Advice(**table), amount=tuple(table["amount"]))
             for table in result["warnings"]
@@ -176,6 +176,7 @@ def outcome_of_folder(
         sensitivity=sure,
         starts=starts,
         stop_reason=reason,
+        seed_scatter=None if scatter is None else float(scatter),
         in_traffic=in_traffic,
         figures=figures,
     )

@@ -13,9 +13,9 @@ import pytest
 import pe_core as pe
 from pe_core.search import METHODS, Evaluation, Parametrization, pose_values
 from pe_core.search.methods import Given, Question, block_descent
-from pe_core.search.methods.block_descent import corner_start, race
+from pe_core.search.methods.block_descent import to_best_corners
 from pe_core.search.methods.cma_es import Evolution, SymmetricCma
-from pe_core.search.methods.method import Phase
+from pe_core.search.methods.method import Incumbent, Phase
 from pe_core.search.parametrization import feasible_start
 from tests.engine import mounting, shapes
 from tests.engine.mounting import can, roof
@@ -229,31 +229,13 @@ def answered(asking, value):
         return stop.value
 
 
-class Racer:
-    """A descent whose entropy falls by a gain each time it goes on."""
-
-    def __init__(self, name, entropy, log, gain=0.0):
-        self.name, self.entropy, self.log, self.gain = name, entropy, log, gain
-
-    def descend(self, phase, count):
-        yield from ()
-        self.log.append((self.name, count))
-        self.entropy -= self.gain
-
-
-def test_after_each_race_the_better_half_goes_on():
-    """The third gains 0.6 in each race: 3, 1, 1.4, 4 after the first, then 1 against 0.8."""
-    log = []
-    racing = [Racer("a", 3, log), Racer("b", 1, log), Racer("c", 2, log, 0.6), Racer("d", 4, log)]
-    assert answered(race(racing, PHASE, 50.0), None).name == "c"
-    assert log == [(name, 50.0) for name in "abcdbc"]
-
-
 def test_a_corner_that_is_worse_than_the_start_is_left(coding):
-    given = Given(coding, coding.start, 3.0)
-    assert answered(corner_start(given, PHASE), lambda c: 4.0) == (given.start, 3.0)
-    found, entropy = answered(corner_start(given, PHASE), lambda c: 2.0 + c.vector[0] / 10.0)
-    assert entropy < 2.0 and found.vector[0] == given.parametrization.variables[0].low
+    given, incumbent = Given(coding, coding.start, 3.0), Incumbent(coding.start, 3.0)
+    answered(to_best_corners(given, incumbent, PHASE), lambda c: 4.0)
+    assert (incumbent.best, incumbent.entropy) == (given.start, 3.0) and incumbent.count > 0
+    answered(to_best_corners(given, incumbent, PHASE), lambda c: 2.0 + c.vector[0] / 10.0)
+    assert incumbent.entropy < 2.0
+    assert incumbent.best.vector[0] == given.parametrization.variables[0].low
 
 
 def test_the_last_placements_are_evaluated_on_all_voxels_of_the_search():

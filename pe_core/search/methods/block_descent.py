@@ -1,8 +1,7 @@
-"""Block descent, a part of the portfolio: CMA-ES on one sensor at a time, from several starts.
+"""Block descent, a part of the portfolio: CMA-ES on one sensor at a time.
 
 While one sensor moves, the others stay at the incumbent. A sensor that does not move need not be
-measured again, and a few design variables at a time take few candidates. A few rounds on few voxels
-choose the start to continue from.
+measured again, and a few design variables at a time take few candidates.
 """
 
 from __future__ import annotations
@@ -63,17 +62,14 @@ class SlotTurn:
         return self._parametrization.candidate(vector)
 
 
-def corner_start(given: Given, phase: Phase) -> MethodPart[tuple[Candidate, float]]:
-    """Move each sensor to the best corner of its bounds; return the placement and its entropy."""
-    best, entropy = given.start, given.entropy
+def to_best_corners(given: Given, incumbent: Incumbent, phase: Phase) -> MethodPart[None]:
+    """Try each sensor in all corners of its bounds."""
     for block in given.parametrization.blocks:
-        corners = [c for c in _corners(given, best, block) if given.parametrization.allowed(c.rig)]
-        if corners:
-            values = yield from phase.evaluate(corners, entropy)
-            lowest = int(np.argmin(values))
-            if values[lowest] < entropy:
-                best, entropy = corners[lowest], values[lowest]
-    return best, entropy
+        corners = _corners(given, incumbent.best, block)
+        allowed = [c for c in corners if given.parametrization.allowed(c.rig)]
+        if allowed:
+            values = yield from phase.evaluate(allowed, incumbent.entropy)
+            incumbent.told(zip(allowed, values, strict=True))
 
 
 def _corners(given: Given, base: Candidate, block: range) -> Iterator[Candidate]:
@@ -144,17 +140,6 @@ def _turn(
     return Evolution(given, block, start, seed, step)
 
 
-RACES = 2
-"""Races of several starts; after each, the better half goes on."""
 RESTART_STEP, FINEST = 0.25, 0.02
 """A descent ends when its spread is below `FINEST`: 2 cm and 0.6 deg. The next one begins where it
 ended, with steps of 25 cm and 7.5 deg."""
-
-
-def race(racing: list[Descent], phase: Phase, count: float) -> MethodPart[Descent]:
-    """Race descents, each for about `count` placements; after each race the better half goes on."""
-    for _ in range(RACES):
-        for descent in racing:
-            yield from descent.descend(phase, count)
-        racing = sorted(racing, key=lambda descent: descent.entropy)[: max(1, len(racing) // 2)]
-    return racing[0]

@@ -79,6 +79,8 @@ class Question:
         Candidates of the whole search, as far as is known, for the progress bar.
     level : int
         The objective that evaluates. It never decreases in a search.
+    ends : tuple of float
+        Where independent descents of the method ended so far, on the last level.
     """
 
     candidates: Sequence[Candidate | None]
@@ -86,6 +88,7 @@ class Question:
     round: int = 0
     total: int = 1
     level: int = 0
+    ends: tuple[float, ...] = ()
 
 
 Answered = list[Evaluation | None]
@@ -130,11 +133,13 @@ class Phase:
     total : int
         Candidates of the whole search.
     level : int
+    ends : tuple of float
     """
 
     round: int
     total: int
     level: int = 0
+    ends: tuple[float, ...] = ()
 
     def evaluate(
         self, candidates: Sequence[Candidate | None], cutoff: float = math.inf
@@ -144,7 +149,8 @@ class Phase:
         A candidate that is not below the cutoff returns the cutoff; one that is missing returns
         inf.
         """
-        answers = yield Question(candidates, cutoff, self.round, self.total, self.level)
+        shared = self.round, self.total, self.level, self.ends
+        answers = yield Question(candidates, cutoff, *shared)
         return [math.inf if answer is None else min(answer.entropy, cutoff) for answer in answers]
 
 

@@ -1,8 +1,8 @@
 """Portfolio, the default: a survey of each sensor, then several kinds of descents in turn.
 
 No single method is the best on every problem. Surveys find the region: each sensor tries places all
-over its range, the others kept. A large budget is for a race of block descents from several starts,
-then for block descents and steps of all lengths. A small one is for a linear descent and surrogate
+over its range, the others kept. A large budget is for a race of several descents by steps of all
+lengths, of which the best goes on to the end. A small one is for a linear descent and surrogate
 descents, which move all sensors at once by models, and for block descents, which find what a model
 does not show. Sensors on lists of slots try all slots, exchange them, and move two at a time.
 """
@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -19,7 +18,7 @@ from numpy.typing import NDArray
 
 from ..domains import SHARE, DesignVariable
 from ..parametrization import Candidate
-from .block_descent import FINEST, RESTART_STEP, Descent, SlotTurn, corner_start, race
+from .block_descent import FINEST, RESTART_STEP, Descent, SlotTurn, to_best_corners
 from .method import Given, Incumbent, MethodPart, Phase, QuestionStream, sampled_candidate
 from .portfolio_linear import LinearDescent
 from .portfolio_steps import MultiscaleDescent
@@ -33,27 +32,26 @@ COARSENING, MIN_SAMPLES = 4, 2048
 BELOW_GRID = 65_536
 """Where the last level is the grid, the first level is as if the last had so many voxels."""
 RACING, PLACEMENTS_PER_START = 4, 80
-"""Starts that race, and placements for each sensor that each takes: a smaller budget has none."""
-RACE_SHARE, FIRST_LEVEL = 0.05, 0.4
-"""Shares of the budget: for each start in each race, and after which the first level ends."""
+"""Descents that race, and placements for each sensor that each takes: a smaller budget has none."""
+FIRST_LEVEL, RACE_SHARE = 0.33, 0.15
+"""Share of the budget after which the first level ends; share of what is left then for each descent
+of the race."""
 SURVEYS, SURVEYED = 2, 6
 """Surveys before the first descent, and places that each of them tries for each sensor,"""
 SURVEY_SHARE = 0.3
 """but at most this share of the budget in all."""
 NEAR, NEAR_COUNT = 0.3, 3
 """Reach of the surveys between descents, as a share of each range, and places for each sensor."""
-RADIUS, RACED_RADIUS, LEAST_RADIUS = 1.0 / 6.0, 0.1, 0.004
-"""Radius of the linear descent, of the one after a race, and where they end, in ranges."""
+RADIUS, LEAST_RADIUS = 1.0 / 6.0, 0.004
+"""First radius of the linear descent, and where it ends, in ranges."""
 STEP, NEXT_STEP = 0.2, 0.1
 """Deviation of the first steps of the first surrogate descent, and of the next ones, in ranges."""
 LINEAR_SHARE, SURROGATE_SHARE, NEXT_SURROGATE_SHARE, BLOCK_SHARE = 0.25, 0.4, 0.5, 0.5
 """Shares of the budget that is left: for the linear descent, the first surrogate descent and the
 next ones, and each block descent after them."""
-RACED_LINEAR_SHARE, RACED_BLOCK_SHARE, STEP_SHARE = 0.1, 0.6, 0.3
-"""After a race: shares of the budget that is left, for the one linear descent, and each time for a
-block descent and then for steps,"""
-LAST_STEPS = 30
-"""and for so many placements a sensor at the end, steps alone."""
+STEP_SHARE, LAST_STEPS = 0.5, 30
+"""After a race: share of the budget that is left for steps between two surveys, and the number of
+placements a sensor, from which on it is all that is left."""
 TWO_MOVED = 16
 """Placements with two sensors in other slots, tried at once."""
 STALLED = 8
@@ -204,26 +202,29 @@ def _searched(given: Given, history: History) -> QuestionStream:
     total = given.evaluations or budget(sensors)
     large = total >= RACING * PLACEMENTS_PER_START * sensors
     incumbent, survey = Incumbent(given.start, given.entropy), Survey(given, exact=not large)
-    steps = MultiscaleDescent(given, [given.seed, sensors, 1])
     moves = any(v.low < v.high for v in given.parametrization.variables)
     races = large and moves and not survey.has_slots_alone
     count = max(1, min(SURVEYED, int(SURVEY_SHARE * total / (SURVEYS * sensors))))
     for _ in range(SURVEYS):
         yield from survey.survey(incumbent, Phase(0, total), count)
         survey.reseed()
+    steps, ends = None, tuple[float, ...]()
     if races:
-        yield from _race(given, incumbent, total)
-    if given.levels > 1:
+        steps, ends = yield from _race(given, incumbent, total)
+    elif given.levels > 1:
         last = Phase(1, total, given.levels - 1)
         [incumbent.entropy] = yield from last.evaluate([incumbent.best])
     number, stalled = 1, 0
     while incumbent.count < total and stalled < STALLED:
-        before, phase = (incumbent.count, incumbent.entropy), Phase(number, total, given.levels - 1)
+        before = incumbent.count, incumbent.entropy
+        phase = Phase(number, total, given.levels - 1, ends)
         if survey.has_slots_alone:
             yield from survey.two_moved(incumbent, phase)
             stalled = 0 if incumbent.entropy < before[1] else stalled + 1
-        elif races:
-            yield from _settle(given, incumbent, phase, number, steps)
+        elif steps is not None:
+            left = total - incumbent.count
+            share = STEP_SHARE if left > LAST_STEPS * sensors else 1.0
+            yield from steps.descend(incumbent, phase, share * left)
         else:
             yield from _descend(given, incumbent, phase, number, history)
         if not stalled:
@@ -238,40 +239,32 @@ def budget(sensors: int) -> int:
     return FEW[sensors] if sensors < len(FEW) else PER_SENSOR * sensors
 
 
-def _race(given: Given, incumbent: Incumbent, total: int) -> MethodPart[None]:
-    """Race block descents on few voxels; the best goes on there until its share is spent.
+def _race(
+    given: Given, incumbent: Incumbent, total: int
+) -> MethodPart[tuple[MultiscaleDescent, tuple[float, ...]]]:
+    """Race descents from the best placement so far, after each sensor tried its corners.
 
-    They begin at the given placement and at the surveyed one, and at both with each sensor in the
-    best corner of its bounds.
+    The race goes on on all voxels, where it is decided: a fourth of them cannot tell apart optima
+    that differ by less than 0.05 nats. Returns the steps of the winner, and where each ended.
     """
-    phase = Phase(0, total)
-    surveyed = replace(given, start=incumbent.best, entropy=incumbent.entropy)
-    racing = []
-    for number, place in enumerate((given, given, surveyed, surveyed)):
-        start = place.start, place.entropy
-        if number % 2:
-            start = yield from corner_start(place, phase)
-        racing.append(Descent(place, *start, [given.seed, number]))
-    best = yield from race(racing, phase, RACE_SHARE * total)
-    done = incumbent.count + sum(descent.count for descent in racing)
-    yield from best.descend(phase, FIRST_LEVEL * total - done)
-    for descent in racing:
-        incumbent.descended(descent)
-
-
-def _settle(
-    given: Given, incumbent: Incumbent, phase: Phase, number: int, steps: MultiscaleDescent
-) -> MethodPart[None]:
-    """Descend with all sensors at once the first time, then with one at a time, then by steps."""
-    if number == 1:
-        yield from _linear_descent(given, incumbent, phase, RACED_RADIUS, RACED_LINEAR_SHARE)
-    left = phase.total - incumbent.count
-    count = float(left)
-    if left > LAST_STEPS * len(given.parametrization.blocks):
-        seed = [given.seed, RACING + number]
-        yield from _block_descent(given, incumbent, phase, seed, RACED_BLOCK_SHARE)
-        count = STEP_SHARE * left
-    yield from steps.descend(incumbent, phase, count)
+    first, last = Phase(0, total), Phase(1, total, given.levels - 1)
+    yield from to_best_corners(given, incumbent, first)
+    begun, count = (incumbent.best, incumbent.entropy), incumbent.count
+    racing = [(Incumbent(*begun), MultiscaleDescent(given, [given.seed, k])) for k in range(RACING)]
+    for descent, steps in racing:
+        yield from steps.descend(descent, first, (FIRST_LEVEL * total - count) / RACING)
+    descents = [descent for descent, _ in racing]
+    if given.levels > 1:
+        values = yield from last.evaluate([descent.best for descent in descents])
+        for descent, value in zip(descents, values, strict=True):
+            descent.entropy = value
+    left = total - count - sum(descent.count for descent in descents)
+    for descent, steps in racing:
+        yield from steps.descend(descent, last, RACE_SHARE * left)
+    winner, steps = min(racing, key=lambda each: each[0].entropy)
+    incumbent.best, incumbent.entropy = winner.best, winner.entropy
+    incumbent.count += sum(descent.count for descent in descents)
+    return steps, tuple(descent.entropy for descent in descents)
 
 
 def _descend(
@@ -280,28 +273,15 @@ def _descend(
     """Descend with all sensors at once by models, then one at a time."""
     step, share = NEXT_STEP, NEXT_SURROGATE_SHARE
     if number == 1:
-        yield from _linear_descent(given, incumbent, phase, RADIUS, LINEAR_SHARE)
+        linear = LinearDescent(given, incumbent.best, incumbent.entropy, RADIUS)
+        left = phase.total - incumbent.count
+        yield from linear.descend(phase, LINEAR_SHARE * left, LEAST_RADIUS)
+        incumbent.descended(linear)
         step, share = STEP, SURROGATE_SHARE
     start, seed = (incumbent.best, incumbent.entropy), [given.seed, number, 2]
     surrogate = SurrogateDescent(given, history, *start, seed, step)
     yield from surrogate.descend(phase, share * (phase.total - incumbent.count))
     incumbent.descended(surrogate)
-    yield from _block_descent(given, incumbent, phase, [given.seed, number], BLOCK_SHARE)
-
-
-def _linear_descent(
-    given: Given, incumbent: Incumbent, phase: Phase, radius: float, share: float
-) -> MethodPart[None]:
-    """Descend with all sensors at once, for a share of the budget that is left."""
-    linear = LinearDescent(given, incumbent.best, incumbent.entropy, radius)
-    yield from linear.descend(phase, share * (phase.total - incumbent.count), LEAST_RADIUS)
-    incumbent.descended(linear)
-
-
-def _block_descent(
-    given: Given, incumbent: Incumbent, phase: Phase, seed: list[int], share: float
-) -> MethodPart[None]:
-    """Descend with one sensor at a time, for a share of the budget that is left."""
-    block = Descent(given, incumbent.best, incumbent.entropy, seed, RESTART_STEP)
-    yield from block.descend(phase, share * (phase.total - incumbent.count), FINEST)
+    block = Descent(given, incumbent.best, incumbent.entropy, [given.seed, number], RESTART_STEP)
+    yield from block.descend(phase, BLOCK_SHARE * (phase.total - incumbent.count), FINEST)
     incumbent.descended(block)

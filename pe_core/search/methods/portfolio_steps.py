@@ -5,16 +5,20 @@ of a degree, so the entropy has many small valleys beside each other. A step who
 length is uniform finds the small ones and leaps over the large ones; nothing has to be tuned
 (J. E. Rowe, D. Hidovic, An evolution strategy using a continuous version of the Gray-code
 neighbourhood distribution, 2004). Variables whose steps gained lately are moved more often.
+
+Sensors of one model have optima in common: where beams of one LiDAR fall between those of another,
+both have the same pitch to a tenth of a degree. So a step may give a sensor another one's value, or
+move both alike: a valley that no step of one sensor follows.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from ..domains import SHARE
-from ..parametrization import Candidate
+from ..parametrization import Candidate, Parametrization
 from .method import Given, Incumbent, MethodPart, Phase, sampled_candidate
 
 BATCH = 8
@@ -23,6 +27,9 @@ HALVINGS = 9
 """The longest step is half a variable's range; the shortest ones are 2^-8 of that."""
 SECOND = 0.7
 """Probability that a second variable of the same sensor moves, too."""
+COPIED, TOGETHER = 0.2, 0.2
+"""Where there is another sensor of the same model: probability that a variable takes its value, and
+that both move by the same step."""
 EVEN = 0.1
 """Probability that a variable is chosen whatever its steps gained."""
 FULL_GAIN, MEMORY = 0.02, 0.1
@@ -36,8 +43,13 @@ class MultiscaleDescent:
         self._parametrization, variables = given.parametrization, given.parametrization.variables
         self._rng = np.random.default_rng(seed)
         movable = [v.low < v.high and v.unit != SHARE for v in variables]
-        sensors = [[k for k in block if movable[k]] for block in given.parametrization.blocks]
-        self._free = [(sensor, k) for sensor in sensors for k in sensor]
+        blocks = given.parametrization.blocks
+        self._free = [
+            ([k for k in block if movable[k]], number, alike)
+            for block, alike in zip(blocks, _alike(given.parametrization), strict=True)
+            for number in block
+            if movable[number]
+        ]
         self._gains = np.ones(len(self._free))
 
     def descend(self, incumbent: Incumbent, phase: Phase, count: float) -> MethodPart[None]:
@@ -66,16 +78,26 @@ class MultiscaleDescent:
                 tried.append((number, candidate))
         return tried
 
-    def _stepped(self, base: Candidate, sensor: list[int], first: int) -> Candidate | None:
+    def _stepped(
+        self, base: Candidate, sensor: list[int], first: int, alike: list[int]
+    ) -> Candidate | None:
         others = [k for k in sensor if k != first]
 
         def sample() -> list[float]:
             vector, moved = list(base.vector), [first]
             if others and self._rng.random() < SECOND:
                 moved.append(others[int(self._rng.integers(len(others)))])
+            way, away = 1.0, 0  # from a variable to that of the other sensor
+            if alike:
+                way, away = self._rng.random(), alike[int(self._rng.integers(len(alike)))]
             for k in moved:
                 variable = self._parametrization.variables[k]
-                vector[k] += (variable.high - variable.low) * self._step()
+                step = (variable.high - variable.low) * self._step()
+                vector[k] += step
+                if COPIED <= way < COPIED + TOGETHER:
+                    vector[k + away] += step
+            if way < COPIED:
+                vector[first] = base.vector[first + away]
             return vector
 
         return sampled_candidate(self._parametrization, sample)
@@ -84,3 +106,13 @@ class MultiscaleDescent:
         """Return a step, as a share of a range: each halving of its length is as probable."""
         length = 0.5 ** int(self._rng.integers(1, HALVINGS + 1)) * (0.5 + 0.5 * self._rng.random())
         return length if self._rng.random() < 0.5 else -length
+
+
+def _alike(parametrization: Parametrization) -> Iterator[list[int]]:
+    """Yield, for each sensor, how far away the variables of those of the same model are."""
+    variables, blocks = parametrization.variables, parametrization.blocks
+    units = ([variables[k].unit for k in block] for block in blocks)
+    kinds = list(zip(parametrization.models, units, strict=True))
+    for block, kind in zip(blocks, kinds, strict=True):
+        same = (other for other, its in zip(blocks, kinds, strict=True) if its == kind)
+        yield [other.start - block.start for other in same if other != block]

@@ -162,6 +162,7 @@ def search_history(context: ReportContext) -> dict[str, Any] | None:
         "levels": levels,
         "what": what,
         "reason": jobs.stop_text(outcome.stop_reason, context.start),
+        "scatter": jobs.scatter_text(outcome),
         "searched": figure,
         "curve": curve,
         "caption": caption,

@@ -112,6 +112,8 @@ def drive(job: jobs.Job, output: Path | None = None) -> jobs.Outcome | None:
                 continue
             try:
                 saved[1].save(saved[2])
+                if job.stopped:
+                    tell(f"the best placement so far is in {saved[2] / STUDY}; it is being scored")
             except InputError as error:
                 if not failed:
                     tell(f"{error}; the search goes on")

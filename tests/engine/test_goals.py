@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from itertools import pairwise
+from statistics import stdev
 
 import pytest
 
@@ -9,10 +10,11 @@ import pe_core as pe
 import pe_tools as pt
 from pe_core.search import Front, Goals, Start, Stop
 from pe_core.study import load_study_data, study_to_dict
+from pe_core.study.requirement_search import INFEASIBLE
 from pe_tools.cli.command import with_options
 from pe_tools.cli.terminal import summary
 from pe_tools.cli.verbs import parser
-from pe_tools.jobs import HistoryRow, best_so_far, result_dict
+from pe_tools.jobs import HistoryRow, best_so_far, result_dict, stopping
 from tests.engine import shapes
 
 
@@ -75,6 +77,20 @@ def test_a_search_stops_for_want_of_gain(plain):
 def test_a_search_stops_after_seconds():
     outcome = finished(study(Goals(Stop(seconds=1e-6))))
     assert outcome.stop_reason == "seconds" and outcome.evaluations == 1
+
+
+def test_a_search_that_races_tells_within_what_another_seed_would_end(plain):
+    """Its descents share nothing but their start; a short search has no race."""
+    assert plain.seed_scatter is None and result_dict(plain)["seed_scatter"] is None
+    job = pt.OptimizeJob(study(evaluations=320), 1)
+    for _ in job:
+        pass
+    assert len(job.descents) == 4 and min(job.descents) >= job.history[-1].entropy
+    scatter = stopping.APART * stdev(job.descents)
+    assert job.outcome.seed_scatter == pytest.approx(scatter, abs=1e-9) and scatter > 0.0
+    assert result_dict(job.outcome)["seed_scatter"] == job.outcome.seed_scatter
+    assert f"another seed would probably end within {scatter:.3f} nats" in summary(job.outcome)
+    assert stopping.seed_scatter((1.0,)) is stopping.seed_scatter((1.0, INFEASIBLE)) is None
 
 
 def test_fixed_sensors_stay_and_the_others_move():

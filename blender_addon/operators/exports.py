@@ -221,8 +221,8 @@ def export_rig(
     """Write the sensors for another program: URDF, ROS 2, Autoware, nuScenes, CARLA and others"""
     path = chosen_file(filepath)
     told = format if properties.is_property_set("format") or not path.suffix else None
-    if told is not None and len(exchange.rig_format(told).files) == 1:
-        path = path.with_suffix(Path(rig_file(told)).suffix)
+    if told is not None and path.name in map(rig_file, exchange.RIG_FORMATS):
+        path = path.with_name(rig_file(told))  # the dialog's own name, of another format
     name = exchange.format_of_file(path, exchange.FILES, told)
     row = exchange.rig_format(name)
     study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())

@@ -12,7 +12,7 @@ from ..language import draw_label
 from ..sensor_cache import sensors as listed_sensors
 from .layout import row_list
 
-MODEL_FROM = 0.5
+MODEL_FROM = 0.64
 """Where the model begins, in shares of the room for name and model."""
 MAX_ROWS = 7
 """More sensors are a list that scrolls: the panel stays as long as it is."""

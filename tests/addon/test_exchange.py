@@ -1,8 +1,6 @@
 """Rigs of other programs leave the scene and come into it; axles stand where wheels are."""
 
 import json
-from functools import partial
-from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -10,7 +8,6 @@ import pytest
 
 from blender_addon import bridge
 from blender_addon.engine import exchange, pe
-from blender_addon.operators import exports
 from blender_addon.overlay import annotations
 from pe_tools.cli.verbs import main
 from tests.addon import scenes
@@ -42,21 +39,6 @@ def test_the_suffix_of_a_rig_s_file_chooses_the_format(axled, tmp_path):
     with pytest.raises(RuntimeError, match=r"other\.urdf: format: "):
         bpy.ops.pe.export_rig(filepath=str(tmp_path / "other.urdf"), format="csv")
     assert not (tmp_path / "other.urdf").exists()
-
-
-def test_in_the_dialog_name_and_format_follow_each_other():
-    dialog = SimpleNamespace(format="csv", format_named="", filepath="")
-    check = partial(exports.export_rig.check, dialog, None)
-    assert check() and dialog.filepath == "rig.csv"
-    assert not check()
-    dialog.filepath = "cars/prius.urdf"
-    assert check() and dialog.format == "urdf"
-    dialog.format = "ros"
-    assert check() and dialog.filepath == "cars/prius.xml"
-    dialog.filepath = "cars/prius.step"  # of no format: both stay
-    assert not check() and dialog.format == "ros"
-    dialog.format = "autoware"
-    assert check() and dialog.filepath == "autoware_rig"
 
 
 def test_axles_are_found_by_wheels_and_refused_without(car):

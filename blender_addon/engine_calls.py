@@ -62,8 +62,8 @@ class ScoreRequest:
 class ScoredRig(NamedTuple):
     """A rig's score, and that of the baseline where it was asked for."""
 
-    summary: pe.SummaryScore
-    baseline: pe.SummaryScore | None = None
+    summary: pe.Score
+    baseline: pe.Score | None = None
 
 
 _evaluators: dict[str, text.RecentCache[pe.RigEvaluator]] = {}

@@ -28,7 +28,6 @@ from .scoring import (
     Scatter,
     Score,
     SensorScore,
-    SummaryScore,
     requirements,
 )
 from .scoring.sight import BlindGround, GroundSight, Reach, Sight
@@ -73,7 +72,7 @@ from .version import __version__
 
 __all__ = ["METHODS", "ApCurve", "BeamField", "BlindGround", "BoxReport", "Boxes"]
 __all__ += ["BrownConrady", "Camera", "Choice", "Conditions", "Constraints", "Evaluator"]
-__all__ += ["FTheta", "Focus", "GroundMap", "GroundSight", "Housing", "InputError", "SummaryScore"]
+__all__ += ["FTheta", "Focus", "GroundMap", "GroundSight", "Housing", "InputError"]
 __all__ += ["KannalaBrandt", "Lidar", "Mesh", "MeshAxes", "Method", "Motion", "MountArea"]
 __all__ += ["Mounting", "NoGo", "ObjectClass", "ObjectEvaluator", "ObjectScore", "Objective"]
 __all__ += ["Objects", "Option", "PartScore", "PerceptionModel", "PerceptionSpace", "Pinhole"]

@@ -29,7 +29,6 @@ from .requirements import (
     requirements_of,
     store_verdicts,
     stored_verdict,
-    with_mesh_files_of,
     write_row,
 )
 from .result import (

@@ -11,10 +11,8 @@ from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import asdict, replace
 from functools import lru_cache
-from pathlib import Path
 from typing import Any
 
-import bpy
 from bpy.types import PropertyGroup
 
 from ..engine import pe, requirements, studies, text
@@ -93,19 +91,6 @@ def write_requirements(settings: PropertyGroup, wanted: Sequence[Requirement]) -
     settings.requirement_index = 0
 
 
-def with_mesh_files_of(study: pe.Study, folder: Path) -> pe.Study:
-    """Return a study from a folder whose mesh files of test bodies are found from any folder."""
-
-    def found(body: requirements.Body) -> requirements.Body:
-        if body.shape is None:
-            return body
-        file = (folder.absolute() / body.shape.file).as_posix()
-        return replace(body, shape=replace(body.shape, file=file))
-
-    held = [replace(each, bodies=tuple(map(found, each.bodies))) for each in study.requirements]
-    return replace(study, requirements=tuple(held))
-
-
 def edit_row(row: PropertyGroup, change: Callable[[TableData], None]) -> None:
     """Change a row's full table; a change that makes it wrong is not made, and the row says why."""
     try:
@@ -171,9 +156,4 @@ def stored_verdict(row: PropertyGroup) -> VerdictSummary | str | None:
 
 def _read(name: str, table: TableData) -> Requirement:
     reader = text.Table({**table, "name": name}, "scene", f"requirement {name!r}")
-    return studies.requirement_file.read_requirement(reader, _folder())
-
-
-def _folder() -> Path:
-    """Return the folder of the Blender file, to which mesh files of test bodies are relative."""
-    return Path(bpy.path.abspath("//") if bpy.data.filepath else "")
+    return studies.requirement_file.read_requirement(reader)

@@ -108,7 +108,7 @@ def entropy_change(now: float, before: float) -> tuple[str, int]:
     return f"{abs(by):.3f} {'worse' if by > 0.0 else 'better'}", WORSE if by > 0.0 else BETTER
 
 
-def zone_lines(now: pe.SummaryScore, before: pe.SummaryScore | None) -> list[ReadoutLine]:
+def zone_lines(now: pe.Score, before: pe.Score | None) -> list[ReadoutLine]:
     """Return the zone that improved most, and the one that worsened most: at most a line each."""
     if before is None:
         return []

@@ -27,7 +27,7 @@ class Baseline:
 
     label: str
     rig: pe.Rig | None
-    summary: pe.SummaryScore | None = None
+    summary: pe.Score | None = None
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class LiveScore:
     vehicle, prior, space and settings.
     """
 
-    summary: pe.SummaryScore
+    summary: pe.Score
     baseline: Baseline | None
     exact: bool
     rig: pe.Rig
@@ -55,7 +55,7 @@ class LiveScore:
     problem: Hashable = None
 
     @property
-    def before(self) -> pe.SummaryScore | None:
+    def before(self) -> pe.Score | None:
         """The score of the baseline, once it is known."""
         return None if self.baseline is None else self.baseline.summary
 

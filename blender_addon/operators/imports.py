@@ -121,7 +121,7 @@ def import_study(context: bpy.types.Context, filepath: str) -> Told:
 
     A vehicle that is already the same stays"""
     path = chosen_file(filepath)
-    study = bridge.with_mesh_files_of(pe.load_study(path), path.parent)
+    study = pe.load_study(path)
     if lost := bridge.load_into(context.scene, study):
         return Told(f"The scene differs from the file in: {', '.join(lost)}", level="WARNING")
     return Told(f"Imported {filepath} without any loss")

@@ -213,7 +213,7 @@ class PE_Requirement(Declared, Switched, PropertyGroup):
     bodies: text(
         "Bodies",
         "Names of test bodies: child, adult. Or an own one, with the keys of a study: "
-        'size = [0.5, 0.5, 1.5], class = "pedestrian"; mesh = "dog.obj", up = "+y"',
+        'size = [0.5, 0.5, 1.5], class = "pedestrian"',
         search=known_bodies,
         search_options={"SUGGESTION"},
         **_view(_bodies_line, _set_bodies),

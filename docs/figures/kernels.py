@@ -1,6 +1,6 @@
 """Draw the figures of docs/engine.md: ``python docs/figures/kernels.py`` writes docs/images/*.svg.
 
-They show the very voxels that are worked by hand (`worked`).
+They show the very voxel that is worked by hand (`worked`).
 """
 
 from __future__ import annotations
@@ -113,85 +113,6 @@ def _from_above_the_sensor(picture: Drawing) -> None:
     picture.text(at(edge[0] + 0.12, edge[1] + 0.08), "slice")
 
 
-def draw_upright() -> str:
-    """The level voxel from above, and in the plane of one of its azimuths."""
-    picture = Drawing(940, 470, "The azimuths that meet a voxel, and the channels of one of them")
-    _square_from_above(picture)
-    _plane_of_an_azimuth(picture)
-    return picture.done()
-
-
-def _square_from_above(picture: Drawing) -> None:
-    x0, x1, y0, y1, _, _ = worked.faces()
-    scale = 150.0
-
-    def at(x: float, y: float) -> Point:
-        return (175.0 + (x - x0) * scale, 280.0 - (y - y0) * scale)
-
-    picture.text((24, 32), "1. From above: which azimuths meet the square", size=15, weight="bold")
-    picture.area([at(x0, y0), at(x1, y0), at(x1, y1), at(x0, y1)], SKY, INK, 1.4, opacity=0.25)
-    meeting = {c.azimuth: c for c in worked.crossings()}
-    for j in range(min(meeting) - 1, max(meeting) + 2):
-        c, s = math.cos(j * worked.STEP), math.sin(j * worked.STEP)
-        ends = [at(d * c, d * s) for d in (119.25, 121.6)]
-        color = BLUE if j in meeting else FAINT
-        picture.line(ends, color, 1.8 if j in meeting else 1.0)
-        picture.text((ends[1][0] + 6, ends[1][1] + 3), str(j), color, size=12)
-        for d in (meeting[j].enter, meeting[j].leave) if j in meeting else ():
-            picture.dot(at(d * c, d * s), 3.4, BLUE, BLUE)
-    low, high = worked.corner_azimuths()
-    for place, azimuth, aside in ((at(x1, y0), low, (10, 18)), (at(x0, y1), high, (-44, -10))):
-        picture.dot(place, 4.5, "#ffffff")
-        picture.text((place[0] + aside[0], place[1] + aside[1]), f"{azimuth:.2f}")
-    for line, words in enumerate(
-        [
-            "The outermost corners (hollow) bound the azimuths, in steps of",
-            "0.2 degrees. Each cuts the square between two distances (dots).",
-            f"The sensor is {meeting[78].enter:.0f} sides off, to the lower left.",
-        ]
-    ):
-        picture.text((24, 410 + 20 * line), words, size=12)
-
-
-def _plane_of_an_azimuth(picture: Drawing) -> None:
-    _, _, _, _, z0, z1 = worked.faces()
-    cut = worked.crossings()[1]
-    scale, distances = 150.0, (cut.enter, cut.leave)
-    near, far = cut.enter - 0.75, cut.leave + 0.45
-
-    def at(distance: float, z: float) -> Point:
-        return (620.0 + (distance - cut.enter) * scale, 150.0 - (z - z1) * scale)
-
-    title = f"2. From the side: the plane of azimuth {cut.azimuth}"
-    picture.text((500, 32), title, size=15, weight="bold")
-    picture.area(_hull(at(d, z) for d in distances for z in (z0, z1)), SKY, INK, 1.4, opacity=0.25)
-    for k in range(min(cut.channels) - 1, max(cut.channels) + 2):
-        ends = [at(d, d * worked.SLOPES[k]) for d in (near, far)]
-        color = BLUE if k in cut.channels else FAINT
-        picture.line(ends, color, 1.8 if k in cut.channels else 1.0)
-        picture.text((ends[1][0] + 6, ends[1][1] + 2), f"channel {k}", color, size=12)
-    for slope, place, words, below in (
-        (cut.low, at(cut.enter, z0), "lowest slope", 19),
-        (cut.high, at(cut.leave, z1), "highest slope", -9),
-    ):
-        ends = [at(d, d * slope) for d in (near, far)]
-        picture.line(ends, VERMILION, 1.6, "7 4")
-        picture.dot(place, 4.0, VERMILION)
-        label = (ends[0][0], ends[0][1] + below)
-        picture.text(label, f"{words} {slope:.4f}", VERMILION, size=12)
-    for distance, words in zip(distances, ("enter", "leave"), strict=True):
-        top = at(distance, z1)
-        picture.line([top, (top[0], 84.0)], FAINT, 1.0, "2 3")
-        picture.text((top[0], 78.0), f"{words} {distance:.2f}", size=12, anchor="middle")
-    for line, words in enumerate(
-        [
-            "Two look-ups tell how many channels lie below either slope;",
-            f"the difference passes: {len(cut.channels)} of {len(worked.SLOPES)}.",
-        ]
-    ):
-        picture.text((500, 410 + 20 * line), words, size=12)
-
-
 def _turn() -> np.ndarray:
     """(3, 3) row k: ground axis k along the sensor's axes."""
     return worked.TILTED.pose.ground_from_sensor
@@ -253,7 +174,7 @@ def _turns_right(a: Point, b: Point, c: Point) -> bool:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) <= 1e-12
 
 
-FIGURES = {"bracket.svg": draw_bracket, "upright.svg": draw_upright}
+FIGURES = {"bracket.svg": draw_bracket}
 
 if __name__ == "__main__":
     for name, draw in FIGURES.items():

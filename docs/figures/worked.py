@@ -1,6 +1,6 @@
-"""The two voxels that docs/engine.md draws, worked by formulas on plain numbers.
+"""The voxel that docs/engine.md draws, worked by formulas on plain numbers.
 
-A test holds the kernels to them.
+A test holds the kernel to it.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ import pe_core as pe
 from pe_core.sensors.lidar.bracket import Bracket, Silhouettes, bracket, slice_through
 from pe_core.sensors.lidar.definition import position_in_voxels
 from pe_core.sensors.lidar.lattice import lattice_of
-from pe_core.sensors.lidar.upright import Upright, circle, faces_of
 
 SPACE = pe.PerceptionSpace()
 SIDE = SPACE.interval
@@ -24,8 +23,6 @@ SLOPES = [math.tan(e) for e in sorted(MODEL.elevations.tolist())]
 
 TILTED = pe.Sensor("tilted", MODEL, pe.Pose.from_degrees((-0.43, 0.0, 1.8), (5.0, 10.0, 0.0)))
 TILTED_CENTER = (8.05, 2.55, 0.35)
-LEVEL = pe.Sensor("level", MODEL, pe.Pose((-0.43, 0.0, 1.8)))
-LEVEL_CENTER = (11.15, 3.25, 1.15)
 
 
 def index_of(center: tuple[float, float, float]) -> np.ndarray:
@@ -161,69 +158,6 @@ def kernel_bracket() -> Bracket:
     assert bounds is not None
     rotation = TILTED.pose.ground_from_sensor
     return bracket(_tilted_points(), rotation, bounds, MODEL.azimuth_count)
-
-
-@dataclass(frozen=True)
-class Crossing:
-    """An azimuth through the square of the level voxel: distances [sides], slopes, channels."""
-
-    azimuth: int
-    enter: float
-    leave: float
-    low: float
-    high: float
-
-    @property
-    def channels(self) -> list[int]:
-        """Channels that pass the voxel at this azimuth."""
-        return channels_between(self.low, self.high)
-
-
-def faces() -> list[float]:
-    """x0, x1, y0, y1, z0, z1 of the level voxel, seen from the sensor, in sides."""
-    corners = [c.astype(np.float32) for c in index_of(LEVEL_CENTER).T]
-    return [float(f[0]) for f in faces_of(corners, position_of(LEVEL))]
-
-
-def corner_azimuths() -> tuple[float, float]:
-    """Azimuths of the square's outermost corners, in steps."""
-    x0, x1, y0, y1, _, _ = faces()
-    return math.atan2(y0, x1) / STEP, math.atan2(y1, x0) / STEP
-
-
-def crossings() -> list[Crossing]:
-    """Every azimuth that meets the level voxel."""
-    x0, x1, y0, y1, z0, z1 = faces()
-    low, high = corner_azimuths()
-    found = []
-    for j in range(math.ceil(low), math.floor(high) + 1):
-        c, s = math.cos(j * STEP), math.sin(j * STEP)
-        enter, leave = max(x0 / c, y0 / s), min(x1 / c, y1 / s)
-        slopes = [z / d for z in (z0, z1) for d in (enter, leave)]
-        found.append(Crossing(j, enter, leave, min(slopes[:2]), max(slopes[2:])))
-    return found
-
-
-def kernel_azimuths() -> list[int]:
-    """Azimuths that the kernel says meet the level voxel."""
-    corners = [c.astype(np.float32) for c in index_of(LEVEL_CENTER).T]
-    azimuths, unsure = circle(MODEL.azimuth_count, 0.0).meeting(
-        faces_of(corners, position_of(LEVEL))
-    )
-    assert not unsure[0]
-    entry, turn, count = azimuths[:, 0].astype(int).tolist()
-    return [entry - 2 * MODEL.azimuth_count + turn * n for n in range(count)]
-
-
-def kernel_upright() -> tuple[int, bool]:
-    """Return what the kernel counts through the level voxel, and whether it is unsure."""
-    slopes = lattice_of(MODEL).slope_counts
-    assert slopes is not None
-    nothing = np.zeros((len(SLOPES), MODEL.azimuth_count), bool)
-    upright = Upright.of(slopes, LEVEL.pose.ground_from_sensor, nothing, 0.0)
-    corners = [c.astype(np.float32) for c in index_of(LEVEL_CENTER).T]
-    counts, unsure = upright.count(corners, position_of(LEVEL))
-    return int(counts[0]), bool(unsure[0])
 
 
 def _tilted_points() -> list[np.ndarray]:

@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -247,21 +247,11 @@ def _rooms(low: Floats, high: Floats, present: NDArray[np.bool_]) -> NDArray[np.
     return np.flatnonzero(large & larger)
 
 
-class Meshed(Protocol):
-    """An object with triangles and named parts: a vehicle or a mesh."""
-
-    @property
-    def triangles(self) -> NDArray[np.float64]: ...
-    @property
-    def parts(self) -> NDArray[np.int32]: ...
-    @property
-    def part_names(self) -> Sequence[str]: ...
-
-
-def require_vehicle_size(source: str, body: Meshed) -> None:
+def require_vehicle_size(source: str, body: Any) -> None:
     """Raise `InputError` if a body is too large or too small for a vehicle; a floor does not count.
 
-    It has the size of the body, and scale factors that give it the size of a vehicle.
+    The body is a `Mesh` or a `Vehicle`. The message has its size, and scale factors that give it
+    the size of a vehicle.
     """
     low, high = corner_bounds(body.triangles)
     if _is_possible((high - low).tolist()):

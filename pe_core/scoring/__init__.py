@@ -13,9 +13,8 @@ from .score import (
     Score,
     ScoreStopped,
     SensorScore,
-    SummaryScore,
 )
 
 __all__ = ["Evaluation", "Evaluator", "FoundClass", "GroundMap", "ObjectScore", "PartScore"]
-__all__ += ["RigEvaluator", "Scatter", "Score", "ScoreStopped", "SensorScore", "SummaryScore"]
+__all__ += ["RigEvaluator", "Scatter", "Score", "ScoreStopped", "SensorScore"]
 __all__ += ["VoxelSample", "draw"]

@@ -16,7 +16,7 @@ from ..sensors import PerceptionModel
 from .grid_scorer import GridScorer, columns_bytes, require_room_for, require_room_for_samples
 from .sampled_scorer import SampledScorer
 from .sampling import CENTERED, SAMPLES_OR_GRID, cached_densities
-from .score import Evaluation, Score, SummaryScore, Watch
+from .score import Evaluation, Score, Watch
 
 WORKERS = Whole(0, 1024, "threads")
 SHIFT = Number(0.0, 1.0, below=True)
@@ -113,7 +113,7 @@ class Evaluator:
         """
         return self._scorer.entropy(rig, preview)
 
-    def summary(self, rig: Rig, *, preview: bool = False) -> SummaryScore:
+    def summary(self, rig: Rig, *, preview: bool = False) -> Score:
         """Return the score of a rig without the part by sensor, for use while one is being moved.
 
         `preview` as in `score`.

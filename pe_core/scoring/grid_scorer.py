@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
+from dataclasses import replace
 from functools import partial, reduce
 from operator import add
 from typing import Any, NamedTuple
@@ -44,7 +45,6 @@ from .score import (
     Score,
     ScoreProgress,
     SensorScore,
-    SummaryScore,
     Watch,
     column_zones,
     ground_map,
@@ -172,11 +172,9 @@ class GridScorer:
 
             return self._mean(np.sum(list(pool.map(work, self._blocks)), axis=0))
 
-    def summary(self, rig: Rig, preview: bool = False) -> SummaryScore:
+    def summary(self, rig: Rig, preview: bool = False) -> Score:
         """Return the score without the part by sensor."""
-        whole = self.score(rig, by_sensor=False)
-        figures = whole.entropy, whole.coverage, whole.stderr, whole.per_class, whole.per_zone
-        return SummaryScore(*figures, whole.voxels)
+        return replace(self.score(rig, by_sensor=False), ground_map=None)
 
     def evaluate(self, rig: Rig, cutoff: float) -> Evaluation:
         """Return the entropy, whatever the cutoff."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -30,7 +31,6 @@ from .score import (
     Score,
     ScoreProgress,
     SensorScore,
-    SummaryScore,
     Watch,
     residuals,
     sample_digest,
@@ -144,7 +144,7 @@ class SampledScorer:
         m |= {sensor.name: self._sensors.measure_again(sensor) for sensor in first_half}
         return mean_or_worst([self._entropy_of(part, m) for part in scenarios.parts], worst)
 
-    def summary(self, rig: Rig, preview: bool = False) -> SummaryScore:
+    def summary(self, rig: Rig, preview: bool = False) -> Score:
         """Return the score without the part by sensor."""
         with self._lock:
             self._sensors.measure(rig, preview)
@@ -158,17 +158,8 @@ class SampledScorer:
             self._sensors.measure(rig, preview, progress.add)
             values = self._entropies(rig, [s.name for s in rig])
             whole = self._summary(rig, *values)
-            return Score(
-                whole.entropy,
-                whole.coverage,
-                whole.stderr,
-                whole.per_class,
-                whole.per_zone,
-                {s.name: self._sensor(s, rig, whole.entropy, progress) for s in rig},
-                whole.voxels,
-                preview=whole.preview,
-                scatter=self._scatter(*values),
-            )
+            per_sensor = {s.name: self._sensor(s, rig, whole.entropy, progress) for s in rig}
+            return replace(whole, per_sensor=per_sensor, scatter=self._scatter(*values))
 
     def _entropy_of(self, rig: Rig, measured: Mapping[str, NDArray]) -> float:
         fused = fused_early(rig, measured, [s.name for s in rig])
@@ -180,9 +171,9 @@ class SampledScorer:
         fused = fused_early(rig, self._sensors.m, members)
         return self._fusion.entropies(self._fusion.ranged(fused, self._distance))
 
-    def _summary(self, rig: Rig, entropies: Floats, visible: NDArray[np.bool_]) -> SummaryScore:
+    def _summary(self, rig: Rig, entropies: Floats, visible: NDArray[np.bool_]) -> Score:
         entropy, coverage = self._whole(entropies, visible)
-        return SummaryScore(
+        return Score(
             entropy,
             coverage,
             self._standard_error(entropies, len(rig.groups)),
@@ -191,8 +182,9 @@ class SampledScorer:
                 name: PartScore(*self._whole(entropies.take(inside), visible.take(inside)), share)
                 for name, (inside, share) in self._zones.items()
             },
+            {},
             len(self._sample.index),
-            any(m.approximate for m in self._sensors.last.values()),
+            preview=any(m.approximate for m in self._sensors.last.values()),
         )
 
     def _whole(self, entropies: Floats, visible: NDArray[np.bool_]) -> tuple[float, float]:

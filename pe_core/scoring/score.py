@@ -327,23 +327,6 @@ def ground_map(columns: NDArray[np.float64]) -> GroundMap:
 
 
 @dataclass(frozen=True, slots=True)
-class SummaryScore(ShortRepr):
-    """The summary of a sampled score: the whole rig, without the part by sensor.
-
-    The fields are those of `Score`, with the same numbers to the bit; `ap` is that of its objects.
-    """
-
-    entropy: float
-    coverage: float
-    stderr: float
-    per_class: dict[str, PartScore]
-    per_zone: dict[str, PartScore]
-    voxels: int
-    preview: bool = False
-    ap: float | None = None
-
-
-@dataclass(frozen=True, slots=True)
 class Score(Tabular):
     """Score of a rig.
 
@@ -359,6 +342,7 @@ class Score(Tabular):
     per_zone : dict of PartScore
         Zones overlap: see `zones.ZONES`. A zone without prior mass is left out.
     per_sensor : dict of SensorScore
+        Empty in a summary.
     voxels : int
         Number of voxels evaluated.
     ground_map : GroundMap or None
@@ -370,6 +354,8 @@ class Score(Tabular):
         means over objects, and no voxel was evaluated.
     scatter : Scatter or None
         Residuals of the figures by batch, for the error of a difference; None for a grid score.
+    ap : float or None
+        Expected AP of all objects, where these are scored.
     """
 
     entropy: float
@@ -383,6 +369,7 @@ class Score(Tabular):
     preview: bool = False
     objects: ObjectScore | None = None
     scatter: Scatter | None = None
+    ap: float | None = None
 
     def _caption(self) -> str:
         error = f" ± {self.stderr:.4f}" if self.stderr else ""
@@ -463,7 +450,7 @@ class RigEvaluator(Protocol):
     def score(self, rig: Rig, *, preview: bool = False, watch: Watch | None = None) -> Score:
         """Score a rig in full."""
 
-    def summary(self, rig: Rig, *, preview: bool = False) -> SummaryScore:
+    def summary(self, rig: Rig, *, preview: bool = False) -> Score:
         """Score a rig as a whole, without the part by sensor."""
 
     def entropy(self, rig: Rig, *, preview: bool = False) -> float:

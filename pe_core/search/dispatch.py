@@ -15,7 +15,7 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from contextlib import closing, suppress
 from dataclasses import dataclass
 from itertools import chain
-from typing import Any, NamedTuple, Protocol, TypeVar, runtime_checkable
+from typing import Any, NamedTuple, TypeVar
 
 from ..base.errors import InputError
 from ..scene.rig import Rig
@@ -118,29 +118,14 @@ def _replied(function: Callable[..., Any], *arguments: Any) -> _Reply:
         return _Reply(error=error)
 
 
-@runtime_checkable
-class BatchObjective(Protocol):
-    """An objective that evaluates several rigs itself, because it knows some of them already."""
-
-    def evaluate_all(
-        self, rigs: Sequence[Rig], cutoff: float, executor: Executor | None
-    ) -> list[Evaluation]:
-        """Evaluate several rigs, as the function of this name does."""
-
-
-@runtime_checkable
-class WrappingObjective(Protocol):
-    """An objective of little content round others that workers are to be sent once."""
-
-    def shared_parts(self) -> tuple[object, ...]:
-        """Return its parts that do not change; the rest is sent with each candidate."""
-
-
 def shared_parts(objective: Objective) -> tuple[object, ...]:
-    """Return what a worker is sent once to evaluate an objective: its parts, or the objective."""
-    if isinstance(objective, WrappingObjective):
-        return objective.shared_parts()
-    return (objective,)
+    """Return what a worker is sent once to evaluate an objective: its `shared_parts`, or all of it.
+
+    An objective of little content round others has such a method: the rest is sent with each
+    candidate.
+    """
+    own: Callable[[], tuple[object, ...]] | None = getattr(objective, "shared_parts", None)
+    return (objective,) if own is None else own()
 
 
 def evaluate_all(
@@ -168,8 +153,9 @@ def evaluate_all(
         For each rig its entropy where that is below `cutoff`; otherwise `cutoff` as a lower bound,
         even where the entropy is known. `InputError` when two workers died with the same rig.
     """
-    if isinstance(objective, BatchObjective):
-        return objective.evaluate_all(rigs, cutoff, executor)
+    if (own := getattr(objective, "evaluate_all", None)) is not None:  # it knows some already
+        found: list[Evaluation] = own(rigs, cutoff, executor)
+        return found
     if executor is not None and rigs:
         with suppress(Unreadable):
             return _evaluate_by_workers(objective, rigs, cutoff, executor)

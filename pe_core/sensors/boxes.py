@@ -27,9 +27,9 @@ NEAREST_M = 1e-6
 """Replaces the distance 0 [m]."""
 APART_RAD = 1e-6
 """Margin between the directions of balls, seen from above, that do not hide each other [rad]."""
-CELLS, ROUND, INSIDE = range(3)
-"""Layers of boxes: the cells that are measured, the shell round the body, boxes inside it."""
-LAYERS = 3
+CELLS, ROUND = range(2)
+"""Layers of boxes: the cells that are measured, the shell round the body."""
+LAYERS = 2
 NO_END = -1
 """Band of a ray that does not enter a layer."""
 
@@ -197,10 +197,10 @@ def behind_others(boxes: PlacedBoxes, rivals: Rivals, rays: BoxRays) -> Flags:
 class BodyParts:
     """Cells of bodies, and shells that tell in which band of a body a ray ends.
 
-    The surface of a body is between the shell round it and the boxes inside it. A body without one
-    of them has its surface on the cells. The `cells` are measured; their scenes are the bodies.
-    `shells` are boxes round and inside the bodies, with the same scenes. `bands` (N,) are the bands
-    of height of the cells and of the shells after them, `layers` (N,) `CELLS`, `ROUND` or `INSIDE`.
+    The surface of a body is between the shell round it and the cells; that of a body without a
+    shell is on the cells. The `cells` are measured; their scenes are the bodies. `shells` are boxes
+    round the bodies, with the same scenes. `bands` (N,) are the bands of height of the cells and of
+    the shells after them, `layers` (N,) `CELLS` or `ROUND`.
     """
 
     cells: Objects

@@ -20,8 +20,6 @@ from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from ..base.errors import InputError
 from ..base.values import rounded
 from ..scene.rig import Rig
@@ -272,13 +270,6 @@ def _covered(
             if more >= COVERS:
                 found.setdefault(name, {})[part] = round(more, 4)
     return found or None
-
-
-def matrix(table: ConditionTable) -> np.ndarray:
-    """Return entropies (1 + sensors, conditions): the whole rig, then without each sensor."""
-    rows = [[r.entropy for r in table.rows]]
-    rows += [[r.without[name] for r in table.rows] for name in table.sensors]
-    return np.array(rows)
 
 
 class ConditionObjective:

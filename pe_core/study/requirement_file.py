@@ -7,24 +7,20 @@ A preset is a requirement of a regulation, a test or a maker, with its source. A
 from __future__ import annotations
 
 import math
-import os
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache
+from functools import cache
 from importlib import resources
-from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ..base.errors import InputError, shown
-from ..base.plugins import shipped
+from ..base.errors import shown
 from ..base.setting import changed_settings, read_declared, settings_of
 from ..base.table_reader import Table
-from ..base.values import A_NAME, A_PATH, as_in_file, choice, degrees_in_file, listed
-from ..scene.mesh import SCALE, MeshAxes
+from ..base.values import A_NAME, as_in_file, choice, degrees_in_file, listed
 from ..scoring import requirements as room
-from ..scoring.requirements import BODIES, Body, Criterion, MeshShape, Requirement, Under, Zone
+from ..scoring.requirements import BODIES, Body, Criterion, Requirement, Under, Zone
 
 CONFIDENCE = {"A": "the text of the standard or maker was read", "B": "a secondary source"}
 SHAPES = ("x", "y", "polygon", "ring", "path", "spots")
@@ -33,7 +29,6 @@ CUSTOM = "own"
 MAX_REQUIREMENTS = 200
 OF_FIRST = ("of", *(key for key in settings_of(Criterion) if key != "of"))
 """The order of keys is part of a study's fingerprint."""
-AXES = ("up", "forward", "scale")
 
 
 @dataclass(frozen=True)
@@ -85,8 +80,8 @@ def preset(identifier: str, source: str = "presets", field: str = "preset") -> P
     return presets()[choice(source, field, identifier, presets())]
 
 
-def read_requirements(table: Table, folder: Path = Path()) -> tuple[Requirement, ...]:
-    """Return the requirements of a study's table; mesh files are relative to a folder.
+def read_requirements(table: Table) -> tuple[Requirement, ...]:
+    """Return the requirements of a study's table.
 
     `InputError` with one line that says what is wrong.
     """
@@ -94,7 +89,7 @@ def read_requirements(table: Table, folder: Path = Path()) -> tuple[Requirement,
     if len(tables) > MAX_REQUIREMENTS:
         expected = f"at most {MAX_REQUIREMENTS} requirements"
         raise table.error("requirement", expected, len(tables))
-    found = [read_requirement(each, folder) for each in tables]
+    found = [read_requirement(each) for each in tables]
     names = [each.name for each in found]
     for number, name in enumerate(names):
         if name in names[:number]:
@@ -103,17 +98,17 @@ def read_requirements(table: Table, folder: Path = Path()) -> tuple[Requirement,
     return tuple(found)
 
 
-def read_requirement(table: Table, folder: Path = Path()) -> Requirement:
+def read_requirement(table: Table) -> Requirement:
     """Return one requirement from its table; `InputError` as `read_requirements`."""
     identifier = table.text("preset", None, rule=A_NAME)
     if identifier is None:
-        return _read(table, None, folder)
+        return _read(table, None)
     base = preset(identifier, table.source, table.field("preset"))
     merged = Table(_merged(base.table, table.data), table.source, table.path)
     merged.raw("preset")
     return replace(
-        _read(merged, identifier, folder),
-        original=_read(Table(_merged(base.table, {}), f"preset {base.id}"), base.id, Path()),
+        _read(merged, identifier),
+        original=_read(Table(_merged(base.table, {}), f"preset {base.id}"), base.id),
     )
 
 
@@ -150,37 +145,35 @@ def _merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
     return {k: v for k, v in merged.items() if v != {} or k in own}
 
 
-def _read(table: Table, identifier: str | None, folder: Path) -> Requirement:
+def _read(table: Table, identifier: str | None) -> Requirement:
     table.raw("preset", None)
     name = table.text("name", rule=A_NAME)
     zone = read_declared(table.table("zone"), Zone)
     criterion = read_declared(table.table("criterion"), Criterion)
     under = read_declared(table.table("under"), Under)
     headings = table.raw("headings", None)
-    bodies = tuple(_with_headings(b, headings, table) for b in _read_bodies(table, folder))
+    bodies = tuple(_with_headings(b, headings, table) for b in _read_bodies(table))
     source, check = table.text("source", ""), table.text("check", "")
     table.finish()
     with table.naming():
         return Requirement(name, zone, bodies, criterion, under, identifier, source, check)
 
 
-def _read_bodies(table: Table, folder: Path) -> list[Body]:
+def _read_bodies(table: Table) -> list[Body]:
     value = table.raw("body", ())
     items = [value] if isinstance(value, str | Mapping) else listed(value)
     if items is None:
         raise table.error("body", "a name, a table, or a list of them", shown(value))
-    return [_read_body(each, table, folder) for each in items]
+    return [_read_body(each, table) for each in items]
 
 
-def _read_body(value: Any, table: Table, folder: Path) -> Body:
+def _read_body(value: Any, table: Table) -> Body:
     if isinstance(value, str):
         return BODIES[choice(table.source, table.field("body"), value, BODIES)]
     own = Table(value, table.source, table.field("body"))
     name = own.text("name", CUSTOM, rule=A_NAME)
     if own.names == ["name"]:
-        return _read_body(name, table, folder)
-    if "mesh" in own:
-        return read_mesh_body(own, name, folder)
+        return _read_body(name, table)
     is_round = "diameter" in own
     if is_round:
         diameter = own.number("diameter")
@@ -239,8 +232,6 @@ def _body_table(body: Body) -> dict[str, Any]:
     sizes: dict[str, Any] = {"size": list(body.size)}
     if body.is_round:
         sizes = {"diameter": body.size[0], "height": body.size[2]}
-    if body.shape is not None:
-        sizes = {"mesh": body.shape.file, **dict(body.shape.axes)}
     more = {"low": body.low or None, "class": body.class_name}
     return {"name": body.name, **sizes} | {k: v for k, v in more.items() if v is not None}
 
@@ -252,47 +243,3 @@ def _headings(requirement: Requirement) -> list[float] | None:
         if body.headings != own:
             return [degrees_in_file(h) for h in body.headings]
     return None
-
-
-def read_mesh_body(own: Table, name: str, folder: Path) -> Body:
-    """Return a body from its table, with a mesh file relative to a folder.
-
-    `InputError` for a file that is no mesh, a body that is not closed, or one of no likely size.
-    """
-    file = own.text("mesh", rule=A_PATH)
-    up, forward = own.text("up", None), own.text("forward", None)
-    scale = own.number("scale", 1.0, rule=SCALE)
-    low, class_name = own.number("low", 0.0), own.text("class", None, rule=A_NAME)
-    own.finish()
-    path = folder / file
-    try:
-        state = os.stat(path)
-        stamp = state.st_mtime_ns, state.st_size
-    except OSError:
-        stamp = 0, 0  # the reader says what is wrong with it
-    with own.naming():
-        axes = MeshAxes(up, forward, scale, (0.0, 0.0, 0.0))
-    try:
-        shape = _shape(str(path), stamp, axes)
-    except InputError as error:
-        raise own.error("mesh", error.expected, f"{file}: {error.found}") from None
-    return Body(name, shape.size, low, class_name=class_name, shape=replace(shape, file=file))
-
-
-@lru_cache(maxsize=32)
-def _shape(path: str, stamp: tuple[int, int], axes: MeshAxes) -> MeshShape:
-    """Return the shape of a mesh file; `stamp` changes with the file."""
-    mesh = shipped("reader.mesh")(path, axes)
-    stated = (axes.up, axes.forward, axes.scale if axes.scale != 1.0 else None)
-    keys = tuple((key, value) for key, value in zip(AXES, stated, strict=True) if value is not None)
-    return MeshShape.of(path, mesh.triangles, keys)
-
-
-def mesh_files(requirements: Sequence[Requirement]) -> list[tuple[str, str]]:
-    """Return the name of each requirement that has a body from a mesh, and the mesh file."""
-    return [
-        (each.name, body.shape.file)
-        for each in requirements
-        for body in each.bodies
-        if body.shape is not None
-    ]

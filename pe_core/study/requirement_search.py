@@ -17,7 +17,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import chain
-from typing import Protocol
 
 import numpy as np
 
@@ -101,13 +100,6 @@ class FiguresLimit:
         return rounded(sum(1.0 - limit / value for value, limit in pairs if value > limit))
 
 
-class FeasibilityRule(Protocol):
-    """Something that a placement keeps, or breaks by so much."""
-
-    def violation(self, rig: Rig) -> float:
-        """Return by how much a placement breaks it; 0 where it is kept."""
-
-
 class RequirementConstraint:
     """The constraint that all requirements of a study are met, with the tolerance's errors."""
 
@@ -119,6 +111,10 @@ class RequirementConstraint:
         wanted = self._checker.requirements
         cases = mounting_cases(wanted, rig, self._tolerance, self._seed)
         return rounded(sum(self._checker.shortfalls(rig, cases)))
+
+
+FeasibilityRule = FiguresLimit | RequirementConstraint
+"""Something that a placement keeps, or breaks by its `violation`."""
 
 
 class FeasibleFirst:

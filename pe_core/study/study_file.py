@@ -60,7 +60,7 @@ from ..sensors.weather import Weather
 from .conditions import BODY, OF_STATE, condition_tables, read_conditions
 from .mounting_file import areas_of, same_model
 from .passthrough import passthrough_table, read_passthrough
-from .requirement_file import mesh_files, read_requirements, requirement_table
+from .requirement_file import read_requirements, requirement_table
 from .scoring_file import (
     curve_table,
     curves_table,
@@ -121,8 +121,6 @@ def save_study(study: Study, path: str | Path) -> None:
     _check_beside(path, "vehicle.mesh", study.vehicle is not None, study.mesh)
     for key, prior in (("boxes", study.prior.boxes), ("grid", study.prior.grid)):
         _check_beside(path, f"prior.{key}", prior is not None, prior.file if prior else None)
-    for name, file in mesh_files(study.requirements):
-        _check_beside(path, f"requirement {name!r}: body.mesh", True, file)
     for name, area in areas_of(study.search.mounting).items():
         _check_beside(path, f"mount {name!r}: area", True, area.file)
     write_bytes(path, study_bytes(study))
@@ -204,7 +202,7 @@ def _read_study(table: Table, folder: Path) -> Study:
         read_selection(table, lambda option: _read_intrinsics(option, OWN_MODEL, folder)),
         read_targets(table.table("metric")),
         read_passthrough(table.table("passthrough")) if "passthrough" in table else None,
-        read_requirements(table, folder),
+        read_requirements(table),
         read_conditions(table),
         **_read_measurement(table.table("measurement")),
         frames=frames,

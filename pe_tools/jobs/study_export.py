@@ -6,7 +6,6 @@ import hashlib
 import json
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -57,7 +56,6 @@ def study_writers(study: Study, name: str) -> dict[str, Write | bytes]:
         mesh = Mesh(vehicle.triangles, np.asarray(vehicle.parts), tuple(vehicle.part_names))
         study = study.with_mesh(MESH if name == STUDY else path.with_suffix(".npz").name)
         writers[str(study.mesh)] = lambda at: write_mesh(at, mesh)
-    study = _with_bodies(study, path, writers)
     search = study.search
     if (areas := areas_mesh(search.mounting)) is not None:
         file = AREAS if name == STUDY else path.with_suffix(f".{AREAS}").name
@@ -84,23 +82,6 @@ def study_text(study: Study) -> str:
     return written.decode()
 
 
-def _with_bodies(study: Study, path: Path, writers: dict[str, Write | bytes]) -> Study:
-    """Return a study whose test bodies from meshes are in files beside it; add their writers."""
-    requirements, stem = [], "" if path.name == STUDY else f"{path.stem}."
-    for each in study.requirements:
-        bodies = []
-        for body in each.bodies:
-            if (shape := body.shape) is not None:
-                file = f"{stem}body_{sum('body_' in name for name in writers)}.npz"
-                parts = np.zeros(len(shape.triangles), np.int32)
-                mesh = Mesh(shape.triangles, parts, (body.name,))
-                writers[file] = partial(write_mesh, mesh=mesh)
-                body = replace(body, shape=replace(shape, file=file, axes=()))
-            bodies.append(body)
-        requirements.append(replace(each, bodies=tuple(bodies)))
-    return replace(study, requirements=tuple(requirements))
-
-
 def fingerprint(study: Study) -> str:
     """Return the SHA-256 of the values of a study; the names of its files do not count.
 
@@ -119,9 +100,6 @@ def _parts(study: Study) -> Iterator[bytes]:
         yield np.ascontiguousarray(vehicle.triangles).tobytes()
         yield np.ascontiguousarray(vehicle.parts).tobytes()
         yield json.dumps(list(vehicle.part_names)).encode()
-    for body in (body for each in study.requirements for body in each.bodies):
-        if body.shape is not None:
-            yield (np.round(body.shape.triangles, 6) + 0.0).tobytes()
     for name, area in areas_of(study.search.mounting).items():
         yield name.encode() + np.ascontiguousarray(area.triangles).tobytes()
     if (boxes := study.prior.boxes) is not None:

@@ -194,7 +194,7 @@ def test_after_opening_a_file_with_another_state_shown_the_saved_mark_holds(car,
 def test_the_stored_score_is_not_shown_as_that_of_another_state(car):
     settings = scored_with_a_state(car)
     live, settings.live.on = state.live_state(car.name), True
-    summary = pe.SummaryScore(2.5, 0.5, 0.01, {}, {}, 10)
+    summary = pe.Score(2.5, 0.5, 0.01, {}, {}, {}, 10)
     live.put(state.LiveScore(summary, None, True, None, live.requests))
     assert state.shown_score(car).stored
     car.frame_set(OPEN_FRAME)

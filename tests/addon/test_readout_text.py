@@ -11,7 +11,7 @@ from pe_core.scoring.score import TrafficAp
 
 def summary(entropy=3.0, coverage=0.85, zones=()):
     per_zone = {name: pe.PartScore(h, c, 0.5) for name, h, c in zones}
-    return pe.SummaryScore(entropy, coverage, 0.0224, {}, per_zone, 32768)
+    return pe.Score(entropy, coverage, 0.0224, {}, per_zone, {}, 32768)
 
 
 def score_of(now, exact=True, stored=False):

@@ -17,7 +17,6 @@ from pe_core.sensors import ObjectMeasurementCache
 from pe_core.study import requirement_file
 from pe_tools import graphics
 from tests.addon import scenes
-from tests.engine.shapes import box
 from tests.engine.test_drawn_beams import EYES, lab
 
 AHEAD = 'x = ["front + 1", "front + 2"], y = ["right", "left"]'
@@ -94,37 +93,6 @@ def test_bodies_are_one_several_or_of_an_own_size(held):
     assert len(scenes.study().requirements[1].bodies) == 2
     row.bodies = row.bodies
     assert row.problem == "" and len(scenes.study().requirements[1].bodies) == 2
-
-
-def test_a_body_from_a_mesh_is_that_of_the_study_file_to_the_bit(held, tmp_path):
-    """File, axes, scale, lower edge, class and name; the file is relative to the Blender file."""
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "car.blend"))
-    triangles = np.concatenate(
-        [box([0.0, 0.0, 0.0], [30.0, 20.0, 45.0]), box([5.0, 5.0, 45.0], [15.0, 15.0, 70.0])]
-    )[:, :, [0, 2, 1]][:, ::-1]  # y is up; centimetres
-    parts = np.zeros(len(triangles), np.int32)
-    pt.write_mesh(tmp_path / "dog.obj", pe.Mesh(triangles, parts, ("dog",)))
-    row = rows(held)[1]
-    row.bodies = 'name = "dog", mesh = "dog.obj", up = "+y", forward = "-x", scale = 0.01, ' + (
-        'low = 0.25, class = "cyclist"'
-    )
-    assert row.problem == ""
-    table = {"name": "dog", "mesh": "dog.obj", "up": "+y", "forward": "-x", "scale": 0.01}
-    assert json.loads(row.table)["body"] == [table | {"low": 0.25, "class": "cyclist"}]
-    (body,) = scenes.study().requirements[1].bodies
-    assert body.size == pytest.approx((0.3, 0.2, 0.7))
-    folder = tmp_path / "elsewhere"
-    folder.mkdir()
-    pt.export_study(scenes.study(), folder / "study.toml")
-    study, verdicts = pe.load_study(folder / "study.toml"), scenes.study().verdicts()
-    assert study.requirements[1].bodies[0].shape == body.shape
-    assert [v.to_dict() for v in study.verdicts()] == [v.to_dict() for v in verdicts]
-    assert bpy.ops.pe.import_study(filepath=str(folder / "study.toml")) == {"FINISHED"}
-    assert scenes.study().requirements == study.requirements, "found from another folder"
-    row = rows(held)[1]
-    before = row.table
-    row.bodies = 'mesh = "cat.obj"'
-    assert "cat.obj" in row.problem and row.table == before
 
 
 def test_a_changed_preset_is_said_to_be_changed(held):

@@ -74,15 +74,7 @@ def test_the_bracket_worked_by_hand_is_the_kernel_s(worked):
     assert inner.beams < worked.defined(worked.TILTED, worked.TILTED_CENTER) < outer.beams
 
 
-def test_the_upright_voxel_worked_by_hand_is_the_kernel_s(worked):
-    by_hand = worked.crossings()
-    assert [c.azimuth for c in by_hand] == worked.kernel_azimuths()
-    total = sum(len(c.channels) for c in by_hand)
-    assert worked.kernel_upright() == (total, False)
-    assert worked.defined(worked.LEVEL, worked.LEVEL_CENTER) == total == 8
-
-
-@pytest.mark.parametrize("name", ["bracket.svg", "upright.svg"])
+@pytest.mark.parametrize("name", ["bracket.svg"])
 def test_figures_are_what_their_script_draws(figures, name):
     drawn = figures["kernels"].FIGURES[name]()
     assert (ROOT / "docs" / "images" / name).read_text("utf-8") == drawn

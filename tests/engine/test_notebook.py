@@ -6,7 +6,6 @@ from dataclasses import is_dataclass
 
 import numpy as np
 import pytest
-import trimesh
 
 import pe_core as pe
 import pe_tools as pt
@@ -127,23 +126,6 @@ def done(job):
     for _ in job:
         pass
     return job.outcome
-
-
-def test_a_scene_of_trimesh_is_a_vehicle_with_its_parts_in_place():
-    low = trimesh.creation.box((4, 2, 1))
-    scene = trimesh.Scene({"body": low, "path": trimesh.load_path(np.zeros((2, 2)))})
-    turned = trimesh.transformations.rotation_matrix(np.pi / 2, (0, 0, 1))
-    turned[2, 3] = 1.0
-    scene.add_geometry(trimesh.creation.box((2, 1, 1)), node_name="cabin", transform=turned)
-    found = pe.Vehicle.from_trimesh(scene, glass=["cabin"], clearance=0.05)
-    assert found.part_names == ("body", "cabin") and found.clearance == 0.05
-    cabin = found.triangles[np.asarray(found.parts) == 1].reshape(-1, 3)
-    assert np.allclose([cabin.min(axis=0), cabin.max(axis=0)], [[-0.5, -1, 0.5], [0.5, 1, 1.5]])
-    one = pe.Vehicle.from_trimesh(low)
-    assert np.array_equal(one.triangles, low.triangles) and one.part_names == ("vehicle",)
-    for wrong in (3, trimesh.Scene(), trimesh.PointCloud(np.zeros((2, 3)))):
-        with pytest.raises(pe.InputError):
-            pe.Vehicle.from_trimesh(wrong)
 
 
 def height(rig):

@@ -4,7 +4,6 @@ from .bodies import BODIES, Body
 from .checker import CheckStep, RequirementChecker, checkable
 from .criteria import Criterion, Requirement, Under, checked_requirements
 from .definition import body_met, sees
-from .mesh_shape import MeshShape
 from .planes import VehiclePlanes
 from .redundancy import Redundancy, RedundancyMap
 from .verdict import (
@@ -18,7 +17,7 @@ from .verdict import (
 )
 from .zones import PlacedZone, Zone, signed_distance
 
-__all__ = ["BODIES", "FARTHEST_M", "Body", "CheckStep", "Criterion", "MeshShape", "PlacedZone"]
+__all__ = ["BODIES", "FARTHEST_M", "Body", "CheckStep", "Criterion", "PlacedZone"]
 __all__ += ["Reason", "Redundancy", "RedundancyMap", "Requirement", "RequirementChecker", "Samples"]
 __all__ += ["Under", "VehiclePlanes", "Verdict", "VerdictSummary", "Zone", "body_met", "checkable"]
 __all__ += ["checked_requirements", "margin_of", "part_in_the_way", "sees", "signed_distance"]

@@ -18,8 +18,6 @@ import numpy as np
 from ...base.arrays import Flags, Floats, Ints
 from ...base.errors import InputError, shown
 from ...base.values import A_NAME, Angle, Number
-from ...sensors.boxes import INSIDE, ROUND
-from .mesh_shape import MeshShape
 
 LENGTH = Number(1e-3, 100.0, unit="m", noun="length")
 HEADING = Angle(-360.0, 360.0)
@@ -36,8 +34,6 @@ DIAGONALS = ((_BEFORE, _BEFORE), (_BEFORE, _AFTER), (_AFTER, _BEFORE), (_AFTER, 
 POST_EVERY = 4
 POST_SHARE = 0.25
 """Side of the posts beside a body, as a share of its shorter horizontal side."""
-THIN_M = 1e-6
-"""A slice of a box that is thinner is none."""
 FLAT_M = 1e-3
 """Thickness of a patch of ground."""
 
@@ -63,8 +59,6 @@ class Body:
         Headings at which it stands at every sample [rad].
     source : str
         Where its size is from.
-    shape : MeshShape, optional
-        Of a body from a mesh; then `size` is that of its extent.
 
     Raises
     ------
@@ -80,7 +74,6 @@ class Body:
     class_name: str | None = None
     headings: tuple[float, ...] = (0.0,)
     source: str = ""
-    shape: MeshShape | None = None
 
     def __post_init__(self) -> None:
         who = f"body {A_NAME.checked('body', 'name', self.name)!r}"
@@ -111,12 +104,9 @@ class Body:
         ----------
         cells : bool
             The cells of which a share has to be visible, and the posts beside the body, instead of
-            the one box: band after band, those of `cell_plan`. Of a ring, its four sides. Of a
-            mesh, the cells of its extent; without them, the boxes inside it.
+            the one box: band after band, those of `cell_plan`. Of a ring, its four sides.
         """
         length, width, height = self.box
-        if not cells and self.shape is not None:
-            return self.shape.centers + np.array([0.0, 0.0, self.low]), self.shape.sizes
         if not cells:
             center = [0.0, 0.0, self.low + height / 2.0]
             return np.array([center]), np.array([[length, width, height]])
@@ -144,33 +134,17 @@ class Body:
         inner &= (i > 0) & (i <= along) & (j > 0) & (j <= across)
         return k, ~inner
 
-    def shells(self) -> tuple[int, Floats, Floats, Ints]:
-        """Return boxes that tell where a ray ends on a body that is not what its cells fill.
+    def shells(self) -> tuple[Floats, Floats, Ints]:
+        """Return boxes round a cylinder, which its cells do not fill; none of a box.
 
-        Layer (`ROUND` or `INSIDE`), centres (S, 3) from the foot, sizes (S, 3) [m], and bands (S,).
-        Of a cylinder the boxes round it, of a mesh what is inside it; none of a box.
+        Centres (S, 3) from the foot, sizes (S, 3) [m], and bands (S,).
         """
         tall = self.size[2] / self.bands
-        if self.shape is None:
-            count = self.bands if self.is_round and not self.is_ring else 0
-            bands = np.arange(count)
-            centers = np.zeros((count, 3))
-            centers[:, 2] = self.low + (bands + 0.5) * tall
-            return ROUND, centers, np.tile([*self.size[:2], tall], (count, 1)), bands
-        middles, sizes = self.boxes(False)
-        own, bands = np.nonzero(np.ones((len(sizes), self.bands), bool))
-        floor = self.low + bands * tall
-        low = np.maximum(middles[own, 2] - sizes[own, 2] / 2.0, floor)
-        high = np.minimum(middles[own, 2] + sizes[own, 2] / 2.0, floor + tall)
-        kept = high - low > THIN_M
-        centers, sizes = middles[own[kept]].copy(), sizes[own[kept]].copy()
-        centers[:, 2], sizes[:, 2] = ((low + high) / 2.0)[kept], (high - low)[kept]
-        return INSIDE, centers, sizes, bands[kept]
-
-    @property
-    def box_count(self) -> int:
-        """Number of its boxes, of which a sensor has to see one well enough."""
-        return 1 if self.shape is None else len(self.shape.sizes)
+        count = self.bands if self.is_round and not self.is_ring else 0
+        bands = np.arange(count)
+        centers = np.zeros((count, 3))
+        centers[:, 2] = self.low + (bands + 0.5) * tall
+        return centers, np.tile([*self.size[:2], tall], (count, 1)), bands
 
     @property
     def bands(self) -> int:

@@ -23,7 +23,7 @@ from ...sensors.boxes import BodyParts
 from ..targets.object_metric import FusedObjects
 from .bodies import Body
 from .criteria import Criterion, Requirement, levels_of
-from .definition import body_has_enough, parts_of, placed, visible_share
+from .definition import has_enough, parts_of, placed, visible_share
 from .verdict import Samples, ZoneResult, columns_of
 
 CountsBySensor = Mapping[str, Floats]
@@ -119,14 +119,6 @@ class BodyChecks:
                         measurer.measure_again(sensor)
                 yield
 
-    def seen_by(self, number: int, sensor: Sensor) -> Flags:
-        """Return the samples and bodies (N, bodies * headings) of the first requirement that a
-        sensor sees in a scene."""
-        found = [
-            {sensor.name: each.measure_again(sensor)} for each in self._measurers_of(number, sensor)
-        ]
-        return self._seen(0, sensor, _PointsByBand(found[0], found[-1] if len(found) > 1 else {}))
-
     def _result(self, number: int, rig: Rig, measured: _PointsByBand) -> ZoneResult:
         requirement, _ = self._wanted[number]
         names = [s.name for s in rig]
@@ -186,7 +178,7 @@ class BodyChecks:
             return np.zeros((len(samples.points), width), bool)
         m, parts = measured.m[sensor.name], measured.parts.get(sensor.name, NOTHING)
         for each in self._bodies[number]:
-            seen = body_has_enough(each.body, sensor, each.objects, m[each.box], criterion)
+            seen = has_enough(sensor, each.objects, m[each.box], criterion)
             if each.cells is not None and criterion.share is not None and seen.any():
                 cells = (parts[each.cells] > 0.0).reshape(len(seen), -1)
                 seen[seen] = visible_share(each.body, cells[seen]) >= criterion.share
@@ -208,10 +200,8 @@ class BodyChecks:
         if criterion.ap is not None and self._fused is not None:
             counting = [s.name for s in rig if s.name in members and criterion.counts(s.kind)]
             entropies, _ = self._fused.entropies(rig, m, counting)
-            ap, columns = ap_of_entropy(entropies), []
-            for each in self._bodies[number]:
-                best = ap[each.box].reshape(-1, each.body.box_count).max(axis=1)
-                columns.append(best.reshape(len(enough), -1))
+            ap = ap_of_entropy(entropies)
+            columns = [ap[each.box].reshape(len(enough), -1) for each in self._bodies[number]]
             enough &= np.concatenate(columns, axis=1) >= criterion.ap
         passed: Flags = enough.all(axis=1)
         return passed

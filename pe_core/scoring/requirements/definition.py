@@ -17,10 +17,9 @@ from ...scene.objects import Objects
 from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...sensors import kind_of
-from ...sensors.boxes import CELLS, BodyParts, PlacedBoxes
+from ...sensors.boxes import CELLS, ROUND, BodyParts, PlacedBoxes
 from .bodies import DIAGONALS, Body, cell_plan, post_bands
 from .criteria import Criterion
-from .mesh_shape import surface_shares
 
 NEAREST_M = 1e-3
 NARROWEST_PX = 1e-9
@@ -36,10 +35,9 @@ def sees(
 ) -> bool:
     """Whether a sensor sees a body that stands alone at a place: the definition.
 
-    The sensor is of a kind that counts. m of the body's box (of one of the boxes inside a mesh), by
-    the definition of its kind, reaches the threshold; with a share, so much of the body is visible:
-    `visible_share` of the cells that have an m above 0. What is beside a cell that is not seen does
-    not count: it may be seen in part.
+    The sensor is of a kind that counts. m of the body's box, by the definition of its kind, reaches
+    the threshold; with a share, so much of the body is visible: `visible_share` of the cells that
+    have an m above 0. What is beside an unseen cell does not count: it may be seen in part.
     """
     kind = kind_of(sensor)
     if not criterion.counts(kind.name):
@@ -66,7 +64,7 @@ def cautious(rig: Rig) -> Rig:
 def has_enough(
     sensor: Sensor, objects: Objects, m: Floats, criterion: Criterion
 ) -> NDArray[np.bool_]:
-    """Whether m (N,) of boxes, points or pixels, is enough, for their image and solid angle too.
+    """Whether m (N,) of bodies' boxes, points or pixels, is enough, for image and solid angle too.
 
     An image of m pixels has at least m / w rows, if no row has more than w pixels.
     """
@@ -79,14 +77,6 @@ def has_enough(
     if criterion.per_degree is not None:
         enough &= m >= criterion.per_degree**2 * largest_solid_angle(objects, sensor.pose.position)
     return np.asarray(enough)
-
-
-def body_has_enough(
-    body: Body, sensor: Sensor, objects: Objects, m: Floats, criterion: Criterion
-) -> NDArray[np.bool_]:
-    """Whether m of a body's boxes is enough, place after place; of one of the boxes of a mesh."""
-    enough = has_enough(sensor, objects, m, criterion).reshape(-1, body.box_count)
-    return np.asarray(enough.any(axis=1))
 
 
 def largest_solid_angle(objects: Objects, position: Sequence[float]) -> Floats:
@@ -114,8 +104,7 @@ def visible_share(body: Body, cells: NDArray[np.bool_]) -> Floats:
 
     The cells of a body are bands of columns, and posts beside them (`cell_plan`); a post between
     two that are measured is seen if both are. A column in a band counts if it and its four diagonal
-    neighbours are seen, in the bands above and below as well. Columns count alike; of a mesh, by
-    the share of its surface in them.
+    neighbours are seen, in the bands above and below as well. Columns count alike.
     """
     if body.is_ring:
         return cells.mean(axis=1)
@@ -133,10 +122,7 @@ def visible_share(body: Body, cells: NDArray[np.bool_]) -> Floats:
     sure = whole.copy()
     sure[:, 1:] &= whole[:, :-1]
     sure[:, :-1] &= whole[:, 1:]
-    if body.shape is None:
-        return sure.mean(axis=(1, 2, 3))
-    weights = surface_shares(body.shape, body.bands, *body.columns)
-    return np.asarray((sure * weights).sum(axis=(1, 2, 3)))
+    return sure.mean(axis=(1, 2, 3))
 
 
 def body_met(seen: Mapping[str, bool], rig: Rig, criterion: Criterion) -> bool:
@@ -161,7 +147,7 @@ def parts_of(
 ) -> BodyParts:
     """Return a body's cells and shells at all feet (N, 3) and headings, as `placed` does."""
     cells, (bands, posts) = placed(body, feet, headings, True), body.cell_bands()
-    layer, centers, sizes, shell_bands = body.shells()
+    centers, sizes, shell_bands = body.shells()
     count = len(cells) // len(bands)
     bodies = np.arange(count)[:, None] * (1 + int(posts.sum()))  # a post is a body of its own
     scenes = bodies + np.where(posts, np.cumsum(posts), 0)
@@ -174,7 +160,7 @@ def parts_of(
         cells,
         shells,
         np.concatenate([np.tile(own, count) for own in (bands, shell_bands)]),
-        np.repeat([CELLS, layer], [len(cells), count * len(shell_bands)]),
+        np.repeat([CELLS, ROUND], [len(cells), count * len(shell_bands)]),
     )
 
 

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,8 @@ from ..sampling import VoxelSample
 from ..scenarios import fused_early
 from ..score import zone_masks
 from .ground_cells import ROUNDING, GroundCells, closed, gauss, without_specks
+
+K = TypeVar("K")
 
 AT_ONCE = 1 << 17
 SPREAD_M = 0.7
@@ -189,32 +191,11 @@ def _columns(space: PerceptionSpace, x: Floats, y: Floats) -> tuple[Ints, Ints]:
     return columns[0], columns[1]
 
 
-class HasSize(Protocol):
-    """Something that can be cached."""
-
-    @property
-    def size(self) -> int:
-        """Its size, in voxels."""
-
-
-class HasVoxels(Protocol):
-    """A set of voxels of the space."""
-
-    @property
-    def index(self) -> NDArray[np.int64]:
-        """Indices of the voxels, (V, 3)."""
-
-
-P = TypeVar("P", bound=HasVoxels)
-
-K = TypeVar("K", bound=HasSize)
-
-
-class MeasuredVoxels(Generic[P]):
-    """A set of voxels, and the sensors measured on them."""
+class MeasuredVoxels:
+    """A set of voxels, with its `index` (V, 3), and the sensors measured on them."""
 
     def __init__(
-        self, voxels: P, sensors: MeasurementCache, fusion: Fusion, centers: Floats
+        self, voxels: Any, sensors: MeasurementCache, fusion: Fusion, centers: Floats
     ) -> None:
         self.voxels, self._sensors, self._fusion = voxels, sensors, fusion
         self._distance = np.hypot(*centers[:, :2].T)
@@ -244,10 +225,10 @@ class VoxelSetCache:
         self.kernel_cache: dict[str, Any] = {}  # by kind: beams are cast once for all voxel sets
         self._sets: dict[Hashable, Any] = {}  # least recently used first
 
-    def voxels(self, key: Hashable, choose: Callable[[], P]) -> MeasuredVoxels[P]:
+    def voxels(self, key: Hashable, choose: Callable[[], Any]) -> MeasuredVoxels:
         """Return the voxel set with a key, from the cache or newly chosen."""
 
-        def measurable() -> MeasuredVoxels[P]:
+        def measurable() -> MeasuredVoxels:
             chosen = choose()
             voxels = Voxels(self._space, chosen.index, self._space.center_of(chosen.index))
             count = self._fusion.saturation_count
@@ -257,7 +238,7 @@ class VoxelSetCache:
         return self.cached(key, measurable)
 
     def cached(self, key: Hashable, make: Callable[[], K]) -> K:
-        """Return the value with a key, from the cache or newly made."""
+        """Return the value with a key, from the cache or newly made; it has a `size` in voxels."""
         value: K = self._sets.pop(key, None) or make()
         self._sets[key] = value
         room = MAX_VOXELS

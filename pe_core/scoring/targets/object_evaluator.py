@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property, partial
 from math import inf
 
@@ -19,16 +20,7 @@ from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...sensors import ObjectMeasurementCache, PerceptionModel, kind_of
 from ..scenarios import Scenarios, mean_or_worst
-from ..score import (
-    Evaluation,
-    ObjectScore,
-    Score,
-    ScoreProgress,
-    SensorScore,
-    SummaryScore,
-    TrafficAp,
-    Watch,
-)
+from ..score import Evaluation, ObjectScore, Score, ScoreProgress, SensorScore, TrafficAp, Watch
 from .object_metric import FusedObjects, LoneObjects, ObjectSums
 from .object_sampling import CENTERED, OBJECTS, SampledObjects, TargetRule, sample_objects
 
@@ -161,7 +153,7 @@ class ObjectEvaluator:
         """Return the mean of several rigs' entropies, or the highest, whatever the cutoff."""
         return Evaluation(mean_or_worst(self.entropies(rigs), worst), False)
 
-    def summary(self, rig: Rig, *, preview: bool = False) -> SummaryScore:
+    def summary(self, rig: Rig, *, preview: bool = False) -> Score:
         """Return the score of a rig without the part by sensor."""
         with self._lock:
             self._fused.check(rig)
@@ -185,26 +177,21 @@ class ObjectEvaluator:
             progress.add(0.5)
             per_sensor = {s.name: self._sensor(s.name, rig, m, summary.entropy) for s in rig}
             progress.add(0.2)
-            return Score(
-                summary.entropy,
-                summary.coverage,
-                summary.stderr,
-                summary.per_class,
-                summary.per_zone,
-                per_sensor,
-                0,
-                objects=self._object_score(rig, m, entropies),
-                scatter=self._sums.scatter(entropies, visible),
+            objects, scatter = (
+                self._object_score(rig, m, entropies),
+                self._sums.scatter(entropies, visible),
             )
+            return replace(summary, per_sensor=per_sensor, objects=objects, scatter=scatter)
 
-    def _summary(self, rig: Rig, entropies: Floats, visible: NDArray[np.bool_]) -> SummaryScore:
+    def _summary(self, rig: Rig, entropies: Floats, visible: NDArray[np.bool_]) -> Score:
         whole = self._sums.part(entropies, visible)
-        return SummaryScore(
+        return Score(
             whole.entropy,
             whole.coverage,
             self._sums.standard_error(entropies, len(rig.groups)),
             self._sums.classes(entropies, visible),
             self._sums.zones(entropies, visible),
+            {},
             0,
             ap=self._sums.expected_ap(entropies),
         )

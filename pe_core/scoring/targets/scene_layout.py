@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from functools import cache
 from statistics import NormalDist
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,13 +44,6 @@ class LaidOutBoxes(NamedTuple):
     def subset(self, which: NDArray) -> LaidOutBoxes:
         """Return the boxes with the given indices, or where a mask is set."""
         return LaidOutBoxes(*(values[which] for values in self))
-
-
-class BoxSource(Protocol):
-    """A source of boxes of one class, which are to be placed in scenes."""
-
-    def proposed(self, attempt: int) -> LaidOutBoxes:
-        """Return the boxes at proposed positions, which differ from attempt to attempt."""
 
 
 class ModelBoxes:
@@ -87,6 +80,10 @@ class LabelledBoxes:
         """Sample from the boxes, sorted by distance; others at each attempt."""
         u = scrambled_sobol(self._count, scrambles(self._shift, attempt)[:1])[:, 0]
         return self._boxes.subset((u * len(self._boxes.yaws)).astype(np.int64))
+
+
+BoxSource = ModelBoxes | LabelledBoxes
+"""A source of boxes of one class, which are to be placed in scenes."""
 
 
 def labelled_boxes(boxes: Boxes, name: str, space: PerceptionSpace) -> LaidOutBoxes:

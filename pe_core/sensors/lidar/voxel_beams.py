@@ -1,14 +1,13 @@
 """Beams through single voxels, counted exactly.
 
 The beams of a voxel's window (`lattice`) are tested with the arithmetic of the definition, so the
-count equals the definition's to the last beam. For regular LiDARs `upright` or `bracket` decides
-most voxels without any test. Voxels are first counted as if there were no vehicle; only those whose
-window holds a beam that the vehicle may occlude are counted again.
+count equals the definition's to the last beam. For regular LiDARs `bracket` decides most voxels
+without any test. Voxels are first counted as if there were no vehicle; only those whose window
+holds a beam that the vehicle may occlude are counted again.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -21,13 +20,10 @@ from ...geometry.bins import blocks
 from ...geometry.poses import rotate
 from .bracket import Bracket, bracket
 from .lattice import windows_of
-from .upright import Upright
 
 if TYPE_CHECKING:
     from .beams import BeamEnds, RotatedBeams
     from .lattice import Lattice
-
-Counts = NDArray[np.int32]
 
 PAIR_BLOCK = 1 << 16
 """(voxel, beam) pairs tested together: their arrays fit the processor's cache."""
@@ -36,28 +32,18 @@ CUBE_RADIUS = 2.0
 
 
 class VoxelPoints:
-    """Voxels of a grid, by index (V, 3): `centers` and lower `corners`, in sides."""
+    """Voxels of a grid, by index (V, 3): `centers`, in sides."""
 
     def __init__(self, index: Ints) -> None:
         self.centers = index + 0.5
-        self.corners = [np.ascontiguousarray(c, dtype=np.float32) for c in index.T]
-        self._low = self.centers.min(axis=0, initial=0.0)
-        self._high = self.centers.max(axis=0, initial=0.0)
-
-    def __len__(self) -> int:
-        return len(self.centers)
-
-    def max_distance(self, position: Floats) -> float:
-        """Return an upper bound of the distance of any voxel's centre from a position."""
-        gaps = np.maximum(np.abs(self._low - position), np.abs(self._high - position))
-        return math.hypot(*gaps.tolist())
+        self._corners = [np.ascontiguousarray(c, dtype=np.float32) for c in index.T]
 
     def offsets(self, position: Floats, index: Ints | slice = slice(None)) -> Floats:
         """Return the centres (N, 3) of voxels, seen from a position (3,)."""
         return self.centers[index] - position
 
-    def offsets_float32(self, position: Floats, index: Ints | slice = slice(None)) -> list[Singles]:
-        """Return the centres seen from a position in single precision, an array (N,) an axis.
+    def offsets_float32(self, position: Floats) -> list[Singles]:
+        """Return the centres seen from a position in single precision, an array (V,) an axis.
 
         Centres are exact in single precision. The position's whole part is subtracted first, so
         that its fraction keeps its digits.
@@ -65,8 +51,8 @@ class VoxelPoints:
         whole = np.floor(position)
         fraction = (position - whole).astype(np.float32)
         return [
-            (corner[index] - np.float32(w - 0.5)) - f
-            for corner, w, f in zip(self.corners, whole, fraction, strict=True)
+            (corner - np.float32(w - 0.5)) - f
+            for corner, w, f in zip(self._corners, whole, fraction, strict=True)
         ]
 
 
@@ -105,8 +91,8 @@ class PlacedLidar:
 class Unoccluded:
     """Beams through voxels without a vehicle.
 
-    `counts` (V,) are exact but for saturated ones; `bounds` are the voxels' windows, None for an
-    upright LiDAR and for one that is not regular.
+    `counts` (V,) are exact but for saturated ones; `bounds` are the voxels' windows, None for a
+    LiDAR that is not regular.
     """
 
     counts: NDArray[np.signedinteger]
@@ -128,51 +114,30 @@ def count_voxel_beams(
     if lidar.lattice.slope_bounds is None:
         offsets = voxels.offsets(lidar.position)
         return count_pairs(offsets, lidar, *lidar.candidates(offsets))
-    if _is_upright(lidar) and len(voxels):
-        max_occlusion = lidar.ends.max_occlusion / lidar.side
-        counts, unsure = _count_upright(voxels, lidar, lidar.occludable, max_occlusion)
-        undecided = np.flatnonzero(unsure)
-        free = _count_bracketed(voxels, lidar, saturation_count, undecided)
-        counts[undecided] = _recount_occluded(voxels, lidar, free, undecided)
-        return counts
     free = unoccluded or count_unoccluded(voxels, lidar, saturation_count)
-    return _recount_occluded(voxels, lidar, free, slice(None))
+    return _recount_occluded(voxels, lidar, free)
 
 
 def count_unoccluded(
     voxels: VoxelPoints, lidar: PlacedLidar, saturation_count: int | None = None
 ) -> Unoccluded:
-    """Count the beams through voxels without a vehicle; parameters as of `count_voxel_beams`."""
-    if lidar.lattice.slope_bounds is None:
+    """Count the beams through voxels without a vehicle; parameters as of `count_voxel_beams`.
+
+    Of a regular LiDAR by bounds, and beam by beam where these differ.
+    """
+    lattice = lidar.lattice
+    if lattice.slope_bounds is None:
         offsets = voxels.offsets(lidar.position)
         pairs = lidar.candidates(offsets)
         return Unoccluded(count_pairs(offsets, lidar, *pairs, without_vehicle=True))
-    if not (_is_upright(lidar) and len(voxels)):
-        return _count_bracketed(voxels, lidar, saturation_count, slice(None))
-    counts, unsure = _count_upright(voxels, lidar, np.zeros_like(lidar.occludable), 0.0)
-    undecided = np.flatnonzero(unsure)
-    counts[undecided] = _count_bracketed(voxels, lidar, saturation_count, undecided).counts
-    return Unoccluded(counts)
-
-
-def _is_upright(lidar: PlacedLidar) -> bool:
-    return lidar.lattice.slope_counts is not None and lidar.ground_from_sensor[2, 2] == 1.0
-
-
-def _count_upright(
-    voxels: VoxelPoints, lidar: PlacedLidar, occludable: NDArray[np.bool_], max_occlusion: float
-) -> tuple[Counts, NDArray[np.bool_]]:
-    """Count for an upright LiDAR, and flag unsure counts (V,).
-
-    None of the `occludable` beams (C, A) ends farther away than `max_occlusion`, in sides.
-    """
-    lattice, max_range = lidar.lattice, lidar.max_range
-    assert lattice.slope_counts is not None
-    upright = Upright.of(lattice.slope_counts, lidar.ground_from_sensor, occludable, max_occlusion)
-    counts, unsure = upright.count(voxels.corners, lidar.position)
-    if voxels.max_distance(lidar.position) > max_range - CUBE_RADIUS:
-        unsure |= _may_exceed(voxels.offsets_float32(lidar.position), max_range)
-    return counts, unsure
+    points = voxels.offsets_float32(lidar.position)
+    bounds = bracket(points, lidar.ground_from_sensor, lattice.slope_bounds, lattice.count)
+    counts = bounds.lower.astype(np.int64)
+    counts[_may_exceed(points, lidar.max_range)] = 0
+    limit = np.iinfo(np.int64).max if saturation_count is None else saturation_count
+    undecided = np.flatnonzero((counts < bounds.upper) & (counts < limit))
+    counts[undecided] = _count_windows(voxels, lidar, bounds, undecided, without_vehicle=True)
+    return Unoccluded(counts, bounds)
 
 
 def _may_exceed(points: Sequence[Singles], max_range: float) -> NDArray[np.bool_]:
@@ -182,27 +147,7 @@ def _may_exceed(points: Sequence[Singles], max_range: float) -> NDArray[np.bool_
     return exceeds
 
 
-def _count_bracketed(
-    voxels: VoxelPoints, lidar: PlacedLidar, saturation_count: int | None, index: Ints | slice
-) -> Unoccluded:
-    """Count the beams through some voxels: by bounds, and beam by beam where these differ."""
-    points = voxels.offsets_float32(lidar.position, index)
-    lattice = lidar.lattice
-    assert lattice.slope_bounds is not None
-    bounds = bracket(points, lidar.ground_from_sensor, lattice.slope_bounds, lattice.count)
-    counts = bounds.lower.astype(np.int64)
-    counts[_may_exceed(points, lidar.max_range)] = 0
-    limit = np.iinfo(np.int64).max if saturation_count is None else saturation_count
-    undecided = np.flatnonzero((counts < bounds.upper) & (counts < limit))
-    counts[undecided] = _count_windows(
-        voxels, lidar, bounds, index, undecided, without_vehicle=True
-    )
-    return Unoccluded(counts, bounds)
-
-
-def _recount_occluded(
-    voxels: VoxelPoints, lidar: PlacedLidar, unoccluded: Unoccluded, index: Ints | slice
-) -> Ints:
+def _recount_occluded(voxels: VoxelPoints, lidar: PlacedLidar, unoccluded: Unoccluded) -> Ints:
     """Count again the voxels whose window holds a beam that the vehicle may occlude."""
     bounds, occludable = unoccluded.bounds, lidar.occludable
     counts = unoccluded.counts.astype(np.int64)
@@ -211,7 +156,7 @@ def _recount_occluded(
     if len(rows):
         affected = np.flatnonzero((bounds.row <= rows[-1]) & (bounds.upper > 0) & (counts > 0))
         affected = affected[_any_in_window(occludable, bounds, affected)]
-        counts[affected] = _count_windows(voxels, lidar, bounds, index, affected)
+        counts[affected] = _count_windows(voxels, lidar, bounds, affected)
     return counts
 
 
@@ -219,17 +164,12 @@ def _count_windows(
     voxels: VoxelPoints,
     lidar: PlacedLidar,
     bounds: Bracket,
-    index: Ints | slice,
-    rows: Ints,
+    voxel: Ints,
     without_vehicle: bool = False,
 ) -> Ints:
-    """Count by testing each beam of the windows of some voxels.
-
-    `rows` (N,) are indices into `bounds`, which are those of the voxels `index`.
-    """
-    voxel = rows if isinstance(index, slice) else index[rows]
+    """Count by testing each beam of the windows of some voxels (N,)."""
     offsets = voxels.offsets(lidar.position, voxel)
-    return count_pairs(offsets, lidar, *lidar.lattice.window_beams(bounds, rows), without_vehicle)
+    return count_pairs(offsets, lidar, *lidar.lattice.window_beams(bounds, voxel), without_vehicle)
 
 
 def _any_in_window(flags: NDArray[np.bool_], bounds: Bracket, voxels: Ints) -> NDArray[np.bool_]:

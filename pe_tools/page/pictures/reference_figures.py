@@ -187,10 +187,6 @@ class WorstBody:
         paint = MET_PAINT if self.verdict.met else NOT_MET_PAINT
         low, high = self.body.low, self.body.low + self.body.size[2]
         shapes = [self._solid(low, high, self.body.size[:2])]
-        if self.body.shape is not None:
-            c, s = np.cos(self.body.headings[0]), np.sin(self.body.headings[0])
-            turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-            shapes = [self.body.shape.triangles @ turn + np.array([0.0, 0.0, low])]
         if low > 0.0:
             shapes.append(self._solid(0.0, low, (POLE_M, POLE_M)))
         triangles = np.concatenate(shapes) + np.array(self.foot)

@@ -121,25 +121,8 @@ class Evaluator:
         return self._scorer.summary(rig, preview)
 
     def evaluate(self, rig: Rig, cutoff: float = inf) -> Evaluation:
-        """Evaluate a rig with a cutoff, as a search does with its candidates.
-
-        On a sample, occlusion by the vehicle often need not be computed to find that the entropy is
-        not below the cutoff.
-
-        Parameters
-        ----------
-        rig : Rig
-        cutoff : float
-            The cutoff: usually the entropy of the incumbent [nats]; inf: none.
-
-        Returns
-        -------
-        Evaluation
-            The entropy; or, where that is not below `cutoff`, perhaps a lower bound of it that is
-            not below `cutoff` either. `is_lower_bound` tells the two apart: a lower bound must not
-            be ranked.
-        """
-        return self._scorer.evaluate(rig, cutoff)
+        """Return the entropy of a rig as a search asks for it, whatever the cutoff."""
+        return Evaluation(self.entropy(rig), False)
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the perception entropy of each of several rigs [nats].
@@ -157,24 +140,3 @@ class Evaluator:
             When there is no rig.
         """
         return self._scorer.entropies(rigs)
-
-    def evaluate_together(
-        self, rigs: Sequence[Rig], cutoff: float, worst: bool = False
-    ) -> Evaluation:
-        """Evaluate the mean of several rigs' entropies with a cutoff, as `evaluate` does one rig's.
-
-        Parameters
-        ----------
-        rigs : sequence of Rig
-            As in `entropies`, with the same error.
-        cutoff : float
-            As in `evaluate`.
-        worst : bool
-            Evaluate the highest of the entropies instead of their mean.
-
-        Returns
-        -------
-        Evaluation
-            The mean (or highest) of the rigs' entropies, or of lower bounds of them.
-        """
-        return self._scorer.evaluate_together(rigs, cutoff, worst)

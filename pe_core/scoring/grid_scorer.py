@@ -30,17 +30,8 @@ from ..scene.vehicle import Vehicle
 from ..sensors import GridKernel, kind_of
 from ..sensors.kernels import BLOCK_PLANES, Planes, block_voxels
 from .sampling import FIRST_SAMPLES, MIN_SAMPLES, outside_masses
-from .scenarios import (
-    Members,
-    Scenarios,
-    fused_early,
-    mean_or_worst,
-    members_of,
-    parts_by_sums,
-    parts_of,
-)
+from .scenarios import Members, Scenarios, fused_early, members_of, parts_by_sums, parts_of
 from .score import (
-    Evaluation,
     PartScore,
     Score,
     ScoreProgress,
@@ -176,17 +167,9 @@ class GridScorer:
         """Return the score without the part by sensor."""
         return replace(self.score(rig, by_sensor=False), ground_map=None)
 
-    def evaluate(self, rig: Rig, cutoff: float) -> Evaluation:
-        """Return the entropy, whatever the cutoff."""
-        return Evaluation(self.entropy(rig), False)
-
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the entropy of each of several rigs [nats]."""
         return [self.entropy(part) for part in Scenarios(rigs).parts]
-
-    def evaluate_together(self, rigs: Sequence[Rig], cutoff: float, worst: bool) -> Evaluation:
-        """Return the mean of several rigs' entropies, or the highest, whatever the cutoff."""
-        return Evaluation(mean_or_worst(self.entropies(rigs), worst), False)
 
     def score(
         self, rig: Rig, preview: bool = False, watch: Watch | None = None, by_sensor: bool = True

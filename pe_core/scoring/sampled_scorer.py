@@ -20,11 +20,10 @@ from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
 from ..sensors import MeasurementCache, Voxels
 from .sampling import BLOCKS, CENTERED, VoxelSample, draw, outside_masses
-from .scenarios import Scenarios, fused_early, mean_or_worst
+from .scenarios import Scenarios, fused_early
 from .score import (
     ALIKE,
     RULE_OF_THREE,
-    Evaluation,
     FigureKey,
     PartScore,
     Scatter,
@@ -57,7 +56,7 @@ class SampledScorer:
         samples: int,
         shift: tuple[float, float, float] = CENTERED,
     ) -> None:
-        self._vehicle, self._fusion = vehicle, fusion
+        self._fusion = fusion
         tops = None if vehicle is None else vehicle.top(space)
         self._sample: VoxelSample = draw(densities, space, samples, tops, shift)
         self._distance = np.hypot(*self._sample.centers[:, :2].T)
@@ -79,40 +78,6 @@ class SampledScorer:
             self._sensors.measure(rig, preview)
             return self._entropy_of(rig, self._sensors.m)
 
-    def evaluate(self, rig: Rig, cutoff: float) -> Evaluation:
-        """Return the entropy, or a lower bound of it if the bound is not below the cutoff."""
-        with self._lock:
-            if (bound := self._lower_bound(rig, cutoff)) >= cutoff:
-                return Evaluation(bound, True)
-            return Evaluation(self.entropy(rig), False)
-
-    def _lower_bound(self, rig: Rig, cutoff: float) -> float:
-        """Return a lower bound of a rig's entropy, which may already reach the cutoff.
-
-        The vehicle occludes beams and pixels and adds none, so without occlusion the entropy is no
-        higher. Occlusion is computed for one moved sensor after the other, while the bound is below
-        the cutoff.
-        """
-        if cutoff == np.inf or self._vehicle is None:
-            return -np.inf
-        m, moved = self._unoccluded(rig)
-        bound = self._entropy_of(rig, m)
-        for sensor in moved[:-1]:
-            if bound >= cutoff:
-                break
-            m[sensor.name] = self._sensors.measure_again(sensor)
-            bound = self._entropy_of(rig, m)
-        return bound
-
-    def _unoccluded(self, rig: Rig) -> tuple[dict[str, NDArray], list[Sensor]]:
-        """Return m by name without the occlusion of sensors that moved, and these sensors."""
-        m, moved = dict[str, NDArray](), list[Sensor]()
-        for sensor in rig:
-            if (known := self._sensors.cached(sensor, False)) is None:
-                moved.append(sensor)
-            m[sensor.name] = self._sensors.unoccluded(sensor) if known is None else known.m
-        return m, moved
-
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the entropy of each of several rigs; sensors that they share are measured once."""
         scenarios = Scenarios(rigs)
@@ -120,29 +85,6 @@ class SampledScorer:
             self._sensors.measure(scenarios.all)
             m = self._sensors.m
             return [self._entropy_of(part, m) for part in scenarios.parts]
-
-    def evaluate_together(self, rigs: Sequence[Rig], cutoff: float, worst: bool) -> Evaluation:
-        """Evaluate the mean of several rigs' entropies, or the highest, with a cutoff."""
-        with self._lock:
-            if (bound := self._bound_together(Scenarios(rigs), cutoff, worst)) >= cutoff:
-                return Evaluation(bound, True)
-            return Evaluation(mean_or_worst(self.entropies(rigs), worst), False)
-
-    def _bound_together(self, scenarios: Scenarios, cutoff: float, worst: bool) -> float:
-        """Return a lower bound for several rigs together, as `_lower_bound` for one.
-
-        Occlusion is computed for half of the moved sensors at once, because fusing all rigs again
-        takes time, too.
-        """
-        if cutoff == np.inf or self._vehicle is None:
-            return -np.inf
-        m, moved = self._unoccluded(scenarios.all)
-        bound = mean_or_worst([self._entropy_of(part, m) for part in scenarios.parts], worst)
-        first_half = moved[: len(moved) // 2]
-        if bound >= cutoff or not first_half:
-            return bound
-        m |= {sensor.name: self._sensors.measure_again(sensor) for sensor in first_half}
-        return mean_or_worst([self._entropy_of(part, m) for part in scenarios.parts], worst)
 
     def summary(self, rig: Rig, preview: bool = False) -> Score:
         """Return the score without the part by sensor."""

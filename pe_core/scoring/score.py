@@ -457,12 +457,7 @@ class RigEvaluator(Protocol):
         """Return a rig's entropy [nats]."""
 
     def evaluate(self, rig: Rig, cutoff: float = inf) -> Evaluation:
-        """Return a rig's entropy, or a lower bound that is not below `cutoff`."""
+        """Return a rig's entropy, as an `Objective`."""
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the entropy of each of several rigs [nats]."""
-
-    def evaluate_together(
-        self, rigs: Sequence[Rig], cutoff: float, worst: bool = False
-    ) -> Evaluation:
-        """Evaluate the mean of several rigs' entropies, or the highest, with a cutoff."""

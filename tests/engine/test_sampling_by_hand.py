@@ -194,19 +194,3 @@ def test_scores_are_rounded_to_nine_decimals_without_a_negative_zero():
     assert rounded(1.23456789049) == 1.23456789
     assert rounded(np.float64(0.9999999996)) == 1.0
     assert math.copysign(1.0, rounded(-1e-12)) == 1.0
-
-
-def test_previews_and_bounds_say_what_they_are():
-    """A grid score knows no bounds; nor does a sampled one of a rig without a vehicle."""
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
-    for samples, vehicle in ((0, shapes.box_car()), (2048, None)):
-        evaluator = pe.Evaluator(shapes.small_space(), pe.Prior.road(), vehicle, samples=samples)
-        told = evaluator.evaluate(rig, -99.0)
-        assert (told.entropy, told.is_lower_bound) == (evaluator.entropy(rig), False)
-    bounded = pe.Evaluator(shapes.small_space(), pe.Prior.road(), shapes.box_car(), samples=2048)
-    told = bounded.evaluate(rig, -99.0)
-    free = pe.Evaluator(shapes.small_space(), pe.Prior.road(), samples=2048)
-    assert told.is_lower_bound and -99.0 <= told.entropy < bounded.entropy(rig)
-    assert abs(told.entropy - free.entropy(rig)) < 0.5  # not the same voxels: none in the car
-    exact = bounded.evaluate(rig, math.inf)
-    assert (exact.entropy, exact.is_lower_bound) == (bounded.entropy(rig), False)

@@ -200,7 +200,7 @@ def test_a_search_minimises_the_mean_or_the_worst_of_the_table(how):
     table = condition_table(study)
     expected = table.mean if how == "mean" else table.worst.entropy
     assert objective.entropy(study.rig) == expected
-    bound = objective.evaluate(study.rig, -100.0)
+    bound = objective.evaluate(study.rig, -100.0)  # one condition settles the worst
     assert bound.is_lower_bound == (how == "worst") and bound.entropy <= expected
     assert study_to_dict(study)["optimize"]["conditions"] == how
     with pytest.raises(pe.InputError, match=r"\[\[state\]\] or \[\[weather\]\]"):

@@ -16,25 +16,16 @@ from ...base.values import rounded
 from ...geometry.grids import PerceptionSpace
 from ...metric.entropy import H_BLIND
 from ...prior.prior import Prior
-from ...scene.rig import Rig, Sensor
+from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
 from ...sensors import ObjectMeasurementCache, PerceptionModel, kind_of
-from ..scenarios import Scenarios, mean_or_worst
+from ..scenarios import Scenarios
 from ..score import Evaluation, ObjectScore, Score, ScoreProgress, SensorScore, TrafficAp, Watch
 from .object_metric import FusedObjects, LoneObjects, ObjectSums
 from .object_sampling import CENTERED, OBJECTS, SampledObjects, TargetRule, sample_objects
 
 MByName = Mapping[str, Floats]
 """m of sensors on the objects, (N,) each, by name."""
-
-
-PAYING_RATE, MEMORY = 0.3, 0.9
-"""A bound takes 0.3 of the time of a measurement, and pays if it settles more of the candidates;
-and the weight of the past in this rate at each further bound."""
-AGAIN = 10
-"""While bounds do not pay, one of so many candidates is bounded all the same."""
-ROUNDING = 2e-9
-"""Entropies are rounded to 1e-9: a bound is lowered by this, so that rounding never rejects."""
 
 
 class ObjectEvaluator:
@@ -80,7 +71,6 @@ class ObjectEvaluator:
         self._sums = ObjectSums(self.drawn, self._model.protocol_floor)
         traffic = self.targets.traffic
         self._sensors = ObjectMeasurementCache(self.drawn.objects, vehicle, traffic)
-        self._bound_rate, self._unbounded = 1.0, 0
         self._lock = threads().RLock()
 
     def __reduce__(self) -> tuple[object, ...]:
@@ -96,48 +86,8 @@ class ObjectEvaluator:
             return self._value(rig, self._sensors.measure(rig))
 
     def evaluate(self, rig: Rig, cutoff: float = inf) -> Evaluation:
-        """Return a rig's entropy, or a lower bound that is not below `cutoff`.
-
-        Objects and the vehicle occlude beams and pixels and add none, so without occlusion the
-        entropy is no higher. Sensors that have moved are measured without it first, then with it,
-        one after the other, while the bound is below the cutoff.
-        """
-        with self._lock:
-            self._fused.check(rig)
-            if cutoff < inf and self._bounds_pay():
-                bound = self._lower_bound(rig, cutoff)
-                settled = bound >= cutoff
-                self._bound_rate = MEMORY * self._bound_rate + (1.0 - MEMORY) * settled
-                if settled:
-                    return Evaluation(bound, True)
-            return Evaluation(self._value(rig, self._sensors.measure(rig)), False)
-
-    def _bounds_pay(self) -> bool:
-        """Whether the next candidate is worth a bound: far from the optimum most of them are.
-
-        What a search finds does not depend on it, only its time.
-        """
-        pays = self._bound_rate >= PAYING_RATE or self._unbounded == AGAIN - 1
-        self._unbounded = 0 if pays else self._unbounded + 1
-        return pays
-
-    def _lower_bound(self, rig: Rig, cutoff: float) -> float:
-        """Return a lower bound of a rig's entropy, which may already reach the cutoff."""
-        m, occluded = dict[str, Floats](), list[Sensor]()
-        for sensor in rig:
-            known = self._sensors.cached(sensor)
-            if known is None and (known := self._sensors.unoccluded(sensor)) is not None:
-                occluded.append(sensor)
-            m[sensor.name] = self._sensors.measure_again(sensor) if known is None else known
-        if not occluded:
-            return -inf
-        bound = self._value(rig, m) - ROUNDING
-        for sensor in sorted(occluded, key=lambda s: kind_of(s).counts_points)[:-1]:
-            if bound >= cutoff:
-                break
-            m[sensor.name] = self._sensors.measure_again(sensor)
-            bound = self._value(rig, m) - ROUNDING
-        return bound
+        """Return the object entropy of a rig as a search asks for it, whatever the cutoff."""
+        return Evaluation(self.entropy(rig), False)
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the object entropy of each of several rigs [nats], as `Evaluator.entropies`."""
@@ -146,12 +96,6 @@ class ObjectEvaluator:
             self._fused.check(scenarios.all)
             m = self._sensors.measure(scenarios.all)
             return [self._value(part, m) for part in scenarios.parts]
-
-    def evaluate_together(
-        self, rigs: Sequence[Rig], cutoff: float, worst: bool = False
-    ) -> Evaluation:
-        """Return the mean of several rigs' entropies, or the highest, whatever the cutoff."""
-        return Evaluation(mean_or_worst(self.entropies(rigs), worst), False)
 
     def summary(self, rig: Rig, *, preview: bool = False) -> Score:
         """Return the score of a rig without the part by sensor."""

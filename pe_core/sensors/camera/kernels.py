@@ -222,10 +222,6 @@ class CameraObjects(ObjectKernel):
         area[which] = images.area * self._share(sensor, axes, boxes, which, images)
         return area
 
-    def unoccluded(self, sensor: Sensor) -> Floats:
-        """Measure the whole images (N,) of the objects."""
-        return CameraObjects(ObjectView(self._view.objects)).measure(sensor)
-
     def _share(
         self, sensor: Sensor, axes: Floats, boxes: PlacedBoxes, which: Ints, images: BoxImages
     ) -> Floats:

@@ -232,7 +232,8 @@ class BeamCache:
         if cached and (approximate or not cached.approximate) and sensor.measures_as(cached.sensor):
             return cached
         beams = self.rotated(sensor)
-        ends: BeamEnds = self.unoccluded(sensor)
+        model = lidar_of(sensor)
+        ends: BeamEnds = FixedEnds(np.full(model.beam_count, model.max_range))
         is_approximate = approximate and self._approximation.applies_to(sensor)
         if is_approximate:
             ends = FixedEnds(self._approximation.ends(sensor, beams.slopes))
@@ -240,11 +241,6 @@ class BeamCache:
             ends = LazyEnds(sensor, beams, self._vehicle)
         cast = self._cast[sensor.name] = CastBeams(sensor, ends, is_approximate)
         return cast
-
-    def unoccluded(self, sensor: Sensor) -> FixedEnds:
-        """Return where a LiDAR's beams end without a vehicle: at the maximum range."""
-        model = lidar_of(sensor)
-        return FixedEnds(np.full(model.beam_count, model.max_range))
 
     def keep_only(self, sensors: Collection[Sensor]) -> None:
         """Drop the entries of all other sensors."""

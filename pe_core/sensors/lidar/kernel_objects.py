@@ -82,10 +82,6 @@ class LidarObjects(ObjectKernel):
         ends = self.cache.cast(sensor, approximate=False).ends
         return BoxTester(sensor, boxes, self.cache.rotated(sensor), ends)
 
-    def unoccluded(self, sensor: Sensor) -> Floats:
-        """Count the beams (N,) that pass through each object."""
-        return LidarObjects(ObjectView(self._view.objects)).measure(sensor)
-
 
 def _count(tester: BoxTester, scenes: Ints | None) -> Ints:
     """Count the beams (N,) on all boxes in the fastest way; None for `scenes`: no traffic."""

@@ -11,7 +11,7 @@ that hold points of the segment are marked: both of its ends, and points between
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import cached_property
@@ -43,15 +43,7 @@ from .definition import cube_crossing, position_in_voxels, with_returns
 from .grid_sweep import BeamGrid
 from .lattice import lattice_of
 from .model import ALL, ROAD, lidar_of
-from .voxel_beams import (
-    CUBE_RADIUS,
-    PlacedLidar,
-    Unoccluded,
-    VoxelPoints,
-    count_pairs,
-    count_unoccluded,
-    count_voxel_beams,
-)
+from .voxel_beams import CUBE_RADIUS, PlacedLidar, VoxelPoints, count_pairs, count_voxel_beams
 
 BEAM_BYTES = 100
 """Memory of a cast beam, measured: its direction, its end and its hit."""
@@ -155,33 +147,16 @@ class LidarSample(SampleKernel):
         self._saturation_count = saturation_count
         self._points = VoxelPoints(voxels.index)
         self.cache = BeamCache(vehicle)
-        self._unoccluded: dict[str, tuple[Sensor, Unoccluded]] = {}  # by name, of the last rig
 
     def measure(self, sensor: Sensor, approximate: bool) -> Measured:
         """Count a LiDAR's beams; `approximate`: occlusion may be an approximation."""
         beams = self.cache.cast(sensor, approximate)
         lidar = self._placed(sensor, beams.ends)
-        cached = self._unoccluded.get(sensor.name)
-        unoccluded = cached[1] if cached and sensor.measures_as(cached[0]) else None
-        counts = count_voxel_beams(self._points, lidar, self._most(sensor), unoccluded)
+        most = self._saturation_count if lidar_of(sensor).returns == ALL else MAX_TABLE
+        counts = count_voxel_beams(self._points, lidar, most)
         counts = recount_min_range(self._points, lidar, counts, lidar_of(sensor).min_range)
         m = with_returns(sensor, counts, self._centers)
         return Measured(sensor, m, beams.approximate, beams.ends)
-
-    def unoccluded(self, sensor: Sensor) -> NDArray:
-        """Count a LiDAR's beams without the vehicle."""
-        lidar = self._placed(sensor, self.cache.unoccluded(sensor))
-        unoccluded = count_unoccluded(self._points, lidar, self._most(sensor))
-        self._unoccluded[sensor.name] = sensor, unoccluded
-        min_range = lidar_of(sensor).min_range
-        counts = recount_min_range(
-            self._points, lidar, unoccluded.counts, min_range, without_vehicle=True
-        )
-        return with_returns(sensor, counts, self._centers)
-
-    def _most(self, sensor: Sensor) -> int:
-        """Return from which count on it need not be exact."""
-        return self._saturation_count if lidar_of(sensor).returns == ALL else MAX_TABLE
 
     def occlusion(self, measured: Measured) -> Occlusion:
         """Count the beams that the vehicle occludes; exactly, whatever `measured` is."""
@@ -189,12 +164,6 @@ class LidarSample(SampleKernel):
         is_lazy = isinstance(ends, LazyEnds)
         field = ends.beam_field() if is_lazy else beam_field(measured.sensor, self._vehicle)
         return field.occlusion()
-
-    def keep_only(self, sensors: Collection[Sensor]) -> None:
-        """Drop the cached beams and counts of all other sensors."""
-        self.cache.keep_only(sensors)
-        names = {sensor.name for sensor in sensors}
-        self._unoccluded = {n: counts for n, counts in self._unoccluded.items() if n in names}
 
     def _placed(self, sensor: Sensor, ends: BeamEnds) -> PlacedLidar:
         side = self._space.interval
@@ -209,11 +178,7 @@ class LidarSample(SampleKernel):
 
 
 def recount_min_range(
-    voxels: VoxelPoints,
-    lidar: PlacedLidar,
-    counts: NDArray[np.signedinteger],
-    min_range: float,
-    without_vehicle: bool = False,
+    voxels: VoxelPoints, lidar: PlacedLidar, counts: NDArray[np.signedinteger], min_range: float
 ) -> NDArray[np.signedinteger]:
     """Count again the voxels within the minimum range, beam by beam.
 
@@ -233,12 +198,11 @@ def recount_min_range(
         directions = np.stack(list(lidar.beams.components(beam)), axis=1)
         _, leave = cube_crossing(centers[voxel], directions)
         kept = np.flatnonzero(leave >= min_distance)
-        if not without_vehicle:  # nor end nearer
-            at = np.flatnonzero(lidar.ends.occludable[beam[kept]])
-            beyond = np.ones(len(kept), bool)
-            beyond[at] = lidar.ends.take(beam[kept[at]]) / lidar.side >= min_distance
-            kept = kept[beyond]
-        counts[block] = count_pairs(centers, lidar, voxel[kept], beam[kept], without_vehicle)
+        at = np.flatnonzero(lidar.ends.occludable[beam[kept]])
+        beyond = np.ones(len(kept), bool)  # nor end nearer
+        beyond[at] = lidar.ends.take(beam[kept[at]]) / lidar.side >= min_distance
+        kept = kept[beyond]
+        counts[block] = count_pairs(centers, lidar, voxel[kept], beam[kept])
     return counts
 
 

@@ -87,49 +87,18 @@ class PlacedLidar:
         return self.ends.occludable.reshape(-1, self.lattice.width)[self.lattice.channels]
 
 
-@dataclass(frozen=True, slots=True)
-class Unoccluded:
-    """Beams through voxels without a vehicle.
-
-    `counts` (V,) are exact but for saturated ones; `bounds` are the voxels' windows, None for a
-    LiDAR that is not regular.
-    """
-
-    counts: NDArray[np.signedinteger]
-    bounds: Bracket | None = None
-
-
 def count_voxel_beams(
-    voxels: VoxelPoints,
-    lidar: PlacedLidar,
-    saturation_count: int | None = None,
-    unoccluded: Unoccluded | None = None,
+    voxels: VoxelPoints, lidar: PlacedLidar, saturation_count: int | None = None
 ) -> NDArray[np.signedinteger]:
     """Count the beams (V,) through voxels that the vehicle does not occlude before.
 
     A count of `saturation_count` or more need not be exact: any number from this up to the count
-    may be returned. `unoccluded` is the result of `count_unoccluded` with the same arguments, where
-    the caller has it.
-    """
-    if lidar.lattice.slope_bounds is None:
-        offsets = voxels.offsets(lidar.position)
-        return count_pairs(offsets, lidar, *lidar.candidates(offsets))
-    free = unoccluded or count_unoccluded(voxels, lidar, saturation_count)
-    return _recount_occluded(voxels, lidar, free)
-
-
-def count_unoccluded(
-    voxels: VoxelPoints, lidar: PlacedLidar, saturation_count: int | None = None
-) -> Unoccluded:
-    """Count the beams through voxels without a vehicle; parameters as of `count_voxel_beams`.
-
-    Of a regular LiDAR by bounds, and beam by beam where these differ.
+    may be returned. Of a regular LiDAR by bounds, and beam by beam where these differ.
     """
     lattice = lidar.lattice
     if lattice.slope_bounds is None:
         offsets = voxels.offsets(lidar.position)
-        pairs = lidar.candidates(offsets)
-        return Unoccluded(count_pairs(offsets, lidar, *pairs, without_vehicle=True))
+        return count_pairs(offsets, lidar, *lidar.candidates(offsets))
     points = voxels.offsets_float32(lidar.position)
     bounds = bracket(points, lidar.ground_from_sensor, lattice.slope_bounds, lattice.count)
     counts = bounds.lower.astype(np.int64)
@@ -137,7 +106,13 @@ def count_unoccluded(
     limit = np.iinfo(np.int64).max if saturation_count is None else saturation_count
     undecided = np.flatnonzero((counts < bounds.upper) & (counts < limit))
     counts[undecided] = _count_windows(voxels, lidar, bounds, undecided, without_vehicle=True)
-    return Unoccluded(counts, bounds)
+    occludable = lidar.occludable
+    rows = np.flatnonzero(occludable.any(axis=1))
+    if len(rows):
+        affected = np.flatnonzero((bounds.row <= rows[-1]) & (bounds.upper > 0) & (counts > 0))
+        affected = affected[_any_in_window(occludable, bounds, affected)]
+        counts[affected] = _count_windows(voxels, lidar, bounds, affected)
+    return counts
 
 
 def _may_exceed(points: Sequence[Singles], max_range: float) -> NDArray[np.bool_]:
@@ -145,19 +120,6 @@ def _may_exceed(points: Sequence[Singles], max_range: float) -> NDArray[np.bool_
     x, y, z = points
     exceeds: NDArray[np.bool_] = x * x + y * y + z * z > max(max_range - CUBE_RADIUS, 0.0) ** 2
     return exceeds
-
-
-def _recount_occluded(voxels: VoxelPoints, lidar: PlacedLidar, unoccluded: Unoccluded) -> Ints:
-    """Count again the voxels whose window holds a beam that the vehicle may occlude."""
-    bounds, occludable = unoccluded.bounds, lidar.occludable
-    counts = unoccluded.counts.astype(np.int64)
-    assert bounds is not None
-    rows = np.flatnonzero(occludable.any(axis=1))
-    if len(rows):
-        affected = np.flatnonzero((bounds.row <= rows[-1]) & (bounds.upper > 0) & (counts > 0))
-        affected = affected[_any_in_window(occludable, bounds, affected)]
-        counts[affected] = _count_windows(voxels, lidar, bounds, affected)
-    return counts
 
 
 def _count_windows(

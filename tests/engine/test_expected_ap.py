@@ -86,8 +86,6 @@ def test_the_value_is_minus_the_ap_of_a_score_in_traffic():
     again = pickle.loads(pickle.dumps(evaluator))
     assert isinstance(again, ExpectedApEvaluator)
     assert again.entropy(placed(given, 1)[0]) == values[0]
-        isinstance(again, ExpectedApEvaluator)
-    )
 
 
 def test_a_search_raises_the_ap_and_tells_both(plain):

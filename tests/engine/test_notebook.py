@@ -31,25 +31,22 @@ def voxels(prior, space=SPACE):
     return sum(each.ground[:, :, None] * each.profile for each in prior.densities(space))
 
 
-def bump(x, y, z):
+def bump():
+    x, y, z = np.meshgrid(*(SPACE.centers(axis) for axis in range(3)), indexing="ij")
     return np.exp(-(x**2 + 2.0 * y**2) / 30.0) / (1.0 + z)
 
 
-def test_a_grid_and_a_function_give_the_share_of_each_voxel():
-    centers = [SPACE.centers(axis) for axis in range(3)]
-    weights = bump(*np.meshgrid(*centers, indexing="ij"))
-    expected = weights / weights.sum()
-    for prior in (pe.Prior.from_grid(weights, SPACE), pe.Prior.from_function(bump, SPACE)):
-        assert np.allclose(voxels(prior), expected, rtol=0, atol=1e-15)
-        assert len(prior.class_names) == SPACE.shape[2]
-    flat = pe.Prior.from_function(lambda x, y, z: 1.0 + 0.0 * x, SPACE)
+def test_a_grid_gives_the_share_of_each_voxel():
+    weights = bump()
+    prior = pe.Prior.from_grid(weights, SPACE)
+    assert np.allclose(voxels(prior), weights / weights.sum(), rtol=0, atol=1e-15)
+    assert len(prior.class_names) == SPACE.shape[2]
+    flat = pe.Prior.from_grid(np.ones(SPACE.shape[:2]), SPACE)
     assert flat.class_names == ("any",) and np.allclose(voxels(flat), voxels(pe.Prior.uniform()))
-    along = pe.Prior.from_function(lambda x, y, z: 3.0 - z, SPACE)  # of z alone
-    assert np.allclose(voxels(along)[0, 0], voxels(along)[3, 5]) and len(along.class_names) == 4
 
 
 def test_a_grid_is_read_at_the_centres_of_another_space_and_takes_focus_weights():
-    prior = pe.Prior.from_function(bump, SPACE)
+    prior = pe.Prior.from_grid(bump(), SPACE)
     finer = pe.PerceptionSpace((-4, 30), (-3, 3), (0, 3), 0.25)
     found, own = voxels(prior, finer), voxels(prior)
     inside = found[:56, :, :8].reshape(28, 2, 12, 2, 4, 2)
@@ -73,14 +70,12 @@ def test_wrong_weights_are_told(weights):
 
 def test_other_wrong_priors_are_told():
     with pytest.raises(pe.InputError):
-        pe.Prior.from_function(lambda x, y, z: np.ones(7), SPACE)
-    with pytest.raises(pe.InputError):
         pe.Prior("grid")
     with pytest.raises(pe.InputError):
         pe.Prior.from_grid(np.ones((40, 24)), SPACE).objects_at_once(SPACE)
     tall = pe.PerceptionSpace((0, 2), (0, 2), (0, 50), 0.5)
     with pytest.raises(pe.InputError):
-        pe.Prior.from_function(lambda x, y, z: 1.0 + z + 0.0 * x, tall)
+        pe.Prior.from_grid(np.ones(tall.shape), tall)
 
 
 @pytest.mark.parametrize("by_height", [False, True])

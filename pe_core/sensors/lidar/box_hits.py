@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Flags, Floats, Ints
-from ...geometry.bins import blocks, count_up, stable_order
+from ...geometry.bins import blocks, count_up
 from ...geometry.poses import rotate
 from ...scene.rig import Sensor
 from ..boxes import PlacedBoxes
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 
 PAIR_BLOCK = 1 << 15
 """(box, beam) pairs tested together: their arrays fit the processor's cache."""
-NO_BOX = np.iinfo(np.int64).max
 BOX_BLOCK = 256
 """Boxes whose candidates are tested together: they fit the memory, however near the boxes are."""
 BEHIND_MARGIN_M = 1e-6
@@ -97,27 +96,6 @@ def concatenated(parts: list[BoxHits]) -> BoxHits:
     none = BoxHits(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
     keys = ("box", "beam", "enter")
     return BoxHits(*(np.concatenate([getattr(p, key) for p in [none, *parts]]) for key in keys))
-
-
-def nearest_hits(hits: BoxHits, scenes: Ints, beam_count: int) -> BoxHits:
-    """Return the hits of `definition.first_of_scene`, in any order; `scenes` (N,) by box.
-
-    Fast because it takes minima over `beam_count` beams, scene by scene, and sorts no distances.
-    """
-    scene = scenes[hits.box]
-    order = stable_order(scene)
-    starts = np.flatnonzero(np.diff(scene[order], prepend=-1))
-    nearest, nearest_box = np.full(beam_count, np.inf), np.full(beam_count, NO_BOX)
-    kept = [np.zeros(0, np.int64)]
-    for in_scene in np.split(order, starts[1:]):
-        beam = hits.beam[in_scene]
-        np.minimum.at(nearest, beam, hits.enter[in_scene])
-        first = in_scene[hits.enter[in_scene] == nearest[beam]]
-        np.minimum.at(nearest_box, hits.beam[first], hits.box[first])
-        kept.append(first[nearest_box[hits.beam[first]] == hits.box[first]])
-        nearest[beam], nearest_box[beam] = np.inf, NO_BOX
-    index = np.concatenate(kept)
-    return BoxHits(hits.box[index], hits.beam[index], hits.enter[index])
 
 
 def box_windows(tester: BoxTester) -> Windows:

@@ -25,8 +25,8 @@ from ...scene.rig import Sensor
 from ..boxes import BodyParts, PlacedBoxes
 from ..kernels import ObjectKernel, ObjectView
 from .beams import BeamCache
-from .box_hits import BoxTester, FanBeams, box_windows, candidate_hits, concatenated, nearest_hits
-from .definition import BoxHits, counts_in_bands, with_returns
+from .box_hits import BoxTester, FanBeams, box_windows, candidate_hits, concatenated
+from .definition import BoxHits, counts_in_bands, first_of_scene, with_returns
 from .fan_runs import ChannelRuns, Fan, RotatedFan, RunBlock, fans_of
 from .lattice import lattice_of
 from .model import ROAD, lidar_of
@@ -90,7 +90,7 @@ def _count(tester: BoxTester, scenes: Ints | None) -> Ints:
         hits = candidate_hits(tester)
         if scenes is None:
             return np.add.reduce([tester.count(part) for part in hits])
-        return tester.count(nearest_hits(concatenated(list(hits)), scenes, tester.lidar.beam_count))
+        return tester.count(first_of_scene(concatenated(list(hits)), scenes))
     outside, runs = _runs(tester, fans)
     others = tester.hits_of_all_beams(np.flatnonzero(~outside))
     if scenes is None:
@@ -179,8 +179,7 @@ def _count_traffic(
         in_unsorted = np.isin(scenes[runs.box], unsorted_scenes)
         undecided = _count_sorted(tester, fan, runs, scenes, in_unsorted, counts)
         hits.append(_tested(tester, fan, runs.take(undecided)))
-    nearest = nearest_hits(concatenated(hits), scenes, tester.lidar.beam_count)
-    return counts + tester.count(nearest)
+    return counts + tester.count(first_of_scene(concatenated(hits), scenes))
 
 
 def _count_sorted(

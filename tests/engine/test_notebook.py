@@ -75,7 +75,7 @@ def test_other_wrong_priors_are_told():
         pe.Prior.from_grid(np.ones((40, 24)), SPACE).objects_at_once(SPACE)
     tall = pe.PerceptionSpace((0, 2), (0, 2), (0, 50), 0.5)
     with pytest.raises(pe.InputError):
-        pe.Prior.from_grid(np.ones(tall.shape), tall)
+        pe.Prior.from_grid(np.ones(tall.shape) + np.arange(100.0), tall)
 
 
 @pytest.mark.parametrize("by_height", [False, True])

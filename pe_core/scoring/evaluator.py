@@ -15,7 +15,7 @@ from ..scene.vehicle import Vehicle
 from ..sensors import PerceptionModel
 from .grid_scorer import GridScorer, columns_bytes, require_room_for, require_room_for_samples
 from .sampled_scorer import SampledScorer
-from .sampling import CENTERED, SAMPLES_OR_GRID, cached_densities
+from .sampling import CENTERED, SAMPLES_OR_GRID
 from .score import Evaluation, Score, Watch
 
 WORKERS = Whole(0, 1024, "threads")
@@ -70,12 +70,11 @@ class Evaluator:
         require_room_for_samples(samples, columns_bytes(space, classes))
         require_room_for(space, lambda any_space: columns_bytes(any_space, classes))
         fusion = Fusion(model or PerceptionModel())
+        densities = prior.densities(space)
         self._scorer: GridScorer | SampledScorer
         if samples == 0:
-            densities = prior.densities(space)
             self._scorer = GridScorer(space, densities, vehicle, fusion, workers)
         else:
-            densities = self._densities = cached_densities(prior, space)
             self._scorer = SampledScorer(space, densities, vehicle, fusion, samples, shift)
 
     def __reduce__(self) -> tuple[object, ...]:

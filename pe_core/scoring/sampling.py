@@ -14,7 +14,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
-from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +22,7 @@ from ..base.arrays import Floats, Ints, read_only
 from ..base.errors import InputError
 from ..base.values import Whole
 from ..geometry.grids import PerceptionSpace
-from ..prior.prior import ClassDensity, Prior
+from ..prior.prior import ClassDensity
 
 Words = NDArray[np.uint32]
 BITS = 32
@@ -243,27 +242,6 @@ def _mixed(shares: Floats, profiles: Floats) -> Floats:
 def _inverse(cumulative: Floats, values: Floats) -> Ints:
     indices = np.searchsorted(cumulative, values, side="right")
     return np.minimum(indices, len(cumulative) - 1)
-
-
-class CachedDensities(list[ClassDensity]):
-    """A read-only list of densities that allows weak references (a plain list does not)."""
-
-
-_CACHE: WeakValueDictionary[tuple[Prior, PerceptionSpace], CachedDensities] = WeakValueDictionary()
-
-
-def cached_densities(prior: Prior, space: PerceptionSpace) -> CachedDensities:
-    """Return `Prior.densities`, with its errors; cached while they are referenced elsewhere."""
-    try:
-        densities = _CACHE.get((prior, space))
-    except TypeError:  # foreign classes without a hash
-        return CachedDensities(prior.densities(space))
-    if densities is None:
-        densities = CachedDensities(prior.densities(space))
-        for density in densities:
-            read_only(density.ground)
-        _CACHE[prior, space] = densities
-    return densities
 
 
 def outside_profile(density: ClassDensity, space: PerceptionSpace, tops: Floats) -> Floats:

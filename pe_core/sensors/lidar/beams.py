@@ -1,8 +1,7 @@
 """The beams of a mounted LiDAR: rotated into the ground frame, cast against the vehicle, cached.
 
-`beam_field` casts all beams at once. Kernels ask for less: `RotatedBeams` rotates the beams that a
-kernel needs, `LazyEnds` casts the beams whose end matters, and `BeamCache` holds both by the
-sensor's name until the sensor turns or moves.
+`beam_field` casts all beams at once. Kernels ask for less: `LazyEnds` casts the beams whose end
+matters. `BeamCache` holds rotated beams and ends by the sensor's name until it turns or moves.
 """
 
 from __future__ import annotations
@@ -16,7 +15,6 @@ from numpy.typing import NDArray
 
 from ...base.arrays import Flags, Floats, Ints
 from ...base.notebook import ShortRepr
-from ...geometry.poses import rotate
 from ...geometry.raycast import Hits
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
@@ -79,10 +77,7 @@ def beam_field(
 
 @dataclass(frozen=True)
 class RotatedBeams:
-    """A LiDAR's beams at the orientation of `sensor`; valid for any position.
-
-    A few beams are rotated on request. All are rotated once many were requested.
-    """
+    """A LiDAR's beams at the orientation of `sensor`; valid for any position."""
 
     sensor: Sensor
 
@@ -95,28 +90,16 @@ class RotatedBeams:
     def _components(self) -> list[Floats]:
         return [np.ascontiguousarray(w) for w in without_zeros(self.directions).T]
 
-    def prepare(self, count: int) -> None:
-        """Rotate all beams now if `count`, the beams to be requested, is more than there are."""
-        if count > lidar_of(self.sensor).beam_count:
-            _ = self.directions
-
     def take(self, beams: Ints) -> Floats:
         """Return the unit directions (N, 3) of the beams with these indices (N,)."""
-        if "directions" in vars(self):
-            return self.directions[beams]
-        in_sensor = lidar_of(self.sensor).directions[beams]
-        return rotate(self.sensor.pose.ground_from_sensor, in_sensor)
+        return self.directions[beams]
 
     def components(self, beams: Ints) -> list[Floats]:
         """Return the directions of beams (N,) as three arrays (N,), one an axis, without zeros.
 
         This is the form in which kernels divide by them (`definition.without_zeros`).
         """
-        if "directions" in vars(self):
-            return [np.take(w, beams) for w in self._components]
-        x, y, z = np.ascontiguousarray(lidar_of(self.sensor).directions[beams].T)
-        axes = self.sensor.pose.ground_from_sensor
-        return [without_zeros(row[0] * x + row[1] * y + row[2] * z) for row in axes]
+        return [np.take(w, beams) for w in self._components]
 
     @cached_property
     def slopes(self) -> BeamSlopes:

@@ -156,7 +156,6 @@ def count_pairs(
     `offsets` (V, 3) are the voxels' centres seen from the sensor, in sides.
     """
     counts, occludable = np.zeros(len(offsets), np.int64), []
-    lidar.beams.prepare(len(beam))
     for block in blocks(len(voxel), PAIR_BLOCK):
         through, enter = _through(offsets, lidar, voxel[block], beam[block])
         pairs = voxel[block][through], beam[block][through]

@@ -119,6 +119,14 @@ class BodyChecks:
                         measurer.measure_again(sensor)
                 yield
 
+    def seen_by(self, number: int, sensor: Sensor) -> Flags:
+        """Return the samples and bodies (N, bodies * headings) of the first requirement that a
+        sensor sees in a scene."""
+        found = [
+            {sensor.name: each.measure_again(sensor)} for each in self._measurers_of(number, sensor)
+        ]
+        return self._seen(0, sensor, _PointsByBand(found[0], found[-1] if len(found) > 1 else {}))
+
     def _result(self, number: int, rig: Rig, measured: _PointsByBand) -> ZoneResult:
         requirement, _ = self._wanted[number]
         names = [s.name for s in rig]

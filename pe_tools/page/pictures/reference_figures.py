@@ -222,10 +222,7 @@ def worst_bodies(
         foot = (*verdict.worst, verdict.requirement.zone.z[0])
         objects = placed(body, [foot], body.headings, False)
         measured = kinds.ObjectMeasurementCache(objects, vehicle).measure(rig)
-        counts = {
-            name: float(m.reshape(-1, body.box_count).max(axis=1).min())
-            for name, m in measured.items()
-        }
+        counts = {name: float(m.min()) for name, m in measured.items()}
         found.append(WorstBody(number, verdict, body, foot, counts))
     return tuple(found)
 

@@ -67,6 +67,7 @@ def make_sensor(entry: pe.catalog.Entry) -> bpy.types.Object:
     obj = bpy.data.objects.new(short_name(entry), housing_mesh(entry.name))
     obj.perception_entropy.model = entry.name
     obj.perception_entropy.is_sensor = True
+    obj.perception_entropy.stands_when_dropped = True
     obj.asset_mark()
     data = obj.asset_data
     data.catalog_id = catalog_id(path_of(entry))

@@ -37,6 +37,7 @@ class PE_Preferences(bpy.types.AddonPreferences):
 
     bl_idname = __package__
 
+    seen_version: fields.text("Version", "Version whose news were shown", options={"HIDDEN"})
     show_library: fields.switch(
         "Sensors in the Asset Browser",
         "A library of LiDARs and cameras: drag one onto the vehicle",

@@ -28,7 +28,7 @@ from . import (
     viewport,
 )
 from .live import session
-from .operators import inset, look_through
+from .operators import inset, look_through, upright
 from .overlay import draw_handler, scheduler
 
 Function = Callable[..., None]
@@ -95,6 +95,7 @@ LISTENERS: tuple[tuple[signals.Signal, tuple[signals.Listener, ...]], ...] = (
         signals.moving,
         (
             look_through.restore_lost,
+            upright.on_moving,
             consistency.repair_scenes,
             diagnostics.postpone_checks,
             scheduler.on_moving,

@@ -18,6 +18,7 @@ from . import (
     shortcuts,
     upright,
     variants,
+    whats_new,
 )
 from .add_sensor import Offer, models, offers
 from .declared import CLASSES
@@ -26,12 +27,13 @@ from .imports import known_rigs
 from .panel_rows import reference_label
 from .query_location import answer
 from .requirements import ShownVerdict, shown_verdicts
+from .whats_new import is_updated
 
 __all__ = ["CLASSES", "FIX_LABELS", "Offer", "ShownVerdict", "answer"]
 __all__ += ["compare_variants", "conditions", "edit_sensors", "exports", "first_steps"]
-__all__ += ["known_rigs", "look_through", "models", "mounts", "offers"]
+__all__ += ["is_updated", "known_rigs", "look_through", "models", "mounts", "offers"]
 __all__ += ["place_sensor", "reference_label", "register", "running_job"]
-__all__ += ["shown_verdicts", "unregister", "upright", "variants"]
+__all__ += ["shown_verdicts", "unregister", "upright", "variants", "whats_new"]
 
 
 def register() -> None:

@@ -10,7 +10,7 @@ from ..diagnostics import vehicle_line
 from ..engine import advice
 from ..language import draw_label, shown
 from ..live import BETTER, SAME, SENSE_ICONS, WORSE, ShownScore, figure_rows, nats_text, shown_score
-from ..operators import offers, running_job
+from ..operators import is_updated, offers, running_job
 from ..sensor_cache import sensors as listed_sensors
 from .layout import columns, draw_declared, draw_sentence, draw_warning, panel
 from .sensor_lists import draw_sensors
@@ -176,6 +176,8 @@ def draw_vehicle(layout: UILayout, context: Context) -> None:
         column.operator("pe.open_example", icon="FILE_BLEND")
     if settings.vehicle is not None and (line := vehicle_line(context.scene)):
         draw_sentence(layout, context, line)
+    if is_updated():
+        layout.operator("pe.whats_new", icon="INFO")
     if step == 2:
         asked, button = columns(layout, 0.5)
         draw_label(asked, "Front at the arrow?")

@@ -202,6 +202,11 @@ class PE_ObjectSettings(GroundPose, CurveFields, PropertyGroup):
         options={"HIDDEN"},
     )
 
+    stands_when_dropped: switch(
+        "Stands When Dropped",
+        "Stands upright on the surface when it is dropped from the asset browser",
+        options={"HIDDEN"},
+    )
     is_parked: switch(
         "Is Inactive",
         "This sensor is inactive, because only other variants have it",

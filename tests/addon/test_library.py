@@ -50,6 +50,7 @@ def test_each_is_a_sensor_with_its_body_a_place_in_the_catalogue_tags_and_a_pict
     for obj in assets:
         settings, data = obj.perception_entropy, obj.asset_data
         assert settings.is_sensor, obj.name
+        assert settings.stands_when_dropped, obj.name
         assert obj.data[KEY] == settings.model
         assert tuple(obj.location) == (0.0, 0.0, 0.0) and tuple(obj.scale) == (1.0, 1.0, 1.0)
         kind = pe.catalog.load(settings.model).kind

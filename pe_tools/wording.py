@@ -98,8 +98,13 @@ def warning_text(code: str, part: str | None, values: Mapping[str, Any]) -> str:
     return WARNINGS[code](part, **values) if code in WARNINGS else code.replace("_", " ")
 
 
-def _requirement(_part: str | None, name: str) -> str:
-    return f"{name} is not met; no placement was found that keeps all requirements"
+def _requirement(_part: str | None, name: str, against: Sequence[str] | None) -> str:
+    text = f"{name} is not met; no placement was found that keeps all requirements"
+    if against is None:
+        return f"{text}, and none of one sensor elsewhere that meets this one alone"
+    if not against:
+        return f"{text}, though none stands against it: a longer search may"
+    return f"{text}: the nearest placement that meets it breaks {', '.join(against)}"
 
 
 def _housing(_part: str | None, size: Sequence[float], parts: Sequence[str]) -> str:

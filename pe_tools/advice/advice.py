@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from pe_core.scoring.requirements import Verdict
+from pe_core.study.requirement_search import Suggestion
 
 from ..wording import warning_text
 
@@ -84,6 +84,12 @@ def fragile(
     return (Advice(None, FRAGILE, values),)
 
 
-def unmet(verdicts: Iterable[Verdict]) -> tuple[Advice, ...]:
-    """Return a warning for each requirement that a search could not keep."""
-    return tuple(Advice(None, UNMET, {"name": v.name}) for v in verdicts if not v.met)
+def unmet(found: Mapping[str, Suggestion | None]) -> tuple[Advice, ...]:
+    """Return a warning for each requirement that a search could not keep.
+
+    `found` has the nearest placement that meets each, and what it breaks; None: it was met nowhere.
+    """
+    return tuple(
+        Advice(None, UNMET, {"name": name, "against": own and list(own.breaks)})
+        for name, own in found.items()
+    )

@@ -15,6 +15,7 @@ from pe_core.base.table_reader import finite
 from pe_core.scoring.requirements import Redundancy, RedundancyMap, Verdict, checkable
 from pe_core.study import Study, load_study
 from pe_core.study.requirement_file import CONFIDENCE, Preset, preset, presets
+from pe_core.study.requirement_search import suggestions
 
 from ..advice import curve_note
 from ..jobs import CheckJob
@@ -41,6 +42,8 @@ def add_check_options(parser: argparse.ArgumentParser) -> None:
     about = "a preset besides the study's requirements (pe requirements lists them); all: each one"
     parser.add_argument("--preset", action="append", default=[], metavar="ID", help=about)
     parser.add_argument("--json", action="store_true", help="print JSON")
+    about = "say which small change of one sensor would meet what is not met"
+    parser.add_argument("--suggest", action="store_true", help=about)
     about = "also by how many sensors each place within 10 m is seen, for what is so tall [m]"
     parser.add_argument("--redundancy", type=float, metavar="M", help=about)
     parser.add_argument("--csv", metavar="FILE", help="write the table to a CSV file")
@@ -107,6 +110,8 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
     met = all(v.met for v in verdicts) and all(each.is_met for each in driven)
     status = received.status(DONE if met else NOT_MET)
     unchecked |= dict.fromkeys(job.missing, STOPPED)
+    wanted = args.suggest and status == NOT_MET
+    suggested = suggestions(study) if wanted else {}
     seen = None
     if args.redundancy is not None and job.complete:
         seen = Redundancy(study.vehicle, study.space, args.redundancy).map(study.rig)
@@ -115,12 +120,16 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
             "met": sum(v.met for v in verdicts),
             "requirements": [v.to_dict() for v in verdicts],
             "unchecked": unchecked,
+            "suggestions": {name: own and own.text for name, own in suggested.items()},
             "redundancy": None if seen is None else seen.to_dict(),
             "stories": [each.to_dict() for each in driven],
         }
         return dump_json(finite(data)), status
     lines = verdict_lines(verdicts, unchecked) if verdicts or unchecked else []
     lines += story_lines(driven) if driven else []
+    none = "no placement of one sensor, or linked pair, that was tried is enough"
+    for name, own in suggested.items():
+        lines.append(f"{name}: met with {own.text}" if own else f"{name}: {none}")
     lines += [] if seen is None else redundancy_lines(seen)
     return "\n".join(lines), status
 

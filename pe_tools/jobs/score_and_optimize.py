@@ -22,7 +22,12 @@ from pe_core.search import (
     robustness,
 )
 from pe_core.study.condition_table import is_by_ap, searched_study, study_objective
-from pe_core.study.requirement_search import constraints_of, feasible_first, is_infeasible
+from pe_core.study.requirement_search import (
+    constraints_of,
+    feasible_first,
+    is_infeasible,
+    suggestions,
+)
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 
 from ..advice import Advice, condition_warnings, fragile, unmet
@@ -192,7 +197,9 @@ class OptimizeJob(Job):
         analysing = replace(looking, stage="analysing")
         found = yield from self._beside(lambda _: self._robustness(best), analysing)
         verdicts = (yield from self._verdicts(best, analysing, to_the_end=False)) or ()
-        broken = unmet(verdicts) if best.search.requirements else ()
+        against: tuple[Advice, ...] | None = ()
+        if best.search.requirements and not all(verdict.met for verdict in verdicts):
+            against = yield from self._beside(lambda _: unmet(suggestions(best)), analysing)
         sensitivity = None
         if self.analyses and not self.stopped:
             samples = FreshSamples(best, best.rig, self._fresh_objectives, self._helpers)
@@ -217,7 +224,7 @@ class OptimizeJob(Job):
             self.evaluations,
             stopped,
             self.seconds,
-            (*warnings, *sure, *broken, *condition_warnings(table)),
+            (*warnings, *sure, *(against or ()), *condition_warnings(table)),
             self.inputs,
             self.journal.entries,
             found,

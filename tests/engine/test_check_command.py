@@ -105,11 +105,11 @@ def test_all_presets_are_checked_or_said_why_not(study, tmp_path, capsys):
     assert "compl" not in text.lower() and "no approval" in text
 
 
-def test_redundancy_is_printed_where_asked_for(study, capsys):
+def test_suggestions_and_redundancy_are_printed_where_asked_for(study, capsys):
     study.write_text(STUDY + SMALL)
-    assert main(["check", str(study), "--redundancy", "0.8", "--json"]) == NOT_MET
+    assert main(["check", str(study), "--suggest", "--redundancy", "0.8", "--json"]) == NOT_MET
     found = json.loads(capsys.readouterr().out)
-    assert found["redundancy"]["height_m"] == 0.8
+    assert set(found["suggestions"]) == {"bump"} and found["redundancy"]["height_m"] == 0.8
     assert found["redundancy"]["seen_with_one_lost"] == 0.0  # the rig has one sensor
     study.write_text(STUDY.split("[[requirement]]")[0])
     assert main(["check", str(study), "--redundancy", "0.8"]) == 0

@@ -1,7 +1,8 @@
-"""Searches that keep requirements, and redundancy maps."""
+"""Searches that keep requirements, what stands against one that is not met, and redundancy maps."""
 
 import math
 import pickle
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -22,7 +23,7 @@ from pe_core.scoring.requirements import (
 )
 from pe_core.scoring.sight import BLIND_TO_M
 from pe_core.search import Goals
-from pe_core.study.requirement_search import INFEASIBLE, constraints_of, feasible_first
+from pe_core.study.requirement_search import INFEASIBLE, constraints_of, feasible_first, suggestions
 from pe_tools import advice
 from pe_tools.jobs import result_dict
 from tests.engine import shapes
@@ -76,15 +77,71 @@ def test_a_search_that_starts_with_two_requirements_broken_ends_with_none():
     assert not [w for w in outcome.warnings if w.code == "requirement"]
 
 
-def test_a_requirement_that_cannot_be_kept_is_told():
-    """A fixed LiDAR sees no patch beside a wheel."""
+def test_a_requirement_that_cannot_be_kept_is_told_with_what_stands_against_it():
+    """A fixed LiDAR sees no patch beside a wheel; a rear camera cannot look down and far up."""
     hopeless = Requirement("under", AHEAD, (BODIES["patch"],), Criterion(of=("lidar",)))
     start = study(evaluations=60)
     outcome = finished(
         pt.OptimizeJob(replace(start, requirements=(*start.requirements, hopeless)), workers=1)
     )
     told = [w.line for w in outcome.warnings if w.code == "requirement"]
-    assert any("under is not met" in line for line in told)
+    assert any("under is not met" in line and "alone" in line for line in told)
+    down = shapes.camera(40.0, (-2.53, 0.0, 1.5), (0.0, 60.0, 180.0), "rear")
+    near = Requirement("near", Zone(spots=(("rear + 0.8", 0.0),)), (BODIES["patch"],))
+    far = Requirement(
+        "far", Zone(spots=(("rear + 12", 0.0),)), (Body("lamp", (0.3, 0.3, 0.3), low=3.0),)
+    )
+    both = replace(
+        start,
+        rig=pe.Rig([start.rig["front"], down]),
+        requirements=(near, far),
+        search=replace(
+            start.search,
+            free={"front": (), "rear": ("pitch",)},
+            limits={"rear": {"pitch": (math.radians(-20.0), math.radians(80.0))}},
+        ),
+    )
+    assert [v.met for v in both.verdicts()] == [True, False]
+    (found,) = suggestions(both).values()
+    assert found.breaks == ("near",)
+
+
+def test_the_nearest_change_of_one_sensor_is_suggested():
+    """It meets the requirement, moves one sensor, and no shorter step of any variable does."""
+    start = study()
+    found = suggestions(start)
+    assert set(found) == {"behind", "left"}
+    for name, own in found.items():
+        assert own is not None and len(own.moved) == 1 and own.moved[0] in own.text
+        met = {v.name: v.met for v in start.verdicts(own.rig)}
+        assert met[name] and set(own.breaks) == {n for n in met if not met[n]} - {"behind", "left"}
+    half = [
+        pe.Pose(*((np.array([new, old]).mean(axis=0)).tolist() for new, old in pairs))
+        for pairs in (
+            ((moved.pose.position, s.pose.position), (moved.pose.rpy, s.pose.rpy))
+            for moved, s in zip(found["behind"].rig, start.rig, strict=True)
+        )
+    ]
+    assert not {v.name: v.met for v in start.verdicts(start.rig.with_poses(half))}["behind"]
+
+
+def test_a_place_elsewhere_is_suggested_where_no_change_of_one_coordinate_is_enough():
+    """The figures of the text, typed into a study, give a placement that meets it."""
+    start = study()
+    aside = replace(start.rig["rear"], pose=pe.Pose.from_degrees((-2.53, 0.0, 1.5), (0, -60, 60)))
+    turned = pe.Rig([*(s for s in start.rig if s.name != "rear"), aside])
+    search = replace(start.search, free={"rear": ("pitch", "yaw")}, limits={})
+    turned = replace(start, rig=turned, search=search)
+    found = suggestions(turned)["behind"]
+    assert found is not None and found.moved == ("rear",)
+    old, new = aside.pose.rotation_deg, found.rig["rear"].pose.rotation_deg
+    assert abs(old[1] - new[1]) > 1.0 and abs(old[2] - new[2]) > 1.0
+    figures = re.match(r"rear at \((.*)\) m, roll (.*), pitch (.*), yaw ([-\d.]*)", found.text)
+    place = [float(v) for v in figures[1].split(", ")]
+    pose = pe.Pose.from_degrees(place, [float(v) for v in figures.groups()[1:]])
+    assert pose == found.rig["rear"].pose
+    typed = turned.rig.with_poses([pose if s.name == "rear" else s.pose for s in turned.rig])
+    assert {v.name: v.met for v in turned.verdicts(typed)}["behind"]
 
 
 def test_shortfalls_are_zero_exactly_where_a_verdict_says_met():

@@ -7,7 +7,7 @@ each of 64 million voxels. Traffic density is the number of objects of a class i
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -131,7 +131,7 @@ class ClassDensity:
 class Prior(ShortRepr):
     """A prior: the name of a model, its classes or boxes, the focus, and the traffic density.
 
-    Use `road`, `highway`, `uniform`, `from_boxes` or `from_grid`. With other
+    Use `road`, `highway`, `uniform`, `from_boxes`, `from_grid` or `from_function`. With other
     classes: ``Prior("road", classes=(...))``. `density` is the number of objects of a class in the
     paper's space at once, by the name of the class: a mapping, or pairs.
     """
@@ -218,6 +218,36 @@ class Prior(ShortRepr):
         """
         return cls(FROM_GRID, (), tuple(focus), grid=Grid(weights, space))  # type: ignore[arg-type]
 
+    @classmethod
+    def from_function(
+        cls, weight: Callable[..., ArrayLike], space: PerceptionSpace, focus: Sequence[Focus] = ()
+    ) -> Prior:
+        """Weights by a function of the voxels' centres: ``from_grid`` of what it returns.
+
+        Parameters
+        ----------
+        weight : callable
+            Takes x (nx, 1, 1), y (1, ny, 1) and z (1, 1, nz) [m], ground frame, and returns weights
+            that broadcast with them. Without z in it, weights are the same at all heights.
+        space : PerceptionSpace
+        focus : sequence of Focus
+
+        Raises
+        ------
+        InputError
+            When what is returned does not broadcast to the space; else as of `from_grid`.
+        """
+        x, y, z = (space.centers(axis) for axis in range(3))
+        values = np.asarray(weight(x[:, None, None], y[:, None], z))
+        by_height = values.ndim == 3 and values.shape[2] > 1
+        shape = space.shape if by_height or values.ndim == 1 else (*space.shape[:2], 1)
+        try:
+            weights = np.broadcast_to(values, shape)
+        except ValueError:
+            found = f"shape {values.shape}"
+            raise InputError("prior", "weights", f"shape {space.shape}", found) from None
+        return cls.from_grid(weights if shape[2] > 1 else weights[:, :, 0], space, focus)
+
     @property
     def class_names(self) -> tuple[str, ...]:
         """Names of the classes; ``("any",)`` for a prior that has none."""
@@ -244,13 +274,13 @@ class Prior(ShortRepr):
         return {name: count * shares.get(name, 1.0) for name, count in counts.items()}
 
     def focus_at(self, name: str, x: Floats, y: Floats) -> Floats:
-        """Return w(s, c) of a class at positions (...,) [m]: the product of the factors there."""
-        weights = np.ones(x.shape)
+        """Return w(s, c) of a class at positions (N,) [m]: the product of the factors there."""
+        weights = np.ones(len(x))
         for focus in self.focus:
             if focus.classes is None or name in focus.classes:
                 inside = (x > focus.x[0]) & (x < focus.x[1])
                 inside &= (y > focus.y[0]) & (y < focus.y[1])
-                with np.errstate(over="ignore"):  # `densities` raises for infinite weights
+                with np.errstate(over="ignore"):
                     weights[inside] *= focus.factor
         return weights
 
@@ -298,5 +328,12 @@ class Prior(ShortRepr):
 
     def _weights(self, name: str, space: PerceptionSpace) -> Floats:
         """w(s, c) over the ground (nx, ny)."""
-        x, y = np.meshgrid(space.centers(0), space.centers(1), indexing="ij")
-        return self.focus_at(name, x, y)
+        weights = np.ones(space.shape[:2])
+        x, y = space.centers(0), space.centers(1)
+        for focus in self.focus:
+            if focus.classes is None or name in focus.classes:
+                rows = (x > focus.x[0]) & (x < focus.x[1])
+                columns = (y > focus.y[0]) & (y < focus.y[1])
+                with np.errstate(over="ignore"):  # `densities` raises for infinite weights
+                    weights[np.ix_(rows, columns)] *= focus.factor
+        return weights

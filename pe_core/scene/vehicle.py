@@ -126,6 +126,38 @@ class Vehicle(Tabular):
             for name, count in zip(self.part_names, counts, strict=True)
         ]
 
+    @classmethod
+    def from_trimesh(cls, mesh: Any, **options: Any) -> Vehicle:
+        """Return the vehicle of a mesh of the library trimesh, or of a scene, a part a mesh.
+
+        Parameters
+        ----------
+        mesh : trimesh.Trimesh or trimesh.Scene
+            In the ground frame [m]: x forward, z up; ``mesh.apply_transform`` turns others. What
+            has no triangles is left out.
+        **options
+            `glass`, `clearance` and `covers`, as of the class.
+
+        Raises
+        ------
+        InputError
+            When it is no mesh, or has no triangles; else as of the class.
+        """
+        found = {"vehicle": (mesh, np.eye(4))}
+        if hasattr(mesh, "graph"):
+            nodes = {name: mesh.graph[name] for name in mesh.graph.nodes_geometry}
+            found = {name: (mesh.geometry[of], at) for name, (at, of) in nodes.items()}
+        parts = {
+            name: own.copy().apply_transform(at).triangles
+            for name, (own, at) in found.items()
+            if len(getattr(own, "triangles", ()))
+        }
+        if not parts:
+            expected = "a trimesh.Trimesh or trimesh.Scene with triangles"
+            raise InputError("vehicle", "mesh", expected, type(mesh).__name__)
+        numbers = np.repeat(np.arange(len(parts)), [len(t) for t in parts.values()])
+        return cls(np.concatenate(list(parts.values())), numbers, tuple(parts), **options)
+
     @cached_property
     def bounds(self) -> tuple[Floats, Floats]:
         """Lowest and highest corner, each (3,) [m]."""

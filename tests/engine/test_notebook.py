@@ -6,6 +6,7 @@ from dataclasses import is_dataclass
 
 import numpy as np
 import pytest
+import trimesh
 
 import pe_core as pe
 import pe_tools as pt
@@ -31,22 +32,25 @@ def voxels(prior, space=SPACE):
     return sum(each.ground[:, :, None] * each.profile for each in prior.densities(space))
 
 
-def bump():
-    x, y, z = np.meshgrid(*(SPACE.centers(axis) for axis in range(3)), indexing="ij")
+def bump(x, y, z):
     return np.exp(-(x**2 + 2.0 * y**2) / 30.0) / (1.0 + z)
 
 
-def test_a_grid_gives_the_share_of_each_voxel():
-    weights = bump()
-    prior = pe.Prior.from_grid(weights, SPACE)
-    assert np.allclose(voxels(prior), weights / weights.sum(), rtol=0, atol=1e-15)
-    assert len(prior.class_names) == SPACE.shape[2]
-    flat = pe.Prior.from_grid(np.ones(SPACE.shape[:2]), SPACE)
+def test_a_grid_and_a_function_give_the_share_of_each_voxel():
+    centers = [SPACE.centers(axis) for axis in range(3)]
+    weights = bump(*np.meshgrid(*centers, indexing="ij"))
+    expected = weights / weights.sum()
+    for prior in (pe.Prior.from_grid(weights, SPACE), pe.Prior.from_function(bump, SPACE)):
+        assert np.allclose(voxels(prior), expected, rtol=0, atol=1e-15)
+        assert len(prior.class_names) == SPACE.shape[2]
+    flat = pe.Prior.from_function(lambda x, y, z: 1.0 + 0.0 * x, SPACE)
     assert flat.class_names == ("any",) and np.allclose(voxels(flat), voxels(pe.Prior.uniform()))
+    along = pe.Prior.from_function(lambda x, y, z: 3.0 - z, SPACE)  # of z alone
+    assert np.allclose(voxels(along)[0, 0], voxels(along)[3, 5]) and len(along.class_names) == 4
 
 
 def test_a_grid_is_read_at_the_centres_of_another_space_and_takes_focus_weights():
-    prior = pe.Prior.from_grid(bump(), SPACE)
+    prior = pe.Prior.from_function(bump, SPACE)
     finer = pe.PerceptionSpace((-4, 30), (-3, 3), (0, 3), 0.25)
     found, own = voxels(prior, finer), voxels(prior)
     inside = found[:56, :, :8].reshape(28, 2, 12, 2, 4, 2)
@@ -70,12 +74,14 @@ def test_wrong_weights_are_told(weights):
 
 def test_other_wrong_priors_are_told():
     with pytest.raises(pe.InputError):
+        pe.Prior.from_function(lambda x, y, z: np.ones(7), SPACE)
+    with pytest.raises(pe.InputError):
         pe.Prior("grid")
     with pytest.raises(pe.InputError):
         pe.Prior.from_grid(np.ones((40, 24)), SPACE).objects_at_once(SPACE)
     tall = pe.PerceptionSpace((0, 2), (0, 2), (0, 50), 0.5)
     with pytest.raises(pe.InputError):
-        pe.Prior.from_grid(np.ones(tall.shape) + np.arange(100.0), tall)
+        pe.Prior.from_function(lambda x, y, z: 1.0 + z + 0.0 * x, tall)
 
 
 @pytest.mark.parametrize("by_height", [False, True])
@@ -121,6 +127,23 @@ def done(job):
     for _ in job:
         pass
     return job.outcome
+
+
+def test_a_scene_of_trimesh_is_a_vehicle_with_its_parts_in_place():
+    low = trimesh.creation.box((4, 2, 1))
+    scene = trimesh.Scene({"body": low, "path": trimesh.load_path(np.zeros((2, 2)))})
+    turned = trimesh.transformations.rotation_matrix(np.pi / 2, (0, 0, 1))
+    turned[2, 3] = 1.0
+    scene.add_geometry(trimesh.creation.box((2, 1, 1)), node_name="cabin", transform=turned)
+    found = pe.Vehicle.from_trimesh(scene, glass=["cabin"], clearance=0.05)
+    assert found.part_names == ("body", "cabin") and found.clearance == 0.05
+    cabin = found.triangles[np.asarray(found.parts) == 1].reshape(-1, 3)
+    assert np.allclose([cabin.min(axis=0), cabin.max(axis=0)], [[-0.5, -1, 0.5], [0.5, 1, 1.5]])
+    one = pe.Vehicle.from_trimesh(low)
+    assert np.array_equal(one.triangles, low.triangles) and one.part_names == ("vehicle",)
+    for wrong in (3, trimesh.Scene(), trimesh.PointCloud(np.zeros((2, 3)))):
+        with pytest.raises(pe.InputError):
+            pe.Vehicle.from_trimesh(wrong)
 
 
 def height(rig):

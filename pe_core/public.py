@@ -5,6 +5,7 @@ from .base.errors import InputError
 from .metric import ApCurve
 from .prior import Boxes, BoxReport, Focus, ObjectClass, Prior
 from .scene import (
+    DataSheet,
     Housing,
     Motion,
     Objects,
@@ -71,8 +72,8 @@ from .study import Conditions, Search, Study, load_study, save_study, study_from
 from .version import __version__
 
 __all__ = ["METHODS", "ApCurve", "BeamField", "BlindGround", "BoxReport", "Boxes"]
-__all__ += ["BrownConrady", "Camera", "Choice", "Conditions", "Constraints", "Evaluator"]
-__all__ += ["FTheta", "Focus", "GroundMap", "GroundSight", "Housing", "InputError"]
+__all__ += ["BrownConrady", "Camera", "Choice", "Conditions", "Constraints", "DataSheet"]
+__all__ += ["Evaluator", "FTheta", "Focus", "GroundMap", "GroundSight", "Housing", "InputError"]
 __all__ += ["KannalaBrandt", "Lidar", "Mesh", "MeshAxes", "Method", "Motion", "MountArea"]
 __all__ += ["Mounting", "NoGo", "ObjectClass", "ObjectEvaluator", "ObjectScore", "Objective"]
 __all__ += ["Objects", "Option", "PartScore", "PerceptionModel", "PerceptionSpace", "Pinhole"]

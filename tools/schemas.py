@@ -160,6 +160,7 @@ def study_schema() -> dict[str, Any]:
         **{"name": TEXT, "model": model, **pose, "fusion": TEXT, "ap": curve, "free": FREE},
         **{"bounds": bounds, "mount": TEXT},
         "color": {"type": "string", "pattern": "^#[0-9a-f]{6}$"},
+        **declared["sensor"],
     }
     mount = {"name": TEXT, "parts": TEXTS, "area": TEXT, **declared["optimize.mount"]}
     mount["slot"] = tables({"name": TEXT, **pose}, "name", "position")

@@ -15,6 +15,7 @@ from bpy.types import Collection, Object, Scene, ViewLayer
 from ..engine import graphics
 from .mirroring import SENSORS
 from .rig import color_of, place_poses, put_curve, sensor_objects, view_layer_of
+from .scene_settings import write_values
 from .sensor_records import SensorRecord
 
 PARKED = "Sensors of Other Variants"
@@ -95,6 +96,7 @@ def _write_settings(obj: Object, record: SensorRecord) -> None:
     settings.bounds_low, settings.bounds_high = record.low, record.high
     settings.rack = record.rack
     settings.stays = record.stays
+    write_values(settings, record.sheet)
     if record.color is not None and record.color != color_of(obj):
         settings.color = graphics.rgb_of(record.color)
     if settings.mount != record.mount:

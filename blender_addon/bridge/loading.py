@@ -166,6 +166,7 @@ def _sensor_records(study: pe.Study) -> tuple[SensorRecord, ...]:
                 curve=sensor.curve,
                 stays=name in study.search.goals.fixed,
                 color=sensor.color,
+                sheet=sensor.sheet,
                 **_options(study.selection, name, mount),
             )
         )
@@ -175,7 +176,7 @@ def _sensor_records(study: pe.Study) -> tuple[SensorRecord, ...]:
 def _options(selection: pe.Selection, name: str, mount: str) -> dict[str, Any]:
     """Return the models that a sensor is offered, and whether it may be left out."""
     choices = [c for c in selection.choices if name in c.sensors or c.mount == mount]
-    options = tuple(ModelOption(o.model.name, o.price) for c in choices for o in c.options)
+    options = tuple(ModelOption(o.model.name, o.sheet) for c in choices for o in c.options)
     return {"options": options, "may_be_left_out": bool(choices) and choices[-1].optional}
 
 

@@ -56,9 +56,15 @@ def sensor_from_object(obj: Object, depsgraph: Depsgraph) -> pe.Sensor:
         model = kinds.returning(catalog.load(settings.model), returns)
         pose = pose_of(obj, depsgraph)
         fusion, color = settings.fusion or None, color_of(obj)
-        return pe.Sensor(obj.name, model, pose, fusion, curve_of(settings), color)
+        own = curve_of(settings), color, sheet_of(settings)
+        return pe.Sensor(obj.name, model, pose, fusion, *own)
     except pe.InputError as error:
         raise error.within("scene", f"sensor {obj.name!r}") from None
+
+
+def sheet_of(settings: PropertyGroup) -> pe.DataSheet:
+    """Return what is known of a sensor or a model to choose, besides what the catalogue has."""
+    return pe.DataSheet(**values_of(settings, pe.DataSheet))
 
 
 def color_of(obj: Object) -> str | None:

@@ -27,6 +27,7 @@ from .scene_settings import (
     space_of,
     targets_of,
     values_of,
+    write_values,
 )
 from .search_goals import goals_of_sensors, with_starts
 from .sensor_records import (
@@ -248,18 +249,22 @@ def write_options(settings: PropertyGroup, record: SensorRecord) -> None:
     settings.may_be_left_out = record.may_be_left_out
     for option in record.options:
         row = settings.options.add()
-        row.model, row.price = option.model, option.price
+        row.model = option.model
+        write_values(row, option.sheet)
 
 
 def _choice(record: SensorRecord) -> pe.Choice:
     try:
-        options = [pe.Option(catalog.load(o.model), _price(o)) for o in record.options]
+        options = [_option(option) for option in record.options]
         return pe.Choice(options, [record.name], None, record.may_be_left_out)
     except pe.InputError as error:
         raise error.within("scene", f"sensor {record.name!r}") from None
 
 
-def _price(option: ModelOption) -> float:
-    if option.price <= 0.0:
-        raise pe.InputError("choice", f"price of {option.model}", "a price above 0", option.price)
-    return option.price
+def _option(option: ModelOption) -> pe.Option:
+    sheet = option.sheet
+    if not sheet.price:
+        raise pe.InputError("choice", f"price of {option.model}", "a price above 0", 0.0)
+    return pe.Option(
+        catalog.load(option.model), sheet.price, sheet.mass, sheet.power, sheet.data_rate
+    )

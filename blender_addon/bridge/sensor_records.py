@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import asdict, astuple, dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,9 +24,10 @@ from .rig import (
     pose_of,
     pose_of_matrix,
     sensor_objects,
+    sheet_of,
     view_layer_of,
 )
-from .scene_settings import as_typed, pair_as_typed
+from .scene_settings import pair_as_typed
 from .transform_constraints import locked_axes
 
 NO_BOUNDS, ZEROS = (False,) * len(search.AXES), (0.0,) * len(search.AXES)
@@ -34,10 +35,10 @@ PAPER_FREE = tuple(axis in search.PAPER_FREE for axis in search.AXES)
 
 
 class ModelOption(NamedTuple):
-    """A model that may replace a sensor's model, and its price; 0: no price was given."""
+    """A model that may replace a sensor's model; its price, and what else is known of it."""
 
     model: str
-    price: float
+    sheet: pe.DataSheet
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,7 +47,8 @@ class SensorRecord:
 
     `bounded` marks the axes with own bounds, `low` and `high` are these bounds [m or deg].
     `mirror_of` is the linked mirror image, `mount` the sensor's mount, `rack` the group that moves
-    as one. `curve` is an own AP curve; `intrinsics` is the model if the catalogue does not have it.
+    as one. `curve` is an own AP curve; `sheet` are figures of its
+    own, `intrinsics` is the model if the catalogue does not have it.
 
     The last fields belong to the sensor's object and are not stored with a variant: a variant's
     record takes them from the object that the variant would use if it were applied. `locked` axes
@@ -69,6 +71,7 @@ class SensorRecord:
     mount: str = ""
     rack: str = ""
     curve: pe.ApCurve | None = None
+    sheet: pe.DataSheet = field(default_factory=pe.DataSheet)
     intrinsics: Any = None  # the engine's model, where the catalogue may not have it
 
     locked: tuple[str, ...] = ()
@@ -142,6 +145,7 @@ def record_of_object(obj: Object, depsgraph: Depsgraph, layer: ViewLayer) -> Sen
         mount=settings.mount,
         rack=settings.rack,
         curve=curve,
+        sheet=sheet_of(settings),
         **_object_fields(obj),
     )
 
@@ -153,7 +157,7 @@ def _object_fields(obj: Object | None) -> dict[str, Any]:
     settings = obj.perception_entropy
     return {
         "locked": locked_axes(obj),
-        "options": tuple(ModelOption(o.model, as_typed(o.price)) for o in settings.options),
+        "options": tuple(ModelOption(o.model, sheet_of(o)) for o in settings.options),
         "may_be_left_out": settings.may_be_left_out,
         "stays": settings.stays,
         "color": color_of(obj),
@@ -183,7 +187,7 @@ STORED = (
     *("name", "model", "fusion", "free", "visible", "display", "size_m"),
     *("bounded", "low", "high", "mirror_of", "mount", "rack"),
 )
-"""Fields that a variant stores as they are; pose and AP curve are stored as numbers."""
+"""Fields that a variant stores as they are; pose, AP curve and sheet are stored as numbers."""
 
 
 def records_of(variant: PropertyGroup) -> tuple[SensorRecord, ...]:
@@ -199,7 +203,8 @@ def _record_of_table(scene: Scene, table: dict[str, Any]) -> SensorRecord:
     pose, curve = pose_from_numbers(values.pop("pose")), values.pop("curve")
     own = None if curve is None else pe.ApCurve(*curve)
     obj = _object_named(scene, table["name"])
-    return SensorRecord(**values, pose=pose, curve=own, **_object_fields(obj))
+    sheet = pe.DataSheet(**values.pop("sheet"))
+    return SensorRecord(**values, pose=pose, curve=own, sheet=sheet, **_object_fields(obj))
 
 
 def _object_named(scene: Scene, name: str) -> Object | None:
@@ -217,7 +222,7 @@ def write_records(variant: PropertyGroup, records: Sequence[SensorRecord]) -> No
     for record in records:
         curve = None if record.curve is None else astuple(record.curve)
         own = {key: getattr(record, key) for key in STORED}
-        rows.append(own | {"pose": record.numbers, "curve": curve})
+        rows.append(own | {"pose": record.numbers, "curve": curve, "sheet": asdict(record.sheet)})
     variant.sensors = json.dumps(rows)
 
 
@@ -234,6 +239,7 @@ def record_of_sensor(sensor: pe.Sensor) -> SensorRecord:
         curve=sensor.curve,
         intrinsics=sensor.model,
         color=sensor.color,
+        sheet=sensor.sheet,
     )
 
 
@@ -266,7 +272,7 @@ def sensor_of(record: SensorRecord, source: str = "variant") -> pe.Sensor:
     try:
         model = record.intrinsics or catalog.load(record.model)
         fusion, color = record.fusion or None, record.color
-        return pe.Sensor(record.name, model, record.pose, fusion, record.curve, color)
+        return pe.Sensor(record.name, model, record.pose, fusion, record.curve, color, record.sheet)
     except pe.InputError as error:
         raise error.within(source, f"sensor {record.name!r}") from None
 

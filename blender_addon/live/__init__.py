@@ -14,8 +14,16 @@ from . import readout, session
 from .readout_text import BETTER, SAME, SENSE_ICONS, WORSE, FigureRow, nats_text, rows_of_figures
 from .state import FinishedScore, ShownScore, live_state, shown_figures, shown_score
 
-__all__ = ["BETTER", "SAME", "SENSE_ICONS", "WORSE", "FinishedScore", "ShownScore", "figure_rows"]
-__all__ += ["live_state", "nats_text", "register", "shown_score", "unregister"]
+__all__ = ["BETTER", "SAME", "SENSE_ICONS", "WORSE", "FinishedScore", "ShownScore", "built_lines"]
+__all__ += ["figure_rows", "live_state", "nats_text", "register", "shown_score", "unregister"]
+
+
+def built_lines(scene: bpy.types.Scene) -> list[str]:
+    """Return what can be built, of the live score, or of the stored result."""
+    if (now := shown_figures(scene)) is not None:
+        return advice.built_lines([now])
+    told = scene.perception_entropy.result.figures
+    return advice.built_lines([advice.KeyFigures.from_dict(told["after"])]) if told else []
 
 
 def figure_rows(scene: bpy.types.Scene, *, live: bool) -> list[FigureRow]:

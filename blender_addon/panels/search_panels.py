@@ -7,7 +7,8 @@ from typing import Any
 from bpy.types import Context, PropertyGroup, UILayout
 
 from ..choices import BY_GROUP, BY_PARTS, EXPECTED_AP, OBJECTS, ON_SLOTS, RANDOM
-from .layout import draw_declared, draw_list, draw_properties, panel, row_list
+from ..live import built_lines
+from .layout import draw_declared, draw_list, draw_properties, draw_sentence, panel, row_list
 from .variant_panels import draw_front
 
 ICONS = {BY_PARTS: "OBJECT_DATA", BY_GROUP: "WPAINT_HLT"}
@@ -72,6 +73,8 @@ def draw_mount(layout: UILayout, mount: PropertyGroup) -> None:
 def constraints(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
     """Constraints of every placement of a search"""
     draw_declared(layout, context.scene.perception_entropy, "constraints")
+    for line in built_lines(context.scene):
+        draw_sentence(layout, context, line)
     layout.operator("pe.add_no_go", icon="CUBE")
     obj = context.active_object
     if obj is not None and not obj.perception_entropy.is_sensor:

@@ -7,7 +7,7 @@ from bpy.types import Context, Object, PropertyGroup, UILayout
 from ..bridge import holder_of
 from ..language import draw_label, shown
 from ..properties import AXIS_LABELS
-from .layout import draw_sentence, panel
+from .layout import draw_declared, draw_sentence, panel
 
 POSITION_LABELS = ("X", "Y", "Height")
 """Height is z of the optical centre over the ground."""
@@ -117,6 +117,12 @@ def own_curve(layout: UILayout, _settings: PropertyGroup, context: Context) -> N
         row.prop(settings, f"curve_{name}")
 
 
+@panel("Data Sheet", parent="PE_PT_sensor")
+def data_sheet(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
+    """What this sensor weighs, takes, sends and costs, where the catalogue does not say"""
+    draw_declared(layout, context.active_object.perception_entropy, "sensor")
+
+
 def _part_is_shown(context: Context) -> bool:
     obj = context.active_object
     return obj is not None and obj.type != "EMPTY" and not obj.perception_entropy.is_sensor
@@ -131,4 +137,4 @@ def part(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
     layout.prop(obj.perception_entropy, "cover_loss_db", text="Radar Cover [dB]")
 
 
-CLASSES = (sensor, own_curve, bounds, part)
+CLASSES = (sensor, own_curve, data_sheet, bounds, part)

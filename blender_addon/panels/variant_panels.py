@@ -116,6 +116,9 @@ def draw_options(layout: UILayout, obj: Object) -> None:
         model.prop(option, "model", text="")
         price.prop(option, "price", text="")
         price.operator("pe.remove_option", text="", icon="REMOVE", emboss=False).index = number
+        row = column.row(align=True)
+        for name in ("mass", "power", "data_rate"):
+            row.prop(option, name)
     column.operator("pe.add_option", icon="ADD")
     if settings.options:
         layout.prop(settings, "may_be_left_out")

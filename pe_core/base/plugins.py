@@ -20,6 +20,8 @@ GROUP = "perception_entropy.plugins"
 HOME = __name__.partition("pe_core.")[0]
 """The package around `pe_core` and `pe_tools`: empty but in Blender's extension."""
 SHIPPED = {
+    "catalog.housing": "pe_core.catalog:housing",
+    "catalog.data_sheet": "pe_core.catalog:data_sheet",
     "reader.angles": "pe_tools.formats.angles:read_angles",
     "reader.mesh": "pe_tools.formats:read_mesh",
     "reader.boxes": "pe_tools.formats:read_boxes",
@@ -48,7 +50,8 @@ EXTRAS = {
 def shipped(name: str) -> Any:
     """Return what a name of `SHIPPED` leads to.
 
-    The engine asks here for readers of files, which it does not import.
+    The engine asks here for readers of files, which it does not import, and searches for what the
+    catalogue knows of a model.
     """
     return _shipped_point(name).load()
 

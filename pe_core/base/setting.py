@@ -210,6 +210,12 @@ def required_setting(
     return field(metadata={_KEY: (rule, text, panel, scored)})
 
 
+def same_setting(cls: Any, name: str) -> Any:
+    """Return a field that is the setting of another dataclass."""
+    each = next(each for each in fields(cls) if each.name == name)
+    return field(default=each.default, metadata=each.metadata)
+
+
 def settings_of(cls: Any) -> dict[str, Setting]:
     """Return the settings that a dataclass declares, by name, in their order."""
     return _declared(cls)

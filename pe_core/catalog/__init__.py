@@ -20,18 +20,19 @@ from ..base.errors import InputError, require_keys, require_name, shown
 from ..base.files import decode_text, read_bytes
 from ..base.table_reader import load_toml
 from ..base.values import A_NAME, A_TEXT
+from ..scene.data_sheet import DataSheet
 from ..scene.rig import Housing, Rig, Sensor, SensorModel
 from ..scene.vehicle import Vehicle
 from ..sensors import kind_named, kind_of
-from .housings import read_housing, scan_above_base
+from .housings import read_data_sheet, read_housing, scan_above_base
 from .rigs import KnownRig as KnownRig
 from .rigs import KnownSensor as KnownSensor
 from .rigs import known_rig as known_rig
 from .rigs import known_rigs as known_rigs
 
 __all__ = ["OTHER_LABELS", "OWN", "Entry", "KnownRig", "KnownSensor", "add", "add_file", "added"]
-__all__ += ["entries", "from_table", "housing", "known_rig", "known_rigs", "load", "matching"]
-__all__ += ["names", "remove", "replace_added", "rig_on", "scan_above_base", "to_table"]
+__all__ += ["data_sheet", "entries", "from_table", "housing", "known_rig", "known_rigs", "load"]
+__all__ += ["matching", "names", "remove", "replace_added", "rig_on", "scan_above_base", "to_table"]
 
 PAPER_FILE = "paper.toml"
 """File with the paper's sensors, which come first in lists."""
@@ -44,7 +45,7 @@ OTHER_LABELS = {
     OWN: "Own",
 }
 """Labels of the files that do not belong to a maker."""
-COMMON_KEYS = frozenset({"kind", "source", "note", "housing"})
+COMMON_KEYS = frozenset({"kind", "source", "note", "housing", "data_sheet"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,6 +198,15 @@ def housing(name: str) -> Housing | None:
     return None if table is None else read_housing(name, table)
 
 
+def data_sheet(name: str) -> DataSheet:
+    """Return the figures of the sensor of that name, None where no data sheet has them.
+
+    `InputError` when its table in the catalogue is not valid.
+    """
+    table = entries()[name].table.get("data_sheet") if name in entries() else None
+    return DataSheet() if table is None else read_data_sheet(name, table)
+
+
 def from_table(name: str, table: Mapping[str, Any], folder: Path | None = None) -> SensorModel:
     """Build a sensor from a table of the catalogue, or from a user's table of the same form.
 
@@ -206,7 +216,8 @@ def from_table(name: str, table: Mapping[str, Any], folder: Path | None = None) 
     `read_angles` reads, relative to `folder`. Camera: ``kind = "camera"``, ``width``,
     ``height``, ``hfov_deg``, or a lens: ``fx``, ``fy``, ``cx``, ``cy``, ``distortion``,
     ``fov_deg``; optional ``min_range_m``, ``max_range_m``. Other kinds: their own keys.
-    All kinds: ``source``, ``note``, and ``housing`` (see `read_housing`), which is not used here.
+    All kinds: ``source``, ``note``, and ``housing`` and ``data_sheet`` (see `read_housing` and
+    `read_data_sheet`), which are not used here.
 
     Raises
     ------
@@ -220,6 +231,8 @@ def from_table(name: str, table: Mapping[str, Any], folder: Path | None = None) 
     require_keys(name, "", table, kind.keys | COMMON_KEYS)
     if "housing" in table:
         read_housing(name, table["housing"])
+    if "data_sheet" in table:
+        read_data_sheet(name, table["data_sheet"])
     try:
         return kind.read(name, table, folder or Path())
     except InputError as error:

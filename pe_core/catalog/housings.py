@@ -1,4 +1,4 @@
-"""Tables of a sensor's housing in the catalogue, and the heights of scan centres above bases."""
+"""Tables of a sensor's housing and data sheet in the catalogue; scan centres above bases."""
 
 from __future__ import annotations
 
@@ -8,12 +8,14 @@ from typing import Any
 
 from ..base.errors import InputError, require_keys, shown
 from ..base.values import A_TEXT, LENGTH, choice, vector
+from ..scene.data_sheet import DataSheet
 from ..scene.rig import NEAR, SHAPES, Housing
 
 KEYS = {
     "cylinder": frozenset({"shape", "diameter", "height", "optical_height", "source"}),
     "box": frozenset({"shape", "size", "optical_center", "source"}),
 }
+SHEET_KEYS = frozenset({"mass", "power", "data_rate", "source"})
 
 
 def read_housing(name: str, table: Any) -> Housing:
@@ -36,6 +38,21 @@ def read_housing(name: str, table: Any) -> Housing:
     source = A_TEXT.checked(name, "housing.source", table.get("source"))
     size, center = (_box if shape == "box" else _cylinder)(name, table)
     return Housing(shape, size, center, source)
+
+
+def read_data_sheet(name: str, table: Any) -> DataSheet:
+    """Build figures from a table: ``mass`` [kg], ``power`` [W], ``data_rate`` [Mbit/s], ``source``.
+
+    `InputError` when `table` is not a table, a key is unknown, or a value is not valid.
+    """
+    if not isinstance(table, Mapping):
+        raise InputError(name, "data_sheet", "a table", shown(table))
+    require_keys(name, "data_sheet.", table, SHEET_KEYS)
+    A_TEXT.checked(name, "data_sheet.source", table.get("source"))
+    try:
+        return DataSheet(**{key: value for key, value in table.items() if key != "source"})
+    except InputError as error:
+        raise InputError(name, f"data_sheet.{error.field}", error.expected, error.found) from None
 
 
 def _cylinder(name: str, table: Mapping[str, Any]) -> tuple[Any, Any]:

@@ -2,6 +2,7 @@
 
 from ..geometry.grids import PerceptionSpace
 from ..geometry.poses import Pose, rotate, rotation_matrix, rpy_from_matrix
+from .data_sheet import DataSheet
 from .mesh import BodyShape
 from .objects import Objects
 from .rig import Housing, Rig, Sensor, cuts_body
@@ -9,6 +10,6 @@ from .vehicle import Vehicle
 from .vehicle_description import Reference, guessed_reference, vehicle_line
 from .vehicle_state import Motion, State
 
-__all__ = ["BodyShape", "Housing", "Motion", "Objects", "PerceptionSpace", "Pose", "Reference"]
-__all__ += ["Rig", "Sensor", "State", "Vehicle", "cuts_body", "guessed_reference", "rotate"]
-__all__ += ["rotation_matrix", "rpy_from_matrix", "vehicle_line"]
+__all__ = ["BodyShape", "DataSheet", "Housing", "Motion", "Objects", "PerceptionSpace", "Pose"]
+__all__ += ["Reference", "Rig", "Sensor", "State", "Vehicle", "cuts_body", "guessed_reference"]
+__all__ += ["rotate", "rotation_matrix", "rpy_from_matrix", "vehicle_line"]

@@ -21,6 +21,7 @@ from ..base.values import A_NAME, A_TEXT, LENGTH, Number, choice, vector
 from ..geometry.overlap import Hull, meets_box, meets_cylinder, upright_hull
 from ..geometry.poses import Pose, dot, rotate
 from ..metric.entropy import ApCurve
+from .data_sheet import DataSheet
 from .vehicle import Vehicle
 
 COLOR = re.compile("#[0-9a-f]{6}")
@@ -63,6 +64,8 @@ class Sensor(ShortRepr):
         Eq. 4 of this sensor's detector, in place of its kind's; the same in a fusion group.
     color : str, optional
         Its colour in pictures, such as "#5fb8f7" (sRGB). It changes no score.
+    sheet : DataSheet
+        Figures of its own, in place of the catalogue's.
 
     Raises
     ------
@@ -77,6 +80,7 @@ class Sensor(ShortRepr):
     fusion: str | None = None
     curve: ApCurve | None = None
     color: str | None = None
+    sheet: DataSheet = field(default_factory=DataSheet)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", A_NAME.checked("sensor", "name", self.name))

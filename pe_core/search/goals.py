@@ -17,25 +17,35 @@ from ..base.setting import NAMES, OneOf, Panel, Several, check_settings, setting
 from ..base.values import A_NAME, Number, Whole, listed
 from ..geometry.poses import Pose
 from ..scene.rig import Rig
+from .build_figures import BUILD_FIGURES
 from .mounts import Mounting
 
 FULL, OFF = "full", "off"
 """Values of `Goals.sensitivity`."""
-ENTROPY, AP, BLIND_GROUND, HEIGHT = "entropy", "ap", "blind_ground", "height"
-PRICE, WORST_LOSS, MARGIN, BLIND_ZONES = "price", "worst_loss", "margin", "blind_zones"
+ENTROPY, AP, BLIND_GROUND, PRICE = "entropy", "ap", "blind_ground", "price"
+WORST_LOSS, MARGIN, BLIND_ZONES = "worst_loss", "margin", "blind_zones"
+FIRST = ("height", PRICE)
+"""What can be built that comes first: .blend files store numbers."""
 OBJECTIVES = {
     ENTROPY: ("entropy", "nats"),
     AP: ("expected AP", ""),
     BLIND_GROUND: ("blind ground", "m2"),
-    HEIGHT: ("height", "m"),
-    PRICE: ("price", ""),
+    **{key: (row.label, row.unit) for key, row in BUILD_FIGURES.items() if key in FIRST},
     WORST_LOSS: ("worst loss", "nats"),
     MARGIN: ("worst margin", "m"),
     BLIND_ZONES: ("blind in zones", "m2"),
+    **{key: (row.label, row.unit) for key, row in BUILD_FIGURES.items() if key not in FIRST},
 }
 """What may be on a Pareto front: label and unit by name."""
-HIGHER_IS_BETTER = (AP, MARGIN)
+HIGHER_IS_BETTER = (AP, MARGIN, *(key for key, row in BUILD_FIGURES.items() if row.is_least))
 """Objectives that are maximised; all others are minimised."""
+
+
+def label_of(objective: str) -> tuple[str, str]:
+    """Return the label and the unit of an objective; of a function from Python, its name."""
+    return OBJECTIVES.get(objective, (objective.replace("_", " "), ""))
+
+
 OVER = 200
 """Placements over which the gain of a search is taken by default."""
 

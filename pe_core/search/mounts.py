@@ -176,6 +176,14 @@ class NoGo:
             raise InputError(f"no_go {self.name!r}", "x, y, z", "at least one of them", "none")
 
 
+def _limit(name: str, unit: str, usual: float, precision: int, text: str) -> Any:
+    """Return the field of an optional limit, whose usual values are up to `usual`."""
+    label = name.replace("_", " ").title() + ("" if unit in ("m", "m2") else f" ({unit})")
+    shown: dict[str, Any] = {"soft_max": usual, "zero": "no limit", "precision": precision}
+    rule = Number(0.0, cap=1e6, unit=unit)
+    return setting(None, rule, text, Panel(name, label, beside="Any", **shown))
+
+
 @dataclass(frozen=True, slots=True)
 class Constraints:
     """The constraints on every placement of a search, as its fields say; lengths are in metres."""
@@ -206,6 +214,28 @@ class Constraints:
         Panel("clear_housings", "Clear Housings"),
     )
     no_go: Sequence[NoGo] = ()
+    max_protrusion: float | None = _limit(
+        *("max_protrusion", "m", 1.0, 3),
+        "No housing reaches farther beyond the body's length or width than this",
+    )
+    max_cleaning_reach: float | None = _limit(
+        *("max_cleaning_reach", "m", 3.0, 3),
+        "No sensor is farther than this from the nearest ground beside the body",
+    )
+    max_frontal_area: float | None = _limit(
+        *("max_frontal_area", "m2", 1.0, 4),
+        "Largest area that housings add to the body's silhouette from the front",
+    )
+    min_overlap: float | None = _limit(
+        *("min_overlap", "deg", 90.0, 0),
+        "Chains of sensors whose fields have at least so many degrees of azimuth in common join "
+        "all sensors, so that they can be calibrated to each other",
+    )
+    max_mass: float | None = _limit("max_mass", "kg", 100.0, 2, "Largest mass of all sensors")
+    max_power: float | None = _limit("max_power", "W", 1e3, 1, "Largest power of all sensors")
+    max_data_rate: float | None = _limit(
+        "max_data_rate", "Mbit/s", 1e4, 1, "Largest data rate of all sensors"
+    )
 
     def __post_init__(self) -> None:
         put, who = object.__setattr__, "optimize"

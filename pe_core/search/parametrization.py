@@ -32,7 +32,7 @@ from .domains import (
     rounded,
 )
 from .mounts import Mounting, SlotMount, SurfaceMount
-from .search_space import Rule, SearchSpace, Trial, rules_of
+from .search_space import Rule, SearchSpace, rules_of
 
 MAX_ASYMMETRY = 0.05
 """A body is not symmetric if the distances of its sides from y = 0 differ by more than this share
@@ -193,12 +193,12 @@ class Parametrization:
 
     def allowed(self, rig: Rig) -> bool:
         """Whether a placement breaks no rule."""
-        trial = Trial(rig, self.space)
+        trial = self.space.placement(rig)
         return not any(rule.broken(trial) for rule in self.rules)
 
     def broken(self, rig: Rig) -> frozenset[str]:
         """Return the texts of all rules that a placement breaks."""
-        trial = Trial(rig, self.space)
+        trial = self.space.placement(rig)
         return frozenset(rule.text for rule in self.rules if rule.broken(trial))
 
     def _moving(self) -> set[str]:

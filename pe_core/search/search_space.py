@@ -6,7 +6,7 @@ A rule is what no placement may break, with its text for messages.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from itertools import combinations
 from typing import Any
@@ -18,10 +18,11 @@ from ..base.errors import InputError, require_name, shown
 from ..base.notebook import ShortRepr
 from ..base.setting import Panel, check_settings, setting
 from ..base.values import Angle, Number, Whole, listed, pair
-from ..geometry.overlap import Hull, hull_box, overlaps
-from ..geometry.poses import FARTHEST_M, METRES, ROTATION, dot
-from ..scene.rig import Housing, Rig, Sensor, cuts_body, hull_of
+from ..geometry.overlap import hull_box, overlaps
+from ..geometry.poses import FARTHEST_M, METRES, ROTATION
+from ..scene.rig import Housing, Rig, Sensor, cuts_body
 from ..scene.vehicle import Vehicle, is_enclosed, is_open
+from .build_figures import BUILD_FIGURES, Placement
 from .domains import (
     AXES,
     POSITION_AXES,
@@ -120,6 +121,10 @@ class SearchSpace(ShortRepr):
                 axes = (*(axis for axis in POSITION_AXES if axis in given), *turns)
             bounds[sensor.name] = {a: given.get(a, default[a]) for a in axes}
         return cls(bounds, mounting, vehicle, housings or {}, fixed).checked(rig)
+
+    def placement(self, rig: Rig) -> Placement:
+        """Return a rig on the vehicle, as rules see it."""
+        return Placement(rig, self.vehicle, self.housings)
 
     def checked(self, rig: Rig) -> SearchSpace:
         """Return itself, or raise `InputError` when a name, an axis or a start is not possible."""
@@ -243,33 +248,18 @@ def _rounds(reach: float, floor: float, decay: float) -> float:
     return (math.log(reach) - math.log(floor)) / -math.log(decay)
 
 
-@dataclass(frozen=True)
-class Trial:
-    """A placement that is checked; the hull of each sensor is computed once."""
-
-    rig: Rig
-    space: SearchSpace
-    _hulls: dict[str, Hull] = field(default_factory=dict)
-
-    def hull(self, name: str) -> Hull:
-        """Return the convex hull of a sensor's housing."""
-        if name not in self._hulls:
-            self._hulls[name] = hull_of(self.rig[name].pose, self.space.housings.get(name))
-        return self._hulls[name]
-
-
 @dataclass(frozen=True, slots=True)
 class Rule:
     """A rule that a placement keeps or breaks."""
 
     text: str
-    broken: Callable[[Trial], bool]
+    broken: Callable[[Placement], bool]
 
 
 def rules_of(
     rig: Rig,
     space: SearchSpace,
-    moving: Collection[str],
+    moving: Set[str],
     clear: Collection[str],
     domains: dict[str, Domain],
 ) -> tuple[Rule, ...]:
@@ -279,10 +269,15 @@ def rules_of(
     Housings of the sensors named by `clear` must be clear of the body and of other housings.
     """
     names = [sensor.name for sensor in rig if sensor.name in moving]
-    rules = [rule for name in names for rule in _of_one(name, space)]
-    limits, mounts = space.mounting.constraints, space.mounting.mounts.values()
-    has_slots = any(isinstance(mount, SlotMount) for mount in mounts)
-    if limits.min_distance or has_slots or (space.housings and clear):  # else millions for nothing
+    limits, start = space.mounting.constraints, space.placement(rig)
+    rules = [
+        Rule(*rule)
+        for figure in BUILD_FIGURES.values()
+        for rule in figure.rules(getattr(limits, figure.limit, None), start, moving)
+    ]
+    rules += [rule for name in names for rule in _of_one(name, space)]
+    has_slots = any(isinstance(mount, SlotMount) for mount in space.mounting.mounts.values())
+    if has_slots or (space.housings and clear):  # else millions for nothing
         pairs = combinations([sensor.name for sensor in rig], 2)
         moved = ((a, b) for a, b in pairs if a in moving or b in moving)
         rules += [rule for a, b in moved for rule in _of_two(a, b, space, clear)]
@@ -296,18 +291,9 @@ def rules_of(
 
 
 def _of_one(name: str, space: SearchSpace) -> Iterator[Rule]:
-    limits = space.mounting.constraints
-    if (height := limits.max_height) is not None:
-        top = height + ROUNDING_M
-        yield Rule(f"max_height of {name!r}", lambda t: t.hull(name).corners[:, 2].max() > top)
-    if (width := limits.max_width) is not None:
-        side = width / 2.0 + ROUNDING_M
-        yield Rule(
-            f"max_width of {name!r}", lambda t: np.abs(t.hull(name).corners[:, 1]).max() > side
-        )
     if isinstance(space.mounting.mount_of(name), SurfaceMount):
         yield from _bounds(name, space)
-    for area in limits.no_go:
+    for area in space.mounting.constraints.no_go:
         yield _no_go(name, area)
 
 
@@ -317,8 +303,8 @@ def _bounds(name: str, space: SearchSpace) -> Iterator[Rule]:
         if axis in space.bounds.get(name, {}):
             low, high = space.bounds[name][axis]
 
-            def outside(trial: Trial, k: int = number, lo: float = low, hi: float = high) -> bool:
-                return not lo - ROUNDING_M <= trial.rig[name].pose.position[k] <= hi + ROUNDING_M
+            def outside(at: Placement, k: int = number, lo: float = low, hi: float = high) -> bool:
+                return not lo - ROUNDING_M <= at.rig[name].pose.position[k] <= hi + ROUNDING_M
 
             yield Rule(f"bounds of {axis} of {name!r}", outside)
 
@@ -331,13 +317,6 @@ def _no_go(name: str, area: NoGo) -> Rule:
 
 def _of_two(a: str, b: str, space: SearchSpace, clear: Collection[str]) -> Iterator[Rule]:
     mounting = space.mounting
-    if min_distance := mounting.constraints.min_distance:
-
-        def near(trial: Trial) -> bool:
-            one, other = (np.array(trial.rig[name].pose.position) for name in (a, b))
-            return float(np.sqrt(dot(one - other, one - other))) < min_distance - ROUNDING_M
-
-        yield Rule(f"min_distance of {a!r} and {b!r}", near)
     same_mount = mounting.on.get(a) == mounting.on.get(b)
     if same_mount and isinstance(mounting.mount_of(a), SlotMount):
         yield Rule(f"one slot for {a!r} and {b!r}", lambda t: t.rig[a].pose == t.rig[b].pose)
@@ -350,7 +329,7 @@ def _of_two(a: str, b: str, space: SearchSpace, clear: Collection[str]) -> Itera
 def _stand_off(name: str, domain: SurfaceDomain) -> Rule:
     """Return the rule of the stand-off: in a hollow, the surface may be nearer elsewhere."""
 
-    def near(trial: Trial) -> bool:
+    def near(trial: Placement) -> bool:
         base = domain.base(trial.rig[name].pose)
         return domain.surface.is_nearer(base, domain.mount.standoff - STANDOFF_TOLERANCE_M)
 
@@ -360,9 +339,9 @@ def _stand_off(name: str, domain: SurfaceDomain) -> Rule:
 def _body(name: str, vehicle: Vehicle) -> Rule:
     """Return the rule that a housing does not cut the body, and that a sensor is not inside it."""
 
-    def inside(trial: Trial) -> bool:
+    def inside(trial: Placement) -> bool:
         sensor = trial.rig[name]
-        housing, position = trial.space.housings.get(name), np.array(sensor.pose.position)
+        housing, position = trial.housings.get(name), np.array(sensor.pose.position)
         if housing is not None and cuts_body(sensor.pose, housing, vehicle):
             return True
         through_glass = sensor.model.sees_through_glass

@@ -7,28 +7,28 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from operator import le
+from typing import Any
 
 from ..base.arrays import ReadOnlyDict
 from ..base.errors import InputError, one_of, require_name, shown
-from ..base.setting import Panel, check_settings, required_setting, setting
-from ..base.values import A_NAME, Name, Number, Whole, listed
-from ..scene.rig import Rig, SensorModel
+from ..base.setting import Panel, check_settings, required_setting, same_setting, setting
+from ..base.values import A_NAME, Name, Whole, listed
+from ..scene.data_sheet import PRICE, DataSheet
+from ..scene.rig import Rig, Sensor, SensorModel
+from .build_figures import BUILD_FIGURES, RELATIVE, SUMS, Placement, sheet_of
 from .mounts import NO_MOUNT, Mounting
 
-PRICE = Number(0.0, cap=1e12, noun="price")
 COUNT = Whole(0, 10_000)
 CURRENCY = Name("a currency", empty=True)
 Picks = tuple[int, ...]
 """A design: the number of the option that each site takes."""
-LIMITS: dict[str, object] = {"max_price": None, "max_sensors": None, "max_of_kind": {}}
-"""Limits of a selection, and the value of each that means no limit."""
+COUNTED, OF_KIND = "max_sensors", "max_of_kind"
+"""Limits of numbers of sensors; the others are of sums, as `SUMS`."""
 MAX_STEPS = 20_000
 """How many partial designs are tried in the search for designs within the limits."""
-SLACK = 1e-9
-"""Relative rounding error that is allowed for sums of prices."""
 Worth = tuple[float, float]
 """A price and an entropy [nats]; lower is better for both."""
 ALL_UP_TO = 200
@@ -39,13 +39,15 @@ MAX_EVALUATED = 400
 
 @dataclass(frozen=True, slots=True)
 class Option:
-    """A model that may be chosen, and the price of one sensor.
+    """A model that may be chosen, the price of one sensor, and other figures of its data sheet.
 
     Parameters
     ----------
     model : SensorModel
     price : float
         In the unit of the study: the catalogue has no prices.
+    mass, power, data_rate : float, optional
+        As of `DataSheet`.
     """
 
     model: SensorModel
@@ -54,11 +56,19 @@ class Option:
         "Price of one sensor. The catalogue has no prices",
         Panel("price", "Price", soft_max=1e5, precision=2, step=1000),
     )
+    mass: float | None = same_setting(DataSheet, "mass")
+    power: float | None = same_setting(DataSheet, "power")
+    data_rate: float | None = same_setting(DataSheet, "data_rate")
 
     def __post_init__(self) -> None:
         if not isinstance(self.model, SensorModel):
             raise InputError("option", "model", "the model of a sensor", shown(self.model))
         check_settings(self, "option")
+
+    @property
+    def sheet(self) -> DataSheet:
+        """What is known of one such sensor, without the catalogue."""
+        return DataSheet(self.mass, self.power, self.data_rate, self.price)
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,10 +178,16 @@ class Site:
     options: tuple[Option | None, ...]
     choice: int
 
-    def price(self, pick: int) -> float:
-        """Return the price of an option for all sensors of the site."""
+    def sum(self, key: str, pick: int) -> float:
+        """Return a sum, one of `SUMS`, of an option for all sensors of the site."""
         option = self.options[pick]
-        return 0.0 if option is None else option.price * len(self.sensors)
+        if option is None:
+            return 0.0
+        return float(getattr(sheet_of(option.model, option.sheet), key)) * len(self.sensors)
+
+    def least(self, key: str) -> float:
+        """Return the least such sum of all options."""
+        return min(self.sum(key, pick) for pick in range(len(self.options)))
 
 
 def sites_of(selection: Selection, rig: Rig, mounting: Mounting) -> tuple[Site, ...]:
@@ -236,23 +252,35 @@ def _with_images(names: Sequence[str], mounting: Mounting) -> tuple[str, ...]:
 class DesignSpace:
     """All designs that a selection allows for a rig.
 
-    `others` is the number of sensors that are not chosen, by kind.
+    `others` are the sensors that are not chosen, `limits` the limits of a design by name.
     """
 
     sites: tuple[Site, ...]
-    selection: Selection
-    others: Counter[str]
+    limits: Mapping[str, Any]
+    others: tuple[Sensor, ...]
 
     @classmethod
     def of(cls, selection: Selection, rig: Rig, mounting: Mounting) -> DesignSpace:
         """Return the designs of a rig; `InputError` for an impossible choice, or none left."""
         sites = sites_of(selection, rig, mounting)
         chosen = {name for site in sites for name in site.sensors}
-        others = Counter(sensor.kind for sensor in rig if sensor.name not in chosen)
-        designs = cls(sites, selection, others)
+        others = tuple(sensor for sensor in rig if sensor.name not in chosen)
+        given = {name: getattr(selection, name) for name in ("max_price", COUNTED, OF_KIND)}
+        given |= {f"max_{key}": getattr(mounting.constraints, f"max_{key}") for key in SUMS[:-1]}
+        limits = {name: value for name, value in given.items() if value not in (None, {})}
+        designs = cls(sites, limits, others)
+        designs.require({name.removeprefix("max_") for name in limits})
         if sites and not designs.first(1):
             raise designs._excluded()
         return designs
+
+    def require(self, names: Collection[str]) -> None:
+        """Raise `InputError` where one of some sums is not known for each sensor or option."""
+        options = (each for site in self.sites for each in site.options if each)
+        models = (Sensor(each.model.name, each.model, sheet=each.sheet) for each in options)
+        offered = Placement((*self.others, *models))  # type: ignore[arg-type]  # not one rig
+        for key in (name for name in SUMS[:-1] if name in names):
+            BUILD_FIGURES[key].required(offered, f"max_{key}")
 
     def __iter__(self) -> Iterator[Picks]:
         """Yield designs; sites of one choice take their options in ascending order.
@@ -266,8 +294,14 @@ class DesignSpace:
         return list(itertools.islice(self, count))
 
     def price(self, picks: Iterable[int]) -> float:
-        """Return the price of a design."""
-        return sum(site.price(pick) for site, pick in zip(self.sites, picks, strict=False))
+        """Return the price of a design; sensors without a choice and a price are free."""
+        return self.sum("price", picks)
+
+    def sum(self, key: str, picks: Iterable[int]) -> float:
+        """Return a sum, one of `SUMS`, over a design or the first sites of one."""
+        own = (getattr(sheet_of(s.model, s.sheet), key) or 0.0 for s in self.others)
+        sites = zip(self.sites, picks, strict=False)
+        return sum(site.sum(key, pick) for site, pick in sites) + sum(own)
 
     def models(self, picks: Sequence[int]) -> dict[str, SensorModel | None]:
         """Return the model of each chosen sensor; None if it is left out."""
@@ -277,6 +311,11 @@ class DesignSpace:
             model = None if option is None else option.model
             models |= dict.fromkeys(site.sensors, model)
         return models
+
+    def sheets(self, picks: Sequence[int]) -> dict[str, DataSheet]:
+        """Return what is known of each chosen sensor, without the catalogue."""
+        options = ((site, site.options[pick]) for site, pick in zip(self.sites, picks, strict=True))
+        return {n: option.sheet for site, option in options if option for n in site.sensors}
 
     def neighbours(self, picks: Picks) -> Iterator[Picks]:
         """Yield the neighbours of a design: one site takes another option."""
@@ -317,23 +356,28 @@ class DesignSpace:
         )
 
     def _within_limits(self, begun: Picks) -> bool:
-        """Whether a partial design, completed with the cheapest options, is within the limits."""
-        limits, rest = self.selection, self.sites[len(begun) :]
-        kinds = Counter(self.others)
+        """Whether a partial design, completed with the least options, is within the limits."""
+        kinds = Counter(sensor.kind for sensor in self.others)
         for site, pick in zip(self.sites, begun, strict=False):
             if (option := site.options[pick]) is not None:
                 kinds[option.model.kind] += len(site.sensors)
-        sensors = kinds.total() + sum(len(s.sensors) for s in rest if None not in s.options)
-        price = self.price(begun) + sum(_min_price(site) for site in rest)
-        return (
-            (limits.max_price is None or price <= limits.max_price * (1.0 + SLACK))
-            and (limits.max_sensors is None or sensors <= limits.max_sensors)
-            and all(kinds[kind] <= max_count for kind, max_count in limits.max_of_kind.items())
-        )
+        totals = ((name, limit) for name, limit in self.limits.items() if name != OF_KIND)
+        return all(
+            self._least(name, begun, kinds.total()) <= limit * (1.0 + RELATIVE)
+            for name, limit in totals
+        ) and all(kinds[kind] <= count for kind, count in self.limits.get(OF_KIND, {}).items())
+
+    def _least(self, name: str, begun: Picks, count: int) -> float:
+        """Return what a limit limits, of a begun design with `count` sensors, or less."""
+        rest = self.sites[len(begun) :]
+        if name == COUNTED:
+            return count + sum(len(s.sensors) for s in rest if None not in s.options)
+        key = name.removeprefix("max_")
+        return self.sum(key, begun) + sum(site.least(key) for site in rest)
 
     def _excluded(self) -> InputError:
         """Return the error that names a smallest set of limits that leaves no design."""
-        names = [name for name, none in LIMITS.items() if getattr(self.selection, name) != none]
+        names = list(self.limits)
         for name in list(names):
             fewer = [other for other in names if other != name]
             if not self._limited_by(fewer).first(1):
@@ -341,22 +385,14 @@ class DesignSpace:
         if not names:
             return InputError("selection", "choice", "a design with a sensor", "none")
         least = ""
-        if names == ["max_price"]:
-            least = f"; the cheapest costs {sum(map(_min_price, self.sites)):g}"
-        elif names == ["max_sensors"]:
-            required = sum(len(site.sensors) for site in self.sites if None not in site.options)
-            least = f"; the smallest has {max(self.others.total() + required, 1)} sensors"
+        if len(names) == 1 and names != [OF_KIND]:
+            least = f"; the least possible is {self._least(names[0], (), len(self.others)):g}"
         expected = "limits that leave a design"
         return InputError("selection", " and ".join(names), expected, f"none{least}")
 
     def _limited_by(self, names: Sequence[str]) -> DesignSpace:
         """Return the designs under the named limits only."""
-        none = {name: value for name, value in LIMITS.items() if name not in names}
-        return replace(self, selection=replace(self.selection, **none))  # type: ignore[arg-type]
-
-
-def _min_price(site: Site) -> float:
-    return min(site.price(pick) for pick in range(len(site.options)))
+        return replace(self, limits={name: self.limits[name] for name in names})
 
 
 def pareto_front(costs: Sequence[Sequence[float]]) -> list[int]:

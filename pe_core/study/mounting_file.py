@@ -22,7 +22,7 @@ from ..base.table_reader import Table
 from ..base.values import A_NAME, A_PATH
 from ..geometry.poses import Pose
 from ..scene.mesh import AS_SAID, Mesh
-from ..scene.rig import Housing, Rig, SensorModel
+from ..scene.rig import Rig, SensorModel
 from ..search import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 
 
@@ -153,12 +153,6 @@ def _mount_table(name: str, mount: AnyMount) -> dict[str, Any]:
     else:
         faces = {"area": area.file, "parts": list(area.parts) or None}
     return {"name": name, **faces, **settings_table(mount)}
-
-
-def housings_of(rig: Rig) -> dict[str, Housing]:
-    """Return the housings that the catalogue has, by sensor."""
-    housings = {sensor.name: catalog.housing(sensor.model.name) for sensor in rig}
-    return {name: housing for name, housing in housings.items() if housing is not None}
 
 
 def check_pairs(rig: Rig, mounting: Mounting) -> None:

@@ -56,6 +56,7 @@ from ..search import (
     checked_bounds,
     checked_method,
 )
+from ..search.build_figures import housings_of
 from ..sensors import PerceptionModel
 from ..sensors.lidar import ALL, RETURNS
 from ..sensors.weather import with_returns
@@ -66,7 +67,7 @@ from .conditions import (
     check_classes,
     mounting_cases,
 )
-from .mounting_file import check_pairs, housings_of
+from .mounting_file import check_pairs
 from .passthrough import Passthrough
 
 ENTROPY, EXPECTED_AP = "entropy", "expected_ap"

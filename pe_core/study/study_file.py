@@ -33,6 +33,7 @@ from ..metric.entropy import ApCurve
 from ..metric.frames import Frames
 from ..motion import Confirmation, Story
 from ..prior.prior import Focus
+from ..scene.data_sheet import DataSheet
 from ..scene.mesh import MeshAxes, require_vehicle_size
 from ..scene.rig import Rig, Sensor, SensorModel
 from ..scene.vehicle import Vehicle
@@ -250,7 +251,8 @@ def _read_sensor(table: Table, folder: Path) -> Sensor:
     curve = read_curve(table.table("ap")) if "ap" in table else None
     color = table.text("color", None)
     with table.naming():
-        return Sensor(name, intrinsics, pose, fusion, curve, color)
+        sheet = DataSheet(**read_settings(table, DataSheet))
+        return Sensor(name, intrinsics, pose, fusion, curve, color, sheet)
 
 
 def _read_intrinsics(table: Table, sensor: str, folder: Path) -> SensorModel:
@@ -300,6 +302,7 @@ def _sensor_table(sensor: Sensor, search: Search) -> dict[str, Any]:
         "fusion": sensor.fusion,
         "ap": None if sensor.curve is None else curve_table(sensor.curve),
         "color": sensor.color,
+        **settings_table(sensor.sheet),
         "free": list(search.free.get(sensor.name, PAPER_FREE)),
         "bounds": limits or None,
         "mount": search.mounting.on.get(sensor.name),
@@ -390,6 +393,7 @@ SECTIONS = (
     StudyTable("selection", Selection),
     StudyTable("optimize.mount", SurfaceMount, rows=True),
     StudyTable("optimize.no_go", NoGo, rows=True),
+    StudyTable("sensor", DataSheet, rows=True),
     StudyTable("choice.option", Option, rows=True),
     StudyTable("prior.focus", Focus, rows=True),
     StudyTable("ap.KIND", ApCurve, rows=True),

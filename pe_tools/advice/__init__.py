@@ -9,6 +9,7 @@ from pe_tools.wording import joined, percent
 from ..wording import off_by
 from .advice import FRAGILE, UNMET, Advice, fragile, unmet
 from .key_figures import KeyFigures, SensorRow, key_figures, loss_text, sensor_rows, sensor_table
+from .key_figures import built_lines as built_lines
 from .location import AskedPlace, SensorAtPlace, ask_place
 from .mount_checks import check_mirror_image, occluded_shares
 from .mounting_places import place_name, plain_name, sensor_labels
@@ -34,7 +35,7 @@ from .warnings import (
 
 __all__ = ["BLIND_TO_M", "FRAGILE", "OTHER_HARDWARE", "UNMET", "WHERE", "Advice"]
 __all__ += ["AskedPlace", "ComparedRow", "KeyFigures", "Outlook", "SensorAtPlace"]
-__all__ += ["SensorRow", "ask_place", "check_mirror_image", "class_of", "compare"]
+__all__ += ["SensorRow", "ask_place", "built_lines", "check_mirror_image", "class_of", "compare"]
 __all__ += ["compare_figures", "condition_warnings", "costs_nothing", "curve_note"]
 __all__ += ["curve_warnings", "fragile", "hardware_note", "hidden_sensors", "hidden_words"]
 __all__ += ["joined", "key_figures", "lone_reach", "loss_text", "object_words", "objects_looked_at"]

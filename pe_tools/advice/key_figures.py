@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from pe_core.base.values import rounded
 from pe_core.scene.rig import Rig
 from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.score import FAR_M, NEAR_M, Score, TrafficAp
 from pe_core.scoring.sight import BLIND_TO_M, BlindSector, Sight
+from pe_core.search.build_figures import ALONE, BUILD_FIGURES, Placement
+from pe_core.search.goals import PRICE
 from pe_tools.wording import percent
 
 from .mount_checks import occluded_shares
@@ -135,6 +138,9 @@ class KeyFigures:
         Whether the perception space ends there: the true reach may be longer.
     over_frames : float or None
         Entropy over the study's frames [nats]; None for one frame.
+    built, unknown : mapping of str
+        What can be built, by the names of `BUILD_FIGURES`: the figures that are known, and of which
+        sensors the others are not.
     """
 
     traffic: TrafficAp | None
@@ -146,6 +152,8 @@ class KeyFigures:
     reach_m: float | None = None
     at_least: bool = False
     over_frames: float | None = None
+    built: Mapping[str, float] = field(default_factory=dict)
+    unknown: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the figures as plain JSON data."""
@@ -176,8 +184,31 @@ def key_figures(
     """
     blind = sight.blind(rig, max(height, sight.space.z[0]))
     found = sight.in_traffic(rig), sight.blind_sectors(rig), blind.area, blind.height, blind.within
-    over_frames = sight.over_frames(rig)
+    placed = Placement.on(rig, sight.vehicle)
+    unknown = {key: list(row.lacking(placed)) for key, row in BUILD_FIGURES.items()}
+    values = {key: row.value(placed) for key, row in BUILD_FIGURES.items()}
+    more: dict[str, Any] = {
+        "over_frames": sight.over_frames(rig),
+        "built": {key: rounded(value) for key, value in values.items() if value is not None},
+        "unknown": {key: lacking for key, lacking in unknown.items() if lacking},
+    }
     if sight.targets.are_objects:
-        return KeyFigures(*found, over_frames=over_frames)
+        return KeyFigures(*found, **more)
     name = class_of(sight.prior, class_name)
-    return KeyFigures(*found, name, *sight.reach_ahead(rig, name), over_frames)
+    return KeyFigures(*found, name, *sight.reach_ahead(rig, name), **more)
+
+
+def built_lines(figures: Sequence[KeyFigures]) -> list[str]:
+    """Return what can be built in two lines, of one rig, or of start and result; none without it.
+
+    Figures that are not known are named with their sensors; prices only where there are some.
+    """
+    last, texts, by_sensors = figures[-1], [], dict[str, list[str]]()
+    for key, row in BUILD_FIGURES.items():
+        if found := dict.fromkeys(row.text(f.built[key]) for f in figures if key in f.built):
+            texts.append(f"{row.label} {' -> '.join(found)}")
+        elif (lacking := last.unknown.get(key, [ALONE])) != [ALONE] and key != PRICE:
+            by_sensors.setdefault(", ".join(lacking), []).append(row.label)
+    named = [f"{', '.join(labels)} ({who})" for who, labels in by_sensors.items()]
+    lines = {"to build": ", ".join(texts), "unknown": "; ".join(named)}
+    return [f"{name}  {text}" for name, text in lines.items() if text]

@@ -14,6 +14,7 @@ from pe_core.sensors import kind_of
 
 from ..advice import (
     KeyFigures,
+    built_lines,
     hidden_sensors,
     hidden_words,
     object_words,
@@ -113,6 +114,7 @@ def summary(outcome: Outcome) -> str:
         if outcome.figures is not None:
             lines += figure_lines(outcome.figures[:1])
         lines.append(f"coverage  {score.coverage:.1%}")
+        lines += built_lines(outcome.figures[:1]) if outcome.figures else []
     else:
         lines = list(_before_and_after(outcome))
     if score.objects is not None:
@@ -153,6 +155,7 @@ def _before_and_after(outcome: Outcome) -> Iterator[str]:
     beside = [] if outcome.figures is None else figure_lines(outcome.figures)
     yield from [*beside, entropy] if outcome.in_traffic is not None else [entropy, *beside]
     yield f"coverage  {before.coverage:.1%} -> {after.coverage:.1%}"
+    yield from built_lines(outcome.figures) if outcome.figures else ()
     yield from filter(None, (outcome.gain, outcome.cost))
     if (found := outcome.robustness) is not None:
         one, other = found.before, found.after

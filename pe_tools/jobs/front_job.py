@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from functools import cached_property
@@ -19,6 +19,7 @@ from pe_core.search import (
     above_front,
     pareto_front,
 )
+from pe_core.search.build_figures import SUMS
 from pe_core.search.goals import AP, ENTROPY, PRICE
 from pe_core.study.condition_table import is_by_ap
 from pe_core.study.requirement_search import constraints_of, feasible_first, is_infeasible
@@ -32,6 +33,7 @@ from .front_objectives import (
     ScalarValue,
     check_objectives,
     costs_of,
+    objectives_of,
     spread,
     weights_of,
 )
@@ -68,6 +70,15 @@ class FrontJob(Job):
 
     Candidates are evaluated by the job's executor, or by processes.
 
+    Parameters
+    ----------
+    study : Study
+    workers : int, optional
+        As of `Job`.
+    objectives : sequence of str or callable, optional
+        Two or more, in place of the study's: names of `OBJECTIVES`, and functions that take a `Rig`
+        and return a number; lower is better. Processes evaluate a function that can be pickled.
+
     Attributes
     ----------
     trade_off : TradeOff or None
@@ -78,15 +89,23 @@ class FrontJob(Job):
 
     shown, kept = ("evaluations",), ("journals",)
 
-    def __init__(self, study: Study, workers: int | None = None) -> None:
+    def __init__(
+        self,
+        study: Study,
+        workers: int | None = None,
+        objectives: Sequence[str | Callable[[Rig], float]] = (),
+    ) -> None:
         super().__init__(study, workers)
         front, value = study.search.goals.front, AP if is_by_ap(study) else ENTROPY
-        self.names, self.points = tuple(front.objectives) or (PRICE, value), front.points
-        if front.objectives:
-            check_objectives(study, self.names)
+        given = tuple(objectives) or tuple(front.objectives)
+        self.names, self._own = objectives_of(given or (PRICE, value))
+        self._several, self.points = bool(given), front.points
+        if given:
+            check_objectives(study, [name for name in self.names if name not in self._own])
         self.journals = FrontJournals()
         self.evaluations = 0
         self._designs = study.designs()
+        self._designs.require(self.names)
         self._errors: dict[Picks, InputError] = {}
         self._possible: int | None = None
         self._found: dict[Picks, list[Design]] = {}
@@ -122,7 +141,6 @@ class FrontJob(Job):
         """Return all designs by their costs. Where a design has several points of the front, names
         have what they are best at, or their number."""
         names = design_names([self._designs.models(picks) for picks in self._found])
-        several = bool(self.study.search.goals.front.objectives)
         named = [
             replace(design, name=name if self.study.selection.choices else "")
             for name, designs in zip(names, self._found.values(), strict=True)
@@ -131,9 +149,9 @@ class FrontJob(Job):
         named.sort(key=lambda design: costs_of(design.figures, self.names))
         costs = [costs_of(design.figures, self.names) for design in named]
         lowest = [min(column) for column in zip(*costs, strict=True)]
-        for number, own in enumerate(costs if several else ()):
+        for number, own in enumerate(costs if self._several else ()):
             pairs = zip(self.names, own, lowest, strict=True)
-            best = [name for name, cost, low in pairs if name != PRICE and cost == low]
+            best = [name for name, cost, low in pairs if name not in SUMS and cost == low]
             point = f"point {number + 1}"
             point += f", best {best[0].replace('_', ' ')}" if best else ""
             parts = [part for part in (named[number].name, point) if part]
@@ -184,8 +202,7 @@ class FrontJob(Job):
         return sorted(near, key=lambda p: (above[p], self._found[p][0].price, p))
 
     def _search_design(self, picks: Picks, done: float, share: float) -> Iterator[Progress]:
-        several = self.study.search.goals.front.objectives
-        search = self._search_points if several else self._search_once
+        search = self._search_points if self._several else self._search_once
         yield from self._kept(picks, search(picks, done, share))
 
     def _kept(
@@ -274,17 +291,19 @@ class FrontJob(Job):
         """Computes the objectives that a placement has, of all designs; it is sent once."""
         samples = self.study.search.samples
         in_traffic = self.evaluators.searching(samples) if is_by_ap(self.study) else None
-        moving = [name for name in self.names if name != PRICE]
-        return FrontFigures(self.study, moving, self.evaluators.on(samples), in_traffic)
+        moving = [name for name in self.names if name not in SUMS]
+        return FrontFigures(self.study, moving, self.evaluators.on(samples), in_traffic, self._own)
 
     def _design(self, picks: Picks, study: Study, figures: FrontValues) -> Design:
         if self.study.selection.choices:
             figures = {PRICE: self._designs.price(picks), **figures}
+        sums = {key: self._designs.sum(key, picks) for key in SUMS if key in self.names}
+        figures = {**sums, **figures}
         return Design("", self._designs.models(picks), study, figures)
 
     def _study_of(self, picks: Picks) -> Study:
-        models = self._designs.models(picks)
-        return design_study(self.study, models) if models else self.study
+        models, sheets = self._designs.models(picks), self._designs.sheets(picks)
+        return design_study(self.study, models, sheets) if models else self.study
 
     def _begin(
         self, name: str, study: Study, objectives: list[Objective] | None = None

@@ -4,24 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from itertools import pairwise
 
-from pe_core import catalog
 from pe_core.base.errors import InputError
 from pe_core.base.values import rounded
-from pe_core.scene.rig import Rig, hull_of
+from pe_core.scene.rig import Rig
 from pe_core.scoring import RigEvaluator
 from pe_core.scoring.requirements import FARTHEST_M, Verdict
 from pe_core.scoring.score import Evaluation, Score
 from pe_core.search import objective_of
+from pe_core.search.build_figures import BUILD_FIGURES, SUMS, Placement
 from pe_core.search.goals import (
     AP,
     BLIND_GROUND,
     BLIND_ZONES,
     ENTROPY,
-    HEIGHT,
     HIGHER_IS_BETTER,
     MARGIN,
+    OBJECTIVES,
     PRICE,
     WORST_LOSS,
 )
@@ -35,6 +36,25 @@ AUGMENTED = 0.05
 TIE = 1e-3
 """Weight of the other objectives while the best value of one is looked for."""
 FrontValues = Mapping[str, float]
+OwnObjectives = Mapping[str, Callable[[Rig], float]]
+"""Functions from Python, by name."""
+
+
+def objectives_of(
+    given: Sequence[str | Callable[[Rig], float]],
+) -> tuple[tuple[str, ...], OwnObjectives]:
+    """Return the names of objectives, and those that are functions.
+
+    `InputError` unless they are two or more, each once, functions by a name of their own, and one
+    depends on the placement.
+    """
+    names = [getattr(e, "__name__", type(e).__name__) if callable(e) else str(e) for e in given]
+    own = {name: each for name, each in zip(names, given, strict=True) if callable(each)}
+    free = {name for name in names if (name in OBJECTIVES) != (name in own)}
+    if not free - set(SUMS) or len(free) < max(2, len(names)):
+        expected = f"two or more of {', '.join(OBJECTIVES)}, or functions; not sums alone"
+        raise InputError("optimize", "front.objectives", expected, ", ".join(names))
+    return tuple(names), own
 
 
 def check_objectives(study: Study, names: Sequence[str]) -> None:
@@ -57,10 +77,13 @@ def check_objectives(study: Study, names: Sequence[str]) -> None:
         is_wrong, expected, found = wrong.get(name, (False, "", ""))
         if is_wrong:
             raise InputError("optimize", f"front.objectives: {name}", expected, found)
+        if name in BUILD_FIGURES and not study.selection.choices:
+            placed = Placement.on(study.rig, study.vehicle)
+            BUILD_FIGURES[name].required(placed, f"front.objectives: {name}")
 
 
 class FrontFigures:
-    """Computes the objectives of rigs of one study, all but the price; a rig is evaluated once.
+    """Computes the objectives of rigs of one study, all but sums; a rig is evaluated once.
     `evaluator` is that of the search; `in_traffic` evaluates the AP of a study that goes by it."""
 
     def __init__(
@@ -69,8 +92,9 @@ class FrontFigures:
         names: Sequence[str],
         evaluator: RigEvaluator,
         in_traffic: RigEvaluator | None = None,
+        own: OwnObjectives | None = None,
     ) -> None:
-        self._given = study, tuple(names), evaluator, in_traffic
+        self._given = study, tuple(names), evaluator, in_traffic, own
         self._in_traffic = in_traffic
         self.names, self._study, self._evaluator = tuple(names), study, evaluator
         tolerance, seed = study.search.tolerance, study.search.seed
@@ -83,10 +107,11 @@ class FrontFigures:
             ENTROPY: self._objective.entropy,
             AP: self._ap,
             BLIND_GROUND: self._blind_ground,
-            HEIGHT: height_of,
+            **{key: partial(self._built, key) for key in BUILD_FIGURES},
             WORST_LOSS: self._worst_loss,
             MARGIN: lambda rig: self._zones(rig)[0],
             BLIND_ZONES: lambda rig: self._zones(rig)[1],
+            **(own or {}),
         }
 
     def __reduce__(self) -> tuple[object, ...]:
@@ -112,6 +137,11 @@ class FrontFigures:
         if AP in figures and score.objects is not None and self._in_traffic is None:
             figures[AP] = score.objects.ap
         return figures
+
+    def _built(self, key: str, rig: Rig) -> float:
+        placed = Placement.on(rig, self._study.vehicle)
+        BUILD_FIGURES[key].required(placed, f"front.objectives: {key}")
+        return BUILD_FIGURES[key].value(placed) or 0.0
 
     def _ap(self, rig: Rig) -> float:
         if self._in_traffic is not None:
@@ -141,13 +171,6 @@ def _margin(verdict: Verdict) -> float:
     if verdict.margin is not None:
         return verdict.margin
     return -FARTHEST_M * (2.0 - verdict.share)
-
-
-def height_of(rig: Rig) -> float:
-    """Return the height of the highest housing's top above the ground [m]."""
-    return max(
-        float(hull_of(s.pose, catalog.housing(s.model.name)).corners[:, 2].max()) for s in rig
-    )
 
 
 def costs_of(figures: FrontValues, names: Sequence[str]) -> list[float]:
@@ -197,6 +220,8 @@ def weights_of(count: int, objectives: int) -> list[tuple[float, ...]]:
     """Return weights: first each objective alone, then evenly over all of them together. Even
     weights are a rank-1 lattice on the unit cube, mapped to the simplex by the spacings of its
     sorted coordinates."""
+    if objectives == 1:
+        return [(1.0,)]
     alone = [tuple(float(k == n) for k in range(objectives)) for n in range(objectives)]
     together = max(0, count - objectives)
     golden = (math.sqrt(5.0) - 1.0) / 2.0

@@ -13,6 +13,7 @@ import numpy as np
 from pe_core import catalog
 from pe_core.base.notebook import ShortRepr, Tabular
 from pe_core.geometry.poses import Pose, rotate
+from pe_core.scene.data_sheet import DataSheet
 from pe_core.scene.rig import Rig, Sensor, SensorModel
 from pe_core.scoring.requirements import Verdict
 from pe_core.scoring.score import Score
@@ -26,24 +27,28 @@ from pe_core.search import (
     pose_values,
     standoff_point,
 )
-from pe_core.search.goals import AP, ENTROPY, OBJECTIVES, PRICE
+from pe_core.search.goals import AP, ENTROPY, PRICE, label_of
 from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Study
 
 from ..advice import Advice, curve_note, hardware_note
 
 Models = Mapping[str, SensorModel | None]
+NO_SHEETS: Mapping[str, DataSheet] = {}
 
 
-def design_study(study: Study, models: Models) -> Study:
+def design_study(
+    study: Study, models: Models, sheets: Mapping[str, DataSheet] = NO_SHEETS
+) -> Study:
     """Return the study of a design, without choices.
 
-    `models` has the model of each sensor that the study lets choose; None leaves the sensor out. A
+    `models` has the model of each sensor that the study lets choose, `sheets` what is known of it;
+    None leaves the sensor out. A
     sensor on a surface keeps the position of its base: with a housing of another height, its origin
     is higher or lower.
     """
     gone = {name for name, model in models.items() if model is None}
-    rig = Rig([_taken(sensor, models) for sensor in study.rig if sensor.name not in gone])
+    rig = Rig([_taken(sensor, models, sheets) for sensor in study.rig if sensor.name not in gone])
     order = [sensor.name for sensor in rig]
     mounting, goals = study.search.mounting, study.search.goals
     groups = [[name for name in group if name not in gone] for group in mounting.groups]
@@ -78,12 +83,12 @@ def design_names(designs: Sequence[Models]) -> list[str]:
     return names
 
 
-def _taken(sensor: Sensor, models: Models) -> Sensor:
+def _taken(sensor: Sensor, models: Models, sheets: Mapping[str, DataSheet]) -> Sensor:
     """Return a sensor with its model; a new kind discards its fusion group and AP curve."""
-    model = models.get(sensor.name)
-    if model is None or model.kind == sensor.kind:
-        return sensor if model is None else replace(sensor, model=model)
-    return replace(sensor, model=model, fusion=None, curve=None)
+    if (model := models.get(sensor.name)) is None:
+        return sensor
+    taken = replace(sensor, model=model, sheet=sheets.get(sensor.name, DataSheet()))
+    return taken if model.kind == sensor.kind else replace(taken, fusion=None, curve=None)
 
 
 def _seated(before: Rig, rig: Rig, mounting: Mounting) -> list[Pose]:
@@ -214,7 +219,7 @@ class TradeOff(Tabular):
     @property
     def told(self) -> str:
         """What is on the front, and of how many designs."""
-        labels = ", ".join(OBJECTIVES[name][0] for name in self.objectives)
+        labels = ", ".join(label_of(name)[0] for name in self.objectives)
         of_all = f"{len(self.front)} on the front of {labels}"
         if not self.study.selection.choices or self.study.search.goals.front.objectives:
             return of_all

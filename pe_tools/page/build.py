@@ -16,7 +16,7 @@ import pe_core as pe
 from pe_core import base as text
 from pe_core import search
 from pe_core import study as studies
-from pe_core.search.goals import HIGHER_IS_BETTER, OBJECTIVES
+from pe_core.search.goals import HIGHER_IS_BETTER, OBJECTIVES, label_of
 
 from .. import advice, jobs
 from .. import cli as app
@@ -215,13 +215,13 @@ def front_page(data: Mapping[str, Any]) -> bytes:
     best = {name: (max if name in HIGHER_IS_BETTER else min)(values[name]) for name in columns}
     labels = {}
     for name in columns:
-        label, unit = OBJECTIVES[name]
+        label, unit = label_of(name)
         unit = unit or (str(data.get("currency") or "") if name == "price" else "")
         better = "higher is better" if name in HIGHER_IS_BETTER else "lower is better"
         labels[name] = f"{label} [{unit}], {better}" if unit else f"{label}, {better}"
     with_requirements = any("requirements_met" in design for design in front)
     heads = ["design", *(labels[name].split(",")[0] for name in columns)]
-    titles = [capitalized(OBJECTIVES[name][0]) for name in names]
+    titles = [capitalized(label_of(name)[0]) for name in names]
     body = render(
         "front.html",
         labels=titles,
@@ -233,7 +233,7 @@ def front_page(data: Mapping[str, Any]) -> bytes:
                 [(_figure(d, x) or 0.0, _figure(d, y) or 0.0) for d in front],
                 [(_figure(d, x) or 0.0, _figure(d, y) or 0.0) for d in others],
                 (labels[x], labels[y]),
-                f"{OBJECTIVES[x][0]} against {OBJECTIVES[y][0]}{BELOW}",
+                f"{label_of(x)[0]} against {label_of(y)[0]}{BELOW}",
             )
             for x, y in combinations(names, 2)
         ],

@@ -23,7 +23,6 @@ from pe_core.search import (
     pose_values,
 )
 from pe_core.search.parametrization import followers
-from pe_core.search.search_space import Trial
 
 from .fresh_samples import STEEP_NATS, Difference, FreshSamples
 
@@ -214,8 +213,7 @@ class Neighbourhood:
         return "" if within else f"bounds of {axis} of {sensor!r}"
 
     def _broken(self, rig: Rig) -> frozenset[str]:
-        trial = Trial(rig, self._space)
-        return frozenset(r.text for r in self._parametrization.rules if r.broken(trial))
+        return self._parametrization.broken(rig)
 
     def _positions(self) -> Iterator[tuple[str, str]]:
         """Yield sensor and axis of each design variable, in the order of the vector."""

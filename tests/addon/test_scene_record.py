@@ -138,6 +138,9 @@ def rich(car):
     for model, price in (("Camera 60 deg", 100.0), ("Camera 90 deg", 120.0)):
         option = own.options.add()
         option.model, option.price = model, price
+        option.mass, option.power, option.data_rate = 0.5, 4.0, 300.0
+    own.mass, own.power, own.data_rate, own.price = 0.4, 3.0, 250.0, 90.0
+    settings.max_mass, settings.max_power, settings.max_data_rate = 90.0, 900.0, 9000.0
     own.may_be_left_out = True
     own.stays = True
     settings.sensitivity, settings.front_objectives = "full", {"entropy", "height"}
@@ -209,6 +212,8 @@ def test_a_variant_s_study_is_that_of_the_scene_once_it_is_applied(rich):
 
 
 def test_an_imported_study_becomes_the_record_of_the_scene_that_holds_it(rich, tmp_path):
+    settings = rich.perception_entropy  # of a camera's housing nothing is known
+    settings.max_protrusion = settings.max_frontal_area = 0.0
     exported = scenes.study()
     pt.export_study(exported, tmp_path / "study.toml")
     study = pe.load_study(tmp_path / "study.toml")

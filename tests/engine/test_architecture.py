@@ -28,7 +28,7 @@ ROOMS = {
         "catalog": {"base", "geometry", "scene", "sensors"},
         "scoring": {"base", "metric", "geometry", "scene", "prior", "sensors"},
         "motion": {"base", "metric", "scene", "sensors", "scoring"},
-        "search": {"base", "geometry", "scene", "scoring"},
+        "search": {"base", "geometry", "scene", "sensors", "scoring"},
         "study": {
             *("base", "metric", "geometry", "scene", "prior", "sensors", "catalog"),
             *("scoring", "motion", "search"),

@@ -1,0 +1,287 @@
+"""What can be built: figures of a rig on its vehicle, a row a figure.
+
+The limits of a search and of a choice, the objectives of a front, the lines of a score and the
+fields of the panel follow from the rows. A figure of which something is not known has no value.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from dataclasses import dataclass, field
+from functools import lru_cache, partial
+from itertools import combinations, pairwise
+from typing import Any
+
+import numpy as np
+
+from ..base.arrays import Flags, Floats
+from ..base.errors import InputError
+from ..base.plugins import shipped
+from ..geometry.grids import PerceptionSpace, top_heights
+from ..geometry.overlap import Hull
+from ..geometry.poses import Pose, dot
+from ..scene.data_sheet import DataSheet
+from ..scene.rig import Housing, Rig, Sensor, SensorModel, hull_of
+from ..scene.vehicle import Vehicle
+from ..scoring.requirements.planes import convex_outline
+from ..sensors.kind import kind_of
+from .domains import ROUNDING_M
+
+CELL_M = 0.01
+"""Side of the squares in which a frontal area is counted [m]."""
+AROUND_M = 2.0
+"""So far round the body housings are seen from the front [m]."""
+CHUNKS = 300
+"""The body is drawn in at most so many parts, each in little memory."""
+TURNS, LAYERS = 360, 36
+"""Azimuths and elevations of the cells of a field of view."""
+RAYS = 20_000
+"""Directions that fill the cells: 5 to 40 fall on one."""
+ALONE = "one sensor alone"
+"""Why there is no distance and no common field."""
+RELATIVE = 1e-9
+"""Relative rounding error that is allowed for sums."""
+
+
+@dataclass(frozen=True)
+class Placement:
+    """A rig on its vehicle with the housings that are known; each hull is computed once."""
+
+    rig: Rig
+    vehicle: Any = None
+    housings: Mapping[str, Housing] = field(default_factory=dict)
+    _hulls: dict[str, Hull] = field(default_factory=dict)
+
+    @classmethod
+    def on(cls, rig: Rig, vehicle: Vehicle | None) -> Placement:
+        """Return a rig on a vehicle, with the housings of the catalogue."""
+        return cls(rig, vehicle, housings_of(rig))
+
+    def hull(self, name: str) -> Hull:
+        """Return the convex hull of a sensor's housing."""
+        if name not in self._hulls:
+            self._hulls[name] = hull_of(self.rig[name].pose, self.housings.get(name))
+        return self._hulls[name]
+
+
+def housings_of(rig: Iterable[Sensor]) -> dict[str, Housing]:
+    """Return the housings that the catalogue has, by sensor."""
+    housing = shipped("catalog.housing")
+    housings = {sensor.name: housing(sensor.model.name) for sensor in rig}
+    return {name: housing for name, housing in housings.items() if housing is not None}
+
+
+@lru_cache(1024)
+def sheet_of(model: SensorModel, own: DataSheet) -> DataSheet:
+    """Return a sensor's own figures, and the catalogue's where it has none."""
+    return own.over(shipped("catalog.data_sheet")(model.name))
+
+
+def _top(placed: Placement, name: str) -> float:
+    return float(placed.hull(name).corners[:, 2].max())
+
+
+def _width(placed: Placement, name: str) -> float:
+    return 2.0 * float(np.abs(placed.hull(name).corners[:, 1]).max())
+
+
+def _protrusion(placed: Placement, name: str) -> float:
+    low, high = placed.vehicle.bounds
+    corners = placed.hull(name).corners[:, :2]
+    return max(0.0, float((low[:2] - corners).max()), float((corners - high[:2]).max()))
+
+
+def _cleaning_reach(placed: Placement, name: str) -> float:
+    low, high = placed.vehicle.bounds
+    at = np.array(placed.rig[name].pose.position)
+    inside = min((at - low)[:2].min(), (high - at)[:2].min())
+    return math.hypot(max(0.0, float(inside)), float(at[2]))
+
+
+def _distance(placed: Placement, a: str, b: str) -> float:
+    apart = np.array(placed.rig[a].pose.position) - np.array(placed.rig[b].pose.position)
+    return float(np.sqrt(dot(apart, apart)))
+
+
+def _frontal_area(placed: Placement) -> float:
+    """Cells that a housing covers and the body does not, seen along x [m2]."""
+    grid, body = _seen_from_front(placed.vehicle)
+    fans = []
+    for sensor in placed.rig:
+        outline = convex_outline(placed.hull(sensor.name).corners[:, 1:])
+        fans += [(outline[0], *pair) for pair in pairwise(outline[1:])]
+    flat = np.pad(np.array(fans), ((0, 0), (0, 0), (0, 1)))
+    return int((np.isfinite(top_heights(flat, grid)) & ~body).sum()) * CELL_M**2
+
+
+@lru_cache(4)
+def _seen_from_front(vehicle: Vehicle) -> tuple[PerceptionSpace, Flags]:
+    """Return a grid across x, and its cells that the body covers."""
+    low, high = vehicle.bounds
+    ends = float(low[1]) - AROUND_M, float(high[1]) + AROUND_M, float(high[2]) + AROUND_M
+    left, right, top = (round(end / CELL_M) * CELL_M for end in ends)
+    grid = PerceptionSpace((left, right), (0.0, top), (0.0, CELL_M), CELL_M)
+    turned = vehicle.triangles[:, :, [1, 2, 0]]
+    body = np.zeros(grid.shape[:2], bool)
+    for some in np.array_split(turned, min(CHUNKS, len(turned))):
+        body |= np.isfinite(top_heights(some, grid))
+    return grid, body
+
+
+def _overlap(placed: Placement) -> float:
+    """Weakest link of the best chain that joins all sensors: a maximum spanning tree [deg]."""
+    first, *fields = (_field(s.model, s.pose.rpy) for s in placed.rig)
+    links = [_common(first, each) for each in fields]
+    weakest, left = 360.0, set(range(len(fields)))
+    while left:
+        joined = max(left, key=lambda k: links[k])
+        weakest = min(weakest, links[joined])
+        left.remove(joined)
+        for k in left:
+            links[k] = max(links[k], _common(fields[joined], fields[k]))
+    return weakest
+
+
+def _common(one: Flags, other: Flags) -> float:
+    """Return in how many azimuths two fields have a direction in common [deg]."""
+    return int((one & other).any(axis=1).sum()) * 360.0 / TURNS
+
+
+@lru_cache(256)
+def _field(model: SensorModel, rpy: tuple[float, float, float]) -> Flags:
+    """Return the cells (TURNS, LAYERS) of directions that a sensor sees."""
+    x, y, z = kind_of(model).rays(Sensor("field", model, Pose((0.0, 0.0, 0.0), rpy)), RAYS).T
+    level = np.abs(x) + np.abs(y) > RELATIVE  # straight up there is no azimuth
+    angles = [k * math.tau / TURNS for k in range(TURNS)]
+    edges = _turn(np.array([*map(math.cos, angles)]), np.array([*map(math.sin, angles)]))
+    layers = [math.sin((k / LAYERS - 0.5) * math.pi) for k in range(1, LAYERS)]
+    seen = np.zeros((TURNS, LAYERS), bool)
+    columns = np.searchsorted(edges, _turn(x[level], y[level]), side="right") - 1
+    seen[columns, np.searchsorted(layers, z[level])] = True
+    return seen
+
+
+def _turn(x: Floats, y: Floats) -> Floats:
+    """Return what grows with the azimuth, from 0 to 4: sums alone, the same on each machine."""
+    along = x / (np.abs(x) + np.abs(y))
+    return np.where(y >= 0.0, 1.0 - along, 3.0 + along)
+
+
+def _sum(key: str, placed: Placement) -> float:
+    return sum(getattr(sheet_of(s.model, s.sheet), key) for s in placed.rig)
+
+
+HOUSING, FIELD, SUM = "housing", "field", "sum"
+KNOWN: dict[str, Callable[[str, Placement, Sensor], bool]] = {
+    "": lambda key, placed, sensor: True,
+    HOUSING: lambda key, placed, sensor: sensor.name in placed.housings,
+    FIELD: lambda key, placed, sensor: len(kind_of(sensor.model).rays(sensor, 1)) > 0,
+    SUM: lambda key, placed, sensor: getattr(sheet_of(sensor.model, sensor.sheet), key) is not None,
+}
+"""By what a figure needs of each sensor: whether that is known."""
+
+
+@dataclass(frozen=True, slots=True)
+class BuildFigure:
+    """A figure of what can be built.
+
+    `of` is the figure of a `Placement` and the names of `arity` sensors: none, one, or two. `needs`
+    is what it takes of each sensor, of `KNOWN`. Rounding may move a placement by `slack`.
+    """
+
+    key: str
+    unit: str
+    of: Callable[..., float]
+    arity: int
+    needs: str = ""
+    on_body: bool = False
+    slack: float = 0.0
+    decimals: int = 2
+
+    @property
+    def label(self) -> str:
+        """Its name in words."""
+        return self.key.replace("_", " ")
+
+    @property
+    def is_least(self) -> bool:
+        """Whether the smallest value counts and a higher one is better, not the largest."""
+        return self.key in ("distance", "overlap")
+
+    @property
+    def limit(self) -> str:
+        """Name of its limit."""
+        return f"{'min' if self.is_least else 'max'}_{self.key}"
+
+    def lacking(self, placed: Placement) -> tuple[str, ...]:
+        """Return of what it is not known: names of sensors, or why there is no such figure."""
+        if self.on_body and placed.vehicle is None:
+            return ("no vehicle",)
+        if self.is_least and len(placed.rig) < 2:
+            return (ALONE,)
+        known = KNOWN[self.needs]
+        return tuple(s.name for s in placed.rig if not known(self.key, placed, s))
+
+    def value(self, placed: Placement) -> float | None:
+        """Return the figure of a placement; None where something is not known."""
+        if self.lacking(placed):
+            return None
+        names = [sensor.name for sensor in placed.rig]
+        values = [self.of(placed, *some) for some in combinations(names, self.arity)]
+        return min(values) if self.is_least else max(values)
+
+    def required(self, placed: Placement, field: str) -> None:
+        """Raise `InputError` where something is not known; `field` is what asks for it."""
+        if lacking := self.lacking(placed):
+            expected = f"a known {self.label} of each sensor"
+            raise InputError(
+                "optimize", field, expected, f"unknown: {', '.join(dict.fromkeys(lacking))}"
+            )
+
+    def rules(
+        self, limit: float | None, start: Placement, moving: Set[str]
+    ) -> Iterator[tuple[str, Callable[[Placement], bool]]]:
+        """Yield the rules of a limit: their texts, and whether a placement breaks them.
+
+        `InputError` where what the limit needs is not known of the start.
+        """
+        if limit is None or (self.is_least and (not limit or len(start.rig) < 2)):
+            return
+        self.required(start, self.limit)
+        sign = -1.0 if self.is_least else 1.0
+        edge = sign * limit + self.slack + (limit * RELATIVE if self.needs == SUM else 0.0)
+
+        def breaks(some: tuple[str, ...], placed: Placement) -> bool:
+            return sign * self.of(placed, *some) > edge
+
+        for some in combinations([sensor.name for sensor in start.rig], self.arity):
+            if not some or moving & set(some):
+                named = f" of {' and '.join(map(repr, some))}" if some else ""
+                yield f"{self.limit}{named}", partial(breaks, some)
+
+    def text(self, value: float) -> str:
+        """Return a value with its unit."""
+        return f"{value:,.{self.decimals}f} {self.unit}".strip()
+
+
+AT = ROUNDING_M
+SUMS = ("mass", "power", "data_rate", "price")
+"""Figures that add up over the sensors' data sheets, wherever these are."""
+BUILD_FIGURES = {
+    row.key: row
+    for row in (
+        BuildFigure("height", "m", _top, 1, slack=AT),
+        BuildFigure("width", "m", _width, 1, slack=2 * AT),
+        BuildFigure("distance", "m", _distance, 2, slack=AT),
+        BuildFigure("protrusion", "m", _protrusion, 1, HOUSING, on_body=True, slack=AT),
+        BuildFigure("cleaning_reach", "m", _cleaning_reach, 1, on_body=True, slack=AT),
+        BuildFigure("frontal_area", "m2", _frontal_area, 0, HOUSING, on_body=True, decimals=4),
+        BuildFigure("overlap", "deg", _overlap, 0, FIELD, decimals=0),
+        *(
+            BuildFigure(key, unit, partial(_sum, key), 0, SUM)
+            for key, unit in zip(SUMS, ("kg", "W", "Mbit/s", ""), strict=True)
+        ),
+    )
+}
+"""What can be built, by name."""

@@ -1,0 +1,282 @@
+"""What can be built: each figure against a plain definition, its limit, and what is not known."""
+
+import itertools
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+import pe_tools as pt
+from pe_core.scene.rig import hull_of
+from pe_core.search import Front, Goals, Parametrization
+from pe_core.search.build_figures import ALONE, BUILD_FIGURES, CELL_M, SUMS, Placement
+from pe_tools.advice import built_lines
+from pe_tools.cli.verbs import main
+from tests.engine import shapes
+
+CAN = "Velodyne VLP-16 Puck"
+"""A model of the catalogue with a housing, a mass and a power."""
+
+
+def cans(*places, **more):
+    model = pe.catalog.load(CAN)
+    return [pe.Sensor(f"can {k}", model, pe.Pose(at), **more) for k, at in enumerate(places)]
+
+
+def value(name, sensors, vehicle=None):
+    return BUILD_FIGURES[name].value(Placement.on(pe.Rig(sensors), vehicle or shapes.box_car()))
+
+
+def corners(sensors):
+    each = [hull_of(s.pose, pe.catalog.housing(s.model.name)).corners for s in sensors]
+    return np.concatenate(each)
+
+
+def test_lengths_are_those_of_the_housings_and_origins():
+    """The box car is 4.6 m long, 1.8 m wide."""
+    two = cans((-0.4, 0.3, 1.8), (2.33, -0.95, 0.6))
+    housing = pe.catalog.housing(CAN)
+    half, above = housing.size[0] / 2, housing.size[2] - housing.optical_center[2]
+    assert value("height", two) == pytest.approx(1.8 + above)
+    assert value("width", two) == pytest.approx(2 * (0.95 + half), rel=0.02)  # a prism of 16 sides
+    assert value("distance", two) == pytest.approx(math.dist((-0.4, 0.3, 1.8), (2.33, -0.95, 0.6)))
+    assert value("protrusion", two) == pytest.approx(0.05 + half, rel=0.02)
+    assert value("protrusion", two[:1]) == 0.0
+    assert value("cleaning_reach", two) == pytest.approx(math.hypot(0.9 - 0.3, 1.8))
+    assert value("cleaning_reach", two[1:]) == pytest.approx(0.6)  # outside: straight above ground
+
+
+def test_frontal_area_is_what_housings_add_to_the_silhouette():
+    """Cells of 1 cm whose middle any housing covers from the front, and neither box of the car."""
+    rng = np.random.default_rng(5)
+    for _ in range(5):
+        places = rng.uniform((-2, -1.0, 0.8), (2, 1.0, 1.6), (3, 3)).round(3).tolist()
+        sensors = cans(*places)
+        y, z = np.meshgrid(np.arange(-2.9, 2.9, CELL_M), np.arange(0, 3.4, CELL_M), indexing="ij")
+        y, z = y + CELL_M / 2, z + CELL_M / 2
+        seen = np.zeros(y.shape, bool)
+        for sensor in sensors:  # upright cylinders: rectangles
+            at = corners([sensor])
+            (_, y0, z0), (_, y1, z1) = at.min(axis=0), at.max(axis=0)
+            seen |= (y >= y0) & (y <= y1) & (z >= z0) & (z <= z1)
+        body = (abs(y) < 0.9) & (z > 0.2) & (z < 0.9) | (abs(y) < 0.7) & (z > 0.8) & (z < 1.4)
+        expected = (seen & ~body).sum() * CELL_M**2
+        assert value("frontal_area", sensors) == pytest.approx(expected, abs=30 * CELL_M**2)
+    assert value("frontal_area", cans((0, 0, 1.0))) == 0.0
+    twins = cans((0, 0, 1.6)), cans((0, 0, 1.6), (1, 0, 1.6))
+    assert value("frontal_area", twins[0]) == value("frontal_area", twins[1]) > 0.0
+
+
+def eyes(*yaws, hfov=90.0):
+    return [
+        shapes.camera(hfov, rotation=(0, 0, yaw), name=f"eye {k}") for k, yaw in enumerate(yaws)
+    ]
+
+
+def test_field_overlap_is_the_weakest_link_of_the_best_chain():
+    assert value("overlap", eyes(0, 60)) == pytest.approx(30, abs=2)
+    assert value("overlap", eyes(0, 70, 120, 180)) == pytest.approx(20, abs=2)
+    assert value("overlap", eyes(170, -130)) == pytest.approx(30, abs=2)
+    assert value("overlap", eyes(0, 60, 180)) == 0.0
+    around = shapes.lidar_on_roof()
+    assert value("overlap", [around, *eyes(0, 180)]) == pytest.approx(90, abs=2)
+    up = shapes.camera(40.0, rotation=(0, -60, 0), name="up")
+    assert value("overlap", [up, *eyes(0, hfov=40.0)]) == 0.0  # the same azimuths, apart in height
+
+
+def test_the_best_chain_is_the_best_of_all_trees():
+    rng = np.random.default_rng(8)
+    for _ in range(10):
+        sensors = eyes(*rng.uniform(-180, 180, 4).tolist(), hfov=float(rng.uniform(60, 120)))
+        links = {
+            (a, b): value("overlap", [sensors[a], sensors[b]])
+            for a, b in itertools.combinations(range(4), 2)
+        }
+        best = 0.0
+        for tree in itertools.combinations(links, 3):
+            joined = {0}
+            for _ in range(3):
+                joined |= {n for link in tree if joined & set(link) for n in link}
+            if len(joined) == 4:
+                best = max(best, min(links[link] for link in tree))
+        assert value("overlap", sensors) == best
+
+
+def test_sums_add_up_and_what_is_not_known_is_named_and_never_zero():
+    known = cans((0, 0, 1.8), (1, 0, 1.8))
+    assert value("mass", known) == pytest.approx(2 * 0.83)
+    assert value("power", known) == pytest.approx(16.0)
+    heavy = replace(known[1], sheet=pe.DataSheet(mass=1.5, price=40.0))
+    assert value("mass", [known[0], heavy]) == pytest.approx(0.83 + 1.5)
+    eye = shapes.camera(name="eye")
+    placed = Placement.on(pe.Rig([*known, eye]), shapes.box_car())
+    for name in ("mass", "power", "data_rate", "protrusion", "frontal_area"):
+        assert BUILD_FIGURES[name].value(placed) is None
+        assert BUILD_FIGURES[name].lacking(placed) == ("eye",)
+    assert BUILD_FIGURES["price"].lacking(placed) == ("can 0", "can 1", "eye")
+    assert BUILD_FIGURES["overlap"].lacking(Placement.on(pe.Rig([eye]), None)) == (ALONE,)
+    assert BUILD_FIGURES["protrusion"].lacking(Placement.on(pe.Rig(known), None)) == ("no vehicle",)
+
+
+def test_a_sheet_of_the_catalogue_says_its_source_and_has_no_price():
+    sheets = {
+        n: e.table["data_sheet"] for n, e in pe.catalog.entries().items() if "data_sheet" in e.table
+    }
+    assert sheets[CAN]["mass"] == 0.83
+    assert all(set(t) <= {"mass", "power", "data_rate", "source"} for t in sheets.values())
+    assert all(len(table["source"]) > 20 for table in sheets.values())
+    table = dict(pe.catalog.entries()[CAN].table)
+    for wrong in ({"mass": -1, "source": "s"}, {"mass": 1}, {"weight": 1, "source": "s"}, 3):
+        with pytest.raises(pe.InputError, match="data_sheet"):
+            pe.catalog.from_table("mine", table | {"data_sheet": wrong})
+
+
+LIMITS = (
+    ("max_mass", 1.0, cans((0, 0, 1.8), (1, 0, 1.8))),
+    ("max_power", 15.0, cans((0, 0, 1.8), (1, 0, 1.8))),
+    ("max_data_rate", 7.0, cans((0, 0, 1.8))),
+    ("max_protrusion", 0.01, cans((2.4, 0, 0.6))),
+    ("max_cleaning_reach", 1.5, cans((0, 0, 1.8))),
+    ("max_frontal_area", 0.002, cans((0, 0, 1.8))),
+    ("min_overlap", 31.5, eyes(0, 60)),
+)
+
+
+@pytest.mark.parametrize(("name", "limit", "sensors"), LIMITS, ids=[row[0] for row in LIMITS])
+def test_a_limit_is_a_rule_of_each_placement(name, limit, sensors):
+    def broken(at):
+        constraints = pe.Mounting(constraints=pe.Constraints(**{name: at}))
+        rig = pe.Rig(sensors)
+        space = pe.SearchSpace.on_vehicle(rig, shapes.box_car(), mounting=constraints)
+        housings = {s.name: h for s in rig if (h := pe.catalog.housing(s.model.name))}
+        coding = Parametrization(rig, replace(space, housings=housings))
+        return sorted(text.split(" of ")[0] for text in coding.broken(rig))
+
+    found = value(name.partition("_")[2], sensors)
+    assert broken(limit) == [name] and broken(found) == []
+    looser = found * (0.9 if name.startswith("min") else 1.1)
+    assert broken(looser) == []
+
+
+def test_a_limit_of_what_is_not_known_is_refused_in_one_line():
+    for name in ("max_mass", "max_protrusion"):
+        rig = pe.Rig([*cans((0, 0, 1.8)), shapes.camera(name="eye")])
+        search = pe.Search(mounting=pe.Mounting(constraints=pe.Constraints(**{name: 1.0})))
+        study = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search)
+        with pytest.raises(pe.InputError) as error:
+            study.coding()
+        assert error.value.field == name and "eye" in error.value.found
+        assert "\n" not in str(error.value) and "can" not in error.value.found
+
+
+def kept(**limits):
+    """The rig that a short search ends with, from cans low on the box car's roof."""
+    sensors = cans((-0.4, 0, 1.5), (0.4, 0, 1.5))
+    free = dict.fromkeys(("can 0", "can 1"), ("x", "y", "z"))
+    mounts = pe.Mounting(constraints=pe.Constraints(**limits))
+    search = pe.Search(free, samples=1024, evaluations=80, mounting=mounts)
+    study = pe.Study(pe.Rig(sensors), shapes.box_car(), shapes.small_space(), search=search)
+    job = pt.OptimizeJob(replace(study, samples=1024), 1)
+    list(job)
+    return job.outcome
+
+
+def test_a_search_keeps_its_limits_and_would_not_without_them():
+    limits = {"max_frontal_area": 0.02, "max_cleaning_reach": 1.7}
+    free, bound = kept(), kept(**limits)
+    for name, limit in limits.items():
+        key = name.removeprefix("max_")
+        assert value(key, list(bound.study.rig)) <= limit + 2e-5
+    worst = [value(name.removeprefix("max_"), list(free.study.rig)) for name in limits]
+    assert any(w > limit for w, limit in zip(worst, limits.values(), strict=True))
+    assert bound.after.entropy < bound.before.entropy
+
+
+def choice_study(**more):
+    """A study that chooses each of two cans' models by price, mass and power."""
+    small, large = (shapes.small_lidar(n, 90) for n in (4, 16))
+    object.__setattr__(large, "name", "large")
+    options = [pe.Option(small, 100.0, 0.5, 5.0, 8.0), pe.Option(large, 300.0, 2.0, 9.0, 30.0)]
+    sensors = [
+        shapes.lidar_on_roof(small, (x, 0, 1.8), name=n) for n, x in (("a", -0.5), ("b", 0.5))
+    ]
+    choices = [pe.Choice(options, ["a"]), pe.Choice(options, ["b"], optional=True)]
+    limits = pe.Mounting(constraints=pe.Constraints(**more))
+    goals = Goals(front=Front(("entropy", "mass"), 3))
+    search = pe.Search(
+        {"a": ("z",), "b": ("z",)}, samples=1024, evaluations=24, goals=goals, mounting=limits
+    )
+    selection = pe.Selection(choices)
+    rig = pe.Rig(sensors)
+    given = {"search": search, "samples": 1024, "selection": selection}
+    return pe.Study(rig, shapes.box_car(), shapes.small_space(), **given)
+
+
+@pytest.mark.parametrize("limits", [{}, {"max_mass": 2.5}, {"max_power": 10.0, "max_mass": 2.0}])
+def test_designs_within_limits_of_sums_are_those_of_an_exhaustive_search(limits):
+    designs = choice_study(**limits).designs()
+    found = {picks: [designs.sum(key, picks) for key in SUMS] for picks in designs}
+    mass, power, rate, price = (0.5, 2.0), (5.0, 9.0), (8.0, 30.0), (100.0, 300.0)
+    plain = {}
+    for a, b in itertools.product(range(2), range(3)):
+        sums = [own[a] + (own[b] if b < 2 else 0.0) for own in (mass, power, rate, price)]
+        if sums[0] <= limits.get("max_mass", 99) and sums[1] <= limits.get("max_power", 99):
+            plain[a, b] = sums
+    assert found == plain
+    with pytest.raises(pe.InputError, match="max_mass"):
+        choice_study(max_mass=0.4).designs()
+
+
+def test_choices_whose_sums_are_not_known_are_refused_by_name():
+    study = choice_study(max_mass=9.0)
+    first, second = study.selection.choices
+    options = [replace(first.options[0], mass=None), first.options[1]]
+    with pytest.raises(pe.InputError, match="max_mass") as error:
+        replace(study, selection=pe.Selection([replace(first, options=options), second])).designs()
+    assert first.options[0].model.name in error.value.found
+
+
+def test_a_front_over_a_sum(tmp_path):
+    job = pt.FrontJob(choice_study(), 1)
+    list(job)
+    front = job.trade_off.front
+    assert len(front) >= 2 and job.trade_off.objectives == ("entropy", "mass")
+    masses = {"small": 0.5, "large": 2.0}
+    for design in job.trade_off.designs:
+        plain = sum(masses[sensor.model.name] for sensor in design.study.rig)
+        assert design.figures["mass"] == plain == value("mass", list(design.study.rig))
+    lightest = min(front, key=lambda d: d.figures["mass"])
+    best = min(front, key=lambda d: d.figures["entropy"])
+    assert lightest.figures["mass"] == 0.5 and best.figures["mass"] > 0.5
+
+
+def test_a_score_tells_what_can_be_built_and_of_whom_it_is_not_known(tmp_path, capsys):
+    sensors = [*cans((-0.4, 0, 1.8)), shapes.camera(name="eye")]
+    given = {"search": pe.Search(samples=1024), "samples": 1024}
+    study = pe.Study(pe.Rig(sensors), shapes.box_car(), shapes.small_space(), **given)
+    pt.export_study(study, tmp_path / "study.toml")
+    assert main(["score", str(tmp_path / "study.toml"), "-o", str(tmp_path / "out")]) == 0
+    told = capsys.readouterr().out.splitlines()
+    data = json.loads((tmp_path / "out" / "result.json").read_text())["figures"]["after"]
+    placed = Placement.on(study.rig, study.vehicle)
+    assert data["built"] == {
+        key: pytest.approx(figure)
+        for key, row in BUILD_FIGURES.items()
+        if (figure := row.value(placed)) is not None
+    }
+    assert data["unknown"]["mass"] == ["eye"] and "mass" not in data["built"]
+    lines = built_lines([pt.advice.KeyFigures.from_dict(data)])
+    assert len(lines) == 2 and set(lines) <= set(told) and "eye" in lines[1]
+
+
+def test_a_sheet_goes_through_the_study_file():
+    own = pe.DataSheet(0.4, None, 12.5, 99.0)
+    study = pe.Study(pe.Rig(cans((0, 0, 1.8), sheet=own)), None, shapes.small_space())
+    table = pe.study_to_dict(study)
+    assert table["sensor"][0]["mass"] == 0.4 and "power" not in table["sensor"][0]
+    assert pe.study_from_dict(table).rig["can 0"].sheet == own
+    with pytest.raises(pe.InputError, match="mass"):
+        pe.DataSheet(mass=-1.0)

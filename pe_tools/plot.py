@@ -1,4 +1,4 @@
-"""Plots for notebooks, on axes of matplotlib: the ground and a rig.
+"""Plots for notebooks, on axes of matplotlib: the ground, a rig, a LiDAR's beams, scores.
 
 Each function draws on the `axes` of a subplot, or of a new figure, and returns them. Backend and
 style stay those of the notebook. `InputError` when matplotlib is not installed (the extra
@@ -14,13 +14,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pe_core.base.arrays import Floats
+from pe_core.base.errors import InputError, shown
 from pe_core.base.plugins import required_package
 from pe_core.base.values import choice
-from pe_core.scene.rig import Rig
+from pe_core.scene.rig import Rig, Sensor
 from pe_core.scene.vehicle import Vehicle
+from pe_core.scoring.score import PartScore, Score
 from pe_core.study.study import Study
 
-from .graphics import COVERAGE, ENTROPY, QUANTITIES, fitted_bounds
+from .graphics import COVERAGE, ENTROPY, QUANTITIES, cast, fitted_bounds
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,6 +35,7 @@ LIGHT, DARK = 0.93, 0.55
 """Grey of a surface that faces the reader, and of one seen from its edge."""
 BORESIGHT_M = 0.5
 """Length of the line in which a sensor looks."""
+MOST_BEAMS = 60_000
 SKY, GREY = "#56B4E9", "#8A8A8A"
 PALETTE = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7")
 """Of Okabe and Ito, safe for colour-blind readers."""
@@ -121,6 +124,74 @@ def rig(
     axes.set(xlabel=LABELS[right], ylabel=LABELS[up], aspect="equal")
     axes.margins(0.08)
     return _with_legend(axes)
+
+
+def beams(study: Study, sensor: str | Sensor, *, axes: Axes | None = None) -> Axes:
+    """Draw the beams of a LiDAR by azimuth and elevation, and those that the vehicle occludes.
+
+    Parameters
+    ----------
+    study : Study
+    sensor : str or Sensor
+        A LiDAR of the study's rig by its name, or any other.
+    """
+    if isinstance(sensor, str):
+        sensor = study.rig[choice("plot", "sensor", sensor, [s.name for s in study.rig])]
+    found = cast(sensor, study.vehicle, MOST_BEAMS)
+    axes = _axes(axes, (8.0, 3.6))
+    x, y, z = found.directions.T
+    azimuth, elevation = np.degrees(np.arctan2(y, x)), np.degrees(np.arcsin(z))
+    part = np.full(len(found.face), -1)
+    if study.vehicle is not None:
+        part[found.occluded] = np.asarray(study.vehicle.parts)[found.face[found.occluded]]
+    numbers, counts = np.unique(part[part >= 0], return_counts=True)
+    by_size = numbers[np.argsort(-counts)].tolist()
+    names = () if study.vehicle is None else study.vehicle.part_names
+    groups = [(part == -1, "free", SKY)]
+    groups += [(part == n, names[n], c) for n, c in zip(by_size, PALETTE[1:], strict=False)]
+    groups.append((np.isin(part, by_size[len(PALETTE) - 1 :]), "other parts", GREY))
+    for member, name, color in groups:
+        if member.any():
+            label = f"{name}, {100.0 * member.mean():.2g} %"
+            axes.plot(azimuth[member], elevation[member], ".", ms=1.6, color=color, label=label)
+    axes.set(xlabel="azimuth, to the left [deg]", ylabel="elevation [deg]", xlim=(180, -180))
+    axes.set_xticks(range(-180, 181, 60))
+    axes.set_title(f"{sensor.name}: {sensor.model.name}", loc="left", fontsize="medium")
+    return _with_legend(axes, markerscale=6)
+
+
+def compare(scores: Mapping[str, Score], *, axes: Axes | None = None) -> Axes:
+    """Draw the entropy of several scores: of the rig, by zone, and by class.
+
+    Parameters
+    ----------
+    scores : mapping of str to Score
+        By the name that the legend has.
+    """
+    if not isinstance(scores, Mapping) or not all(isinstance(s, Score) for s in scores.values()):
+        raise InputError("plot", "scores", "scores by name", shown(scores))
+    if not scores:
+        raise InputError("plot", "scores", "at least one score", "none")
+    tables = [_entropies(score) for score in scores.values()]
+    names = list(dict.fromkeys(name for table in tables for name in table))
+    axes = _axes(axes, (8.0, 0.9 + 0.27 * len(names)))
+    rows = np.arange(len(names))
+    values = np.array([[table.get(name, np.nan) for name in names] for table in tables])
+    low, high = np.nanmin(values, axis=0), np.nanmax(values, axis=0)
+    axes.hlines(rows, low, high, color=GREY, lw=1.5, alpha=0.6, zorder=1)
+    for number, (name, row) in enumerate(zip(scores, values, strict=True)):
+        color = PALETTE[number % len(PALETTE)]
+        axes.plot(row, rows, "o", color=color, mec="white", ms=8, label=name)
+    axes.set(yticks=rows, yticklabels=names, xlabel="entropy [nats], lower is better")
+    axes.invert_yaxis()
+    axes.grid(axis="x", alpha=0.3)
+    return _with_legend(axes)
+
+
+def _entropies(score: Score) -> dict[str, float]:
+    """Return entropies by row: of the rig, its zones and classes [nats]."""
+    parts: dict[str, PartScore] = {**score.per_zone, **score.per_class}
+    return {"rig": score.entropy, **{name: part.entropy for name, part in parts.items()}}
 
 
 def _axes(axes: Axes | None, size: tuple[float, float]) -> Axes:

@@ -255,13 +255,22 @@ def test_a_job_runs_with_a_bar_and_without_one(monkeypatch, capsys):
 def test_plots_draw_on_given_axes_and_refuse_what_is_none():
     import matplotlib.pyplot as plt
 
-    figure, (top, low) = plt.subplots(1, 2)
+    figure, ((top, right), (low, last)) = plt.subplots(2, 2)
     one = study()
     assert pt.plot.rig(one, view="top", axes=top) is top and len(top.lines) == 2
+    assert pt.plot.beams(one, "roof", axes=right) is right
+    drawn = sum(len(line.get_xdata()) for line in right.lines)
+    assert drawn == LIDAR.beam_count
     assert pt.plot.ground(one, quantity="coverage", axes=low) is low and len(low.images) == 1
+    score = one.evaluator().score(one.rig)
+    pt.plot.compare({"one": score, "two": score}, axes=last)
+    assert last.lines[0].get_xdata()[0] == score.entropy
     for wrong in (
         lambda: pt.plot.rig(one, view="left"),
+        lambda: pt.plot.beams(one, "rof"),
         lambda: pt.plot.ground(one, quantity="price"),
+        lambda: pt.plot.compare({}),
+        lambda: pt.plot.compare({"one": 3}),
     ):
         with pytest.raises(pe.InputError):
             wrong()

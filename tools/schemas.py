@@ -185,6 +185,12 @@ def study_schema() -> dict[str, Any]:
     counts = table({kind: {"type": "integer", "minimum": 0} for kind in KINDS})
     state = {"name": TEXT, **declared["state"], "body": table(declared["state.body"])}
     state["move"] = tables(declared["state.move"])
+    path = {"type": "array", "items": numbers(3)}
+    actor = {"name": TEXT, "body": TEXT, "size": numbers(3), "class": TEXT, "path": path}
+    actor |= {"watched": SWITCH, "heading_deg": NUMBER}
+    story = {"name": TEXT, "preset": TEXT, "title": TEXT, "source": TEXT, **declared["story"]}
+    story["body"] = tables(actor, "body", "path")
+    by_name = {"type": "object", "additionalProperties": NUMBER}
     keys = {
         **declared[""],
         "space": table(declared["space"]),
@@ -200,6 +206,8 @@ def study_schema() -> dict[str, Any]:
         "requirement": tables(requirement, "name"),
         "weather": tables({"name": TEXT, **declared["weather"]}, "name"),
         "state": tables(state, "name"),
+        "time": table({**declared["time"], "noises": by_name, "rates": by_name}),
+        "story": tables(story),
         "optimize": table(optimize),
         "choice": tables(choice, "option"),
         "selection": table({**declared["selection"], "max_of_kind": counts}),

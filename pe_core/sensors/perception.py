@@ -227,10 +227,10 @@ class PerceptionModel:
         return {kind: self.curve(kind) for kind in KINDS}
 
     def __repr__(self) -> str:
-        curves = ", ".join(f"{kind}={curve!r}" for kind, curve in self.curves.items())
+        curves = "".join(f", {kind}={curve!r}" for kind, curve in self.other_curves.items())
         objects = f", objects={dict(self.objects)!r}" if self.objects else ""
         more = "".join(f", {name}={value!r}" for name, value in changed_settings(self).items())
-        return f"PerceptionModel(blind={self.blind!r}, {curves}{objects}{more})"
+        return f"PerceptionModel(blind={self.blind!r}{curves}{objects}{more})"
 
 
 def _checked_curves(curves: Mapping[str, ApCurve]) -> Mapping[str, ApCurve]:

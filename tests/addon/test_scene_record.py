@@ -92,9 +92,10 @@ def rich(car):
     settings.prior, settings.returns = "highway", "road"
     assert bpy.ops.pe.add_focus(region="front") == {"FINISHED"}
     settings.targets, settings.traffic, settings.scenes = "objects", True, 24
-    settings.ap_model = "scans"
+    settings.ap_model, settings.protocol_floor = "scans", 0.2
     curve = settings.curves.add()
     curve.name, curve.own, curve.a, curve.b = "lidar", True, 0.2, 0.1
+    curve.c = 0.1
     settings.score_samples, settings.search_samples = 2048, 1024
     settings.method, settings.candidates, settings.evaluations = "random", 3, 7
     settings.seed, settings.mounting_errors, settings.failures = 5, True, True

@@ -14,7 +14,7 @@ from pe_core.base import Flags, Floats, Ints, Singles
 
 if TYPE_CHECKING:
     from pe_core import base as text
-    from pe_core import catalog, scoring, search
+    from pe_core import catalog, motion, scoring, search
     from pe_core import scene as geometry
     from pe_core import sensors as kinds
     from pe_core import study as studies
@@ -42,6 +42,7 @@ ROOMS = {
     "geometry": (pe, "scene"),
     "graphics": (tools, "graphics"),
     "jobs": (tools, "jobs"),
+    "motion": (pe, "motion"),
     "kinds": (pe, "sensors"),
     "outputs": (tools, "outputs"),
     "page": (tools, "page"),
@@ -64,5 +65,15 @@ def __getattr__(name: str) -> object:
 
 
 __all__ = ["Flags", "Floats", "Ints", "Singles", "advice", "app", "catalog", "engine_process"]
-__all__ += ["exchange", "formats", "geometry", "graphics", "jobs", "kinds", "outputs", "page", "pe"]
-__all__ += ["requirements", "scoring", "search", "sight", "studies", "text", "wording"]
+__all__ += [
+    "exchange",
+    "formats",
+    "geometry",
+    "graphics",
+    "jobs",
+    "kinds",
+    "motion",
+    "outputs",
+    "page",
+]
+__all__ += ["pe", "requirements", "scoring", "search", "sight", "studies", "text", "wording"]

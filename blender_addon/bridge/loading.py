@@ -25,6 +25,7 @@ from .rig import place_at, view_layer_of
 from .scene_record import SceneRecord, study_from_scene, vehicle_of_scene, write_options
 from .scene_settings import write_goals, write_passthrough, write_reference, write_values
 from .sensor_records import NO_BOUNDS, ZEROS, ModelOption, SensorRecord
+from .time import write_time
 from .vehicle import make_body, paint_area, same_body
 
 RACK = "rack {}"
@@ -93,7 +94,9 @@ def record_of_study(study: pe.Study) -> SceneRecord:
         passthrough=study.passthrough,
         requirements=study.requirements,
         conditions=study.conditions,
-        time=studies.InTime(study.frames, study.confirmation, study.stories),
+        frames=study.frames,
+        confirmation=study.confirmation,
+        stories=study.stories,
     )
 
 
@@ -225,7 +228,7 @@ def _write_settings(settings: PropertyGroup, record: SceneRecord) -> None:
             write_values(row, curve)
     write_reference(settings, record.reference)
     write_passthrough(settings, record.passthrough)
-    settings.time_text = studies.time_text(record.time)
+    write_time(settings, record.frames, record.confirmation, record.stories)
 
 
 def _write_mounts(scene: Scene, mounts: Mapping[str, search.AnyMount]) -> None:

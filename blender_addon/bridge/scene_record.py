@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 from bpy.types import Collection, Depsgraph, Object, PropertyGroup, Scene
 
-from ..engine import catalog, exchange, pe, requirements, search, studies
+from ..engine import catalog, exchange, motion, pe, requirements, search, studies
 from .conditions import as_drawn, conditions_of, read_states
 from .mounting import constraints_of, mounting_of, mounts_of
 from .prior import prior_from_scene
@@ -38,6 +38,7 @@ from .sensor_records import (
     record_of_sensor,
     rig_of,
 )
+from .time import time_of
 from .transform_constraints import unlocked_axes
 from .vehicle import vehicle_from_collection
 
@@ -71,7 +72,9 @@ class SceneRecord:
     passthrough: exchange.Passthrough | None
     requirements: tuple[Requirement, ...]
     conditions: pe.Conditions
-    time: studies.InTime
+    frames: motion.Frames
+    confirmation: motion.Confirmation
+    stories: tuple[motion.Story, ...]
 
 
 def study_from_scene(
@@ -156,7 +159,7 @@ def record_of_scene(
         passthrough=studies.passthrough_of_text(settings.passthrough, "scene"),
         requirements=requirements_of(settings),
         conditions=conditions_of(settings),
-        time=studies.time_of_text(settings.time_text, "scene"),
+        **time_of(settings),
     )
 
 
@@ -191,7 +194,9 @@ def study_of(record: SceneRecord) -> pe.Study:
         targets=record.targets,
         requirements=record.requirements,
         conditions=record.conditions,
-        **record.time._asdict(),
+        frames=record.frames,
+        confirmation=record.confirmation,
+        stories=record.stories,
     )
 
 

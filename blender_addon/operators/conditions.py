@@ -1,4 +1,4 @@
-"""States and weathers in the panel: add, remove, show a state, read the states' motions again."""
+"""States, weathers and stories in the panel: add, remove; show a state, read its motions again."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import bpy
 from bpy.props import EnumProperty, IntProperty
 
 from .. import bridge, signals
-from ..engine import pe
+from ..engine import motion, pe
 from .declared import RowList, operator
 
 DRAWN = -1
@@ -22,6 +22,8 @@ STATE_ROWS = RowList("states", "state_index", "state")
 WEATHER_ROWS = RowList("weathers", "weather_index", "weather")
 STATE_ROWS.operators(remove="Remove the selected state")
 WEATHER_ROWS.operators(remove="Remove the selected weather")
+STORY_ROWS = RowList("stories", "story_index", "story")
+STORY_ROWS.operators(remove="Remove the selected story")
 
 
 @operator("Add State of This Frame", signal=signals.study_changed)
@@ -75,3 +77,24 @@ def add_weather(context: bpy.types.Context, weather: str) -> None:
     row.night = weather == "NIGHT"
     if weather in STARTS:
         setattr(row, *STARTS[weather])
+
+
+def _story_items(_self: object, _context: object) -> list[tuple[str, str, str]]:
+    return STORY_ITEMS
+
+
+STORY_ITEMS = [(name, each.title, each.source) for name, each in motion.stories().items()]
+
+
+@operator(
+    "Add Story",
+    signal=signals.study_changed,
+    story=EnumProperty(items=_story_items, name="Story", description="What moves"),
+)
+def add_story(context: bpy.types.Context, story: str) -> None:
+    """Add a story of what moves: when is it confirmed, and does the vehicle stop in time?"""
+    shipped = motion.stories()[story]
+    row = STORY_ROWS.add(context.scene, story)
+    name = row.name
+    bridge.write_story(row, shipped)
+    row.name = name

@@ -313,8 +313,8 @@ def check_task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerpri
     After Esc those that were found before it are kept; a requirement that was changed meanwhile
     has no verdict.
     """
-    if not study.requirements:
-        raise pe.InputError("scene", "requirements", "at least one", "none")
+    if not study.requirements and not study.stories:
+        raise pe.InputError("scene", "requirements", "at least one, or a story", "none")
     tables = {*bridge.requirements_key(scene.perception_entropy)}
     bridge.store_verdicts(scene.perception_entropy, ())
     count = 0
@@ -325,6 +325,7 @@ def check_task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerpri
         same = {name for name, _ in tables & {*bridge.requirements_key(settings)}}
         kept = [each for each in found.verdicts if each.name in same]
         bridge.store_verdicts(settings, kept, found.unchecked)
+        bridge.store_driven(settings, found.driven)
 
     def progressed(scene: bpy.types.Scene, job: jobs.CheckJob) -> None:
         if len(job.verdicts) > count:
@@ -333,11 +334,12 @@ def check_task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerpri
     def finish(scene: bpy.types.Scene, found: jobs.Checked) -> Told:
         store(scene, found)
         missed = [verdict.name for verdict in found.verdicts if not verdict.met]
+        missed += [driven.story.name for driven in found.driven if not driven.is_met]
         unchecked = [*found.unchecked, *found.missing]
         more = f"; not met: {', '.join(missed)}" if missed else ""
         more += f"; not checked: {', '.join(unchecked)}" if unchecked else ""
-        met, of = len(found.verdicts) - len(missed), len(found.verdicts)
-        text = f"{met} of {of} requirements are met{more}"
+        of = len(found.verdicts) + len(found.driven)
+        text = f"{of - len(missed)} of {of} requirements and stories are met{more}"
         return Told(text, level="WARNING" if missed or unchecked else "INFO")
 
     return Task(jobs.CheckJob(study, fitting=True), finish, "checked", progressed)

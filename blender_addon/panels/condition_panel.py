@@ -1,11 +1,13 @@
-"""Conditions: lists of states and weathers, and the scores of the last run under them."""
+"""Conditions: states and weathers, with scores under them; and stories of what moves."""
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 from bpy.types import Context, PropertyGroup, UILayout
 
+from ..language import draw_label
 from .layout import (
     columns,
     draw_declared,
@@ -53,6 +55,51 @@ def conditions(layout: UILayout, settings: PropertyGroup, context: Context) -> N
         draw_sentence(layout, context, line)
 
 
+@row_list("PE_UL_stories")
+def stories_rows(_context: Context, layout: UILayout, _settings: Any, item: Any) -> None:
+    """The stories: used, name, and the smallest margin"""
+    row = layout.row(align=True)
+    row.prop(item, "enabled", text="")
+    found = json.loads(item.result) if item.result else None
+    icon = "BLANK1" if found is None else "CHECKMARK" if found["met"] else "CANCEL"
+    name, margin = columns(row, 0.7)
+    name.alert = found is not None and not found["met"]
+    name.prop(item, "name", text="", emboss=False, icon=icon)
+    margin.alignment = "RIGHT"
+    if found is not None:
+        seconds = found["shown_margin_s"]
+        draw_label(margin, "never" if seconds is None else f"{seconds:+.1f} s")
+
+
+@panel("Seen in Time", bl_ui_units_x=17)
+def seen_in_time(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
+    """Stories of what moves: when a track is confirmed, and whether the vehicle stops in time"""
+    names, buttons = ("stories", "story_index"), ("pe.add_story", "pe.remove_story")
+    draw_list(layout, stories_rows, settings, names, buttons, menu="story")
+    if settings.stories:
+        layout.operator("pe.check_requirements", text="Check", icon="VIEWZOOM")
+    if settings.story_index < len(settings.stories):
+        row = settings.stories[settings.story_index]
+        for body in json.loads(row.result)["bodies"] if row.result else ():
+            draw_sentence(layout, context, _body_text(body))
+        draw_declared(layout, row, "story")
+    draw_declared(layout, settings, "time")
+
+
+def _body_text(body: dict[str, Any]) -> str:
+    """Return when a body's track is confirmed, as a sentence."""
+    moments = {
+        chance: f"{-at['time_s']:.1f} s before, at {at['distance_m']:.1f} m"
+        for chance, at in body["confirmed"].items()
+        if at is not None
+    }
+    if not moments:
+        return f"{body['name']}: never confirmed"
+    texts = [f"{float(chance):.0%} {text}" for chance, text in moments.items()]
+    lost = f"; then lost for {body['lost_s']:.1f} s" if body["lost_s"] else ""
+    return f"{body['name']}: confirmed with {', '.join(texts)}{lost}"
+
+
 def _draw_row(layout: UILayout, item: PropertyGroup) -> UILayout:
     """Draw whether a condition is used, its name and its weight; return the row."""
     row = layout.row(align=True)
@@ -64,4 +111,4 @@ def _draw_row(layout: UILayout, item: PropertyGroup) -> UILayout:
     return row
 
 
-CLASSES = (states_rows, weathers_rows, conditions)
+CLASSES = (states_rows, weathers_rows, conditions, stories_rows, seen_in_time)

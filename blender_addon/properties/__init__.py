@@ -21,6 +21,7 @@ from .list_rows import (
     PE_OwnSensorSettings,
     PE_SensorOption,
     PE_State,
+    PE_Story,
     PE_Variant,
     PE_Weather,
 )
@@ -47,6 +48,7 @@ CLASSES = (
     PE_Requirement,
     PE_State,
     PE_Weather,
+    PE_Story,
     PE_Variant,
     PE_ViewSettings,
     PE_SceneSettings,

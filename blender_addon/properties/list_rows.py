@@ -11,7 +11,7 @@ from typing import Any
 from bpy.types import Collection, Context, Object, PropertyGroup
 
 from ..choices import BY_GROUP, BY_PARTS, ON_SLOTS, ON_SURFACE, REGION_ITEMS, free_name
-from ..engine import geometry, kinds, pe
+from ..engine import geometry, kinds, motion, pe
 from ..sensor_kinds import OwnCamera, OwnLidar, OwnTable, own_kinds
 from .callbacks import changed, model_suggestions, redraw
 from .declared import group_of
@@ -181,6 +181,16 @@ class PE_State(StateFields, Switched, PropertyGroup):
 
 class PE_Weather(WeatherFields, Switched, PropertyGroup):
     """A weather. At most one of rain, snow and fog is above 0."""
+
+
+StoryFields: Any = group_of(motion.Story)
+
+
+class PE_Story(StoryFields, Switched, PropertyGroup):
+    """A story of what moves round the vehicle; the row has its name."""
+
+    table: text("Story", "What the fields do not have, as JSON: preset, bodies", update=changed)
+    result: text("Result", "When its tracks are confirmed, as JSON")
 
 
 class PE_Variant(PropertyGroup):

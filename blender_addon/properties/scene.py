@@ -20,6 +20,7 @@ from .list_rows import (
     PE_MountSettings,
     PE_OwnSensorSettings,
     PE_State,
+    PE_Story,
     PE_Variant,
     PE_Weather,
 )
@@ -44,6 +45,7 @@ LISTS = (
     ("requirements", "requirement_index", "Zones where bodies have to be seen", PE_Requirement),
     ("states", "state_index", "States of the vehicle: frames of the scene", PE_State),
     ("weathers", "weather_index", "Weathers in which the rig is scored, too", PE_Weather),
+    ("stories", "story_index", "What moves, and when it is confirmed", PE_Story),
     ("variants", "variant_index", "Saved sets of sensors for this vehicle", PE_Variant),
 )
 """Lists of rows: the properties of the rows and of the selected row's place, what they are, and a
@@ -117,7 +119,9 @@ class PE_SceneSettings(StudyFields, ListFields, bridge.ResultViews, PropertyGrou
         options={"HIDDEN"},
     )
 
-    time_text: text("Time", "Frames, tracks and stories of the study, as JSON", options={"HIDDEN"})
+    time_text: text(
+        "Time", "Process noises by class and frame rates by kind, as JSON", options={"HIDDEN"}
+    )
 
     axles_known: switch(
         "Axles",

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats, ReadOnlyDict
-from ..base.setting import check_settings, setting
+from ..base.setting import Panel, check_settings, setting
 from ..base.values import Number, Whole
 from .entropy import BLIND_PRECISION
 
@@ -72,12 +72,20 @@ class Frames:
     """
 
     frames: int = setting(
-        1, Whole(1, 1000), "Frames that the entropy over frames is of; 1: it is not computed"
+        1,
+        Whole(1, 1000),
+        "Frames that the entropy over frames is of; 1: it is not computed",
+        Panel("time_frames", "Frames", soft_max=20),
     )
     q: float = setting(
-        1.0, NOISE, "Process noise of a class [1/s]: how soon a frame is out of date"
+        1.0,
+        NOISE,
+        "Process noise of a class [1/s]: how soon a frame is out of date",
+        Panel("time_q", "Process Noise"),
     )
-    rate_hz: float = setting(10.0, RATE, "Frames of a sensor in a second")
+    rate_hz: float = setting(
+        10.0, RATE, "Frames of a sensor in a second", Panel("time_rate_hz", "Frame Rate")
+    )
     noises: Mapping[str, float] = field(default_factory=dict)
     rates: Mapping[str, float] = field(default_factory=dict)
 

@@ -1,8 +1,9 @@
 """Time: stories of what moves round the vehicle, tracks, and when they are confirmed."""
 
+from ..metric.frames import Frames
 from .drive_by import DriveBy, Moment, SeenBody, drive_by
 from .story import Actor, Story, read_story, stories
 from .tracks import Confirmation
 
-__all__ = ["Actor", "Confirmation", "DriveBy", "Moment", "SeenBody", "Story", "drive_by"]
+__all__ = ["Actor", "Confirmation", "DriveBy", "Frames", "Moment", "SeenBody", "Story", "drive_by"]
 __all__ += ["read_story", "stories"]

@@ -74,7 +74,7 @@ class SeenBody:
     @property
     def shown_margin_s(self) -> float | None:
         """The margin as it is shown, rounded to the safe side [s]."""
-        return None if self.margin_s is None else math.floor(self.margin_s * 10.0) / 10.0
+        return shown_margin(self.margin_s)
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain JSON data."""
@@ -111,6 +111,14 @@ class DriveBy:
         margins = [body.margin_s for body in self.bodies]
         known = [margin for margin in margins if margin is not None]
         return min(known) if len(known) == len(margins) else None
+
+    def summary(self) -> dict[str, Any]:
+        """Return verdict and moments of each body, without its frames, as plain JSON data."""
+        frames = ("ap", "probability", "ap_by_sensor", "x", "y")
+        data = self.to_dict()
+        del data["times_s"]
+        bodies = [{k: v for k, v in b.items() if k not in frames} for b in data["bodies"]]
+        return data | {"bodies": bodies, "shown_margin_s": shown_margin(self.margin_s)}
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain JSON data, with the stop that it is held to."""
@@ -208,6 +216,11 @@ def _distance(positions: Floats, vehicle: Vehicle | None) -> Floats:
     low, high = ((0.0, 0.0), (0.0, 0.0)) if vehicle is None else (b[:2] for b in vehicle.bounds)
     outside = np.maximum(np.maximum(np.asarray(low) - positions, positions - np.asarray(high)), 0.0)
     return np.asarray(np.hypot(*outside.T))
+
+
+def shown_margin(margin_s: float | None) -> float | None:
+    """Return a margin rounded to the safe side, to 0.1 s."""
+    return None if margin_s is None else math.floor(margin_s * 10.0) / 10.0
 
 
 def _moment(at: Moment | None) -> dict[str, float] | None:

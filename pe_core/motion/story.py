@@ -19,7 +19,7 @@ import numpy as np
 from ..base.arrays import Floats
 from ..base.errors import InputError, shown
 from ..base.files import decode_text, read_bytes
-from ..base.setting import FLAG, OneOf, check_settings, read_settings, setting
+from ..base.setting import FLAG, OneOf, Panel, check_settings, read_settings, setting
 from ..base.table_reader import Table, load_toml
 from ..base.values import A_NAME, Number, listed, vector
 from ..scene.objects import Objects
@@ -86,15 +86,29 @@ class Story:
     title: str = ""
     source: str = ""
     preset: str = ""
-    speed_kmh: float = setting(30.0, Number(0.0, 250.0, unit="km/h"), "Own speed")
+    speed_kmh: float = setting(
+        30.0,
+        Number(0.0, 250.0, unit="km/h"),
+        "Own speed [km/h]",
+        Panel("speed_kmh", "Own Speed (km/h)"),
+    )
     deceleration: float = setting(
-        6.0, Number(0.0, 15.0, above=True, unit="m/s^2"), "Deceleration of a full braking [m/s^2]"
+        6.0,
+        Number(0.0, 15.0, above=True, unit="m/s^2"),
+        "Deceleration of a full braking [m/s^2]",
+        Panel("deceleration", "Braking (m/s²)", min=0.1),
     )
     latency_s: float = setting(
-        0.5, Number(0.0, 10.0, unit="s"), "Time from a confirmed track to the brakes [s]"
+        0.5,
+        Number(0.0, 10.0, unit="s"),
+        "Time from a confirmed track to the brakes [s]",
+        Panel("latency_s", "Latency (s)"),
     )
     before_s: float = setting(
-        0.0, Number(0.0, 60.0, unit="s"), "How long before the last moment it has to be confirmed"
+        0.0,
+        Number(0.0, 60.0, unit="s"),
+        "How long before the last moment it has to be confirmed [s]",
+        Panel("before_s", "Earlier By (s)"),
     )
     chance: float = setting(0.9, Number(0.5, 0.999), "Probability of a confirmed track")
     rate_hz: float = setting(10.0, Number(1.0, 100.0, unit="Hz"), "Frames in a second")

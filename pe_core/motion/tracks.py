@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
 from ..base.errors import InputError
-from ..base.setting import check_settings, setting
+from ..base.setting import Panel, check_settings, setting
 from ..base.values import SHARE, Whole
 
 MAX_WINDOW = 8
@@ -28,13 +28,24 @@ KEPT = 0.5
 class Confirmation:
     """M of N: a track is confirmed when `needed` of the last `window` frames found the object."""
 
-    needed: int = setting(3, Whole(1, MAX_WINDOW), "Frames that confirm a track")
-    window: int = setting(5, Whole(1, MAX_WINDOW), "Frames among which they have to be")
+    needed: int = setting(
+        3,
+        Whole(1, MAX_WINDOW),
+        "Frames that confirm a track",
+        Panel("track_needed", "Confirmed by"),
+    )
+    window: int = setting(
+        5,
+        Whole(1, MAX_WINDOW),
+        "Frames among which they have to be",
+        Panel("track_window", "Of the Last"),
+    )
     correlation: float = setting(
         0.8,
         SHARE,
         "Correlation of a frame with the one before; 0: independent. 0.7 to 0.8 was measured on "
         "cars and pedestrians in real traffic",
+        Panel("track_correlation", "Correlation"),
     )
 
     def __post_init__(self) -> None:

@@ -50,7 +50,7 @@ PROTOCOL_FLOOR: float = setting(
     Number(0.0, 1.0, below=True),
     "Recall and precision up to this do not count in expected AP, as in a protocol: nuScenes "
     "has 0.1, the paper 0",
-    Panel("protocol_floor", "Protocol Floor", precision=2),
+    Panel("protocol_floor", "Protocol Floor", precision=2, max=0.99),
     scored=True,
 )
 """The field of `PerceptionModel`."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from ..base.setting import changed_settings, read_settings, settings_of
 from ..base.table_reader import Table, dump_json, parse_json
@@ -13,14 +13,6 @@ from ..motion import Actor, Confirmation, Story, read_story, stories
 from ..scoring.requirements.bodies import BODIES
 
 BY_NAME = ("noises", "rates")
-
-
-class InTime(NamedTuple):
-    """The fields of a study that these tables hold."""
-
-    frames: Frames = Frames()
-    confirmation: Confirmation = Confirmation()
-    stories: tuple[Story, ...] = ()
 
 
 def read_time(table: Table) -> tuple[Frames, Confirmation]:
@@ -39,22 +31,16 @@ def time_table(frames: Frames, confirmation: Confirmation) -> dict[str, Any]:
     return changed_settings(frames) | changed_settings(confirmation) | mappings
 
 
-def time_text(time: InTime) -> str:
-    """Return both tables as JSON text, as a scene keeps them; empty for the defaults."""
-    table = {
-        "time": time_table(time.frames, time.confirmation) or None,
-        "story": [story_table(each) for each in time.stories] or None,
-    }
-    kept = {key: value for key, value in table.items() if value is not None}
+def by_name_text(frames: Frames) -> str:
+    """Return noises and rates by name as JSON text, as a scene keeps them; empty without any."""
+    kept = {key: dict(own) for key in BY_NAME if (own := getattr(frames, key))}
     return dump_json(kept) if kept else ""
 
 
-def time_of_text(text: str, source: str) -> InTime:
-    """Read the text of `time_text`, or raise `InputError`."""
+def by_name_of_text(text: str, source: str) -> dict[str, Any]:
+    """Read the text of `by_name_text`, or raise `InputError`."""
     table = Table(parse_json(source, text, infinite=True) if text else {}, source)
-    time = InTime(*read_time(table.table("time")), read_stories(table.tables("story")))
-    table.finish()
-    return time
+    return {key: dict(getattr(read_time(table)[0], key)) for key in BY_NAME}
 
 
 def read_stories(tables: Sequence[Table]) -> tuple[Story, ...]:
@@ -68,6 +54,11 @@ def read_stories(tables: Sequence[Table]) -> tuple[Story, ...]:
             raise table.error("name", "another name than the stories before", name)
         read.append(read_story(table, name))
     return tuple(read)
+
+
+def stories_of_rows(rows: Sequence[Mapping[str, Any]], source: str) -> tuple[Story, ...]:
+    """Return stories from their tables, as a scene keeps them; `InputError` as `read_stories`."""
+    return read_stories(Table({"story": list(rows)}, source).tables("story"))
 
 
 def story_table(story: Story) -> dict[str, Any]:

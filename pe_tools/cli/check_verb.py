@@ -106,7 +106,7 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
     verdicts = job.verdicts
     if args.csv is not None:
         write_bytes(Path(args.csv), verdicts_csv(verdicts).encode(errors="backslashreplace"))
-    driven = [study.drive_by(story) for story in study.stories] if job.complete else []
+    driven = job.driven
     met = all(v.met for v in verdicts) and all(each.is_met for each in driven)
     status = received.status(DONE if met else NOT_MET)
     unchecked |= dict.fromkeys(job.missing, STOPPED)

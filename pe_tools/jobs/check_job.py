@@ -1,11 +1,13 @@
-"""The job that holds a study to its requirements, verdict by verdict."""
+"""The job that holds a study to its requirements and stories, verdict by verdict."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
+from pe_core.motion import DriveBy
 from pe_core.scoring.requirements import CheckStep, Verdict, checkable
 from pe_core.study.study import Study
 
@@ -18,10 +20,11 @@ class Checked(NamedTuple):
     verdicts: list[Verdict]
     unchecked: Mapping[str, str]
     missing: tuple[str, ...]
+    driven: list[DriveBy]
 
 
 class CheckJob(Job):
-    """Holds the rig of a study to its requirements, with mounting errors and margins.
+    """Holds the rig of a study to its requirements, with mounting errors, and to its stories.
 
     A job that is stopped keeps the `verdicts` that it has found, in the order of the requirements.
     With `fitting`, requirements that the rig cannot be held to are left out instead of raising
@@ -29,20 +32,21 @@ class CheckJob(Job):
     stopped.
     """
 
-    shown = ("verdicts", "unchecked")
+    shown = ("verdicts", "unchecked", "driven")
 
     def __init__(self, study: Study, *, fitting: bool = False) -> None:
         super().__init__(study)
         self._fitting = fitting
         self.verdicts: list[Verdict] = []
         self.unchecked: dict[str, str] = {}
+        self.driven: list[DriveBy] = []
         self.complete = False
         self._progress = Progress("checking", 0.0)
 
     @property
     def checked(self) -> Checked:
         """What is known so far."""
-        return Checked(self.verdicts, self.unchecked, self.missing)
+        return Checked(self.verdicts, self.unchecked, self.missing, self.driven)
 
     @property
     def missing(self) -> tuple[str, ...]:
@@ -52,6 +56,10 @@ class CheckJob(Job):
 
     def __iter__(self) -> Iterator[Progress]:
         yield self._progress
+        for story in self.study.stories:
+            work = begun(partial(self.study.drive_by, story))
+            if (driven := (yield from self._awaited(work, lambda: self._progress))) is not None:
+                self.driven.append(driven)
         steps = self._steps()
         while step := (
             yield from self._awaited(begun(lambda: next(steps, None)), lambda: self._progress)

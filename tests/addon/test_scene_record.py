@@ -102,11 +102,11 @@ def rich(car):
     settings.worst = True
     settings.axles_known, settings.wheelbase = True, 2.7
     settings.front_overhang, settings.rear_overhang = 0.9, 0.6
-    settings.time_text = (
-        '{"time": {"frames": 5, "q": 2.0, "rate_hz": 20.0, "needed": 2, "window": 4, '
-        '"correlation": 0.5, "noises": {"car": 1.0}, "rates": {"camera": 30.0}}, '
-        '"story": [{"preset": "cut_in", "speed_kmh": 50.0}]}'
-    )
+    settings.time_text = '{"noises": {"car": 1.0}, "rates": {"camera": 30.0}}'
+    settings.time_frames, settings.time_q, settings.time_rate_hz = 5, 2.0, 20.0
+    settings.track_needed, settings.track_window, settings.track_correlation = 2, 4, 0.5
+    bpy.ops.pe.add_story(story="cut_in")
+    settings.stories[0].speed_kmh = 50.0
     settings.passthrough = '{"format": "carla", "files": {"a": "b"}}'
     settings.max_price, settings.max_sensors, settings.currency = 9000.0, 9, "EUR"
     scenes.add_mount(car, "cabin", bpy.data.objects["cabin"], standoff=0.04, orientation="normal")

@@ -1,0 +1,44 @@
+"""Stories in the panel: added, checked by the engine's numbers, shown, kept by a study and back."""
+
+import json
+
+import bpy
+import pytest
+
+from blender_addon.panels.condition_panel import seen_in_time
+from pe_core.motion import stories
+from tests.addon import layouts, scenes
+
+
+@pytest.fixture
+def car(addon):
+    scene = bpy.context.scene
+    scene.perception_entropy.vehicle = scenes.add_car(scene)
+    scenes.add_sensor("roof", location=(0.0, 0.0, 2.5))
+    return scene
+
+
+def test_a_story_is_added_checked_and_shown(car):
+    settings = car.perception_entropy
+    assert bpy.ops.pe.add_story(story="cyclist_from_right") == {"FINISHED"}
+    assert bpy.ops.pe.add_story(story="crossing_child") == {"FINISHED"}
+    settings.stories[0].speed_kmh = 20.0
+    study = scenes.study()
+    assert [each.name for each in study.stories] == ["cyclist_from_right", "crossing_child"]
+    assert study.stories[0].speed_kmh == 20.0 and study.stories[1] == stories()["crossing_child"]
+    assert bpy.ops.pe.check_requirements() == {"FINISHED"}
+    for row, story in zip(settings.stories, study.stories, strict=True):
+        assert json.loads(row.result) == json.loads(json.dumps(study.drive_by(story).summary()))
+    drawn = layouts.drawn(seen_in_time, **vars(layouts.Window(car)))
+    assert ("prop", "speed_kmh") in drawn.notes and ("prop", "track_needed") in drawn.notes
+    settings.stories[1].enabled = False
+    assert len(scenes.study().stories) == 1
+    bpy.ops.pe.remove_story()
+    assert len(settings.stories) == 1
+
+
+def test_its_table_that_is_damaged_is_one_line(car):
+    bpy.ops.pe.add_story(story="cut_in")
+    car.perception_entropy.stories[0].table = "{"
+    with pytest.raises(RuntimeError, match="story"):
+        bpy.ops.pe.check_requirements()

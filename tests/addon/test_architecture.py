@@ -63,7 +63,7 @@ overlay.draw_handler: bridge engine engine_process overlay overlay.scheduler
     overlay.surroundings vehicle_cache viewport
 operators: bridge choices diagnostics engine engine_calls engine_process housing language library
     live location_query overlay overlay.surroundings own_jobs properties
-    result_staleness search_curve sensor_kinds signals translation_context
+    result_staleness search_curve sensor_cache sensor_kinds signals translation_context
     vehicle_cache view_settings viewport
 panels: bridge choices diagnostics engine language live operators properties sensor_cache
     sensor_kinds view_settings

@@ -68,20 +68,6 @@ def test_stopped_at_any_stage_it_leaves_nothing(job_of, tmp_path, name, stage):
     assert job.written is None and not list(tmp_path.iterdir())
 
 
-def test_what_was_written_is_kept_for_the_panel(small, tmp_path):
-    path = tmp_path / "study.toml"
-    assert bpy.ops.pe.export_study(filepath=str(path)) == {"FINISHED"}
-    assert (exports.last.text, exports.last.folder) == ("Wrote study.toml", tmp_path)
-    bpy.ops.pe.export_scene(filepath=str(tmp_path / "a.glb"), output="gltf")
-    assert exports.last.paths == (tmp_path / "a.glb",)
-    with pytest.raises(RuntimeError):
-        bpy.ops.pe.export_study(filepath=str(path / "below" / "x.toml"))
-    assert exports.last.text == "Wrote a.glb", "what failed wrote nothing"
-    assert bpy.ops.pe.open_folder.poll()
-    bpy.ops.pe.dismiss_written()
-    assert exports.last is None and not bpy.ops.pe.open_folder.poll()
-
-
 def test_no_export_begins_while_another_job_runs(small, monkeypatch):
     monkeypatch.setattr(running_job, "current", object())
     names = ("export_review", "render_review", "export_scene")

@@ -67,7 +67,7 @@ def check_an_export(stage, screenshots):
     )
     stage.photograph(screenshots / "window_exporting.png")
     stage.wait_for(page.exists, BETTER_TIMEOUT_S, "the page")
-    stage.wait_until(f"{EXPORTING}.last is not None")
+    stage.wait_until(f"{RUNNING} is None", BETTER_TIMEOUT_S)
     stage.photograph(screenshots / "window_exported.png")
     assert "</html>" in page.read_text("utf-8")[-20:]
 
@@ -86,7 +86,6 @@ def ask_for(stage, page):
 
 VIEW = f"__import__('{ADDON}.search_curve', fromlist=['searches']).searches"
 RUNNING = f"__import__('{ADDON}.operators.running_job', fromlist=['current']).current"
-EXPORTING = f"__import__('{ADDON}.operators.exports', fromlist=['last'])"
 PLACE = "bpy.data.objects['roof_lidar'].matrix_world.translation"
 
 

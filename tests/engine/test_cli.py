@@ -105,7 +105,7 @@ def test_exit_status(argv, status, message, capsys):
 @pytest.mark.parametrize(
     ("line", "nearest"),
     [
-        ("scoer", "expected score, or"),
+        ("scoer", "such as score, "),
         ("score car.toml --sampels 3", "expected --samples, or"),
         ("export car.toml --to gltff -o x", "such as gltf, "),
         ("optimize car.toml --method portfollio", "expected portfolio, or"),

@@ -45,7 +45,7 @@ def blurred(png):
 def test_plots_are_those_of_the_page_and_another_rig_s_are_not(found):
     images = [match["image"] for match in notebook.CELL.finditer(PAGE)]
     plots = [(name, own.png) for name, own in zip(images, found, strict=True) if own.png or name]
-    assert len(plots) == 2
+    assert len(plots) == 4
     stored = {name: blurred((ROOT / "docs" / name).read_bytes()) for name, _ in plots}
     for name, png in plots:
         assert np.abs(blurred(png) - stored[name]).mean() < ALIKE, name

@@ -33,7 +33,7 @@ SOME = ("index.html", "guide.html", "settings.html", "howto/requirements.html",
         "reference/catalogue/hesai.html", "reference/commands.html")  # fmt: skip
 """Pages that are always opened in the browser."""
 QUESTIONS = {
-    "How do I install it and get updates in Blender?": ("installing.html", "Add Remote Repository"),
+    "How do I install it and get updates in Blender?": ("installing.html", "Install from Disk"),
     "How do I bring in my own car?": ("howto/vehicle.html", "Use Selected Objects"),
     "What is the default and the range of a key?": ("settings.html", "optimize.max_height"),
     "My LiDAR is not in the catalogue; now what?": ("howto/own_sensor.html", "elevations_deg"),
@@ -42,7 +42,7 @@ QUESTIONS = {
     "How do I tell the search where sensors may be?": ("howto/better_placement.html", "mount"),
     "Which sensors should I buy for my money?": ("howto/choose_sensors.html", "max_price"),
     "How do I get the rig into ROS or CARLA?": ("howto/hand_over.html", "--to carla"),
-    "Can I trust the score?": ("validity/index.html", "What this supports, and what it does not"),
+    "Can I trust the score?": ("validity/index.html", "verdict"),
 }
 """A newcomer's questions, the page that answers each, and a phrase of the answer."""
 CLICKS = 3

@@ -7,7 +7,7 @@ import bpy
 from . import library, own_catalog, signals
 from .engine import app
 from .language import draw_label
-from .library import stored
+from .library import mark_seen, stored
 from .properties import fields
 from .translation_context import CONTEXT
 
@@ -73,7 +73,9 @@ CLASSES = (PE_Preferences,)
 
 
 def register() -> None:
-    """Load the catalogue that the preferences name."""
+    """Load the catalogue that the preferences name. A first installation has no news."""
+    if not getattr(stored(), "seen_version", ""):
+        mark_seen()
     own_catalog.load(getattr(stored(), "own_catalog", ""))
 
 

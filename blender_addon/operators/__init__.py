@@ -3,6 +3,7 @@
 Panels take from here the operators, and what menus list.
 """
 
+from ..library import is_updated
 from . import (
     compare_variants,
     conditions,
@@ -27,7 +28,6 @@ from .imports import known_rigs
 from .panel_rows import reference_label
 from .query_location import answer
 from .requirements import ShownVerdict, shown_verdicts
-from .whats_new import is_updated
 
 __all__ = ["CLASSES", "FIX_LABELS", "Offer", "ShownVerdict", "answer"]
 __all__ += ["compare_variants", "conditions", "edit_sensors", "exports", "first_steps"]

@@ -11,24 +11,12 @@ import bpy
 
 from ..engine import pe
 from ..language import shown
-from ..library import stored
+from ..library import mark_seen
 from .declared import OperatorResult, operator
 
 PLACES = [folder / "CHANGELOG.md" for folder in Path(__file__).resolve().parents[1:3]]
 """The changelog in the extension, or in a checkout of the project."""
 WIDTH_PX, MAX_COLUMNS = 560, 84
-
-
-def is_updated() -> bool:
-    """Whether the extension is newer than the version whose news the user has seen."""
-    return getattr(stored(), "seen_version", pe.__version__) != pe.__version__
-
-
-def mark_seen() -> None:
-    """Store that the news of this version were seen; a restart keeps it."""
-    if (preferences := stored()) is not None:
-        preferences.seen_version = pe.__version__
-        bpy.context.preferences.is_dirty = True
 
 
 def news() -> list[str]:

@@ -47,7 +47,7 @@ result_staleness: bridge sensor_cache signals vehicle_cache
 diagnostics: analysis_calls bridge engine engine_process sensor_cache signals vehicle_cache
 location_query: bridge engine engine_process sensor_cache signals vehicle_cache
 housing: engine sensor_cache sensor_kinds
-library:
+library: engine
 preferences_panel: engine language library own_catalog properties
     signals translation_context
 live: analysis_calls bridge change_events choices engine engine_calls engine_process language

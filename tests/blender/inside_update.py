@@ -50,7 +50,7 @@ def installed_files() -> list[str]:
 
 def is_news_shown() -> bool:
     """Return whether the panel offers what is new, which a first installation has not."""
-    return sys.modules[f"{PACKAGE}.operators.whats_new"].is_updated()
+    return sys.modules[f"{PACKAGE}.library"].is_updated()
 
 
 def score() -> float:

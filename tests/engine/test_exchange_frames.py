@@ -10,7 +10,7 @@ import pe_core as pe
 import pe_tools as pt
 from pe_core.sensors.camera.lens import Pinhole
 from pe_tools.exchange import csv_table, driveworks, import_rig, rig_files, ros
-from pe_tools.exchange.lens_pictures import Picture, _squares
+from pe_tools.exchange.lens_pictures import Picture
 from pe_tools.exchange.ros import info_name, picture_of_info, without_comments
 
 PUCK = "Velodyne VLP-16 Puck"
@@ -208,14 +208,6 @@ def test_rows_of_a_table_whose_model_is_known_need_no_entry(tmp_path):
         ("b", None, False),
         ("c", "sonar", True),
     ]
-
-
-def test_a_distortion_is_fitted_as_far_as_the_picture_s_corner():
-    """Without distortion r^2 is fitted up to the first of 2000 steps of 10 beyond the corner's."""
-    square = _squares(2.0001, (0.0, 0.0, 0.0, 0.0))
-    assert len(square) == 2000 and square[-1] == pytest.approx(4.005)
-    assert square[0] == pytest.approx(4.005 / 2000)
-    assert _squares(9.0, (0.0, 0.0, 0.0, 0.0))[-1] == pytest.approx(10.0)
 
 
 @pytest.mark.parametrize(

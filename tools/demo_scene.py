@@ -6,6 +6,7 @@ usage: python tools/demo_scene.py START.blend              in bpy
        blender -b --python tools/demo_scene.py -- START.blend    with the extension enabled
 """
 
+import os
 import sys
 from pathlib import Path
 
@@ -53,6 +54,7 @@ def main() -> None:
         make(start)
     finally:
         blender_addon.unregister()
+    os._exit(0)  # bpy may wait for its own threads for good
 
 
 if __name__ == "__main__":

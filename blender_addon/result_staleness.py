@@ -70,17 +70,20 @@ def _as_drawn(scene: bpy.types.Scene, shown: bridge.Fingerprint) -> bridge.Finge
 
 
 def update_result() -> None:
-    """Set `result_stale` of every scene that has a result."""
+    """Set `result_stale` of every scene that has a result; clear stale results of stories."""
     for scene in bpy.data.scenes:
         settings = scene.perception_entropy
-        if not settings.has_result or bridge.view_layer_of(scene).depsgraph is None:
+        driven = any(row.result for row in settings.stories)
+        if not (settings.has_result or driven) or bridge.view_layer_of(scene).depsgraph is None:
             continue
         now = _as_drawn(scene, _fingerprint_shown(scene))
         if now is None:  # a file that was saved with another state shown: its mark holds
             continue
-        stale = now.text != settings.result_signature
+        stale = settings.has_result and now.text != settings.result_signature
+        changed = driven and bridge.clear_stale_stories(settings, now.text)
         if stale != settings.result_stale:
-            settings.result_stale = stale
+            settings.result_stale, changed = stale, True
+        if changed:
             signals.view_changed.emit()  # a timer that sets a property does not redraw panels
 
 

@@ -87,7 +87,7 @@ from .sensor_records import (
     same_sensors,
     write_records,
 )
-from .time import store_driven, write_story
+from .time import clear_stale_stories, store_driven, story_signatures, write_story
 from .transform_constraints import holder_of
 from .variant_results import (
     FigureRule,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from bpy.types import PropertyGroup
@@ -48,12 +48,43 @@ def write_story(row: PropertyGroup, story: motion.Story) -> None:
     row.table = json.dumps(studies.story_table(story))
 
 
-def store_driven(settings: PropertyGroup, driven: Sequence[motion.DriveBy]) -> None:
-    """Store in the rows of stories when their tracks are confirmed; other rows have nothing."""
-    found = {each.story.name: each for each in driven}
+def story_signatures(settings: PropertyGroup, scene: str) -> dict[str, str]:
+    """Return by name what the result of each row depends on; `scene` is the scene's fingerprint."""
+    rule = repr(values_of(settings, motion.Confirmation))
+    return {
+        row.name: f"{scene} {rule} {row.table} {values_of(row, motion.Story)!r}"
+        for row in settings.stories
+    }
+
+
+def store_driven(
+    settings: PropertyGroup, driven: Sequence[motion.DriveBy], signatures: Mapping[str, str]
+) -> None:
+    """Store in the rows of stories when their tracks are confirmed; other rows have nothing.
+
+    `signatures` are those of the scene that was driven.
+    """
+    found = {each.story.name: each.summary() for each in driven}
     for row in settings.stories:
-        each = found.get(row.name)
-        row.result = "" if each is None else json.dumps(each.summary())
+        data = found.get(row.name)
+        row.result = (
+            json.dumps(data | {"signature": signatures[row.name]})
+            if data and row.name in signatures
+            else ""
+        )
+
+
+def clear_stale_stories(settings: PropertyGroup, scene: str) -> bool:
+    """Clear the results of stories that are not of the scene any more; return if there was one."""
+    now = story_signatures(settings, scene)
+    stale = [
+        row
+        for row in settings.stories
+        if row.result and json.loads(row.result)["signature"] != now[row.name]
+    ]
+    for row in stale:
+        row.result = ""
+    return bool(stale)
 
 
 def _table_of(row: PropertyGroup) -> dict[str, Any]:

@@ -79,17 +79,13 @@ def add_weather(context: bpy.types.Context, weather: str) -> None:
         setattr(row, *STARTS[weather])
 
 
-def _story_items(_self: object, _context: object) -> list[tuple[str, str, str]]:
-    return STORY_ITEMS
-
-
 STORY_ITEMS = [(name, each.title, each.source) for name, each in motion.stories().items()]
 
 
 @operator(
     "Add Story",
     signal=signals.study_changed,
-    story=EnumProperty(items=_story_items, name="Story", description="What moves"),
+    story=EnumProperty(items=STORY_ITEMS, name="Story", description="What moves"),
 )
 def add_story(context: bpy.types.Context, story: str) -> None:
     """Add a story of what moves: when is it confirmed, and does the vehicle stop in time?"""

@@ -307,7 +307,7 @@ def front_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprin
     return Task(jobs.FrontJob(study), finish, "trade_off")
 
 
-def check_task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> Task:
+def check_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> Task:
     """Check all requirements that the rig can be held to; verdicts are stored as they are found.
 
     After Esc those that were found before it are kept; a requirement that was changed meanwhile
@@ -316,6 +316,7 @@ def check_task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerpri
     if not study.requirements and not study.stories:
         raise pe.InputError("scene", "requirements", "at least one, or a story", "none")
     tables = {*bridge.requirements_key(scene.perception_entropy)}
+    signatures = bridge.story_signatures(scene.perception_entropy, taken.text)
     bridge.store_verdicts(scene.perception_entropy, ())
     count = 0
 
@@ -325,7 +326,7 @@ def check_task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerpri
         same = {name for name, _ in tables & {*bridge.requirements_key(settings)}}
         kept = [each for each in found.verdicts if each.name in same]
         bridge.store_verdicts(settings, kept, found.unchecked)
-        bridge.store_driven(settings, found.driven)
+        bridge.store_driven(settings, found.driven, signatures)
 
     def progressed(scene: bpy.types.Scene, job: jobs.CheckJob) -> None:
         if len(job.verdicts) > count:

@@ -83,6 +83,7 @@ def seen_in_time(layout: UILayout, settings: PropertyGroup, context: Context) ->
         for body in json.loads(row.result)["bodies"] if row.result else ():
             draw_sentence(layout, context, _body_text(body))
         draw_declared(layout, row, "story")
+        layout.separator()
     draw_declared(layout, settings, "time")
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Any, NamedTuple, cast
 
 from bpy.props import (
@@ -23,7 +23,6 @@ LARGEST_INT = 2**31 - 1
 DRAWN = "reference."
 """Settings whose keys begin so change the picture in the 3D view, and no score."""
 UNITS = {"m": "LENGTH", "m2": "AREA"}
-PropertyOptions = Callable[[studies.Setting], dict[str, Any]]
 
 
 def property_of(setting: studies.Setting, **more: Any) -> Any:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -21,15 +21,15 @@ from ..scene.vehicle import Vehicle
 from ..scoring.targets.object_metric import FusedObjects
 from ..sensors import ObjectMeasurementCache, PerceptionModel, kind_of
 from .scan import scan_factor
-from .story import OTHER, Story
-from .tracks import Confirmation
+from .story import Story, outline
+from .tracks import Confirmation, first_frame
 
 CHANCES = (0.9, 0.99)
 
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """When something is so, and how far the body is from the vehicle's anchor plane then [s, m]."""
+    """When something is so, and how far the body is from the vehicle's rectangle then [s, m]."""
 
     time_s: float
     distance_m: float
@@ -76,15 +76,15 @@ class SeenBody:
         """The margin as it is shown, rounded to the safe side [s]."""
         return shown_margin(self.margin_s)
 
+    def summary(self) -> dict[str, Any]:
+        """Return verdict and moments as plain JSON data."""
+        moments = {f"{p:g}": None if at is None else asdict(at) for p, at in self.moments.items()}
+        verdict = {"name": self.name, "met": self.is_met, "margin_s": self.margin_s}
+        return verdict | {"confirmed": moments, "lost_s": self.lost_s}
+
     def to_dict(self) -> dict[str, Any]:
-        """Return it as plain JSON data."""
-        moments = {f"{chance:g}": _moment(at) for chance, at in self.moments.items()}
-        return {
-            "name": self.name,
-            "met": self.is_met,
-            "margin_s": self.margin_s,
-            "confirmed": moments,
-            "lost_s": self.lost_s,
+        """Return all of it as plain JSON data."""
+        return self.summary() | {
             "ap": _listed(self.ap),
             "probability": _listed(self.confirmed),
             "ap_by_sensor": {name: _listed(ap) for name, ap in self.by_sensor.items()},
@@ -113,24 +113,21 @@ class DriveBy:
         return min(known) if len(known) == len(margins) else None
 
     def summary(self) -> dict[str, Any]:
-        """Return verdict and moments of each body, without its frames, as plain JSON data."""
-        frames = ("ap", "probability", "ap_by_sensor", "x", "y")
-        data = self.to_dict()
-        del data["times_s"]
-        bodies = [{k: v for k, v in b.items() if k not in frames} for b in data["bodies"]]
-        return data | {"bodies": bodies, "shown_margin_s": shown_margin(self.margin_s)}
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return it as plain JSON data, with the stop that it is held to."""
+        """Return verdicts and moments, with the stop that they are held to, as plain JSON data."""
         return {
             "name": self.story.name,
             "title": self.story.title,
             "met": self.is_met,
             "margin_s": self.margin_s,
+            "shown_margin_s": shown_margin(self.margin_s),
             "brake_s": rounded(self.story.brake_s),
-            "times_s": _listed(self.story.times),
-            "bodies": [body.to_dict() for body in self.bodies],
+            "bodies": [body.summary() for body in self.bodies],
         }
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all of it as plain JSON data, frame by frame."""
+        bodies = [body.to_dict() for body in self.bodies]
+        return self.summary() | {"times_s": _listed(self.story.times), "bodies": bodies}
 
 
 def drive_by(
@@ -148,13 +145,10 @@ def drive_by(
         When a sensor has an AP curve of its own, or a class has none.
     """
     confirmation = confirmation or Confirmation()
-    objects, count = story.objects(vehicle), len(story.times)
-    where, _ = story.positions(vehicle)
-    watched = np.repeat([actor.watched for actor in story.actors], count)
-    named = objects.labels != (
-        objects.class_names.index(OTHER) if OTHER in objects.class_names else -1
-    )
-    fused = FusedObjects(objects, (watched & named).astype(float), model or PerceptionModel())
+    where, headings = story.positions(vehicle)
+    objects, count = story.objects(where, headings), len(story.times)
+    watched = np.repeat([float(actor.watched) for actor in story.actors], count)
+    fused = FusedObjects(objects, watched, model or PerceptionModel())
     fused.check(rig)
     whole_scan = ObjectMeasurementCache(objects, vehicle, True).measure(rig)
     measured = {s.name: whole_scan[s.name] * _scanned(s, where, story).ravel() for s in rig}
@@ -165,13 +159,19 @@ def drive_by(
         return found.reshape(len(story.actors), count)
 
     whole, alone = ap(None), {sensor.name: ap([sensor.name]) for sensor in rig}
-    bodies = []
-    for k, actor in enumerate(story.actors):
-        if actor.watched:
-            by_sensor = {name: found[k] for name, found in alone.items()}
-            bodies.append(
-                _seen(story, actor.name, whole[k], by_sensor, where[k], vehicle, confirmation)
-            )
+    bodies = [
+        _seen(
+            story,
+            actor.name,
+            whole[k],
+            {name: found[k] for name, found in alone.items()},
+            where[k],
+            vehicle,
+            confirmation,
+        )
+        for k, actor in enumerate(story.actors)
+        if actor.watched
+    ]
     return DriveBy(story, tuple(bodies))
 
 
@@ -197,34 +197,29 @@ def _seen(
     vehicle: Vehicle | None,
     confirmation: Confirmation,
 ) -> SeenBody:
-    times = story.times
-    confirmed = confirmation.confirmed(ap)
-    away = _distance(positions, vehicle)
+    confirmed, away = confirmation.confirmed(ap), _distance(positions, vehicle)
     moments: dict[float, Moment | None] = {}
+    first, margin, lost = first_frame(confirmed, story.chance), None, 0.0
     for chance in sorted({*CHANCES, story.chance}):
-        k = confirmation.first(ap, chance)
-        moments[chance] = None if k is None else Moment(float(times[k]), rounded(float(away[k])))
-    first, margin, lost = confirmation.first(ap, story.chance), None, 0.0
+        k = first_frame(confirmed, chance)
+        at = None if k is None else Moment(float(story.times[k]), rounded(float(away[k])))
+        moments[chance] = at
     if first is not None:
-        margin = rounded(story.brake_s - story.before_s - float(times[first]))
+        margin = rounded(story.brake_s - story.before_s - float(story.times[first]))
         lost = rounded(confirmation.longest_loss(ap, first) / story.rate_hz)
     return SeenBody(name, ap, confirmed, by_sensor, positions, moments, lost, margin)
 
 
 def _distance(positions: Floats, vehicle: Vehicle | None) -> Floats:
     """Return distances (K,) of points from the vehicle's rectangle on the ground [m]."""
-    low, high = ((0.0, 0.0), (0.0, 0.0)) if vehicle is None else (b[:2] for b in vehicle.bounds)
-    outside = np.maximum(np.maximum(np.asarray(low) - positions, positions - np.asarray(high)), 0.0)
+    low, high = outline(vehicle)
+    outside = np.maximum(np.maximum(low - positions, positions - high), 0.0)
     return np.asarray(np.hypot(*outside.T))
 
 
 def shown_margin(margin_s: float | None) -> float | None:
     """Return a margin rounded to the safe side, to 0.1 s."""
     return None if margin_s is None else math.floor(margin_s * 10.0) / 10.0
-
-
-def _moment(at: Moment | None) -> dict[str, float] | None:
-    return None if at is None else {"time_s": at.time_s, "distance_m": at.distance_m}
 
 
 def _listed(values: Floats) -> list[float]:

@@ -25,6 +25,7 @@ from ..base.values import A_NAME, Number, listed, vector
 from ..scene.objects import Objects
 from ..scene.vehicle import Vehicle
 from ..scoring.requirements.bodies import BODIES, Body
+from ..scoring.targets.scene_layout import CAR_SIZE_M
 
 FRONT, REAR = "front", "rear"
 KMH = 3.6
@@ -148,8 +149,8 @@ class Story:
 
     def positions(self, vehicle: Vehicle | None) -> tuple[Floats, Floats]:
         """Return positions (A, K, 2) and headings (A, K) of the actors in the ground frame."""
-        low, high = (-2.3, 2.3) if vehicle is None else (float(b[0]) for b in vehicle.bounds)
-        sign, plane = (1.0, high) if self.anchor == FRONT else (-1.0, low)
+        low, high = outline(vehicle)
+        sign, plane = (1.0, high[0]) if self.anchor == FRONT else (-1.0, low[0])
         moved = self.speed * self.times
         where, headings = [], []
         for actor in self.actors:
@@ -159,9 +160,8 @@ class Story:
             headings.append(heading if sign > 0.0 else math.pi - heading)
         return np.array(where), np.array(headings)
 
-    def objects(self, vehicle: Vehicle | None) -> Objects:
-        """Return the actors as objects, one after the other, a scene for each frame."""
-        where, headings = self.positions(vehicle)
+    def objects(self, where: Floats, headings: Floats) -> Objects:
+        """Return the actors at `positions` as objects, actor by actor, a scene for each frame."""
         names = sorted({actor.body.class_name or OTHER for actor in self.actors})
         sizes = np.array([actor.body.box for actor in self.actors])
         frames = len(self.times)
@@ -180,6 +180,15 @@ class Story:
 
 OTHER = "other"
 """Class of bodies that only occlude."""
+
+
+def outline(vehicle: Vehicle | None) -> tuple[Floats, Floats]:
+    """Return the lowest and highest corner (2,) of the vehicle from above; of a car without one."""
+    if vehicle is None:
+        half = np.array(CAR_SIZE_M) / 2.0
+        return -half, half
+    low, high = vehicle.bounds
+    return low[:2], high[:2]
 
 
 def read_story(table: Table, name: str) -> Story:

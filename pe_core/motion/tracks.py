@@ -90,11 +90,6 @@ class Confirmation:
             state = moved
         return reached
 
-    def first(self, found: Floats, chance: float) -> int | None:
-        """Return the first frame by which it is confirmed with a probability; None: never."""
-        frames = np.flatnonzero(self.confirmed(found) >= chance)
-        return int(frames[0]) if len(frames) else None
-
     def longest_loss(self, found: Floats, first: int) -> int:
         """Return the longest run of frames after `first` at which the track is lost."""
         longest = run = 0
@@ -102,3 +97,9 @@ class Confirmation:
             run = run + 1 if lost else 0
             longest = max(longest, run)
         return longest
+
+
+def first_frame(confirmed: Floats, chance: float) -> int | None:
+    """Return the first frame by which a track is confirmed with a probability; None: never."""
+    frames = np.flatnonzero(confirmed >= chance)
+    return int(frames[0]) if len(frames) else None

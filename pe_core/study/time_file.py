@@ -40,7 +40,8 @@ def by_name_text(frames: Frames) -> str:
 def by_name_of_text(text: str, source: str) -> dict[str, Any]:
     """Read the text of `by_name_text`, or raise `InputError`."""
     table = Table(parse_json(source, text, infinite=True) if text else {}, source)
-    return {key: dict(getattr(read_time(table)[0], key)) for key in BY_NAME}
+    frames, _ = read_time(table)
+    return {key: dict(getattr(frames, key)) for key in BY_NAME}
 
 
 def read_stories(tables: Sequence[Table]) -> tuple[Story, ...]:

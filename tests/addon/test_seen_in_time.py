@@ -5,6 +5,7 @@ import json
 import bpy
 import pytest
 
+from blender_addon import result_staleness, sensor_cache
 from blender_addon.panels.condition_panel import seen_in_time
 from pe_core.motion import stories
 from tests.addon import layouts, scenes
@@ -28,7 +29,9 @@ def test_a_story_is_added_checked_and_shown(car):
     assert study.stories[0].speed_kmh == 20.0 and study.stories[1] == stories()["crossing_child"]
     assert bpy.ops.pe.check_requirements() == {"FINISHED"}
     for row, story in zip(settings.stories, study.stories, strict=True):
-        assert json.loads(row.result) == json.loads(json.dumps(study.drive_by(story).summary()))
+        told = json.loads(row.result)
+        assert told.pop("signature")
+        assert told == json.loads(json.dumps(study.drive_by(story).summary()))
     drawn = layouts.drawn(seen_in_time, **vars(layouts.Window(car)))
     assert ("prop", "speed_kmh") in drawn.notes and ("prop", "track_needed") in drawn.notes
     settings.stories[1].enabled = False
@@ -42,3 +45,26 @@ def test_its_table_that_is_damaged_is_one_line(car):
     car.perception_entropy.stories[0].table = "{"
     with pytest.raises(RuntimeError, match="story"):
         bpy.ops.pe.check_requirements()
+
+
+def test_a_result_goes_when_a_sensor_or_the_story_changes(car):
+    settings = car.perception_entropy
+    for story in ("cut_in", "roundabout"):
+        bpy.ops.pe.add_story(story=story)
+
+    def shown():
+        result_staleness.update_result()
+        return [bool(row.result) for row in settings.stories]
+
+    bpy.ops.pe.check_requirements()
+    assert shown() == [True, True]
+    settings.stories[0].latency_s = 0.9
+    assert shown() == [False, True]
+    bpy.ops.pe.check_requirements()
+    bpy.data.objects["roof"].location.z = 2.6
+    bpy.context.view_layer.update()
+    sensor_cache.invalidate()
+    assert shown() == [False, False]
+    bpy.ops.pe.check_requirements()
+    settings.track_needed = 2
+    assert shown() == [False, False]

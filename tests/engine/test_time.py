@@ -16,6 +16,7 @@ from pe_core.metric.entropy import BLIND_PRECISION, ap_of_entropy
 from pe_core.metric.frames import Frames, predicted, steady, updated
 from pe_core.motion import Actor, Confirmation, Story, drive_by, stories
 from pe_core.motion.scan import ap_with_latency, scan_factor, scan_lag, seam
+from pe_core.motion.tracks import first_frame
 from pe_core.scene.objects import Objects
 from pe_core.scoring.requirements.bodies import BODIES
 from pe_core.scoring.targets.object_metric import FusedObjects
@@ -125,9 +126,9 @@ def test_tracks_are_those_of_all_outcomes(correlation, needed, window):
 def test_a_track_is_lost_while_it_is_rarely_found():
     found = np.array([1.0] * 6 + [0.0] * 8 + [1.0] * 6)
     rule = Confirmation(3, 5, 0.0)
-    assert rule.first(found, 0.9) == 2
+    assert first_frame(rule.confirmed(found), 0.9) == 2
     assert rule.longest_loss(found, 2) == 8  # from the third miss to before the third hit
-    assert rule.first(np.zeros(9), 0.9) is None
+    assert first_frame(rule.confirmed(np.zeros(9)), 0.9) is None
 
 
 def test_scan_and_latency_change_nothing_at_rest():

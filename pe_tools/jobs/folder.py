@@ -9,8 +9,9 @@ from __future__ import annotations
 import hashlib
 import os
 import secrets
-from collections.abc import Callable, Collection, Iterable
-from contextlib import suppress
+import time
+from collections.abc import Callable, Collection, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -26,11 +27,18 @@ from pe_core.base.files import (
 )
 from pe_core.base.table_reader import dump_json, parse_json
 
+try:
+    import fcntl
+except ImportError:  # on Windows two runs in one folder may reject each other's files
+    fcntl = None  # type: ignore[assignment]
+
 LISTING = ".perception-entropy.json"
 """Name of the list of our files: ``{"perception-entropy": 1, "files": {name: [SHA-256, ...]}}``."""
 PROGRAM, VERSION = "perception-entropy", 1
 DIGESTS_KEPT = 8
 """Number of digests listed for each file: those of its latest versions."""
+LOCK_TRIES, LOCK_PAUSE_S = 200, 0.01
+"""Attempts and pause [s] of waiting for another run that writes to the folder for milliseconds."""
 Write = Callable[[Path], None]
 """Writes a file to the given path, which has the final suffix and is in the final folder."""
 Listed = dict[str, list[str]]
@@ -125,7 +133,8 @@ class FileSet:
     ) -> None:
         try:
             if kind is None:
-                self._put()
+                with _alone_in(self._folder):
+                    self._put()
         except OSError as failed:
             raise InputError(
                 self._folder, "output", "a folder that can be written", reason_of(failed)
@@ -149,6 +158,26 @@ class FileSet:
         put_in_place({temporary: self._folder / name for name, (temporary, _) in new.items()})
         for name in set(self._unwanted) & set(our_files(self._folder)) - set(self._made):
             _unlink(self._folder / name)
+
+
+@contextmanager
+def _alone_in(folder: Path) -> Iterator[None]:
+    """Lock the folder against other runs that list and replace its files. After a short wait the
+    run continues without the lock: its holder may be suspended, or the file system may not support
+    locks."""
+    if fcntl is None:
+        yield
+        return
+    number = os.open(folder, os.O_RDONLY)
+    try:
+        for _ in range(LOCK_TRIES):
+            with suppress(OSError):
+                fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            time.sleep(LOCK_PAUSE_S)
+        yield
+    finally:
+        os.close(number)
 
 
 def sha256_of(path: Path) -> str:

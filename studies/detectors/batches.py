@@ -82,11 +82,11 @@ def voxel_inputs(
     scenes: Sequence[RegionVoxels], region: DetectionRegion, mirrors: Sequence[Mirrors]
 ) -> Singles:
     """Return the input of the network *grid*, (B, X, Y, layers)."""
-    nx, ny = region.shape
-    x = np.zeros((len(scenes), nx * ny * LAYERS), np.float32)
+    (nx, ny), layers = region.shape, scenes[0].layers
+    x = np.zeros((len(scenes), nx * ny * layers), np.float32)
     for k, voxels in enumerate(scenes):
         x[k, voxels.cells] = LEVELS[voxels.counts]
-    x = x.reshape(-1, nx, ny, LAYERS)
+    x = x.reshape(-1, nx, ny, layers)
     for k, (along, across) in enumerate(mirrors):
         x[k] = x[k, :: -1 if along else 1, :: -1 if across else 1]
     return x

@@ -61,11 +61,13 @@ class RegionObjects:
 class RegionVoxels(RegionObjects):
     """Points of a scene counted in voxels: the input of the detector *grid*.
 
-    `cells` (N,) are flat indices of voxels with points, over (x, y, layer).
+    `cells` (N,) are flat indices of voxels with points, over (x, y, layer); `layers` may be of
+    several frames.
     """
 
     cells: NDArray[np.int32]
     counts: NDArray[np.uint8]
+    layers: int = len(LAYERS_M) - 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,6 +14,8 @@ from .cameras.plan import CameraPlan
 from .cameras.rendering import Renderer
 from .casting import Caster, RegionObjects, SceneSource
 from .detector import Detector, Network, grid_network, points_network, versions
+from .frames.moving import FramesCaster
+from .frames.plan import FramesPlan
 from .placements import Placement, placements
 from .plan import FIXED, MIXED, PLAIN, POINTS, SPLITS, StudyPlan
 from .precision import results
@@ -64,6 +66,20 @@ def run_camera(plan: CameraPlan, run: Run) -> Json:
     network = pictures_network(Lifting.of(plan, run.placement), len(CLASSES))
     found = _of_placement(plan.study, run, _detector(plan.study, network), scenes)
     return _with_origin(found, run, plan.study, started)
+
+
+def run_frames(plan: FramesPlan, run: Run) -> Json:
+    """Return the results of a detector with all frames; `one_frame` has those with the last one."""
+    started = time.process_time()
+    assert run.placement is not None
+    caster, counts = FramesCaster(plan, run.placement), plan.study.scenes.counts
+    both = {s: [caster.voxels(s, k) for k in range(counts[s])] for s in SPLITS}
+    arms = []
+    for arm in range(2):
+        scenes: BySplit = {s: [of_scene[arm] for of_scene in both[s]] for s in SPLITS}
+        network = grid_network((1 + arm) * LAYERS, len(CLASSES))
+        arms.append(_of_placement(plan.study, run, _detector(plan.study, network), scenes))
+    return _with_origin({**arms[1], "one_frame": arms[0]}, run, plan.study, started)
 
 
 def run_layouts(

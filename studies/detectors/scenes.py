@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -47,6 +48,11 @@ class Things:
         """Radius (N,) of the circle round each, seen from above [m]."""
         return np.asarray(np.hypot(self.sizes[:, 0], self.sizes[:, 1]) / 2.0)
 
+    def subset(self, kept: Sequence[int]) -> Things:
+        """Return some of them."""
+        names = [self.names[k] for k in kept]
+        return Things(names, self.feet[kept], self.sizes[kept], self.yaws[kept])
+
 
 @dataclass(frozen=True, slots=True)
 class Scene:
@@ -70,8 +76,7 @@ def scene(plan: StudyPlan, vehicle_name: str, split: str, world: str, number: in
     """Return a scene of a split by its number."""
     seed = [plan.seed, plan.vehicles.index(vehicle_name), SPLITS.index(split), number]
     rng = np.random.default_rng(seed)
-    objects = _prior_objects(plan, vehicle_name, split, number)
-    distractors = _distractors(plan, vehicle_name, objects, rng)
+    objects, distractors = standing(plan, vehicle_name, split, number, rng)
     if world != TOWN:
         return assembled(objects, distractors, None, [])
     ground = Ground(rng)
@@ -80,6 +85,14 @@ def scene(plan: StudyPlan, vehicle_name: str, split: str, world: str, number: in
     objects = _joined(objects, parked)
     houses = house_triangles(rng, np.concatenate([occupied.feet, parked.feet])[:, :2])
     return assembled(objects, distractors, ground, houses)
+
+
+def standing(
+    plan: StudyPlan, vehicle_name: str, split: str, number: int, rng: np.random.Generator
+) -> tuple[Things, Things]:
+    """Return the objects of a scene that are to be found, and its distractors."""
+    objects = _prior_objects(plan, vehicle_name, split, number)
+    return objects, _distractors(plan, vehicle_name, objects, rng)
 
 
 def assembled(
@@ -165,9 +178,7 @@ def _free(things: Things, occupied: Things, vehicle_name: str) -> Things:
             kept.append(int(k))
             feet.append(things.feet[k, :2])
             others.append(things.radii[k])
-    return Things(
-        [things.names[k] for k in kept], things.feet[kept], things.sizes[kept], things.yaws[kept]
-    )
+    return things.subset(kept)
 
 
 def _joined(first: Things, second: Things) -> Things:

@@ -57,10 +57,12 @@ def placement_scores(
     needed: Iterable[tuple[Placement, pe.Rig]],
     folder: Path,
     report: Callable[[str], None],
+    scored: Callable[[StudyPlan, str, pe.Rig], Json] | None = None,
 ) -> dict[str, Json]:
     """Return the scores of placements by name; those that scores.json does not have are computed.
 
-    `report` takes a line for each that is scored. A file of another plan is an `InputError`.
+    `report` takes a line for each that is scored; `scored` computes them from plan, vehicle and
+    rig, in place of the first plan's. A file of another plan is an `InputError`.
     """
     path = folder / SCORES
     scores: dict[str, Json] = {}
@@ -71,7 +73,7 @@ def placement_scores(
         scores = data["scores"]
     missing = [(p, rig) for p, rig in needed if p.name not in scores]
     for placement, rig in missing:
-        scores[placement.name] = _scores(plan, placement.vehicle, rig)
+        scores[placement.name] = (scored or _scores)(plan, placement.vehicle, rig)
         data = {"plan": plan.digest, "scores": dict(sorted(scores.items()))}
         write_bytes(path, dump_json(data).encode())
         report(f"scored {placement.name}")

@@ -31,7 +31,7 @@ from pe_core.study.requirement_search import (
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 
 from ..advice import Advice, condition_warnings, fragile, unmet
-from ..sensitivity import Archive, FreshSamples, analyse, fresh_objectives, is_analysed
+from ..sensitivity import Archive, analyse
 from .candidate_workers import ExecutorSource, candidate_workers
 from .job import HistoryRow, Job, Outcome, Progress, ProgressSteps, StartEnd, begun, best_so_far
 from .searched_figure import IN_AP, searched_figure, searched_samples
@@ -154,20 +154,18 @@ class OptimizeJob(Job):
         return best_so_far(earlier, self.history)
 
     @cached_property
-    def _objectives(self) -> list[Objective]:
-        """Objectives that evaluate candidates, one for each level of the search method."""
-        objectives = (
+    def _free(self) -> list[Objective]:
+        """Objectives without requirements, one for each level of the search method."""
+        return [
             study_objective(self.study, self._evaluator_of(samples), samples, self.workers)
             for samples in self.study.search.level_samples
-        )
-        constraints = constraints_of(self.study)
-        return [feasible_first(each, constraints) for each in objectives]
+        ]
 
     @cached_property
-    def _fresh_objectives(self) -> list[Objective]:
-        """What the result is analysed with; empty without an analysis."""
-        wanted = self.analyses and is_analysed(self.study)
-        return fresh_objectives(self.study, self.workers) if wanted else []
+    def _objectives(self) -> list[Objective]:
+        """Objectives that evaluate candidates, by level."""
+        constraints = constraints_of(self.study)
+        return [feasible_first(each, constraints) for each in self._free]
 
     def _evaluator_of(self, samples: int) -> RigEvaluator:
         """Return what evaluates candidates on a number of voxels, or in its share of scenes."""
@@ -202,8 +200,7 @@ class OptimizeJob(Job):
             against = yield from self._beside(lambda _: unmet(suggestions(best)), analysing)
         sensitivity = None
         if self.analyses and not self.stopped:
-            samples = FreshSamples(best, best.rig, self._fresh_objectives, self._helpers)
-            given = self.study, best, self._archive, self.evaluations, samples
+            given = self.study, best, self._archive, self.evaluations, self._free[-1], self._helpers
             sensitivity = yield from self._beside(
                 lambda _: analyse(*given, lambda: not self.stopped), analysing
             )
@@ -322,11 +319,7 @@ class OptimizeJob(Job):
         """Yield what evaluates candidates of the search and of its analysis."""
         models = (sensor.model for sensor in self.study.rig)
 
-        def objectives() -> Iterator[Objective]:
-            yield from self._objectives
-            yield from self._fresh_objectives  # made when the workers start
-
-        with candidate_workers(self, objectives(), models) as helpers:
+        with candidate_workers(self, self._objectives, models) as helpers:
             yield helpers
 
     def _search_from(

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig
-from pe_core.search import AXES
+from pe_core.search import AXES, Objective
 from pe_core.search.goals import FULL, OFF
 from pe_core.study.condition_table import is_by_ap
 from pe_core.study.study import EXPECTED_AP, Study
@@ -18,15 +19,17 @@ from .flatness import (
     FAR,
     FLAT,
     NEAR,
+    STEEP_AP,
+    STEEP_NATS,
     ActiveConstraint,
     AxisCost,
+    Landscape,
     Neighbourhood,
     PoseStep,
     Unmet,
     active_constraints,
     flatness,
 )
-from .fresh_samples import STEEP_AP, STEEP_NATS, Difference, FreshSamples
 from .optima import BETWEEN, EXAMINED, Archive, Basins, Endings, RunnerUp
 
 SHARE = 8
@@ -43,9 +46,8 @@ class Sensitivity:
 
     Attributes
     ----------
-    voxels, evaluations : int
-        Voxels (or scenes of objects) that the search has not seen, and rigs that were evaluated on
-        them.
+    evaluations : int
+        Rigs that were evaluated.
     axes : tuple of AxisCost
         What a step costs, by sensor and axis.
     constraints : tuple of ActiveConstraint
@@ -56,7 +58,6 @@ class Sensitivity:
         Whether costs and gains are differences of the expected AP; positive is still worse.
     """
 
-    voxels: int
     evaluations: int
     axes: tuple[AxisCost, ...]
     constraints: tuple[ActiveConstraint, ...]
@@ -76,7 +77,6 @@ class Sensitivity:
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain JSON data, as result.json holds it."""
         return {
-            "voxels": self.voxels,
             "evaluations": self.evaluations,
             "axes": [each.to_dict() for each in self.axes],
             "constraints": [each.to_dict() for each in self.constraints],
@@ -85,21 +85,13 @@ class Sensitivity:
         }
 
 
-def is_analysed(study: Study) -> bool:
-    """Return whether the result of a long search is analysed.
-
-    A search over states and weathers minimises what no fresh sample has.
-    """
-    return study.search.goals.sensitivity != OFF and study.search.conditions is None
-
-
 def budget_of(study: Study, evaluations: int) -> tuple[tuple[float, ...], bool] | None:
     """Return the steps of the table and whether the endings are examined; None for no analysis.
 
     Short searches have less, so that the analysis does not outlast them.
     """
     wanted, sensors = study.search.goals.sensitivity, len(study.rig)
-    if not is_analysed(study):
+    if wanted == OFF:
         return None
     if wanted == FULL:
         return (NEAR, FAR), True
@@ -116,20 +108,22 @@ def analyse(
     best: Study,
     archive: Archive,
     evaluations: int,
-    samples: FreshSamples,
+    objective: Objective,
+    helpers: Callable[[], Executor | None] = lambda: None,
     goes_on: Callable[[], bool] = lambda: True,
 ) -> Sensitivity | None:
     """Return the sensitivity analysis of a search's result; None where its budget is too small.
 
     The result depends on the study alone, not on workers or time. `start` is the study as it was
     given, `best` with the result, `archive` what the search evaluated in so many `evaluations`.
-    `samples` are of `best`. Where `goes_on` returns False, the analysis is given up.
+    `objective` is what the search minimised. Where `goes_on` returns False, it is given up.
     """
     parts = budget_of(best, evaluations)
     if parts is None or not goes_on():
         return None
     steps, with_endings = parts
-    space = start.search_space()
+    space, by_ap = start.search_space(), is_by_ap(best)
+    samples = Landscape(best.rig, objective, STEEP_AP if by_ap else STEEP_NATS, helpers)
     design = Neighbourhood(best.rig, space)
     axes = []
     for row in flatness(samples, design.status, steps):
@@ -138,9 +132,7 @@ def analyse(
             return None
     found = active_constraints(axes, design, _unmet_by(best))
     endings = Basins(samples, space).endings(archive.placements()) if with_endings else None
-    return Sensitivity(
-        samples.size, samples.evaluations, tuple(axes), found, endings, is_by_ap(best)
-    )
+    return Sensitivity(samples.evaluations, tuple(axes), found, endings, by_ap)
 
 
 def _unmet_by(study: Study) -> Unmet | None:
@@ -168,13 +160,13 @@ def sensitivity_from_dict(table: Mapping[str, Any] | None, rig: Rig) -> Sensitiv
     steep = STEEP_AP if by_ap else STEEP_NATS
     axes, constraints = list[AxisCost](), list[ActiveConstraint]()
     for row in table["axes"]:
-        cost = {float(step): Difference(*map(float, pair)) for step, pair in row["cost"].items()}
+        cost = {float(step): float(each) for step, each in row["cost"].items()}
         names = str(row["sensor"]), str(row["axis"]), str(row["status"])
         axes.append(AxisCost(*names, cost, steep))
     for row in table["constraints"]:
         step = PoseStep(str(row["sensor"]), str(row["axis"]), float(row["step"]))
-        gain = Difference(-float(row["gain"]), float(row["stderr"]))
-        constraints.append(ActiveConstraint(tuple(map(str, row["constraints"])), step, gain))
+        names = tuple(map(str, row["constraints"]))
+        constraints.append(ActiveConstraint(names, step, -float(row["gain"])))
     found = table["endings"]
     endings = None
     if found is not None:
@@ -182,21 +174,19 @@ def sensitivity_from_dict(table: Mapping[str, Any] | None, rig: Rig) -> Sensitiv
         for row in found["runners_up"]:
             tables = [row["placements"][sensor.name] for sensor in rig]
             poses = [Pose.from_degrees(each["position"], each["rotation"]) for each in tables]
-            behind = Difference(float(row["behind"]), float(row["stderr"]))
             moved = tuple(map(str, row["moved"]))
-            runners_up.append(RunnerUp(rig.with_poses(poses), behind, moved))
+            runners_up.append(RunnerUp(rig.with_poses(poses), float(row["behind"]), moved))
         endings = Endings(int(found["examined"]), int(found["same_basin"]), tuple(runners_up))
-    counts = int(table["voxels"]), int(table["evaluations"])
-    return Sensitivity(*counts, tuple(axes), tuple(constraints), endings, by_ap)
+    return Sensitivity(int(table["evaluations"]), tuple(axes), tuple(constraints), endings, by_ap)
 
 
 def sensitivity_lines(found: Sensitivity) -> Iterator[str]:
     """Yield the analysis in lines: steep and flat axes, constraints, other optima."""
     unit, axes = "of AP" if found.by_ap else "nats", found.axes
-    ordered = sorted(axes, key=lambda each: -each.worst.mean)
-    steep = [each for each in ordered if each.worst.is_loss][:NAMED]
+    ordered = sorted(axes, key=lambda each: -each.worst)
+    steep = [each for each in ordered if each.worst > each.noticed][:NAMED]
     if steep:
-        named = ", ".join(f"{each.sensor} {each.axis} {each.worst.mean:+.4f}" for each in steep)
+        named = ", ".join(f"{each.sensor} {each.axis} {each.worst:+.4f}" for each in steep)
         yield f"1 cm or 1 deg off costs most at: {named} {unit}"
     else:
         yield "1 cm or 1 deg off costs nothing that can be measured, at no sensor and axis"
@@ -208,20 +198,15 @@ def sensitivity_lines(found: Sensitivity) -> Iterator[str]:
         )
         yield f"flat within {reach} cm or deg: {named}"
     for each in found.active[:NAMED]:
-        yield f"held by {each.name}: {each.step.text} would gain {gain_text(each.gain)} {unit}"
+        yield f"held by {each.name}: {each.step.text} would gain {-each.gain:.4f} {unit}"
     if len(found.active) > NAMED:
         yield f"held by {len(found.active) - NAMED} more constraints"
     if not found.active:
         yield "no constraint holds it back: no step that is forbidden would gain"
     if (more := found.unfinished) is not None:
-        gain = f"{gain_text(more.gain)} {unit}"
+        gain = f"{-more.gain:.4f} {unit}"
         yield f"not quite settled: {more.step.text} is allowed and would gain {gain}"
     yield from _ending_lines(found, unit)
-
-
-def gain_text(gain: Difference) -> str:
-    """Return what a step gains, with its error."""
-    return f"{-gain.mean:.4f} +- {max(gain.stderr, 1e-4):.4f}"
 
 
 def _ending_lines(found: Sensitivity, unit: str) -> Iterator[str]:
@@ -233,8 +218,6 @@ def _ending_lines(found: Sensitivity, unit: str) -> Iterator[str]:
         same = found.endings.same_basin
         yield f"one optimum: {same} placements far from it lead to it without a hill between"
         return
-    what = "scenes" if found.by_ap else "voxels"
-    yield f"{count + 1} optima found; runners-up, {found.voxels:,} fresh {what}:"
+    yield f"{count + 1} optima found; runners-up:"
     for number, each in enumerate(found.endings.runners_up, 1):
-        behind = f"{each.behind.mean + 0.0:+.4f} +- {max(each.behind.stderr, 1e-4):.4f}"
-        yield f"  {number}: {behind} {unit}, with {', '.join(each.moved)} elsewhere"
+        yield f"  {number}: {each.behind:+.4f} {unit}, with {', '.join(each.moved)} elsewhere"

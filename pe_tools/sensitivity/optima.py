@@ -3,7 +3,7 @@
 The archive of the search keeps the best placement of each neighbourhood. Two placements are in one
 basin if no placement on the straight line between them is worse than both (Ursem, "Multinational
 evolutionary algorithms", 1999). Here the line is taken in the design variables and projected onto
-the mounts, and "worse" is beyond the error of the samples.
+the mounts.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import Any
 
-from pe_core.base.values import degrees_in_file
+from pe_core.base.values import degrees_in_file, rounded
 from pe_core.scene.rig import Rig
 from pe_core.scoring.score import Evaluation
 from pe_core.search import Parametrization
 from pe_core.search.search_space import SearchSpace
 from pe_core.study.requirement_search import is_infeasible
 
-from .fresh_samples import Difference, FreshSamples
+from .flatness import NOTICED, Landscape
 
 APART_M, APART_RAD = 0.15, math.radians(6.0)
 """Placements are in one neighbourhood if no sensor is farther away or turned more than this."""
@@ -29,7 +29,7 @@ KEPT = 48
 """Neighbourhoods that are kept for each level of the search."""
 MAX_RUNNERS_UP = 3
 EXAMINED = 16
-"""Placements of the archive that are evaluated on the fresh samples, the best first."""
+"""Placements of the archive that are evaluated the best first."""
 BETWEEN = (0.25, 0.5, 0.75)
 """Shares of the way between two placements at which a hill is looked for."""
 
@@ -83,15 +83,13 @@ class RunnerUp:
     `moved` are elsewhere than in the result."""
 
     rig: Rig
-    behind: Difference
+    behind: float
     moved: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain JSON data."""
-        mean, stderr = self.behind.to_list()
         return {
-            "behind": mean,
-            "stderr": stderr,
+            "behind": rounded(self.behind),
             "moved": list(self.moved),
             "placements": {
                 s.name: {
@@ -125,7 +123,7 @@ class Endings:
 class Basins:
     """Sorts placements into basins of attraction."""
 
-    def __init__(self, samples: FreshSamples, space: SearchSpace) -> None:
+    def __init__(self, samples: Landscape, space: SearchSpace) -> None:
         self._samples, self._space = samples, space
         self._coding = Parametrization(samples.reference, space)
 
@@ -133,7 +131,7 @@ class Basins:
         """Return the optima apart from the reference among placements of a search."""
         apart = self._apart(placements)
         self._samples.evaluate(apart)
-        apart.sort(key=lambda rig: self._samples.mean(rig).mean)
+        apart.sort(key=self._samples.change)
         ways = (self._between(rig, self._samples.reference) for rig in apart)
         self._samples.evaluate(chain.from_iterable(way for way in ways if way))
         found: list[Rig] = []
@@ -147,7 +145,7 @@ class Basins:
         for rig in found:
             moved = tuple(s.name for s in rig if s.pose != self._samples.reference[s.name].pose)
             runners_up.append(RunnerUp(rig, self._samples.change(rig), moved))
-        runners_up.sort(key=lambda each: each.behind.mean)
+        runners_up.sort(key=lambda each: each.behind)
         return Endings(len(apart), same, tuple(runners_up))
 
     def _apart(self, placements: Iterator[Rig]) -> list[Rig]:
@@ -167,12 +165,13 @@ class Basins:
     def _has_hill(self, one: Rig, other: Rig) -> bool:
         if is_near(one, other):
             return False
-        worse = one if self._samples.change(one, other).mean > 0.0 else other
+        worse = one if self._samples.change(one, other) > 0.0 else other
         way = self._between(one, other)
         if way is None:
             return True
         self._samples.evaluate(way)
-        return any(self._samples.change(rig, worse).is_loss for rig in way)
+        hill = NOTICED * self._samples.steep
+        return any(self._samples.change(rig, worse) > hill for rig in way)
 
     def _between(self, one: Rig, other: Rig) -> list[Rig] | None:
         """Return placements on the way; None if one of them breaks a rule."""

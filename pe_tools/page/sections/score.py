@@ -17,7 +17,6 @@ from pe_core.scoring.sight import SECTOR_RADIUS_M
 from pe_core.study.condition_table import ConditionTable
 
 from ... import advice, jobs
-from ... import sensitivity as sure
 from ..markup import capitalized, escaped, joined, macros, number
 from ..pictures.charts import step_curve
 from ..pictures.vehicle_picture import labelled_picture
@@ -197,8 +196,6 @@ def sensitivity(context: ReportContext) -> dict[str, Any] | None:
         return None
     return {
         "found": found,
-        "what": jobs.searched_on(context.start)[1],
         "status": STATUS,
         "steps": sorted({step for row in found.axes for step in row.cost}),
-        "gain_text": sure.gain_text,
     }

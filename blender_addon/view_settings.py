@@ -9,15 +9,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from .choices import BEFORE_MOVE
-from .engine import graphics, studies
+from .engine import studies
 
 DEFAULT_CLASS = "pedestrian"
 AVERAGE = "AVERAGE"
-REDUNDANCY = "REDUNDANCY"
-"""Quantity of the ground map: what one lost sensor leaves, or how many kinds see a place."""
-COUNTED = (graphics.SENSORS, REDUNDANCY)
-"""Quantities that are numbers of sensors or kinds: they have no range of colours."""
-SENSORS_LEFT, KINDS, KINDS_LEFT = "SENSORS_LEFT", "KINDS", "KINDS_LEFT"
 FITTED, WHOLE = "FITTED", "WHOLE"
 """The range of values that the colours of the ground map cover."""
 SELECTED, ALL, RIG = "SELECTED", "ALL", "RIG"
@@ -27,7 +22,7 @@ MIN_LENGTH_M = 0.1
 
 OPACITY = studies.Number(0.05, 1.0)
 METRES, LENGTH = studies.Number(0.5, unit="m"), studies.Number(MIN_LENGTH_M, unit="m")
-BODY, COUNT, KEY = studies.Number(0.01, 5.0, unit="m"), studies.Whole(1), studies.Whole(0)
+COUNT, KEY = studies.Whole(1), studies.Whole(0)
 
 
 def _switch(default: bool, label: str, text: str) -> bool:
@@ -56,22 +51,7 @@ class ViewSettings:
         ("SENSORS", "Sensors", "Number of sensors that see a location: none, 1, 2, 3 or more"),
         ("COVERAGE", "Coverage", "Share of a location that is visible to a sensor"),
         ("ENTROPY", "Entropy", "Uncertainty of a detector in nats; lower is better"),
-        (REDUNDANCY, "Redundancy", "What is left when any one sensor is lost, or kinds"),
     )
-    redundancy_of: str = _menu(
-        SENSORS_LEFT,
-        "Redundancy",
-        "What the redundancy map shows",
-        (SENSORS_LEFT, "Sensors Left", "The fewest sensors when any one is lost"),
-        (KINDS, "Kinds", "How many kinds of sensors see the test body"),
-        (KINDS_LEFT, "Kinds Left", "The fewest kinds when any one sensor is lost"),
-        when="ground_quantity=REDUNDANCY",
-    )
-    redundancy_height: float = _value(
-        0.8, BODY, "Body Height",
-        "Height of the test body: a cylinder 0.3 m wide that stands alone",
-        when="ground_quantity=REDUNDANCY",
-    )  # fmt: skip
     ground_height: str = _menu(
         AVERAGE,
         "Height",
@@ -81,7 +61,6 @@ class ViewSettings:
         ("H50", "0.5 m", "As high as a bumper or a cone"),
         ("H100", "1 m", "As high as a bonnet"),
         ("H150", "1.5 m", "As high as heads and roofs"),
-        when="ground_quantity!=REDUNDANCY",
     )
     ground_opacity: float = _value(0.35, OPACITY, "Opacity", "Opacity of the map's colours")
     ground_range: str = _menu(

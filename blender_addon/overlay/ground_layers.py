@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..engine import Floats, graphics, pe, sight
-from ..view_settings import COUNTED, KINDS, KINDS_LEFT, REDUNDANCY, SENSORS_LEFT, WHOLE
+from ..view_settings import WHOLE
 
 if TYPE_CHECKING:
     from ..engine import pe, sight
@@ -26,8 +26,6 @@ NOTHING_TO_COMPARE = "Difference: nothing to compare with yet"
 def ground_map(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
     """Return the requested ground map with its legend."""
     view = request.view
-    if view.ground_quantity == REDUNDANCY:
-        return _redundancy(request, cache)
     if shows_difference(request):
         return _difference(request, cache)
     scored, where = scored_map(request), None
@@ -41,37 +39,15 @@ def ground_map(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
     )
 
 
-REDUNDANCY_TITLES = {
-    SENSORS_LEFT: "fewest sensors with any one lost",
-    KINDS: "kinds of sensors",
-    KINDS_LEFT: "fewest kinds with any one sensor lost",
-}
-
-
-def _redundancy(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
-    """Return the map of what is left with one sensor lost, or of the number of kinds."""
-    view = request.view
-    seen = cache.redundancy(request).map(pe.Rig([e.sensor for e in request.counted]))
-    values = {SENSORS_LEFT: seen.sensors_left, KINDS: seen.kinds, KINDS_LEFT: seen.kinds_left}[
-        view.redundancy_of
-    ]
-    cells, unknown = seen.cells, np.full(values.shape, np.nan)
-    ground = sight.GroundSight(
-        cells.x, cells.y, cells.step, seen.height, unknown, unknown, values, values
-    )
-    where = f"{REDUNDANCY_TITLES[view.redundancy_of]}, what is {seen.height:g} m tall"
-    return graphics.ground_map(ground, graphics.SENSORS, view.ground_opacity, where=where)
-
-
 def shows_difference(request: ViewRequest) -> bool:
     """Whether a difference map is shown; the number of sensors has no difference map."""
-    return request.view.ground_difference and request.view.ground_quantity not in COUNTED
+    return request.view.ground_difference and request.view.ground_quantity != graphics.SENSORS
 
 
 def scored_map(request: ViewRequest) -> pe.GroundMap | None:
     """Return the score's own map, if it is to be shown."""
     view = request.view
-    averaged = view.ground_height_m is None and view.ground_quantity not in COUNTED
+    averaged = view.ground_height_m is None and view.ground_quantity != graphics.SENSORS
     return request.scored if averaged and not shows_difference(request) else None
 
 
@@ -123,7 +99,7 @@ def _bounds(
 ) -> tuple[float, float] | None:
     """Return the values at the ends of the colours: kept while a sensor moves, and once scored."""
     view = request.view
-    if view.ground_quantity in COUNTED or view.ground_range == WHOLE:
+    if view.ground_quantity == graphics.SENSORS or view.ground_range == WHOLE:
         return None
     of = view.ground_quantity, view.ground_height, request.prior_key, view.ground_fits
     return cache.fitted(

@@ -39,8 +39,6 @@ T = TypeVar("T")
 
 MAX_TRIANGLES = 50_000
 """A vehicle of more is simplified for drawing: a picture shows no more detail."""
-STEPS_M, WITHIN_M = {False: 0.5, True: 1.0}, 20.0
-"""Distance of the places of redundancy maps by whether something moves, and their extent [m]."""
 MAX_KEPT = {"casts": 24, "compared": 2, "scale": 16}
 """How many results of a sort are kept, those used last; otherwise one."""
 
@@ -76,17 +74,6 @@ class LayerCache:
         """Return what holds rigs to the requirements, and why others cannot be placed, by name."""
         key = request.requirements_key, request.body_key, request.reference, request.prior_key
         return self._keep("checker", key, lambda: _checker(request))
-
-    def redundancy(self, request: ViewRequest) -> requirements.Redundancy:
-        """Return what makes redundancy maps; places are farther apart while something moves."""
-        assert request.space is not None  # the layer has no key without one
-        height, step = request.view.redundancy_height, STEPS_M[request.moving]
-        key, space = (request.body_key, request.space, height, step), request.space
-        return self._keep(
-            f"redundancy {step:g}",
-            key,
-            lambda: requirements.Redundancy(request.vehicle, space, height, WITHIN_M, step),
-        )
 
     def met_before(
         self, request: ViewRequest, verdicts: Sequence[requirements.Verdict]

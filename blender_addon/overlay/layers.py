@@ -74,7 +74,7 @@ def _counted_rig(request: ViewRequest) -> pe.Rig:
 
 def _ground_keys(request: ViewRequest) -> dict[str, Hashable]:
     settings: tuple[str, ...] = ("ground_quantity", "ground_height", "ground_opacity")
-    settings += ("ground_range", "ground_fits", "redundancy_of", "redundancy_height")
+    settings += ("ground_range", "ground_fits")
     keys = _rig_keys(*settings)(request)
     more = id(ground_layers.scored_map(request)), ground_layers.compared_key(request)
     return {name: (key, more) for name, key in keys.items()}

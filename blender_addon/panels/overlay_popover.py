@@ -7,10 +7,10 @@ from typing import Any, TypeAlias
 import bpy
 from bpy.types import Context, PropertyGroup
 
+from ..engine import graphics
 from ..language import draw_label, shown
 from ..operators import reference_label
 from ..properties import VIEW_ROWS
-from ..view_settings import COUNTED
 from .layout import is_asked, panel
 
 UILayout: TypeAlias = bpy.types.UILayout
@@ -42,7 +42,7 @@ def view(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
 def _draw_colors(layout: UILayout, settings: OverlaySettings) -> None:
     """Draw the range of the ground map's colours, and the compared rig."""
     view = settings.view
-    if view.ground_quantity in COUNTED:
+    if view.ground_quantity == graphics.SENSORS:
         return
     if not view.ground_difference:
         row = layout.row(align=True)

@@ -12,7 +12,7 @@ from pe_core.base import dump_json
 from pe_core.base.errors import InputError
 from pe_core.base.files import csv_text, require_new, write_bytes
 from pe_core.base.table_reader import finite
-from pe_core.scoring.requirements import Redundancy, RedundancyMap, Verdict, checkable
+from pe_core.scoring.requirements import Verdict, checkable
 from pe_core.study import Study, load_study
 from pe_core.study.requirement_file import CONFIDENCE, Preset, preset, presets
 from pe_core.study.requirement_search import suggestions
@@ -44,8 +44,6 @@ def add_check_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print JSON")
     about = "say which small change of one sensor would meet what is not met"
     parser.add_argument("--suggest", action="store_true", help=about)
-    about = "also by how many sensors each place within 10 m is seen, for what is so tall [m]"
-    parser.add_argument("--redundancy", type=float, metavar="M", help=about)
     parser.add_argument("--csv", metavar="FILE", help="write the table to a CSV file")
     parser.add_argument("--replace", action="store_true", help="replace a table that is there")
     add_curve_option(parser)
@@ -94,8 +92,8 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
     if args.csv is not None:
         require_new(Path(args.csv), replace=args.replace, inputs=inputs)
     study, unchecked = with_presets(with_curves(study, args), args.preset)
-    if not (study.requirements or study.stories) and args.redundancy is None:
-        expected = "[[requirement]] or [[story]] in the study, --preset ID, or --redundancy M"
+    if not (study.requirements or study.stories):
+        expected = "[[requirement]] or [[story]] in the study, or --preset ID"
         raise InputError("check", "requirements", expected, "none")
     print_vehicle(study)
     if note := curve_note([study]):
@@ -112,16 +110,12 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
     unchecked |= dict.fromkeys(job.missing, STOPPED)
     wanted = args.suggest and status == NOT_MET
     suggested = suggestions(study) if wanted else {}
-    seen = None
-    if args.redundancy is not None and job.complete:
-        seen = Redundancy(study.vehicle, study.space, args.redundancy).map(study.rig)
     if args.json:
         data = {
             "met": sum(v.met for v in verdicts),
             "requirements": [v.to_dict() for v in verdicts],
             "unchecked": unchecked,
             "suggestions": {name: own and own.text for name, own in suggested.items()},
-            "redundancy": None if seen is None else seen.to_dict(),
             "stories": [each.to_dict() for each in driven],
         }
         return dump_json(finite(data)), status
@@ -130,20 +124,7 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
     none = "no placement of one sensor, or linked pair, that was tried is enough"
     for name, own in suggested.items():
         lines.append(f"{name}: met with {own.text}" if own else f"{name}: {none}")
-    lines += [] if seen is None else redundancy_lines(seen)
     return "\n".join(lines), status
-
-
-def redundancy_lines(seen: RedundancyMap) -> list[str]:
-    """Return in lines by how many sensors the ground within 10 m is seen."""
-    data = seen.to_dict()
-    shares = [f"{share:.1%} by {n} or more" for n, share in data["sensors"].items()]
-    of_kinds = [f"{share:.1%} by {n} kinds" for n, share in data["kinds"].items() if n != "1"]
-    return [
-        f"seen of {data['ground_m2']:.0f} m2, of what is {seen.height:g} m tall: "
-        + ", ".join([*shares, *of_kinds]),
-        f"with any one sensor lost {data['seen_with_one_lost']:.1%} is still seen",
-    ]
 
 
 def with_presets(study: Study, names: Sequence[str]) -> tuple[Study, dict[str, str]]:

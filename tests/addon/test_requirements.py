@@ -360,24 +360,6 @@ class TestZones:
         assert "requirements" not in scenes.drawn(held)
 
 
-def test_the_ground_map_of_redundancy_has_the_engine_s_numbers(held):
-    view = held.perception_entropy.view
-    view.ground_quantity, view.redundancy_height, view.ground_opacity = "REDUNDANCY", 1.0, 1.0
-    study = scenes.study()
-    maker = pe.requirements.Redundancy(study.vehicle, study.space, 1.0, within=20.0, step=0.5)
-    seen = maker.map(study.rig)
-    counts = np.float32(graphics.COUNTS)
-    wanted = {"SENSORS_LEFT": seen.sensors_left, "KINDS": seen.kinds, "KINDS_LEFT": seen.kinds_left}
-    assert {int(values.max()) for values in wanted.values()} == {1, 2}, "they differ"
-    for name, values in wanted.items():
-        view.redundancy_of = name
-        (shape,) = scenes.drawn(held)["ground"].values()
-        known = values >= 0
-        shown = shape.sheet.image[..., :3].transpose(1, 0, 2)
-        assert np.allclose(shown[known], counts[values[known]], atol=1e-6), name
-        assert "1 m tall" in shape.legend.title
-
-
 @pytest.mark.parametrize("eyes", EYES)
 @pytest.mark.parametrize("scale", [graphics.VIRIDIS, graphics.CIVIDIS, graphics.COUNTS])
 @pytest.mark.parametrize("opacity", [0.5, 1.0])

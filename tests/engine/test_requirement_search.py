@@ -1,4 +1,4 @@
-"""Searches that keep requirements, what stands against one that is not met, and redundancy maps."""
+"""Searches that keep requirements, what stands against one that is not met."""
 
 import math
 import pickle
@@ -14,12 +14,10 @@ from pe_core.scoring.requirements import (
     BODIES,
     Body,
     Criterion,
-    Redundancy,
     Requirement,
     RequirementChecker,
     Under,
     Zone,
-    sees,
 )
 from pe_core.scoring.sight import BLIND_TO_M
 from pe_core.search import Goals
@@ -226,31 +224,3 @@ def test_workers_and_cutoffs_keep_the_same_blind_ground():
             assert found.is_lower_bound or found.entropy == objective.entropy(rig)
     one, two = (finished(pt.OptimizeJob(given, workers)) for workers in (1, 2))
     assert one.evaluated == two.evaluated and one.after == two.after
-
-
-def test_redundancy_is_what_each_sensor_sees_alone():
-    """Counts by the definition at every place; what is left is the fewest without any one."""
-    own = study()
-    places = Redundancy(own.vehicle, own.space, height=0.8, within=3.0, step=1.0)
-    found = places.map(own.rig)
-    body = Body("body", (0.3, 0.3, 0.8), is_round=True)
-    wrong = []
-    for i, x in enumerate(found.cells.x):
-        for j, y in enumerate(found.cells.y):
-            if found.sensors[i, j] < 0:
-                continue
-            seen = [s for s in own.rig if sees(s, body, (x, y, 0.0), 0.0, own.vehicle, Criterion())]
-            left = [[o for o in seen if o is not s] for s in own.rig]
-            truth = (
-                *(len(seen), len({s.kind for s in seen})),
-                *(min(map(len, left)), min(len({s.kind for s in rest}) for rest in left)),
-            )
-            maps = (found.sensors, found.kinds, found.sensors_left, found.kinds_left)
-            if truth != tuple(int(each[i, j]) for each in maps):
-                wrong.append((x, y, truth))
-    assert not wrong
-    assert (found.sensors < 0).any() and (found.sensors_left < found.sensors).any()
-    assert found.share(1) >= found.share(2) and found.share(1) >= found.share(one_lost=True)
-    assert math.isclose(found.to_dict()["sensors"]["1"], found.share(1), abs_tol=1e-6)
-    with pytest.raises(pe.InputError, match="height"):
-        Redundancy(own.vehicle, own.space, height=-1.0)

@@ -6,22 +6,13 @@ import re
 import numpy as np
 import pytest
 
-import pe_core as pe
 import pe_tools as pt
 from pe_core.scoring import requirements
-from pe_tools import graphics
 from pe_tools.page import ReportContext
 from pe_tools.page.document import STYLES
-from pe_tools.page.markup import percent
 from pe_tools.page.pictures.reference_figures import worst_bodies
 from pe_tools.page.pictures.sight_plans import MET_RGBA, NOT_MET_RGBA, requirement_plan
-from pe_tools.page.sections.visibility import (
-    HEIGHT_M,
-    STEP_M,
-    WITHIN_M,
-    redundancy,
-    requirement_verdicts,
-)
+from pe_tools.page.sections.visibility import requirement_verdicts
 from pe_tools.wording import margin_text
 from tests.review.conftest import NAMES, html_of, outcome_of, small_study
 from tests.review.test_maps import pixels_of
@@ -151,23 +142,3 @@ def test_colours_are_those_of_the_tags():
     for rgba, name in ((MET_RGBA, "met"), (NOT_MET_RGBA, "not-met")):
         found = re.search(rf"\.tag\.{name} {{ background: (#\w+)", css)
         assert found[1] == "#" + "".join(f"{value:02x}" for value in rgba[:3])
-
-
-def test_the_redundancy_section_has_the_engine_s_map_and_shares():
-    """Two cameras side by side: where both see, one is left."""
-    camera = small_study().rig[NAMES[1]]
-    other = pe.Sensor("other", camera.model, pe.Pose((2.3, -0.6, 1.2)))
-    study = dataclasses.replace(small_study(), rig=pe.Rig([camera, other]))
-    context = ReportContext("two", outcome_of(pt.ScoreJob(study)))
-    html = html_of(redundancy, context)
-    seen = requirements.Redundancy(study.vehicle, study.space, HEIGHT_M, WITHIN_M, STEP_M)
-    found = seen.map(context.rig)
-    one, left = found.share(1), found.share(1, one_lost=True)
-    assert 0.0 < left < one < 1.0
-    assert f"<td>{percent(one, 1)}</td><td>{percent(left, 1)}</td>" in html
-    pixels = pixels_of(re.findall("<svg.*?</svg>", html, re.DOTALL)[1])
-    assert pixels.shape[:2] == found.sensors.shape[::-1]
-    best = graphics.as_bytes(np.array(graphics.COUNTS))[1]
-    shown = (pixels[::-1, :, :3] == best).all(axis=-1).T
-    assert (shown == (found.sensors_left == 1)).all()
-    assert ((found.sensors < 0) == (pixels[::-1, :, 3] == 0).T).all()

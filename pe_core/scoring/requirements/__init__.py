@@ -5,7 +5,6 @@ from .checker import CheckStep, RequirementChecker, checkable
 from .criteria import Criterion, Requirement, Under, checked_requirements
 from .definition import body_met, sees
 from .planes import VehiclePlanes
-from .redundancy import Redundancy, RedundancyMap
 from .verdict import (
     FARTHEST_M,
     Reason,
@@ -18,6 +17,6 @@ from .verdict import (
 from .zones import PlacedZone, Zone, signed_distance
 
 __all__ = ["BODIES", "FARTHEST_M", "Body", "CheckStep", "Criterion", "PlacedZone"]
-__all__ += ["Reason", "Redundancy", "RedundancyMap", "Requirement", "RequirementChecker", "Samples"]
+__all__ += ["Reason", "Requirement", "RequirementChecker", "Samples"]
 __all__ += ["Under", "VehiclePlanes", "Verdict", "VerdictSummary", "Zone", "body_met", "checkable"]
 __all__ += ["checked_requirements", "margin_of", "part_in_the_way", "sees", "signed_distance"]

@@ -224,14 +224,6 @@ def difference_map(
     return _map(_bounds(second), colors, known, key, vehicle, alt, RINGS)
 
 
-def count_map(
-    values: NDArray[Any], bounds: PlanBounds, vehicle: pe.Vehicle | None, alt: str
-) -> Markup:
-    """Return a map of numbers (NX, NY) of sensors or kinds as SVG; below 0 is no ground. `bounds`
-    are the ends of the map along x and y [m]."""
-    return _map(bounds, _count_colors(values), values >= 0, COUNT_KEY, vehicle, alt)
-
-
 def _bounds(ground: sight.GroundSight) -> PlanBounds:
     half = ground.step / 2.0
     x, y = ((float(w[0]) - half, float(w[-1]) + half) for w in (ground.x, ground.y))

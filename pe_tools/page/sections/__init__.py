@@ -27,14 +27,7 @@ from .score import (
     warnings_and_text,
 )
 from .traceability import assumptions, copy_script, reproduction
-from .visibility import (
-    dimensions,
-    drive_by,
-    redundancy,
-    requirement_verdicts,
-    sensor_details,
-    visibility,
-)
+from .visibility import dimensions, drive_by, requirement_verdicts, sensor_details, visibility
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +73,6 @@ SECTIONS = (
     Section("drive-by", "Seen in time", drive_by),
     Section("conditions", "Conditions", conditions),
     Section("maps", "Visibility", visibility),
-    Section("redundancy", "Redundancy", redundancy),
     Section("parts", "By class and zone", by_class_and_zone),
     Section("objects", "Objects", objects),
     Section("sensors", "Sensors", sensor_details),

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from pe_core.base.errors import InputError
-from pe_core.scoring.requirements import Redundancy
-
 from ..markup import capitalized, percent
 from ..pictures.dimension_drawing import side_view, top_view
-from ..pictures.ground_plan import COVERAGE, ENTROPY, LAYERS, count_map, difference_map, ground_map
+from ..pictures.ground_plan import COVERAGE, ENTROPY, LAYERS, difference_map, ground_map
 from ..pictures.reference_figures import count_text, worst_bodies
 from ..pictures.sensor_views import sensor_view
 from ..pictures.sight_plans import blind_plan, reach_plan, reach_text, requirement_plan, side_text
@@ -25,8 +22,6 @@ PREFERRED_CLASSES = ("pedestrian", "car")
 """Classes whose reach is shown, if the prior has them."""
 BEARINGS_DEG = {"ahead": 0.0, "ahead left": 45.0, "left": 90.0, "behind": 180.0, "right": 270.0}
 BEARINGS_DEG["ahead right"] = 315.0
-HEIGHT_M, WITHIN_M, STEP_M = 0.8, 10.0, 0.25
-"""Height of the test body, ground round the vehicle, and distance of the places [m]."""
 MAX_PARTS, MIN_SHARE = 3, 0.0005
 """Parts of the vehicle that a row names, and the smallest share that such a part occludes."""
 
@@ -73,33 +68,6 @@ def visibility(context: ReportContext) -> dict[str, Any]:
         "reach_rows": rows,
         "key": sensor_key(rig),
     }
-
-
-def redundancy(context: ReportContext) -> dict[str, Any] | None:
-    """Return the redundancy maps of a study; None for a rig of one sensor."""
-    if len(context.rig) < 2:
-        return None
-    study = context.study
-    try:
-        seen = Redundancy(study.vehicle, study.space, HEIGHT_M, WITHIN_M, STEP_M).map(context.rig)
-    except InputError as error:  # a kind of sensor that measures voxels alone
-        return {"error": str(error)}
-    cells = seen.cells
-    bounds = (float(cells.x0[0]), float(cells.x1[-1])), (float(cells.y0[0]), float(cells.y1[-1]))
-    maps = {
-        "Sensors": ("that see the test body", seen.sensors),
-        "Sensors left": ("the fewest when any one sensor is lost", seen.sensors_left),
-        "Kinds": ("of sensors that see the test body", seen.kinds),
-        "Kinds left": ("the fewest when any one sensor is lost", seen.kinds_left),
-    }
-    drawn = []
-    for name, (about, values) in maps.items():
-        alt = f"Map of {name.lower()}, {context.name}"
-        drawn.append((name, about, count_map(values, bounds, study.vehicle, alt)))
-    counts = [(f"{n} or more", (n, 1)) for n in range(1, len(seen.by_sensor) + 1)]
-    counts += [(f"{n} kinds", (1, n)) for n in range(2, int(seen.kinds.max(initial=0)) + 1)]
-    sizes = {"error": "", "height_m": HEIGHT_M, "within_m": WITHIN_M}
-    return {**sizes, "maps": drawn, "counts": counts, "share": seen.share}
 
 
 def drive_by(context: ReportContext) -> dict[str, Any] | None:

@@ -1,4 +1,4 @@
-"""Export of the scene: solids, glTF, ego masks and a picture (no import)."""
+"""Export of the scene: glTF, a picture, and what plugins add (no import)."""
 
 from .output_formats import OF_EXAMPLE as OF_EXAMPLE
 from .output_formats import SceneOutput as SceneOutput
@@ -10,6 +10,6 @@ from .output_formats import scene_outputs as scene_outputs
 from .request import BLIND as BLIND
 from .request import BODY as BODY
 from .request import OutputRequest as OutputRequest
+from .solid import MountedView as MountedView
 from .solid import Solid as Solid
-from .solid import blind_volume as blind_volume
 from .solid import mounted_view as mounted_view

@@ -21,7 +21,7 @@ from pe_core.base.plugins import (
 from pe_core.study import Study
 
 from ..exchange import Written, write_files
-from . import masks, scene_gltf
+from . import scene_gltf
 from .request import OutputRequest
 
 
@@ -58,11 +58,7 @@ class SceneOutput:
 
 
 _ROWS = (
-    SceneOutput(
-        "solids", "Fields of View as Solids (glTF, STL)", "solids", scene_gltf.write_solids, True
-    ),
     SceneOutput("gltf", "Whole Scene (glTF)", scene_gltf.FILE, scene_gltf.write),
-    SceneOutput("masks", "Ego Masks (PNG, CSV)", "masks", masks.write, True, has_range=False),
     SceneOutput(
         "picture",
         "Picture (SVG)",
@@ -71,7 +67,7 @@ _ROWS = (
         has_range=False,
     ),
 )
-OF_EXAMPLE = ("footprints", "footprints-dxf", "nebula", "rerun")
+OF_EXAMPLE = ("footprints", "footprints-dxf", "masks", "nebula", "rerun", "solids")
 """Outputs of the plugin that is shipped as an example."""
 EXAMPLE = "the plugin perception-entropy-outputs: pip install examples/plugin"
 OUTPUT = "output"

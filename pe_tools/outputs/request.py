@@ -63,7 +63,6 @@ class OutputRequest:
 
 
 BLIND: Rgb = (0.75, 0.12, 0.12)
-HIDDEN: Rgb = (0.30, 0.30, 0.30)
 BODY: Rgb = (0.72, 0.74, 0.76)
 GLASS: Rgb = (0.35, 0.42, 0.48)
 

@@ -1,4 +1,4 @@
-"""The scene as glTF, and fields of view as closed solids, as glTF and STL.
+"""The scene as glTF.
 
 In the whole scene the axes of a sensor's node are those of glTF: x forward, y up, z to the right. A
 program with z up imports them as x forward, y left, z up. A camera is a child of its sensor's node
@@ -14,7 +14,6 @@ import numpy as np
 
 from pe_core.base.arrays import Floats
 from pe_core.scene import Sensor, rotate
-from pe_core.sensors import kind_of
 
 from ..exchange import Written
 from ..exchange.frames import quaternion
@@ -23,26 +22,19 @@ from ..exchange.portable import PortableSensor, with_pictures
 from ..exchange.portable_kinds import portable_sensors
 from ..graphics import Rgb, sensor_colors_on_paper
 from .glb import LINES, GlbScene, add_vehicle, view_wires, y_up
-from .request import BLIND, HIDDEN, NO_RANGE_M, OutputRequest, plain_names
-from .solid import Solid, blind_volume, free_solid, hidden_solid, mounted_view, whole_solid
+from .request import OutputRequest
+from .solid import free_solid, mounted_view
 
 FILE, TITLE = "scene.glb", "glTF"
 ROOT = "Grp_Root"
-STEP = math.radians(1.0)
 REACH_M = 4.0
 """How far fields of view go unless told."""
 VIEW_ALPHA = 0.18
 LOOKING_ALONG_X = [0.0, -math.sqrt(0.5), 0.0, math.sqrt(0.5)]
 """Quaternion (x, y, z, w) that turns -z of a glTF camera to a sensor's x."""
 NEAR_M, FAR_M = 0.1, 1000.0
-FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-HEADER_BYTES = 80
-SOLIDS_FILE = "solids.glb"
 STEP = math.radians(1.0)
 """Approximate angular size of the triangles, seen from the sensor [rad]."""
-FREE_ALPHA, HIDDEN_ALPHA, BLIND_ALPHA = 0.25, 0.5, 0.4
-BLIND_NAME = "blind_volume"
-Coloured = tuple[Solid, Rgb, float]
 
 
 def write(request: OutputRequest) -> tuple[Written, list[str]]:
@@ -106,53 +98,3 @@ def _view(scene: GlbScene, request: OutputRequest, sensor: Sensor, color: Rgb) -
 def _own(sensor: Sensor, points: Floats) -> Floats:
     """Return points of the ground frame in a sensor's own axes."""
     return rotate(sensor.pose.ground_from_sensor.T, points - np.asarray(sensor.pose.position))
-
-
-def stl_bytes(solid: Solid) -> bytes:
-    """Return a solid as a file; its normals point outwards."""
-    corners = solid.points.astype(np.float32)[solid.faces]
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).astype(float)
-    length = np.sqrt((normal**2).sum(axis=1, keepdims=True))
-    facets = np.zeros(len(corners), FACET)
-    facets["corners"] = corners
-    facets["normal"] = normal / np.where(length > 0.0, length, 1.0)
-    # The name last: "solid" is how an ASCII file begins.
-    header = f"metres, x forward, y left, z up: {solid.name}".encode("ascii", "replace")
-    count = len(facets).to_bytes(4, "little")
-    return header[:HEADER_BYTES].ljust(HEADER_BYTES) + count + facets.tobytes()
-
-
-def write_solids(request: OutputRequest) -> tuple[Written, list[str]]:
-    """Return one glTF of all solids and an STL of each, and lines on what is not in them."""
-    names, lines = plain_names([sensor.name for sensor in request.study.rig])
-    files: dict[str, bytes] = {}
-    shown: list[Coloured] = []
-    colors = sensor_colors_on_paper(request.study.rig)
-    for sensor in request.study.rig:
-        reach, plain = request.reach(sensor), names[sensor.name]
-        view = mounted_view(sensor, request.study.vehicle, reach, STEP)
-        if view is None:
-            lines.append(f"{sensor.name}: no field of view of a {kind_of(sensor).label} is known")
-            continue
-        if request.range_m is None and math.isinf(getattr(sensor.model, "max_range", math.inf)):
-            ends = f"its solids end at {NO_RANGE_M:g} m (--range)"
-            lines.append(f"{sensor.name}: has no range of its own; {ends}")
-        files[f"{plain}_field.stl"] = stl_bytes(whole_solid(f"{plain}_field", view))
-        free, hidden = free_solid(f"{plain}_free", view), hidden_solid(f"{plain}_hidden", view)
-        shown.append((free, colors[sensor.name], FREE_ALPHA))
-        shown += [(hidden, HIDDEN, HIDDEN_ALPHA)] if hidden is not None else []
-    vehicle = request.study.vehicle
-    if vehicle is None:
-        lines.append("no vehicle: nothing is occluded, and there is no blind volume near it")
-    elif (blind := blind_volume(BLIND_NAME, request.study.rig, vehicle)) is None:
-        lines.append("no blind volume: all of it is seen")
-    else:
-        shown.append((blind, BLIND, BLIND_ALPHA))
-    files |= {f"{solid.name}.stl": stl_bytes(solid) for solid, _, _ in shown}
-    scene = GlbScene()
-    nodes = add_vehicle(scene, vehicle, request.study.reference)
-    for solid, color, alpha in shown:
-        material = scene.add_material(solid.name, color, alpha)
-        mesh = scene.add_mesh(solid.name, solid.points, solid.faces, material)
-        nodes.append(scene.add_node(solid.name, mesh=mesh, extras={"volume_m3": solid.volume}))
-    return {SOLIDS_FILE: scene.encoded(scene.add_node(ROOT, nodes)), **files}, lines

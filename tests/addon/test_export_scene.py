@@ -51,41 +51,6 @@ def test_blender_imports_sensors_where_they_stood(seen, tmp_path):
     assert view.data.angle_y == pytest.approx(rig["eye"].model.vfov, abs=1e-5)
 
 
-def test_blender_imports_the_vehicle_and_closed_solids_where_they_were(seen, tmp_path):
-    """The folder of solids is replaced only when that is asked for."""
-    import bmesh  # there once bpy is
-
-    exported(tmp_path, "solids", range_m=3.0)
-    with pytest.raises(RuntimeError, match="an existing file"):
-        exported(tmp_path, "solids", range_m=6.0)
-    folder = exported(tmp_path, "solids", range_m=6.0, replace=True)
-    low, high = scenes.study().vehicle.bounds
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    bpy.ops.import_scene.gltf(filepath=str(folder / "solids.glb"))
-    names = {each.name for each in bpy.data.objects if each.type == "MESH"}
-    assert {"roof_free", "eye_free", "blind_volume"} <= names
-    corners = [o.matrix_world @ Vector(c) for o in parts(names) for c in o.bound_box]
-    assert np.min(corners, axis=0) == pytest.approx(low, abs=1e-5)
-    assert np.max(corners, axis=0) == pytest.approx(high, abs=1e-5)
-
-    bpy.ops.object.select_all(action="DESELECT")
-    bpy.ops.wm.stl_import(filepath=str(folder / "roof_field.stl"))
-    (solid,) = bpy.context.selected_objects
-    mesh = bmesh.new()
-    mesh.from_mesh(solid.data)
-    assert all(edge.is_manifold and edge.is_contiguous for edge in mesh.edges)
-    assert mesh.calc_volume(signed=True) > 0.0
-    places = np.array([solid.matrix_world @ vertex.co for vertex in mesh.verts])
-    mesh.free()
-    assert np.hypot(*(places[:, :2] - (-0.43, 0.0)).T).max() == pytest.approx(6.0, abs=1e-3)
-
-
-def parts(names):
-    """Objects that are none of ours: those of the vehicle."""
-    ours = ("_free", "_hidden", "blind_volume")
-    return [bpy.data.objects[name] for name in names if not name.endswith(ours)]
-
-
 def test_the_command_in_blender_writes_the_same(seen, tmp_path):
     path, blend = exported(tmp_path, "gltf", range_m=5.0), tmp_path / "car.blend"
     again = tmp_path / "again.glb"

@@ -9,7 +9,6 @@ import pytest
 
 import pe_core as pe
 from pe_tools.outputs import OutputRequest, scene_files
-from pe_tools.outputs.solid import voxel_solid
 
 from .shapes import box, box_car, camera, lidar_on_roof, small_lidar
 
@@ -109,7 +108,8 @@ def test_the_sheet_holds_the_plan_and_a_legend_and_is_30_m_wide():
 
 def test_a_corner_at_the_very_height_of_a_cut_counts_as_above(plugin):
     """Of a cube from 0 to 1 m a cut at 1 m has its outline, and one at 0 m has none."""
-    cube = voxel_solid("cube", np.ones((1, 1, 1), bool), np.zeros(3), 1.0)
+    solids = importlib.import_module("entropy_outputs.solids")
+    cube = solids.voxel_solid("cube", np.ones((1, 1, 1), bool), np.zeros(3), 1.0)
     (ring,) = plugin.level_outlines(cube, 1.0)
     assert ring.min(axis=0).tolist() == [0.0, 0.0] and ring.max(axis=0).tolist() == [1.0, 1.0]
     assert plugin.level_outlines(cube, 0.0) == ()

@@ -50,6 +50,9 @@ LENSES = (
 )
 
 
+pytestmark = pytest.mark.usefixtures("example_plugin")
+
+
 def ego_mask(sensor, vehicle):
     return kind_of(sensor).ego_mask(sensor, vehicle)
 

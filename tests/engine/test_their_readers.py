@@ -122,7 +122,7 @@ def test_trimesh_has_the_scene_s_nodes_where_the_sensors_are():
     assert (low[0], high[0]) == pytest.approx((-2.3, 2.3), abs=1e-6)
 
 
-def test_trimesh_finds_every_solid_closed_and_outwards():
+def test_trimesh_finds_every_solid_closed_and_outwards(example_plugin):
     trimesh = pytest.importorskip("trimesh", reason="of the extra test")
     files, _ = scene_files(STUDY, "solids", 10.0)
     solids = {name: data for name, data in files.items() if name.endswith(".stl")}

@@ -28,7 +28,9 @@ from pe_tools.graphics import COVERAGE, ENTROPY, Rgb, drawing_of, ground_map, se
 from pe_tools.outputs import SceneOutput
 from pe_tools.outputs.glb import view_wires
 from pe_tools.outputs.request import BLIND, BODY, GLASS, OutputRequest, plain_names
-from pe_tools.outputs.solid import blind_volume, mounted_view
+from pe_tools.outputs.solid import mounted_view
+
+from .solids import blind_volume
 
 FILE, APPLICATION = "scene.rrd", "perception_entropy"
 WORLD, VEHICLE, SENSORS, BEAMS, GROUND = "world", "vehicle", "sensors", "beams", "ground"

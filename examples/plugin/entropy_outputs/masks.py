@@ -17,10 +17,10 @@ from pe_core.base.table_reader import dump_json
 from pe_core.scene.rig import Sensor
 from pe_core.scene.vehicle import Vehicle
 from pe_core.sensors import EgoMask, kind_of
-
-from ..exchange import Written
-from ..graphics import png_bytes
-from .request import OutputRequest, plain_names
+from pe_tools.exchange import Written
+from pe_tools.graphics import png_bytes
+from pe_tools.outputs import OutputRequest, SceneOutput
+from pe_tools.outputs.request import plain_names
 
 SUMMARY = "masks.json"
 DECIMALS = 6
@@ -78,3 +78,6 @@ def _table(mask: EgoMask) -> bytes:
     seen = mask.sees_out.astype(np.uint8).tolist()
     rows += [[f"{e:g}", *row] for e, row in zip(up.tolist(), seen, strict=True)]
     return csv_text(rows).encode()
+
+
+OUTPUT = SceneOutput("masks", "Ego Masks (PNG, CSV)", "masks", write, True, has_range=False)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import bpy
 
 from . import (
+    best_so_far,
     change_events,
     commands,
     consistency,
@@ -18,7 +19,6 @@ from . import (
     panels,
     preferences_panel,
     properties,
-    search_curve,
     sensor_cache,
     vehicle_cache,
     wiring,
@@ -46,7 +46,6 @@ def start() -> None:
     wiring.register()
     operators.register()
     live.register()
-    search_curve.register()
     overlay.register()
     commands.register()
     library.register()
@@ -72,7 +71,7 @@ def stop() -> None:
     library.unregister()
     commands.unregister()
     overlay.unregister()
-    search_curve.unregister()
+    best_so_far.searches.clear()
     live.unregister()
     location_query.clear()
     diagnostics.postpone_checks()

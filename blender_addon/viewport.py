@@ -124,15 +124,6 @@ def fill_gradient(box: PlateBox, colors: Sequence[Rgba]) -> None:
         _gradients[row].draw(smooth)
 
 
-def draw_line(points: Sequence[tuple[float, float]], color: Rgba, width_px: float) -> None:
-    """Draw a line through points [px]."""
-    wide = line_shader("POLYLINE_UNIFORM_COLOR", bpy.context.region, width_px)
-    batch = batch_for_shader(wide, "LINE_STRIP", {"pos": [(x, y, 0.0) for x, y in points]})
-    with blended():
-        wide.uniform_float("color", color)
-        batch.draw(wide)
-
-
 def draw_outline(box: PlateBox, color: Rgba) -> None:
     """Draw the edges of a box, a pixel wide."""
     left, bottom, right, top = box

@@ -11,7 +11,7 @@ from typing import Any, cast
 
 import bpy
 
-from .. import engine_process, search_curve, signals, viewport
+from .. import best_so_far, engine_process, signals, viewport
 from ..engine import jobs
 from ..language import draw_label, shown
 
@@ -22,8 +22,8 @@ STATUS_BAR_WIDTH = 14.0
 """Room for the text in the status bar, in Blender's units of a button's height."""
 SHOW_EVERY_S = 0.2
 """How often the progress is drawn: drawing takes time from the work."""
-CURVE_EVERY_S, BEST_EVERY_S = 2.0, 0.5
-"""How often the 3D view is redrawn: for the curve, and after a better placement was found."""
+BEST_EVERY_S = 0.5
+"""How often the 3D view is redrawn at most, after a better placement was found."""
 EVENTS_S = 0.3
 """How long windows get events after a job was ended from outside."""
 
@@ -101,30 +101,19 @@ class RunningJob(jobs.WatchedJob):
                 region.tag_redraw()
 
     def _show_search(self) -> None:
-        """Show the curve of a search and the best placement in the 3D view, not too often."""
-        curve = getattr(self.seen, "curve", ())
-        better = curve[-1:] != self._best
-        wait = BEST_EVERY_S if better else CURVE_EVERY_S
-        if not curve or time.monotonic() - self._looked < wait:
+        """Show the best placement of a search in the 3D view, not too often."""
+        best = getattr(self.seen, "curve", ())[1:][-1:]
+        if best == self._best or time.monotonic() - self._looked < BEST_EVERY_S:
             return
-        self._looked, self._best = time.monotonic(), curve[-1:]
-        figure = jobs.searched_figure(self.job.study)
-        points = tuple((evaluation, figure.to_figure(value)) for evaluation, value in curve)
-        sensors = tuple(cast(Any, self.seen).best.rig) if len(curve) > 1 else ()
-        sampled = bool(self.job.study.search.samples)
-        count = cast(Any, self.seen).evaluations  # a job with a history searches
-        seen = search_curve.SearchProgress(
-            points, count, sensors, sampled or figure.higher_is_better, figure.higher_is_better
-        )
-        search_curve.note(self.scene_name, seen)
-        if better:
-            signals.view_changed.emit()  # the best placement is drawn as ghosts
+        self._looked, self._best = time.monotonic(), best
+        best_so_far.searches[self.scene_name] = tuple(cast(Any, self.seen).best.rig)
+        signals.view_changed.emit()  # it is drawn as ghosts
         viewport.redraw_editors()
 
     def end(self, context: bpy.types.Context) -> None:
         """Remove everything that shows the job, however it ended; drop one that still runs."""
         engine_process.drop(TOPIC)
-        search_curve.drop(self.scene_name)
+        best_so_far.searches.pop(self.scene_name, None)
         signals.view_changed.emit()
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import bpy
 import numpy as np
 
-from .. import bridge, location_query, search_curve, sensor_cache, vehicle_cache
+from .. import best_so_far, bridge, location_query, sensor_cache, vehicle_cache
 from ..choices import LimitBox
 from ..engine import graphics, pe, studies
 from ..live import live_state
@@ -66,7 +66,7 @@ class SnapshotReader:
             targets=bridge.targets_of(scene.perception_entropy),
             ghosts=others,
             ghosts_name=name,
-            searching=bool(search_curve.best(scene.name)),
+            searching=bool(best_so_far.best(scene.name)),
             place=None if answer is None else answer.place,
             mounts=mounts,
             boxes=_boxes(scene, sensors, vehicle, mounts),
@@ -196,7 +196,7 @@ def _scored(
 def _ghosts(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str]:
     """Return sensors that are shown beside the scene's own, and their name: the best placement of a
     running search so far, otherwise another variant."""
-    if best := search_curve.best(scene.name):
+    if best := best_so_far.best(scene.name):
         return best, BEST_SO_FAR
     return _variant(scene, scene.perception_entropy.view.ghost_key)
 

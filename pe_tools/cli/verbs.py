@@ -33,7 +33,6 @@ from .doctor_verb import add_doctor_verb
 from .drive_by_verb import add_list_option, drive_by
 from .explain_verbs import add_compare_options, add_explain_options, compare, explain, named_by_file
 from .new_verb import add_new_verb
-from .set_verb import add_set_options, set_keys
 from .sweep_verb import add_sweep_options, sweep
 from .terminal import Answer, open_missing_streams, tell
 
@@ -233,7 +232,6 @@ VERBS = (
         "",
         exchange_verbs.import_study,
     ),
-    Verb("set", "change keys of a study file; its comments stay", add_set_options, ONE, set_keys),
     Verb(
         "sweep",
         "run many studies, or one with many changes",

@@ -52,18 +52,18 @@ preferences_panel: engine language library own_catalog properties
     signals translation_context
 live: analysis_calls bridge change_events choices engine engine_calls engine_process language
     sensor_cache signals vehicle_cache viewport
-search_curve: engine viewport
+best_so_far: engine
 overlay: choices engine engine_calls view_settings viewport
-overlay.snapshot: bridge choices engine live location_query overlay search_curve sensor_cache
+overlay.snapshot: best_so_far bridge choices engine live location_query overlay sensor_cache
     vehicle_cache view_settings
 overlay.scheduler: analysis_calls engine engine_process overlay overlay.snapshot sensor_cache
     viewport
 overlay.surroundings: engine overlay vehicle_cache viewport
 overlay.draw_handler: bridge engine engine_process overlay overlay.scheduler
     overlay.surroundings vehicle_cache viewport
-operators: bridge choices diagnostics engine engine_calls engine_process housing language library
+operators: best_so_far bridge choices diagnostics engine engine_calls engine_process housing language library
     live location_query overlay overlay.surroundings own_jobs properties
-    result_staleness search_curve sensor_cache sensor_kinds signals translation_context
+    result_staleness sensor_cache sensor_kinds signals translation_context
     vehicle_cache view_settings viewport
 panels: bridge choices diagnostics engine language live operators properties sensor_cache
     sensor_kinds view_settings
@@ -72,9 +72,9 @@ wiring: bridge change_events consistency diagnostics engine_process housing live
     operators overlay.draw_handler overlay.scheduler result_staleness sensor_cache signals
     vehicle_cache viewport
 __main__: __init__ commands engine
-__init__: change_events commands consistency diagnostics engine_process language library live
+__init__: best_so_far change_events commands consistency diagnostics engine_process language library live
     location_query operators overlay.draw_handler panels preferences_panel properties
-    search_curve sensor_cache translation_context vehicle_cache wiring
+    sensor_cache translation_context vehicle_cache wiring
 """
 """What each module or package may import. What stands below a package is part of it, unless it has
 a line of its own."""

@@ -7,15 +7,14 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from blender_addon import bridge, search_curve
+from blender_addon import best_so_far, bridge
 from blender_addon.operators import compare_variants
 from blender_addon.operators.running_job import RunningJob
 from blender_addon.panels import main, search_panels
-from blender_addon.search_curve import SearchProgress, searches
 from pe_tools.jobs import result_dict
 from tests.addon import layouts, scenes
 from tests.addon.command_line import pe_here, run_here
-from tests.addon.test_search_curve import Manager
+from tests.addon.test_best_so_far import Manager
 
 OPTIONS = ("--objective", "expected_ap", "--evaluations", "12", "--seed", "4", "--json")
 ALONE = ("run", "inputs")
@@ -78,15 +77,8 @@ def test_the_curve_of_a_running_search_is_an_ap_that_rises(settings, monkeypatch
         running.progress = progress
         running._show_search()
         texts.append(running.text)
-    shown = searches[scene.name]
-    search_curve.drop(scene.name)
-    assert shown.points == tuple((evaluation, -value) for evaluation, value in job.curve)
-    assert shown.by_ap and 0.0 < shown.points[0][1] < shown.points[-1][1] < 1.0
+    assert best_so_far.searches.pop(scene.name) == tuple(job.best.rig)
     assert any(", best AP ≈ 0." in text for text in texts)
-    curve = search_curve.curve_of(SearchProgress(((1, 0.25), (3, 0.5)), 5, by_ap=True))
-    assert curve.points[0] == (0.0, 0.0) and curve.points[-1] == (1.0, 1.0)
-    assert curve.title == "Best AP so far ≈ 0.500"
-    assert (curve.low, curve.high, curve.aside) == ("0.250", "0.500", "from 0.250")
 
 
 def test_the_panels_show_what_an_objective_needs_and_found(settings):

@@ -1,19 +1,12 @@
-"""A search on a painted roof in a real window: the mount is picked, the curve drawn, Esc, undo."""
-
-import numpy as np
-from PIL import Image
-
-from tests.blender.stage import HEIGHT, WIDTH
+"""A search on a painted roof in a real window: the mount, the best placement so far, Esc, undo."""
 
 START_TIMEOUT_S, BETTER_TIMEOUT_S = 60, 120
-LINE = (0.45, 0.78, 0.96)
-"""Colour of the curve (`blender_addon/search_curve.py`)."""
 ADDON = "bl_ext.user_default.perception_entropy"
 ON_THE_ROOF_M = 1.45 + 0.04 + 0.12
 """No sensor on a base plate of 40 mm is higher than this."""
 
 
-def test_a_search_on_a_painted_roof_shows_its_curve(stage, screenshots):
+def test_a_search_on_a_painted_roof_shows_the_best_so_far(stage, screenshots):
     stage.do("""
         settings, roof = window.scene.perception_entropy, bpy.data.objects["roof"]
         settings.score_samples = settings.search_samples = 1024
@@ -30,12 +23,10 @@ def test_a_search_on_a_painted_roof_shows_its_curve(stage, screenshots):
     start = place(stage)
     assert start[2] < ON_THE_ROOF_M
     stage.press_until("pe.optimize", lambda: stage.state["running"], "the search to start")
-    stage.wait_until(f"len({shown('points')}) > 1", BETTER_TIMEOUT_S)
+    stage.wait_until(f"bool({VIEW})", BETTER_TIMEOUT_S)
     stage.point_at_view()
     stage.rest()  # the search goes on drawing
     stage.photograph(screenshots / "window_search.png")
-    if stage.do(f"kept['still'] = bool({VIEW})")["still"]:
-        assert pixels_of_the_curve(screenshots / "window_search.png") > 100
 
     stage.key("Escape")
     found = "getattr(window.scene.perception_entropy.result, 'kind', '')"
@@ -84,21 +75,10 @@ def ask_for(stage, page):
     stage.key("Return")
 
 
-VIEW = f"__import__('{ADDON}.search_curve', fromlist=['searches']).searches"
+VIEW = f"__import__('{ADDON}.best_so_far', fromlist=['searches']).searches"
 RUNNING = f"__import__('{ADDON}.operators.running_job', fromlist=['current']).current"
 PLACE = "bpy.data.objects['roof_lidar'].matrix_world.translation"
 
 
-def shown(what: str) -> str:
-    """Python for something that the view shows of the search; nothing before it begins."""
-    return f"next((seen.{what} for seen in {VIEW}.values()), ())"
-
-
 def place(stage) -> list[float]:
     return stage.do(f"kept['place'] = list({PLACE})")["place"]
-
-
-def pixels_of_the_curve(path) -> int:
-    """How many pixels in the lower left corner of a picture have the curve's colour."""
-    corner = np.asarray(Image.open(path).convert("RGB"), float)[HEIGHT // 2 :, : WIDTH // 3]
-    return int((np.abs(corner - 255.0 * np.array(LINE)).max(axis=-1) < 12).sum())

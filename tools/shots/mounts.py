@@ -1,4 +1,4 @@
-"""The shuttle's four corners while they are searched: painted mounts, curve, best so far."""
+"""The shuttle's four corners while they are searched: painted mounts, best so far."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from .guide import LOOK
 from .reel import Camera, Reel
 
 ADDON = "bl_ext.user_default.perception_entropy"
-CURVE = f"__import__('{ADDON}.search_curve', fromlist=['searches']).searches"
-TRIED, PATIENCE_S = 120, 240
-"""Placements that the picture's curve shows, and how long they may take."""
+BEST = f"__import__('{ADDON}.best_so_far', fromlist=['searches']).searches"
+PATIENCE_S = 240
+"""How long a better placement may take."""
 
 
 def searched(camera: Camera) -> None:
-    """The curve is under way, a better placement stands beside the start."""
+    """A better placement stands beside the start."""
     stage = camera.stage
     stage.do("bpy.context.preferences.view.ui_scale = 1.0")
     stage.do(LOOK.format(center=(0.3, 0.3, 1.2), distance=10.5, rotation=(1.08, 0.0, 2.18)))
@@ -31,7 +31,7 @@ def searched(camera: Camera) -> None:
         with bpy.context.temp_override(window=window, area=area, region=region):
             bpy.ops.pe.optimize("INVOKE_DEFAULT")
     """)
-    stage.wait_until(f"any(seen.tried >= {TRIED} for seen in {CURVE}.values())", PATIENCE_S)
+    stage.wait_until(f"bool({BEST})", PATIENCE_S)
     stage.rest()
     camera.still("four_corners")
 

@@ -1,22 +1,13 @@
-"""What the 3D view shows of a search that runs: its curve, and the best placement so far."""
+"""What the 3D view shows of a search that runs: the best placement so far."""
 
 import bpy
 import pytest
 
-from blender_addon import search_curve
+from blender_addon import best_so_far
 from blender_addon.engine import jobs, pe, search
 from blender_addon.operators.running_job import RunningJob
 from blender_addon.panels import search_panels
-from blender_addon.search_curve import SearchProgress, searches
 from tests.addon import layouts, scenes
-
-
-def test_the_curve_is_a_staircase_from_the_start_to_now():
-    curve = search_curve.curve_of(SearchProgress(((1, 4.0), (3, 3.0), (6, 2.0)), 11))
-    assert curve.points == ((0.0, 1.0), (0.2, 1.0), (0.2, 0.5), (0.5, 0.5), (0.5, 0.0), (1.0, 0.0))
-    assert (curve.low, curve.high, curve.last) == ("2.00", "4.00", "11 placements")
-    assert curve.title == "Best so far \N{ALMOST EQUAL TO} 2.000 nats"
-    assert curve.aside == "from 4.000"
 
 
 def test_the_best_so_far_is_shown_as_ghosts_until_the_search_ends(car):
@@ -24,12 +15,12 @@ def test_the_best_so_far_is_shown_as_ghosts_until_the_search_ends(car):
     sensor = bpy.data.objects["roof"]
     found = scenes.study().rig
     moved = found.with_poses([search.pose_from_values({**values(found), "x": 0.5})])
-    search_curve.note(car.name, SearchProgress(((1, 3.0), (2, 2.0)), 5, tuple(moved)))
+    best_so_far.searches[car.name] = tuple(moved)
     (shape,) = scenes.drawn(car)["ghosts"].values()
     assert shape.legend.title == "Search" and shape.legend.classes[0][1] == "best so far"
     assert [tag.place[0] for tag in shape.labels] == [0.5]
     assert sensor.location.x == pytest.approx(-0.43)  # nothing was moved
-    search_curve.drop(car.name)
+    del best_so_far.searches[car.name]
     assert "ghosts" not in scenes.drawn(car)
 
 
@@ -59,11 +50,8 @@ def test_a_running_search_tells_the_view_each_time_it_finds_better(car, monkeypa
         running.progress = progress
         running._show_search()
         best_lines += [running.text] if progress.stage == "optimizing" else []
-    shown = searches[car.name]
-    assert shown.points == job.curve
     assert f"best \N{ALMOST EQUAL TO} {job.curve[-1][1]:.3f}" in best_lines[-1]
-    assert shown.sensors == tuple(job.best.rig) != tuple(job.study.rig)
-    search_curve.drop(car.name)
+    assert best_so_far.searches.pop(car.name) == tuple(job.best.rig) != tuple(job.study.rig)
 
 
 def test_the_schedule_is_shown_and_written_for_the_method_that_has_it(car):

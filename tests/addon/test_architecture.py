@@ -61,8 +61,8 @@ overlay.scheduler: analysis_calls engine engine_process overlay overlay.snapshot
 overlay.surroundings: engine overlay vehicle_cache viewport
 overlay.draw_handler: bridge engine engine_process overlay overlay.scheduler
     overlay.surroundings vehicle_cache viewport
-operators: best_so_far bridge choices diagnostics engine engine_calls engine_process housing language library
-    live location_query overlay overlay.surroundings own_jobs properties
+operators: best_so_far bridge choices diagnostics engine engine_calls engine_process housing
+    language library live location_query overlay overlay.surroundings own_jobs properties
     result_staleness sensor_cache sensor_kinds signals translation_context
     vehicle_cache view_settings viewport
 panels: bridge choices diagnostics engine language live operators properties sensor_cache
@@ -72,8 +72,8 @@ wiring: bridge change_events consistency diagnostics engine_process housing live
     operators overlay.draw_handler overlay.scheduler result_staleness sensor_cache signals
     vehicle_cache viewport
 __main__: __init__ commands engine
-__init__: best_so_far change_events commands consistency diagnostics engine_process language library live
-    location_query operators overlay.draw_handler panels preferences_panel properties
+__init__: best_so_far change_events commands consistency diagnostics engine_process language
+    library live location_query operators overlay.draw_handler panels preferences_panel properties
     sensor_cache translation_context vehicle_cache wiring
 """
 """What each module or package may import. What stands below a package is part of it, unless it has

@@ -8,17 +8,16 @@ import os
 import re
 import sys
 from collections.abc import Iterator
-from concurrent.futures import Executor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import closing, contextmanager, suppress
 from typing import Any
 
 from pe_core.base.errors import InputError, shown
 from pe_core.base.plugins import required_package
-from pe_core.search import no_processes
+from pe_core.search import no_processes, start_processes
 from pe_core.search.payload import plugin_name
 
 from ..jobs import Job, ScoreJob
-from ..sweep import LocalWorkers
 from .terminal import tell
 
 FUNCTION = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_]\w*")
@@ -71,6 +70,34 @@ def _tell_without_processes(count: int | None) -> None:
     """Print one line where several workers are wanted and this system has no processes for them."""
     if count != 1 and (reason := no_processes()):
         tell(f"one processor does the work of all: no worker processes here ({reason})")
+
+
+class LocalWorkers:
+    """Processes on this machine that run the tasks of a sweep; a thread where there are none.
+
+    Other workers have the same methods. The executor accepts tasks even after a worker's death.
+    """
+
+    reaches_folders = True
+    """Whether the workers save checkpoints in the folders of the results."""
+
+    def __init__(self, count: int) -> None:
+        processes = start_processes(count)
+        self._count = 1 if processes is None else count
+        self.executor: Executor = processes or ThreadPoolExecutor(1)
+        self.threads = max(1, (os.cpu_count() or 1) // self._count)
+        """How many threads a task may use."""
+
+    def width(self) -> int:
+        """How many tasks are submitted at a time: a dead process tells which one killed it."""
+        return self._count
+
+    def check(self) -> None:
+        """Raise `InputError` when the workers are gone; called several times a second."""
+
+    def close(self) -> None:
+        """Kill processes in the middle of their tasks; a thread finishes its task."""
+        self.executor.shutdown(wait=self._count > 1, cancel_futures=True)
 
 
 class ExecutorWorkers(LocalWorkers):

@@ -33,7 +33,6 @@ from .doctor_verb import add_doctor_verb
 from .drive_by_verb import add_list_option, drive_by
 from .explain_verbs import add_compare_options, add_explain_options, compare, explain, named_by_file
 from .new_verb import add_new_verb
-from .sweep_verb import add_sweep_options, sweep
 from .terminal import Answer, open_missing_streams, tell
 
 ONE, PERHAPS, SOME = "one", "?", "+"
@@ -41,9 +40,9 @@ ONE, PERHAPS, SOME = "one", "?", "+"
 
 
 GROUPS = {
-    "begin": "new set import rigs sensors curves requirements",
+    "begin": "new import rigs sensors curves requirements",
     "score": "score explain check compare drive-by",
-    "place": "optimize sweep fit",
+    "place": "optimize fit",
     "show": "review export",
     "this program": "doctor",
 }
@@ -231,13 +230,5 @@ VERBS = (
         exchange_verbs.add_import_options,
         "",
         exchange_verbs.import_study,
-    ),
-    Verb(
-        "sweep",
-        "run many studies, or one with many changes",
-        add_sweep_options,
-        SOME,
-        lambda args: sweep(named_by_file(args.studies), args),
-        "STUDY... [--set KEY=VALUE,...]... -o DIR [options]",
     ),
 )

@@ -107,7 +107,7 @@ for page, (folder, lines) in pages.items():
     if page != "README.md":  # which shows what is printed
         sight.ObjectEvaluator = of_few
     os.chdir(folder)
-    for made in ("sweep", "review", "cad"):
+    for made in ("review", "cad"):
         shutil.rmtree(made, ignore_errors=True)
     for line in lines:
         out, err, words = io.StringIO(), io.StringIO(), shlex.split(line)[1:]

@@ -1,6 +1,7 @@
 """A sweep by a real Dask scheduler with two workers on the loopback; one of them is killed."""
 
 import asyncio
+import importlib
 import json
 import os
 import signal
@@ -14,11 +15,11 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_tools.cli import sweep_verb
 from pe_tools.cli.executors import workplace
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import read_search
 from tests.engine import shapes
+from tests.engine.conftest import EXAMPLE_PLUGIN
 from tests.engine.processes import ROOT
 from tests.limits import HANG_S
 
@@ -88,12 +89,12 @@ def wait_until(is_so):
 
 def started(role, *arguments):
     command = [sys.executable, "-m", f"distributed.cli.dask_{role}", *map(str, arguments)]
-    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    env = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{EXAMPLE_PLUGIN}"}
     return subprocess.Popen(command, cwd=ROOT, env=env, stderr=subprocess.DEVNULL)
 
 
 @pytest.fixture(scope="module")
-def cluster(tmp_path_factory):
+def cluster(tmp_path_factory, example_plugin):
     cluster = Cluster(tmp_path_factory.mktemp("cluster"))
     yield cluster
     cluster.end()
@@ -101,7 +102,8 @@ def cluster(tmp_path_factory):
 
 def at_first_result(monkeypatch, do):
     """Have something done when the first result has come; return the names of all that come."""
-    came, take = [], sweep_verb._SweepVerb._take
+    verb = importlib.import_module("entropy_sweep.sweep_verb")._SweepVerb
+    came, take = [], verb._take
 
     def watched(self, name, found):
         if not came:
@@ -109,7 +111,7 @@ def at_first_result(monkeypatch, do):
         came.append(name)
         take(self, name, found)
 
-    monkeypatch.setattr(sweep_verb._SweepVerb, "_take", watched)
+    monkeypatch.setattr(verb, "_take", watched)
     return came
 
 

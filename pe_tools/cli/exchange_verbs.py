@@ -85,8 +85,6 @@ def _described(rig: KnownRig) -> list[str]:
 FILE_NAMES = {**FILES, **output_files()}
 SUFFIXES = frozenset(Path(name).suffix for name in FILE_NAMES.values())
 """Suffixes of files that name their format."""
-RANGED = tuple(row.name for row in scene_outputs().values() if row.has_range)
-"""Outputs that draw fields of view, as far as asked for."""
 POSE = ("X", "Y", "Z", "ROLL", "PITCH", "YAW")
 NO_GUESS = "parts named as wheels, front and rear, to guess the rear axle from"
 
@@ -105,10 +103,15 @@ def add_export_options(
     parser.add_argument("--to", choices=known, metavar="FORMAT", help=about)
     about = "file, or folder for a format of several files"
     parser.add_argument("-o", "--output", required=True, metavar="PATH", help=about)
-    about = f"of {', '.join(RANGED)}: how far sensors are drawn [m] (default: by their own range)"
+    about = f"of {', '.join(_ranged())}: how far sensors are drawn [m] (default: by their own range)"
     parser.add_argument("--range", type=float, metavar="M", help=about)
     parser.add_argument("--replace", action="store_true", help="replace files that are there")
     _add_axle_options(parser)
+
+
+def _ranged() -> list[str]:
+    """Return the outputs that draw fields of view, as far as asked for."""
+    return [row.name for row in scene_outputs().values() if row.has_range]
 
 
 def add_import_options(parser: argparse.ArgumentParser) -> None:
@@ -144,8 +147,8 @@ def export(study: Study, args: argparse.Namespace) -> Answer:
     if args.to in OF_EXAMPLE:
         scene_output(args.to)  # refuses it without its plugin
     args.to = format_of_file(Path(args.output), FILE_NAMES, args.to)
-    if args.range is not None and args.to not in RANGED:  # a format without fields of view
-        raise InputError("--range", "option", f"one of {', '.join(RANGED)}", args.to)
+    if args.range is not None and args.to not in _ranged():
+        raise InputError("--range", "option", f"one of {', '.join(_ranged())}", args.to)
     given = [Path(args.study)] if hasattr(args, "study") else []
     require_new(Path(args.output), replace=True, inputs=given)
     reference = _reference(args, study.reference, study.vehicle, args.to)

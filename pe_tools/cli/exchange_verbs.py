@@ -103,7 +103,7 @@ def add_export_options(
     parser.add_argument("--to", choices=known, metavar="FORMAT", help=about)
     about = "file, or folder for a format of several files"
     parser.add_argument("-o", "--output", required=True, metavar="PATH", help=about)
-    about = f"of {', '.join(_ranged())}: how far sensors are drawn [m] (default: by their own range)"
+    about = f"of {', '.join(_ranged())}: how far sensors are drawn [m] (default: their range)"
     parser.add_argument("--range", type=float, metavar="M", help=about)
     parser.add_argument("--replace", action="store_true", help="replace files that are there")
     _add_axle_options(parser)

@@ -9,5 +9,5 @@ from .analysis import budget_of as budget_of
 from .analysis import sensitivity_from_dict as sensitivity_from_dict
 from .analysis import sensitivity_lines as sensitivity_lines
 from .flatness import NEAR as NEAR
-from .flatness import Landscape as Landscape
+from .flatness import StepCosts as StepCosts
 from .optima import Archive as Archive

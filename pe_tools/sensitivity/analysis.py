@@ -23,9 +23,9 @@ from .flatness import (
     STEEP_NATS,
     ActiveConstraint,
     AxisCost,
-    Landscape,
     Neighbourhood,
     PoseStep,
+    StepCosts,
     Unmet,
     active_constraints,
     flatness,
@@ -123,7 +123,7 @@ def analyse(
         return None
     steps, with_endings = parts
     space, by_ap = start.search_space(), is_by_ap(best)
-    samples = Landscape(best.rig, objective, STEEP_AP if by_ap else STEEP_NATS, helpers)
+    samples = StepCosts(best.rig, objective, STEEP_AP if by_ap else STEEP_NATS, helpers)
     design = Neighbourhood(best.rig, space)
     axes = []
     for row in flatness(samples, design.status, steps):

@@ -117,7 +117,7 @@ class AxisCost:
         return {"sensor": self.sensor, "axis": self.axis, "status": self.status, "cost": cost}
 
 
-class Landscape:
+class StepCosts:
     """The objective of a search around its result, the `reference`; each rig is evaluated once.
 
     With a tolerance it is the mean (or the worst) over mounting errors and failures. Requirements
@@ -160,7 +160,7 @@ def _key(rig: Rig) -> tuple[object, ...]:
 
 
 def flatness(
-    samples: Landscape, status: Callable[[str, str], str], steps: tuple[float, ...] = (NEAR, FAR)
+    samples: StepCosts, status: Callable[[str, str], str], steps: tuple[float, ...] = (NEAR, FAR)
 ) -> Iterator[AxisCost]:
     """Yield the costs of each axis of each sensor, in the rig's order, for steps to both sides.
     `status` returns what the search does with an axis of a sensor."""

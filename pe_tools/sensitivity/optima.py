@@ -21,7 +21,7 @@ from pe_core.search import Parametrization
 from pe_core.search.search_space import SearchSpace
 from pe_core.study.requirement_search import is_infeasible
 
-from .flatness import NOTICED, Landscape
+from .flatness import NOTICED, StepCosts
 
 APART_M, APART_RAD = 0.15, math.radians(6.0)
 """Placements are in one neighbourhood if no sensor is farther away or turned more than this."""
@@ -123,7 +123,7 @@ class Endings:
 class Basins:
     """Sorts placements into basins of attraction."""
 
-    def __init__(self, samples: Landscape, space: SearchSpace) -> None:
+    def __init__(self, samples: StepCosts, space: SearchSpace) -> None:
         self._samples, self._space = samples, space
         self._coding = Parametrization(samples.reference, space)
 

@@ -66,7 +66,7 @@ operators: best_so_far bridge choices diagnostics engine engine_calls engine_pro
     result_staleness sensor_cache sensor_kinds signals translation_context
     vehicle_cache view_settings viewport
 panels: bridge choices diagnostics engine language live operators properties sensor_cache
-    sensor_kinds view_settings
+    sensor_kinds
 commands: bridge engine result_staleness
 wiring: bridge change_events consistency diagnostics engine_process housing live location_query
     operators overlay.draw_handler overlay.scheduler result_staleness sensor_cache signals

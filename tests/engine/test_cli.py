@@ -105,7 +105,7 @@ def test_exit_status(argv, status, message, capsys):
 @pytest.mark.parametrize(
     ("line", "nearest"),
     [
-        ("scoer", "such as score, "),
+        ("scoer", "expected score, or"),
         ("score car.toml --sampels 3", "expected --samples, or"),
         ("export car.toml --to gltff -o x", "such as gltf, "),
         ("optimize car.toml --method portfollio", "expected portfolio, or"),

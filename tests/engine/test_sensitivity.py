@@ -13,7 +13,7 @@ from pe_tools.jobs import result_dict
 from pe_tools.sensitivity import (
     NEAR,
     Archive,
-    Landscape,
+    StepCosts,
     analyse,
     budget_of,
     sensitivity_from_dict,
@@ -98,7 +98,7 @@ class Known:
 
 def slope(rig):
     """The higher the better, the more ahead the better."""
-    return Landscape(rig, Known(lambda x, y, z: -3.0 * z - 2.0 * x))
+    return StepCosts(rig, Known(lambda x, y, z: -3.0 * z - 2.0 * x))
 
 
 def wells(x, *_):
@@ -187,7 +187,7 @@ def test_another_optimum_is_told_from_the_flank_of_the_same_one():
     archive.note(at(given.rig, 1.9), 0, Evaluation(0.0, True))  # a lower bound is none to rank by
     xs = [rig["roof"].pose.position[0] for rig in archive.placements()]
     assert xs == [-1.0, 1.05, 0.7, -0.4, -0.1]
-    endings = Basins(Landscape(best, Known(wells)), given.search_space()).endings(
+    endings = Basins(StepCosts(best, Known(wells)), given.search_space()).endings(
         archive.placements()
     )
     assert (endings.examined, endings.same_basin, len(endings.runners_up)) == (4, 2, 1)

@@ -1,7 +1,7 @@
 """Kinds of sensors, one folder for each: intrinsics, the definition of m, and fast kernels."""
 
 from .camera import CAMERA, BrownConrady, Camera, FTheta, KannalaBrandt, Lens, Pinhole
-from .field_of_view import EgoMask, FieldPicture, ViewPatch
+from .field_of_view import FieldPicture, ViewPatch
 from .kernels import (
     GridKernel,
     GroundKernel,
@@ -42,7 +42,7 @@ from .ultrasonic import ULTRASONIC, Ultrasonic
 from .weather import Weather, returning, with_returns
 
 __all__ = ["BLIND_RULES", "CURVE_MODELS", "KINDS", "SCANS", "BeamField", "BrownConrady", "Camera"]
-__all__ += ["EgoMask", "FTheta", "FieldPicture", "GridKernel", "GroundKernel", "GroundView"]
+__all__ += ["FTheta", "FieldPicture", "GridKernel", "GroundKernel", "GroundView"]
 __all__ += ["KannalaBrandt", "Kind", "Lens", "Lidar", "Measured", "MeasurementCache"]
 __all__ += ["ObjectKernel", "ObjectMeasurementCache", "ObjectView", "Occlusion", "PerceptionModel"]
 __all__ += ["Pinhole", "Radar", "RadarMode", "RangePicture", "SampleKernel", "Ultrasonic"]

@@ -1,4 +1,4 @@
-"""What a sensor sees: its range, the directions of its field of view, pictures, its ego mask."""
+"""What a sensor sees: its range, the directions of its field of view, pictures."""
 
 from __future__ import annotations
 
@@ -23,10 +23,8 @@ SHORTEST_RANGE_M = 0.001
 MIN_RANGE = Number(0.0, cap=1e5, unit="m", noun="length")
 STEP_M = 0.01
 """A limited range is at least this much above the minimum range."""
-MAX_RAYS = 50_000_000
-"""Maximum rays of a mask: a picture of 50 megapixels takes about a minute and 2 GB."""
-FREE, OUTSIDE = -1, -2
-"""Values in place of a part: a free ray, and a pixel beyond the edge of a lens's field."""
+FREE = -1
+"""Value of a free ray in place of a part."""
 
 
 def checked_ranges(
@@ -91,49 +89,11 @@ def grid_faces(index: Ints, *, closed: bool) -> Ints:
     return faces[valid]
 
 
-def require_mask_size(name: str, rays: int) -> None:
-    """Raise `InputError` for a mask of more rays than `MAX_RAYS`, before rays are cast."""
-    if rays > MAX_RAYS:
-        raise InputError(name, "mask", f"at most {MAX_RAYS:,} pixels or beams", f"{rays:,}")
-
-
 def count_by_part(occluded_by: NDArray[np.integer], part_names: Sequence[str]) -> dict[str, int]:
     """Return the number of rays that end on each part, the largest number first."""
     counts = np.bincount(occluded_by[occluded_by >= 0])
     order = np.argsort(-counts, kind="stable").tolist()
     return {part_names[k]: int(counts[k]) for k in order if counts[k]}
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class EgoMask:
-    """Which rays of a sensor end on its own vehicle, and on which part of it.
-
-    Attributes
-    ----------
-    parts : (H, W) int
-        Part of the vehicle that a ray ends on, `FREE` or `OUTSIDE`. By pixel, top row first; or by
-        channel, top first, and azimuth, left first.
-    elevations, azimuths : (H,) and (W,) float, or None
-        Of the rows and columns of a LiDAR, before the offsets of its channels [rad].
-    """
-
-    parts: NDArray[np.int32]
-    elevations: Floats | None = None
-    azimuths: Floats | None = None
-
-    @property
-    def sees_out(self) -> Flags:
-        """(H, W) which rays are free: white in the mask."""
-        return self.parts == FREE
-
-    @property
-    def outside(self) -> Flags:
-        """(H, W) which pixels show nothing."""
-        return self.parts == OUTSIDE
-
-    def counts(self, part_names: Sequence[str]) -> dict[str, int]:
-        """Number of rays that end on each part of the vehicle, in descending order."""
-        return count_by_part(self.parts, part_names)
 
 
 @dataclass(frozen=True, slots=True)

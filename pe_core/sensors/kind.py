@@ -28,7 +28,7 @@ from ..scene.objects import Objects
 from ..scene.rig import Sensor, SensorModel
 from ..scene.vehicle import Vehicle
 from .boxes import BodyParts
-from .field_of_view import EgoMask, FieldPicture, ViewPatch
+from .field_of_view import FieldPicture, ViewPatch
 from .kernels import (
     DefinedGrid,
     DefinedGround,
@@ -174,8 +174,6 @@ class Kind:
         Of the same: loss [dB] and share of the field of each cover it measures through.
     opaque : callable
         Of the vehicle: what blocks the rays of such sensors, or None.
-    ego_mask : callable
-        Of a sensor and the vehicle: which of its rays end on the vehicle, None if unknown.
     on_grid, on_sample : callable
         Of a space or of `Voxels`, the vehicle, and the integer m from which AP is at its maximum:
         a kernel. By default it measures by definition, as do both others.
@@ -215,7 +213,6 @@ class Kind:
     field_picture: Callable[[Sensor, Vehicle | None], FieldPicture | None] = lambda *_: None
     covers_met: Callable[[Sensor, Vehicle], Mapping[str, tuple[float, float]]] = lambda *_: {}
     opaque: Callable[[Vehicle], Vehicle | None] = lambda vehicle: vehicle
-    ego_mask: Callable[[Sensor, Vehicle | None], EgoMask | None] = lambda *_: None
     on_grid: Callable[[PerceptionSpace, Vehicle | None, int], GridKernel] = None  # type: ignore[assignment]
     on_sample: Callable[[Voxels, Vehicle | None, int], SampleKernel] = None  # type: ignore[assignment]
     on_ground: Callable[[GroundView], GroundKernel] = None  # type: ignore[assignment]

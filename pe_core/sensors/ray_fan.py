@@ -22,7 +22,7 @@ from ..base.arrays import Flags, Floats, Ints
 from ..geometry.poses import rotate
 from ..scene.rig import Sensor, SensorModel
 from ..scene.vehicle import Vehicle
-from .field_of_view import FREE, EgoMask, FieldPicture, ViewPatch, count_by_part, grid_faces
+from .field_of_view import FREE, FieldPicture, ViewPatch, count_by_part, grid_faces
 from .kernels import Occlusion
 
 AngleWindow = tuple[tuple[float, float], tuple[float, float]]
@@ -85,12 +85,6 @@ class RayFan:
         """Count the rays of the field of view, `inside` (E, A), that end on the vehicle."""
         by_part = count_by_part(self.part[inside], self.part_names)
         return Occlusion(int(inside.sum()), sum(by_part.values()), by_part)
-
-    def mask(self) -> EgoMask:
-        """Return which rays end on the vehicle: a row an elevation, the highest first."""
-        elevations, azimuths = self.angles
-        flipped = self.part[::-1, ::-1].astype(np.int32)
-        return EgoMask(flipped, elevations[::-1].copy(), azimuths[::-1].copy())
 
 
 def window_of(model: SensorModel) -> AngleWindow:

@@ -20,7 +20,7 @@ from ..geometry.grids import PerceptionSpace
 from ..metric.fusion import VisibleRows
 from ..scene.rig import Sensor, SensorModel
 from ..scene.vehicle import Vehicle
-from .field_of_view import EgoMask, ViewPatch
+from .field_of_view import ViewPatch
 from .kernels import (
     GridKernel,
     GroundKernel,
@@ -94,14 +94,10 @@ class FanRules:
         """Return the vehicle without the covers that let rays through; None if nothing is left."""
         return without_parts(vehicle, tuple(vehicle.covers if self.through_covers else ()))
 
-    def ego_mask(self, sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
-        """Return the rays of the fan: those that a cover lets through are free."""
-        return self.fan(sensor, vehicle).mask()
-
     @property
     def functions(self) -> dict[str, Any]:
-        """What the row of a kind with a fan takes from its rules: kernels, rays, views, mask."""
-        own = ("measure", "rays", "view", "opaque", "ego_mask")
+        """What the row of a kind with a fan takes from its rules: kernels, rays, views."""
+        own = ("measure", "rays", "view", "opaque")
         kernels = {
             "on_grid": FanGrid,
             "on_sample": FanSample,

@@ -10,7 +10,6 @@ import pytest
 import pe_core as pe
 from pe_core import catalog
 from pe_core.sensors import kind_of
-from pe_core.sensors.field_of_view import FREE
 from pe_tools.graphics import PAPER, VIEWPORT, beams, kinds
 from pe_tools.graphics import colors as tints
 from pe_tools.graphics.colors import tints_of
@@ -270,24 +269,8 @@ def test_rays_are_in_the_field_and_fill_it(name):
         assert ((azimuth / right) ** 2 + (elevation / high) ** 2 <= 1.0 + 1e-9).all()
 
 
-@pytest.mark.parametrize("name", [ARS, PARKING])
-def test_an_ego_mask_is_that_of_single_rays(name):
-    sensor = mounted_preset(name)
-    mask = kind_of(sensor).ego_mask(sensor, CAR)
-    up, across = np.meshgrid(mask.elevations, mask.azimuths, indexing="ij")
-    flat = [np.cos(up) * np.cos(across), np.cos(up) * np.sin(across), np.sin(up)]
-    rays = np.stack(flat, axis=-1).reshape(-1, 3) @ sensor.pose.ground_from_sensor.T
-    faces = CAR.first_hit(sensor.pose.position, rays).face
-    expected = np.where(faces >= 0, np.asarray(CAR.parts)[faces], FREE).reshape(up.shape)
-    np.testing.assert_array_equal(mask.parts, expected)
-    assert 0.02 < (mask.parts >= 0).mean() < 0.98
-
-
 def test_covers_let_radars_through_and_stop_sound():
-    """In the mask, in the solid and in the lines alike."""
     radar, sonar = mounted_preset(ARS), mounted_preset(PARKING)
-    assert (kind_of(radar).ego_mask(radar, COVERED).parts == FREE).all()
-    assert (kind_of(sonar).ego_mask(sonar, COVERED).parts >= 0).any()
     for sensor, is_free in ((radar, True), (sonar, False)):
         view = mounted_view(sensor, COVERED, 5.0, math.radians(3.0))
         assert (view.ends == 5.0).all() == is_free

@@ -25,7 +25,7 @@ from .definition import axes_of, count_pixels, is_ranged, out_of_range
 from .kernels import CameraGrid, CameraGround, CameraObjects, sampled_pixels
 from .lens import COEFFICIENT, FOCAL, LENSES, PLACE, FTheta, Lens, Pinhole
 from .lens import FOV as LENS_FOV
-from .model import FOV, PIXELS, Camera, picture_mask, picture_occlusion, picture_patch, picture_rays
+from .model import FOV, PIXELS, Camera, picture_occlusion, picture_patch, picture_rays
 from .object_definition import box_images, count_object_pixels
 
 LENS_KEYS = frozenset({"fx", "fy", "cx", "cy", "distortion", "fov_deg"})
@@ -184,7 +184,6 @@ CAMERA = Kind(
     rays=picture_rays,
     missed=missed,
     view=picture_patch,
-    ego_mask=picture_mask,
     on_grid=CameraGrid,
     on_sample=partial(DefinedSample, sampled_pixels, occlusion=picture_occlusion),
     on_ground=CameraGround,

@@ -18,15 +18,12 @@ from ...geometry.poses import dot, rotate
 from ...scene.rig import Sensor, SensorModel
 from ...scene.vehicle import Vehicle
 from ..field_of_view import (
-    FREE,
     NEAREST,
-    OUTSIDE,
     SHORTEST_RANGE_M,
-    EgoMask,
     ViewPatch,
     checked_ranges,
+    count_by_part,
     grid_faces,
-    require_mask_size,
 )
 from ..kernels import Occlusion
 from .lens import Lens, Pinhole, field_outline, reaching
@@ -37,7 +34,6 @@ FARTHEST = Number(SHORTEST_RANGE_M, cap=1e9, unit="m", noun="length", infinite=T
 """Maximum range; a camera as a rule has none."""
 PICTURE_RAYS = 16_384
 """Number of tested positions in the picture: shares are accurate to about a thousandth."""
-RAYS_AT_ONCE = 1 << 19
 Extent = tuple[Ints, Ints]
 """First and last bin of triangles along one coordinate."""
 CELLS = 64
@@ -188,29 +184,7 @@ def picture_occlusion(sensor: Sensor, vehicle: Vehicle | None) -> Occlusion:
         return Occlusion(len(rays))
     hits = vehicle.first_hit(sensor.pose.position, rays, sensor.model.sees_through_glass)
     parts = np.asarray(vehicle.parts)[hits.face[np.isfinite(hits.distance)]]
-    return Occlusion(len(rays), len(parts), EgoMask(parts).counts(vehicle.part_names))
-
-
-def picture_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
-    """Cast a ray through the middle of every pixel, some rows at a time."""
-    camera = cast(Camera, sensor.model)
-    require_mask_size(sensor.name, camera.width * camera.height)
-    found = np.full((camera.height, camera.width), FREE, np.int32)
-    rows = max(1, RAYS_AT_ONCE // camera.width)
-    seen = None
-    if vehicle is not None:
-        seen = vehicle.seen_from(sensor.pose.position, camera.sees_through_glass)
-    for first in range(0, camera.height, rows):
-        down, right = np.mgrid[first : min(first + rows, camera.height), : camera.width] + 0.5
-        own = camera.projection.unproject(right.ravel(), down.ravel())
-        shown = np.flatnonzero(~np.isnan(own[:, 0]))
-        parts = np.full(len(own), OUTSIDE, np.int32)
-        parts[shown] = FREE
-        if seen is not None and vehicle is not None:
-            face = seen.first_hit(rotate(sensor.pose.ground_from_sensor, own[shown])).face
-            parts[shown] = np.where(face >= 0, np.asarray(vehicle.parts)[face], FREE)
-        found[first : first + rows] = parts.reshape(-1, camera.width)
-    return EgoMask(found)
+    return Occlusion(len(rays), len(parts), count_by_part(parts, vehicle.part_names))
 
 
 class PictureBins:

@@ -12,9 +12,8 @@ from ...base.arrays import Floats
 from ...geometry.poses import rotate
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
-from ..field_of_view import EgoMask, ViewPatch, grid_faces
+from ..field_of_view import ViewPatch, grid_faces
 from ..kind import BETWEEN_BEAMS, OUT_OF_RANGE, OUT_OF_VIEW
-from .beams import beam_field
 from .definition import BALL, beam_directions, cube_crossing, offsets_in_voxels
 from .model import Lidar, lidar_of
 
@@ -169,15 +168,6 @@ def columns_around(lidar: Lidar) -> Floats:
     azimuths = lidar.azimuth_steps * lidar.azimuth_step
     turned: Floats = np.pi - np.mod(np.pi - azimuths, 2.0 * np.pi)
     return turned
-
-
-def revolution_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
-    """Return which beams end on the vehicle within their maximum range, however near."""
-    lidar = lidar_of(sensor)
-    occluded, azimuths = beam_field(sensor, vehicle).occluded_by, columns_around(lidar)
-    rows, columns = (np.argsort(-angles, kind="stable") for angles in (lidar.elevations, azimuths))
-    parts = occluded.reshape(len(rows), len(columns))[np.ix_(rows, columns)]
-    return EgoMask(parts.astype(np.int32), lidar.elevations[rows], azimuths[columns])
 
 
 def sample_beams(sensor: Sensor, max_count: int) -> Floats:

@@ -18,7 +18,7 @@ from ..field_of_view import NEAREST, limited
 from ..kind import Kind, derived_object_curves
 from ..weather import Weather, lidar_range
 from .definition import count_beams, count_on_objects, count_on_parts
-from .field_of_view import beam_patch, beams_to, reason_missed, revolution_mask, sample_beams
+from .field_of_view import beam_patch, beams_to, reason_missed, sample_beams
 from .kernel_objects import LidarObjects
 from .kernel_voxels import LidarGrid, LidarGround, LidarSample
 from .model import RANGE, STEPS, Lidar
@@ -179,7 +179,6 @@ LIDAR = Kind(
     rays_to=beams_to,
     missed=reason_missed,
     view=beam_patch,
-    ego_mask=revolution_mask,
     on_grid=LidarGrid,
     on_sample=LidarSample,
     on_ground=LidarGround,

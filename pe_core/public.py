@@ -13,6 +13,7 @@ from .scene import (
     Pose,
     Reference,
     Rig,
+    ScanTiming,
     Sensor,
     State,
     Vehicle,
@@ -77,9 +78,9 @@ __all__ += ["Evaluator", "FTheta", "Focus", "GroundMap", "GroundSight", "Housing
 __all__ += ["KannalaBrandt", "Lidar", "Mesh", "MeshAxes", "Method", "Motion", "MountArea"]
 __all__ += ["Mounting", "NoGo", "ObjectClass", "ObjectEvaluator", "ObjectScore", "Objective"]
 __all__ += ["Objects", "Option", "PartScore", "PerceptionModel", "PerceptionSpace", "Pinhole"]
-__all__ += ["Pose", "Prior", "Reach", "Reference", "Rig", "RigEvaluator", "Scatter", "Schedule"]
-__all__ += ["Score", "Search", "SearchRun", "SearchSpace", "Selection", "Sensor", "SensorScore"]
-__all__ += ["Sight", "Slot", "SlotMount", "State", "Step", "Study", "SurfaceMount", "TargetRule"]
-__all__ += ["Tolerance", "Vehicle", "Weather", "__version__", "beam_field", "catalog"]
-__all__ += ["cuts_body", "guessed_reference", "load_study", "measure", "measure_objects"]
+__all__ += ["Pose", "Prior", "Reach", "Reference", "Rig", "RigEvaluator", "ScanTiming", "Scatter"]
+__all__ += ["Schedule", "Score", "Search", "SearchRun", "SearchSpace", "Selection", "Sensor"]
+__all__ += ["SensorScore", "Sight", "Slot", "SlotMount", "State", "Step", "Study", "SurfaceMount"]
+__all__ += ["TargetRule", "Tolerance", "Vehicle", "Weather", "__version__", "beam_field"]
+__all__ += ["catalog", "cuts_body", "guessed_reference", "load_study", "measure", "measure_objects"]
 __all__ += ["optimize", "requirements", "save_study", "study_from_dict", "study_to_dict"]

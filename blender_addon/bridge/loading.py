@@ -170,6 +170,7 @@ def _sensor_records(study: pe.Study) -> tuple[SensorRecord, ...]:
                 stays=name in study.search.goals.fixed,
                 color=sensor.color,
                 sheet=sensor.sheet,
+                scan=sensor.scan,
                 **_options(study.selection, name, mount),
             )
         )

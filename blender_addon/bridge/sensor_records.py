@@ -23,6 +23,7 @@ from .rig import (
     pose_from_numbers,
     pose_of,
     pose_of_matrix,
+    scan_of,
     sensor_objects,
     sheet_of,
     view_layer_of,
@@ -72,6 +73,7 @@ class SensorRecord:
     rack: str = ""
     curve: pe.ApCurve | None = None
     sheet: pe.DataSheet = field(default_factory=pe.DataSheet)
+    scan: pe.ScanTiming = field(default_factory=pe.ScanTiming)
     intrinsics: Any = None  # the engine's model, where the catalogue may not have it
 
     locked: tuple[str, ...] = ()
@@ -146,6 +148,7 @@ def record_of_object(obj: Object, depsgraph: Depsgraph, layer: ViewLayer) -> Sen
         rack=settings.rack,
         curve=curve,
         sheet=sheet_of(settings),
+        scan=scan_of(settings),
         **_object_fields(obj),
     )
 
@@ -187,7 +190,7 @@ STORED = (
     *("name", "model", "fusion", "free", "visible", "display", "size_m"),
     *("bounded", "low", "high", "mirror_of", "mount", "rack"),
 )
-"""Fields that a variant stores as they are; pose, AP curve and sheet are stored as numbers."""
+"""Fields that a variant stores as they are; the others have forms of their own."""
 
 
 def records_of(variant: PropertyGroup) -> tuple[SensorRecord, ...]:
@@ -203,8 +206,9 @@ def _record_of_table(scene: Scene, table: dict[str, Any]) -> SensorRecord:
     pose, curve = pose_from_numbers(values.pop("pose")), values.pop("curve")
     own = None if curve is None else pe.ApCurve(*curve)
     obj = _object_named(scene, table["name"])
-    sheet = pe.DataSheet(**values.pop("sheet"))
-    return SensorRecord(**values, pose=pose, curve=own, sheet=sheet, **_object_fields(obj))
+    known: dict[str, Any] = {"sheet": pe.DataSheet(**values.pop("sheet"))}
+    known["scan"] = pe.ScanTiming(**values.pop("scan"))
+    return SensorRecord(**values, pose=pose, curve=own, **known, **_object_fields(obj))
 
 
 def _object_named(scene: Scene, name: str) -> Object | None:
@@ -222,7 +226,8 @@ def write_records(variant: PropertyGroup, records: Sequence[SensorRecord]) -> No
     for record in records:
         curve = None if record.curve is None else astuple(record.curve)
         own = {key: getattr(record, key) for key in STORED}
-        rows.append(own | {"pose": record.numbers, "curve": curve, "sheet": asdict(record.sheet)})
+        tables = {key: asdict(getattr(record, key)) for key in ("sheet", "scan")}
+        rows.append(own | {"pose": record.numbers, "curve": curve} | tables)
     variant.sensors = json.dumps(rows)
 
 
@@ -240,6 +245,7 @@ def record_of_sensor(sensor: pe.Sensor) -> SensorRecord:
         intrinsics=sensor.model,
         color=sensor.color,
         sheet=sensor.sheet,
+        scan=sensor.scan,
     )
 
 
@@ -271,8 +277,8 @@ def sensor_of(record: SensorRecord, source: str = "variant") -> pe.Sensor:
     """
     try:
         model = record.intrinsics or catalog.load(record.model)
-        fusion, color = record.fusion or None, record.color
-        return pe.Sensor(record.name, model, record.pose, fusion, record.curve, color, record.sheet)
+        own = record.fusion or None, record.curve, record.color, record.sheet, record.scan
+        return pe.Sensor(record.name, model, record.pose, *own)
     except pe.InputError as error:
         raise error.within(source, f"sensor {record.name!r}") from None
 

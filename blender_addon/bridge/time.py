@@ -9,6 +9,7 @@ from typing import Any
 from bpy.types import PropertyGroup
 
 from ..engine import motion, pe, studies
+from .rig import scan_of, sensor_objects
 from .scene_settings import values_of, write_values
 
 
@@ -50,7 +51,8 @@ def write_story(row: PropertyGroup, story: motion.Story) -> None:
 
 def story_signatures(settings: PropertyGroup, scene: str) -> dict[str, str]:
     """Return by name what the result of each row depends on; `scene` is the scene's fingerprint."""
-    rule = repr(values_of(settings, motion.Confirmation))
+    scans = [scan_of(obj.perception_entropy) for obj in sensor_objects(settings.id_data)]
+    rule = f"{values_of(settings, motion.Confirmation)!r} {settings.time_text} {scans!r}"
     return {
         row.name: f"{scene} {rule} {row.table} {values_of(row, motion.Story)!r}"
         for row in settings.stories

@@ -82,6 +82,9 @@ def seen_in_time(layout: UILayout, settings: PropertyGroup, context: Context) ->
         row = settings.stories[settings.story_index]
         for body in json.loads(row.result)["bodies"] if row.result else ():
             draw_sentence(layout, context, _body_text(body))
+            if "seam_m" in body:
+                apart = f"{' and '.join(body['seam_of'])} see it up to {body['seam_m']:.2f} m apart"
+                draw_sentence(layout, context, apart)
         draw_declared(layout, row, "story")
         layout.separator()
     draw_declared(layout, settings, "time")

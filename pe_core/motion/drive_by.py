@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -19,8 +20,8 @@ from ..metric.entropy import H_BLIND, ap_of_entropy
 from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
 from ..scoring.targets.object_metric import FusedObjects
-from ..sensors import ObjectMeasurementCache, PerceptionModel, kind_of
-from .scan import scan_factor
+from ..sensors import ObjectMeasurementCache, PerceptionModel
+from .scan import factor_of, seam
 from .story import Story, outline
 from .tracks import Confirmation, first_frame
 
@@ -52,6 +53,9 @@ class SeenBody:
         When it is confirmed, by probability; None: never in the story.
     lost_s : float
         Longest time for which it is lost after it was confirmed, by the story's probability [s].
+    seam_m, seam_of : float or None, tuple of str
+        The widest distance at which two sensors that both see it see it apart (eq. T4), and which
+        two; None: not known.
     margin_s : float or None
         How long before the last moment at which the vehicle can stop, less the time that the story
         asks for [s]; negative: too late. None: never confirmed.
@@ -65,6 +69,8 @@ class SeenBody:
     moments: Mapping[float, Moment | None]
     lost_s: float
     margin_s: float | None
+    seam_m: float | None = None
+    seam_of: tuple[str, ...] = ()
 
     @property
     def is_met(self) -> bool:
@@ -80,7 +86,8 @@ class SeenBody:
         """Return verdict and moments as plain JSON data."""
         moments = {f"{p:g}": None if at is None else asdict(at) for p, at in self.moments.items()}
         verdict = {"name": self.name, "met": self.is_met, "margin_s": self.margin_s}
-        return verdict | {"confirmed": moments, "lost_s": self.lost_s}
+        seam = {} if self.seam_m is None else {"seam_m": self.seam_m, "seam_of": [*self.seam_of]}
+        return verdict | {"confirmed": moments, "lost_s": self.lost_s} | seam
 
     def to_dict(self) -> dict[str, Any]:
         """Return all of it as plain JSON data."""
@@ -136,8 +143,11 @@ def drive_by(
     vehicle: Vehicle | None = None,
     model: PerceptionModel | None = None,
     confirmation: Confirmation | None = None,
+    rates: Mapping[str, float] | None = None,
 ) -> DriveBy:
     """Return a story as a rig sees it.
+
+    `rates` are those of scans and exposures by kind [Hz]; a kind without one has the story's.
 
     Raises
     ------
@@ -151,41 +161,46 @@ def drive_by(
     fused = FusedObjects(objects, watched, model or PerceptionModel())
     fused.check(rig)
     whole_scan = ObjectMeasurementCache(objects, vehicle, True).measure(rig)
-    measured = {s.name: whole_scan[s.name] * _scanned(s, where, story).ravel() for s in rig}
+    hz = {s.name: (rates or {}).get(s.kind, story.rate_hz) for s in rig}
+    bearings, speeds = {s.name: _bearings(s, where) for s in rig}, story.speeds
+    measured = {
+        s.name: whole_scan[s.name]
+        * factor_of(s, bearings[s.name], 1.0 / story.rate_hz, hz[s.name]).ravel()
+        for s in rig
+    }
 
     def ap(members: list[str] | None) -> Floats:
         entropies, visible = fused.entropies(rig, measured, members)
         found = np.where(visible & (entropies < H_BLIND), ap_of_entropy(entropies), 0.0)
-        return found.reshape(len(story.actors), count)
+        return confirmation.in_time(found.reshape(len(story.actors), count), speeds)
 
     whole, alone = ap(None), {sensor.name: ap([sensor.name]) for sensor in rig}
-    bodies = [
-        _seen(
-            story,
-            actor.name,
-            whole[k],
-            {name: found[k] for name, found in alone.items()},
-            where[k],
-            vehicle,
-            confirmation,
-        )
-        for k, actor in enumerate(story.actors)
-        if actor.watched
-    ]
+    seams = {
+        (one.name, other.name): apart * ((alone[one.name] > 0.0) & (alone[other.name] > 0.0))
+        for one, other in combinations(rig, 2)
+        if (apart := seam((one, other), bearings, hz, speeds)) is not None
+    }
+    bodies = []
+    for k, actor in enumerate(story.actors):
+        if actor.watched:
+            by_sensor = {name: found[k] for name, found in alone.items()}
+            body = _seen(story, actor.name, whole[k], by_sensor, where[k], vehicle, confirmation)
+            bodies.append(_with_seam(body, {pair: apart[k] for pair, apart in seams.items()}))
     return DriveBy(story, tuple(bodies))
 
 
-def _scanned(sensor: Sensor, where: Floats, story: Story) -> Floats:
-    """Return the factor (A, K) of m by the scan of a LiDAR, eq. T3; 1 of other kinds.
-
-    Which way it turns is not known: the lower factor of both is taken.
-    """
-    if not kind_of(sensor).counts_points:
-        return np.ones(where.shape[:2])
+def _bearings(sensor: Sensor, where: Floats) -> Floats:
+    """Return the bearings (A, K) of positions from a sensor in the ground frame [rad]."""
     away = where - np.array(sensor.pose.position[:2])
-    bearing = np.unwrap(np.arctan2(away[..., 1], away[..., 0]), axis=1)
-    rate = np.gradient(bearing, 1.0 / story.rate_hz, axis=1)
-    return scan_factor(-np.abs(rate), story.rate_hz)
+    return np.unwrap(np.arctan2(away[..., 1], away[..., 0]), axis=1)
+
+
+def _with_seam(body: SeenBody, seams: Mapping[tuple[str, str], Floats]) -> SeenBody:
+    """Return a body with its widest seam, from those of pairs of sensors (K,)."""
+    if not seams:
+        return body
+    widest = max(seams, key=lambda pair: seams[pair].max())
+    return replace(body, seam_m=rounded(float(seams[widest].max())), seam_of=widest)
 
 
 def _seen(

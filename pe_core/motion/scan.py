@@ -7,11 +7,19 @@ beams, and two sensors see it at two places. All of it is zero, or one, at rest.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
+from ..scene.rig import Sensor
+from ..scene.scan import SENSE, UNKNOWN
+from ..sensors.lidar import LIDAR
+
+DISTANCES_M = (0.5, 1.0, 2.0, 4.0)
+"""Distances up to which a box counts as found: nuScenes (arXiv 1903.11027)."""
+SAME_RATE = 1e-9
 
 
 def scan_factor(bearing_rate: ArrayLike, rate_hz: float) -> Floats:
@@ -30,23 +38,64 @@ def scan_factor(bearing_rate: ArrayLike, rate_hz: float) -> Floats:
     return np.asarray(speed / (speed - omega))
 
 
-def seam(speed: ArrayLike, lag_s: ArrayLike) -> Floats:
-    """Return how far two sensors see one object apart [m], eq. T4: |v| times their lag.
+def factor_of(sensor: Sensor, bearings: Floats, dt: float, rate_hz: float) -> Floats:
+    """Return the factor (A, K) of a sensor's m by its scan; 1 but for a LiDAR that turns.
 
-    The lag of two rotating scans at a bearing is the difference of their phases over the rate; of a
-    camera and a scan, the time between the exposure and the beam.
+    `bearings` (A, K) [rad] are of frames that are `dt` [s] apart. While the direction of the scan
+    is not known, the lower factor of both is taken.
     """
-    return np.abs(np.asarray(speed, dtype=float)) * np.abs(np.asarray(lag_s, dtype=float))
+    if sensor.kind != LIDAR.name:
+        return np.ones(bearings.shape)
+    rate, sense = np.gradient(bearings, dt, axis=1), SENSE.get(sensor.scan.turns)
+    return scan_factor(-np.abs(rate) if sense is None else sense * rate, rate_hz)
 
 
-def scan_lag(phase: float, other: float, rate_hz: float) -> float:
-    """Return the lag of two rotating scans [s] from their phases [turns]: at most half a turn."""
-    turns = (phase - other) % 1.0
-    return min(turns, 1.0 - turns) / rate_hz
+def seam(
+    sensors: tuple[Sensor, Sensor],
+    bearings: Mapping[str, Floats],
+    rates: Mapping[str, float],
+    speed: Floats,
+) -> Floats | None:
+    """Return how far apart two sensors see bodies (A, K) [m], eq. T4: |v| times their lag.
+
+    The lag is the time between their nearest views. Where neither rate is a multiple of the other,
+    they drift: it is the longest, half a frame of the faster one. None where the direction of a
+    LiDAR is not known, or none of both is a LiDAR.
+
+    Parameters
+    ----------
+    sensors : tuple of Sensor
+    bearings, rates : mapping of str to (A, K) float and to float
+        Of bodies in the ground frame [rad], and frames in a second [Hz], by sensor.
+    speed : (A, K) float
+        Of the bodies over the ground [m/s]: own motion is taken as compensated.
+    """
+    lidars = [sensor for sensor in sensors if sensor.kind == LIDAR.name]
+    if not lidars or any(sensor.scan.turns == UNKNOWN for sensor in lidars):
+        return None
+    first, other = (_seen_at(s, bearings[s.name]) / rates[s.name] for s in sensors)
+    slow, fast = sorted(rates[s.name] for s in sensors)
+    turns = (first - other) * fast % 1.0
+    lag = np.minimum(turns, 1.0 - turns)
+    if abs(fast / slow - round(fast / slow)) > SAME_RATE:
+        lag = np.full(lag.shape, 0.5)
+    return np.asarray(speed * lag / fast)
+
+
+def _seen_at(sensor: Sensor, bearings: Floats) -> Floats:
+    """Return the share of its frame (A, K) after which a sensor sees bearings [rad]."""
+    sense = SENSE[sensor.scan.turns] if sensor.kind == LIDAR.name else 0.0
+    turns = (bearings - sensor.pose.rpy[2]) / (2.0 * math.pi)
+    return np.asarray(sensor.scan.phase + sense * turns)
 
 
 def ap_with_latency(
-    ap: ArrayLike, speed: ArrayLike, latency_s: float, scatter_m: float, distances_m: ArrayLike
+    ap: ArrayLike,
+    speed: ArrayLike,
+    latency_s: float,
+    spread_s: float,
+    scatter_m: float,
+    distances_m: ArrayLike = DISTANCES_M,
 ) -> Floats:
     """Return AP when boxes come late, eq. T5: the mean over d of AP Phi((d - |v| tau) / s).
 
@@ -54,17 +103,17 @@ def ap_with_latency(
     ----------
     ap, speed : (N,) float
         AP without latency, and the objects' speeds [m/s].
-    latency_s : float
-        tau: the object has moved on by |v| tau when the box is used.
+    latency_s, spread_s : float
+        tau and its standard deviation: the object has moved on by |v| tau when the box is used.
     scatter_m : float
-        s: standard deviation of a box's place [m]. Without latency, AP is that without scatter.
+        Standard deviation of a box's place [m]; s also has the object's way in `spread_s`. Without
+        latency, AP is that without scatter.
     distances_m : (D,) float
         d: distances up to which a box counts as found [m].
     """
-    moved = np.abs(np.asarray(speed, dtype=float)) * latency_s
-    near = np.asarray(distances_m, dtype=float)
-    at_rest = _phi(near / scatter_m)
-    found = _phi((near - moved[..., None]) / scatter_m) / at_rest
+    v, near = np.abs(np.asarray(speed, dtype=float))[..., None], np.asarray(distances_m, float)
+    s = np.sqrt(scatter_m**2 + (v * spread_s) ** 2)
+    found = _phi((near - v * latency_s) / s) / _phi(near / np.sqrt(scatter_m**2))
     return np.asarray(np.asarray(ap, dtype=float) * found.mean(axis=-1))
 
 

@@ -160,6 +160,12 @@ class Story:
             headings.append(heading if sign > 0.0 else math.pi - heading)
         return np.array(where), np.array(headings)
 
+    @property
+    def speeds(self) -> Floats:
+        """Speeds (A, K) of the actors over the ground [m/s]."""
+        steps = [np.gradient(a.at(self.times)[0], 1.0 / self.rate_hz, axis=0) for a in self.actors]
+        return np.asarray(np.hypot(*np.moveaxis(np.array(steps), -1, 0)))
+
     def objects(self, where: Floats, headings: Floats) -> Objects:
         """Return the actors at `positions` as objects, actor by actor, a scene for each frame."""
         names = sorted({actor.body.class_name or OTHER for actor in self.actors})

@@ -17,7 +17,8 @@ from numpy.typing import ArrayLike
 from ..base.arrays import Floats
 from ..base.errors import InputError
 from ..base.setting import Panel, check_settings, setting
-from ..base.values import SHARE, Whole
+from ..base.values import SHARE, Number, Whole
+from .scan import ap_with_latency
 
 MAX_WINDOW = 8
 KEPT = 0.5
@@ -47,11 +48,33 @@ class Confirmation:
         "cars and pedestrians in real traffic",
         Panel("track_correlation", "Correlation"),
     )
+    box_latency_s: float = setting(
+        0.0,
+        Number(0.0, 10.0, unit="s"),
+        "How late boxes are when they are used: what moves is further on then",
+        Panel("box_latency_s", "Boxes Late By (s)", soft_max=1.0),
+    )
+    box_spread_s: float = setting(
+        0.0,
+        Number(0.0, 10.0, unit="s"),
+        "Standard deviation of that time",
+        Panel("box_spread_s", "± (s)", soft_max=1.0),
+    )
+    box_scatter_m: float = setting(
+        0.5,
+        Number(0.0, 10.0, above=True, unit="m"),
+        "Standard deviation of a box's place without latency; it counts only with one",
+        Panel("box_scatter_m", "Scatter of Boxes", min=0.01),
+    )
 
     def __post_init__(self) -> None:
         check_settings(self, "time")
         if self.needed > self.window:
             raise InputError("time", "needed", f"at most window, {self.window}", self.needed)
+
+    def in_time(self, ap: Floats, speed: Floats) -> Floats:
+        """Return AP of bodies of a speed [m/s] when boxes are late, eq. T5."""
+        return ap_with_latency(ap, speed, self.box_latency_s, self.box_spread_s, self.box_scatter_m)
 
     def confirmed(self, found: ArrayLike) -> Floats:
         """Return the probability (..., K) that the track is confirmed by each frame.

@@ -6,10 +6,11 @@ from .data_sheet import DataSheet
 from .mesh import BodyShape
 from .objects import Objects
 from .rig import Housing, Rig, Sensor, cuts_body
+from .scan import ScanTiming
 from .vehicle import Vehicle
 from .vehicle_description import Reference, guessed_reference, vehicle_line
 from .vehicle_state import Motion, State
 
 __all__ = ["BodyShape", "DataSheet", "Housing", "Motion", "Objects", "PerceptionSpace", "Pose"]
-__all__ += ["Reference", "Rig", "Sensor", "State", "Vehicle", "cuts_body", "guessed_reference"]
-__all__ += ["rotate", "rotation_matrix", "rpy_from_matrix", "vehicle_line"]
+__all__ += ["Reference", "Rig", "ScanTiming", "Sensor", "State", "Vehicle", "cuts_body"]
+__all__ += ["guessed_reference", "rotate", "rotation_matrix", "rpy_from_matrix", "vehicle_line"]

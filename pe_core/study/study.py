@@ -332,7 +332,8 @@ class Study(Tabular):
 
     def drive_by(self, story: Story, rig: Rig | None = None) -> DriveBy:
         """Return a story as a rig, the study's by default, sees it."""
-        return drive_by(story, rig or self.rig, self.vehicle, self.model, self.confirmation)
+        what = story, rig or self.rig, self.vehicle, self.model, self.confirmation
+        return drive_by(*what, self.frames.rates)
 
     def checker(self, as_drawn: RequirementChecker | None = None) -> RequirementChecker:
         """Return what holds rigs to the study's requirements.

@@ -5,7 +5,9 @@ import json
 import bpy
 import pytest
 
-from blender_addon import result_staleness, sensor_cache
+import pe_core as pe
+from blender_addon import bridge, result_staleness, sensor_cache
+from blender_addon.bridge.sensor_records import sensor_of
 from blender_addon.panels.condition_panel import seen_in_time
 from pe_core.motion import stories
 from tests.addon import layouts, scenes
@@ -68,3 +70,26 @@ def test_a_result_goes_when_a_sensor_or_the_story_changes(car):
     bpy.ops.pe.check_requirements()
     settings.track_needed = 2
     assert shown() == [False, False]
+
+
+def test_how_sensors_scan_gives_seams_and_is_kept(car):
+    settings = car.perception_entropy
+    low = scenes.add_sensor("low", location=(2.3, 0.3, 0.8))
+    for obj, phase in ((bpy.data.objects["roof"], 0.0), (low, 0.5)):
+        obj.perception_entropy.scan_turns, obj.perception_entropy.scan_phase = "left", phase
+    settings.box_latency_s = 0.2
+    bpy.ops.pe.add_story(story="cyclist_from_right")
+    bpy.ops.pe.check_requirements()
+    told = json.loads(settings.stories[0].result)["bodies"][0]
+    assert told["seam_of"] == ["low", "roof"] and told["seam_m"] > 0.1
+    drawn = layouts.drawn(seen_in_time, **vars(layouts.Window(car)))
+    assert any("low and roof see it up to" in str(note) for note in drawn.notes)
+    assert ("prop", "box_latency_s") in drawn.notes
+    study = scenes.study()
+    assert study.rig["low"].scan == pe.ScanTiming("left", 0.5)
+    assert study.confirmation.box_latency_s == 0.2
+    (record,) = [r for r in bridge.records_of_scene(car) if r.name == "low"]
+    assert sensor_of(record).scan == pe.ScanTiming("left", 0.5)
+    low.perception_entropy.scan_phase = 0.25
+    result_staleness.update_result()
+    assert not settings.stories[0].result

@@ -5,6 +5,7 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
+from statistics import NormalDist
 from types import SimpleNamespace
 
 import numpy as np
@@ -15,7 +16,7 @@ import pe_tools as pt
 from pe_core.metric.entropy import BLIND_PRECISION, ap_of_entropy
 from pe_core.metric.frames import Frames, predicted, steady, updated
 from pe_core.motion import Actor, Confirmation, Story, drive_by, stories
-from pe_core.motion.scan import ap_with_latency, scan_factor, scan_lag, seam
+from pe_core.motion.scan import ap_with_latency, factor_of, scan_factor, seam
 from pe_core.motion.tracks import first_frame
 from pe_core.scene.objects import Objects
 from pe_core.scoring.requirements.bodies import BODIES
@@ -36,9 +37,9 @@ def rig():
     return pe.Rig([roof, front])
 
 
-def study(**other):
+def study(of=None, **other):
     car = shapes.box_car()
-    return pe.Study(rig(), car, SPACE, samples=2048, **other)
+    return pe.Study(of or rig(), car, SPACE, samples=2048, **other)
 
 
 def test_information_approaches_its_steady_value():
@@ -131,18 +132,62 @@ def test_a_track_is_lost_while_it_is_rarely_found():
     assert first_frame(rule.confirmed(np.zeros(9)), 0.9) is None
 
 
-def test_scan_and_latency_change_nothing_at_rest():
+def test_latency_changes_nothing_at_rest():
     ap = np.array([0.2, 0.7])
-    assert (scan_factor(np.zeros(3), 10.0) == 1.0).all()
-    assert (seam(0.0, 0.05) == 0.0).all() and scan_lag(0.9, 0.1, 10.0) == pytest.approx(0.02)
-    for speed, late in ((0.0, 0.3), (10.0, 0.0)):
-        assert (ap_with_latency(ap, np.full(2, speed), late, 0.5, (0.5, 1, 2, 4)) == ap).all()
-    # beams at steps of Omega / n meet a body that turns with the scan for longer
-    turning = 2.0 * math.pi * 10.0 * 0.2
-    assert scan_factor(turning, 10.0) == pytest.approx(1.25)
-    slow, fast = ap_with_latency(ap, [5.0, 15.0], 0.3, 0.5, (0.5, 1, 2, 4)) / ap
+    for speed, late, spread in ((0.0, 0.3, 0.1), (10.0, 0.0, 0.0)):
+        assert (ap_with_latency(ap, np.full(2, speed), late, spread, 0.5) == ap).all()
+    slow, fast = ap_with_latency(ap, [5.0, 15.0], 0.3, 0.0, 0.5) / ap
     assert fast < slow < 1.0
-    assert seam(10.0, 0.05) == pytest.approx(0.5)
+    assert (ap_with_latency(ap, [5.0, 5.0], 0.0, 0.2, 0.5) < ap).all()
+    # one distance, by hand: 1 m, moved by 0.5 m, s^2 = 0.5^2 + 0.5^2
+    found = ap_with_latency([1.0], [5.0], 0.1, 0.1, 0.5, [1.0])
+    normal = NormalDist()
+    assert found[0] == pytest.approx(normal.cdf(0.5 / math.sqrt(0.5)) / normal.cdf(2.0))
+
+
+def test_beams_meet_what_turns_with_the_scan_for_longer():
+    assert (scan_factor(np.zeros(3), 10.0) == 1.0).all()
+    assert scan_factor(2.0 * math.pi * 10.0 * 0.2, 10.0) == pytest.approx(1.25)
+    turning = np.linspace(0.0, 0.5, 6)[None]  # 1 rad/s to the left
+    roof, eye = rig().sensors
+
+    def factor(sensor, direction):
+        turned = replace(sensor, scan=pe.ScanTiming(direction))
+        return float(factor_of(turned, turning, 0.1, 10.0)[0, 2])
+
+    ways = {way: factor(roof, way) for way in ("left", "right", "unknown", "at_once")}
+    omega = 2.0 * math.pi * 10.0
+    assert ways["left"] == pytest.approx(omega / (omega - 1.0))
+    assert ways["right"] == ways["unknown"] == pytest.approx(omega / (omega + 1.0))
+    assert ways["at_once"] == 1.0 and factor(eye, "left") == 1.0
+
+
+def two_sensors(first, second, model=None):
+    lidar = pe.catalog.load("Pandar64")
+    return [pe.Sensor("a", lidar, scan=first), pe.Sensor("b", model or lidar, scan=second)]
+
+
+def seam_of(sensors, bearing, rates=(10.0, 10.0), speed=10.0):
+    at = {s.name: np.full((1, 1), bearing) for s in sensors}
+    found = seam(tuple(sensors), at, dict(zip("ab", rates, strict=True)), np.full((1, 1), speed))
+    return None if found is None else pytest.approx(float(found[0, 0]), abs=1e-9)
+
+
+def test_a_seam_is_the_way_between_two_views():
+    scan = pe.ScanTiming
+    left, right = scan("left"), scan("right")
+    assert seam_of(two_sensors(left, left), 1.0) == 0.0
+    assert seam_of(two_sensors(left, scan("left", 0.25)), 1.0) == 0.25  # a quarter of 0.1 s, 10 m/s
+    assert seam_of(two_sensors(left, scan("left", 0.9)), 1.0) == 0.1  # the nearest view is before
+    assert seam_of(two_sensors(left, right), math.pi / 4) == 0.25
+    assert seam_of(two_sensors(left, scan("at_once")), math.pi / 2) == 0.25
+    assert seam_of(two_sensors(left, scan("left", 0.25)), 1.0, speed=0.0) == 0.0
+    assert seam_of(two_sensors(left, scan()), 1.0) is None
+    eye = two_sensors(left, scan(phase=0.5), FORWARD)
+    assert seam_of(eye, 0.0) == 0.5
+    assert seam_of(eye, math.pi / 2, (10.0, 30.0)) == pytest.approx(1.0 / 12.0)
+    assert seam_of(eye, 0.0, (10.0, 23.0)) == pytest.approx(10.0 * 0.5 / 23.0)
+    assert seam_of([replace(eye[1], name="a"), eye[1]], 0.0) is None
 
 
 STANDING = Story(
@@ -170,6 +215,32 @@ def test_a_story_at_rest_is_the_ap_of_objects_in_traffic():
     assert np.abs(seen.bodies[0].ap - ap_of_entropy(entropies)[0]).max() < 1e-12
     alone = replace(STANDING, actors=STANDING.actors[:1])
     assert drive_by(alone, rig(), car).bodies[0].ap[0] > seen.bodies[0].ap[0]
+
+
+def test_the_scan_and_latency_change_no_bit_of_what_stands():
+    car, known = shapes.box_car(), pe.ScanTiming("left", 0.3)
+    late = Confirmation(box_latency_s=0.3, box_spread_s=0.1)
+    scanned = pe.Rig([replace(s, scan=known) for s in rig()])
+    before = drive_by(STANDING, rig(), car).to_dict()
+    after = drive_by(STANDING, scanned, car, None, late, {"lidar": 20.0, "camera": 30.0}).to_dict()
+    (body,) = after["bodies"]
+    assert body.pop("seam_m") == 0.0 and body.pop("seam_of") == ["roof", "front"]
+    assert after == before
+    entropies = [study(each).evaluator().entropy(each) for each in (scanned, rig())]
+    assert entropies[0] == entropies[1]
+
+
+def test_a_crossing_child_is_seen_apart_and_late():
+    story, car = stories()["crossing_child"], shapes.box_car()
+    scanned = pe.Rig([replace(s, scan=pe.ScanTiming("left", 0.3)) for s in rig()])
+    plain, seen = (drive_by(story, each, car).bodies[0] for each in (rig(), scanned))
+    assert plain.seam_m is None and "seam_m" not in plain.summary()
+    speed = story.speeds[0].max()
+    assert 0.0 < seen.seam_m <= 0.05 * speed and seen.summary()["seam_of"] == ["roof", "front"]
+    assert (seen.ap >= plain.ap).all()  # the direction is known: no longer the worse of both
+    late = drive_by(story, rig(), car, None, Confirmation(box_latency_s=0.5)).bodies[0]
+    assert (late.ap <= plain.ap).all() and late.ap.sum() < plain.ap.sum()
+    assert late.margin_s is None or late.margin_s <= plain.margin_s
 
 
 def test_bodies_move_as_the_vehicle_drives_on():
@@ -200,14 +271,17 @@ def test_a_study_keeps_its_frames_tracks_and_stories(tmp_path):
     own = replace(STANDING, name="own", title="a title")
     changed = replace(stories()["cut_in"], speed_kmh=50.0)
     noted = study(
+        pe.Rig([replace(s, scan=pe.ScanTiming("right", 0.25)) for s in rig()]),
         frames=Frames(5, 2.0, noises={"car": 1.5}, rates={"camera": 30.0}),
-        confirmation=Confirmation(2, 4, 0.5),
+        confirmation=Confirmation(2, 4, 0.5, 0.2, 0.1, 0.3),
         stories=(own, changed, stories()["roundabout"]),
     )
     data = study_to_dict(replace(noted, vehicle=None))
     read = study_from_dict(data)
     for name in ("frames", "confirmation", "stories"):
         assert getattr(read, name) == getattr(noted, name)
+    assert [s.scan for s in read.rig] == [s.scan for s in noted.rig]
+    assert "phase" not in study_to_dict(replace(study(), vehicle=None))["sensor"][0]
     assert data["story"][1:] == [{"preset": "cut_in", "speed_kmh": 50.0}, {"preset": "roundabout"}]
 
 
@@ -215,6 +289,7 @@ BAD = [
     ({"time": {"frames": 0}}, "frames"),
     ({"time": {"rates": {"camera": 0.0}}}, "camera"),
     ({"time": {"needed": 4, "window": 3}}, "needed"),
+    ({"time": {"box_latency_s": -1.0}}, "box_latency_s"),
     ({"story": [{"preset": "none"}]}, "preset"),
     ({"story": [{"name": "x"}]}, "body"),
     ({"story": [{"preset": "cut_in"}, {"preset": "cut_in"}]}, "name"),

@@ -1,0 +1,42 @@
+"""How a sensor takes its frames in time: when they begin, and which way a scan turns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..base.setting import OneOf, Panel, check_settings, setting
+from ..base.values import Number
+
+UNKNOWN, LEFT, RIGHT, AT_ONCE = "unknown", "left", "right", "at_once"
+SENSE = {LEFT: 1.0, RIGHT: -1.0, AT_ONCE: 0.0}
+
+
+@dataclass(frozen=True, slots=True)
+class ScanTiming:
+    """Direction and phase of a sensor's frames. They change no score. `InputError` when wrong."""
+
+    turns: str = setting(
+        UNKNOWN,
+        OneOf((UNKNOWN, *SENSE)),
+        "Which way a LiDAR's scan turns, seen from above",
+        Panel(
+            "scan_turns",
+            "Scan Turns",
+            menu=(
+                ("Unknown", "The worse of both ways; no seam is computed"),
+                ("Left", "Counter-clockwise"),
+                ("Right", "Clockwise"),
+                ("At Once", "The whole frame at one time: a flash"),
+            ),
+        ),
+    )
+    phase: float = setting(
+        0.0,
+        Number(0.0, 1.0, noun="phase"),
+        "Share of a frame that passes, after a clock that all sensors share, before this one is "
+        "exposed, or its scan is at azimuth 0",
+        Panel("scan_phase", "Phase", precision=3),
+    )
+
+    def __post_init__(self) -> None:
+        check_settings(self, "sensor")

@@ -93,6 +93,16 @@ class FocusRegion(NamedTuple):
     classes: tuple[str, ...] | None = None
 
 
+NO_BODY, HIDES = "NONE", "HIDES"
+BODY_ITEMS = (
+    (NO_BODY, "None", "Not a test body"),
+    ("child", "Child", "A pedestrian; the track has to be confirmed"),
+    ("adult", "Adult", "A pedestrian; the track has to be confirmed"),
+    ("cyclist", "Cyclist", "The track has to be confirmed"),
+    ("car", "Car", "The track has to be confirmed"),
+    (HIDES, "Only Hides", "It only hides others, as a parked car does"),
+)
+"""What an object is in stories of its own animation."""
 BEFORE_MOVE = 0
 """What the live score is compared with; any other number is the key of a variant."""
 

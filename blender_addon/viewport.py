@@ -109,7 +109,7 @@ def fill_box(box: PlateBox, color: Rgba) -> None:
         corners = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0))
         _square.append(batch_for_shader(plain, "TRI_FAN", {"pos": corners}))
     plain.uniform_float("color", color)
-    with blended(), _in_box(box):
+    with blended(), in_box(box):
         _square[0].draw(plain)
 
 
@@ -120,7 +120,7 @@ def fill_gradient(box: PlateBox, colors: Sequence[Rgba]) -> None:
         corners = [(i / (len(row) - 1), y, 0.0) for i in range(len(row)) for y in (0.0, 1.0)]
         shades = [color for color in row for _ in range(2)]
         _gradients[row] = batch_for_shader(smooth, "TRI_STRIP", {"pos": corners, "color": shades})
-    with blended(), _in_box(box):
+    with blended(), in_box(box):
         _gradients[row].draw(smooth)
 
 
@@ -147,7 +147,7 @@ def blended() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _in_box(box: PlateBox) -> Iterator[None]:
+def in_box(box: PlateBox) -> Iterator[None]:
     """Have what is drawn in the unit square fill a box [px], within."""
     left, bottom, right, top = box
     with gpu.matrix.push_pop():
@@ -200,7 +200,18 @@ def beside_toolbar(context: bpy.types.Context) -> float:
     return left + MARGIN * ui_scale()
 
 
-def above_hud(context: bpy.types.Context) -> float:
+STRIP = "strip"
+"""The plate along the lower edge: those in the corners stand above it."""
+
+
+def sidebar_left(context: bpy.types.Context) -> float:
+    """Return where the sidebar begins that lies over the right part of a view [px]."""
+    over = context.preferences.system.use_region_overlap
+    widths = (r.width for r in context.area.regions if over and r.type == "UI" and r.width > 1)
+    return context.region.width - max(widths, default=0)
+
+
+def above_hud(context: bpy.types.Context, *, over_strip: bool = True) -> float:
     """Return where a plate begins, from below: clear of the panel of the last operation.
 
     A row is always left for that panel, so that the plate does not jump with every move.
@@ -209,7 +220,8 @@ def above_hud(context: bpy.types.Context) -> float:
     for other in context.area.regions:
         if other.type == "HUD" and other.height > 1:
             bottom = max(bottom, other.y + other.height - context.region.y)
-    return bottom + MARGIN * ui_scale() / 2.0
+    strip = _plates.get(context.region.as_pointer(), {}).get(STRIP) if over_strip else None
+    return max(bottom, strip[3] if strip else 0.0) + MARGIN * ui_scale() / 2.0
 
 
 def reserve_plate(region: int, plate: str, box: PlateBox | None) -> None:

@@ -185,7 +185,7 @@ def study_schema() -> dict[str, Any]:
     counts = table({kind: {"type": "integer", "minimum": 0} for kind in KINDS})
     state = {"name": TEXT, **declared["state"], "body": table(declared["state.body"])}
     state["move"] = tables(declared["state.move"])
-    path = {"type": "array", "items": numbers(3)}
+    path = {"type": "array", "items": numbers(3) | {"maxItems": 4}}
     actor = {"name": TEXT, "body": TEXT, "size": numbers(3), "class": TEXT, "path": path}
     actor |= {"watched": SWITCH, "heading_deg": NUMBER}
     story = {"name": TEXT, "preset": TEXT, "title": TEXT, "source": TEXT, **declared["story"]}

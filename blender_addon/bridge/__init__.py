@@ -87,7 +87,15 @@ from .sensor_records import (
     same_sensors,
     write_records,
 )
-from .time import clear_stale_stories, store_driven, story_signatures, write_story
+from .time import (
+    clear_stale_stories,
+    confirmation_of,
+    read_animation,
+    store_driven,
+    story_of,
+    story_signatures,
+    write_story,
+)
 from .transform_constraints import holder_of
 from .variant_results import (
     FigureRule,

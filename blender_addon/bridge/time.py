@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from bpy.types import PropertyGroup
+from bpy.types import Object, PropertyGroup, Scene
+from mathutils import Vector
 
-from ..engine import motion, pe, studies
+from ..choices import NO_BODY
+from ..engine import motion, pe, requirements, studies
 from .rig import scan_of, sensor_objects
 from .scene_settings import values_of, write_values
+
+DIGITS = 4
+"""Decimals of times [s], positions [m] and headings [deg] that are read from an animation."""
 
 
 def time_of(settings: PropertyGroup) -> dict[str, Any]:
@@ -22,9 +28,19 @@ def time_of(settings: PropertyGroup) -> dict[str, Any]:
     rows = [_table_of(row) for row in settings.stories if row.enabled]
     return {
         "frames": motion.Frames(**values_of(settings, motion.Frames), **by_name),
-        "confirmation": motion.Confirmation(**values_of(settings, motion.Confirmation)),
+        "confirmation": confirmation_of(settings),
         "stories": studies.stories_of_rows(rows, "scene"),
     }
+
+
+def confirmation_of(settings: PropertyGroup) -> motion.Confirmation:
+    """Return how tracks are confirmed."""
+    return motion.Confirmation(**values_of(settings, motion.Confirmation))
+
+
+def story_of(row: PropertyGroup) -> motion.Story:
+    """Return the story of a row; `InputError` when a value is wrong."""
+    return studies.stories_of_rows([_table_of(row)], "scene")[0]
 
 
 def write_time(
@@ -47,6 +63,45 @@ def write_story(row: PropertyGroup, story: motion.Story) -> None:
     row.name, row.result = story.name, ""
     write_values(row, story)
     row.table = json.dumps(studies.story_table(story))
+
+
+def read_animation(scene: Scene, row: PropertyGroup) -> None:
+    """Read into a row what the test bodies of a scene do, frame by frame, round the vehicle.
+
+    The last frame is time 0. `InputError` when no object is a test body.
+    """
+    bodies = [each for each in scene.objects if each.perception_entropy.body != NO_BODY]
+    if not bodies:
+        raise pe.InputError("scene", "test bodies", "an object with one, in Vehicle Part", "none")
+    frames, shown = range(scene.frame_start, scene.frame_end + 1), scene.frame_current
+    rate = scene.render.fps / scene.render.fps_base
+    paths: dict[str, list[list[float]]] = {each.name: [] for each in bodies}
+    try:
+        for frame in frames:
+            scene.frame_set(frame)
+            seconds = round((frame - scene.frame_end) / rate, DIGITS)
+            for each in bodies:
+                matrix = each.matrix_world
+                x, y, _ = matrix @ (sum(map(Vector, each.bound_box), Vector()) / 8.0)
+                place = [x, y, math.degrees(matrix.to_euler().z)]
+                paths[each.name].append([seconds, *(round(v, DIGITS) for v in place)])
+    finally:
+        scene.frame_set(shown)
+    actors = [_test_body(each, paths[each.name]) for each in bodies]
+    start = {"start_s": round((frames[0] - frames[-1]) / rate, DIGITS), "anchor": motion.ORIGIN}
+    row.table = json.dumps({"title": "Own animation", **start, "body": actors})
+
+
+def _test_body(obj: Object, path: list[list[float]]) -> dict[str, Any]:
+    """Return the table of an object as a body of a story; an empty one has the usual size."""
+    kind = obj.perception_entropy.body
+    usual = requirements.BODIES.get(kind)
+    size = [round(side, DIGITS) for side in obj.dimensions]
+    if usual is not None and not all(size):
+        own: dict[str, Any] = {"body": kind}
+    else:
+        own = {"body": f"own {kind}", "size": size, "class": usual and usual.class_name}
+    return {"name": obj.name, **own, "watched": usual is not None, "path": path}
 
 
 def story_signatures(settings: PropertyGroup, scene: str) -> dict[str, str]:

@@ -7,7 +7,7 @@ from bpy.props import EnumProperty, IntProperty
 
 from .. import bridge, signals
 from ..engine import motion, pe
-from .declared import RowList, operator
+from .declared import RowList, operator, remove_row
 
 DRAWN = -1
 WEATHERS = (
@@ -79,7 +79,9 @@ def add_weather(context: bpy.types.Context, weather: str) -> None:
         setattr(row, *STARTS[weather])
 
 
-STORY_ITEMS = [(name, each.title, each.source) for name, each in motion.stories().items()]
+ANIMATED = "animated"
+STORY_ITEMS = [(ANIMATED, "Own Animation", "Test bodies, as keyframes move them")]
+STORY_ITEMS += [(name, each.title, each.source) for name, each in motion.stories().items()]
 
 
 @operator(
@@ -89,8 +91,33 @@ STORY_ITEMS = [(name, each.title, each.source) for name, each in motion.stories(
 )
 def add_story(context: bpy.types.Context, story: str) -> None:
     """Add a story of what moves: when is it confirmed, and does the vehicle stop in time?"""
-    shipped = motion.stories()[story]
+    settings = context.scene.perception_entropy
     row = STORY_ROWS.add(context.scene, story)
     name = row.name
-    bridge.write_story(row, shipped)
-    row.name = name
+    if story != ANIMATED:
+        bridge.write_story(row, motion.stories()[story])
+        row.name = name
+        return
+    row.animated = True
+    try:
+        bridge.read_animation(context.scene, row)
+    except pe.InputError:
+        remove_row(settings, "stories", "story_index", len(settings.stories) - 1)
+        raise
+
+
+@operator("Play", signal=signals.study_changed, unless=STORY_ROWS.unless_selected)
+def play_story(context: bpy.types.Context) -> None:
+    """Play the selected story from its first frame; an own animation is read again. Again: stop"""
+    scene, settings = context.scene, context.scene.perception_entropy
+    row = settings.stories[settings.story_index]
+    playing = context.screen is not None and context.screen.is_animation_playing
+    if not playing:
+        if row.animated:
+            bridge.read_animation(scene, row)
+        story, rate = bridge.story_of(row), scene.render.fps / scene.render.fps_base
+        scene.frame_end = scene.frame_start + round((story.end_s - story.start_s) * rate)
+        scene.frame_set(scene.frame_start)
+        settings.view.show_story = settings.show_overlay = True
+    if not bpy.app.background:
+        bpy.ops.screen.animation_play()

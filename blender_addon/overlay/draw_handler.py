@@ -16,13 +16,14 @@ from mathutils import Matrix
 
 from .. import bridge, engine_process, vehicle_cache, viewport
 from ..engine import graphics, pe
-from . import labels, scheduler, surroundings
+from . import labels, scheduler, strip, surroundings
 from .batches import Batches
 from .layer_cache import shown_of
 from .layers import LAYERS, WHOLE_RIG, Layer
 
 OFFSET_SHARE = 0.002
 """Share of its distance from the eye by which a thing is drawn nearer."""
+OUT_OF_DATE = "out of date"
 OFFSET_M = 0.02
 """The same in a view without perspective, which has no eye [m]."""
 
@@ -74,6 +75,7 @@ def unregister() -> None:
 def clear(*_: object) -> None:
     """Drop everything that belongs to the file that was open."""
     _batches.clear()
+    strip.clear()
     surroundings.clear()
 
 
@@ -87,7 +89,8 @@ def draw() -> None:
     eye = _eye(context)
     if eye is not None:
         surroundings.draw_around(context.scene, eye, context.region)
-    wanted = [(layer, uploaded(scene, layer, names)) for layer, names in _visible(context)]
+    now = _seconds(context.scene)
+    wanted = [(layer, uploaded(scene, layer, names, now)) for layer, names in _visible(context)]
     for key in [k for k in _batches if k[0] == scene and k[2] not in shown_of(*k[:2])]:
         del _batches[key]
     before = gpu.state.blend_get(), gpu.state.depth_test_get(), gpu.state.depth_mask_get()
@@ -110,11 +113,20 @@ def draw() -> None:
 def draw_text() -> None:
     """Draw labels and legends over the current 3D view; Blender calls this at each redraw."""
     context = bpy.context
+    region = context.region.as_pointer()
+    viewport.reserve_plate(region, viewport.STRIP, None)
     if not _overlays_shown(context):
         return
-    scene = context.scene.name
+    scene, now = context.scene.name, _seconds(context.scene)
     visible = [(layer.name, name) for layer, names in _visible(context) for name in names]
-    shapes = [shown_of(scene, layer)[name].shape for layer, name in visible]
+    shapes = [shown_of(scene, layer)[name].shape.at(now) for layer, name in visible]
+    for layer, name in visible:
+        item = shown_of(scene, layer)[name]
+        below = getattr(item.shape, "strip", None)
+        if below is not None and viewport.is_lower_left(context):
+            old = scheduler.is_preview(scene, layer, name, item)
+            drawn = strip.draw_strip(context, below, now, OUT_OF_DATE if old else "")
+            viewport.reserve_plate(region, viewport.STRIP, drawn)
     written = [label for shape in shapes for label in shape.labels]
     eye = _eye(context)
     if eye is not None:
@@ -132,7 +144,7 @@ def draw_text() -> None:
 def _legend(scene: str, layer: str, name: str) -> graphics.ColorKey | None:
     """Return the legend of a shape, marked where it is a preview and does not say so itself."""
     item = shown_of(scene, layer)[name]
-    found = item.shape.legend
+    found = item.shape.at(0.0).legend
     if found is None or "preview" in found.title:
         return found
     if not scheduler.is_preview(scene, layer, name, item):
@@ -140,11 +152,17 @@ def _legend(scene: str, layer: str, name: str) -> graphics.ColorKey | None:
     return replace(found, title=f"{found.title} (preview)")
 
 
-def uploaded(scene: str, layer: Layer, names: list[str]) -> list[Batches]:
-    """Return the batches of a layer; upload new shapes."""
+def _seconds(scene: bpy.types.Scene) -> float:
+    """Return how long after the first frame of a scene its present one is [s]."""
+    render = scene.render
+    return (scene.frame_current - scene.frame_start) * render.fps_base / render.fps
+
+
+def uploaded(scene: str, layer: Layer, names: list[str], seconds: float = 0.0) -> list[Batches]:
+    """Return the batches of a layer at a time after the first frame; upload new shapes."""
     found = []
     for name in names:
-        shape = shown_of(scene, layer.name)[name].shape
+        shape = shown_of(scene, layer.name)[name].shape.at(seconds)
         known = _batches.get((scene, layer.name, name))
         if known is None or known.shape is not shape:
             known = _batches[scene, layer.name, name] = Batches.of(shape)

@@ -66,11 +66,7 @@ def draw_legends(
     scale, region, space = viewport.ui_scale(), context.region, context.space_data
     if len(space.region_quadviews) and context.region_data != space.region_3d:
         return []  # one of four views, and not the one that can be turned
-    right = region.width
-    if context.preferences.system.use_region_overlap:  # the sidebar lies over its right part
-        right -= max(
-            (r.width for r in context.area.regions if r.type == "UI" and r.width > 1), default=0
-        )
+    right = viewport.sidebar_left(context)
     height = float(region.height)
     blenders = [
         (right - BESIDE_GIZMOS * scale, height - GIZMOS * scale, right, height),

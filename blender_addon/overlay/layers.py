@@ -10,7 +10,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ..engine import advice, graphics, pe
+from ..engine import advice, graphics, motion, pe
 from ..view_settings import ALL, BY_CHANNEL, BY_SENSOR, RIG, ViewSettings
 from . import ground_layers, heatmap, regions
 from .annotations import (
@@ -294,6 +294,20 @@ def _requirements(request: ViewRequest, cache: LayerCache, _name: str) -> graphi
     return requirement_zones(verdicts, request.requirement, before, unplaced)
 
 
+def _story_keys(request: ViewRequest) -> dict[str, Hashable]:
+    if request.story is None:
+        return {}
+    chosen = request.story, request.confirmation, request.rate_hz, request.prior_key
+    return {name: (key, chosen) for name, key in _rig_keys(prior=False)(request).items()}
+
+
+def _story(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.LayerShape:
+    rig, vehicle = _counted_rig(request), request.vehicle
+    assert request.story is not None  # the layer has no key without one
+    driven = motion.drive_by(request.story, rig, vehicle, request.model, request.confirmation)
+    return graphics.moving_shape(driven, rig, vehicle, request.rate_hz)
+
+
 def _mount_keys(request: ViewRequest) -> dict[str, Hashable]:
     if not request.mounts and not request.boxes:
         return {}
@@ -365,6 +379,7 @@ LAYERS = (
     Layer("frustums", "Camera Views", _view_keys, _views),
     Layer("beams", "Beams", _beam_keys, _beams, rough=True),
     Layer("heat", "Occluded Beams", _heat_keys, _heat, rough=True),
+    Layer("story", "Drive-by", _story_keys, _story, 1.8, edged=True),
     Layer("axles", "Axles", _axle_keys, _axles, 1.6, edged=True),
     Layer("front", "Front", _front_keys, _front, 2.2, edged=True),
     Layer("ghosts", "Other Variant", _ghost_keys, _ghosts, 1.6, edged=True),

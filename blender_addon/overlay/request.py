@@ -14,7 +14,7 @@ from ..engine import graphics
 from ..view_settings import ALL, ViewSettings
 
 if TYPE_CHECKING:
-    from ..engine import advice, pe, requirements
+    from ..engine import advice, motion, pe, requirements
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,8 @@ class ViewRequest:
     approximate picture now is better than a fine one later. `scored` is the ground map of the last
     score, of all voxels, where the scene has not changed since. `ghosts` are the sensors of another
     variant, or of the best placement of a running search (`searching`). `compared` are the sensors
-    that the difference map compares with. `requirement` is the name of the selected requirement.
+    that the difference map compares with. `requirement` is the name of the selected requirement,
+    `story` the selected story, which is played with `rate_hz` frames a second.
     """
 
     sensors: tuple[SceneSensor, ...]
@@ -84,6 +85,9 @@ class ViewRequest:
     requirements: tuple[requirements.Requirement, ...] = ()
     requirements_key: Hashable = None
     requirement: str = ""
+    story: motion.Story | None = None
+    confirmation: motion.Confirmation | None = None
+    rate_hz: float = 24.0
 
     @property
     def counted(self) -> tuple[SceneSensor, ...]:

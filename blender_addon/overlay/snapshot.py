@@ -75,7 +75,7 @@ class SnapshotReader:
             has_result=scene.perception_entropy.has_result,
             focus=bridge.focus_regions(scene),
             reference=bridge.reference_of(scene.perception_entropy),
-            **_requirements(scene),
+            **(_requirements(scene) | _story(scene)),
         )
 
     def _mounts(
@@ -236,3 +236,16 @@ def _requirements(scene: bpy.types.Scene) -> dict[str, Any]:
         return {"requirement": chosen}
     key = bridge.requirements_key(settings)
     return {"requirements": found, "requirements_key": key, "requirement": chosen}
+
+
+def _story(scene: bpy.types.Scene) -> dict[str, Any]:
+    """Return the selected story of a scene; none where it is wrong: a check says what is."""
+    settings, render = scene.perception_entropy, scene.render
+    if settings.story_index >= len(settings.stories):
+        return {}
+    try:
+        found = bridge.story_of(settings.stories[settings.story_index])
+    except pe.InputError:
+        return {}
+    rule = bridge.confirmation_of(settings)
+    return {"story": found, "confirmation": rule, "rate_hz": render.fps / render.fps_base}

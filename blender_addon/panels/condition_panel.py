@@ -77,7 +77,9 @@ def seen_in_time(layout: UILayout, settings: PropertyGroup, context: Context) ->
     names, buttons = ("stories", "story_index"), ("pe.add_story", "pe.remove_story")
     draw_list(layout, stories_rows, settings, names, buttons, menu="story")
     if settings.stories:
-        layout.operator("pe.check_requirements", text="Check", icon="VIEWZOOM")
+        row = layout.row(align=True)
+        row.operator("pe.check_requirements", text="Check", icon="VIEWZOOM")
+        row.operator("pe.play_story", text="", icon="PLAY")
     if settings.story_index < len(settings.stories):
         row = settings.stories[settings.story_index]
         for body in json.loads(row.result)["bodies"] if row.result else ():

@@ -133,6 +133,7 @@ def part(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
     """Settings of the part of the vehicle that is selected"""
     obj = context.active_object
     layout.label(text=obj.name, icon="OBJECT_DATA", translate=False)
+    layout.prop(obj.perception_entropy, "body")
     layout.prop(obj.perception_entropy, "see_through")
     layout.prop(obj.perception_entropy, "cover_loss_db", text="Radar Cover [dB]")
 

@@ -13,6 +13,7 @@ import numpy as np
 from bpy.types import Context, Object, PropertyGroup
 
 from .. import bridge
+from ..choices import BODY_ITEMS
 from ..engine import pe, search
 from ..sensor_kinds import DEFAULT_MODEL
 from .callbacks import (
@@ -24,7 +25,7 @@ from .callbacks import (
     redraw,
 )
 from .declared import group_of
-from .fields import number, numbers, rows, switch, switches, text
+from .fields import menu, number, numbers, rows, switch, switches, text
 from .list_rows import PE_SensorOption
 
 AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")
@@ -222,6 +223,12 @@ class PE_ObjectSettings(GroundPose, CurveFields, SheetFields, ScanFields, Proper
 
     is_view: switch("Is a View", "This camera shows the view of its parent sensor")
 
+    body: menu(
+        "Test Body",
+        "What this object is in a story of its own animation; its size is that of the object",
+        BODY_ITEMS,
+        update=changed,
+    )
     see_through: switch(
         "Cameras See Through",
         "Glass: cameras see through this object; it occludes LiDAR beams",

@@ -2,7 +2,7 @@
 
 At time 0 the vehicle, driving on at its speed, is where the story says: `anchor` is its foremost
 (or rearmost) plane then. Positions are metres beyond that plane, and to the left of the centre
-line, on the ground that does not move.
+line, on the ground that does not move; of the anchor `ORIGIN` in the vehicle's ground frame.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from ..scene.vehicle import Vehicle
 from ..scoring.requirements.bodies import BODIES, Body
 from ..scoring.targets.scene_layout import CAR_SIZE_M
 
-FRONT, REAR = "front", "rear"
+FRONT, REAR, ORIGIN = "front", "rear", "origin"
 KMH = 3.6
 SECOND = Number(-600.0, 600.0, unit="s", noun="time")
 METRE = Number(-1000.0, 1000.0, unit="m", noun="position")
@@ -39,20 +39,23 @@ MAX_FRAMES = 6000
 class Actor:
     """A body of a story, and its path: (time [s], x [m], y [m]), straight between them.
 
-    Before the first and after the last it stands. `watched`: whether it has to be confirmed; else
-    it only occludes.
+    Where all have a fourth number, it is the heading [deg]; else it heads where it moves. Before
+    the first and after the last it stands. `watched`: whether it has to be confirmed; else it only
+    occludes.
     """
 
     name: str
     body: Body
-    path: tuple[tuple[float, float, float], ...]
+    path: tuple[tuple[float, ...], ...]
     watched: bool = True
     heading: float = 0.0
     """While it stands [rad]."""
 
     def __post_init__(self) -> None:
         who = f"body {A_NAME.checked('story', 'name', self.name)!r}"
-        rows = [vector(who, "path", row, 3, METRE) for row in listed(self.path) or []]
+        given = listed(self.path) or []
+        size = 4 if given and len(listed(given[0]) or ()) == 4 else 3
+        rows = [vector(who, "path", row, size, METRE) for row in given]
         times = [SECOND.checked(who, "path", row[0]) for row in rows]
         if not rows or times != sorted(set(times)):
             raise InputError(who, "path", "[s, m, m] at times that increase", shown(self.path))
@@ -62,8 +65,10 @@ class Actor:
 
     def at(self, times: Floats) -> tuple[Floats, Floats]:
         """Return positions (K, 2) [m] and headings (K,) [rad] at some times."""
-        t, x, y = np.array(self.path).T
+        t, x, y, *turn = np.array(self.path).T
         where = np.column_stack([np.interp(times, t, x), np.interp(times, t, y)])
+        if turn:
+            return where, np.interp(times, t, np.unwrap(np.radians(turn[0])))
         leg = np.clip(np.searchsorted(t, times, side="right") - 1, 0, max(len(t) - 2, 0))
         headings = np.full(len(times), self.heading)
         if len(t) > 1:
@@ -115,7 +120,7 @@ class Story:
     rate_hz: float = setting(10.0, Number(1.0, 100.0, unit="Hz"), "Frames in a second")
     start_s: float = setting(-6.0, Number(-600.0, 0.0, unit="s"), "Time of the first frame")
     end_s: float = setting(0.0, Number(-600.0, 600.0, unit="s"), "Time of the last frame")
-    anchor: str = setting(FRONT, OneOf((FRONT, REAR)), "Plane of the vehicle that the story meets")
+    anchor: str = setting(FRONT, OneOf((FRONT, REAR, ORIGIN)), "What positions are from")
     actors: tuple[Actor, ...] = field(default=())
 
     def __post_init__(self) -> None:
@@ -137,7 +142,7 @@ class Story:
     @property
     def speed(self) -> float:
         """Own speed [m/s]; backwards it is negative."""
-        return (self.speed_kmh if self.anchor == FRONT else -self.speed_kmh) / KMH
+        return (-self.speed_kmh if self.anchor == REAR else self.speed_kmh) / KMH
 
     @property
     def brake_s(self) -> float:
@@ -150,8 +155,9 @@ class Story:
     def positions(self, vehicle: Vehicle | None) -> tuple[Floats, Floats]:
         """Return positions (A, K, 2) and headings (A, K) of the actors in the ground frame."""
         low, high = outline(vehicle)
-        sign, plane = (1.0, high[0]) if self.anchor == FRONT else (-1.0, low[0])
-        moved = self.speed * self.times
+        planes = {FRONT: (1.0, high[0]), REAR: (-1.0, low[0]), ORIGIN: (1.0, 0.0)}
+        sign, plane = planes[self.anchor]
+        moved = (0.0 if self.anchor == ORIGIN else self.speed) * self.times
         where, headings = [], []
         for actor in self.actors:
             at, heading = actor.at(self.times)

@@ -38,6 +38,15 @@ from .colors import sensor_colors_on_paper as sensor_colors_on_paper
 from .colors import sensor_palette as sensor_palette
 from .colors import srgb_of_linear as srgb_of_linear
 from .colors import with_alpha as with_alpha
+from .drive_by import BRAKE as BRAKE
+from .drive_by import CONFIRMED as CONFIRMED
+from .drive_by import BodiesInTime as BodiesInTime
+from .drive_by import MovingShape as MovingShape
+from .drive_by import TimeStrip as TimeStrip
+from .drive_by import color_of_ap as color_of_ap
+from .drive_by import moving_shape as moving_shape
+from .drive_by import strip_rows as strip_rows
+from .drive_by import time_strip as time_strip
 from .ground import AS_SCORED as AS_SCORED
 from .ground import COVERAGE as COVERAGE
 from .ground import ENTROPY as ENTROPY

@@ -130,6 +130,10 @@ class LayerShape:
     labels: tuple[Tag, ...] = ()
     legend: ColorKey | None = None
 
+    def at(self, _seconds: float) -> LayerShape:
+        """Return what is drawn so long after the first frame of a scene."""
+        return self
+
 
 def polyline(points: Floats) -> Floats:
     """(2 (N - 1), 3) ends of the segments of a line through (N, 3) points."""

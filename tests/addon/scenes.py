@@ -98,6 +98,7 @@ def seen_rig(car) -> bpy.types.Scene:
     car.perception_entropy.axles_known = True
     bpy.ops.pe.add_focus(region="front")
     bpy.ops.pe.add_requirement(preset="OWN")
+    bpy.ops.pe.add_story(story="cyclist_from_right")
     return car
 
 

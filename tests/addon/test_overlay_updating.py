@@ -52,7 +52,8 @@ def test_every_layer_shows_something_of_a_rig(rig):
     for name in ("ground", "blind", "reach", "heat"):
         assert set(drawn[name]) == {layers.WHOLE_RIG}
     for shapes in drawn.values():
-        for shape in shapes.values():
+        for item in shapes.values():
+            shape = item.at(0.0)
             parts = (shape.lines, shape.faces, shape.through, shape.thin)
             assert shape.labels or shape.sheet or any(len(part.points) for part in parts)
             assert all(p.points.flags.c_contiguous and p.colors.flags.c_contiguous for p in parts)

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
-import numpy as np
 from markupsafe import Markup
 
-from pe_core.base.arrays import Floats
 from pe_core.motion import SeenBody, Story
 
 from ... import graphics
@@ -17,7 +13,7 @@ from .svg import Canvas
 
 WIDTH, LEFT, RIGHT = 720.0, 130.0, 640.0
 TOP, ROW, GAP, FOOT = 22.0, 16.0, 5.0, 34.0
-NEVER = "#d7dce1"
+NEVER = (0.843, 0.863, 0.882, 1.0)
 """Colour of AP 0."""
 
 
@@ -26,16 +22,20 @@ def time_strip(story: Story, body: SeenBody, alt: str) -> Markup:
 
     Vertical lines: confirmed with the story's probability; the last moment to brake.
     """
-    rows = {"whole rig": body.ap, **body.by_sensor, "track confirmed": body.confirmed}
+    rows = graphics.strip_rows(body)
     height = TOP + len(rows) * (ROW + GAP) + FOOT
     canvas = Canvas(WIDTH, height, alt, "curve strip")
     half = 0.5 / story.rate_hz
     start, end = float(story.times[0]) - half, float(story.times[-1]) + half
     to_x = linear_map(start, end, LEFT, RIGHT)
     y = TOP
-    for name, values in rows.items():
+    width = to_x(half * 2.0) - to_x(0.0)
+    for name, cells in rows.items():
         canvas.text(LEFT - 8.0, y + ROW - 4.0, name, text_anchor="end")
-        _cells(canvas, values, story, y, to_x(half * 2.0) - to_x(0.0), to_x(start))
+        for first, last, ap in cells:
+            box = {"x": LEFT + first * width, "y": y, "width": (last - first) * width}
+            color = graphics.color_text(graphics.color_of_ap(ap, NEVER))
+            canvas.add("rect", fill=color, height=ROW, **box)
         y += ROW + GAP
     for tick in ticks(start, end, 6):
         if start <= tick <= end:
@@ -45,23 +45,6 @@ def time_strip(story: Story, body: SeenBody, alt: str) -> Markup:
         text = f"confirmed {story.chance:.0%}, {moment.distance_m:.1f} m"
         _mark(canvas, to_x(moment.time_s), y, text, "#1a7f4b", left=True)
     return canvas.svg()
-
-
-def _cells(
-    canvas: Canvas, values: Floats, story: Story, y: float, width: float, left: float
-) -> None:
-    """Draw runs of frames of equal shade: AP in steps of 0.05, by the scale of probabilities."""
-    shades = np.round(values * 20.0) / 20.0
-    edges = [0, *(np.flatnonzero(np.diff(shades)) + 1).tolist(), len(shades)]
-    for first, last in pairwise(edges):
-        share = float(shades[first])
-        color = (
-            graphics.color_text(graphics.on_scale(share, graphics.CIVIDIS).tolist())
-            if share > 0.0
-            else NEVER
-        )
-        box = {"x": left + first * width, "y": y, "width": (last - first) * width, "height": ROW}
-        canvas.add("rect", fill=color, **box)
 
 
 def _mark(canvas: Canvas, x: float, bottom: float, text: str, color: str, left: bool) -> None:

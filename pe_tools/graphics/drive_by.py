@@ -1,0 +1,242 @@
+"""A drive-by in pictures: bodies and their lines to sensors frame by frame, and AP as a strip.
+
+A `MovingShape` is what the 3D view shows; a film and the review page take the strip's cells and
+marks from here as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise, product
+from typing import NamedTuple
+
+import numpy as np
+
+from pe_core.base.arrays import Floats
+from pe_core.motion import MAX_FRAMES, Actor, DriveBy, SeenBody
+from pe_core.scene import Rig, Vehicle
+
+from .colors import CIVIDIS, Rgba, on_scale, with_alpha
+from .primitives import ColorKey, LayerShape, Primitives, Tag, polyline
+
+NEVER: Rgba = (0.843, 0.863, 0.882, 1.0)
+"""Colour of AP 0."""
+DARK: Rgba = (0.30, 0.31, 0.33, 1.0)
+"""The same, and bodies that only hide, on a dark ground."""
+CONFIRMED: Rgba = (0.35, 0.85, 0.55, 1.0)
+BRAKE: Rgba = (1.0, 0.50, 0.25, 1.0)
+WHOLE_RIG, TRACK = "whole rig", "track confirmed"
+SWATCHES = 12
+FACE_ALPHA, PATH_ALPHA, MARK_M = 0.38, 0.55, 0.6
+CORNERS = np.array(list(product((-0.5, 0.5), repeat=3)))
+CROSS = np.array([(-0.3, 0.0, 0.0), (0.3, 0.0, 0.0), (0.0, -0.3, 0.0), (0.0, 0.3, 0.0)])
+EDGES = [(a, b) for a in range(8) for b in range(a) if np.abs(CORNERS[a] - CORNERS[b]).sum() == 1]
+FACES = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1)]
+FACES += [(2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
+
+
+class Cell(NamedTuple):
+    """Frames of equal shade: the first, the one after the last, and AP in steps of 0.05."""
+
+    first: int
+    last: int
+    ap: float
+
+    def color(self, never: Rgba) -> Rgba:
+        """Return its colour by the scale of probabilities; `never` is that of AP 0."""
+        return color_of_ap(self.ap, never)
+
+
+def color_of_ap(ap: float, never: Rgba = DARK) -> Rgba:
+    """Return the colour of an AP; `never` is that of 0."""
+    red, green, blue = (float(c) for c in on_scale(ap, CIVIDIS))
+    return (red, green, blue, 1.0) if ap > 0.0 else never
+
+
+def strip_rows(body: SeenBody) -> dict[str, list[Cell]]:
+    """Return rows of AP over time, of the rig and each sensor, and the probability of a track."""
+    rows = {WHOLE_RIG: body.ap, **body.by_sensor, TRACK: body.confirmed}
+    return {name: list(_cells(values)) for name, values in rows.items()}
+
+
+def _cells(values: Floats) -> Iterator[Cell]:
+    shades = np.round(values * 20.0) / 20.0
+    edges = [0, *(np.flatnonzero(np.diff(shades)) + 1).tolist(), len(shades)]
+    for first, last in pairwise(edges):
+        yield Cell(first, last, float(shades[first]))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MovingBody:
+    """A body of a story, K frames: its size [m], positions (K, 2), headings (K,), AP (K,) and by
+    sensor; `seen` is None where it only hides."""
+
+    actor: Actor
+    positions: Floats
+    headings: Floats
+    ap: Floats
+    by_sensor: Mapping[str, Floats]
+    seen: SeenBody | None
+
+    @property
+    def height(self) -> float:
+        """Of its middle above the ground [m]."""
+        return self.actor.body.low + self.actor.body.box[2] / 2.0
+
+    def corners(self, k: int) -> Floats:
+        """Return its corners (8, 3) at a frame."""
+        x, y, z = (CORNERS * self.actor.body.box).T
+        c, s = np.cos(self.headings[k]), np.sin(self.headings[k])
+        turned = np.column_stack([c * x - s * y, s * x + c * y, z])
+        return np.asarray(turned + np.array((*self.positions[k], self.height)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BodiesInTime:
+    """The bodies of a drive-by at the times (K,) [s] of a film or a playback."""
+
+    driven: DriveBy
+    rate_hz: float
+    times: Floats
+    bodies: tuple[MovingBody, ...]
+
+    @classmethod
+    def of(cls, driven: DriveBy, vehicle: Vehicle | None, rate_hz: float) -> BodiesInTime:
+        """Return bodies so many times a second; AP is that of the last frame of the sensors."""
+        story = driven.story
+        rate = min(rate_hz, 100.0, MAX_FRAMES / (story.end_s - story.start_s))
+        fine = replace(story, rate_hz=rate)
+        where, headings = fine.positions(vehicle)
+        found = ((fine.times - story.start_s) * story.rate_hz + 1e-6).astype(int)
+        frame = np.minimum(found, len(story.times) - 1)
+        seen, bodies = {body.name: body for body in driven.bodies}, []
+        for k, actor in enumerate(story.actors):
+            own = seen.get(actor.name) if actor.watched else None
+            ap = np.zeros(len(frame)) if own is None else own.ap[frame]
+            alone = {} if own is None else {n: v[frame] for n, v in own.by_sensor.items()}
+            bodies.append(MovingBody(actor, where[k], headings[k], ap, alone, own))
+        return cls(driven, rate, fine.times, tuple(bodies))
+
+
+class Mark(NamedTuple):
+    """A moment of a body: time [s], what it is, colour."""
+
+    time_s: float
+    text: str
+    color: Rgba
+
+
+def marks_of(driven: DriveBy, body: SeenBody) -> list[Mark]:
+    """Return when a body is confirmed, and when the vehicle has to brake."""
+    story, moment = driven.story, body.moments[driven.story.chance]
+    marks = [Mark(max(story.brake_s, story.start_s), "must brake here", BRAKE)]
+    if moment is not None:
+        marks.append(Mark(moment.time_s, f"confirmed here {story.chance:.0%}", CONFIRMED))
+    return marks
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TimeStrip:
+    """AP over time of the body with the least margin, in a unit square of K columns.
+
+    `names` are those of the rows from above; `cells` (triangles) lie in x and y from 0 to 1.
+    """
+
+    title: str
+    names: tuple[str, ...]
+    cells: LayerShape
+    marks: tuple[Mark, ...]
+    start_s: float
+    end_s: float
+
+    def share(self, seconds: float) -> float:
+        """Return where a time is, from 0 at the left to 1."""
+        return min(max((seconds - self.start_s) / (self.end_s - self.start_s), 0.0), 1.0)
+
+
+def time_strip(driven: DriveBy) -> TimeStrip:
+    """Return the strip of the body with the least margin; sensors that never see it have no row."""
+    story = driven.story
+    never = -np.inf
+    body = min(driven.bodies, key=lambda b: never if b.margin_s is None else b.margin_s)
+    rows = {
+        name: cells
+        for name, cells in strip_rows(body).items()
+        if name not in body.by_sensor or any(cell.ap > 0.0 for cell in cells)
+    }
+    count, parts = len(story.times), []
+    for number, cells in enumerate(rows.values()):
+        top, bottom = 1.0 - (number + 0.1) / len(rows), 1.0 - (number + 0.9) / len(rows)
+        for cell in cells:
+            a, b = cell.first / count, cell.last / count
+            square = [(a, bottom), (b, bottom), (b, top), (a, bottom), (b, top), (a, top)]
+            parts.append(Primitives.of([(*p, 0.0) for p in square], cell.color(DARK)))
+    margin = body.shown_margin_s
+    told = "never confirmed" if margin is None else f"margin {margin:+.1f} s"
+    half = 0.5 / story.rate_hz
+    return TimeStrip(
+        f"{story.name}: {body.name}, {told}",
+        tuple(rows),
+        LayerShape(faces=Primitives.joined(parts)),
+        tuple(marks_of(driven, body)),
+        float(story.times[0]) - half,
+        float(story.times[-1]) + half,
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MovingShape(LayerShape):
+    """A shape for each frame of a playback, and the strip below it."""
+
+    frames: tuple[LayerShape, ...] = ()
+    rate_hz: float = 1.0
+    strip: TimeStrip | None = None
+
+    def at(self, seconds: float) -> LayerShape:
+        """Return the shape that many seconds after the first frame; the last one after the end."""
+        return self.frames[min(max(round(seconds * self.rate_hz), 0), len(self.frames) - 1)]
+
+
+def moving_shape(driven: DriveBy, rig: Rig, vehicle: Vehicle | None, rate_hz: float) -> MovingShape:
+    """Return a drive-by as it is played: bodies, lines from the sensors that see them, moments."""
+    moving = BodiesInTime.of(driven, vehicle, rate_hz)
+    places = {sensor.name: sensor.pose.position for sensor in rig}
+    still = [_moments(moving, body) for body in moving.bodies if body.seen is not None]
+    lines, tags = [line for line, _ in still], [tag for _, several in still for tag in several]
+    scale = tuple(color_of_ap(ap, DARK) for ap in np.linspace(0.001, 1.0, SWATCHES).tolist())
+    legend = ColorKey("AP of a body", scale, ("0", "0.5", "1"))
+    frames = []
+    for k in range(len(moving.times)):
+        edges, faces, rays, names = [*lines], [], [], [*tags]
+        for body in moving.bodies:
+            color = color_of_ap(body.ap[k])
+            corners = body.corners(k)
+            edges.append(Primitives.of(corners[np.array(EDGES)], color))
+            faces.append(Primitives.of(corners[np.array(FACES)], with_alpha(color, FACE_ALPHA)))
+            if body.seen is None:
+                continue
+            x, y, z = (float(v) for v in (*body.positions[k], body.height))
+            names.append(Tag(f"{body.actor.name}: AP {body.ap[k]:.2f}", (x, y, 2 * z), color, True))
+            for name, ap in body.by_sensor.items():
+                if ap[k] > 0.0:
+                    rays.append(Primitives.of([places[name], (x, y, z)], color_of_ap(ap[k])))
+        lined, filled = Primitives.joined([*edges, *rays]), Primitives.joined(faces)
+        frames.append(LayerShape(lined, filled, labels=tuple(names), legend=legend))
+    strip = time_strip(driven)
+    return MovingShape(frames=tuple(frames), rate_hz=moving.rate_hz, strip=strip)
+
+
+def _moments(moving: BodiesInTime, body: MovingBody) -> tuple[Primitives, list[Tag]]:
+    """Return the path of a body on the ground, with its marks."""
+    assert body.seen is not None
+    path = np.column_stack([body.positions, np.full(len(moving.times), 0.02)])
+    parts, tags = [Primitives.of(polyline(path), with_alpha(NEVER, PATH_ALPHA))], []
+    for mark in marks_of(moving.driven, body.seen):
+        k = int(np.searchsorted(moving.times, mark.time_s - 1e-6).clip(0, len(path) - 1))
+        foot = path[k]
+        top = foot + np.array((0.0, 0.0, MARK_M))
+        x, y, z = (float(v) for v in top)
+        parts.append(Primitives.of([foot, top, *(foot + CROSS)], mark.color))
+        tags.append(Tag(mark.text, (x, y, z), mark.color))
+    return Primitives.joined(parts), tags

@@ -1,0 +1,85 @@
+"""A drive-by in a real window: it is played from a cache, and says when it is out of date."""
+
+from tests.blender.test_live import NAME
+
+EFFECT_TIMEOUT_S = 120
+SHOW = """
+settings = window.scene.perception_entropy
+bpy.ops.pe.add_sensor(model="OS1-128")
+bpy.context.object.name, bpy.context.object.location = "corner", (2.2, 0.8, 0.7)
+for each in ("beams", "frustums", "ground", "blind", "reach"):
+    setattr(settings.view, "show_" + each, False)
+bpy.ops.pe.add_story(story="crossing_child")
+look = area.spaces.active.region_3d
+look.view_location, look.view_distance = (6.0, 0.0, 0.5), 24.0
+"""
+SHAPE = f"""
+from {NAME}.overlay.layer_cache import shown_of
+from {NAME}.overlay import draw_handler, scheduler
+items = shown_of(window.scene.name, "story")
+kept["frames"] = [len(item.shape.frames) for item in items.values()]
+kept["old"] = [scheduler.is_preview(window.scene.name, "story", n, i) for n, i in items.items()]
+"""
+TIMED = f"""
+import time
+from {NAME}.overlay import draw_handler
+took = kept["took"] = []
+for name in ("draw", "draw_text"):
+    def timed(inner=getattr(draw_handler, name), name=name):
+        start = time.perf_counter()
+        inner()
+        took.append((name, window.scene.frame_current, time.perf_counter() - start))
+    setattr(draw_handler, "timed_" + name, timed)
+draw_handler._handlers.hide()
+draw_handler._handlers.show(
+    (draw_handler.timed_draw, "POST_VIEW"), (draw_handler.timed_draw_text, "POST_PIXEL")
+)
+with bpy.context.temp_override(window=window, area=area, region=region):
+    bpy.ops.pe.play_story()
+"""
+STOP = f"""
+with bpy.context.temp_override(window=window, area=area, region=region):
+    bpy.ops.screen.animation_cancel()
+from {NAME}.overlay import draw_handler
+draw_handler._handlers.hide()
+draw_handler.register()
+"""
+
+
+def test_a_story_is_played_from_its_cache(stage, screenshots):
+    stage.do(SHOW)
+    stage.wait_for(
+        lambda: stage.do(SHAPE, redraw=False)["frames"] == [145], EFFECT_TIMEOUT_S, "the cache"
+    )
+    for frame in (20, 90, 122):
+        stage.do(f"window.scene.frame_set({frame})")
+        stage.screenshot(screenshots / f"window_drive_by_{frame}.png")
+    stage.do(TIMED)
+    stage.wait_for(
+        lambda: len({frame for _, frame, _ in stage.do("pass")["took"]}) > 20,
+        EFFECT_TIMEOUT_S,
+        "frames that are drawn",
+    )
+    took = stage.do(STOP)["took"]
+    by_frame: dict[int, float] = {}
+    for _, frame, seconds in took:
+        by_frame[frame] = by_frame.get(frame, 0.0) + seconds
+    typical = sorted(by_frame.values())[len(by_frame) // 2]
+    print(f"overlay of a frame: {1e3 * typical:.1f} ms")
+    assert typical < 1.0 / 24.0
+    stage.do('bpy.data.objects["corner"].location.z = 1.0')
+    stage.wait_for(
+        lambda: stage.do(SHAPE, redraw=False)["old"] == [False], EFFECT_TIMEOUT_S, "a new cache"
+    )
+    assert "Traceback" not in stage.log.read_text()
+
+
+def test_it_is_legible_at_scale_2(stage, screenshots):
+    stage.do("bpy.context.preferences.view.ui_scale = 2.0")
+    stage.do(SHOW)
+    stage.wait_for(
+        lambda: stage.do(SHAPE, redraw=False)["frames"] == [145], EFFECT_TIMEOUT_S, "the cache"
+    )
+    stage.do("window.scene.frame_set(100)")
+    stage.screenshot(screenshots / "window_drive_by_large.png")
+    stage.do("bpy.context.preferences.view.ui_scale = 1.0")

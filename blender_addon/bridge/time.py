@@ -100,7 +100,8 @@ def _test_body(obj: Object, path: list[list[float]]) -> dict[str, Any]:
     if usual is not None and not all(size):
         own: dict[str, Any] = {"body": kind}
     else:
-        own = {"body": f"own {kind}", "size": size, "class": usual and usual.class_name}
+        own = {"body": f"own {kind}", "size": size}
+        own |= {} if usual is None else {"class": usual.class_name}
     return {"name": obj.name, **own, "watched": usual is not None, "path": path}
 
 

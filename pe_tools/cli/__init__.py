@@ -16,6 +16,7 @@ from .command import count_up_to as count_up_to
 from .command import run as run
 from .command import with_options as with_options
 from .drive_by_verb import add_drive_by_options as add_drive_by_options
+from .drive_by_verb import chosen_stories as chosen_stories
 from .drive_by_verb import drive_by_study as drive_by_study
 from .exchange_verbs import SUFFIXES as SUFFIXES
 from .exchange_verbs import add_export_options as add_export_options

@@ -53,7 +53,7 @@ def drive_by_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path
     """
     if args.output is not None:
         require_new(Path(args.output), replace=args.replace, inputs=inputs)
-    chosen = _chosen(study, args.story)
+    chosen = chosen_stories(study, args.story)
     print_vehicle(study)
     driven = [study.drive_by(story) for story in chosen]
     text = dump_json(
@@ -66,7 +66,8 @@ def drive_by_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path
     return text if args.json else "\n".join(story_lines(driven)), status
 
 
-def _chosen(study: Study, names: Sequence[str]) -> list[Story]:
+def chosen_stories(study: Study, names: Sequence[str]) -> list[Story]:
+    """Return stories by name or from files; without names the study's own."""
     known = {**stories(), **{story.name: story for story in study.stories}}
     chosen: dict[str, Story] = {} if names else {story.name: story for story in study.stories}
     for name in names:

@@ -6,6 +6,7 @@ marks from here as well.
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise, product
@@ -13,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pe_core.base import dump_json
 from pe_core.base.arrays import Floats
 from pe_core.motion import MAX_FRAMES, Actor, DriveBy, SeenBody
 from pe_core.scene import Rig, Vehicle
@@ -22,13 +24,15 @@ from .primitives import ColorKey, LayerShape, Primitives, Tag, polyline
 
 NEVER: Rgba = (0.843, 0.863, 0.882, 1.0)
 """Colour of AP 0."""
-DARK: Rgba = (0.30, 0.31, 0.33, 1.0)
-"""The same, and bodies that only hide, on a dark ground."""
+DARK: Rgba = (0.17, 0.175, 0.185, 1.0)
+"""The same on a dark ground."""
+UNSEEN: Rgba = (0.72, 0.73, 0.75, 1.0)
+"""Colour of bodies that are not seen, or only hide."""
 CONFIRMED: Rgba = (0.35, 0.85, 0.55, 1.0)
 BRAKE: Rgba = (1.0, 0.50, 0.25, 1.0)
 WHOLE_RIG, TRACK = "whole rig", "track confirmed"
 SWATCHES = 12
-FACE_ALPHA, PATH_ALPHA, MARK_M = 0.38, 0.55, 0.6
+FACE_ALPHA, PATH_ALPHA, MARK_M = 0.25, 0.55, 0.6
 CORNERS = np.array(list(product((-0.5, 0.5), repeat=3)))
 CROSS = np.array([(-0.3, 0.0, 0.0), (0.3, 0.0, 0.0), (0.0, -0.3, 0.0), (0.0, 0.3, 0.0)])
 EDGES = [(a, b) for a in range(8) for b in range(a) if np.abs(CORNERS[a] - CORNERS[b]).sum() == 1]
@@ -36,35 +40,31 @@ FACES = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1)]
 FACES += [(2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
 
 
-class Cell(NamedTuple):
+class ShadeRun(NamedTuple):
     """Frames of equal shade: the first, the one after the last, and AP in steps of 0.05."""
 
     first: int
     last: int
     ap: float
 
-    def color(self, never: Rgba) -> Rgba:
-        """Return its colour by the scale of probabilities; `never` is that of AP 0."""
-        return color_of_ap(self.ap, never)
 
-
-def color_of_ap(ap: float, never: Rgba = DARK) -> Rgba:
+def color_of_ap(ap: float, never: Rgba = UNSEEN) -> Rgba:
     """Return the colour of an AP; `never` is that of 0."""
     red, green, blue = (float(c) for c in on_scale(ap, CIVIDIS))
     return (red, green, blue, 1.0) if ap > 0.0 else never
 
 
-def strip_rows(body: SeenBody) -> dict[str, list[Cell]]:
+def strip_rows(body: SeenBody) -> dict[str, list[ShadeRun]]:
     """Return rows of AP over time, of the rig and each sensor, and the probability of a track."""
     rows = {WHOLE_RIG: body.ap, **body.by_sensor, TRACK: body.confirmed}
     return {name: list(_cells(values)) for name, values in rows.items()}
 
 
-def _cells(values: Floats) -> Iterator[Cell]:
+def _cells(values: Floats) -> Iterator[ShadeRun]:
     shades = np.round(values * 20.0) / 20.0
     edges = [0, *(np.flatnonzero(np.diff(shades)) + 1).tolist(), len(shades)]
     for first, last in pairwise(edges):
-        yield Cell(first, last, float(shades[first]))
+        yield ShadeRun(first, last, float(shades[first]))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -119,6 +119,12 @@ class BodiesInTime:
         return cls(driven, rate, fine.times, tuple(bodies))
 
 
+def digest(driven: DriveBy) -> str:
+    """Return what identifies a drive-by in the file of its film."""
+    known = dump_json(driven.to_dict()).encode()
+    return f"perception-entropy {hashlib.sha256(known).hexdigest()[:24]}"
+
+
 class Mark(NamedTuple):
     """A moment of a body: time [s], what it is, colour."""
 
@@ -171,7 +177,7 @@ def time_strip(driven: DriveBy) -> TimeStrip:
         for cell in cells:
             a, b = cell.first / count, cell.last / count
             square = [(a, bottom), (b, bottom), (b, top), (a, bottom), (b, top), (a, top)]
-            parts.append(Primitives.of([(*p, 0.0) for p in square], cell.color(DARK)))
+            parts.append(Primitives.of([(*p, 0.0) for p in square], color_of_ap(cell.ap, DARK)))
     margin = body.shown_margin_s
     told = "never confirmed" if margin is None else f"margin {margin:+.1f} s"
     half = 0.5 / story.rate_hz
@@ -204,7 +210,7 @@ def moving_shape(driven: DriveBy, rig: Rig, vehicle: Vehicle | None, rate_hz: fl
     places = {sensor.name: sensor.pose.position for sensor in rig}
     still = [_moments(moving, body) for body in moving.bodies if body.seen is not None]
     lines, tags = [line for line, _ in still], [tag for _, several in still for tag in several]
-    scale = tuple(color_of_ap(ap, DARK) for ap in np.linspace(0.001, 1.0, SWATCHES).tolist())
+    scale = tuple(color_of_ap(ap) for ap in np.linspace(0.001, 1.0, SWATCHES).tolist())
     legend = ColorKey("AP of a body", scale, ("0", "0.5", "1"))
     frames = []
     for k in range(len(moving.times)):

@@ -82,7 +82,7 @@ def test_shapes_can_be_sent_as_they_are(rig):
 
 def test_nothing_is_worked_out_without_a_change(rig, worked):
     scenes.drawn(rig)
-    assert len(worked) == 12
+    assert len(worked) == 13
     before = {layer: dict(shown_of(rig.name, layer)) for layer in ALL_LAYERS}
     worked.clear()
     scenes.drawn(rig)
@@ -101,6 +101,7 @@ def test_a_moved_sensor_is_worked_out_alone_and_the_vehicle_is_not_read(rig, wor
     bpy.context.view_layer.update()
     scenes.drawn(rig)
     of_the_rig = {("ground", ""), ("blind", ""), ("reach", ""), ("requirements", "")}
+    of_the_rig |= {("story", "")}
     assert set(worked) == {("frustums", "eye"), ("labels", "eye"), *of_the_rig}
 
 

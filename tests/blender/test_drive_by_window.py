@@ -5,7 +5,7 @@ from tests.blender.test_live import NAME
 EFFECT_TIMEOUT_S = 120
 SHOW = """
 settings = window.scene.perception_entropy
-bpy.ops.pe.add_sensor(model="OS1-128")
+bpy.ops.pe.add_sensor(model="Pandar64")
 bpy.context.object.name, bpy.context.object.location = "corner", (2.2, 0.8, 0.7)
 for each in ("beams", "frustums", "ground", "blind", "reach"):
     setattr(settings.view, "show_" + each, False)

@@ -297,14 +297,17 @@ def _requirements(request: ViewRequest, cache: LayerCache, _name: str) -> graphi
 def _story_keys(request: ViewRequest) -> dict[str, Hashable]:
     if request.story is None:
         return {}
-    chosen = request.story, request.confirmation, request.rate_hz, request.prior_key
+    scans = tuple(each.sensor.scan for each in request.counted)
+    rule = request.confirmation, request.rates, scans, request.prior_key
+    chosen = request.story, request.rate_hz, rule
     return {name: (key, chosen) for name, key in _rig_keys(prior=False)(request).items()}
 
 
 def _story(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.LayerShape:
     rig, vehicle = _counted_rig(request), request.vehicle
     assert request.story is not None  # the layer has no key without one
-    driven = motion.drive_by(request.story, rig, vehicle, request.model, request.confirmation)
+    how = vehicle, request.model, request.confirmation, dict(request.rates)
+    driven = motion.drive_by(request.story, rig, *how)
     return graphics.moving_shape(driven, rig, vehicle, request.rate_hz)
 
 

@@ -87,6 +87,7 @@ class ViewRequest:
     requirement: str = ""
     story: motion.Story | None = None
     confirmation: motion.Confirmation | None = None
+    rates: tuple[tuple[str, float], ...] = ()
     rate_hz: float = 24.0
 
     @property

@@ -245,7 +245,8 @@ def _story(scene: bpy.types.Scene) -> dict[str, Any]:
         return {}
     try:
         found = bridge.story_of(settings.stories[settings.story_index])
+        rates = studies.by_name_of_text(settings.time_text, "scene")["rates"]
     except pe.InputError:
         return {}
-    rule = bridge.confirmation_of(settings)
-    return {"story": found, "confirmation": rule, "rate_hz": render.fps / render.fps_base}
+    shown = {"story": found, "confirmation": bridge.confirmation_of(settings)}
+    return {**shown, "rates": tuple(rates.items()), "rate_hz": render.fps / render.fps_base}

@@ -169,7 +169,9 @@ class Story:
     @property
     def speeds(self) -> Floats:
         """Speeds (A, K) of the actors over the ground [m/s]."""
-        steps = [np.gradient(a.at(self.times)[0], 1.0 / self.rate_hz, axis=0) for a in self.actors]
+        own = np.array((self.speed if self.anchor == ORIGIN else 0.0, 0.0))
+        step = 1.0 / self.rate_hz
+        steps = [own + np.gradient(a.at(self.times)[0], step, axis=0) for a in self.actors]
         return np.asarray(np.hypot(*np.moveaxis(np.array(steps), -1, 0)))
 
     def objects(self, where: Floats, headings: Floats) -> Objects:

@@ -165,8 +165,8 @@ def sensitivity_from_dict(table: Mapping[str, Any] | None, rig: Rig) -> Sensitiv
         axes.append(AxisCost(*names, cost, steep))
     for row in table["constraints"]:
         step = PoseStep(str(row["sensor"]), str(row["axis"]), float(row["step"]))
-        names = tuple(map(str, row["constraints"]))
-        constraints.append(ActiveConstraint(names, step, -float(row["gain"])))
+        by = tuple(map(str, row["constraints"]))
+        constraints.append(ActiveConstraint(by, step, -float(row["gain"])))
     found = table["endings"]
     endings = None
     if found is not None:

@@ -50,7 +50,7 @@ def test_a_row_gives_the_kind_a_figure_a_housing_and_an_image(bumper, monkeypatc
     def drawn(sensor, vehicle):
         return [f"{sensor.model.range_m:g} m"], f"around {vehicle is not None}"
 
-    view = SensorView(drawn, None, HOUSING, lambda model: (120.0, 10.0 * model.range_m))
+    view = SensorView(drawn, HOUSING, lambda model: (120.0, 10.0 * model.range_m))
     monkeypatch.setitem(SENSOR_VIEWS, "toyring", view)
     html = html_of(sensor_details, bumper)
     assert "<pre>4 m</pre><figcaption>around True</figcaption>" in html

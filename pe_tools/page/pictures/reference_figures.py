@@ -36,28 +36,21 @@ CLEAR_M = 0.3
 ROUND = 16
 """Points of a circle."""
 PaintedParts = tuple[tuple[Floats, Paint], ...]
-MET_PAINT, NOT_MET_PAINT = Paint((0.02, 0.24, 0.10)), Paint((0.62, 0.09, 0.01))
-AROUND = 24
-"""Points of a circle."""
-POLE_M = 0.06
-"""Width of the pole below a body that is not on the ground."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReferenceFigure:
-    """A person or a car (`name`) at a `distance` [m]; `top` is the point that is labelled [m]. The
-    label is the `text`, or else the distance."""
+    """A person or a car (`name`) at a `distance` [m]; `top` is the point that is labelled [m]."""
 
     name: str
     distance: float
     top: tuple[float, float, float]
     painted: PaintedMesh
-    text: str = ""
 
     @property
     def label(self) -> str:
         """The text at the figure."""
-        return self.text or f"{self.distance:g} m"
+        return f"{self.distance:g} m"
 
 
 def reference_figures(
@@ -175,37 +168,6 @@ class WorstBody:
     body: requirements.Body
     foot: tuple[float, float, float]
     counts: Mapping[str, float]
-
-    def figure(self, sensor: pe.Sensor) -> ReferenceFigure:
-        """Return the body as a figure in a sensor's picture."""
-        x, y, z = self.foot
-        top = x, y, z + self.body.low + self.body.size[2]
-        label = f"{self.number}: {count_text(sensor, self.counts[sensor.name])}"
-        return ReferenceFigure(self.body.name, 0.0, top, self._painted(), label)
-
-    def _painted(self) -> PaintedMesh:
-        paint = MET_PAINT if self.verdict.met else NOT_MET_PAINT
-        low, high = self.body.low, self.body.low + self.body.size[2]
-        shapes = [self._solid(low, high, self.body.size[:2])]
-        if low > 0.0:
-            shapes.append(self._solid(0.0, low, (POLE_M, POLE_M)))
-        triangles = np.concatenate(shapes) + np.array(self.foot)
-        return PaintedMesh(pe.Vehicle(triangles), (paint,))
-
-    def _solid(self, low: float, high: float, size: tuple[float, ...]) -> Floats:
-        """Return an upright cylinder or box round the origin, turned as the body stands."""
-        length, width = size[0] / 2.0, size[1] / 2.0
-        if self.body.is_round:
-            turn = np.arange(AROUND) * 2.0 * np.pi / AROUND
-            ring = np.column_stack([length * np.cos(turn), width * np.sin(turn)])
-        else:
-            ring = np.array(
-                [[length, width], [-length, width], [-length, -width], [length, -width]]
-            )
-            heading = self.body.headings[0]
-            c, s = np.cos(heading), np.sin(heading)
-            ring = ring @ np.array([[c, s], [-s, c]])
-        return capped([np.column_stack([ring, np.full(len(ring), z)]) for z in (low, high)])
 
 
 def worst_bodies(

@@ -25,7 +25,7 @@ from ... import graphics
 from ..markup import number, signed
 from .painted_mesh import painted_vehicle
 from .ray_scene import RayCamera, RayScene
-from .reference_figures import DISTANCES, ReferenceFigure, reference_figures
+from .reference_figures import DISTANCES, reference_figures
 from .rendering import Environment, render
 from .svg import LETTER_WIDTH, Canvas, LabelledPicture
 
@@ -55,7 +55,6 @@ SMALL_BOX = scene.Housing("box", (0.05, 0.06, 0.05), (0.025, 0.0, 0.025))
 
 
 ViewFigure = tuple[Markup | list[str], str]
-PictureMaker = Callable[[pe.Sensor, "pe.Vehicle | None", list[ReferenceFigure]], LabelledPicture]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,13 +62,11 @@ class SensorView:
     """How the page shows the sensors of one kind.
 
     `figure` returns a drawing (or lines of text) of what a sensor sees beside a vehicle or None,
-    and a caption; `picture` the picture with given figures in it. `housing` is drawn where the
-    catalogue knows no size. `image_field` returns width and height of a model's image [deg], or
-    None.
+    and a caption. `housing` is drawn where the catalogue knows no size. `image_field` returns width
+    and height of a model's image [deg], or None.
     """
 
     figure: Callable[[pe.Sensor, pe.Vehicle | None], ViewFigure]
-    picture: PictureMaker | None = None
     housing: scene.Housing = SMALL_BOX
     image_field: Callable[[Any], tuple[float, float] | None] = lambda _model: None
 
@@ -108,13 +105,10 @@ def lidar_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> ViewFigure:
     return drawing, caption
 
 
-def camera_picture(
-    sensor: pe.Sensor, vehicle: pe.Vehicle | None, figures: list[ReferenceFigure] | None = None
-) -> LabelledPicture:
-    """Return the image of a camera with figures in front of it, by default persons and cars."""
+def camera_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> LabelledPicture:
+    """Return the image of a camera with persons and cars in front of it."""
     rays, scale = ray_camera(sensor)
-    if figures is None:
-        figures = reference_figures(sensor, graphics.camera_of(sensor).hfov / 2.0, vehicle)
+    figures = reference_figures(sensor, graphics.camera_of(sensor).hfov / 2.0, vehicle)
     solids = [] if vehicle is None else [painted_vehicle(vehicle)]
     road = RayScene([*solids, *(target.painted for target in figures)], vehicle is not None)
     image = render(rays, road, _road_environment(sensor))
@@ -176,14 +170,11 @@ def _road_environment(sensor: pe.Sensor) -> Environment:
     return Environment(ground, sky, sun, haze)
 
 
-def lidar_picture(
-    sensor: pe.Sensor, vehicle: pe.Vehicle | None, figures: list[ReferenceFigure] | None = None
-) -> LabelledPicture:
-    """Return the ranges of a LiDAR with figures in front of it, by default persons and cars."""
+def lidar_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> LabelledPicture:
+    """Return the ranges of a LiDAR with persons and cars in front of it."""
     lidar = graphics.lidar_of(sensor)
-    if figures is None:
-        half = min(FIGURES_RAD, (lidar.horizontal_fov[1] - lidar.horizontal_fov[0]) / 2.0)
-        figures = reference_figures(sensor, half, vehicle)
+    half = min(FIGURES_RAD, (lidar.horizontal_fov[1] - lidar.horizontal_fov[0]) / 2.0)
+    figures = reference_figures(sensor, half, vehicle)
     joint = None
     if figures:  # one mesh, a part for each
         meshes = [target.painted.mesh.triangles for target in figures]
@@ -281,13 +272,10 @@ def range_key(far_m: float) -> Markup:
 
 SENSOR_VIEWS = {
     "lidar": SensorView(
-        lidar_figure,
-        lidar_picture,
-        housing=scene.Housing("cylinder", (0.11, 0.11, 0.08), (0.0, 0.0, 0.04)),
+        lidar_figure, housing=scene.Housing("cylinder", (0.11, 0.11, 0.08), (0.0, 0.0, 0.04))
     ),
     "camera": SensorView(
         camera_figure,
-        camera_picture,
         image_field=lambda camera: (math.degrees(camera.hfov), math.degrees(camera.vfov)),
     ),
     "radar": SensorView(

@@ -87,24 +87,11 @@ def requirement_verdicts(context: ReportContext) -> dict[str, Any] | None:
     if not verdicts:
         return None
     bodies = worst_bodies(verdicts, context.rig, context.vehicle)
-    plans, pictures = [], []
+    plans = []
     for verdict in verdicts:
         alt = f"Zone of {verdict.name} from above: {'met' if verdict.met else 'not met'}"
         plans.append(requirement_plan(verdict, context.vehicle, alt))
-    for sensor in context.rig:  # those that see a body
-        picture = sensor_view(sensor.kind).picture
-        seen = [each.figure(sensor) for each in bodies if each.counts[sensor.name] > 0.0]
-        if picture is not None and seen:
-            shown = picture(sensor, context.display_vehicle[0], seen)
-            alt = f"Test bodies in the picture of {sensor.name}"
-            pictures.append((sensor.name, shown.svg(alt)))
-    return {
-        "verdicts": verdicts,
-        "plans": plans,
-        "bodies": bodies,
-        "count_text": count_text,
-        "pictures": pictures,
-    }
+    return {"verdicts": verdicts, "plans": plans, "bodies": bodies, "count_text": count_text}
 
 
 def dimensions(context: ReportContext) -> dict[str, Any] | None:

@@ -5,6 +5,7 @@ import os
 import pytest
 from xdist.scheduler import LoadScopeScheduling
 
+from tests import example_plugin
 from tests.limits import (
     heeded_signals,
     pytest_runtest_call,
@@ -13,6 +14,7 @@ from tests.limits import (
 )
 
 __all__ = [
+    "example_plugin",
     "heeded_signals",
     "pytest_runtest_call",
     "pytest_runtest_setup",

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Protocol
 
 from pe_core.base.errors import InputError
+from pe_core.base.plugins import find_plugins, load_plugin
 from pe_core.base.values import choice
 
-from . import argoverse2, autoware, carla, csv_table, driveworks, kitti, nuscenes, osi, ros, urdf
+from . import autoware, carla, csv_table, kitti, nuscenes, ros, urdf
 from . import lens_pictures as lenses
 from .foreign_values import Export, FileTexts
-from .frames import GROUND, REAR_AXLE, REAR_AXLE_GROUND
+from .frames import GROUND, REAR_AXLE_GROUND
 from .portable import PortableRig, PortableSensor
 
 MODEL = "model"
@@ -114,11 +116,6 @@ _ROWS = (
         usual_size=(1600, 900),
     ),
     RigFormat(
-        *("argoverse2", argoverse2.TITLE, REAR_AXLE, argoverse2.FILES, argoverse2),
-        keeps=lenses.straight,
-        passes_through=False,
-    ),
-    RigFormat(
         *("carla", "CARLA objects.json", GROUND, (carla.FILE,), carla, _BEAMS, lenses.square),
         source=carla.source,
     ),
@@ -128,18 +125,18 @@ _ROWS = (
         usual_size=(1242, 375),
         passes_through=False,
     ),
-    RigFormat(
-        *("osi", "ASAM OSI mounting positions", REAR_AXLE, (osi.FILE,), osi, _BEAMS),
-        keeps=lenses.centred,
-    ),
-    RigFormat(
-        *("driveworks", "DriveWorks rig.json", REAR_AXLE_GROUND, (driveworks.FILE,), driveworks),
-        holds=frozenset({MODEL}),
-        keeps=lenses.f_theta_of_five,
-        source=driveworks.source,
-    ),
 )
-RIG_FORMATS = MappingProxyType({row.name: row for row in _ROWS})
+
+
+def _all_rows() -> Iterator[RigFormat]:
+    """Yield our own formats, then those of plugins that can be loaded."""
+    yield from _ROWS
+    for point in find_plugins("rig"):
+        with suppress(ImportError, InputError):
+            yield load_plugin(point)
+
+
+RIG_FORMATS = MappingProxyType({row.name: row for row in _all_rows()})
 """Formats by name."""
 
 
@@ -183,7 +180,9 @@ def format_of_file(output: Path, files: Mapping[str, str], chosen: str | None = 
     return fitting[0]
 
 
-FILES = MappingProxyType({row.name: row.files[0] for row in _ROWS if len(row.files) == 1})
+FILES = MappingProxyType(
+    {row.name: row.files[0] for row in RIG_FORMATS.values() if len(row.files) == 1}
+)
 """Usual name of the file by format, of the formats that have one."""
 
 

@@ -68,7 +68,8 @@ _ROWS = (
     ),
 )
 OF_EXAMPLE = ("footprints", "footprints-dxf", "masks", "nebula", "rerun", "solids")
-"""Outputs of the plugin that is shipped as an example."""
+OF_EXAMPLE += ("argoverse2", "driveworks", "osi")
+"""Outputs and rig formats of the plugin that is shipped as an example."""
 EXAMPLE = "the plugin perception-entropy-outputs: pip install examples/plugin"
 OUTPUT = "output"
 """The sort of plugins that lead to a `SceneOutput`."""

@@ -68,7 +68,6 @@ LIBRARIES = {
     "pxr": {"pe_tools/formats"},
     "ruamel": {"pe_tools/formats"},
     "trimesh": {"pe_tools/formats"},
-    "pyarrow": {"pe_tools/exchange"},
     "matplotlib": {"pe_tools/plot.py"},
     "jinja2": {"pe_tools/page", "pe_tools/cli"},
     "markupsafe": {"pe_tools/page"},

@@ -116,7 +116,7 @@ def test_what_is_none_of_osi_s_is_refused_in_one_line(change, words, tmp_path):
 
 
 def test_a_rig_of_too_many_beams_is_refused_before_they_are_written(monkeypatch):
-    from pe_tools.exchange import osi
+    from entropy_rigs import osi
 
     monkeypatch.setattr(osi, "MAX_BEAMS", 115)
     with pytest.raises(

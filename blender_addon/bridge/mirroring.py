@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import bpy
 from bpy.types import Depsgraph, Object, Scene
 
-from ..engine import advice, pe
+from ..engine import pe
 from .rig import place_poses, pose_of
 
 SIDES = (("left", "right"), ("l", "r"))
@@ -28,16 +28,13 @@ def mirrored_pose(pose: pe.Pose) -> pe.Pose:
 
 
 def mirrored_name(name: str, side: str) -> str:
-    """Return the name of a mirrored sensor on a `side`: front_left gives front_right, A.L A.R.
-
-    A name that only says the sensor's kind stays: labels say its place.
-    """
+    """Return the name of a mirrored sensor on a `side`: front_left gives front_right, A.L A.R."""
     for pair in SIDES:
         for one, other in (pair, pair[::-1]):
             match = re.search(rf"(?:(?<=^)|(?<=[^A-Za-z]))({one})(?=[^A-Za-z]|$)", name, re.I)
             if match:
                 return name[: match.start()] + _cased(other, match[0]) + name[match.end() :]
-    return advice.plain_name(name) or f"{name} {side}"
+    return f"{name} {side}"
 
 
 def in_the_middle(pose: pe.Pose) -> bool:

@@ -10,7 +10,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ..engine import advice, graphics, motion, pe
+from ..engine import graphics, motion, pe
 from ..view_settings import ALL, BY_CHANNEL, BY_SENSOR, RIG, ViewSettings
 from . import ground_layers, heatmap, regions
 from .annotations import (
@@ -220,23 +220,14 @@ def _views(request: ViewRequest, _cache: LayerCache, name: str) -> graphics.Laye
 
 
 def _label_keys(request: ViewRequest) -> dict[str, Hashable]:
-    named = _named(request)
-    return {
-        e.sensor.name: (e.key, e.selected, named[e.sensor.name]) for e in request.sensors if e.drawn
-    }
-
-
-def _named(request: ViewRequest) -> dict[str, str]:
-    return advice.sensor_labels((each.sensor for each in request.sensors), request.vehicle)
+    return {e.sensor.name: (e.key, e.selected) for e in request.sensors if e.drawn}
 
 
 def _label(request: ViewRequest, _cache: LayerCache, name: str) -> graphics.LayerShape:
     of = next(each for each in request.sensors if each.sensor.name == name)
     color = graphics.with_alpha(of.color, 1.0)
     return graphics.LayerShape(
-        labels=(
-            graphics.Tag(_named(request)[name], of.sensor.pose.position, color, strong=of.selected),
-        )
+        labels=(graphics.Tag(name, of.sensor.pose.position, color, strong=of.selected),)
     )
 
 

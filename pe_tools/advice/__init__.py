@@ -12,7 +12,6 @@ from .key_figures import KeyFigures, SensorRow, key_figures, loss_text, sensor_r
 from .key_figures import built_lines as built_lines
 from .location import AskedPlace, SensorAtPlace, ask_place
 from .mount_checks import check_mirror_image, occluded_shares
-from .mounting_places import place_name, plain_name, sensor_labels
 from .ranking import costs_nothing, disagreement, gain_sentence, ranking, search_cost
 from .score_comparison import (
     OTHER_HARDWARE,
@@ -39,16 +38,14 @@ __all__ += ["SensorRow", "ask_place", "built_lines", "check_mirror_image", "clas
 __all__ += ["compare_figures", "condition_warnings", "costs_nothing", "curve_note"]
 __all__ += ["curve_warnings", "fragile", "hardware_note", "hidden_sensors", "hidden_words"]
 __all__ += ["joined", "key_figures", "lone_reach", "loss_text", "object_words", "objects_looked_at"]
-__all__ += ["occluded_shares", "off_by", "outlook", "percent", "place_name"]
+__all__ += ["occluded_shares", "off_by", "outlook", "percent"]
 __all__ += [
     "TRAFFIC",
     "disagreement",
     "gain_sentence",
-    "plain_name",
     "ranking",
     "rig_words",
     "search_cost",
-    "sensor_labels",
     "sensor_rows",
 ]
 __all__ += ["sensor_table", "unmet", "warnings"]

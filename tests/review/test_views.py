@@ -13,11 +13,12 @@ from pe_core.sensors import Camera, KannalaBrandt, range_picture
 from pe_tools import graphics
 from pe_tools.page.pictures import sensor_views
 from pe_tools.page.pictures.reference_figures import (
+    CAR,
     CAR_M,
+    PERSON,
     PERSON_M,
-    car,
+    blocks,
     heading_of,
-    person,
     reference_figures,
 )
 from pe_tools.page.pictures.sensor_views import camera_picture, lidar_picture, ray_camera
@@ -35,9 +36,9 @@ def mounted(model, yaw_deg=0.0, at=(0.0, 0.0, 1.4), pitch_deg=0.0):
     return pe.Sensor("eye", model, pe.Pose.from_degrees(at, (0.0, pitch_deg, yaw_deg)))
 
 
-@pytest.mark.parametrize(("make", "size"), [(person, PERSON_M), (car, CAR_M)])
-def test_people_and_cars_are_as_large_as_told(make, size):
-    low, high = make(0.0, 0.0, 0.0).mesh.bounds
+@pytest.mark.parametrize(("shape", "size"), [(PERSON, PERSON_M), (CAR, CAR_M)])
+def test_people_and_cars_are_as_large_as_told(shape, size):
+    low, high = blocks(shape, 0.0, 0.0, 0.0).mesh.bounds
     assert high[2] == pytest.approx(size[2], abs=0.01) and low[2] == pytest.approx(0.0, abs=0.01)
     assert (high - low)[1] <= size[1] + 0.1 and (high - low)[0] <= size[0] + 0.1
 

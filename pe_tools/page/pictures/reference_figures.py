@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 import pe_core as pe
 from pe_core import sensors as kinds
-from pe_core.base.arrays import Floats
 from pe_core.scoring import requirements
 from pe_core.scoring.requirements.definition import placed
 
-from .painted_mesh import GLASS, TAIL, TYRE, Paint, PaintedMesh, capped, lathe
+from .painted_mesh import GLASS, TYRE, Paint, PaintedMesh, rounded_box
 
 PERSON_M = (0.5, 0.5, 1.75)
 """Length, width and height of a person."""
@@ -23,6 +22,19 @@ CAR_M = (4.5, 1.8, 1.5)
 SKIN, COAT = Paint((0.55, 0.36, 0.25)), Paint((0.80, 0.36, 0.02))
 TROUSERS = Paint((0.10, 0.11, 0.14))
 CAR_PAINT = Paint((0.03, 0.14, 0.38), 0.6)
+Block = tuple[tuple[float, float, float], tuple[float, float, float], Paint]
+"""Half the sizes of a block, its middle [m], and its paint."""
+PERSON: tuple[Block, ...] = (
+    ((0.10, 0.16, 0.42), (0.0, 0.0, 0.42), TROUSERS),
+    ((0.12, 0.25, 0.34), (0.0, 0.0, 1.17), COAT),
+    ((0.10, 0.09, 0.12), (0.0, 0.0, 1.63), SKIN),
+)
+CAR: tuple[Block, ...] = (
+    ((2.25, 0.9, 0.36), (0.0, 0.0, 0.58), CAR_PAINT),
+    ((1.2, 0.74, 0.26), (-0.25, 0.0, 1.18), GLASS),
+    ((1.1, 0.7, 0.03), (-0.25, 0.0, 1.47), CAR_PAINT),
+    *(((0.33, 0.1, 0.33), (x, y, 0.33), TYRE) for x in (1.35, -1.35) for y in (0.82, -0.82)),
+)
 DISTANCES = (5.0, 10.0, 20.0, 40.0)
 """Distances from the sensor to the near side of figures, along the ground [m]."""
 FIRST_RAD, GAP_RAD = math.radians(0.8), math.radians(0.7)
@@ -33,9 +45,6 @@ MAX_SPREAD = 3.0
 """Limit of the factor by which angles grow in a wide view."""
 CLEAR_M = 0.3
 """Smallest distance between a figure and the vehicle."""
-ROUND = 16
-"""Points of a circle."""
-PaintedParts = tuple[tuple[Floats, Paint], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +75,7 @@ def reference_figures(
             away = distance + (size[0] / 2.0 if name == "car" else 0.0)
             x = sensor.pose.position[0] + away * math.cos(heading)
             y = sensor.pose.position[1] + away * math.sin(heading)
-            painted = car(x, y, heading) if name == "car" else person(x, y, heading + math.pi)
+            painted = blocks(CAR if name == "car" else PERSON, x, y, heading)
             if vehicle is not None:
                 (low, high), (low_2, high_2) = painted.mesh.bounds, vehicle.bounds
                 if not ((low > high_2 + CLEAR_M) | (high < low_2 - CLEAR_M))[:2].any():
@@ -86,75 +95,22 @@ def _angle_by_distance(width: float, half_view: float) -> dict[float, float]:
     return {d: spread * angle for d, angle in angles.items() if angle < half_view}
 
 
+def blocks(shape: Sequence[Block], x: float, y: float, heading: float) -> PaintedMesh:
+    """Return a figure of blocks with its middle at a position [m] and a heading [rad]."""
+    c, s = math.cos(heading), math.sin(heading)
+    turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    solids = [rounded_box(np.array(half)) + np.array(middle) for half, middle, _ in shape]
+    parts = np.repeat(np.arange(len(solids)), [len(solid) for solid in solids])
+    triangles = np.concatenate(solids) @ turn + np.array([x, y, 0.0])
+    names = [f"part {k}" for k in range(len(solids))]
+    return PaintedMesh(pe.Vehicle(triangles, parts, names), tuple(paint for *_, paint in shape))
+
+
 def heading_of(sensor: pe.Sensor) -> float:
     """Return the heading of a sensor [rad]; if it looks up or down, that of its upper side."""
     ahead, up = (sensor.pose.ground_from_sensor[:2, k] for k in (0, 2))
     flat = ahead if math.hypot(*ahead.tolist()) > 0.2 else up
     return math.atan2(float(flat[1]), float(flat[0]))
-
-
-def person(x: float, y: float, heading: float) -> PaintedMesh:
-    """Return a person at a position [m] who faces a heading [rad]."""
-    legs = [_limb(side * 0.09, ((0.0, 0.07), (0.45, 0.065), (0.88, 0.09))) for side in (1, -1)]
-    arm = ((0.74, 0.04), (1.1, 0.047), (1.36, 0.06), (1.44, 0.03))
-    arms = [_limb(side * 0.225, arm) for side in (1, -1)]
-    shape = ((0.82, 0.12, 0.17), (1.05, 0.11, 0.16), (1.35, 0.13, 0.21), (1.46, 0.09, 0.17))
-    torso = capped([_oval(*ring) for ring in (*shape, (1.52, 0.06, 0.06))])
-    turn = np.linspace(-np.pi / 2.0, np.pi / 2.0, 9).tolist()
-    head = lathe([(0.10 * math.cos(t), 1.625 + 0.125 * math.sin(t)) for t in turn], ROUND)
-    groups = (
-        (head, SKIN),
-        (np.concatenate([torso, *arms]), COAT),
-        (np.concatenate(legs), TROUSERS),
-    )
-    return _placed(groups, x, y, heading)
-
-
-def car(x: float, y: float, heading: float) -> PaintedMesh:
-    """Return a car with its centre at a position [m] and a heading [rad]."""
-    lower = ((0.22, 2.15, 0.78), (0.34, 2.25, 0.88), (0.72, 2.23, 0.90), (0.90, 2.12, 0.84))
-    body = capped([_rounded(z, x0, y0, 0.0) for z, x0, y0 in lower])
-    upper = ((0.88, 1.45, 0.80), (1.44, 0.98, 0.64), (1.43, 0.99, 0.65), (1.5, 0.80, 0.52))
-    cabin, roof = (
-        capped([_rounded(*ring, -0.25) for ring in pair]) for pair in (upper[:2], upper[2:])
-    )
-    disc = lathe([(0.0, -0.1), (0.33, -0.1), (0.33, 0.1), (0.0, 0.1)], ROUND)[..., [0, 2, 1]]
-    axles = [(x0, y0, 0.33) for x0 in (1.35, -1.35) for y0 in (0.80, -0.80)]
-    wheels = np.concatenate([disc + np.array(axle) for axle in axles])
-    ring = np.array([[0.0, 0.14, 0.0], [0.0, -0.14, 0.0], [-0.03, -0.14, 0.0], [-0.03, 0.14, 0.0]])
-    lamps = np.concatenate(
-        [capped([ring + np.array([-2.2, side, z]) for z in (0.68, 0.82)]) for side in (0.62, -0.62)]
-    )
-    painted = np.concatenate([body, roof])
-    groups = ((painted, CAR_PAINT), (cabin, GLASS), (wheels, TYRE), (lamps, TAIL))
-    return _placed(groups, x, y, heading)
-
-
-def _placed(groups: PaintedParts, x: float, y: float, heading: float) -> PaintedMesh:
-    c, s = math.cos(heading), math.sin(heading)
-    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    triangles = np.concatenate([part for part, _ in groups])
-    placed = np.einsum("ij,fkj->fki", turn, triangles) + np.array([x, y, 0.0])
-    parts = np.repeat(np.arange(len(groups)), [len(part) for part, _ in groups])
-    names = [f"part {k}" for k in range(len(groups))]
-    return PaintedMesh(pe.Vehicle(placed, parts, names), tuple(paint for _, paint in groups))
-
-
-def _oval(z: float, deep: float, wide: float) -> Floats:
-    turn = np.arange(ROUND) * 2.0 * np.pi / ROUND
-    return np.column_stack([deep * np.cos(turn), wide * np.sin(turn), np.full(ROUND, z)])
-
-
-def _limb(y: float, rings: tuple[tuple[float, float], ...]) -> Floats:
-    return capped([_oval(z, r, r) for z, r in rings]) + np.array([0.0, y, 0.0])
-
-
-def _rounded(z: float, long: float, wide: float, x: float) -> Floats:
-    """Return a ring around a car at a height: a shape between an oval and a rectangle."""
-    turn = (np.arange(2 * ROUND) + 0.5) * np.pi / ROUND
-    c, s = np.cos(turn), np.sin(turn)
-    right, left = (np.sign(w) * np.abs(w) ** 0.4 for w in (c, s))
-    return np.column_stack([right * long + x, left * wide, np.full(len(turn), z)])
 
 
 @dataclass(frozen=True, eq=False)

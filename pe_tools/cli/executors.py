@@ -8,13 +8,13 @@ import os
 import re
 import sys
 from collections.abc import Iterator
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import Executor
 from contextlib import closing, contextmanager, suppress
 from typing import Any
 
 from pe_core.base.errors import InputError, shown
 from pe_core.base.plugins import required_package
-from pe_core.search import no_processes, start_processes
+from pe_core.search import no_processes
 from pe_core.search.payload import plugin_name
 
 from ..jobs import Job, ScoreJob
@@ -28,22 +28,12 @@ CONNECT_S = 5.0
 """Time limit for the scheduler's answer [s]."""
 
 
-@contextmanager
-def workplace(workers: int | None, executor: str | None) -> Iterator[LocalWorkers]:
-    """Open the worker pool that the command line asks for; close it at the end.
+def named_workers(executor: str, count: int) -> ExecutorWorkers | DaskWorkers:
+    """Return the workers of ``dask://HOST:PORT`` or of ``MODULE:FUNCTION``.
 
-    `executor` is that of ``--executor``; None: processes here. `InputError` where no scheduler
-    answers, a package is not installed, or what is named makes no executor.
+    `InputError` where no scheduler answers, a package is not installed, or what is named makes no
+    executor.
     """
-    count = workers or os.cpu_count() or 1
-    if executor is None:
-        _tell_without_processes(count)
-    with closing(LocalWorkers(count) if executor is None else _named(executor, count)) as place:
-        yield place
-
-
-def _named(executor: str, count: int) -> LocalWorkers:
-    """Return the workers of ``dask://HOST:PORT`` or of ``MODULE:FUNCTION``."""
     if FUNCTION.fullmatch(executor):
         return ExecutorWorkers(executor, count)
     return DaskWorkers(executor.removeprefix("dask://"))
@@ -53,61 +43,30 @@ def _named(executor: str, count: int) -> LocalWorkers:
 def evaluated_by(job: Job, executor: str | None) -> Iterator[None]:
     """Have the workers of an executor evaluate a job's candidates meanwhile; None: processes.
 
-    `InputError` as in `workplace`.
+    `InputError` as in `named_workers`.
     """
     if executor is None:
         if not isinstance(job, ScoreJob):
-            _tell_without_processes(job.workers)
+            tell_without_processes(job.workers)
         yield
         return
-    with closing(_named(executor, job.workers or os.cpu_count() or 1)) as workers:
+    with closing(named_workers(executor, job.workers or os.cpu_count() or 1)) as workers:
         workers.check()
         job.executor = workers.executor
         yield
 
 
-def _tell_without_processes(count: int | None) -> None:
+def tell_without_processes(count: int | None) -> None:
     """Print one line where several workers are wanted and this system has no processes for them."""
     if count != 1 and (reason := no_processes()):
         tell(f"one processor does the work of all: no worker processes here ({reason})")
 
 
-class LocalWorkers:
-    """Processes on this machine that run the tasks of a sweep; a thread where there are none.
-
-    Other workers have the same methods. The executor accepts tasks even after a worker's death.
-    """
-
-    reaches_folders = True
-    """Whether the workers save checkpoints in the folders of the results."""
-
-    def __init__(self, count: int) -> None:
-        processes = start_processes(count)
-        self._count = 1 if processes is None else count
-        self.executor: Executor = processes or ThreadPoolExecutor(1)
-        self.threads = max(1, (os.cpu_count() or 1) // self._count)
-        """How many threads a task may use."""
-
-    def width(self) -> int:
-        """How many tasks are submitted at a time: a dead process tells which one killed it."""
-        return self._count
-
-    def check(self) -> None:
-        """Raise `InputError` when the workers are gone; called several times a second."""
-
-    def close(self) -> None:
-        """Kill processes in the middle of their tasks; a thread finishes its task."""
-        self.executor.shutdown(wait=self._count > 1, cancel_futures=True)
-
-
-class ExecutorWorkers(LocalWorkers):
+class ExecutorWorkers:
     """The workers of an executor that a function of the user's returns.
 
     They may be on other machines: they reach no folder of ours.
     """
-
-    reaches_folders = False
-    threads = 1
 
     def __init__(self, named: str, count: int) -> None:
         module, function = named.split(":")
@@ -127,13 +86,16 @@ class ExecutorWorkers(LocalWorkers):
         """Two tasks for each worker that ``--workers`` names."""
         return 2 * self._count
 
+    def check(self) -> None:
+        """Nothing is known of them."""
 
-class DaskWorkers(LocalWorkers):
+    def close(self) -> None:
+        """End them once their tasks are done."""
+        self.executor.shutdown(wait=self._count > 1, cancel_futures=True)
+
+
+class DaskWorkers:
     """The worker pool of a Dask scheduler; its workers reach no folder of ours."""
-
-    reaches_folders = False
-    threads = 1
-    """Threads of one score: a Dask worker runs one task in each of its threads."""
 
     def __init__(self, address: str) -> None:
         self._address, self._client, self._alone = address, _client_of(address), False

@@ -10,12 +10,13 @@ import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 
 import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_tools.cli.executors import workplace
+from pe_tools.cli.executors import named_workers
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import read_search
 from tests.engine import shapes
@@ -165,7 +166,7 @@ def test_a_cluster_is_reached_where_a_loop_runs_already(cluster):
     """As in a notebook; in a thread of its own, as this one may have a loop, too."""
 
     async def in_a_notebook():
-        with workplace(1, cluster.address) as workers:
+        with closing(named_workers(cluster.address, 1)) as workers:
             return workers.width()
 
     with ThreadPoolExecutor(1) as thread:

@@ -7,13 +7,13 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from pe_core.base.errors import InputError
 from pe_core.search import Call, WorkerDied, run_tasks
 from pe_core.search.payload import keep_freed_memory
 from pe_core.study import Study
 from pe_core.version import __version__
-from pe_tools.cli.executors import LocalWorkers
 from pe_tools.jobs import Checkpoint, OptimizeJob, Outcome, ScoreJob, read_search
 
 WAIT_S = 0.2
@@ -87,7 +87,7 @@ def _begun(job: OptimizeJob, folder: Path) -> Callable[[], None]:
 def run_all(
     names: Sequence[str],
     make_task: Callable[[str], RunTask],
-    pool: LocalWorkers,
+    pool: Any,
     on_result: Callable[[str, RunResult], None],
     should_continue: Callable[[], bool] = lambda: True,
 ) -> None:

@@ -22,7 +22,6 @@ from pe_tools.cli.command import (
     add_search_options,
     with_options,
 )
-from pe_tools.cli.executors import workplace
 from pe_tools.cli.interrupts import Interrupted, Received, stop_at_first
 from pe_tools.cli.progress_line import Reporter
 from pe_tools.cli.run_job import refuse_own_folder
@@ -32,6 +31,7 @@ from . import sweep_table as table
 from .parameter_grid import read_settings, sweep_runs
 from .sweep_runner import RunTask, SweepRun, run_all
 from .sweep_table import BEGUN, DONE, UNWRITTEN, WAITING, SweepRow
+from .workplaces import workplace
 
 MAX_PARTS = 1_000_000
 
@@ -149,8 +149,10 @@ class _SweepVerb:
                 def make_task(name: str) -> RunTask:
                     run = self.rows[name].run
                     self.rows[name] = replace(self.rows[name], status=BEGUN)
-                    folder = self._folder / name if place.reaches_folders else None
-                    return RunTask(run.study, searches, place.threads, folder)
+                    folder = (
+                        self._folder / name if getattr(place, "reaches_folders", False) else None
+                    )
+                    return RunTask(run.study, searches, getattr(place, "threads", 1), folder)
 
                 def goes_on() -> bool:
                     if self._on_terminal:

@@ -13,7 +13,7 @@ from pe_core.base.errors import InputError
 from pe_core.base.plugins import find_plugins, load_plugin
 from pe_core.base.values import choice
 
-from . import autoware, carla, csv_table, kitti, nuscenes, ros, urdf
+from . import autoware, carla, csv_table, ros, urdf
 from . import lens_pictures as lenses
 from .foreign_values import Export, FileTexts
 from .frames import GROUND, REAR_AXLE_GROUND
@@ -111,19 +111,8 @@ _ROWS = (
         beside=True,
     ),
     RigFormat(
-        *("nuscenes", "nuScenes", REAR_AXLE_GROUND, nuscenes.FILES, nuscenes),
-        keeps=lenses.opencv_of_five,
-        usual_size=(1600, 900),
-    ),
-    RigFormat(
         *("carla", "CARLA objects.json", GROUND, (carla.FILE,), carla, _BEAMS, lenses.square),
         source=carla.source,
-    ),
-    RigFormat(
-        *("kitti", "KITTI calibration", GROUND, (kitti.FILE,), kitti),
-        keeps=lenses.straight,
-        usual_size=(1242, 375),
-        passes_through=False,
     ),
 )
 
@@ -193,7 +182,8 @@ def detect_format(path: Path) -> RigFormat:
         if names & set(row.files):
             return row
     ending = {".csv": "csv", ".urdf": "urdf", ".xacro": "urdf", ".sh": "ros", ".xml": "ros"}
-    ending[".txt"] = "kitti"
+    if "kitti" in RIG_FORMATS:
+        ending[".txt"] = "kitti"
     if path.suffix.lower() in ending:
         return RIG_FORMATS[ending[path.suffix.lower()]]
     expected = f"a file name of a known format, or the name of a format: {', '.join(RIG_FORMATS)}"

@@ -219,12 +219,6 @@ def test_a_driver_that_failed_is_reported_by_name(car):
     assert "driver of its location did not run" in car.perception_entropy.result.missing[0]
 
 
-class Unregistered:
-    """Blender's timers, of which none runs."""
-
-    is_registered = staticmethod(lambda _: False)
-
-
 def test_panels_show_words_warnings_and_the_place(car):
     car.objects["roof"].location.z = 3.0
     bpy.context.view_layer.update()

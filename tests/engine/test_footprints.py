@@ -91,25 +91,3 @@ def test_the_drawing_is_to_scale_and_has_a_layer_a_sensor(drawing):
     assert drawing.get("height") == f"{height * 10:.1f}mm"
     ids = [g.get("id") for g in drawing.iter(f"{SVG}g")]
     assert len(set(ids)) == len(ids) and not any(c in " <>/" for each in ids for c in each)
-
-
-def test_the_sheet_holds_the_plan_and_a_legend_and_is_30_m_wide():
-    """A picture of 3.4 by 6 m round (1, 1.9), 2 m of margin: y from -4 to 7, 3.5 lines above."""
-    down = camera(90.0, position=(1.0, 1.9, 3.0), rotation=(0.0, 90.0, 0.0))
-    files, _ = scene_files(pe.Study(pe.Rig([down])), "footprints", RANGE)
-    drawing = ElementTree.fromstring(files["footprints.svg"])
-    x, y, width, height = map(float, drawing.get("viewBox").split())
-    assert (x, y) == pytest.approx((-15.0, -7.0 - 3.5 * 1.1))
-    assert (width, height) == pytest.approx((30.0, 11.0 + 3.5 * 1.1))
-    legend = layer(drawing, "Legend")
-    assert float(legend.find(f"{SVG}rect").get("x")) == -14.0
-    assert float(legend.find(f"{SVG}text").get("x")) == -12.5
-
-
-def test_a_corner_at_the_very_height_of_a_cut_counts_as_above(plugin):
-    """Of a cube from 0 to 1 m a cut at 1 m has its outline, and one at 0 m has none."""
-    solids = importlib.import_module("entropy_outputs.solids")
-    cube = solids.voxel_solid("cube", np.ones((1, 1, 1), bool), np.zeros(3), 1.0)
-    (ring,) = plugin.level_outlines(cube, 1.0)
-    assert ring.min(axis=0).tolist() == [0.0, 0.0] and ring.max(axis=0).tolist() == [1.0, 1.0]
-    assert plugin.level_outlines(cube, 0.0) == ()

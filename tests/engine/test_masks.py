@@ -1,8 +1,6 @@
 """Pictures: ego masks, ranges and surroundings, held to rays; the PNG files they go into."""
 
-import csv
 import importlib
-import io
 import json
 import math
 import struct
@@ -17,9 +15,7 @@ from pe_core.catalog import load
 from pe_core.scoring.requirements import BODIES
 from pe_core.sensors import BrownConrady, Camera, FTheta, KannalaBrandt, Lidar, range_picture
 from pe_core.sensors.field_of_view import FREE
-from pe_core.study import save_study
 from pe_tools import graphics
-from pe_tools.cli.verbs import main
 from pe_tools.graphics import range_colors, surroundings
 from pe_tools.graphics.surroundings import FAR_M, PAINT, STANDING
 from pe_tools.outputs import scene_files
@@ -125,32 +121,10 @@ def test_files_say_what_the_arrays_do():
     assert told["eye/left"]["rays_by_part"].keys() <= {"wall", "rod"}
 
 
-def test_a_lidar_s_table_is_its_picture():
-    files, _ = scene_files(study(), "masks")
-    head, *rows = csv.reader(io.StringIO(files["top_mask.csv"].decode()))
-    assert float(head[1]) == 180.0 and [float(row[0]) for row in rows][:2] == [15.0, 13.0]
-    values = np.array([row[1:] for row in rows], int) * 255
-    np.testing.assert_array_equal(values, decoded(files["top_mask.png"])[..., 0])
-
-
 def test_without_a_vehicle_all_is_white_and_said():
     files, lines = scene_files(study(None), "masks")
     assert "the study has no vehicle: masks are white" in lines
     assert decoded(files["top_mask.png"]).min() == 255
-
-
-def test_the_command_writes_them_and_replaces_nothing_unasked(tmp_path, capsys):
-    save_study(study(None), tmp_path / "study.toml")
-    line = ["export", str(tmp_path / "study.toml"), "--to", "masks", "-o", str(tmp_path / "out")]
-    assert main(line) == 0 and (tmp_path / "out" / "top_mask.png").is_file()
-    assert "no vehicle" in capsys.readouterr().err
-    (tmp_path / "out" / "top_mask.png").write_text("mine")
-    assert main(line) == 1 and "an existing file" in capsys.readouterr().err
-    assert (tmp_path / "out" / "top_mask.png").read_text() == "mine"
-    assert main([*line, "--replace"]) == 0
-    (tmp_path / "file").write_text("")
-    assert main([*line[:-1], str(tmp_path / "file")]) == 1
-    assert len(capsys.readouterr().err.strip().splitlines()[-1:]) == 1
 
 
 def test_a_picture_of_too_many_pixels_is_refused_before_a_ray_is_cast(monkeypatch):

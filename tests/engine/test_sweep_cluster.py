@@ -1,6 +1,5 @@
 """A sweep by a real Dask scheduler with two workers on the loopback; one of them is killed."""
 
-import asyncio
 import importlib
 import json
 import os
@@ -9,14 +8,11 @@ import subprocess
 import sys
 import threading
 import time
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import closing
 
 import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_tools.cli.executors import named_workers
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import read_search
 from tests.engine import shapes
@@ -160,17 +156,6 @@ def test_searches_on_a_cluster_find_what_they_find_here(cluster, tmp_path):
     assert json.loads((out / "car" / "result.json").read_text())["entropy"] == (
         whole.outcome.after.entropy
     )
-
-
-def test_a_cluster_is_reached_where_a_loop_runs_already(cluster):
-    """As in a notebook; in a thread of its own, as this one may have a loop, too."""
-
-    async def in_a_notebook():
-        with closing(named_workers(cluster.address, 1)) as workers:
-            return workers.width()
-
-    with ThreadPoolExecutor(1) as thread:
-        assert thread.submit(asyncio.run, in_a_notebook()).result() > 0
 
 
 def test_a_scheduler_that_goes_away_is_one_line(study, cluster, tmp_path, monkeypatch, capsys):

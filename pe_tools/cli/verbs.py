@@ -42,7 +42,7 @@ ONE, PERHAPS, SOME = "one", "?", "+"
 GROUPS = {
     "begin": "new import rigs sensors curves requirements",
     "score": "score explain check compare drive-by",
-    "place": "optimize fit",
+    "place": "optimize sweep fit",
     "show": "review export",
     "this program": "doctor",
 }

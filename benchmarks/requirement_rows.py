@@ -37,14 +37,6 @@ def nine_presets() -> Timing:
     return _after_a_move("nine presets with margins", _checked(preview=False))
 
 
-def redundancy_map() -> Timing:
-    """By how many sensors each place is seen, for what is 0.8 m tall, within 10 m."""
-    study = four_on_car()
-    places = pe.requirements.Redundancy(study.vehicle, study.space)
-    count = int((places.map(study.rig).sensors >= 0).sum())
-    return _after_a_move(f"redundancy map of {count:,} places", places.map)
-
-
 def _checked(preview: bool, names: Sequence[str] = NINE) -> Callable[[pe.Rig], object]:
     study, presets = four_on_car(), requirement_file.presets()
     requirements = [presets[name].requirement() for name in names]

@@ -32,12 +32,7 @@ from .problems import (
     two_lidars_two_cameras,
 )
 from .process_rows import answer_to_a_move, mesh_sent, request_of_a_move
-from .requirement_rows import (
-    nine_presets,
-    nine_presets_preview,
-    redundancy_map,
-    twelve_presets_with_shares_preview,
-)
+from .requirement_rows import nine_presets, nine_presets_preview, twelve_presets_with_shares_preview
 from .search_rows import (
     candidate,
     candidates_in_processes,
@@ -251,7 +246,6 @@ ROWS: dict[str, Callable[[], Timing]] = {
         nine_presets_preview,
         nine_presets,
         twelve_presets_with_shares_preview,
-        redundancy_map,
         four_states_in_three_weathers,
         simplify,
         request_of_a_move,

@@ -67,8 +67,10 @@ _ROWS = (
         has_range=False,
     ),
 )
-OF_EXAMPLE = ("footprints", "footprints-dxf", "masks", "nebula", "rerun", "solids")
-OF_EXAMPLE += ("argoverse2", "driveworks", "kitti", "nuscenes", "osi")
+OF_EXAMPLE = (
+    *("footprints", "footprints-dxf", "masks", "nebula", "rerun", "solids"),
+    *("argoverse2", "driveworks", "kitti", "nuscenes", "osi"),
+)
 """Outputs and rig formats of the plugin that is shipped as an example."""
 EXAMPLE = "the plugin perception-entropy-outputs: pip install examples/plugin"
 OUTPUT = "output"

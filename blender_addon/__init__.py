@@ -21,6 +21,7 @@ from . import (
     properties,
     sensor_cache,
     vehicle_cache,
+    where_map,
     wiring,
 )
 from .overlay import draw_handler as overlay
@@ -74,6 +75,7 @@ def stop() -> None:
     best_so_far.searches.clear()
     live.unregister()
     location_query.clear()
+    where_map.clear()
     diagnostics.postpone_checks()
     change_events.unregister()
     consistency.unregister()

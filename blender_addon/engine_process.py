@@ -14,7 +14,7 @@ from typing import Any
 import bpy
 
 from . import analysis_calls
-from .engine import catalog, engine_process, kinds, pe
+from .engine import catalog, engine_process, jobs, kinds, pe
 from .overlay.request import ViewRequest
 
 FOLLOWS_MOUSE, BEHIND, JOB = engine_process.FOLLOWS_MOUSE, engine_process.BEHIND, "job"
@@ -30,7 +30,7 @@ VIEW_TOPICS = LIVE_SCORE, OVERLAY
 def _shared_types() -> dict[type, int]:
     """Return types of objects that are sent once, and how many of each the process keeps."""
     models = {kind.model: MAX_MODELS for kind in kinds.KINDS.values()}
-    return {pe.Vehicle: 2, pe.Prior: 4, ViewRequest: 2, **models}
+    return {pe.Vehicle: 2, pe.Prior: 4, ViewRequest: 2, jobs.PlaceMap: 2, **models}
 
 
 def _setup() -> engine_process.EngineCall:

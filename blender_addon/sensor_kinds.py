@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import zlib
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, cast
 
 import numpy as np
@@ -21,8 +21,6 @@ Pixels = NDArray[np.float32]
 """(H, W, 4) sRGB, the top row first."""
 
 DEFAULT_MODEL = "Pandar64"
-GAP_DEG = 30.0
-"""A LiDAR whose horizontal field of view leaves out no more than this measures all around."""
 LONGEST_LINE = 4096
 """Letters of a line with the keys of a table."""
 PIXELS_PER_DEG = 3
@@ -33,19 +31,18 @@ PIXELS_PER_DEG = 3
 class Mount:
     """How sensors of one kind are added.
 
-    `usual` is the model of the kind's button, None for the first of the catalogue. Its origin is
-    `stand_off_m` from the surface that it is on: clear of the body. On a roof it is at the front
-    edge or over the middle; without a vehicle at `height_m`. `outward` says whether it looks away
-    from the vehicle's centre. `display` and `size_m` are its empty's.
+    `usual` is the model of the kind's button, None for the first of the catalogue. On a roof it is
+    at the front edge or over the middle; without a vehicle at `height_m`. `display` and `size_m`
+    are its empty's; `stand_off_m` and `outward` are the kind's own.
     """
 
     usual: str | None
-    stand_off_m: float
     at_front: bool
     height_m: float
-    outward: bool
     display: str
     size_m: float
+    stand_off_m: float = 0.05
+    outward: bool = True
 
 
 def _figure(default: Any, rule: Any, label: str, text: str, **panel: Any) -> Any:
@@ -114,8 +111,6 @@ class KindRow:
     """How a sensor is added."""
     typical_housing: Callable[[Any], pe.Housing]
     """From a model to a housing for the asset library, where no size of the model is known."""
-    mount_for: Callable[[Any, Mount], Mount] = field(default=lambda _model, mount: mount)
-    """From a model and `mount` to the `Mount` of the model's sensors."""
     own_about: str = "Its table's keys as a study has them"
     own_fields: tuple[str, ...] = ("keys",)
     """Of an own sensor of the kind: its description for a menu, and what the panel shows."""
@@ -126,17 +121,6 @@ class KindRow:
     pixels: Callable[[pe.Sensor, pe.Vehicle | None], Pixels] | None = None
     legend: str = ""
     """From a sensor and its vehicle to a picture, made on a thread; what its colours are."""
-
-
-def sees_all_around(lidar: pe.Lidar) -> bool:
-    """Whether a LiDAR's field of view has no horizontal gap wider than GAP_DEG."""
-    low, high = lidar.horizontal_fov
-    return bool(high - low >= math.radians(360.0 - GAP_DEG))
-
-
-def _lidar_mount(model: pe.Lidar, mount: Mount) -> Mount:
-    """A LiDAR that does not measure all around looks away from the vehicle, as a camera does."""
-    return mount if sees_all_around(model) else replace(mount, outward=True)
 
 
 CAN = pe.Housing("cylinder", (0.1, 0.1, 0.09), (0.0, 0.0, 0.045), "typical size")
@@ -176,9 +160,8 @@ def field_pixels(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Pixels:
 
 ROWS = {
     "lidar": KindRow(
-        Mount(DEFAULT_MODEL, 0.15, False, 1.8, False, "SPHERE", 0.12),
+        Mount(DEFAULT_MODEL, False, 1.8, "SPHERE", 0.12),
         _lidar_housing,
-        _lidar_mount,
         own_about="Beams of channels that are evenly spread",
         own_fields=tuple(studies.settings_of(OwnLidar)),
         pixels=range_pixels,
@@ -186,7 +169,7 @@ ROWS = {
         "grey: nothing in range",
     ),
     "camera": KindRow(
-        Mount("Camera 90 deg", 0.05, True, 1.5, True, "ARROWS", 0.25),
+        Mount("Camera 90 deg", True, 1.5, "ARROWS", 0.25),
         lambda _model: SMALL_BOX,
         own_about="A pinhole camera with square pixels, or one with a lens of its own",
         own_fields=tuple(studies.settings_of(OwnCamera)),
@@ -194,7 +177,7 @@ ROWS = {
         camera=lambda model: model,
     ),
     "radar": KindRow(
-        Mount("Continental ARS408-21", 0.05, True, 0.5, True, "CONE", 0.12),
+        Mount("Continental ARS408-21", True, 0.5, "CONE", 0.12),
         lambda _model: RADAR_BOX,
         own_about="Modes with their azimuths and ranges, as a study's table has them",
         pixels=field_pixels,
@@ -202,7 +185,7 @@ ROWS = {
         "occluded by the vehicle; grey: not detected",
     ),
     "ultrasonic": KindRow(
-        Mount("Bosch Ultrasonic 3.1", 0.03, True, 0.5, True, "CIRCLE", 0.05),
+        Mount("Bosch Ultrasonic 3.1", True, 0.5, "CIRCLE", 0.05),
         lambda _model: MEMBRANE,
         own_about="A cone and a range, as a study's table has them",
         pixels=field_pixels,
@@ -210,7 +193,7 @@ ROWS = {
         "the vehicle; grey: no echo",
     ),
 }
-OTHER = KindRow(Mount(None, 0.05, True, 1.5, True, "ARROWS", 0.25), lambda _model: SMALL_BOX)
+OTHER = KindRow(Mount(None, True, 1.5, "ARROWS", 0.25), lambda _model: SMALL_BOX)
 """Of a kind that has no row."""
 
 
@@ -221,13 +204,13 @@ def row_of(kind: str) -> KindRow:
 
 def mount_of(kind: str) -> Mount:
     """Return how sensors of a kind are added."""
-    return row_of(kind).mount
+    mount, known = row_of(kind).mount, kinds.KINDS.get(kind)
+    return mount if known is None else replace(mount, stand_off_m=known.stand_off_m)
 
 
 def mount_for(model: Any) -> Mount:
     """Return how sensors of a model are added."""
-    row = row_of(model.kind)
-    return row.mount_for(model, row.mount)
+    return replace(mount_of(model.kind), outward=kinds.kind_of(model).outward(model))
 
 
 def kind_label(kind: str) -> str:

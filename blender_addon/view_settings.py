@@ -193,6 +193,9 @@ class ViewSettings:
     )
     ghost_key: int = _value(0, KEY, "Ghost", "Key of the variant that is shown; 0: none")
     show_place: bool = _switch(True, "Queried Location", "Mark the queried location")
+    show_where: bool = _switch(
+        True, "Where?", "Colour the body by the figure that the rig has with one more sensor there"
+    )
     show_labels: bool = _switch(True, "Names", "Write each sensor's name beside it")
     show_inset: bool = _switch(
         False, "Picture in View", "Show what the selected sensor sees in a corner of the 3D view"

@@ -26,6 +26,7 @@ from . import (
     signals,
     vehicle_cache,
     viewport,
+    where_map,
 )
 from .live import session
 from .operators import inset, look_through, upright
@@ -62,6 +63,7 @@ EVENTS: dict[str, tuple[Function, ...]] = {
         diagnostics.clear,
         result_staleness.clear,
         location_query.clear,
+        where_map.clear,
         scheduler.clear,
         engine_process.stop,
     ),

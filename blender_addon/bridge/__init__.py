@@ -17,7 +17,7 @@ from .mirroring import (
     mirrored_pose,
     unlink_mirror,
 )
-from .mounting import bounds_box, mount_faces, mount_key, mount_of_row, no_go_boxes
+from .mounting import bounds_box, mount_faces, mount_key, mount_of_row, no_go_boxes, with_mount
 from .own_sensors import add_own_sensor, line_of, read_line, remove_own_sensors, sync_own_sensors
 from .prior import focus_regions, prior_from_scene, prior_key
 from .requirements import (

@@ -7,6 +7,7 @@ are computed here, too.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import TypeAlias
 
 import numpy as np
@@ -78,6 +79,16 @@ def mount_of_row(scene: Scene, depsgraph: Depsgraph, row: MountSettings) -> sear
         raise area_problem(row)
     area = pe.MountArea(faces, studies.AREAS, (row.name,))
     return pe.SurfaceMount((), **own, area=area)
+
+
+def with_mount(study: pe.Study, scene: Scene, depsgraph: Depsgraph, name: str) -> pe.Study:
+    """Return a scene's study with its mount of a name, though no sensor may be on it."""
+    own = study.search.mounting
+    if name in own.mounts or name not in scene.perception_entropy.mounts:
+        return study
+    mount = mount_of_row(scene, depsgraph, scene.perception_entropy.mounts[name])
+    mounting = replace(own, mounts={**own.mounts, name: mount})
+    return replace(study, search=replace(study.search, mounting=mounting))
 
 
 def mounted(records: Sequence[SensorRecord]) -> dict[str, str]:

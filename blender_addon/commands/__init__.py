@@ -25,6 +25,7 @@ from .scene_verbs import (
     list_variants,
     review_scene,
     run_job,
+    where_in_scene,
 )
 
 __all__ = ["flush", "in_blender", "main", "register", "take_over_process", "unregister"]
@@ -100,6 +101,10 @@ def parser(prog: str) -> argparse.ArgumentParser:
     app.add_drive_by_options(driven)
     add_variant_option(driven)
     driven.set_defaults(function=drive_by_scene)
+    where = verbs.add_parser("where", help="score one more sensor all over the vehicle's surface")
+    app.add_where_options(where)
+    add_variant_option(where)
+    where.set_defaults(function=where_in_scene)
     listing = verbs.add_parser("variants", help="list the variants in the file")
     listing.add_argument("--json", action="store_true", help="print JSON")
     listing.set_defaults(function=list_variants)

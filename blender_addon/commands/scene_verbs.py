@@ -89,6 +89,14 @@ def drive_by_scene(args: argparse.Namespace) -> app.Answer:
     return app.drive_by_study(opened_study(args.variant), args)
 
 
+def where_in_scene(args: argparse.Namespace) -> app.Answer:
+    """Score one more sensor all over the surface of the scene's vehicle."""
+    study, depsgraph = opened_study(args.variant), bpy.context.evaluated_depsgraph_get()
+    with from_file():
+        study = bridge.with_mount(study, bpy.context.scene, depsgraph, args.mount)
+    return app.where(study, args)
+
+
 def explain_study(args: argparse.Namespace) -> app.Answer:
     """Describe the scene's score as text, or query a location."""
     return app.explain(app.with_options(opened_study(args.variant), args), args)

@@ -20,20 +20,20 @@ from . import (
     upright,
     variants,
     whats_new,
+    where,
 )
 from .add_sensor import Offer, models, offers
 from .declared import CLASSES
 from .fix_warnings import FIX_LABELS
 from .imports import known_rigs
 from .panel_rows import reference_label
-from .query_location import answer
 from .requirements import ShownVerdict, shown_verdicts
 
-__all__ = ["CLASSES", "FIX_LABELS", "Offer", "ShownVerdict", "answer"]
+__all__ = ["CLASSES", "FIX_LABELS", "Offer", "ShownVerdict"]
 __all__ += ["compare_variants", "conditions", "edit_sensors", "exports", "first_steps"]
 __all__ += ["is_updated", "known_rigs", "look_through", "models", "mounts", "offers"]
 __all__ += ["place_sensor", "reference_label", "register", "running_job"]
-__all__ += ["shown_verdicts", "unregister", "upright", "variants", "whats_new"]
+__all__ += ["shown_verdicts", "unregister", "upright", "variants", "whats_new", "where"]
 
 
 def register() -> None:

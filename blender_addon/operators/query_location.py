@@ -18,37 +18,45 @@ OFF_SURFACE_M = 0.05
 HINT = "Click the ground or a surface to query it     Esc, right click: done"
 
 
-def _begin(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
-    """Query at each click, until Esc."""
-    context.window_manager.modal_handler_add(self)
-    context.window.cursor_modal_set("EYEDROPPER")
-    context.workspace.status_text_set(shown(HINT))
-    return {"RUNNING_MODAL"}
+def clicking(hint: str) -> dict[str, Any]:
+    """Return members of an operator that is executed at each click on a surface, until Esc.
 
+    Its property `point` is the location; `hint` is shown in the status bar.
+    """
 
-def _modal(self: Any, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
-    if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
-        _end(self, context)
-        return {"FINISHED"}
-    if event.type != "LEFTMOUSE" or event.value != "PRESS":
-        return {"PASS_THROUGH"}
-    view = view_under(context, event)
-    if view is None:
-        return {"PASS_THROUGH"}  # another part of the screen: its buttons go on working
-    location = location_under(context, view)
-    if location is None:
-        report(self, "WARNING", "There is no ground or surface under the mouse")
-    else:
-        self.point = location
-        self.execute(context)
-    return {"RUNNING_MODAL"}
+    def begin(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
+        context.window_manager.modal_handler_add(self)
+        context.window.cursor_modal_set("EYEDROPPER")
+        context.workspace.status_text_set(shown(hint))
+        return {"RUNNING_MODAL"}
 
+    def modal(self: Any, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
+        if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
+            end(self, context)
+            return {"FINISHED"}
+        if event.type != "LEFTMOUSE" or event.value != "PRESS":
+            return {"PASS_THROUGH"}
+        view = view_under(context, event)
+        if view is None:
+            return {"PASS_THROUGH"}  # another part of the screen: its buttons go on working
+        location = location_under(context, view)
+        if location is None:
+            report(self, "WARNING", "There is no ground or surface under the mouse")
+        else:
+            self.point = location
+            self.execute(context)
+        return {"RUNNING_MODAL"}
 
-def _end(_self: Any, context: bpy.types.Context) -> None:
-    """Restore the mouse cursor and the status bar; Blender calls this when the window closes."""
-    context.window.cursor_modal_restore()
-    for workspace in bpy.data.workspaces[:1]:
-        workspace.status_text_set(None)
+    def end(_self: Any, context: bpy.types.Context) -> None:
+        """Restore the mouse cursor and the status bar; Blender calls this at a window's close."""
+        context.window.cursor_modal_restore()
+        for workspace in bpy.data.workspaces[:1]:
+            workspace.status_text_set(None)
+
+    point = FloatVectorProperty(
+        name="Location", description="x, y and z of the location", subtype="XYZ"
+    )
+    return {"invoke": begin, "modal": modal, "cancel": end, "point": point}
 
 
 @operator(
@@ -57,12 +65,7 @@ def _end(_self: Any, context: bpy.types.Context) -> None:
         None if bridge.sensor_objects(context.scene) else "There are no sensors yet"
     ),
     options=frozenset(),
-    invoke=_begin,
-    modal=_modal,
-    cancel=_end,
-    point=FloatVectorProperty(
-        name="Location", description="x, y and z of the location", subtype="XYZ"
-    ),
+    **clicking(HINT),
 )
 def ask_place(context: bpy.types.Context, point: Iterable[float]) -> None:
     """Click a location in the 3D view: which sensors see it, how well, and what occludes it"""
@@ -74,12 +77,6 @@ def ask_place(context: bpy.types.Context, point: Iterable[float]) -> None:
 def dismiss_place(context: bpy.types.Context) -> None:
     """Remove the answer and its mark"""
     location_query.discard(context.scene)
-
-
-def answer(scene: bpy.types.Scene) -> tuple[str, ...] | None:
-    """Return the lines to show of the last query."""
-    result = location_query.answer(scene)
-    return None if result is None else result.lines
 
 
 def location_under(

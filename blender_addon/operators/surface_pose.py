@@ -12,6 +12,7 @@ from bpy_extras import view3d_utils
 from mathutils import Matrix, Vector
 
 from .. import bridge
+from ..engine import search
 from ..sensor_kinds import Mount
 
 PASS_STEP_M = 1e-3
@@ -57,10 +58,8 @@ def spot_on_ray(
     return None
 
 
-NO_HEADING_M = 0.05
-"""A place nearer to the vehicle's middle than this has no outward direction: it looks ahead."""
-POSITION_DECIMALS, YAW_STEP_DEG = 3, 1.0
-"""A sensor that is put down by hand stands at whole millimetres and looks along whole degrees."""
+POSITION_DECIMALS = 3
+"""A sensor that is put down by hand stands at whole millimetres."""
 PARALLEL_COS = 0.999
 """Of two unit vectors: they are parallel."""
 STAND_OFF_STEP_M, MIN_STAND_OFF_M, MAX_STAND_OFF_M = 0.01, 0.0, 2.0
@@ -155,11 +154,7 @@ def _holds(rectangle: bpy.types.Area | bpy.types.Region, x: int, y: int) -> bool
 
 def outward_yaw(point: Vector, middle: Vector) -> float:
     """Yaw from the vehicle's middle to a point of it [rad], in whole degrees."""
-    away = (point - middle).to_2d()
-    if away.length < NO_HEADING_M:
-        return 0.0
-    degrees = math.degrees(math.atan2(away.y, away.x))
-    return math.radians(round(degrees / YAW_STEP_DEG) * YAW_STEP_DEG)
+    return search.outward_yaw(point.x - middle.x, point.y - middle.y)
 
 
 def vehicle_center(vehicle: bpy.types.Collection | None) -> Vector:

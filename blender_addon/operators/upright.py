@@ -18,7 +18,10 @@ from .. import bridge, sensor_cache
 from ..engine import catalog, pe
 from ..sensor_kinds import mount_for
 from .declared import operator
-from .surface_pose import NO_HEADING_M, Stance, SurfaceSpot, outward_yaw, vehicle_center
+from .surface_pose import Stance, SurfaceSpot, outward_yaw, vehicle_center
+
+NO_HEADING = 0.05
+"""A direction with less than this along the ground, of 1, looks straight up or down."""
 
 
 @operator(
@@ -51,7 +54,7 @@ def upright_pose(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, middle: 
     position, ahead = sensor.pose.position, sensor.pose.ground_from_sensor[:, 0]
     if mount_for(sensor.model).outward:
         yaw = outward_yaw(Vector(position), middle)
-    elif math.hypot(ahead[0], ahead[1]) > NO_HEADING_M:
+    elif math.hypot(ahead[0], ahead[1]) > NO_HEADING:
         yaw = math.atan2(ahead[1], ahead[0])
     else:
         yaw = 0.0  # it looks straight up or down: it has no yaw to keep

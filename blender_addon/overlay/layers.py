@@ -22,6 +22,7 @@ from .annotations import (
     location_mark,
 )
 from .layer_cache import LayerCache
+from .place_colors import place_colors
 from .request import SceneSensor, ViewRequest
 from .requirement_zones import requirement_zones
 
@@ -270,6 +271,19 @@ def _place(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.Lay
     return location_mark(request.place, [each.sensor for each in request.counted])
 
 
+def _where_keys(request: ViewRequest) -> dict[str, Hashable]:
+    found = request.where
+    if found is None:
+        return {}
+    here = tuple((each.sensor.name, each.sensor.pose) for each in request.counted)
+    return {WHOLE_RIG: (found, here)}
+
+
+def _where(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.LayerShape:
+    assert request.where is not None  # the layer has no key without one
+    return place_colors(request.where, [each.sensor for each in request.counted])
+
+
 def _requirement_keys(request: ViewRequest) -> dict[str, Hashable]:
     if not request.requirements:
         return {}
@@ -368,6 +382,7 @@ LAYERS = (
         on_ground=True,
         edged=True,
     ),
+    Layer("where", "Where?", _where_keys, _where, on_ground=True),
     Layer("mounts", "Mounts", _mount_keys, _mounts, 1.4, edged=True),
     Layer("focus", "Focus", _focus_keys, _focus, 1.4, edged=True),
     Layer("frustums", "Camera Views", _view_keys, _views),

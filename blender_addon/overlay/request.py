@@ -14,7 +14,7 @@ from ..engine import graphics
 from ..view_settings import ALL, ViewSettings
 
 if TYPE_CHECKING:
-    from ..engine import advice, motion, pe, requirements
+    from ..engine import advice, jobs, motion, pe, requirements
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +89,7 @@ class ViewRequest:
     confirmation: motion.Confirmation | None = None
     rates: tuple[tuple[str, float], ...] = ()
     rate_hz: float = 24.0
+    where: jobs.PlaceMap | None = None
 
     @property
     def counted(self) -> tuple[SceneSensor, ...]:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import bpy
 import numpy as np
 
-from .. import best_so_far, bridge, location_query, sensor_cache, vehicle_cache
+from .. import best_so_far, bridge, location_query, sensor_cache, vehicle_cache, where_map
 from ..choices import LimitBox
 from ..engine import graphics, pe, studies
 from ..live import live_state
@@ -75,6 +75,7 @@ class SnapshotReader:
             has_result=scene.perception_entropy.has_result,
             focus=bridge.focus_regions(scene),
             reference=bridge.reference_of(scene.perception_entropy),
+            where=where_map.maps.get(scene.name),
             **(_requirements(scene) | _story(scene)),
         )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import bpy
 from bpy.types import Context, PropertyGroup, Scene, UILayout
 
+from .. import where_map
 from ..bridge import Result, shown_state
 from ..diagnostics import vehicle_line
 from ..engine import advice
@@ -225,6 +226,11 @@ def draw_add(layout: UILayout, settings: PropertyGroup) -> None:
     button = row.operator("pe.place_sensor", text="Place", icon="RESTRICT_SELECT_OFF")
     button.model = offer.usual
     row.operator("pe.search_sensor", text="", icon="VIEWZOOM").kind = offer.kind
+    row = layout.row(align=True)
+    row.operator("pe.where", icon="SURFACE_DATA").model = offer.usual
+    if settings.id_data.name in where_map.maps:
+        row.operator("pe.take_place", icon="EYEDROPPER")
+        row.operator("pe.dismiss_places", text="", icon="X")
 
 
 @panel("Export and Import")

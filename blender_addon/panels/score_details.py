@@ -5,10 +5,11 @@ from __future__ import annotations
 import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
+from .. import location_query
 from ..choices import BEFORE_MOVE
 from ..diagnostics import explanation
 from ..language import draw_label, shown
-from ..operators import answer, reference_label
+from ..operators import reference_label
 from .layout import BUTTON_PX, columns, draw_sentence, draw_stale_mark, panel
 from .sensor_lists import draw_sensor_table
 
@@ -63,13 +64,13 @@ def explain(layout: UILayout, settings: PropertyGroup, context: Context) -> None
 
 def draw_answer(layout: UILayout, context: Context) -> None:
     """Draw the answer of the last location query."""
-    found = answer(context.scene)
+    found = location_query.answer(context.scene)
     if found is None:
         return
     box = layout.box()
     row = box.row()
     lines = row.column(align=True)
-    for line in found:
+    for line in found.lines:
         draw_sentence(lines, context, line, beside_px=BUTTON_PX)
     row.operator("pe.dismiss_place", text="", icon="X", emboss=False)
 

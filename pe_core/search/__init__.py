@@ -18,6 +18,7 @@ from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, Slot
 from .optimize import Step, optimize
 from .parametrization import Candidate, Parametrization, feasible_start, mirrored
 from .payload import Payload, Unreadable, send_payload
+from .places import MountingPlaces, SurfacePlace, outward_yaw
 from .processes import LazyProcesses, Processes, no_processes, start_processes
 from .search_space import (
     PAPER_FREE,
@@ -47,15 +48,16 @@ from .tolerance import (
     robustness,
 )
 
-__all__ = ["AXES", "DEFAULT_METHOD", "METHODS", "PAPER_FREE", "POSITION_AXES"]
-__all__ += ["SCHEDULED_METHOD", "AnyMount", "Call", "Candidate", "Choice", "Constraints"]
-__all__ += ["DesignSearch", "DesignSpace", "EvaluatedRig", "Evaluation", "Front", "Goals"]
-__all__ += ["Journal", "LazyProcesses", "Method", "MountArea", "Mounting", "NoGo", "Objective"]
-__all__ += ["Option", "Parametrization", "Payload", "Picks", "Processes", "RigRobustness"]
-__all__ += ["RobustObjective", "Robustness", "Schedule", "SearchRun", "SearchSpace", "Selection"]
-__all__ += ["Slot", "SlotMount", "Start", "Step", "Stop", "SurfaceMount", "Tolerance", "Unreadable"]
-__all__ += ["WorkerDied", "above_front", "checked_axes", "checked_bounds", "checked_method"]
-__all__ += ["default_bounds", "evaluate_all", "feasible_start", "mirrored"]
-__all__ += ["mounted_off", "no_processes", "objective_of", "optimize", "pareto_front"]
+__all__ = ["AXES", "DEFAULT_METHOD", "METHODS", "PAPER_FREE", "POSITION_AXES", "SCHEDULED_METHOD"]
+__all__ += ["AnyMount", "Call", "Candidate", "Choice", "Constraints", "DesignSearch"]
+__all__ += ["DesignSpace", "EvaluatedRig", "Evaluation", "Front", "Goals", "Journal"]
+__all__ += ["LazyProcesses", "Method", "MountArea", "Mounting", "MountingPlaces", "NoGo"]
+__all__ += ["Objective", "Option", "Parametrization", "Payload", "Picks", "Processes"]
+__all__ += ["RigRobustness", "RobustObjective", "Robustness", "Schedule", "SearchRun"]
+__all__ += ["SearchSpace", "Selection", "Slot", "SlotMount", "Start", "Step", "Stop"]
+__all__ += ["SurfaceMount", "SurfacePlace", "Tolerance", "Unreadable", "WorkerDied"]
+__all__ += ["above_front", "checked_axes", "checked_bounds", "checked_method", "default_bounds"]
+__all__ += ["evaluate_all", "feasible_start", "mirrored", "mounted_off", "outward_yaw"]
+__all__ += ["no_processes", "objective_of", "optimize", "pareto_front"]
 __all__ += ["pose_from_values", "pose_values", "robustness", "run_tasks", "send_payload"]
 __all__ += ["shared_parts", "snap_to_mount", "standoff_point", "start_processes"]

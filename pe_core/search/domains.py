@@ -247,12 +247,8 @@ class SurfaceDomain:
         foot, face = self.surface.closest(np.array(values[:3]))
         normal = self.surface.outward(face)
         angles = {**self._angles, **dict(zip(self._axes, values[3:], strict=True))}
-        turn = rotation_matrix(*(angles[axis] for axis in AXES[3:]))
-        rotation = rotate(frame_of(self.mount.orientation, normal), turn.T).T
-        position = foot + self.mount.standoff * normal - rotate(rotation, self._standoff_point)
-        if self.mount.orientation != "upright":
-            angles = dict(zip(AXES[3:], rpy_from_matrix(rotation), strict=True))
-        pose = pose_from_values(dict(zip(POSITION_AXES, position.tolist(), strict=True)) | angles)
+        rpy = [angles[axis] for axis in AXES[3:]]
+        pose = pose_on(self.mount, foot, normal, rpy, self._standoff_point)
         return pose, (*foot.tolist(), *values[3:])
 
     def _check_start(
@@ -289,6 +285,20 @@ def standoff_point(mount: SurfaceMount, housing: Housing | None) -> Floats:
     if mount.orientation == "facing":
         return housing.center - np.array([housing.size[0] / 2.0, 0.0, 0.0])
     return -np.array(housing.optical_center)
+
+
+def pose_on(
+    mount: SurfaceMount, foot: Floats, normal: Floats, rpy: Sequence[float], point: Floats
+) -> Pose:
+    """Return the pose on a mount at a point (3,) of it with a unit normal (3,), rounded.
+
+    `rpy` are the angles relative to the mount's frame there [rad], `point` is `standoff_point`.
+    """
+    rotation = rotate(frame_of(mount.orientation, normal), rotation_matrix(*rpy).T).T
+    position = foot + mount.standoff * normal - rotate(rotation, point)
+    if mount.orientation != "upright":
+        rpy = rpy_from_matrix(rotation)
+    return pose_from_values(dict(zip(AXES, (*position.tolist(), *rpy), strict=True)))
 
 
 def frame_of(orientation: str, normal: Floats) -> Floats:

@@ -154,6 +154,10 @@ class Kind:
         half of them.
     in_weather : callable
         Of intrinsics and a `Weather`: the intrinsics as they are under it.
+    stand_off_m : float
+        From a surface to the origin of a sensor that is put on it, unless one says otherwise [m].
+    outward : callable
+        Of intrinsics: whether a sensor that is put on the vehicle looks away from its middle.
     has_top : bool
         Whether it matters which side of the sensor is up, as for a picture.
     occlusion_text : str
@@ -204,6 +208,8 @@ class Kind:
     lowest_m: float = 0.0
     cautious: Callable[[Any], Any] = lambda model: model
     in_weather: Callable[[Any, Any], Any] = lambda model, weather: model
+    stand_off_m: float = 0.05
+    outward: Callable[[Any], bool] = lambda model: True
     has_top: bool = False
     occlusion_text: str = "beams occluded"
     rays: Callable[[Sensor, int], Floats] = lambda sensor, most: np.empty((0, 3))

@@ -48,3 +48,5 @@ from .terminal import Answer as Answer
 from .terminal import open_missing_streams as open_missing_streams
 from .terminal import show as show
 from .terminal import tell as tell
+from .where_verb import add_where_options as add_where_options
+from .where_verb import where as where

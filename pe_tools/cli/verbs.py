@@ -34,6 +34,7 @@ from .drive_by_verb import add_list_option, drive_by
 from .explain_verbs import add_compare_options, add_explain_options, compare, explain, named_by_file
 from .new_verb import add_new_verb
 from .terminal import Answer, open_missing_streams, tell
+from .where_verb import add_where_options, where
 
 ONE, PERHAPS, SOME = "one", "?", "+"
 """How many study files a verb takes."""
@@ -42,7 +43,7 @@ ONE, PERHAPS, SOME = "one", "?", "+"
 GROUPS = {
     "begin": "new import rigs sensors curves requirements",
     "score": "score explain check compare drive-by",
-    "place": "optimize sweep fit",
+    "place": "where optimize sweep fit",
     "show": "review export",
     "this program": "doctor",
 }
@@ -196,6 +197,13 @@ VERBS = (
         add_check_options,
         ONE,
         check,
+    ),
+    Verb(
+        "where",
+        "score one more sensor all over the vehicle's surface",
+        add_where_options,
+        ONE,
+        lambda args: where(load_study(args.study), args, [Path(args.study)]),
     ),
     Verb(
         "drive-by",

@@ -62,6 +62,7 @@ from .ground import difference_map as difference_map
 from .ground import fitted_bounds as fitted_bounds
 from .ground import ground_map as ground_map
 from .ground import painted_samples as painted_samples
+from .ground import swatches_of as swatches_of
 from .kinds import beam_budget as beam_budget
 from .kinds import drawing_of as drawing_of
 from .kinds import footprint_faces as footprint_faces
@@ -86,5 +87,7 @@ from .sensor_images import hidden_lines as hidden_lines
 from .sensor_images import lidar_of as lidar_of
 from .sensor_images import range_colors as range_colors
 from .simplify import simplified as simplified
+from .surface_map import FORBIDDEN as FORBIDDEN
+from .surface_map import colored_surface as colored_surface
 from .surroundings import Surroundings as Surroundings
 from .surroundings import surroundings as surroundings

@@ -54,3 +54,7 @@ from .trade_off import design_study as design_study
 from .watched_job import JobRun as JobRun
 from .watched_job import JobStep as JobStep
 from .watched_job import WatchedJob as WatchedJob
+from .where_job import PLACE_FIGURES as PLACE_FIGURES
+from .where_job import PlaceFigure as PlaceFigure
+from .where_job import PlaceMap as PlaceMap
+from .where_job import WhereJob as WhereJob

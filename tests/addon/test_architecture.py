@@ -46,6 +46,7 @@ viewport: language
 result_staleness: bridge sensor_cache signals vehicle_cache
 diagnostics: analysis_calls bridge engine engine_process sensor_cache signals vehicle_cache
 location_query: bridge engine engine_process sensor_cache signals vehicle_cache
+where_map: engine signals
 housing: engine sensor_cache sensor_kinds
 library: engine
 preferences_panel: engine language library own_catalog properties
@@ -55,7 +56,7 @@ live: analysis_calls bridge change_events choices engine engine_calls engine_pro
 best_so_far: engine
 overlay: choices engine engine_calls view_settings viewport
 overlay.snapshot: best_so_far bridge choices engine live location_query overlay sensor_cache
-    vehicle_cache view_settings
+    vehicle_cache view_settings where_map
 overlay.scheduler: analysis_calls engine engine_process overlay overlay.snapshot sensor_cache
     viewport
 overlay.surroundings: engine overlay vehicle_cache viewport
@@ -64,17 +65,17 @@ overlay.draw_handler: bridge engine engine_process overlay overlay.scheduler
 operators: best_so_far bridge choices diagnostics engine engine_calls engine_process housing
     language library live location_query overlay overlay.surroundings own_jobs properties
     result_staleness sensor_cache sensor_kinds signals translation_context
-    vehicle_cache view_settings viewport
-panels: bridge choices diagnostics engine language live operators properties sensor_cache
-    sensor_kinds
+    vehicle_cache view_settings viewport where_map
+panels: bridge choices diagnostics engine language live location_query operators properties
+    sensor_cache sensor_kinds where_map
 commands: bridge engine result_staleness
 wiring: bridge change_events consistency diagnostics engine_process housing live location_query
     operators overlay.draw_handler overlay.scheduler result_staleness sensor_cache signals
-    vehicle_cache viewport
+    vehicle_cache viewport where_map
 __main__: __init__ commands engine
 __init__: best_so_far change_events commands consistency diagnostics engine_process language
     library live location_query operators overlay.draw_handler panels preferences_panel properties
-    sensor_cache translation_context vehicle_cache wiring
+    sensor_cache translation_context vehicle_cache where_map wiring
 """
 """What each module or package may import. What stands below a package is part of it, unless it has
 a line of its own."""

@@ -45,6 +45,8 @@ KEYS = frozenset(
         "horizontal_fov_deg",
     }
 )
+GAP_DEG = 30.0
+"""A LiDAR whose horizontal field of view leaves out no more than this measures all around."""
 DEGREES = Number(cap=1e6, unit="degrees", noun="angle")
 STEP_DEG = Number(0.001, 360.0, unit="degrees", noun="angle")
 
@@ -155,6 +157,12 @@ def in_weather(model: Lidar, weather: Weather) -> Lidar:
     return whole
 
 
+def sees_all_around(lidar: Lidar) -> bool:
+    """Whether a LiDAR's field of view has no horizontal gap wider than GAP_DEG."""
+    low, high = lidar.horizontal_fov
+    return bool(high - low >= math.radians(360.0 - GAP_DEG))
+
+
 LIDAR = Kind(
     name="lidar",
     label="LiDAR",
@@ -172,6 +180,8 @@ LIDAR = Kind(
     read=read,
     write=write,
     in_weather=in_weather,
+    stand_off_m=0.15,
+    outward=lambda model: not sees_all_around(model),
     data_sheet=figures,
     summary=summary,
     plot=plot,

@@ -311,6 +311,7 @@ ULTRASONIC = Kind(
     curve=NO_AP,
     object_curves=_AnyClass(),
     counts_points=True,
+    stand_off_m=0.03,
     lowest_m=0.01,  # flat ground returns no echo
     keys=frozenset({"hfov_deg", "vfov_deg", "max_range_m", "min_range_m", "max_incidence_deg"}),
     occlusion_text="cone occluded",

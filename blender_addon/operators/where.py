@@ -1,0 +1,145 @@
+"""*Where?*: one more sensor scored all over the body, and put where one clicks."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import bpy
+from bpy.props import EnumProperty, IntProperty
+
+from .. import bridge, where_map
+from ..engine import catalog, jobs, kinds, pe
+from ..housing import measured_housing
+from ..sensor_kinds import mount_for
+from .add_sensor import MODEL, new_sensor, select_only
+from .declared import INTERNAL, Failed, OperatorResult, Refused, operator
+from .jobs import JobRow, Task, of_study
+from .query_location import clicking
+
+WHOLE = "WHOLE"
+"""What is covered, where it is no mount."""
+NEAR_M = 0.4
+"""A click takes the nearest place, if it is no farther away than this."""
+_listed: list[tuple[str, str, str]] = []
+"""What the menu lists: Blender reads the texts after the function that made them returned."""
+_wanted: dict[str, Any] = {}
+"""The properties with which *Where?* was asked last."""
+
+
+def _surfaces(_self: Any, _context: object) -> list[tuple[str, str, str]]:
+    """Return the body and the mounts, as items of a Blender menu."""
+    about = "This mount's surface, with its stand-off and orientation"
+    mounts = [(row.name, row.name, about) for row in bpy.context.scene.perception_entropy.mounts]
+    _listed[:] = [(WHOLE, "Whole Body", "All parts of the vehicle"), *mounts]
+    return _listed
+
+
+def _ask(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
+    if bpy.app.background:
+        return self.execute(context)
+    return context.window_manager.invoke_props_dialog(self)
+
+
+def _lacks(context: bpy.types.Context) -> str | None:
+    settings = context.scene.perception_entropy
+    if settings.vehicle is None:
+        return "There is no vehicle yet"
+    return None if bridge.sensor_objects(context.scene) else "There are no sensors yet"
+
+
+@operator(
+    "Where?",
+    mode="Sensors are placed in Object Mode",
+    unless=_lacks,
+    options=frozenset(),
+    invoke=_ask,
+    model=MODEL["model"],
+    figure=EnumProperty(
+        name="By",
+        description="Figure of the rig by which places are compared",
+        items=[(key, row.label, row.unit) for key, row in jobs.PLACE_FIGURES.items()],
+    ),
+    on=EnumProperty(name="On", description="Surface that is covered", items=_surfaces),
+    places=IntProperty(
+        name="Places",
+        description="How many places are scored; 0: as many as take about 20 s",
+        default=0,
+        min=0,
+        max=20_000,
+    ),
+)
+def where(_context: bpy.types.Context, operator: Any) -> OperatorResult:
+    """Score one more sensor all over the body: colours show where it is worth most"""
+    _wanted.update({name: getattr(operator, name) for name in ("model", "figure", "on", "places")})
+    try:
+        return bpy.ops.pe.score_places("INVOKE_DEFAULT")
+    except RuntimeError as error:  # what it has reported
+        raise Failed(str(error).strip().removeprefix("Error: ")) from None
+
+
+def _task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> Task:
+    model, name = catalog.load(_wanted["model"]), _wanted["on"]
+    sensor = pe.Sensor(kinds.kind_of(model).label, model)
+    mount = "" if name == WHOLE else name
+    study = bridge.with_mount(study, scene, bpy.context.evaluated_depsgraph_get(), mount)
+    options: dict[str, Any] = {"mount": mount, "count": _wanted["places"] or None}
+    job = jobs.WhereJob(study, sensor, _wanted["figure"], **options)
+    seen = 0
+
+    def progressed(scene: bpy.types.Scene, job: jobs.WhereJob) -> None:
+        nonlocal seen
+        if len(job.places) > 2 * seen and (found := job.found) is not None:
+            seen = len(job.places)
+            where_map.store(scene.name, found)
+
+    def finish(scene: bpy.types.Scene, found: jobs.PlaceMap) -> str:
+        where_map.store(scene.name, found)
+        best = found.best()
+        forbidden = f"Every place is forbidden: {', '.join(found.reasons())}"
+        return f"Best place: {found.text(best[0].value or 0.0)}" if best else forbidden
+
+    return Task(job, finish, "found", progressed)
+
+
+PLACES = JobRow(
+    "score_places",
+    "Score Places",
+    "Score one more sensor all over the body",
+    of_study(_task),
+    unfinished="Stopped before a place was scored",
+    show=lambda: bpy.ops.pe.take_place("INVOKE_DEFAULT"),
+    options=INTERNAL,
+).declare()
+
+
+@operator(
+    "Pick a Place",
+    mode="Sensors are placed in Object Mode",
+    unless=lambda context: None if where_map.maps.get(context.scene.name) else "Ask Where? first",
+    **clicking("Click a place to put the sensor there     Esc, right click: done"),
+)
+def take_place(context: bpy.types.Context, point: tuple[float, float, float]) -> str:
+    """Click the coloured body: the sensor is put at the nearest place that was scored"""
+    scene, found = context.scene, where_map.maps.get(context.scene.name)
+    if found is None:
+        raise Refused("Ask Where? first")
+    near = min(found.places, key=lambda each: math.dist(each.point, point))
+    if math.dist(near.point, point) > NEAR_M:
+        raise Refused("Click the coloured surface")
+    if near.value is None:
+        raise Refused(f"Forbidden here: {near.reason}")
+    name = found.sensor.model.name
+    body = measured_housing(name)
+    obj = new_sensor(context, found.sensor.name, name, mount_for(found.sensor.model), body)
+    if found.mount:
+        obj.perception_entropy.mount = found.mount
+    bridge.place_poses(scene, {obj.name: near.pose})
+    select_only(context, obj)
+    return f"{obj.name}: {found.text(near.value)}"
+
+
+@operator("Dismiss", options=INTERNAL)
+def dismiss_places(context: bpy.types.Context) -> None:
+    """Remove the colours from the body"""
+    where_map.store(context.scene.name, None)

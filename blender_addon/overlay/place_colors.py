@@ -1,0 +1,61 @@
+"""The body in the colours of the figure that a rig would have with one more sensor there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..engine import graphics
+
+if TYPE_CHECKING:
+    from ..engine import jobs, pe
+
+REASONS_NAMED, TICKS, NARROWEST = 3, 3, 0.01
+"""The scale has all but 1 % of the values at either end; a narrower range would show noise."""
+GREY: graphics.Rgba = (*graphics.FORBIDDEN, 1.0)
+MARK = (1.0, 1.0, 1.0, 0.95)
+
+
+def place_colors(found: jobs.PlaceMap, sensors: Sequence[pe.Sensor]) -> graphics.LayerShape:
+    """Return the surface in colours, bright is good, with the best place named.
+
+    `sensors` are those of the scene: where they are not those that were scored with, the legend
+    says so.
+    """
+    row = found.row
+    values = np.array([math.nan if e.value is None else e.value for e in found.places])
+    points, normals = (
+        np.array([getattr(each, name) for each in found.places]) for name in ("point", "normal")
+    )
+    known = values[np.isfinite(values)]
+    low, high = np.percentile(known, (1.0, 99.0)).tolist() if len(known) else (0.0, 0.0)
+    lack = max((1.0 if row.exact else NARROWEST) - (high - low), 0.0)
+    low, high = (low - lack / 2.0, high + lack / 2.0)[:: 1 if row.sign < 0.0 else -1]
+    faces = graphics.colored_surface(found.surface, points, normals, values, (low, high))
+    ends = [low + (high - low) * k / (TICKS - 1) for k in range(TICKS)]
+    classes = [(GREY, f"forbidden: {why} ({n:,})") for why, n in found.reasons().items()]
+    unit = f" [{row.unit}]" if row.unit else ""
+    legend = graphics.ColorKey(
+        f"{row.label} with {found.sensor.model.name} here{unit}{_state(found, sensors)}",
+        scale=graphics.swatches_of(graphics.VIRIDIS),
+        ticks=tuple(f"{end:.{row.decimals}f}" for end in ends),
+        values=tuple(f"{end - found.base:+.{row.decimals}f}" for end in ends),
+        classes=tuple(classes[:REASONS_NAMED]),
+    )
+    labels = [
+        graphics.Tag(f"best: {row.text(e.value or 0.0)}", e.pose.position, MARK, strong=True)
+        for e in found.best()
+    ]
+    return graphics.LayerShape(faces=faces, labels=tuple(labels), legend=legend)
+
+
+def _state(found: jobs.PlaceMap, sensors: Sequence[pe.Sensor]) -> str:
+    """Return how far the places are, how sure they are, or that they are of before a change."""
+    if {(s.name, s.pose) for s in sensors} != {(s.name, s.pose) for s in found.rig}:
+        return " (before the last change)"
+    if len(found.places) < found.count:
+        return f" ({len(found.places):,} of {found.count:,} places)"
+    return f", ± {found.row.text(found.error)}" if found.error else ""

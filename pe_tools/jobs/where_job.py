@@ -1,0 +1,296 @@
+"""The job that scores one more sensor all over a vehicle's surface, coarse to fine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from functools import partial
+from itertools import islice
+from math import dist, inf, sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from pe_core.base.arrays import Floats
+from pe_core.base.errors import InputError, one_of, shown
+from pe_core.base.values import rounded
+from pe_core.scene.rig import Rig, Sensor
+from pe_core.scoring.requirements import RequirementChecker
+from pe_core.scoring.score import Evaluation, Objective
+from pe_core.scoring.sight import Sight
+from pe_core.search import MountingPlaces, SurfaceMount, SurfacePlace, evaluate_all
+from pe_core.study.condition_table import search_evaluator
+from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, EXPECTED_AP, Study
+
+from .candidate_workers import ExecutorSource, candidate_workers
+from .job import Job, Progress, begun
+
+SAMPLES = 2048
+"""Voxels on which places are scored."""
+BATCH, COMPARED = 32, 8
+"""Places that are scored between two looks at the progress; and that are scored exactly, too, from
+the best to the worst: they tell the error."""
+
+
+class _RigValue(NamedTuple):
+    """Minimises the widest blind sector [deg], or minus the number of requirements met."""
+
+    of: Sight | RequirementChecker
+
+    def entropy(self, rig: Rig) -> float:
+        """Return the value of a rig."""
+        if isinstance(self.of, Sight):
+            return max(sector.width for sector in self.of.blind_sectors(rig))
+        return -float(sum(not off for off in self.of.shortfalls(rig)))
+
+    def evaluate(self, rig: Rig, cutoff: float = inf) -> Evaluation:
+        """Return the value of a rig, whatever the cutoff."""
+        return Evaluation(self.entropy(rig), False)
+
+
+def _by_ap(study: Study, samples: int) -> Objective:
+    by_ap = replace(study, search=replace(study.search, objective=EXPECTED_AP))
+    return search_evaluator(by_ap, samples)
+
+
+def _sector(study: Study, _samples: int) -> Objective:
+    return _RigValue(study.sight())
+
+
+def _met(study: Study, _samples: int) -> Objective:
+    if study.requirements:
+        return _RigValue(study.checker())
+    raise InputError("where", "requirements", "at least one, to count verdicts", "none")
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceFigure:
+    """A figure by which places are compared.
+
+    `objective` returns what is minimised, of a study and a number of voxels; the figure is `sign`
+    times its value. `places` is how many are scored in about 20 s. `exact` is whether it does not
+    depend on the voxels.
+    """
+
+    key: str
+    label: str
+    unit: str
+    decimals: int
+    objective: Callable[[Study, int], Objective]
+    places: int
+    sign: float = 1.0
+    exact: bool = False
+
+    def text(self, value: float, sign: str = "") -> str:
+        """Return a value with its unit; `sign` "+" shows one."""
+        return f"{value:{sign}.{self.decimals}f} {self.unit}".strip()
+
+
+PLACE_FIGURES = {
+    row.key: row
+    for row in (
+        PlaceFigure("entropy", "Entropy", "nats", 3, lambda study, n: study.evaluator(n), 2000),
+        PlaceFigure("ap", "Expected AP in traffic", "", 3, _by_ap, 600, -1.0),
+        PlaceFigure("blind", "Widest blind sector", "deg", 0, _sector, 350, 1.0, True),
+        PlaceFigure("verdicts", "Requirements met", "", 0, _met, 700, -1.0, True),
+    )
+}
+"""Figures of places, by name."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceMap:
+    """Places of one more sensor, the coarse cover of the surface first.
+
+    Attributes
+    ----------
+    rig, sensor : Rig, Sensor
+        The other sensors, and the placed one: its model and its name.
+    figure : str
+        A key of `PLACE_FIGURES`.
+    mount : str
+        Name of the mount that is covered; empty for the body or parts of it.
+    count : int
+        How many places there will be.
+    surface : (F, 3, 3) float
+        The surface that they cover [m].
+    base : float
+        The figure without the sensor, on the same sample.
+    places : tuple of SurfacePlace
+    error : float or None
+        Root mean square difference of the gain on the sample and the exact one, at places from the
+        best to the worst; None where it is not known yet, 0 where places are scored exactly.
+    """
+
+    rig: Rig
+    sensor: Sensor
+    figure: str
+    mount: str
+    count: int
+    surface: Floats = field(repr=False, compare=False)
+    base: float
+    places: tuple[SurfacePlace, ...]
+    error: float | None
+
+    @property
+    def row(self) -> PlaceFigure:
+        """How the figure is read."""
+        return PLACE_FIGURES[self.figure]
+
+    def best(self, count: int = 1, apart: float = 0.0) -> list[SurfacePlace]:
+        """Return the best places, the best first; those that break a rule are left out.
+
+        Of places that are nearer to each other than `apart` [m] only the best is named.
+        """
+        free = [each for each in self.places if each.value is not None]
+        found: list[SurfacePlace] = []
+        for each in sorted(free, key=lambda each: self.row.sign * (each.value or 0.0)):
+            if len(found) < count and all(dist(each.point, o.point) >= apart for o in found):
+                found.append(each)
+        return found
+
+    def reasons(self) -> dict[str, int]:
+        """Return how many places break a rule first, by rule, the most frequent first."""
+        texts = [each.reason for each in self.places if each.reason]
+        return {t: texts.count(t) for t in sorted(set(texts), key=lambda t: (-texts.count(t), t))}
+
+    def text(self, value: float) -> str:
+        """Return the figure of a place, with the gain and how sure that is."""
+        sure = f" ± {self.row.text(self.error)}" if self.error else ""
+        gain = self.row.text(value - self.base, "+")
+        return f"{self.row.label} {self.row.text(value)} ({gain}{sure})"
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Return the places as flat tables."""
+        axes = (*"xyz", "normal_x", "normal_y", "normal_z", "sensor_x", "sensor_y", "sensor_z")
+        names = (*axes, "roll_deg", "pitch_deg", "yaw_deg")
+        rows = []
+        for place in self.places:
+            pose = *place.pose.position, *place.pose.rotation_deg
+            row = dict(zip(names, (*place.point, *place.normal, *pose), strict=True))
+            gain = None if place.value is None else rounded(place.value - self.base)
+            rows.append({**row, "value": place.value, "gain": gain, "forbidden_by": place.reason})
+        return rows
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the map as plain JSON data."""
+        own = {"figure": self.figure, "base": self.base, "error": self.error}
+        return {"model": self.sensor.model.name, **own, "places": self.rows()}
+
+
+class WhereJob(Job):
+    """Scores a rig with one more sensor at places all over the surface.
+
+    Parameters
+    ----------
+    study : Study
+        Its other sensors stay as they are; its constraints forbid places.
+    sensor, parts, mount, count
+        As of `MountingPlaces`; `mount` is the name of one of the study's. By default there are as
+        many places as the figure scores in about 20 s.
+    figure : str
+        A key of `PLACE_FIGURES`.
+    workers : int, optional
+        Number of processes; all processors by default. The result does not depend on it.
+
+    Raises
+    ------
+    InputError
+        When there is no such figure or mount; once it runs, as `MountingPlaces`.
+    """
+
+    shown = ("places", "base", "error", "surface")
+
+    def __init__(
+        self,
+        study: Study,
+        sensor: Sensor,
+        figure: str = "entropy",
+        *,
+        parts: tuple[str, ...] = (),
+        mount: str = "",
+        count: int | None = None,
+        workers: int | None = None,
+    ) -> None:
+        super().__init__(study, workers)
+        every = study.search.mounting.mounts
+        mounts = [name for name, each in every.items() if isinstance(each, SurfaceMount)]
+        if figure not in PLACE_FIGURES:
+            raise InputError("where", "figure", one_of(PLACE_FIGURES, figure), shown(figure))
+        if mount and mount not in mounts:
+            expected = one_of(mounts, mount) if mounts else "a study with a mount on a surface"
+            raise InputError("where", "mount", expected, shown(mount))
+        name, taken = sensor.name, [each.name for each in study.rig]
+        while name in taken:
+            name += "+"
+        whole = study.with_rig(Rig([*study.rig, replace(sensor, name=name)]))
+        self.sensor = whole.rig[name]  # with the study's returns
+        self.figure, self._parts, self._mount = figure, parts, mount
+        self.count = self.row.places if count is None else count
+        self.places: list[SurfacePlace] = []
+        self.base: float = 0.0
+        self.error: float | None = None
+        self.surface = np.empty((0, 3, 3))
+        self._waiting = Progress("placing", 0.0)
+
+    @property
+    def row(self) -> PlaceFigure:
+        """The figure by which places are compared."""
+        return PLACE_FIGURES[self.figure]
+
+    @property
+    def found(self) -> PlaceMap | None:
+        """What is known so far; None before the first place, and where the job was dropped."""
+        if self.dropped or not self.places:
+            return None
+        asked = self.study.rig, self.sensor, self.figure, self._mount, self.count
+        return PlaceMap(*asked, self.surface, self.base, tuple(self.places), self.error)
+
+    def __iter__(self) -> Iterator[Progress]:
+        row, study = self.row, self.study
+        yield self._waiting
+        where = study.vehicle, study.search.mounting.constraints
+        mount: Any = study.search.mounting.mounts.get(self._mount)
+        own: Any = {"parts": self._parts, "mount": mount, "count": self.count}
+        self._places = MountingPlaces(study.rig, self.sensor, *where, **own)
+        self.surface = self._places.surface.triangles
+        objective = row.objective(study, SAMPLES)
+        self.base = rounded(row.sign * objective.evaluate(study.rig).entropy)
+        steps = iter(self._places)
+        ahead = begun(lambda: list(islice(steps, BATCH)))
+        with candidate_workers(self, [objective], [self.sensor.model]) as workers:
+            while some := (yield from self._awaited(ahead, lambda: self._waiting)):
+                ahead = begun(lambda: list(islice(steps, BATCH)))  # while these are scored
+                work = begun(partial(self._scored, some, objective, workers))
+                if (batch := (yield from self._awaited(work, lambda: self._waiting))) is None:
+                    break
+                self.places += batch
+                self._waiting = Progress("placing", len(self.places) / self.count)
+                yield self._waiting
+            if not self.stopped:
+                work_off = begun(self._off)
+                self.error = yield from self._awaited(work_off, lambda: self._waiting)
+        yield Progress("done", 1.0)
+
+    def _scored(
+        self, some: list[SurfacePlace], objective: Objective, workers: ExecutorSource
+    ) -> list[SurfacePlace]:
+        rigs = [self._places.with_sensor(each.pose) for each in some if not each.reason]
+        found, sign = evaluate_all(objective, rigs, executor=workers()), self.row.sign
+        values = iter([rounded(sign * each.entropy) for each in found])
+        return [each if each.reason else replace(each, value=next(values)) for each in some]
+
+    def _off(self) -> float:
+        """Return the error of the gains on the sample (`PlaceMap.error`)."""
+        row, found = self.row, self.found
+        ranked = [] if found is None else found.best(len(self.places))
+        if row.exact or not ranked:
+            return 0.0
+        objective = row.objective(self.study, self.study.samples or DEFAULT_SEARCH_SAMPLES)
+        base = row.sign * objective.evaluate(self.study.rig).entropy
+        off = []
+        for k in np.unique(np.linspace(0, len(ranked) - 1, COMPARED).astype(int)).tolist():
+            rig = self._places.with_sensor(ranked[k].pose)
+            gain = row.sign * objective.evaluate(rig).entropy - base
+            off.append((ranked[k].value or 0.0) - self.base - gain)
+        return rounded(sqrt(float(np.mean(np.square(off)))))

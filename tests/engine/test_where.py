@@ -1,0 +1,192 @@
+"""Where a sensor should go: places all over the surface, their figures and their rules."""
+
+import csv
+import json
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+import pe_tools as pt
+from pe_core import catalog, search
+from pe_core.scoring.requirements import BODIES, Requirement, Zone
+from pe_core.search.places import IN_BODY, LOW, surface_points
+from pe_tools.cli.verbs import main
+from pe_tools.jobs import where_job
+from tests.engine import shapes
+
+LIDAR = pe.Sensor("LiDAR", shapes.small_lidar(8, 90))
+
+
+@pytest.fixture
+def study():
+    rig = pe.Rig([shapes.camera(position=(2.2, 0.0, 1.2), name="front")])
+    return pe.Study(rig, shapes.box_car(), shapes.small_space())
+
+
+def mapped(study, sensor=LIDAR, **options):
+    job = where_job.WhereJob(study, sensor, **{"count": 40, "workers": 1, **options})
+    for _ in job:
+        pass
+    return job.found
+
+
+def test_points_are_on_the_surface_and_every_beginning_covers_it():
+    triangles = shapes.box_car().triangles
+    points, faces = surface_points(triangles, 200)
+    again, _ = surface_points(triangles, 60)
+    corners = triangles[faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert np.abs(((points - corners[:, 0]) * normal).sum(axis=1)).max() < 1e-9
+    assert len(np.unique(points, axis=0)) == 200
+    assert len(again) == 60
+    for count in (20, 80):
+        apart = np.linalg.norm(points[:, None] - points[None, :count], axis=2)
+        nearest = apart.min(axis=1)
+        among = apart[:count] + 99.0 * np.eye(count)
+        assert nearest.max() <= among.min() + 1e-9  # no gap is wider than places are apart
+
+
+@pytest.mark.parametrize("figure", ["entropy", "ap", "blind"])
+def test_a_value_is_the_figure_of_the_rig_with_the_sensor_there(study, figure):
+    found = mapped(study, figure=figure, count=12)
+    free = [each for each in found.places if each.value is not None]
+    assert free
+    for each in free[:3]:
+        rig = pe.Rig([*study.rig, replace(LIDAR, pose=each.pose)])
+        expected = {
+            "entropy": lambda rig=rig: study.evaluator(where_job.SAMPLES).entropy(rig),
+            "ap": lambda rig=rig: few_scenes(study).in_traffic(rig).ap,
+            "blind": lambda rig=rig: max(s.width for s in study.sight().blind_sectors(rig)),
+        }[figure]()
+        assert each.value == pytest.approx(expected, abs=1e-9)
+
+
+def few_scenes(study):
+    return replace(study, targets=replace(study.targets, scenes=32)).sight()
+
+
+def test_a_sensor_stands_off_the_surface_upright_and_looks_outward(study):
+    camera = shapes.camera(name="Camera")
+    for each in mapped(study, camera).places:
+        place = each
+        off = np.array(place.pose.position) - np.array(place.point)
+        assert off == pytest.approx(0.05 * np.array(place.normal), abs=1.1e-5)
+        _, _, yaw = place.pose.rotation_deg
+        assert place.pose.rotation_deg[:2] == (0.0, 0.0)
+        middle = np.mean(study.vehicle.bounds, axis=0)
+        ahead = np.array([np.cos(np.radians(yaw)), np.sin(np.radians(yaw))])
+        away = (np.array(place.point) - middle)[:2]
+        assert ahead @ away > 0.99 * np.linalg.norm(away)
+    assert {e.pose.rotation_deg[2] for e in mapped(study).places} == {0.0}  # sees all around
+
+
+def test_forbidden_places_have_the_rule_as_reason_and_no_value(study):
+    no_go = search.NoGo("windshield", x=(1.0, 9.0), z=(0.8, 9.0))
+    limits = search.Constraints(max_height=1.3, no_go=[no_go])
+    mounting = search.Mounting(constraints=limits)
+    study = replace(study, search=replace(study.search, mounting=mounting))
+    found = mapped(study, count=120)
+    assert set(found.reasons()) >= {LOW, "no_go 'windshield'", "max_height"}
+    for each in found.places:
+        x, _, z = each.pose.position
+        assert (each.value is None) == bool(each.reason)
+        if z < 0.2:
+            assert each.reason == LOW
+        elif z > 1.3:
+            assert each.reason == "max_height"
+        elif x > 1.0 and z > 0.8:
+            assert each.reason == "no_go 'windshield'"
+        else:
+            assert each.reason in ("", IN_BODY)
+
+
+def test_places_inside_the_body_are_forbidden():
+    shell, seat = shapes.box_car().triangles, shapes.box((-0.5, -0.4, 0.5), (0.5, 0.4, 0.9))
+    parts = np.repeat([0, 1], [len(shell), len(seat)])
+    car = pe.Vehicle(np.concatenate([shell, seat]), parts, ("shell", "seat"))
+    study = pe.Study(pe.Rig([shapes.camera()]), car, shapes.small_space())
+    found = mapped(study, parts=("seat",))
+    assert found.reasons() == {IN_BODY: 40}
+    assert found.best() == []
+
+
+def test_places_on_a_mount_are_where_a_search_would_put_the_sensor(study):
+    mount = search.SurfaceMount(study.vehicle.part_names, 0.07, "facing")
+    mounting = search.Mounting({"skin": mount})
+    study = replace(study, search=replace(study.search, mounting=mounting))
+    for each in mapped(study, mount="skin").places:
+        there = replace(LIDAR, pose=each.pose)
+        assert search.snap_to_mount(there, mount, study.vehicle) == each.pose
+
+
+@pytest.mark.parametrize(
+    ("options", "field"),
+    [
+        ({"figure": "price"}, "figure"),
+        ({"parts": ("rof",)}, "parts"),
+        ({"mount": "roof"}, "mount"),
+        ({"count": 0}, "places"),
+        ({"figure": "verdicts"}, "requirements"),
+    ],
+)
+def test_what_is_impossible_is_named(study, options, field):
+    with pytest.raises(pe.InputError) as error:
+        mapped(study, **options)
+    assert error.value.field == field
+
+
+def test_workers_and_fewer_places_change_no_value(study):
+    here = mapped(study)
+    with ThreadPoolExecutor(2) as executor:
+        job = where_job.WhereJob(study, LIDAR, count=40)
+        job.executor = executor
+        assert list(job)[-1].fraction == 1.0
+    assert job.found == replace(here, sensor=job.sensor)
+
+
+def test_the_error_is_that_of_the_gains(study):
+    found = mapped(study)
+    assert 0.0 < found.error < 0.2
+    assert mapped(study, figure="blind", count=8).error == 0.0
+
+
+def test_verdicts_count_requirements_that_are_met(study):
+    zone = Zone(x=("rear + 1.5", "rear + 0.5"), y=(-0.5, 0.5), step=0.5)
+    behind = Requirement("behind", zone, (BODIES["child"],))
+    study = replace(study, requirements=(behind,))
+    found = mapped(study, figure="verdicts", count=24)
+    assert found.base == 0.0
+    assert {each.value for each in found.places} == {None, 0.0, 1.0}
+    assert found.best()[0].pose.position[0] < 0.0
+
+
+def test_a_job_that_is_stopped_keeps_what_it_has(study):
+    job = where_job.WhereJob(study, LIDAR, count=200, workers=1)
+    for _ in job:
+        if job.places:
+            job.stop()
+    assert 0 < len(job.found.places) < 200
+    job.drop()
+    assert job.found is None
+
+
+def test_the_command_writes_what_the_job_finds(study, tmp_path, capsys):
+    path, rows = tmp_path / "car.toml", tmp_path / "places.csv"
+    pt.export_study(study, path)
+    given = ["where", str(path), "--model", "Camera 90 deg", "--places", "30"]
+    assert main([*given, "--json", "-o", str(rows)]) == 0
+    data = json.loads(capsys.readouterr().out)
+    sensor = pe.Sensor("Camera", catalog.load("Camera 90 deg"))
+    found = mapped(pe.load_study(path), sensor, count=30)
+    assert data == json.loads(json.dumps(found.to_dict()))
+    table = list(csv.DictReader(rows.open()))
+    assert [float(r["value"]) if r["value"] else None for r in table] == [
+        each.value for each in found.places
+    ]
+    assert main(given) == 0
+    best = found.best()[0]
+    assert f"{best.value:.3f} nats" in capsys.readouterr().out.splitlines()[2]
+    assert main([*given, "-o", str(rows)]) == 1  # it is there

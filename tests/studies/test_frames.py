@@ -104,7 +104,8 @@ def made_up_results(plan, score_of):
         k, seed = int(run.placement.name[-2:]), run.seed
 
         def found(ap):
-            return {"ap": ap, "by_class": dict.fromkeys(CLASSES, ap)}
+            by_class, ended = dict.fromkeys(CLASSES, ap), {"converged": ap < 0.5}
+            return {"ap": ap, "by_class": by_class, "training": ended}
 
         results[run.name] = {**found(0.5 + 0.02 * k + 0.001 * seed), "one_frame": found(0.4)}
     return results, scores
@@ -128,6 +129,7 @@ def test_figures_come_when_all_runs_are_there():
     assert found["ranks"][key_of(1.0)]["five"]["verdict"] == "holds"
     assert found["minus_one"][key_of(1.0)]["verdict"] == BETTER
     assert found["gain"]["verdict"] == MORE
+    assert found["converged"] == [48, 0]
     page = render(PAGE, {"plan": plan, "found": found, "title": "# T"})
     assert "ranks better than that of one frame" in page and "nan" not in page
 

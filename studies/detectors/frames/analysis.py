@@ -77,6 +77,7 @@ def frames_analysis(plan: FramesPlan, results: Results, scores: Results) -> Json
         row |= {"p_holm": p}
         row["verdict"] = HOLDS if p < rule.alpha and row["rho"] > 0.0 else UNDECIDED
     less = {key: _minus(plan, v, value[key_of(np.inf)], five.samples) for key, v in value.items()}
+    by_arm = [r[ONE_FRAME] for r in results.values()], list(results.values())
     gained = PlacementSamples(arms[FIVE].aps - arms[ONE].aps, *_same(five.samples))
     return {
         **found,
@@ -84,12 +85,13 @@ def frames_analysis(plan: FramesPlan, results: Results, scores: Results) -> Json
         "minus_one": {k: row for k, row in less.items() if k != key_of(np.inf)},
         "aps_alike": float(rho_within(one.samples.ap, five.samples.ap, five.samples.members)),
         "noise": {arm: round(s.noise, 4) for arm, s in arms.items()},
+        "converged": [sum(run["training"]["converged"] for run in of_arm) for of_arm in by_arm],
         "gain": _gain(plan, gained),
         "ap": {arm: _range(s.ap) for arm, s in arms.items()},
         "by_class": {
             name: [
                 round(float(np.mean([run["by_class"][name] for run in of_arm])), 4)
-                for of_arm in ([r[ONE_FRAME] for r in results.values()], list(results.values()))
+                for of_arm in by_arm
             ]
             for name in CLASSES
         },

@@ -14,7 +14,6 @@ from pe_core.scene.rig import Sensor
 from pe_core.sensors import kind_of
 from pe_core.study import Study
 
-from ..advice import place_name
 from ..jobs import PLACE_FIGURES, PlaceMap, WhereJob
 from ..wording import aligned
 from .command import add_curve_option, count_up_to, with_curves
@@ -68,21 +67,19 @@ def where(study: Study, args: argparse.Namespace, inputs: Sequence[Path] = ()) -
         cells = ([v if v is not None else "" for v in row.values()] for row in rows)
         write_bytes(Path(args.output), csv_text([[*rows[0]], *cells]).encode())
         tell(f"wrote {args.output}")
-    text = dump_json(finite(found.to_dict())) if args.json else "\n".join(place_lines(found, study))
+    text = dump_json(finite(found.to_dict())) if args.json else "\n".join(place_lines(found))
     return text, received.status(DONE)
 
 
-def place_lines(found: PlaceMap, study: Study) -> list[str]:
+def place_lines(found: PlaceMap) -> list[str]:
     """Return the best places as a table, with what is forbidden and how sure the figures are."""
-    assert study.vehicle is not None  # a job without one is refused
     row, name = found.row, found.row.label.lower()
-    rows = [["place", "position [m]", "yaw [deg]", name, "gain"]]
+    rows = [["position [m]", "yaw [deg]", name, "gain"]]
     for place in found.best(BEST, APART_M):
         value = place.value or 0.0
         at = ", ".join(f"{v:.3f}" for v in place.pose.position)
-        cells = place_name(place.point, study.vehicle.bounds), f"({at})"
         figures = row.text(value), row.text(value - found.base, "+")
-        rows.append([*cells, f"{place.pose.rotation_deg[2]:.0f}", *figures])
+        rows.append([f"({at})", f"{place.pose.rotation_deg[2]:.0f}", *figures])
     free = sum(each.value is not None for each in found.places)
     head = f"{found.sensor.model.name} at {free:,} of {len(found.places):,} places"
     lines = [f"{head}; without it {name} {row.text(found.base)}", *aligned(rows)]

@@ -5,7 +5,6 @@ import os
 import pytest
 from xdist.scheduler import LoadScopeScheduling
 
-from tests import example_plugin
 from tests.limits import (
     heeded_signals,
     pytest_runtest_call,
@@ -14,7 +13,6 @@ from tests.limits import (
 )
 
 __all__ = [
-    "example_plugin",
     "heeded_signals",
     "pytest_runtest_call",
     "pytest_runtest_setup",

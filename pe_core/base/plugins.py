@@ -40,6 +40,7 @@ EXTRAS = {
     "matplotlib": "notebook",
     "pandas": "notebook",
     "pyarrow": "argoverse",
+    "pyarrow.parquet": "argoverse",
     "tqdm.auto": "notebook",
     "distributed": "cluster",
 }

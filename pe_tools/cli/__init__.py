@@ -41,6 +41,8 @@ from .run_job import drive as drive
 from .run_job import job_and_folder as job_and_folder
 from .run_job import pages as pages
 from .run_job import with_pages as with_pages
+from .sweep_verb import add_sweep_options as add_sweep_options
+from .sweep_verb import sweep as sweep
 from .terminal import BAD_INPUT as BAD_INPUT
 from .terminal import DONE as DONE
 from .terminal import USAGE as USAGE

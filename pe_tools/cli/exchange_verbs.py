@@ -97,7 +97,7 @@ def add_export_options(
     With `also_study`, the default without a format and a suffix is to write the study. `more` has
     additional formats of the caller.
     """
-    known = [*dict.fromkeys([*RIG_FORMATS, *scene_outputs(), *OF_EXAMPLE]), *more]
+    known = [*RIG_FORMATS, *dict.fromkeys([*scene_outputs(), *OF_EXAMPLE]), *more]
     default = "by the suffix of PATH" + (", or else a study" if also_study else "")
     about = f"format: {', '.join(known)} (default: {default})"
     parser.add_argument("--to", choices=known, metavar="FORMAT", help=about)
@@ -144,7 +144,7 @@ def _add_axle_options(parser: argparse.ArgumentParser) -> None:
 
 def export(study: Study, args: argparse.Namespace) -> Answer:
     """Write a study's rig, or its scene, for another program."""
-    if args.to in OF_EXAMPLE and args.to not in RIG_FORMATS:
+    if args.to in OF_EXAMPLE:
         scene_output(args.to)  # refuses it without its plugin
     args.to = format_of_file(Path(args.output), FILE_NAMES, args.to)
     if args.range is not None and args.to not in _ranged():

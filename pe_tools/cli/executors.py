@@ -18,6 +18,7 @@ from pe_core.search import no_processes
 from pe_core.search.payload import plugin_name
 
 from ..jobs import Job, ScoreJob
+from ..sweep import LocalWorkers
 from .terminal import tell
 
 FUNCTION = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_]\w*")
@@ -28,12 +29,22 @@ CONNECT_S = 5.0
 """Time limit for the scheduler's answer [s]."""
 
 
-def named_workers(executor: str, count: int) -> ExecutorWorkers | DaskWorkers:
-    """Return the workers of ``dask://HOST:PORT`` or of ``MODULE:FUNCTION``.
+@contextmanager
+def workplace(workers: int | None, executor: str | None) -> Iterator[LocalWorkers]:
+    """Open the worker pool that the command line asks for; close it at the end.
 
-    `InputError` where no scheduler answers, a package is not installed, or what is named makes no
-    executor.
+    `executor` is that of ``--executor``; None: processes here. `InputError` where no scheduler
+    answers, a package is not installed, or what is named makes no executor.
     """
+    count = workers or os.cpu_count() or 1
+    if executor is None:
+        _tell_without_processes(count)
+    with closing(LocalWorkers(count) if executor is None else _named(executor, count)) as place:
+        yield place
+
+
+def _named(executor: str, count: int) -> LocalWorkers:
+    """Return the workers of ``dask://HOST:PORT`` or of ``MODULE:FUNCTION``."""
     if FUNCTION.fullmatch(executor):
         return ExecutorWorkers(executor, count)
     return DaskWorkers(executor.removeprefix("dask://"))
@@ -43,30 +54,33 @@ def named_workers(executor: str, count: int) -> ExecutorWorkers | DaskWorkers:
 def evaluated_by(job: Job, executor: str | None) -> Iterator[None]:
     """Have the workers of an executor evaluate a job's candidates meanwhile; None: processes.
 
-    `InputError` as in `named_workers`.
+    `InputError` as in `workplace`.
     """
     if executor is None:
         if not isinstance(job, ScoreJob):
-            tell_without_processes(job.workers)
+            _tell_without_processes(job.workers)
         yield
         return
-    with closing(named_workers(executor, job.workers or os.cpu_count() or 1)) as workers:
+    with closing(_named(executor, job.workers or os.cpu_count() or 1)) as workers:
         workers.check()
         job.executor = workers.executor
         yield
 
 
-def tell_without_processes(count: int | None) -> None:
+def _tell_without_processes(count: int | None) -> None:
     """Print one line where several workers are wanted and this system has no processes for them."""
     if count != 1 and (reason := no_processes()):
         tell(f"one processor does the work of all: no worker processes here ({reason})")
 
 
-class ExecutorWorkers:
+class ExecutorWorkers(LocalWorkers):
     """The workers of an executor that a function of the user's returns.
 
     They may be on other machines: they reach no folder of ours.
     """
+
+    reaches_folders = False
+    threads = 1
 
     def __init__(self, named: str, count: int) -> None:
         module, function = named.split(":")
@@ -86,16 +100,13 @@ class ExecutorWorkers:
         """Two tasks for each worker that ``--workers`` names."""
         return 2 * self._count
 
-    def check(self) -> None:
-        """Nothing is known of them."""
 
-    def close(self) -> None:
-        """End them once their tasks are done."""
-        self.executor.shutdown(wait=self._count > 1, cancel_futures=True)
-
-
-class DaskWorkers:
+class DaskWorkers(LocalWorkers):
     """The worker pool of a Dask scheduler; its workers reach no folder of ours."""
+
+    reaches_folders = False
+    threads = 1
+    """Threads of one score: a Dask worker runs one task in each of its threads."""
 
     def __init__(self, address: str) -> None:
         self._address, self._client, self._alone = address, _client_of(address), False

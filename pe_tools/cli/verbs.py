@@ -33,6 +33,8 @@ from .doctor_verb import add_doctor_verb
 from .drive_by_verb import add_list_option, drive_by
 from .explain_verbs import add_compare_options, add_explain_options, compare, explain, named_by_file
 from .new_verb import add_new_verb
+from .set_verb import add_set_options, set_keys
+from .sweep_verb import add_sweep_options, sweep
 from .terminal import Answer, open_missing_streams, tell
 from .where_verb import add_where_options, where
 
@@ -41,7 +43,7 @@ ONE, PERHAPS, SOME = "one", "?", "+"
 
 
 GROUPS = {
-    "begin": "new import rigs sensors curves requirements",
+    "begin": "new set import rigs sensors curves requirements",
     "score": "score explain check compare drive-by",
     "place": "where optimize sweep fit",
     "show": "review export",
@@ -238,5 +240,14 @@ VERBS = (
         exchange_verbs.add_import_options,
         "",
         exchange_verbs.import_study,
+    ),
+    Verb("set", "change keys of a study file; its comments stay", add_set_options, ONE, set_keys),
+    Verb(
+        "sweep",
+        "run many studies, or one with many changes",
+        add_sweep_options,
+        SOME,
+        lambda args: sweep(named_by_file(args.studies), args),
+        "STUDY... [--set KEY=VALUE,...]... -o DIR [options]",
     ),
 )

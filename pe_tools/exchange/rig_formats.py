@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Protocol
 
 from pe_core.base.errors import InputError
-from pe_core.base.plugins import find_plugins, load_plugin
 from pe_core.base.values import choice
 
-from . import autoware, carla, csv_table, ros, urdf
+from . import argoverse2, autoware, carla, csv_table, driveworks, kitti, nuscenes, osi, ros, urdf
 from . import lens_pictures as lenses
 from .foreign_values import Export, FileTexts
-from .frames import GROUND, REAR_AXLE_GROUND
+from .frames import GROUND, REAR_AXLE, REAR_AXLE_GROUND
 from .portable import PortableRig, PortableSensor
 
 MODEL = "model"
@@ -111,21 +109,37 @@ _ROWS = (
         beside=True,
     ),
     RigFormat(
+        *("nuscenes", "nuScenes", REAR_AXLE_GROUND, nuscenes.FILES, nuscenes),
+        keeps=lenses.opencv_of_five,
+        usual_size=(1600, 900),
+    ),
+    RigFormat(
+        *("argoverse2", argoverse2.TITLE, REAR_AXLE, argoverse2.FILES, argoverse2),
+        keeps=lenses.straight,
+        passes_through=False,
+    ),
+    RigFormat(
         *("carla", "CARLA objects.json", GROUND, (carla.FILE,), carla, _BEAMS, lenses.square),
         source=carla.source,
     ),
+    RigFormat(
+        *("kitti", "KITTI calibration", GROUND, (kitti.FILE,), kitti),
+        keeps=lenses.straight,
+        usual_size=(1242, 375),
+        passes_through=False,
+    ),
+    RigFormat(
+        *("osi", "ASAM OSI mounting positions", REAR_AXLE, (osi.FILE,), osi, _BEAMS),
+        keeps=lenses.centred,
+    ),
+    RigFormat(
+        *("driveworks", "DriveWorks rig.json", REAR_AXLE_GROUND, (driveworks.FILE,), driveworks),
+        holds=frozenset({MODEL}),
+        keeps=lenses.f_theta_of_five,
+        source=driveworks.source,
+    ),
 )
-
-
-def _all_rows() -> Iterator[RigFormat]:
-    """Yield our own formats, then those of plugins that can be loaded."""
-    yield from _ROWS
-    for point in find_plugins("rig"):
-        with suppress(ImportError, InputError):
-            yield load_plugin(point)
-
-
-RIG_FORMATS = MappingProxyType({row.name: row for row in _all_rows()})
+RIG_FORMATS = MappingProxyType({row.name: row for row in _ROWS})
 """Formats by name."""
 
 
@@ -169,9 +183,7 @@ def format_of_file(output: Path, files: Mapping[str, str], chosen: str | None = 
     return fitting[0]
 
 
-FILES = MappingProxyType(
-    {row.name: row.files[0] for row in RIG_FORMATS.values() if len(row.files) == 1}
-)
+FILES = MappingProxyType({row.name: row.files[0] for row in _ROWS if len(row.files) == 1})
 """Usual name of the file by format, of the formats that have one."""
 
 
@@ -182,8 +194,7 @@ def detect_format(path: Path) -> RigFormat:
         if names & set(row.files):
             return row
     ending = {".csv": "csv", ".urdf": "urdf", ".xacro": "urdf", ".sh": "ros", ".xml": "ros"}
-    if "kitti" in RIG_FORMATS:
-        ending[".txt"] = "kitti"
+    ending[".txt"] = "kitti"
     if path.suffix.lower() in ending:
         return RIG_FORMATS[ending[path.suffix.lower()]]
     expected = f"a file name of a known format, or the name of a format: {', '.join(RIG_FORMATS)}"

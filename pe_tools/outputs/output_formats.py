@@ -67,11 +67,8 @@ _ROWS = (
         has_range=False,
     ),
 )
-OF_EXAMPLE = (
-    *("footprints", "footprints-dxf", "masks", "nebula", "rerun", "solids"),
-    *("argoverse2", "driveworks", "kitti", "nuscenes", "osi"),
-)
-"""Outputs and rig formats of the plugin that is shipped as an example."""
+OF_EXAMPLE = ("footprints", "footprints-dxf", "masks", "nebula", "rerun", "solids")
+"""Outputs of the plugin that is shipped as an example."""
 EXAMPLE = "the plugin perception-entropy-outputs: pip install examples/plugin"
 OUTPUT = "output"
 """The sort of plugins that lead to a `SceneOutput`."""

@@ -1,15 +1,18 @@
 """What tests of the engine and of the tools share."""
 
 import os
+import sys
+import tomllib
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
-from tests.example_plugin import EXAMPLE_PLUGIN, PLUGIN_SITE
+from pe_core.base.plugins import GROUP
+from pe_tools.outputs import scene_outputs
 from tests.few_errors import few_errors
 
-__all__ = ["EXAMPLE_PLUGIN", "few_errors"]
+__all__ = ["few_errors"]
 
 
 @pytest.fixture
@@ -36,9 +39,22 @@ def failing_call(monkeypatch):
 
 
 CHECKOUT = Path(__file__).parents[2]
+EXAMPLE_PLUGIN = CHECKOUT / "examples" / "plugin"
 
 
 @pytest.fixture(scope="module")
-def example_plugin():
-    """Return the folder that installs `examples/plugin`, as the session has it."""
-    return PLUGIN_SITE
+def example_plugin(tmp_path_factory):
+    """Return the folder that installs `examples/plugin`: its entry points, as pip writes them."""
+    project = tomllib.loads((EXAMPLE_PLUGIN / "pyproject.toml").read_text("utf-8"))["project"]
+    site = tmp_path_factory.mktemp("site")
+    info = site / f"{project['name'].replace('-', '_')}-{project['version']}.dist-info"
+    info.mkdir()
+    head = f"Metadata-Version: 2.1\nName: {project['name']}\nVersion: {project['version']}\n"
+    (info / "METADATA").write_text(head)
+    points = "".join(f"{k} = {v}\n" for k, v in project["entry-points"][GROUP].items())
+    (info / "entry_points.txt").write_text(f"[{GROUP}]\n{points}")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "path", [str(site), str(EXAMPLE_PLUGIN), *sys.path])
+        scene_outputs.cache_clear()
+        yield site
+    scene_outputs.cache_clear()

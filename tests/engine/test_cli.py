@@ -105,7 +105,7 @@ def test_exit_status(argv, status, message, capsys):
 @pytest.mark.parametrize(
     ("line", "nearest"),
     [
-        ("scoer", "expected score, or"),
+        ("scoer", "such as score, "),
         ("score car.toml --sampels 3", "expected --samples, or"),
         ("export car.toml --to gltff -o x", "such as gltf, "),
         ("optimize car.toml --method portfollio", "expected portfolio, or"),
@@ -113,6 +113,7 @@ def test_exit_status(argv, status, message, capsys):
         ("sensors Pandar46", "such as Pandar64, "),
         ("rigs kiti", "such as kitti, "),
         ("requirements r151_mving", "such as r151_moving"),
+        ("sweep car.toml --set optimize.sed=1 -o x", "such as seed, "),
     ],
 )
 def test_a_name_that_is_nearly_right_has_the_right_one_named(line, nearest, study, capsys):
@@ -138,7 +139,7 @@ def test_the_help_has_every_verb_in_its_group_and_a_link(capsys):
 
 PATHS = (
     *("compare {}", "review {} -o r", "score {}", "check {}", "optimize {}", "explain {}"),
-    *("score car.toml -o {}", "optimize --resume {}"),
+    *("sweep {} -o s", "sweep car.toml -o {}", "score car.toml -o {}", "optimize --resume {}"),
     *("import {} -o x", "import car.toml -o {}", "export car.toml --to csv -o {}"),
     *("export car.toml --to ros -o {}", "new {} -o x", "new car.npz -o {}", "rigs kitti -o {}"),
     *("check car.toml --csv {}", "review car.toml -o {}", "fit {}"),
@@ -160,7 +161,7 @@ def test_a_path_that_cannot_be_is_one_line(study, tmp_path, monkeypatch, capsys)
 
 def test_folders_in_place_of_files_are_one_line(study, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    for argv in ("compare . ..", "new car.npz -o .", "rigs kitti -o /"):
+    for argv in ("compare . ..", "new car.npz -o .", "sweep / -o s", "rigs kitti -o /"):
         assert main(argv.split()) == 1
         assert len(capsys.readouterr().err.splitlines()) == 1
 

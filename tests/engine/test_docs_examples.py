@@ -65,7 +65,7 @@ def test_lines_of_the_command_parse():
     command = parser()
     for page, line in LINES:
         words = shlex.split(re.split(r" (?:>|\||&&|;) ?", line)[0])[1:]
-        if words[0].startswith(("VERB", "-", "fit", "review", "sweep")):
+        if words[0].startswith(("VERB", "-", "fit", "review")):
             continue  # of plugins, or the help
         try:
             command.parse_args(words)
@@ -107,7 +107,7 @@ for page, (folder, lines) in pages.items():
     if page != "README.md":  # which shows what is printed
         sight.ObjectEvaluator = of_few
     os.chdir(folder)
-    for made in ("review", "cad"):
+    for made in ("sweep", "review", "cad"):
         shutil.rmtree(made, ignore_errors=True)
     for line in lines:
         out, err, words = io.StringIO(), io.StringIO(), shlex.split(line)[1:]

@@ -9,7 +9,7 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_core.sensors.camera.lens import Pinhole
-from pe_tools.exchange import csv_table, import_rig, rig_files, ros
+from pe_tools.exchange import csv_table, driveworks, import_rig, rig_files, ros
 from pe_tools.exchange.lens_pictures import Picture
 from pe_tools.exchange.ros import info_name, picture_of_info, without_comments
 
@@ -252,7 +252,5 @@ def test_plumb_bob_has_four_coefficients_or_five(count, taken):
 
 
 def test_driveworks_has_a_width_of_0_where_none_is_known():
-    from entropy_rigs import driveworks
-
     properties = driveworks.write_properties(Picture(Pinhole(400.0, 400.0, 320.0, 240.0)))
     assert (properties["width"], properties["height"]) == ("0", "0")

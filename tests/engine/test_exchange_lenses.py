@@ -1,5 +1,6 @@
 """Lenses go out in the formats that can say them and come back; others say what they leave."""
 
+import json
 import math
 
 import numpy as np
@@ -156,6 +157,71 @@ def test_bad_intrinsics_are_refused_in_one_line(model, values, words, tmp_path):
         pt.import_rig(info_of(tmp_path, model, values))
     line = str(caught.value)
     assert words in line and "eye.yaml" in line and "\n" not in line
+
+
+def rig_json(folder, **properties):
+    common = {"Model": "ftheta", "cx": "960", "cy": "604", "width": "1920", "height": "1208"}
+    eye = {"name": "eye", "protocol": "camera.gmsl", "properties": common | properties}
+    eye["nominalSensor2Rig_FLU"] = {"roll-pitch-yaw": [0, 0, 0], "t": [1, 0, 1.5]}
+    path = folder / "rig.json"
+    path.write_text(json.dumps({"rig": {"sensors": [eye]}}))
+    return path
+
+
+@pytest.mark.parametrize(
+    "properties",
+    [
+        {"polynomial": "0 0.001 0 2e-10", "polynomial-type": "pixeldistance-to-angle"},
+        {"polynomial": "0 0.001 0 2e-10"},
+        {"bw-poly": "0 0.001 0 2e-10"},
+    ],
+)
+def test_driveworks_polynomial_of_pixels_is_turned_round(properties, tmp_path):
+    """500 px from the middle: 0.5 + 2e-10 * 500^3 = 0.525 rad from the axis."""
+    (eye,) = pt.import_rig(rig_json(tmp_path, **properties), reference=AXLE).rig
+    ahead = np.array([math.cos(0.525)]), np.array([0.0]), np.array([-math.sin(0.525)])
+    x, y = eye.model.projection.project(*ahead)
+    assert (x[0], y[0]) == (pytest.approx(960.0), pytest.approx(1104.0, abs=0.02))
+
+
+def test_a_polynomial_that_cannot_be_turned_round_well_says_how_far_it_is_off(tmp_path):
+    """A lens whose angle bends thrice on the way to the corner."""
+    bends = "0 1.117e-3 -1.118e-6 3.190e-9 -3.474e-12 1.368e-15"
+    (line,) = pt.import_rig(rig_json(tmp_path, polynomial=bends), reference=AXLE).lines
+    assert line.startswith("eye: its polynomial from pixels to angles is turned round to within")
+
+
+@pytest.mark.parametrize(
+    ("properties", "words"),
+    [
+        ({"polynomial": "3 500"}, "the first of them 0"),
+        ({"polynomial": "0 500", "linear-c": "1.2"}, "linear-c: expected 1, within 0.01"),
+        ({"polynomial": "0 500", "polynomial-type": "x"}, "polynomial-type"),
+    ],
+)
+def test_driveworks_lenses_of_no_kind_are_refused(properties, words, tmp_path):
+    with pytest.raises(pe.InputError, match=words):
+        pt.import_rig(rig_json(tmp_path, **properties), reference=AXLE)
+
+
+def test_driveworks_corrections_are_applied(tmp_path):
+    """NVIDIA's own example: R = R_nominal R_correction, t = t_nominal + t_correction."""
+    path = rig_json(tmp_path, fx="1000", fy="1000", Model="pinhole")
+    data = json.loads(path.read_text())
+    (eye,) = data["rig"]["sensors"]
+    eye["nominalSensor2Rig_FLU"] = {"roll-pitch-yaw": [0, 0, 90], "t": [1.0, -0.1, 1.5]}
+    eye["correction_sensor_R_FLU"] = {"roll-pitch-yaw": [0.0, 4.74, 0.0]}
+    eye["correction_rig_T"] = [0.0, 0.0, 0.3275]
+    path.write_text(json.dumps(data))
+    (found,) = pt.import_rig(path, reference=AXLE).rig
+    assert found.pose.position == pytest.approx((1.0 - 1.31, -0.1, 1.8275))
+    down = math.radians(4.74)  # to the left, and nose down in the sensor's own axes
+    forward = found.pose.ground_from_sensor[:, 0]
+    assert forward == pytest.approx((0.0, math.cos(down), -math.sin(down)), abs=1e-12)
+    eye["correction_rig_T"] = [0.0, "x", 0.0]
+    path.write_text(json.dumps(data))
+    with pytest.raises(pe.InputError, match="correction_rig_T"):
+        pt.import_rig(path, reference=AXLE)
 
 
 def test_gazebo_s_distortion_centre_is_the_principal_point(tmp_path):

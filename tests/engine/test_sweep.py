@@ -1,12 +1,13 @@
-"""The example plugin's sweeps: changes of a study, folders and tables, going on."""
+"""Sweeps: changes of a study, folders and tables, workers that die, and going on."""
 
 import csv
-import importlib
 import json
 import os
 import signal
+import subprocess
 import sys
 import time
+from concurrent.futures import BrokenExecutor, Executor, Future
 from dataclasses import replace
 
 import pytest
@@ -19,23 +20,13 @@ from pe_core.study import SEARCH
 from pe_tools import jobs
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import read_search
+from pe_tools.sweep import RunTask, read_settings, run_all, sweep_runs
+from pe_tools.sweep.parameter_grid import MAX_NAME_LENGTH, folder_names
 from tests.engine import shapes
-from tests.engine.conftest import EXAMPLE_PLUGIN
 from tests.engine.processes import Command
 from tests.limits import HANG_S
 
 pytestmark = pytest.mark.usefixtures("few_errors")
-
-
-@pytest.fixture(scope="module", autouse=True)
-def grid(example_plugin):
-    return importlib.import_module("entropy_sweep.parameter_grid")
-
-
-@pytest.fixture(autouse=True)
-def in_processes(example_plugin, monkeypatch):
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(map(str, (example_plugin, EXAMPLE_PLUGIN))))
-
 
 SEEDS = f"optimize.seed={','.join(map(str, range(10_001)))}"
 
@@ -60,20 +51,20 @@ def table(folder):
         return list(csv.DictReader(file))
 
 
-def test_values_are_toml_or_else_texts(grid):
+def test_values_are_toml_or_else_texts():
     texts = ("a.b=1,2.5,true", "c=HDL-64E,Velodyne VLP-16 Puck", 'd."e f".0=[1, 2],[3,4],"x,y"')
-    first, second, third = grid.read_settings(texts)
+    first, second, third = read_settings(texts)
     assert (first.path, second.path, third.path) == (("a", "b"), ("c",), ("d", "e f", "0"))
     found = [list(each.values.values()) for each in (first, second, third)]
     assert found[0] == [1, 2.5, True] and found[1] == ["HDL-64E", "Velodyne VLP-16 Puck"]
     assert found[2] == [[1, 2], [3, 4], "x,y"]
 
 
-def test_several_settings_make_every_combination(grid, study):
-    settings = grid.read_settings(
+def test_several_settings_make_every_combination(study):
+    settings = read_settings(
         ("sensor.roof.model=Pandar64,HDL-64E", "optimize.seed=1,2", "sensor.0.position.2=1.9")
     )
-    runs = grid.sweep_runs({"car": study}, settings)
+    runs = sweep_runs({"car": study}, settings)
     assert [(r.study.rig["roof"].model.name, r.study.search.seed) for r in runs] == [
         *(("Pandar64", 1), ("Pandar64", 2), ("HDL-64E", 1), ("HDL-64E", 2))
     ]
@@ -156,16 +147,16 @@ def test_files_of_somebody_s_own_are_refused_before_the_work(study, out, capsys)
     assert (out / "car" / "result.json").read_text() == "mine"
 
 
-def test_names_are_safe_short_and_of_one_run_each(grid):
+def test_names_are_safe_short_and_of_one_run_each():
     changes = [{"m": "a/b"}, {"m": "a b"}, {"m": "X"}, {"m": "x"}, {"m": "y" * 300}, {"m": "../é"}]
-    names = grid.folder_names([("car", each) for each in changes])
-    names += grid.folder_names([("con", {}), ("con.v2", {}), ("..", {}), ("plain", {})])
+    names = folder_names([("car", each) for each in changes])
+    names += folder_names([("con", {}), ("con.v2", {}), ("..", {}), ("plain", {})])
     assert len({name.casefold() for name in names}) == len(names)
     for name in names:
         assert name.isascii() and not set(name) & set('/\\:*?"<>| ') and name[0] not in ".-"
-        assert len(name) <= grid.MAX_NAME_LENGTH + 9 and not is_reserved(name)
+        assert len(name) <= MAX_NAME_LENGTH + 9 and not is_reserved(name)
     assert names[-1] == "plain" and names[0].startswith("car,m=a-b-")
-    assert grid.folder_names([("car", {"m": "x"})]) == ["car,m=x"]
+    assert folder_names([("car", {"m": "x"})]) == ["car,m=x"]
 
 
 def test_a_sweep_leaves_each_run_and_a_table(study, out, capsys):
@@ -188,6 +179,22 @@ def test_a_sweep_leaves_each_run_and_a_table(study, out, capsys):
         job = pt.OptimizeJob(changed.with_rig(pe.Rig([placed])))
         list(job)
         assert job.outcome.after.entropy == result["entropy"]
+
+
+def test_a_sweep_by_expected_ap_has_a_column_of_it(study, out, capsys):
+    """Read again from the folders, it is the same table."""
+    call = ["sweep", str(study), "--optimize", "--set", "optimize.seed=1,2", "-o", str(out)]
+    call += ["--objective", "expected_ap", "--set", "metric.scenes=8", "--workers", "1"]
+    call += ["--set", "optimize.candidates=1"]
+    assert main(call) == 0
+    first = capsys.readouterr().out
+    assert "coverage   start  expected AP" in first.splitlines()[0] and "*" in first
+    for row in table(out):
+        data = json.loads((out / row["run"] / "result.json").read_text())["expected_ap"]
+        aps = [float(row[f"expected_ap{when}"]) for when in ("_before", "")]
+        assert aps == [data[when]["ap"] for when in ("before", "after")]
+    assert main(call) == 0
+    assert capsys.readouterr().out == first
 
 
 def test_a_sweep_goes_on_and_does_nothing_twice(study, out, capsys):
@@ -273,6 +280,112 @@ def replace_seed(study, seed):
     return replace(study, search=replace(study.search, seed=seed))
 
 
+@pytest.mark.skipif(sys.platform != "linux" or os.geteuid() != 0, reason="only root may mount")
+@pytest.mark.parametrize(("size", "done"), [("size=64k", 2), ("nr_inodes=4", 0)])
+def test_a_small_disk_that_fills(study, out, tmp_path, capfd, size, done):
+    """No run is said to be done without its results."""
+    out.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", size, "none", str(out)], check=False)
+    if mounted.returncode:
+        pytest.skip("no file system may be mounted here")
+    try:
+        argv = ["sweep", study, "--set", "optimize.seed=1,2,3,4,5,6", "--samples", 1024]
+        with Command(*argv, "-o", out / "sweep", "--workers", 1, "--json") as command:
+            data = json.loads(command.process.stdout.read())
+            assert command.end() == 1
+        assert any("no space left on device" in line for line in command.complaints)
+        for run in data["runs"]:
+            if run["status"] != "done":
+                continue
+            result = json.loads((out / "sweep" / run["run"] / "result.json").read_text())
+            assert result["entropy"] == run["entropy"]
+        assert sum(run["status"] == "done" for run in data["runs"]) == done
+    finally:
+        subprocess.run(["umount", str(out)], check=True)
+
+
+def test_a_result_that_no_folder_takes_is_told_and_not_called_done(study, out):
+    """No file may have more bytes than a small study has: the results are larger."""
+    import resource
+
+    def quota():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (2500, 2500))
+
+    argv = ["sweep", study, "--set", "optimize.seed=1,2", "--samples", 1024, "-o", out]
+    with Command(*argv, "--workers", 1, preexec_fn=quota) as command:
+        text = command.process.stdout.read()
+        assert command.end() == 1
+    assert sum("file too large" in line for line in command.complaints) >= 2
+    assert [row["status"] for row in table(out)] == ["not written", "not written"]
+    assert all(row["entropy"] and "file too large" in row["message"] for row in table(out))
+    assert text.count("not written: ") == 2
+
+
+class Dying(Executor):
+    """An executor whose workers die with some tasks, and with all others handed out meanwhile."""
+
+    def __init__(self, deadly, deaths):
+        self.deadly, self.deaths, self.given = deadly, dict.fromkeys(deadly, deaths), []
+        self.open = []
+
+    def submit(self, fn, call, task):
+        self.given.append(task.study.search.seed)
+        future = Future()
+        seed = task.study.search.seed
+        self.open.append(future)
+        if self.deaths.get(seed, 0):
+            self.deaths[seed] -= 1
+            for each in self.open:
+                if not each.done():
+                    each.set_exception(BrokenExecutor("died"))
+        elif seed not in HELD or len(self.open) > 2:
+            future.set_result(fn(call, task))
+        return future
+
+
+HELD = {1}
+"""Not done yet when the next one is handed out."""
+
+
+class Place:
+    threads = 1
+
+    def __init__(self, executor, count):
+        self.executor, self.count = executor, count
+
+    def width(self):
+        return self.count
+
+    def check(self):
+        pass
+
+    def checkpoints(self, run, folder):
+        raise AssertionError("scores have none")
+
+
+@pytest.mark.parametrize(("deaths", "named"), [(1, []), (2, ["run2"])])
+def test_a_worker_that_dies_costs_at_most_the_run_that_killed_it(study, deaths, named):
+    plain = replace(pe.load_study(study), samples=1024)
+    tasks = {
+        f"run{seed}": RunTask(replace(plain, search=replace(plain.search, seed=seed)), False, 1)
+        for seed in (1, 2, 3)
+    }
+    found, executor = {}, Dying({2}, deaths)
+
+    def take(name, what):
+        assert name not in found, "each once"
+        found[name] = what
+
+    run_all(list(tasks), tasks.get, Place(executor, 2), take)
+    assert sorted(found) == ["run1", "run2", "run3"]
+    failed = {name: str(what) for name, what in found.items() if isinstance(what, pe.InputError)}
+    assert list(failed) == named
+    for line in failed.values():
+        expected = "a worker that survives its task, found two that died (BrokenExecutor)"
+        assert line == f"run2: worker: expected {expected}"
+    assert executor.given == [1, 2, 3, 1, 2], "what may be guilty is tried again, alone"
+
+
 def test_parts_in_processes_of_their_own_and_the_same_command_after_them_merge(study, out):
     """A part writes no table and leaves the other runs alone; what a part did not do is done."""
     argv = ["sweep", str(study), "--set", "optimize.seed=0:5", "-o", str(out), "--workers", "1"]
@@ -301,3 +414,20 @@ def test_an_executor_of_a_function_finds_the_same(study, out, tmp_path, monkeypa
         for name in ("here/car", "there/car", "one here", "one there")
     ]
     assert len({json.dumps(each["placements"]) for each in found}) == 1
+
+
+def test_a_sweep_is_a_table_of_parquet_too(study, out):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    keys = ["--set", "optimize.seed=1,2", "--set", "space.interval=0.5"]
+    assert main(["sweep", str(study), *keys, "-o", str(out), "--parquet", "--workers", "1"]) == 0
+    found = parquet.read_table(out / "sweep.parquet").to_pylist()
+    rows = table(out)
+    assert [list(row) for row in found] == [list(row) for row in rows]
+    for row, line in zip(found, rows, strict=True):
+        assert row["entropy"] == float(line["entropy"]) and row["run"] == line["run"]
+
+
+def test_without_pyarrow_a_line_comes_before_the_work(study, out, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
+    assert main(["sweep", str(study), "-o", str(out), "--parquet"]) == 1
+    assert "[argoverse]" in capsys.readouterr().err and not out.exists()

@@ -1,6 +1,6 @@
 """A sweep by a real Dask scheduler with two workers on the loopback; one of them is killed."""
 
-import importlib
+import asyncio
 import json
 import os
 import signal
@@ -8,15 +8,17 @@ import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
 import pe_core as pe
 import pe_tools as pt
+from pe_tools.cli import sweep_verb
+from pe_tools.cli.executors import workplace
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import read_search
 from tests.engine import shapes
-from tests.engine.conftest import EXAMPLE_PLUGIN
 from tests.engine.processes import ROOT
 from tests.limits import HANG_S
 
@@ -86,12 +88,12 @@ def wait_until(is_so):
 
 def started(role, *arguments):
     command = [sys.executable, "-m", f"distributed.cli.dask_{role}", *map(str, arguments)]
-    env = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{EXAMPLE_PLUGIN}"}
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
     return subprocess.Popen(command, cwd=ROOT, env=env, stderr=subprocess.DEVNULL)
 
 
 @pytest.fixture(scope="module")
-def cluster(tmp_path_factory, example_plugin):
+def cluster(tmp_path_factory):
     cluster = Cluster(tmp_path_factory.mktemp("cluster"))
     yield cluster
     cluster.end()
@@ -99,8 +101,7 @@ def cluster(tmp_path_factory, example_plugin):
 
 def at_first_result(monkeypatch, do):
     """Have something done when the first result has come; return the names of all that come."""
-    verb = importlib.import_module("entropy_sweep.sweep_verb")._SweepVerb
-    came, take = [], verb._take
+    came, take = [], sweep_verb._SweepVerb._take
 
     def watched(self, name, found):
         if not came:
@@ -108,7 +109,7 @@ def at_first_result(monkeypatch, do):
         came.append(name)
         take(self, name, found)
 
-    monkeypatch.setattr(verb, "_take", watched)
+    monkeypatch.setattr(sweep_verb._SweepVerb, "_take", watched)
     return came
 
 
@@ -156,6 +157,17 @@ def test_searches_on_a_cluster_find_what_they_find_here(cluster, tmp_path):
     assert json.loads((out / "car" / "result.json").read_text())["entropy"] == (
         whole.outcome.after.entropy
     )
+
+
+def test_a_cluster_is_reached_where_a_loop_runs_already(cluster):
+    """As in a notebook; in a thread of its own, as this one may have a loop, too."""
+
+    async def in_a_notebook():
+        with workplace(1, cluster.address) as workers:
+            return workers.width()
+
+    with ThreadPoolExecutor(1) as thread:
+        assert thread.submit(asyncio.run, in_a_notebook()).result() > 0
 
 
 def test_a_scheduler_that_goes_away_is_one_line(study, cluster, tmp_path, monkeypatch, capsys):

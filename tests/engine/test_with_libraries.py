@@ -177,6 +177,19 @@ def test_argoverse_s_own_projection_sees_a_point_where_ours_does():
     assert (u, v) == pytest.approx((960.0 - 0.2 * f, 540.0 + 0.1 * f), abs=1e-6)
 
 
+def test_distortion_in_an_argoverse_table_is_reported(tmp_path):
+    feather = pytest.importorskip("pyarrow.feather", reason="of the extra argoverse")
+    import pyarrow
+
+    pt.export_rig(RIG, "argoverse2", tmp_path, AXLE)
+    path = tmp_path / "intrinsics.feather"
+    (row,) = feather.read_table(path).to_pylist()
+    feather.write_feather(pyarrow.Table.from_pylist([{**row, "k1": -0.25}]), path)
+    assert any(
+        "k1, k2, k3 are not applied" in line for line in pt.import_rig(tmp_path, None, AXLE).lines
+    )
+
+
 @pytest.mark.parametrize(
     "damage", [lambda data: b"", lambda data: data[:200], lambda data: b"x" * 99]
 )
@@ -187,6 +200,41 @@ def test_a_damaged_feather_table_is_refused_in_a_line(tmp_path, damage):
     path.write_bytes(damage(path.read_bytes()))
     with pytest.raises(pe.InputError, match="expected a feather table"):
         pt.import_rig(tmp_path, None, AXLE)
+
+
+@pytest.mark.parametrize("compression", ["zstd", "lz4"])
+def test_a_compressed_table_is_read_and_a_large_one_is_refused(compression, tmp_path):
+    """A file of more than 100 kB, or of more rows than a rig has, is no calibration."""
+    feather = pytest.importorskip("pyarrow.feather", reason="of the extra argoverse")
+    import pyarrow
+
+    pt.export_rig(RIG, "argoverse2", tmp_path, AXLE)
+    path = tmp_path / "egovehicle_SE3_sensor.feather"
+    feather.write_feather(feather.read_table(path), path, compression=compression)
+    assert [s.name for s in pt.import_rig(tmp_path, None, AXLE).rig] == [s.name for s in RIG]
+    for column in (np.arange(2e5), np.zeros(10**6)):
+        table = pyarrow.table({"qw": pyarrow.array(column)})
+        feather.write_feather(table, path, compression=compression)
+        with pytest.raises(pe.InputError, match=r"at most 100,000 bytes|a feather table"):
+            pt.import_rig(tmp_path, None, AXLE)
+
+
+def test_offsets_that_lie_and_feather_s_first_version_are_refused_before_a_value_is_read(tmp_path):
+    """A text that would begin before the table's own memory: reading it ended the process."""
+    feather = pytest.importorskip("pyarrow.feather", reason="of the extra argoverse")
+    pt.export_rig(RIG, "argoverse2", tmp_path, AXLE)
+    path = tmp_path / "egovehicle_SE3_sensor.feather"
+    whole = path.read_bytes()
+    names = [each.name for each in RIG]
+    offsets = np.cumsum([0, *map(len, names)]).astype("<i4").tobytes()
+    assert whole.count(offsets) == 1, "where the texts of the names begin and end"
+    lying = np.array([0, 1 << 30, (1 << 30) + 5], "<i4").tobytes()
+    first = io.BytesIO()
+    feather.write_feather(feather.read_table(path), first, version=1)
+    for data in (whole.replace(offsets, lying), first.getvalue()):
+        path.write_bytes(data)
+        with pytest.raises(pe.InputError, match="expected a feather table"):
+            pt.import_rig(tmp_path, None, AXLE)
 
 
 @pytest.mark.parametrize("lacks", ["plugin", "library"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,16 +10,17 @@ from typing import Any
 
 from pe_core.base.errors import InputError
 from pe_core.base.files import csv_text, read_bytes
+from pe_core.base.plugins import required_package
 from pe_core.base.table_reader import dump_json, finite, parse_json
 from pe_core.study import RESULT
 from pe_core.study.study import EXPECTED_AP
 from pe_core.version import __version__
-from pe_tools.jobs import FileSet, Outcome, files_of_other_runs, fingerprint, prepare_folder
-from pe_tools.wording import aligned
 
+from ..jobs import FileSet, Outcome, files_of_other_runs, fingerprint, prepare_folder
+from ..wording import aligned
 from .sweep_runner import SweepRun
 
-SWEEP_CSV, SWEEP_JSON = "sweep.csv", "sweep.json"
+SWEEP_CSV, SWEEP_JSON, SWEEP_PARQUET = "sweep.csv", "sweep.json", "sweep.parquet"
 WAITING, BEGUN, DONE, FAILED = "waiting", "begun", "done", "failed"
 UNWRITTEN = "not written"
 """The status of a run whose results could not be written."""
@@ -80,8 +82,12 @@ def table_data(rows: Sequence[SweepRow], kind: str) -> dict[str, Any]:
     return {"kind": f"sweep of {kind}", "version": __version__, "runs": [_dict(r) for r in rows]}
 
 
-def write_table(rows: Sequence[SweepRow], kind: str, folder: Path) -> dict[str, Any]:
+def write_table(
+    rows: Sequence[SweepRow], kind: str, folder: Path, *, parquet: bool = False
+) -> dict[str, Any]:
     """Write sweep.csv and sweep.json, together; return what sweep.json holds.
+
+    With `parquet` also the table of sweep.csv as sweep.parquet; a figure that is missing is null.
 
     `InputError` if the folder cannot be written, or one of the files is of another program.
     """
@@ -89,6 +95,8 @@ def write_table(rows: Sequence[SweepRow], kind: str, folder: Path) -> dict[str, 
     with FileSet(prepare_folder(folder)) as files:
         table = _table(rows)
         files.add(SWEEP_CSV, csv_text(table).encode(errors="backslashreplace"))
+        if parquet:
+            files.add(SWEEP_PARQUET, _parquet(table))
         files.add(SWEEP_JSON, dump_json(finite(data)).encode(errors="backslashreplace"))
     return data
 
@@ -134,6 +142,15 @@ def _dict(row: SweepRow) -> dict[str, Any]:
         "message": row.message,
         **({} if row.ap is None else {f"{EXPECTED_AP}_before": row.ap_before, EXPECTED_AP: row.ap}),
     }
+
+
+def _parquet(table: Sequence[Sequence[object]]) -> bytes:
+    heads, *lines = table
+    columns = {str(head): [line[k] for line in lines] for k, head in enumerate(heads)}
+    data = io.BytesIO()
+    arrow = required_package("pyarrow").table(columns)
+    required_package("pyarrow.parquet").write_table(arrow, data)
+    return data.getvalue()
 
 
 def _table(rows: Sequence[SweepRow]) -> list[list[object]]:

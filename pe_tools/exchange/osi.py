@@ -22,20 +22,13 @@ from pe_core.base.table_reader import Table
 from pe_core.base.values import Number, Whole, numbers, real
 from pe_core.geometry.poses import METRES
 from pe_core.study.passthrough import json_entry
-from pe_tools.exchange import foreign_values as values
-from pe_tools.exchange.foreign_values import (
-    MAX_BEAMS,
-    RANGE,
-    RPY,
-    XYZ,
-    Export,
-    FileTexts,
-    require_at_most,
-)
-from pe_tools.exchange.lens_pictures import picture_of_fov
-from pe_tools.exchange.passthrough import entry_row
-from pe_tools.exchange.portable import FieldOfView, PortableRig, PortableSensor, Scan
-from pe_tools.exchange.portable_kinds import CAMERA, LIDAR, RADAR, ULTRASONIC
+
+from . import foreign_values as values
+from .foreign_values import MAX_BEAMS, RANGE, RPY, XYZ, Export, FileTexts, require_at_most
+from .lens_pictures import picture_of_fov
+from .passthrough import entry_row
+from .portable import FieldOfView, PortableRig, PortableSensor, Scan
+from .portable_kinds import CAMERA, LIDAR, RADAR, ULTRASONIC
 
 FILE = "sensor_view_configuration.json"
 OTHER_KINDS = (RADAR, ULTRASONIC)

@@ -188,19 +188,28 @@ def _changed_studies(path: Path, settings: Sequence[TriedKey]) -> Iterator[tuple
         yield changes, replace(study, vehicle=vehicle)
 
 
-def set_value(data: dict[str, Any], setting: TriedKey, value: Any, source: str) -> None:
-    """Change a value in a study's plain data; missing tables on the path are created."""
+def set_value(
+    data: dict[str, Any], setting: TriedKey, value: Any, source: str
+) -> tuple[tuple[str | int, ...], Any]:
+    """Change a value in a study's plain data; missing tables on the path are created.
+
+    Return the path, with the index of each element of a list, and the value before.
+    """
     node: Any = data
+    path: tuple[str | int, ...] = ()
     for number, part in enumerate(setting.path, 1):
         if not isinstance(node, list | dict):
             at = ".".join(setting.path[: number - 1])
             place = "before the last dot" if number == len(setting.path) else f"at {at}"
             raise InputError(source, setting.key, f"a table {place}", shown(node))
         key: Any = _index(node, part, setting, source) if isinstance(node, list) else part
+        path = (*path, key)
         if number == len(setting.path):
+            before = node[key] if isinstance(node, list) else node.get(key)
             node[key] = copy.deepcopy(value)
-            return
+            return path, before
         node = node[key] if isinstance(node, list) else node.setdefault(part, {})
+    raise AssertionError("a key has a part")
 
 
 def _index(elements: list[Any], part: str, setting: TriedKey, source: str) -> int:

@@ -12,26 +12,21 @@ from typing import Any
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
+from pe_core.base.plugins import required_package
 from pe_core.study import SEARCH
-from pe_tools import jobs
-from pe_tools.advice import curve_note, hardware_note
-from pe_tools.cli import named_by_file, terminal
-from pe_tools.cli.command import (
-    add_executor_option,
-    add_score_options,
-    add_search_options,
-    with_options,
-)
-from pe_tools.cli.interrupts import Interrupted, Received, stop_at_first
-from pe_tools.cli.progress_line import Reporter
-from pe_tools.cli.run_job import refuse_own_folder
-from pe_tools.cli.terminal import is_terminal, one_line, show, tell
 
-from . import sweep_table as table
-from .parameter_grid import read_settings, sweep_runs
-from .sweep_runner import RunTask, SweepRun, run_all
-from .sweep_table import BEGUN, DONE, UNWRITTEN, WAITING, SweepRow
-from .workplaces import workplace
+from .. import jobs
+from ..advice import curve_note, hardware_note
+from ..sweep import RunTask, SweepRun, read_settings, run_all, sweep_runs
+from ..sweep import sweep_table as table
+from ..sweep.sweep_table import BEGUN, DONE, UNWRITTEN, WAITING, SweepRow
+from . import terminal
+from .command import add_executor_option, add_score_options, add_search_options, with_options
+from .executors import workplace
+from .interrupts import Interrupted, Received, stop_at_first
+from .progress_line import Reporter
+from .run_job import refuse_own_folder
+from .terminal import is_terminal, one_line, show, tell
 
 MAX_PARTS = 1_000_000
 
@@ -46,6 +41,8 @@ def add_sweep_options(parser: argparse.ArgumentParser) -> None:
     about = "only these runs, the K-th of N parts, without a table: for array jobs of a cluster"
     parser.add_argument("--part", type=part_of, metavar="K/N", help=about)
     parser.add_argument("--json", action="store_true", help=f"print {table.SWEEP_JSON} on stdout")
+    about = f"write the table as {table.SWEEP_PARQUET}, too"
+    parser.add_argument("--parquet", action="store_true", help=about)
     add_score_options(parser, workers="processes")
     add_search_options(parser)
 
@@ -69,11 +66,14 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
     if args.part is not None:
         runs = runs[args.part[0] - 1 :: args.part[1]]
     names = [table.SWEEP_CSV, table.SWEEP_JSON]
+    if args.parquet:
+        required_package("pyarrow.parquet")  # before the work
+        names.append(table.SWEEP_PARQUET)
     folder = jobs.prepare_folder(args.output, names)
     for run in runs:  # before the work
         refuse_own_folder(Path(files[run.study_name]), folder / run.name)
         jobs.check_files(folder / run.name, jobs.result_names(run.study, kind))
-    work = _SweepVerb(runs, kind, folder, args.part is None)
+    work = _SweepVerb(runs, kind, folder, args.part is None, args.parquet)
     received = work.run(args)
     if received.signum is not None:
         kept = f", {work.count(BEGUN)} begun and kept" if work.count(BEGUN) else ""
@@ -100,11 +100,11 @@ class _SweepVerb:
     """
 
     def __init__(
-        self, runs: Sequence[SweepRun], kind: str, folder: Path, writes_table: bool
+        self, runs: Sequence[SweepRun], kind: str, folder: Path, writes_table: bool, parquet: bool
     ) -> None:
         self._writes_table = writes_table
         self._kind, self._folder = kind, folder
-        self._write = partial(table.write_table, kind=kind)
+        self._write = partial(table.write_table, kind=kind, parquet=parquet)
         self.failed_to_write = False
         self.rows: dict[str, SweepRow] = {}
         for run in runs:
@@ -149,10 +149,8 @@ class _SweepVerb:
                 def make_task(name: str) -> RunTask:
                     run = self.rows[name].run
                     self.rows[name] = replace(self.rows[name], status=BEGUN)
-                    folder = (
-                        self._folder / name if getattr(place, "reaches_folders", False) else None
-                    )
-                    return RunTask(run.study, searches, getattr(place, "threads", 1), folder)
+                    folder = self._folder / name if place.reaches_folders else None
+                    return RunTask(run.study, searches, place.threads, folder)
 
                 def goes_on() -> bool:
                     if self._on_terminal:
@@ -210,16 +208,3 @@ class _SweepVerb:
     def _print_failure(self, name: str, what: InputError | str) -> None:
         self._reporter.clear()
         tell(str(what) if not name else f"{name}: {what}")
-
-
-def add_verbs(verbs: Any) -> None:
-    """Add ``sweep`` to the parser of the command."""
-    parser = verbs.add_parser("sweep", help="run many studies, or one with many changes")
-    parser.usage = f"{parser.prog} STUDY... [--set KEY=VALUE,...]... -o DIR [options]"
-    parser.add_argument("studies", nargs="+", metavar="STUDY", help="study file (TOML)")
-    add_sweep_options(parser)
-    parser.set_defaults(
-        function=lambda args: sweep(named_by_file(args.studies), args),
-        kind="sweep",
-        usage_error=parser.error,
-    )

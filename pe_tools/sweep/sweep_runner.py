@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import os
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from pe_core.base.errors import InputError
-from pe_core.search import Call, WorkerDied, run_tasks
+from pe_core.search import Call, WorkerDied, run_tasks, start_processes
 from pe_core.search.payload import keep_freed_memory
 from pe_core.study import Study
 from pe_core.version import __version__
-from pe_tools.jobs import Checkpoint, OptimizeJob, Outcome, ScoreJob, read_search
+
+from ..jobs import Checkpoint, OptimizeJob, Outcome, ScoreJob, read_search
 
 WAIT_S = 0.2
 """How often it is checked whether the sweep continues, while no result arrives."""
@@ -84,10 +86,38 @@ def _begun(job: OptimizeJob, folder: Path) -> Callable[[], None]:
     return save
 
 
+class LocalWorkers:
+    """Processes on this machine that run the tasks of a sweep; a thread where there are none.
+
+    Other workers have the same methods. The executor accepts tasks even after a worker's death.
+    """
+
+    reaches_folders = True
+    """Whether the workers save checkpoints in the folders of the results."""
+
+    def __init__(self, count: int) -> None:
+        processes = start_processes(count)
+        self._count = 1 if processes is None else count
+        self.executor: Executor = processes or ThreadPoolExecutor(1)
+        self.threads = max(1, (os.cpu_count() or 1) // self._count)
+        """How many threads a task may use."""
+
+    def width(self) -> int:
+        """How many tasks are submitted at a time: a dead process tells which one killed it."""
+        return self._count
+
+    def check(self) -> None:
+        """Raise `InputError` when the workers are gone; called several times a second."""
+
+    def close(self) -> None:
+        """Kill processes in the middle of their tasks; a thread finishes its task."""
+        self.executor.shutdown(wait=self._count > 1, cancel_futures=True)
+
+
 def run_all(
     names: Sequence[str],
     make_task: Callable[[str], RunTask],
-    pool: Any,
+    pool: LocalWorkers,
     on_result: Callable[[str, RunResult], None],
     should_continue: Callable[[], bool] = lambda: True,
 ) -> None:

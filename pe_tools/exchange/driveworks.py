@@ -17,20 +17,14 @@ from pe_core.base.values import FINITE, Number, vector
 from pe_core.geometry.poses import METRES, Pose
 from pe_core.sensors.camera import FTheta, Pinhole
 from pe_core.study.passthrough import json_entry
-from pe_tools.exchange import foreign_values as values
-from pe_tools.exchange.foreign_values import (
-    Export,
-    FileTexts,
-    json_of,
-    json_rows,
-    plain_number,
-    pose_from,
-)
-from pe_tools.exchange.frames import composed, shifted
-from pe_tools.exchange.lens_pictures import Picture
-from pe_tools.exchange.passthrough import entry_row
-from pe_tools.exchange.portable import ORIGIN, PortableRig, PortableSensor
-from pe_tools.exchange.portable_kinds import CAMERA, LIDAR
+
+from . import foreign_values as values
+from .foreign_values import Export, FileTexts, json_of, json_rows, plain_number, pose_from
+from .frames import composed, shifted
+from .lens_pictures import Picture
+from .passthrough import entry_row
+from .portable import ORIGIN, PortableRig, PortableSensor
+from .portable_kinds import CAMERA, LIDAR
 
 FILE = "rig.json"
 POSE_KEY, ROTATION_KEY, POSITION_KEY = "nominalSensor2Rig_FLU", "roll-pitch-yaw", "t"

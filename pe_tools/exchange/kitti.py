@@ -17,11 +17,12 @@ from pe_core.base.errors import InputError
 from pe_core.base.values import Number
 from pe_core.geometry.poses import Pose
 from pe_core.sensors.camera import Pinhole
-from pe_tools.exchange.foreign_values import Export, FileTexts, figures, spaced, text_of
-from pe_tools.exchange.frames import BODY_FROM_OPTICAL, checked_rotation, pose_of, product, turned
-from pe_tools.exchange.lens_pictures import Picture
-from pe_tools.exchange.portable import PortableRig, PortableSensor
-from pe_tools.exchange.portable_kinds import CAMERA, LIDAR
+
+from .foreign_values import Export, FileTexts, figures, spaced, text_of
+from .frames import BODY_FROM_OPTICAL, checked_rotation, pose_of, product, turned
+from .lens_pictures import Picture
+from .portable import PortableRig, PortableSensor
+from .portable_kinds import CAMERA, LIDAR
 
 FILE, MAX_CAMERAS = "calib.txt", 4
 RECTIFIED, TO_CAMERA = ("R0_rect", "R_rect"), ("Tr_velo_to_cam", "Tr_velo_cam", "Tr")

@@ -17,12 +17,13 @@ from pe_core.base.values import numbers, vector
 from pe_core.geometry.poses import METRES
 from pe_core.sensors.camera import BrownConrady, Pinhole
 from pe_core.study.passthrough import json_entry
-from pe_tools.exchange import frames
-from pe_tools.exchange.foreign_values import Export, FileTexts, json_of, json_rows
-from pe_tools.exchange.lens_pictures import Picture
-from pe_tools.exchange.passthrough import entry_row
-from pe_tools.exchange.portable import PortableRig, PortableSensor
-from pe_tools.exchange.portable_kinds import CAMERA, LIDAR
+
+from . import frames
+from .foreign_values import Export, FileTexts, json_of, json_rows
+from .lens_pictures import Picture
+from .passthrough import entry_row
+from .portable import PortableRig, PortableSensor
+from .portable_kinds import CAMERA, LIDAR
 
 FILES = CALIBRATED, SENSORS = "calibrated_sensor.json", "sensor.json"
 FIVE = ("k1", "k2", "p1", "p2", "k3")

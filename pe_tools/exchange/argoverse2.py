@@ -19,24 +19,12 @@ from pe_core.base.table_reader import Table
 from pe_core.base.values import vector
 from pe_core.geometry.poses import METRES
 from pe_core.sensors.camera import Pinhole
-from pe_tools.exchange.foreign_values import (
-    COEFFICIENT,
-    FOCAL,
-    PIXELS,
-    PRINCIPAL_POINT,
-    Export,
-    FileTexts,
-)
-from pe_tools.exchange.frames import (
-    BODY_FROM_OPTICAL,
-    from_quaternion,
-    pose_of,
-    product,
-    quaternion,
-)
-from pe_tools.exchange.lens_pictures import Picture
-from pe_tools.exchange.portable import PortableRig, PortableSensor
-from pe_tools.exchange.portable_kinds import CAMERA, LIDAR
+
+from .foreign_values import COEFFICIENT, FOCAL, PIXELS, PRINCIPAL_POINT, Export, FileTexts
+from .frames import BODY_FROM_OPTICAL, from_quaternion, pose_of, product, quaternion
+from .lens_pictures import Picture
+from .portable import PortableRig, PortableSensor
+from .portable_kinds import CAMERA, LIDAR
 
 MAGIC = b"ARROW1"
 """First bytes of an Arrow file; its stream begins after two more."""

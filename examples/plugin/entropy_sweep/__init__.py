@@ -1,1 +1,0 @@
-"""Sweeps: many studies, or one with many changes, run by the workers of any executor."""

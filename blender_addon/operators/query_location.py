@@ -18,10 +18,11 @@ OFF_SURFACE_M = 0.05
 HINT = "Click the ground or a surface to query it     Esc, right click: done"
 
 
-def clicking(hint: str) -> dict[str, Any]:
+def clicking(hint: str, once: bool = False) -> dict[str, Any]:
     """Return members of an operator that is executed at each click on a surface, until Esc.
 
-    Its property `point` is the location; `hint` is shown in the status bar.
+    With `once` it ends with the first click that does something: an undo step of its own. Its
+    property `point` is the location; `hint` is shown in the status bar.
     """
 
     def begin(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
@@ -33,7 +34,7 @@ def clicking(hint: str) -> dict[str, Any]:
     def modal(self: Any, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
             end(self, context)
-            return {"FINISHED"}
+            return {"CANCELLED"} if once else {"FINISHED"}
         if event.type != "LEFTMOUSE" or event.value != "PRESS":
             return {"PASS_THROUGH"}
         view = view_under(context, event)
@@ -44,7 +45,9 @@ def clicking(hint: str) -> dict[str, Any]:
             report(self, "WARNING", "There is no ground or surface under the mouse")
         else:
             self.point = location
-            self.execute(context)
+            if self.execute(context) == {"FINISHED"} and once:
+                end(self, context)
+                return {"FINISHED"}
         return {"RUNNING_MODAL"}
 
     def end(_self: Any, context: bpy.types.Context) -> None:

@@ -117,7 +117,7 @@ PLACES = JobRow(
     "Pick a Place",
     mode="Sensors are placed in Object Mode",
     unless=lambda context: None if where_map.maps.get(context.scene.name) else "Ask Where? first",
-    **clicking("Click a place to put the sensor there     Esc, right click: done"),
+    **clicking("Click a place to put the sensor there     Esc, right click: cancel", once=True),
 )
 def take_place(context: bpy.types.Context, point: tuple[float, float, float]) -> str:
     """Click the coloured body: the sensor is put at the nearest place that was scored"""

@@ -58,4 +58,4 @@ def _state(found: jobs.PlaceMap, sensors: Sequence[pe.Sensor]) -> str:
         return " (before the last change)"
     if len(found.places) < found.count:
         return f" ({len(found.places):,} of {found.count:,} places)"
-    return f", ± {found.row.text(found.error)}" if found.error else ""
+    return f", ± {found.error:.{found.row.decimals}f}" if found.error else ""

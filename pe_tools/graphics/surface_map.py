@@ -12,7 +12,7 @@ from .primitives import Primitives
 FINE_M, MAX_TRIANGLES = 0.09, 40_000
 """Longest edge of the triangles that are coloured [m], unless they would be more than so many."""
 AT_ONCE = 4096
-FORBIDDEN = (0.30, 0.30, 0.30)
+FORBIDDEN = (0.46, 0.46, 0.46)
 ALPHA, SHADE = 0.94, 0.30
 """Opacity, and how much darker a face is that is turned away from the light."""
 LIGHT = np.array([0.35, 0.25, 0.90])

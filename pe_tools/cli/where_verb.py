@@ -73,7 +73,7 @@ def where(study: Study, args: argparse.Namespace, inputs: Sequence[Path] = ()) -
 
 def place_lines(found: PlaceMap) -> list[str]:
     """Return the best places as a table, with what is forbidden and how sure the figures are."""
-    row, name = found.row, found.row.label.lower()
+    row, name = found.row, found.row.label[:1].lower() + found.row.label[1:]
     rows = [["position [m]", "yaw [deg]", name, "gain"]]
     for place in found.best(BEST, APART_M):
         value = place.value or 0.0

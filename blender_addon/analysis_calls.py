@@ -16,13 +16,11 @@ _sight: text.RecentCache[sight.Sight] = text.RecentCache()
 """By the problem's key."""
 
 
-def key_figures(
-    problem: Problem, height: float, class_name: str, rigs: Sequence[pe.Rig]
-) -> list[advice.KeyFigures]:
+def key_figures(problem: Problem, rigs: Sequence[pe.Rig]) -> list[advice.KeyFigures]:
     """Return expected AP in traffic, blind sectors, blind ground and reach of rigs."""
     place, how = (problem.space, problem.prior, problem.vehicle), (problem.model, problem.targets)
     look = _sight.made(problem.key, lambda: sight.Sight(*place, model=how[0], targets=how[1]))
-    return [advice.key_figures(look, rig, height, class_name) for rig in rigs]
+    return [advice.KeyFigures.of_rig(look, rig) for rig in rigs]
 
 
 def warnings(

@@ -113,3 +113,10 @@ def free_name(wanted: str, taken: set[str]) -> str:
     while name in taken:
         name, number = f"{wanted} {number}", number + 1
     return name
+
+
+SIMPLE = "SIMPLE"
+PANELS = (
+    (SIMPLE, "Simple", "The panels of the first hour, in plain words"),
+    ("ALL", "All", "All panels, with the terms and units of the metric"),
+)

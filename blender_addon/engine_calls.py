@@ -21,7 +21,7 @@ from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from .engine import pe, requirements, text
+from .engine import catalog, pe, requirements, text
 
 SAMPLES = 32_768
 """Voxels that a live score evaluates: an error of 0.02 nats on the sedan, 10 ms a move of a LiDAR.
@@ -29,7 +29,7 @@ SAMPLES = 32_768
 MAX_SCENES = 64
 """Scenes of objects that a live score evaluates at most."""
 HELD_SAMPLES = 16_384
-"""Voxels for a sensor that is held under the mouse."""
+"""Voxels for a sensor that is held under the mouse, and for known rigs."""
 DEFAULT_SPACE, VOXELS = pe.PerceptionSpace(), pe.TargetRule()
 
 
@@ -121,6 +121,13 @@ def gain(number: int, study: pe.Study, name: str, pose: pe.Pose) -> Gain:
     evaluator, before = _held.made(number, make)
     score = evaluator.score(pe.Rig([*others, study.rig[name].moved(pose)]), preview=True)
     return Gain(before, score.entropy, score.coverage)
+
+
+def known_entropies(study: pe.Study) -> dict[str, float]:
+    """Return the entropies [nats] of the known rigs on a study's vehicle, by key."""
+    evaluator = study.evaluator(samples=HELD_SAMPLES)
+    rigs = {key: catalog.rig_on(rig, study.vehicle) for key, rig in catalog.known_rigs().items()}
+    return {key: evaluator.entropy(rig) for key, rig in rigs.items()}
 
 
 _checkers: text.RecentCache[requirements.RequirementChecker] = text.RecentCache(2)

@@ -9,6 +9,7 @@ as it is.
 from __future__ import annotations
 
 import ast
+import re
 from functools import cache
 from pathlib import Path
 
@@ -81,6 +82,22 @@ def language_of_locale(locale: str) -> str:
 def shown(text: str) -> str:
     """Return a text that is drawn or reported, in the interface's language."""
     return catalog(current()).get(text, text)
+
+
+PLAIN = (
+    (r" nats\b", ""),
+    (r"\b(?:Perception entropy|Entropy)\b", "Score"),
+    (r"\b(?:perception entropy|entropy)\b", "score"),
+    (r"\bof the prior\b", "of where objects are expected"),
+)
+"""Words of the metric, and those that *Simple* has in sentences instead."""
+
+
+def plain(text: str) -> str:
+    """Return a sentence in plain words."""
+    for term, word in PLAIN:
+        text = re.sub(term, word, text)
+    return text
 
 
 def draw_label(layout: bpy.types.UILayout, text: str, icon: str = "NONE") -> None:

@@ -6,8 +6,6 @@ from pathlib import Path
 
 import bpy
 
-from .engine import pe
-
 NAME = "Perception Entropy"
 FOLDER = Path(__file__).resolve().parent / "assets"
 EXAMPLES = (FOLDER / "examples", FOLDER.parents[1] / "blend_assets")
@@ -19,18 +17,6 @@ def stored() -> bpy.types.AddonPreferences | None:
     """Return the preferences; None where the add-on is not enabled in Blender's own."""
     addon = bpy.context.preferences.addons.get(__package__)
     return None if addon is None else addon.preferences
-
-
-def is_updated() -> bool:
-    """Whether the extension is newer than the version whose news the user has seen."""
-    return getattr(stored(), "seen_version", pe.__version__) != pe.__version__
-
-
-def mark_seen() -> None:
-    """Store that the news of this version were seen; a restart keeps it."""
-    if (preferences := stored()) is not None:
-        preferences.seen_version = pe.__version__
-        bpy.context.preferences.is_dirty = True
 
 
 def example_file() -> Path | None:

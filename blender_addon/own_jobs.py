@@ -130,7 +130,7 @@ def _write_one(path: Path, made: bytes) -> WrittenFiles:
 
 
 class PendingVariant(NamedTuple):
-    """A variant without a valid score, or without figures of the present height and class."""
+    """A variant without a valid score, or without key figures."""
 
     name: str
     study: pe.Study
@@ -147,9 +147,9 @@ class ComparedVariant(NamedTuple):
 class CompareJob(jobs.Job):
     """A job of several studies, one after the other: their scores and key figures, by key."""
 
-    def __init__(self, lacking: dict[int, PendingVariant], rule: tuple[float, str]) -> None:
+    def __init__(self, lacking: dict[int, PendingVariant]) -> None:
         super().__init__(next(iter(lacking.values())).study)
-        self.lacking, self.rule = lacking, rule
+        self.lacking = lacking
         self.compared: dict[int, ComparedVariant] | None = None
 
     def __iter__(self) -> Iterator[jobs.Progress]:
@@ -169,12 +169,10 @@ class CompareJob(jobs.Job):
                 break
             looking = jobs.Progress("seeing", 1.0 - FIGURES_SHARE)
             yield self._progress(name, len(compared), looking)
-            compared[key] = ComparedVariant(score, self._figures(study))
+            figures = advice.KeyFigures.of_rig(study.sight(), study.rig)
+            compared[key] = ComparedVariant(score, figures)
         self.compared = None if self.dropped else compared or None
 
     def _progress(self, name: str, done: int, step: jobs.Progress) -> jobs.Progress:
         share = (done + step.fraction) / len(self.lacking)
         return replace(step, stage=f"scoring {name}", fraction=min(share, 1.0))
-
-    def _figures(self, study: pe.Study) -> advice.KeyFigures:
-        return advice.key_figures(study.sight(), study.rig, *self.rule)

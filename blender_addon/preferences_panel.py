@@ -7,7 +7,7 @@ import bpy
 from . import library, own_catalog, signals
 from .engine import app
 from .language import draw_label
-from .library import mark_seen, stored
+from .library import stored
 from .properties import fields
 from .translation_context import CONTEXT
 
@@ -37,7 +37,6 @@ class PE_Preferences(bpy.types.AddonPreferences):
 
     bl_idname = __package__
 
-    seen_version: fields.text("Version", "Version whose news were shown", options={"HIDDEN"})
     show_library: fields.switch(
         "Sensors in the Asset Browser",
         "A library of LiDARs and cameras: drag one onto the vehicle",
@@ -73,9 +72,7 @@ CLASSES = (PE_Preferences,)
 
 
 def register() -> None:
-    """Load the catalogue that the preferences name. A first installation has no news."""
-    if not getattr(stored(), "seen_version", ""):
-        mark_seen()
+    """Load the catalogue that the preferences name."""
     own_catalog.load(getattr(stored(), "own_catalog", ""))
 
 

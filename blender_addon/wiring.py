@@ -92,7 +92,7 @@ LISTENERS: tuple[tuple[signals.Signal, tuple[signals.Listener, ...]], ...] = (
             housing.update_housings,
         ),
     ),
-    (signals.view_changed, (session.on_view_changed, scheduler.schedule)),
+    (signals.view_changed, (scheduler.schedule,)),
     (
         signals.moving,
         (

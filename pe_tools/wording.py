@@ -9,8 +9,6 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from pe_core.scoring.requirements import Reason, VerdictSummary
-from pe_core.scoring.score import TrafficAp
-from pe_core.scoring.sight import BlindSector
 
 
 def percent(share: float, digits: int | None = None) -> str:
@@ -38,22 +36,6 @@ def metres(length: float) -> str:
 def degrees(width: float) -> str:
     """Return the width of a blind sector [deg], rounded up: "303.7 deg", or "none"."""
     return f"{math.ceil(width * 10.0 - 1e-6) / 10.0:.1f} deg" if width else "none"
-
-
-def sectors_text(sectors: Sequence[BlindSector]) -> str:
-    """Return "0.5 m tall: 12.3 deg, 1 m: none, 1.5 m: none"; "none" if no body is invisible."""
-    if not any(each.width for each in sectors):
-        return "none"
-    texts = [f"{each.height:g} m: {degrees(each.width)}" for each in sectors]
-    return ", ".join(texts).replace(" m:", " m tall:", 1)
-
-
-def traffic_text(traffic: TrafficAp | None, plus_minus: str = "+-") -> str:
-    """Return "0.662 +- 0.005 (near 0.90, mid 0.72, far 0.43)"; "none" without a figure."""
-    if traffic is None:
-        return "none"
-    rings = ", ".join(f"{name} {ap:.2f}" for name, (ap, _) in traffic.rings.items())
-    return f"{traffic.ap:.3f} {plus_minus} {max(traffic.stderr, 1e-3):.3f} ({rings})"
 
 
 def times(factor: float) -> str:
@@ -158,6 +140,9 @@ WARNINGS: Mapping[str, Callable[..., str]] = {
         + ("" if tolerant else "; a search with a tolerance looks for one that is less fragile")
     ),
     "requirement": _requirement,
+    "figure": lambda _, name, told: (
+        f"{name} cannot be kept as wanted: no placement that was tried has it; the best: {told}"
+    ),
     "range_term": lambda _, curves: (
         f"{joined(curves)} with c: AP = a ln m - c ln R + b, not the paper's; compare these scores "
         "with such scores alone"

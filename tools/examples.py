@@ -117,7 +117,7 @@ def figures_of(result: Result) -> Values:
     """Return the figures of a study as the page has them, by name."""
     score, study = result.outcome.after, result.study
     sight = study.sight()
-    key = advice.key_figures(sight, study.rig, height=BLIND_HEIGHT_M, class_name=CLASS)
+    key = advice.KeyFigures.of_rig(sight, study.rig)
     values = {
         "sensors": sensors_text(study.rig),
         "entropy": f"{score.entropy:.2f}",
@@ -125,7 +125,7 @@ def figures_of(result: Result) -> Values:
         "coverage": f"{100.0 * score.coverage:.1f} %",
         "met": f"{result.met} of {len(result.verdicts)}",
         "blind": f"{math.ceil(10.0 * key.blind_m2) / 10.0:.1f} m²",
-        "reach": f"{math.floor(key.reach_m)} m",
+        "reach": f"{math.floor(key.reach[CLASS][0])} m",
     }
     for verdict in result.verdicts:
         name = verdict.requirement.name

@@ -75,6 +75,7 @@ from .scene_settings import (
     space_of,
     targets_of,
     value_of_property,
+    wanted_of,
     write_passthrough,
     write_reference,
 )
@@ -98,13 +99,10 @@ from .time import (
 )
 from .transform_constraints import holder_of
 from .variant_results import (
-    FigureRule,
     check_choosable,
     copy_scene_score,
     copy_score,
-    figure_rule,
     figures_of,
-    figures_signature,
     hardware_note,
     keep_rig,
     restore_result,

@@ -27,8 +27,8 @@ BEGAN = "began"
 class ResultPart(NamedTuple):
     """A zone of the ground or a class of objects: its label, entropy [nats], visible share.
 
-    Of a class, if objects were scored: its expected AP, and the distance ahead up to which it is
-    found with an AP of 0.5.
+    Of a class: the distance ahead up to which it is found with an AP of 0.5; if objects were
+    scored, its expected AP.
     """
 
     name: str
@@ -102,9 +102,12 @@ class Result:
             figures = part["entropy"], part["coverage"]
             made.append(ResultPart(label[:1].upper() + label[1:], False, *figures))
         found = self.after.get("objects", {}).get("per_class", {})
+        ahead = self.figures.get("after", {}).get("reach", {})
         for name, part in self.after["per_class"].items():
             figures = part["entropy"], part["coverage"]
-            row = ResultPart(name[:1].upper() + name[1:], True, *figures)
+            found_to, is_least = ahead.get(name, (None, False))
+            reach = "" if found_to is None else f"{'≥ ' * is_least}{found_to:.0f} m"
+            row = ResultPart(name[:1].upper() + name[1:], True, *figures, reach=reach)
             if (own := found.get(name)) is not None:
                 reach = advice.lone_reach(own["reach"]["front"])
                 row = row._replace(ap=f"{own['ap']:.2f}", reach=reach)

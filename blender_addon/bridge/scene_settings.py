@@ -80,7 +80,7 @@ def value_of_property(setting: studies.Setting, value: Any) -> Any:
         return None
     if isinstance(rule, studies.Number):
         value = as_typed(value)
-    if setting.is_optional and not value:
+    if setting.is_optional and (value < rule.minimum if panel and panel.none else not value):
         return None
     return math.radians(value) if isinstance(rule, studies.Angle) else value
 
@@ -95,7 +95,7 @@ def property_value(setting: studies.Setting, value: Any) -> Any:
     if studies.is_switch(setting):
         return value is not None
     if value is None:
-        return 0 if panel is None or panel.absent is None else panel.absent[0]
+        return 0 if panel is None else panel.none if panel.absent is None else panel.absent[0]
     if isinstance(rule, studies.Whole):
         return min(value, LARGEST_INT)
     return math.degrees(value) if isinstance(rule, studies.Angle) else value
@@ -157,16 +157,25 @@ def search_of(settings: PropertyGroup, *, is_choice: bool) -> pe.Search:
             search.Stop(**values_of(settings, search.Stop)),
             starts=search.Start.of_text(settings.start_poses),
             front=search.Front(**values_of(settings, search.Front)),
+            keep=[key for key in search.KEPT if getattr(settings, f"keep_{key}")],
+            wanted=wanted_of(settings),
             **values_of(settings, search.Goals),
         ),
         **values_of(settings, pe.Search),
     )
 
 
+def wanted_of(settings: PropertyGroup) -> search.Wanted:
+    """Return what is wanted of the rig of a scene."""
+    return search.Wanted(**values_of(settings, search.Wanted))
+
+
 def write_goals(settings: PropertyGroup, goals: search.Goals) -> None:
     """Write the goals of a search to a scene; further starts as JSON text."""
-    for each in (goals.stop, goals.front, goals):
+    for each in (goals.stop, goals.front, goals.wanted, goals):
         write_values(settings, each)
+    for key in search.KEPT:
+        setattr(settings, f"keep_{key}", key in goals.keep)
     settings.start_poses = search.Start.text_of(goals.starts)
     settings.start_variants = False
 

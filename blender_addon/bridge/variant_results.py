@@ -6,12 +6,11 @@ import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 from bpy.types import Depsgraph, Scene
 
 from ..engine import advice, jobs, pe
-from ..view_settings import HEIGHTS_M
 from .fingerprint import Fingerprint
 from .result import FrontRow, ShownFront, score_from_dict, scored_data, store_outcome
 from .scene_diagnostics import check_placeable, scene_advice
@@ -184,26 +183,6 @@ def _with_choice(record: SensorRecord, sensor: pe.Sensor) -> SensorRecord:
 
 def _note(design: jobs.Design, currency: str) -> str:
     return f"{design.price:,.10g} {currency}".strip()
-
-
-class FigureRule(NamedTuple):
-    """The height for which blind ground is computed [m], and the class of reach and AP."""
-
-    height: float
-    class_name: str
-
-
-def figure_rule(scene: Scene, prior: pe.Prior) -> FigureRule:
-    """Return the height and the class that the 3D view's blind ground and reach are set to."""
-    view, classes = scene.perception_entropy.view, prior.class_names
-    class_name = view.reach_class if view.reach_class in classes else classes[0]
-    return FigureRule(HEIGHTS_M[view.blind_height] or 0.0, class_name)
-
-
-def figures_signature(scene: Scene, now: Fingerprint) -> str:
-    """Return the settings of the scene that key figures depend on, besides the sensors."""
-    view = scene.perception_entropy.view
-    return f"{now.surroundings} {view.blind_height} {view.reach_class}"
 
 
 def write_figures(variant: Variant, figures: advice.KeyFigures, signature: str) -> None:

@@ -1,7 +1,7 @@
 """The live score: it follows every move of a sensor.
 
 `state` holds what is known of each scene, `session` requests scores and says what they are compared
-with, `background_figures` requests the figures below them, `readout_text` puts all of it into text,
+with, `background_figures` requests their key figures, `readout_text` puts all of it into text,
 and `readout` draws that in a corner of the 3D view.
 """
 
@@ -10,31 +10,43 @@ from __future__ import annotations
 import bpy
 
 from ..engine import advice
-from . import readout, session
-from .readout_text import BETTER, SAME, SENSE_ICONS, WORSE, FigureRow, nats_text, rows_of_figures
-from .state import FinishedScore, ShownScore, live_state, shown_figures, shown_score
+from . import background_figures, readout, session
+from .readout_text import ARROW, BETTER, SAME, SENSE_ICONS, WORSE, change_text
+from .state import FinishedScore, ShownScore, live_state, shown_score
 
-__all__ = ["BETTER", "SAME", "SENSE_ICONS", "WORSE", "FinishedScore", "ShownScore", "built_lines"]
-__all__ += ["figure_rows", "live_state", "nats_text", "register", "shown_score", "unregister"]
+__all__ = [
+    "ARROW",
+    "BETTER",
+    "SAME",
+    "SENSE_ICONS",
+    "WORSE",
+    "FinishedScore",
+    "ShownScore",
+    "built_lines",
+]
+__all__ += ["built_lines", "change_text", "live_state", "register", "shown_score"]
+__all__ += ["told_figures", "unregister"]
 
 
 def built_lines(scene: bpy.types.Scene) -> list[str]:
     """Return what can be built, of the live score, or of the stored result."""
-    if (now := shown_figures(scene)) is not None:
-        return advice.built_lines([now])
-    told = scene.perception_entropy.result.figures
-    return advice.built_lines([advice.KeyFigures.from_dict(told["after"])]) if told else []
+    found = background_figures.figures_of(scene)
+    if not found and scene.perception_entropy.has_result:
+        found = told_figures(scene, live=False)
+    return advice.built_lines(found[-1:]) if found else []
 
 
-def figure_rows(scene: bpy.types.Scene, *, live: bool) -> list[FigureRow]:
-    """Return rows of key figures for the panel: of the live score, or of the stored result."""
+def told_figures(scene: bpy.types.Scene, *, live: bool) -> list[advice.KeyFigures]:
+    """Return the key figures that the panel shows: of the live score, or of the stored result.
+
+    Those before it come first: of a search's start, or of what *Live* is compared with.
+    """
     if live:
-        now = shown_figures(scene)
-        return rows_of_figures([] if now is None else [now])
+        return background_figures.figures_of(scene)
     result = scene.perception_entropy.result
     of_kind = ("before", "after") if result.kind == "optimize" else ("after",)
-    told = [result.figures[which] for which in of_kind if result.figures]
-    return rows_of_figures([advice.KeyFigures.from_dict(data) for data in told])
+    told = [result.figures[which] for which in of_kind if which in result.figures]
+    return [advice.KeyFigures.from_dict(data) for data in told]
 
 
 def register() -> None:

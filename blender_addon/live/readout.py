@@ -7,15 +7,15 @@ the top.
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import bpy
 
 from .. import engine_process, viewport
+from ..choices import SIMPLE
+from ..language import plain
 from ..language import shown as in_language
 from ..viewport import FAINT, INK, PLATE, SMALL, Rgba
-from . import background_figures
 from .readout_text import BETTER, WORSE, ReadoutLine, TextPiece, readout_of
 from .state import LiveScore, ShownScore, live_state, shown_score
 
@@ -66,11 +66,9 @@ def draw() -> None:
         state, shown = live_state(scene.name), shown_score(scene)
         if shown is not None and shown.exact and engine_process.busy(engine_process.OVERLAY):
             shown = shown._replace(view_outdated=True)
-        exact, figures = shown is not None and shown.exact, []
-        if state.score is not None:
-            lines = background_figures.lines_below(scene.name, state.score, exact)
-            figures = [row_of(line, INK if current else FAINT) for line, current in lines]
-        rows = rows_of(state.score, state.note, shown, figures)
+        rows = rows_of(state.score, state.note, shown)
+        if scene.perception_entropy.panels == SIMPLE:
+            rows = [row._replace(words=tuple((plain(t), c) for t, c in row.words)) for row in rows]
         corner = viewport.beside_toolbar(context), viewport.above_hud(context)
         box = draw_rows(rows, *corner, viewport.ui_scale())
     viewport.reserve_plate(context.region.as_pointer(), PLATE_NAME, box)
@@ -82,11 +80,9 @@ def row_of(line: ReadoutLine, color: Rgba = INK) -> TextRow:
     return TextRow(SMALL, words, WORD_GAP)
 
 
-def rows_of(
-    score: LiveScore | None, note: str, shown: ShownScore | None, figures: Sequence[TextRow] = ()
-) -> list[TextRow]:
-    """Return rows from the top down: the score, rows of figures, and why there is no newer one."""
-    rows = [] if shown is None else _rows_of_score(score, shown, figures)
+def rows_of(score: LiveScore | None, note: str, shown: ShownScore | None) -> list[TextRow]:
+    """Return rows from the top down: the score, and why there is no newer one."""
+    rows = [] if shown is None else _rows_of_score(score, shown)
     if note:
         rows += [
             TextRow(SMALL, ((line, ALERT),))
@@ -95,9 +91,7 @@ def rows_of(
     return rows or [TextRow(SMALL, (("Live: scoring ...", FAINT),))]
 
 
-def _rows_of_score(
-    score: LiveScore | None, shown: ShownScore, figures: Sequence[TextRow]
-) -> list[TextRow]:
+def _rows_of_score(score: LiveScore | None, shown: ShownScore) -> list[TextRow]:
     text = readout_of(score, shown)
     arrow, color = ARROWS.get(text.sense, ""), SENSE_COLORS.get(text.sense, FAINT)
     change = ((f"{arrow} {text.change}".strip(), color),) if text.change else ()
@@ -108,7 +102,6 @@ def _rows_of_score(
         TextRow(LARGE, ((text.headline, INK), *change)),
         TextRow(SMALL, tuple((part, FAINT) for part in (text.error, text.against) if part)),
         coverage,
-        *figures,
         *zones,
     ]
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from ..engine import advice, pe, wording
-from .state import LiveScore, ShownFigures, ShownScore
+from ..engine import advice, pe, search
+from .state import LiveScore, ShownScore
 
 MIN_CHANGE = 0.0005
 """Entropies nearer to each other than this are the same in the text [nats]."""
@@ -20,7 +19,6 @@ MAX_LABEL_LETTERS = 32
 """Letters of a variant's name that the read-out has room for."""
 MINUS = "\N{MINUS SIGN}"
 BEFORE_SEARCH = "before the search"
-PENDING = "AP in traffic, blind ground, reach: being computed"
 NO_FIGURE, ARROW = "\N{EN DASH}", " \N{RIGHTWARDS ARROW} "
 
 
@@ -51,11 +49,6 @@ class ReadoutText(NamedTuple):
     lines: tuple[ReadoutLine, ...]
 
 
-def nats_text(entropy: float, change: float | None = None) -> str:
-    """Return an entropy, and its change where there is one, as panel and read-out show them."""
-    return f"{entropy:.3f}" if change is None else f"{entropy:.3f}  ({change:+.3f})"
-
-
 def readout_of(score: LiveScore | None, shown: ShownScore) -> ReadoutText:
     """Return the text of the score that is shown: a preview, an exact or a stored one.
 
@@ -78,7 +71,7 @@ def readout_of(score: LiveScore | None, shown: ShownScore) -> ReadoutText:
     if shown.before is not None:
         change, sense = entropy_change(shown.entropy, shown.before)
         against = f"compared with {BEFORE_SEARCH}"
-    headline = f"{nats_text(shown.entropy)} nats"
+    headline = f"{shown.entropy:.3f} nats"
     return ReadoutText(headline, state_of(shown), change, sense, against, lines)
 
 
@@ -123,60 +116,13 @@ def zone_lines(now: pe.Score, before: pe.Score | None) -> list[ReadoutLine]:
     return lines
 
 
-def figure_lines(figures: ShownFigures) -> tuple[ReadoutLine, ...]:
-    """Return lines of the figures to show, with those that they are compared with."""
-    if figures.now is None:
-        return ((TextPiece(PENDING),),)
-    found = [each for each in (figures.before, figures.now) if each is not None]
-    return tuple(
-        (TextPiece(n), TextPiece(text, sense)) for n, text, sense in rows_of_figures(found)
-    )
-
-
-class FigureRow(NamedTuple):
-    """A row of the panel: name, text, and whether it tells a gain or a loss."""
-
-    name: str
-    text: str
-    sense: int = SAME
-
-
-def rows_of_figures(found: Sequence[advice.KeyFigures]) -> list[FigureRow]:
-    """Return rows for the key figures of a rig, or of two rigs: before and now.
-
-    The blind sector is the widest for any of the heights.
-    """
-    traffic = [figures.traffic for figures in found if figures.traffic is not None]
-    aps = [f"{each.ap:.3f}" for each in traffic]
-    error = f" ± {max(traffic[-1].stderr, 1e-3):.3f}" if len(traffic) == 1 else ""
-    rings = traffic[-1].rings if traffic else {}
-    by_ring = "   ".join(f"{ap:.2f}" for ap, _ in rings.values())
-    widest = [max(figures.sectors, key=lambda sector: sector.width) for figures in found]
-    widths = [wording.degrees(sector.width) for sector in widest]
-    tall = f" ({widest[0].height:g} m tall)" if len(found) == 1 and widest[0].width else ""
-    areas = [f"{math.ceil(10.0 * figures.blind_m2) / 10.0:.1f}" for figures in found]
-    blind = [figures.blind_m2 for figures in found]
-    reached = [figures for figures in found if figures.reach_m is not None]
-    reaches = [f.reach_m for f in reached if f.reach_m is not None]
-    metres = [f"{'≥ ' if f.at_least else ''}{f.reach_m:.0f} m" for f in reached]
-    whose = f" ({reached[-1].class_name})" if reached else ""
-    return [
-        FigureRow("AP in Traffic", _from_to(aps, error), _sense([-t.ap for t in traffic], 5e-4)),
-        FigureRow(", ".join(rings or ("near", "mid", "far")).title(), by_ring or NO_FIGURE),
-        FigureRow("Blind Sector", _from_to(widths, tall), _sense([s.width for s in widest], 1.0)),
-        FigureRow("Blind Ground", _from_to(areas, " m²"), _sense(blind, 0.05)),
-        FigureRow("Reach Ahead", _from_to(metres, whose), _sense([-m for m in reaches], 0.5)),
-    ]
-
-
-def _from_to(texts: Sequence[str], after: str) -> str:
-    return f"{ARROW.join(texts)}{after}" if texts else NO_FIGURE
-
-
-def _sense(values: Sequence[float], least: float) -> int:
-    """Return whether a low figure became lower or higher, by more than `least`."""
-    by = values[-1] - values[0] if values else 0.0
-    return SAME if abs(by) < least else WORSE if by > 0.0 else BETTER
+def change_text(row: search.FigureOfMerit, values: Sequence[float]) -> tuple[str, int]:
+    """Return a figure of a rig or of two, before and now, and whether it became better."""
+    texts = list(dict.fromkeys(map(row.text, values))) or [NO_FIGURE]
+    *before, now = (text.replace("m2", "m²") for text in texts)
+    costs = [row.cost_of(value) for value in values]
+    sense = SAME if not before else WORSE if costs[-1] > costs[0] else BETTER
+    return ARROW.join([*(text.split(" ")[0] for text in before), now]), sense
 
 
 def change_of(by: float | None, digits: int, *, lower_is_better: bool = False) -> ReadoutLine:

@@ -169,13 +169,6 @@ def shown_scenes() -> list[bpy.types.Scene]:
     return [scene for scene in shown.values() if scene.perception_entropy.live.on]
 
 
-def on_view_changed() -> None:
-    """Request figures again where the 3D view is set to another height or class."""
-    if not bpy.app.background:
-        for scene in shown_scenes():
-            background_figures.request_if_rule_changed(scene)
-
-
 def clear(*_: object) -> None:
     """Drop everything before another file is opened: nothing of this one is kept or delivered."""
     for name in tuple(states):

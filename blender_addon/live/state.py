@@ -6,7 +6,7 @@ A state is made when its scene is first asked for. It holds no object of Blender
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import bpy
@@ -61,19 +61,10 @@ class LiveScore:
 
 
 class FigureRequest(NamedTuple):
-    """A request of key figures: for which score, compared with what, by which rule."""
+    """A request of key figures: for which score, compared with what."""
 
     request: ScoreRequest
     baseline: Baseline | None
-    rule: bridge.FigureRule | None
-
-
-class ShownFigures(NamedTuple):
-    """Key figures to show, those they are compared with, and whether they are of the scene."""
-
-    now: advice.KeyFigures | None = None
-    before: advice.KeyFigures | None = None
-    current: bool = False
 
 
 class LastRead(NamedTuple):
@@ -110,7 +101,7 @@ class LiveState:
     chosen: tuple[tuple[Hashable, ...], Baseline] | None = None
     """The variant that the settings choose, and what it was made from."""
     figures: FigureRequest | None = None
-    shown_figures: advice.KeyFigures | None = None
+    shown_figures: list[advice.KeyFigures] = field(default_factory=list)
     """The last request of key figures, and those that were shown last."""
     prior: tuple[Hashable, pe.Prior] | None = None
     """The prior that was read last, and its key: a file of boxes takes long to read."""
@@ -133,7 +124,7 @@ class LiveState:
     def switch_off(self) -> None:
         """Drop what the live score found; finished scores stay."""
         self.score = self.exact = self.last_read = self.before_move = None
-        self.figures = self.shown_figures = None
+        self.figures, self.shown_figures = None, []
         self.note = ""
 
 
@@ -162,12 +153,6 @@ class ShownScore(NamedTuple):
     view_outdated: bool = False
     state: str = ""
     before: float | None = None
-
-
-def shown_figures(scene: bpy.types.Scene) -> advice.KeyFigures | None:
-    """Return the key figures of the live score that the panel shows; None until they are known."""
-    state = live_state(scene.name)
-    return state.shown_figures if state.score is not None and state.score.exact else None
 
 
 def shown_score(scene: bpy.types.Scene) -> ShownScore | None:

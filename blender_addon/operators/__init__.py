@@ -3,7 +3,6 @@
 Panels take from here the operators, and what menus list.
 """
 
-from ..library import is_updated
 from . import (
     compare_variants,
     conditions,
@@ -11,6 +10,7 @@ from . import (
     exports,
     first_steps,
     inset,
+    known_rigs,
     look_through,
     mounts,
     place_sensor,
@@ -19,21 +19,20 @@ from . import (
     shortcuts,
     upright,
     variants,
-    whats_new,
     where,
 )
 from .add_sensor import Offer, models, offers
 from .declared import CLASSES
 from .fix_warnings import FIX_LABELS
-from .imports import known_rigs
+from .imports import menu_of_rigs
 from .panel_rows import reference_label
 from .requirements import ShownVerdict, shown_verdicts
 
 __all__ = ["CLASSES", "FIX_LABELS", "Offer", "ShownVerdict"]
 __all__ += ["compare_variants", "conditions", "edit_sensors", "exports", "first_steps"]
-__all__ += ["is_updated", "known_rigs", "look_through", "models", "mounts", "offers"]
+__all__ += ["known_rigs", "look_through", "menu_of_rigs", "models", "mounts", "offers"]
 __all__ += ["place_sensor", "reference_label", "register", "running_job"]
-__all__ += ["shown_verdicts", "unregister", "upright", "variants", "whats_new", "where"]
+__all__ += ["shown_verdicts", "unregister", "upright", "variants", "where"]
 
 
 def register() -> None:

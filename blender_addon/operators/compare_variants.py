@@ -62,8 +62,6 @@ def compare_task(context: bpy.types.Context) -> Task | None:
         if not pending:
             return None
         taken = result_staleness.fingerprint(scene, depsgraph)
-        rule = bridge.figure_rule(scene, next(iter(pending.values())).study.prior)
-        figures_of = bridge.figures_signature(scene, taken)
 
     def finish(scene: bpy.types.Scene, found: dict[int, ComparedVariant]) -> Told:
         for row in scene.perception_entropy.variants:  # those that still exist
@@ -71,11 +69,11 @@ def compare_task(context: bpy.types.Context) -> Task | None:
                 score, figures = found[row.key]
                 if score is not None:
                     bridge.store_variant_score(row, score, taken.surroundings)
-                bridge.write_figures(row, figures, figures_of)
+                bridge.write_figures(row, figures, taken.surroundings)
         scored = sum(variant.score is not None for variant in found.values())
         return Told(f"{scored} scored, {len(found)} compared", tuple(map(str, refused)))
 
-    return Task(CompareJob(pending, (rule.height, rule.class_name)), finish, "compared")
+    return Task(CompareJob(pending), finish, "compared")
 
 
 def open_table() -> None:
@@ -172,7 +170,7 @@ def pending_variants(scene: bpy.types.Scene) -> list[bpy.types.PropertyGroup]:
     """Return variants without a valid score, or without figures of the present settings."""
     fingerprint = result_staleness.fingerprint(scene)
     bridge.check_variants(scene, fingerprint)
-    of = bridge.figures_signature(scene, fingerprint)
+    of = fingerprint.surroundings
     rows = scene.perception_entropy.variants
     return [r for r in rows if not r.has_result or r.stale or bridge.figures_of(r, of) is None]
 
@@ -184,7 +182,7 @@ def comparison_of(scene: bpy.types.Scene) -> tuple[list[str], tuple[advice.Compa
     """
     rows = compared_variants(scene)
     scores = {row.name: bridge.score_of(row) for row in rows}
-    of = bridge.figures_signature(scene, result_staleness.fingerprint(scene))
+    of = result_staleness.fingerprint(scene).surroundings
     figures = {row.name: bridge.figures_of(row, of) for row in rows}
     known = {name: each for name, each in figures.items() if each is not None}
     more = advice.compare_figures(known) if len(known) == len(figures) else ()

@@ -76,7 +76,7 @@ def record_of(sensor: catalog.KnownSensor) -> bridge.SensorRecord:
     )
 
 
-def known_rigs() -> tuple[tuple[str, str], ...]:
+def menu_of_rigs() -> tuple[tuple[str, str], ...]:
     """Return keys and titles of the known rigs, for a menu."""
     return tuple((rig.key, rig.title) for rig in catalog.known_rigs().values())
 

@@ -16,7 +16,7 @@ from .. import bridge, diagnostics, engine_calls, result_staleness, signals, veh
 from ..engine import jobs, pe
 from ..language import shown
 from ..live import FinishedScore, live_state
-from . import running_job
+from . import known_rigs, running_job
 from .declared import (
     INTERNAL,
     UNDO,
@@ -237,6 +237,8 @@ def score_task(_scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerpri
     def finish(scene: bpy.types.Scene, outcome: jobs.Outcome) -> str:
         store_result(scene, outcome, taken.text)
         bridge.store_variant_scores(scene, outcome, taken.surroundings)
+        if not bpy.app.background:
+            known_rigs.request(scene, study, taken.surroundings)
         score = outcome.after
         return f"Perception entropy {score.entropy:.4f} nats, coverage {score.coverage:.1%}"
 

@@ -26,7 +26,6 @@ CLASSES = (
     *sensor_menus.CLASSES,
     *sensor_lists.CLASSES,
     *main.CLASSES,
-    *score_details.LIVE_CLASSES,
     *selected_object.CLASSES,
     *main.WARNING_CLASSES,
     *score_details.CLASSES,

@@ -12,11 +12,13 @@ import blf
 import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
+from ..choices import SIMPLE
 from ..engine import advice
-from ..language import draw_label, shown
+from ..language import draw_label, plain, shown
 from ..live import SAME, SENSE_ICONS
 from ..operators import FIX_LABELS
 from ..properties import ROWS, DeclaredRow, declared_rows
+from ..sensor_cache import sensors as listed_sensors
 
 DrawPanel = Callable[[UILayout, PropertyGroup, Context], None]
 DrawHeader = Callable[[UILayout, Context], None]
@@ -27,9 +29,22 @@ TAB: dict[str, Any] = {
 }
 
 
+def is_simple(scene: bpy.types.Scene) -> bool:
+    """Whether the tab has the panels of the first hour alone, and plain words."""
+    return scene.perception_entropy.panels == SIMPLE
+
+
+def is_empty(scene: bpy.types.Scene) -> bool:
+    """Whether nothing is begun: no vehicle, no sensor, no score."""
+    settings = scene.perception_entropy
+    return settings.vehicle is None and not (settings.has_result or listed_sensors(scene))
+
+
 def panel(
     label: str,
     *,
+    simple: bool = False,
+    always: bool = False,
     parent: str = "",
     closed: bool = True,
     poll: Callable[[Context], bool] | None = None,
@@ -42,7 +57,8 @@ def panel(
     """Return what makes a panel of the tab of a function, whose name and docstring it takes.
 
     The function draws into a layout; it takes the settings of the scene and the context. `parent`
-    is the panel that it is in, `closed` whether it is at first, `poll` when it is there. `header`
+    is the panel that it is in, `simple` whether *Simple* has it, `always` also in an empty
+    file, `closed` whether it is at first, `poll` when it is there. `header`
     draws before its label, `preset` at the end of that line. There `count` shows how many rows a
     list has, and `chosen` the entry of a menu. Both are visible also when the panel is closed.
     `members` are attributes of the class.
@@ -56,8 +72,13 @@ def panel(
         content |= TAB | {"__module__": function.__module__, "bl_label": label, **members}
         content |= {"bl_parent_id": parent} if parent else {}
         content |= {"bl_options": {"DEFAULT_CLOSED"}} if closed else {}
-        if poll is not None:
-            content["poll"] = classmethod(lambda _cls, context: poll(context))
+        content["poll"] = classmethod(
+            lambda _cls, context: (
+                (simple or not is_simple(context.scene))
+                and (always or not is_empty(context.scene))
+                and (poll is None or poll(context))
+            )
+        )
         if header is not None:
             content["draw_header"] = lambda self, context: header(self.layout, context)
         at_end = preset or ((count or chosen) and _header_text(count, chosen))
@@ -263,7 +284,8 @@ def draw_sentence(
     icon = icon if sense == SAME else SENSE_ICONS[sense]
     rest = "NONE" if icon == "NONE" else "BLANK1"
     beside_px += 0.0 if icon == "NONE" else ICON_PX
-    for k, line in enumerate(wrapped(context, shown(text), beside_px)):
+    told = plain(shown(text)) if is_simple(context.scene) else shown(text)
+    for k, line in enumerate(wrapped(context, told, beside_px)):
         column.label(text=line, icon=rest if k else icon, translate=False)
 
 

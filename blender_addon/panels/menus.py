@@ -35,7 +35,6 @@ class PE_MT_object(bpy.types.Menu):
 def draw_of_sensor(layout: UILayout) -> None:
     """Draw what can be done with a sensor; Blender greys out what cannot."""
     layout.operator("pe.look_through", icon="HIDE_OFF")
-    layout.operator("pe.stand_upright")
     layout.operator("pe.mirror_sensor", text="Mirror Sensor", icon="MOD_MIRROR")
 
 

@@ -17,7 +17,15 @@ UILayout: TypeAlias = bpy.types.UILayout
 OverlaySettings: TypeAlias = PropertyGroup
 
 
-@panel("Perception", closed=False, bl_region_type="HEADER", bl_category="", bl_ui_units_x=13)
+@panel(
+    "Perception",
+    closed=False,
+    simple=True,
+    always=True,
+    bl_region_type="HEADER",
+    bl_category="",
+    bl_ui_units_x=13,
+)
 def view(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
     """What is shown of perception: the ground, the blind ground, reach, views and beams"""
     draw_label(layout, "Perception")

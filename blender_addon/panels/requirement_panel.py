@@ -59,7 +59,7 @@ def _requirements_header(layout: UILayout, context: Context) -> None:
     draw_label(layout, text)  # visible also when closed
 
 
-@panel("Requirements", bl_ui_units_x=17, preset=_requirements_header)
+@panel("Requirements", simple=True, bl_ui_units_x=17, preset=_requirements_header)
 def requirements(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Zones in which test bodies have to be seen: met or not, and by which margin"""
     names, operators = ("requirements", "requirement_index"), ADD_REMOVE

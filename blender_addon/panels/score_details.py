@@ -1,46 +1,17 @@
-"""Details of a score: the live score's settings, explanations, and figures by zone and class."""
+"""Details of a score: explanations, and figures by zone and class."""
 
 from __future__ import annotations
 
-import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
 from .. import location_query
-from ..choices import BEFORE_MOVE
 from ..diagnostics import explanation
-from ..language import draw_label, shown
-from ..operators import reference_label
-from .layout import BUTTON_PX, columns, draw_sentence, draw_stale_mark, panel
+from ..language import draw_label
+from .layout import BUTTON_PX, draw_sentence, draw_stale_mark, panel
 from .sensor_lists import draw_sensor_table
 
 
-class PE_MT_live_against(bpy.types.Menu):
-    """What the live score is compared with"""
-
-    bl_idname = "PE_MT_live_against"
-    bl_label = "Compare Live With"
-
-    def draw(self, context: Context) -> None:
-        layout = self.layout
-        layout.operator("pe.live_against", text="Before the Last Move").key = BEFORE_MOVE
-        variants = context.scene.perception_entropy.variants
-        if variants:
-            layout.separator()
-        for row in variants:
-            layout.operator("pe.live_against", text=row.name, translate=False).key = row.key
-
-
-@panel("Live", poll=lambda context: context.scene.perception_entropy.live.on)
-def live(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
-    """What the live score is compared with, and its key figures"""
-    name, menu = columns(layout, 0.4)
-    draw_label(name, "Compared With")
-    label = reference_label(context.scene)
-    menu.menu(PE_MT_live_against.bl_idname, text=shown(label), translate=False)
-    layout.prop(context.scene.perception_entropy.live, "figures")
-
-
-@panel("Explain", closed=False)
+@panel("Explain", closed=False, simple=True)
 def explain(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """The score in words, and the answer of a location query"""
     settings = context.scene.perception_entropy
@@ -92,11 +63,11 @@ def breakdown(layout: UILayout, settings: PropertyGroup, _context: Context) -> N
     column.active = not settings.result_stale
     for is_class, title in ((False, "Zone"), (True, "Class")):
         has_ap = is_class and bool(result.ap)
-        more = ("AP", "ahead") if has_ap else ()
+        more = ("AP", "ahead") if has_ap else ("ahead",) * is_class
         draw_part_row(column, title, "nats", "seen", *more, header=True)
         for part in result.parts:
             if part.is_class == is_class:
-                more = (part.ap, part.reach) if has_ap else ()
+                more = (part.ap, part.reach) if has_ap else (part.reach,) * is_class
                 digits = 0 if has_ap else 1  # four figures have to fit
                 nats = f"{part.entropy:.{digits + 1}f}"
                 draw_part_row(column, part.name, nats, f"{part.coverage:.{digits}%}", *more)
@@ -116,5 +87,4 @@ def draw_part_row(layout: UILayout, name: str, *figures: str, header: bool = Fal
         draw_label(cell, text)
 
 
-LIVE_CLASSES = (PE_MT_live_against, live)
 CLASSES = (explain, breakdown)

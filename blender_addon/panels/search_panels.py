@@ -12,8 +12,6 @@ from .layout import draw_declared, draw_list, draw_properties, draw_sentence, pa
 from .variant_panels import draw_front
 
 ICONS = {BY_PARTS: "OBJECT_DATA", BY_GROUP: "WPAINT_HLT"}
-KEPT = ("keep_blind_ground", "keep_blind_sector", "keep_traffic_ap")
-FIRST = ("objective", *KEPT)
 ELSEWHERE = (
     *("objective", "evaluations", "seed", "search_samples"),
     *("keep_requirements", "search_conditions"),
@@ -22,10 +20,10 @@ ELSEWHERE = (
 SLOTS_ICON = "OUTLINER_COLLECTION"
 
 
-@panel("Search")
+@panel("Search", simple=True)
 def search(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
     """How to search"""
-    draw_properties(layout, settings, FIRST)
+    draw_properties(layout, settings, ("objective",))
     layout.row(align=True).prop(settings, "method", expand=True)
     own = ("candidates",) if settings.method == RANDOM else ()
     draw_properties(layout, settings, (*own, "evaluations", "seed"))
@@ -43,7 +41,7 @@ def mounts_rows(_context: Context, layout: UILayout, _settings: Any, item: Any) 
     layout.prop(item, "name", text="", emboss=False, icon=icon)
 
 
-@panel("Mounts", parent="PE_PT_search", count="mounts")
+@panel("Mounts", simple=True, parent="PE_PT_search", count="mounts")
 def mounts(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
     """Where sensors may be mounted: surfaces of the vehicle, or slots of a rack"""
     names, buttons = ("mounts", "mount_index"), ("pe.add_mount", "pe.remove_mount")
@@ -69,7 +67,7 @@ def draw_mount(layout: UILayout, mount: PropertyGroup) -> None:
     draw_declared(layout, mount, "optimize.mount")
 
 
-@panel("Constraints", parent="PE_PT_search")
+@panel("Constraints", simple=True, parent="PE_PT_search")
 def constraints(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
     """Constraints of every placement of a search"""
     draw_declared(layout, context.scene.perception_entropy, "constraints")
@@ -87,7 +85,7 @@ def goals(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """When a search stops, from where it starts, and how its result is analysed"""
     draw_declared(layout, settings, "optimize.stop")
     draw_properties(layout, settings, ("start_variants",))
-    draw_declared(layout, settings, "goals", KEPT)
+    draw_declared(layout, settings, "goals")
     draw_declared(layout, settings, "optimize.front")
     layout.operator("pe.choose_sensors", text="Find Front", icon="FCURVE")
     if settings.front.rows:

@@ -7,7 +7,7 @@ from bpy.types import Context, Object, PropertyGroup, UILayout
 from ..bridge import holder_of
 from ..language import draw_label, shown
 from ..properties import AXIS_LABELS
-from .layout import draw_declared, draw_sentence, panel
+from .layout import draw_declared, draw_sentence, is_simple, panel
 
 POSITION_LABELS = ("X", "Y", "Height")
 """Height is z of the optical centre over the ground."""
@@ -18,25 +18,26 @@ def _sensor_is_shown(context: Context) -> bool:
     return obj is not None and obj.perception_entropy.is_sensor
 
 
-@panel("Sensor", closed=False, poll=_sensor_is_shown)
+@panel("Sensor", simple=True, closed=False, poll=_sensor_is_shown)
 def sensor(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
     """Settings of the sensor that is selected"""
     obj = context.active_object
     settings = obj.perception_entropy
     layout.prop(settings, "model")
-    layout.prop(settings, "fusion")
+    if not is_simple(context.scene):
+        layout.prop(settings, "fusion")
     draw_pose(layout, context, obj)
     row = layout.row(align=True)
     row.operator("pe.look_through", icon="VIEW_CAMERA").name = obj.name
     view = context.scene.perception_entropy.view
     row.prop(view, "show_inset", toggle=True, icon="IMAGE_PLANE")
-    layout.operator("pe.stand_upright", icon="ORIENTATION_GLOBAL")
     draw_mirror(layout, obj)
     split = layout.split(factor=0.4)
     draw_label(split, "Mounted on")
     mount_name = settings.mount or "Box of Coordinates"
     split.operator_menu_enum("pe.mount_sensor", "mount", text=shown(mount_name), translate=False)
-    layout.prop(settings, "rack")
+    if not is_simple(context.scene):
+        layout.prop(settings, "rack")
     draw_label(layout, f"The search may change, for {obj.name}:")
     layout.prop(settings, "stays")
     column = layout.column()
@@ -81,7 +82,7 @@ def draw_mirror(layout: UILayout, obj: Object) -> None:
     linked.name, linked.linked = obj.name, True
 
 
-@panel("Bounds", parent="PE_PT_sensor")
+@panel("Bounds", simple=True, parent="PE_PT_sensor")
 def bounds(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
     """Bounds of the search for this sensor; by default the vehicle's outline and 0.75 m above it"""
     settings = context.active_object.perception_entropy
@@ -128,7 +129,7 @@ def _part_is_shown(context: Context) -> bool:
     return obj is not None and obj.type != "EMPTY" and not obj.perception_entropy.is_sensor
 
 
-@panel("Vehicle Part", closed=False, poll=_part_is_shown)
+@panel("Vehicle Part", simple=True, closed=False, poll=_part_is_shown)
 def part(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
     """Settings of the part of the vehicle that is selected"""
     obj = context.active_object

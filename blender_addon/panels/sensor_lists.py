@@ -125,7 +125,7 @@ HEADER = ("Sensor", "Loss", "Most in")
 
 def draw_sensor_table(layout: UILayout, context: Context) -> None:
     """Draw loss, where it is largest, and what occludes each sensor of the last result."""
-    draw_label(layout, "Loss: rise of entropy without it, nats")
+    draw_label(layout, "Loss: the score is higher without it")
     table = layout.box().column(align=True)
     table.active = not context.scene.perception_entropy.result_stale
     for cell, text in zip(_cells(table), HEADER, strict=True):

@@ -7,9 +7,9 @@ from typing import Any
 import bpy
 from bpy.types import Context, Object, PropertyGroup, UILayout
 
-from ..choices import RANDOM
+from ..choices import BEFORE_MOVE, RANDOM
 from ..language import draw_label, shown
-from ..operators import known_rigs
+from ..operators import menu_of_rigs, reference_label
 from .layout import (
     columns,
     draw_declared,
@@ -42,8 +42,8 @@ def variants_rows(_context: Context, layout: UILayout, settings: Any, item: Any)
     figures.label(text=f"{item.entropy:.3f}" if item.has_result else "–", translate=False)
 
 
-@panel("Variants", closed=False, count="variants")
-def variants(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
+@panel("Variants", simple=True, closed=False, count="variants")
+def variants(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Designs for this vehicle: save, switch, compare"""
     if not settings.variants:
         layout.operator("pe.save_variant", icon="ADD")
@@ -54,6 +54,11 @@ def variants(layout: UILayout, settings: PropertyGroup, _context: Context) -> No
     buttons.separator()
     buttons.operator("pe.duplicate_variant", text="", icon="DUPLICATE")
     draw_state(layout, settings)
+    if settings.live.on:
+        name, menu = columns(layout, 0.4)
+        draw_label(name, "Compare Live With")
+        label = reference_label(context.scene)
+        menu.menu(PE_MT_live_against.bl_idname, text=shown(label), translate=False)
     layout.prop(selected(settings), "note", text="", icon="TEXT", placeholder="Note")
 
 
@@ -64,8 +69,24 @@ class PE_MT_known_rigs(bpy.types.Menu):
     bl_label = "Add Known Rig"
 
     def draw(self, _context: Context) -> None:
-        for key, title in known_rigs():
+        for key, title in menu_of_rigs():
             self.layout.operator("pe.add_rig", text=title, translate=False).key = key
+
+
+class PE_MT_live_against(bpy.types.Menu):
+    """What the live score is compared with"""
+
+    bl_idname = "PE_MT_live_against"
+    bl_label = "Compare Live With"
+
+    def draw(self, context: Context) -> None:
+        layout = self.layout
+        layout.operator("pe.live_against", text="Before the Last Move").key = BEFORE_MOVE
+        variants = context.scene.perception_entropy.variants
+        if variants:
+            layout.separator()
+        for row in variants:
+            layout.operator("pe.live_against", text=row.name, translate=False).key = row.key
 
 
 def selected(settings: PropertyGroup) -> PropertyGroup:
@@ -138,4 +159,4 @@ def draw_front(layout: UILayout, settings: PropertyGroup, context: Context) -> N
     draw_sentence(column, context, front.told)
 
 
-CLASSES = (PE_MT_known_rigs, variants_rows, variants, selection)
+CLASSES = (PE_MT_known_rigs, PE_MT_live_against, variants_rows, variants, selection)

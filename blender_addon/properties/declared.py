@@ -67,7 +67,7 @@ def _kind_of(
         return StringProperty, {"default": "", "description": about}
     if isinstance(rule, studies.Pair):
         return FloatVectorProperty, {"size": 2, "unit": UNITS.get(rule.rule.unit)}
-    low = 0 if setting.is_optional else rule.minimum
+    low = panel.none if setting.is_optional else rule.minimum
     high = rule.maximum if panel.max is None else panel.max
     low = low if panel.min is None else panel.min
     if isinstance(rule, studies.Whole):

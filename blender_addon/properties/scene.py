@@ -9,7 +9,7 @@ import bpy
 from bpy.types import Collection, PropertyGroup
 
 from .. import bridge
-from ..choices import PRIORS
+from ..choices import PANELS, PRIORS
 from ..engine import search
 from .callbacks import changed, kinds_to_add, redraw, select_object_by_index, selected_object_index
 from .declared import mixin, scene_group
@@ -66,7 +66,22 @@ def _lists() -> Any:
 ListFields: Any = _lists()
 
 
-class PE_SceneSettings(StudyFields, ListFields, bridge.ResultViews, PropertyGroup):
+KEPT_AT_FIRST = ("blind_ground", "blind_sector")
+KeepFields: Any = mixin(
+    "Keep",
+    {
+        f"keep_{key}": switch(
+            f"Keep {search.KEY_FIGURES[key].label}",
+            "Optimize keeps it: as wanted, or as good as now where nothing is wanted. "
+            f"{search.KEY_FIGURES[key].about}",
+            key in KEPT_AT_FIRST,
+        )
+        for key in search.KEPT
+    },
+)
+
+
+class PE_SceneSettings(StudyFields, ListFields, KeepFields, bridge.ResultViews, PropertyGroup):
     """The study's settings, and the last result."""
 
     kind_to_add: menu("Kind", "Kind of sensor that Add and Place put on the vehicle", kinds_to_add)
@@ -130,6 +145,7 @@ class PE_SceneSettings(StudyFields, ListFields, bridge.ResultViews, PropertyGrou
         update=redraw,
     )
 
+    panels: menu("Panels", "Which panels the tab has, and in which words", PANELS)
     live: pointer("Live", "The score that is updated while a sensor moves", PE_LiveSettings)
 
     show_overlay: switch(
@@ -141,6 +157,7 @@ class PE_SceneSettings(StudyFields, ListFields, bridge.ResultViews, PropertyGrou
     )
 
     warnings_json: text("Checks", "Warnings, as JSON")
+    known_rigs_json: text("Known Rigs", "Their entropies on this vehicle, as JSON")
     front_json: text("Front", "The last Pareto front, as JSON")
     result_json: text("Result", "The last result in full, as result.json holds it")
     result_signature: text(

@@ -126,6 +126,8 @@ class Panel:
         Limits of the field, if they differ from those of the rule.
     zero : str
         Text of the field at 0, for a setting that may be absent (None) in a file.
+    none : int
+        Value of the field for an absent number, as all below its least, if 0 is a value.
     precision, step : optional
         As in `bpy.props`.
     menu : tuple of (label, meaning)
@@ -148,6 +150,7 @@ class Panel:
     max: float | None = None
     soft_max: float | None = None
     zero: str = ""
+    none: int = 0
     precision: int | None = None
     step: float | None = None
     menu: tuple[tuple[str, str], ...] = ()

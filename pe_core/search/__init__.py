@@ -13,6 +13,7 @@ from .domains import (
 )
 from .goals import Front, Goals, Start, Stop
 from .journal import EvaluatedRig, Journal
+from .key_figures import KEPT, KEY_FIGURES, FigureOfMerit, KeyFigures, Reading, Wanted, dashboard
 from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method
 from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .optimize import Step, optimize
@@ -48,16 +49,17 @@ from .tolerance import (
     robustness,
 )
 
-__all__ = ["AXES", "DEFAULT_METHOD", "METHODS", "PAPER_FREE", "POSITION_AXES", "SCHEDULED_METHOD"]
-__all__ += ["AnyMount", "Call", "Candidate", "Choice", "Constraints", "DesignSearch"]
-__all__ += ["DesignSpace", "EvaluatedRig", "Evaluation", "Front", "Goals", "Journal"]
-__all__ += ["LazyProcesses", "Method", "MountArea", "Mounting", "MountingPlaces", "NoGo"]
-__all__ += ["Objective", "Option", "Parametrization", "Payload", "Picks", "Processes"]
-__all__ += ["RigRobustness", "RobustObjective", "Robustness", "Schedule", "SearchRun"]
-__all__ += ["SearchSpace", "Selection", "Slot", "SlotMount", "Start", "Step", "Stop"]
-__all__ += ["SurfaceMount", "SurfacePlace", "Tolerance", "Unreadable", "WorkerDied"]
-__all__ += ["above_front", "checked_axes", "checked_bounds", "checked_method", "default_bounds"]
-__all__ += ["evaluate_all", "feasible_start", "mirrored", "mounted_off", "outward_yaw"]
-__all__ += ["no_processes", "objective_of", "optimize", "pareto_front"]
-__all__ += ["pose_from_values", "pose_values", "robustness", "run_tasks", "send_payload"]
-__all__ += ["shared_parts", "snap_to_mount", "standoff_point", "start_processes"]
+__all__ = ["AXES", "DEFAULT_METHOD", "KEPT", "KEY_FIGURES", "METHODS", "PAPER_FREE"]
+__all__ += ["POSITION_AXES", "SCHEDULED_METHOD", "AnyMount", "Call", "Candidate", "Choice"]
+__all__ += ["Constraints", "DesignSearch", "DesignSpace", "EvaluatedRig", "Evaluation"]
+__all__ += ["FigureOfMerit", "Front", "Goals", "Journal", "KeyFigures", "LazyProcesses", "Method"]
+__all__ += ["MountArea", "Mounting", "MountingPlaces", "NoGo", "Objective", "Option"]
+__all__ += ["Parametrization", "Payload", "Picks", "Processes", "Reading", "RigRobustness"]
+__all__ += ["RobustObjective", "Robustness", "Schedule", "SearchRun", "SearchSpace", "Selection"]
+__all__ += ["Slot", "SlotMount", "Start", "Step", "Stop", "SurfaceMount", "SurfacePlace"]
+__all__ += ["Tolerance", "Unreadable", "Wanted", "WorkerDied", "above_front", "checked_axes"]
+__all__ += ["checked_bounds", "checked_method", "dashboard", "default_bounds", "evaluate_all"]
+__all__ += ["feasible_start", "mirrored", "mounted_off", "no_processes", "objective_of"]
+__all__ += ["optimize", "outward_yaw", "pareto_front", "pose_from_values", "pose_values"]
+__all__ += ["robustness", "run_tasks", "send_payload", "shared_parts", "snap_to_mount"]
+__all__ += ["standoff_point", "start_processes"]

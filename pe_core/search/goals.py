@@ -18,6 +18,7 @@ from ..base.values import A_NAME, Number, Whole, listed
 from ..geometry.poses import Pose
 from ..scene.rig import Rig
 from .build_figures import BUILD_FIGURES
+from .key_figures import KEPT, Wanted
 from .mounts import Mounting
 
 FULL, OFF = "full", "off"
@@ -223,31 +224,17 @@ class Goals:
             menu=(("Full", "Also after a short search"), ("Off", "The result is not analysed")),
         ),
     )
-    blind_ground: str | None = setting(
-        None,
-        OneOf(("keep",)),
-        "Placements with no more blind ground than the start's come first: ground within 10 m of "
-        "the vehicle where no sensor sees what is 0.5 m tall. A candidate takes longer",
-        Panel("keep_blind_ground", "No More Blind Ground", default=True),
+    keep: Sequence[str] = setting(
+        (),
+        Several(KEPT),
+        "Key figures that placements keep: as wanted, or as good as the start's where nothing is "
+        "wanted. A candidate takes longer",
     )
-    blind_sector: str | None = setting(
-        None,
-        OneOf(("keep",)),
-        "Placements with no wider blind sector than the start's come first: 20 m away, for what is "
-        "0.5, 1 and 1.5 m tall. A candidate takes longer",
-        Panel("keep_blind_sector", "No Wider Blind Sector", default=True),
-    )
-    traffic_ap: str | None = setting(
-        None,
-        OneOf(("keep",)),
-        "Placements with no lower expected AP in traffic than the start's come first. A candidate "
-        "takes longer",
-        Panel("keep_traffic_ap", "No Lower AP in Traffic"),
-    )
+    wanted: Wanted = field(default_factory=Wanted)
 
     def __post_init__(self) -> None:
-        for key, value, kind in (("stop", self.stop, Stop), ("front", self.front, Front)):
-            if not isinstance(value, kind):
+        for key, kind in (("stop", Stop), ("front", Front), ("wanted", Wanted)):
+            if not isinstance(value := getattr(self, key), kind):
                 raise InputError("optimize", key, f"a {kind.__name__}", type(value).__name__)
         starts: Any = listed(self.starts)
         if starts is None or not all(isinstance(each, Start) for each in starts):

@@ -2,8 +2,8 @@
 
 `[optimize] requirements = "keep"`: a placement that meets all requirements beats each one that does
 not. Of placements that break some, the one with the least violation is the best; their entropies do
-not matter and are not computed. `[optimize] blind_ground = "keep"`: a placement with more blind
-ground than the study's own is infeasible, too.
+not matter and are not computed. `[optimize] keep = ["blind_ground"]`: a placement with more blind
+ground than is wanted, or than the study's own where nothing is wanted, is infeasible, too.
 
 For each requirement that is not met, `suggestions` looks for the nearest placement that meets it.
 One design variable of the search is changed at a time, by small steps first; then one sensor (or
@@ -13,20 +13,22 @@ linked pair) is put elsewhere within its range, the nearest places first.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import chain
 
 import numpy as np
 
+from ..base.errors import InputError
 from ..base.values import rounded
 from ..scene.rig import Rig
 from ..scoring.requirements import RequirementChecker
 from ..scoring.score import Evaluation, Objective
-from ..scoring.sight import BLIND_TO_M, Sight
+from ..scoring.sight import Sight
 from ..search import Parametrization, Tolerance, shared_parts
 from ..search.domains import METRE, RADIAN, SHARE
+from ..search.key_figures import KEPT, KEY_FIGURES, PARTS, Wanted
 from ..search.methods.method import sampled_candidate
 from ..search.parametrization import Candidate
 from .conditions import mounting_cases
@@ -47,56 +49,33 @@ POSITION_DECIMALS, ANGLE_DECIMALS = 5, 4
 """Poses are rounded to these [m, deg]: what a suggestion says is what was checked."""
 
 
-def blind_area(sight: Sight, rig: Rig) -> float:
-    """Return the ground within 10 m of the body where a child is invisible to a rig [m2].
-
-    It is the area of `Sight.blind` for a body of `BLIND_TO_M`, or of the lowest height of the space
-    if that is greater. It is never too small.
-    """
-    return rounded(sight.blind_area(rig, max(BLIND_TO_M, sight.space.z[0])))
-
-
-def _widths(sight: Sight, rig: Rig) -> tuple[float, ...]:
-    """Return widths of blind sectors, rounded up to whole degrees: closer ones are alike."""
-    return tuple(math.ceil(sector.width) for sector in sight.blind_sectors(rig))
-
-
-def _missed(sight: Sight, rig: Rig) -> tuple[float, ...]:
-    """Return 1 minus the expected AP in traffic; 1 where there is no such figure."""
-    traffic = sight.in_traffic(rig)
-    return (1.0 if traffic is None else rounded(1.0 - traffic.ap),)
-
-
-KEPT_FIGURES: dict[str, Callable[[Sight, Rig], tuple[float, ...]]] = {
-    "blind_ground": lambda sight, rig: (blind_area(sight, rig),),
-    "blind_sector": _widths,
-    "traffic_ap": _missed,
-}
-"""By key of `Goals`: figures of a rig, of which none may be higher than the start's."""
-
-
 class FiguresLimit:
-    """The constraint that figures of a rig are no higher than limits; the vehicle is as drawn.
+    """The constraint that key figures of a rig cost no more than limits; the vehicle is as drawn.
 
-    `keys` are those of `KEPT_FIGURES`; `limits` are their figures in that order.
+    `keys` are those of `KEY_FIGURES`. A limit is the cost of what is wanted, and those of the rig
+    `start` where nothing is.
     """
 
-    def __init__(self, sight: Sight, keys: Sequence[str], limits: Sequence[float]) -> None:
-        self._sight, self._keys, self.limits = sight, tuple(keys), tuple(limits)
+    def __init__(self, sight: Sight, keys: Sequence[str], wanted: Wanted, start: Rig) -> None:
+        self._sight, self._keys = sight, tuple(keys)
+        self._limits = {
+            key: own if asked is None else (KEY_FIGURES[key].cost_of(asked),) * len(own)
+            for key, own in self._costs(start).items()
+            for asked in [getattr(wanted, key)]
+        }
 
-    @classmethod
-    def of(cls, study: Study, keys: Sequence[str]) -> FiguresLimit:
-        """Return the constraint of a study's search: no figure higher than its own rig has."""
-        sight = study.sight()
-        limits = [v for key in keys for v in KEPT_FIGURES[key](sight, study.rig)]
-        return cls(sight, keys, limits)
-
-    def _figures(self, rig: Rig) -> tuple[float, ...]:
-        return tuple(v for key in self._keys for v in KEPT_FIGURES[key](self._sight, rig))
+    def _costs(self, rig: Rig) -> dict[str, tuple[float, ...]]:
+        rows = [KEY_FIGURES[key] for key in self._keys]
+        found = {part: PARTS[part](self._sight, rig) for part in {row.part: 0 for row in rows}}
+        return {row.key: row.costs(found[row.part]) for row in rows}
 
     def violation(self, rig: Rig) -> float:
-        """Return the sum of the shares of a rig's figures above their limits; 0 if none is."""
-        pairs = zip(self._figures(rig), self.limits, strict=True)
+        """Return the sum of the shares of a rig's costs above their limits; 0 if none is."""
+        pairs = (
+            pair
+            for key, costs in self._costs(rig).items()
+            for pair in zip(costs, self._limits[key], strict=True)
+        )
         return rounded(sum(1.0 - limit / value for value, limit in pairs if value > limit))
 
 
@@ -169,8 +148,11 @@ def constraints_of(study: Study) -> tuple[FeasibilityRule, ...]:
     if search.requirements == KEEP and study.requirements:
         checker = study.checker()
         constraints.append(RequirementConstraint(checker, search.tolerance, search.seed))
-    if keys := [key for key in KEPT_FIGURES if getattr(search.goals, key) == KEEP]:
-        constraints.append(FiguresLimit.of(study, keys))
+    if keep := [key for key in KEPT if key in search.goals.keep]:
+        if "reach" in keep and study.targets.are_objects:
+            raise InputError("optimize", "keep", "a reach of voxels", "a study on objects")
+        limit = FiguresLimit(study.sight(), keep, search.goals.wanted, study.rig)
+        constraints.append(limit)
     return tuple(constraints)
 
 

@@ -56,6 +56,7 @@ from ..search import (
     Tolerance,
     checked_axes,
 )
+from ..search.key_figures import Wanted
 from ..search.tolerance import CASES, ERRORS
 from ..sensors import PerceptionModel
 from ..sensors.weather import Weather
@@ -392,6 +393,7 @@ SECTIONS = (
     StudyTable("optimize", Goals, part="goals"),
     StudyTable("optimize.tolerance", Tolerance, ERRORS),
     StudyTable("optimize.stop", Stop),
+    StudyTable("optimize.wanted", Wanted),
     StudyTable("optimize.front", Front),
     StudyTable("selection", Selection),
     StudyTable("optimize.mount", SurfaceMount, rows=True),
@@ -440,7 +442,7 @@ def panel_default(setting: Setting) -> Any:
     default = setting.default if setting.panel.default is None else setting.panel.default
     if default is REQUIRED:
         return None
-    return default if default is not None else 0
+    return default if default is not None else setting.panel.none
 
 
 def is_switch(setting: Setting) -> bool:

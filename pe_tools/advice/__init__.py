@@ -3,12 +3,12 @@
 Nothing here computes a score; results of `pe_core` are checked, compared and described.
 """
 
-from pe_core.scoring.sight import BLIND_TO_M
+from pe_core.search.key_figures import KeyFigures
 from pe_tools.wording import joined, percent
 
 from ..wording import off_by
-from .advice import FRAGILE, UNMET, Advice, fragile, unmet
-from .key_figures import KeyFigures, SensorRow, key_figures, loss_text, sensor_rows, sensor_table
+from .advice import FRAGILE, NOT_KEPT, UNMET, Advice, fragile, not_kept, unmet
+from .key_figures import SensorRow, loss_text, sensor_rows, sensor_table
 from .key_figures import built_lines as built_lines
 from .location import AskedPlace, SensorAtPlace, ask_place
 from .mount_checks import check_mirror_image, occluded_shares
@@ -32,12 +32,12 @@ from .warnings import (
     warnings,
 )
 
-__all__ = ["BLIND_TO_M", "FRAGILE", "OTHER_HARDWARE", "UNMET", "WHERE", "Advice"]
+__all__ = ["FRAGILE", "NOT_KEPT", "OTHER_HARDWARE", "UNMET", "WHERE", "Advice"]
 __all__ += ["AskedPlace", "ComparedRow", "KeyFigures", "Outlook", "SensorAtPlace"]
 __all__ += ["SensorRow", "ask_place", "built_lines", "check_mirror_image", "class_of", "compare"]
 __all__ += ["compare_figures", "condition_warnings", "costs_nothing", "curve_note"]
 __all__ += ["curve_warnings", "fragile", "hardware_note", "hidden_sensors", "hidden_words"]
-__all__ += ["joined", "key_figures", "lone_reach", "loss_text", "object_words", "objects_looked_at"]
+__all__ += ["joined", "lone_reach", "loss_text", "not_kept", "object_words", "objects_looked_at"]
 __all__ += ["occluded_shares", "off_by", "outlook", "percent"]
 __all__ += [
     "TRAFFIC",

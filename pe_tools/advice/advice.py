@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from pe_core.search.key_figures import Reading
 from pe_core.study.requirement_search import Suggestion
 
 from ..wording import warning_text
@@ -14,7 +15,9 @@ FRAGILE = "fragile"
 """Code of the warning that concerns the placement of all sensors."""
 UNMET = "requirement"
 """Code of the warning about a requirement that a search could not keep."""
-SUBJECTS = {FRAGILE: "placement", UNMET: "placement", "returns": "returns"}
+NOT_KEPT = "figure"
+"""Code of the warning about a key figure that a search could not keep."""
+SUBJECTS = {FRAGILE: "placement", UNMET: "placement", NOT_KEPT: "search", "returns": "returns"}
 SUBJECTS |= {"range_term": "AP curves", "protocol_floor": "expected AP"}
 """What warnings without a sensor concern, by code; others concern the vehicle."""
 
@@ -92,4 +95,13 @@ def unmet(found: Mapping[str, Suggestion | None]) -> tuple[Advice, ...]:
     return tuple(
         Advice(None, UNMET, {"name": name, "against": own and list(own.breaks)})
         for name, own in found.items()
+    )
+
+
+def not_kept(rows: Iterable[Reading]) -> tuple[Advice, ...]:
+    """Return a warning for each key figure that a search was to keep as wanted, and could not."""
+    return tuple(
+        Advice(None, NOT_KEPT, {"name": row.figure.name, "told": row.text})
+        for row in rows
+        if row.kept and row.met is False and row.figure.part
     )

@@ -1,22 +1,21 @@
-"""Key figures of a rig, and the table of its sensors."""
+"""The table of a rig's sensors, and what can be built in words."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
-from pe_core.base.values import rounded
 from pe_core.scene.rig import Rig
 from pe_core.scene.vehicle import Vehicle
-from pe_core.scoring.score import FAR_M, NEAR_M, Score, TrafficAp
-from pe_core.scoring.sight import BLIND_TO_M, BlindSector, Sight
-from pe_core.search.build_figures import ALONE, BUILD_FIGURES, Placement
+from pe_core.scoring.score import FAR_M, NEAR_M, Score
+from pe_core.search.build_figures import ALONE, BUILD_FIGURES
 from pe_core.search.goals import PRICE
+from pe_core.search.key_figures import KeyFigures
 from pe_tools.wording import percent
 
 from .mount_checks import occluded_shares
-from .summary import SIDES, Outlook, class_of
+from .summary import SIDES, Outlook
 
 SENSOR_COLUMNS = ("sensor", "loss [nats]", "costs most", "occluded by")
 SHORT_ZONES = {
@@ -115,87 +114,6 @@ def loss_text(loss: float | None) -> str:
     if abs(loss) < MIN_LOSS:
         return "none"
     return f"{max(loss, 0.0) if abs(loss) < MIN_RISE else loss:.2f}"
-
-
-@dataclass(frozen=True, slots=True)
-class KeyFigures:
-    """What a rig is decided by beside its entropy: expected AP in traffic, and what is blind.
-
-    Attributes
-    ----------
-    traffic : TrafficAp or None
-        None where the prior's objects have no room, or a sensor has a curve of its own.
-    sectors : tuple of BlindSector
-        The widest blind sector for bodies of each height.
-    blind_m2, height, within : float
-        Ground within a distance of the body's rectangle on which an object `height` tall is
-        invisible [m2, m, m].
-    class_name : str or None
-        Class of the reach; None where objects are scored: that score already has it.
-    reach_m : float or None
-        How far ahead of the origin an object is found with an AP of 0.5 or more [m]; 0: it is not.
-    at_least : bool
-        Whether the perception space ends there: the true reach may be longer.
-    over_frames : float or None
-        Entropy over the study's frames [nats]; None for one frame.
-    built, unknown : mapping of str
-        What can be built, by the names of `BUILD_FIGURES`: the figures that are known, and of which
-        sensors the others are not.
-    """
-
-    traffic: TrafficAp | None
-    sectors: tuple[BlindSector, ...]
-    blind_m2: float
-    height: float
-    within: float
-    class_name: str | None = None
-    reach_m: float | None = None
-    at_least: bool = False
-    over_frames: float | None = None
-    built: Mapping[str, float] = field(default_factory=dict)
-    unknown: Mapping[str, Sequence[str]] = field(default_factory=dict)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the figures as plain JSON data."""
-        data = {**asdict(self), "sectors": [asdict(sector) for sector in self.sectors]}
-        if self.traffic is not None:
-            data["traffic"]["rings"] = {n: list(ap) for n, ap in self.traffic.rings.items()}
-        return data
-
-    @classmethod
-    def from_dict(cls, data: Mapping[str, Any]) -> KeyFigures:
-        """Return the figures from the data of `to_dict`."""
-        traffic = data["traffic"]
-        if traffic is not None:
-            rings = {name: (ap, error) for name, (ap, error) in traffic["rings"].items()}
-            traffic = TrafficAp(**{**traffic, "rings": rings})
-        sectors = tuple(BlindSector(**each) for each in data["sectors"])
-        return cls(**{**data, "traffic": traffic, "sectors": sectors})
-
-
-def key_figures(
-    sight: Sight, rig: Rig, height: float = BLIND_TO_M, class_name: str | None = None
-) -> KeyFigures:
-    """Return the key figures of a rig.
-
-    Blind ground is that of an object `height` tall [m], or of the lowest height of the space if
-    that is greater; one that is not in the space raises `InputError`. Reach is that of a class
-    (`class_of`), left out where objects are scored.
-    """
-    blind = sight.blind(rig, max(height, sight.space.z[0]))
-    found = sight.in_traffic(rig), sight.blind_sectors(rig), blind.area, blind.height, blind.within
-    placed = Placement.on(rig, sight.vehicle)
-    unknown = {key: list(row.lacking(placed)) for key, row in BUILD_FIGURES.items()}
-    values = {key: row.value(placed) for key, row in BUILD_FIGURES.items()}
-    more: dict[str, Any] = {
-        "over_frames": sight.over_frames(rig),
-        "built": {key: rounded(value) for key, value in values.items() if value is not None},
-        "unknown": {key: lacking for key, lacking in unknown.items() if lacking},
-    }
-    if sight.targets.are_objects:
-        return KeyFigures(*found, **more)
-    name = class_of(sight.prior, class_name)
-    return KeyFigures(*found, name, *sight.reach_ahead(rig, name), **more)
 
 
 def built_lines(figures: Sequence[KeyFigures]) -> list[str]:

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 from pe_core.scene.rig import Rig
 from pe_core.scoring.score import Score
+from pe_core.search.key_figures import KEY_FIGURES, KeyFigures
 
-from ..wording import degrees, joined, metres
-from .key_figures import KeyFigures
+from ..wording import joined, metres
 from .location import WAYS
-from .score_comparison import AP, BLIND, COVERAGE, ENTROPY, MIN_CHANGE, SECTOR, TRAFFIC, ComparedRow
+from .score_comparison import AP, COVERAGE, ENTROPY, MIN_CHANGE, SECTOR, TRAFFIC, ComparedRow
 from .summary_text import WHERE
 
 ZONES_NAMED = 2
@@ -117,16 +117,12 @@ def search_cost(before: Score, after: Score, start: KeyFigures, result: KeyFigur
 
     `start` and `result` are the key figures of the rigs with the scores `before` and `after`.
     """
-    losses, areas = [], _areas(start.blind_m2, result.blind_m2)
-    if result.blind_m2 > start.blind_m2 + MIN_CHANGE[BLIND]:
-        losses.append(f"blind ground ({areas})")
-    for one, other in zip(start.sectors, result.sectors, strict=True):
-        if other.width > one.width + MIN_CHANGE[SECTOR]:
-            widths = f"{degrees(one.width)} to {degrees(other.width)}"
-            losses.append(f"the widest blind sector for what is {one.height:g} m tall ({widths})")
-    first, last = (0.0 if f.traffic is None else f.traffic.ap for f in (start, result))
-    if first - last >= MIN_CHANGE[AP]:
-        losses.append(f"expected AP in traffic ({first:.3f} to {last:.3f})")
+    losses = []
+    for row in KEY_FIGURES.values():
+        first, last = row.value(start), row.value(result)
+        if first is not None and last is not None and row.cost_of(last) > row.cost_of(first):
+            texts = row.text(first), row.text(last)
+            losses += [f"{row.name} ({' to '.join(texts)})"] * (texts[0] != texts[1])
     if before.coverage - after.coverage >= MIN_CHANGE[COVERAGE]:
         losses.append(f"coverage ({before.coverage:.1%} to {after.coverage:.1%})")
     if before.objects is not None and after.objects is not None:
@@ -145,16 +141,9 @@ def search_cost(before: Score, after: Score, start: KeyFigures, result: KeyFigur
         losses.append(f"sight {WHERE.get(name, name)} ({first:.2f} to {last:.2f} nats)")
     if losses:
         return f"It cost {joined(losses)}"
-    rest = "blind sectors, expected AP in traffic, coverage and all zones are no worse"
-    return f"{NOTHING}: blind ground {areas}, {rest}"
+    return f"{NOTHING}: key figures, coverage and all zones are no worse"
 
 
 def costs_nothing(cost: str) -> bool:
     """Whether a sentence of `search_cost` says that nothing got worse."""
     return cost.startswith(NOTHING)
-
-
-def _areas(before_m2: float, after_m2: float) -> str:
-    """Return "24.1 to 53.0 m2", rounded up."""
-    before, after = (math.ceil(area * 10.0 - 1e-6) / 10.0 for area in (before_m2, after_m2))
-    return f"{before:.1f} to {after:.1f} m2"

@@ -13,9 +13,8 @@ from pe_core.scene.rig import SensorModel
 from pe_core.scoring.sampling import BLOCKS
 from pe_core.scoring.score import BY_DISTANCE, FigureKey, PartScore, Score, TrafficAp, paired_error
 from pe_core.scoring.sight import SECTOR_RADIUS_M
+from pe_core.search.key_figures import KeyFigures
 from pe_core.study.mounting_file import same_model
-
-from .key_figures import KeyFigures
 
 CERTAINTY = 0.95
 MIN_CHANGE = {
@@ -200,7 +199,7 @@ def compare(scores: Mapping[str, Score]) -> tuple[ComparedRow, ...]:
 def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...]:
     """Compare key figures: expected AP in traffic, blind sectors, blind ground, and reach ahead.
 
-    All are of the same height and class; differences refer to the first. The error of a difference
+    Differences refer to the first. The error of a difference
     of AP is that of independent samples, which is too large: rigs share the scenes.
     """
     columns = list(figures.values())
@@ -216,8 +215,9 @@ def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...
         rows.append(ComparedRow("rig", "over frames", ENTROPY, over_frames, none))
     height_text = f"{columns[0].height:g} m tall, within {columns[0].within:g} m"
     rows.append(ComparedRow("rig", height_text, BLIND, tuple(f.blind_m2 for f in columns), none))
-    if (name := columns[0].class_name) is not None:
-        rows.append(ComparedRow("class", name, REACH, tuple(f.reach_m for f in columns), none))
+    for name in columns[0].reach:
+        ahead = tuple(f.reach[name][0] if name in f.reach else None for f in columns)
+        rows.append(ComparedRow("class", name, REACH, ahead, none))
     return tuple(rows)
 
 

@@ -20,6 +20,7 @@ from pe_core.base.files import named_path, quoted, reason_of
 from pe_core.search import Schedule
 from pe_core.search.goals import FULL, OFF, Front, Start
 from pe_core.search.goals import OBJECTIVES as GOALS
+from pe_core.search.key_figures import KEPT
 from pe_core.sensors import CURVE_MODELS, KINDS, curve_source, detectors, fitted_curves, kind_of
 from pe_core.sensors.lidar import RETURNS
 from pe_core.study import METHODS, OBJECTIVES, SCHEDULED_METHOD, Study, load_study
@@ -36,8 +37,8 @@ MAX_WORKERS, MAX_VOXELS, LAST_SEED = 1024, 10**9, 2**64 - 1
 
 AUTO = "auto"
 """Value of `--sensitivity` that leaves the study's own."""
-KEEP, ANY = "keep", "any"
-"""Values of `--blind-ground`: the study's key, or none."""
+NOTHING = "none"
+"""Value of `--keep` that keeps no figure."""
 STOPS = {"stop_at": "target", "stop_after": "seconds", "stop_gain": "gain"}
 """Fields of `Stop` by option."""
 PATHS = ("STUDY", "FILE", "MESH", "PATH", "TABLE", "DIR")
@@ -119,8 +120,8 @@ def add_search_options(parser: argparse.ArgumentParser) -> None:
     add("--start", action="append", default=[], metavar="STUDY", help=about)
     about = f"a Pareto front of these: two or more of {', '.join(GOALS)}"
     add("--front", type=_names, metavar="NAME,...", help=about)
-    about = "keep: no more blind ground than the start; any: as much as the search likes"
-    add("--blind-ground", choices=(KEEP, ANY), metavar="keep|any", help=about)
+    about = f"{', '.join(KEPT)}: kept as this or as the start has it, too; none: nothing is kept"
+    add("--keep", action="append", type=_kept, metavar="FIGURE[=VALUE]", help=about)
     about = "how sure the result is: as far as an eighth of the evaluations goes, all of it, or off"
     add("--sensitivity", choices=(AUTO, FULL, OFF), metavar="auto|full|off", help=about)
 
@@ -222,13 +223,23 @@ def with_goals(study: Study, args: argparse.Namespace) -> Study:
         goals = replace(goals, front=Front(names, goals.front.points))
     if (wanted := getattr(args, "sensitivity", None)) not in (None, AUTO):
         goals = replace(goals, sensitivity=wanted)
-    if (wanted := getattr(args, "blind_ground", None)) is not None:
-        goals = replace(goals, blind_ground=KEEP if wanted == KEEP else None)
+    if given := dict(getattr(args, "keep", None) or ()):
+        keep = () if NOTHING in given else tuple(dict.fromkeys((*goals.keep, *given)))
+        asked = {name: value for name, value in given.items() if value is not None}
+        goals = replace(goals, keep=keep, wanted=replace(goals.wanted, **asked))
     if goals == own:
         return study
     changed = replace(study, search=replace(study.search, goals=goals))
     changed.coding()  # a follower that is to stay is bad input, not a late surprise
     return changed
+
+
+def _kept(text: str) -> tuple[str, float | None]:
+    """Return the figure and the value of ``--keep``; None where there is no value."""
+    name, _, value = text.partition("=")
+    if name not in (*KEPT, NOTHING):
+        raise argparse.ArgumentTypeError(one_of((*KEPT, NOTHING), name))
+    return name, int(value) if value.isdigit() else _number(value) if value else None
 
 
 def add_sensors_verb(verbs: argparse._SubParsersAction[Any]) -> None:

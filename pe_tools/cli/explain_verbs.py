@@ -82,10 +82,6 @@ def add_explain_options(parser: argparse.ArgumentParser) -> None:
 
 def add_compare_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``compare`` to a parser."""
-    about = "for what is so tall blind ground is told [m] (0.5)"
-    parser.add_argument("--height", type=float, default=advice.BLIND_TO_M, metavar="M", help=about)
-    about = "class whose reach is told (pedestrian)"
-    parser.add_argument("--class", dest="class_name", metavar="NAME", help=about)
     about = "a known rig on the first one's vehicle as a further column"
     parser.add_argument("--beside", metavar="RIG", help=about)
     parser.add_argument("--json", action="store_true", help="print JSON")
@@ -124,8 +120,7 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     refuse_different(studies)
     studies = {**studies, **_beside(studies, args.beside)}
     figures = {
-        name: advice.key_figures(study.sight(), study.rig, args.height, args.class_name)
-        for name, study in studies.items()
+        name: advice.KeyFigures.of_rig(study.sight(), study.rig) for name, study in studies.items()
     }
     scores = {name: scored(study, args.workers).after for name, study in studies.items()}
     rows, figure_rows = advice.compare(scores), advice.compare_figures(figures)

@@ -5,15 +5,14 @@ from __future__ import annotations
 import os
 import sys
 import unicodedata
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import suppress
 from typing import TextIO
 
-from pe_core.scoring.sight import SECTOR_RADIUS_M
+from pe_core.search.key_figures import ENTROPY
 from pe_core.sensors import kind_of
 
 from ..advice import (
-    KeyFigures,
     built_lines,
     hidden_sensors,
     hidden_words,
@@ -22,7 +21,7 @@ from ..advice import (
     off_by,
 )
 from ..jobs import Outcome, condition_lines, searched_on, sureness_lines
-from ..wording import margin_text, sectors_text, traffic_text
+from ..wording import margin_text
 
 DONE, BAD_INPUT, USAGE, NOT_MET, INTERRUPTED = 0, 1, 2, 3, 130
 Answer = tuple[str, int]
@@ -111,8 +110,7 @@ def summary(outcome: Outcome) -> str:
     score = outcome.after
     if outcome.kind == "score":
         lines = [f"entropy   {with_error(score.entropy, score.stderr)}"]
-        if outcome.figures is not None:
-            lines += figure_lines(outcome.figures[:1])
+        lines += figure_lines(outcome)
         lines.append(f"coverage  {score.coverage:.1%}")
         lines += built_lines(outcome.figures[:1]) if outcome.figures else []
     else:
@@ -152,7 +150,7 @@ def _before_and_after(outcome: Outcome) -> Iterator[str]:
     """Yield what a search began and ended with, also under mounting errors and failures."""
     before, after = outcome.before, outcome.after
     entropy = f"entropy   {before.entropy:.4f} -> {after.entropy:.4f} nats"
-    beside = [] if outcome.figures is None else figure_lines(outcome.figures)
+    beside = figure_lines(outcome)
     yield from [*beside, entropy] if outcome.in_traffic is not None else [entropy, *beside]
     yield f"coverage  {before.coverage:.1%} -> {after.coverage:.1%}"
     yield from built_lines(outcome.figures) if outcome.figures else ()
@@ -165,16 +163,18 @@ def _before_and_after(outcome: Outcome) -> Iterator[str]:
             yield f"one sensor lost  {one.loss:+.4f} -> {other.loss:+.4f} nats on average"
 
 
-def figure_lines(figures: Sequence[KeyFigures]) -> list[str]:
-    """Return what stands beside the entropy of one rig, or of start and result."""
-    found = [traffic_text(each.traffic) for each in figures]
-    blind = [sectors_text(each.sectors) for each in figures]
-    over = [f"{w:.4f}" for each in figures if (w := each.over_frames) is not None]
-    return [
-        *([f"entropy over frames  {' -> '.join(over)} nats"] if over else []),
-        f"expected AP in traffic  {' -> '.join(found)}",
-        f"widest blind sector at {SECTOR_RADIUS_M:g} m  {' -> '.join(blind)}",
-    ]
+def figure_lines(outcome: Outcome) -> list[str]:
+    """Return the dashboard of a rig, or of start and result: what is beside its entropy."""
+    told = (outcome.figures or ())[outcome.kind == "score" :]
+    over = [f"{w:.4f}" for each in told if (w := each.over_frames) is not None]
+    lines = [f"entropy over frames  {' -> '.join(over)} nats"] if over else []
+    plain: list[str] = []
+    for row in outcome.dashboard:
+        if row.figure.part or (row.figure.key == ENTROPY and row.wanted is not None):
+            before = [row.figure.text(row.figure.value(each)) for each in told[:-1]]
+            text = f"{row.figure.name} {' -> '.join([*before, row.text])}"
+            (plain if row.wanted is None else lines).append(text)
+    return [f"key figures  {', '.join(plain)}", *lines] if told else lines
 
 
 def warned(outcome: Outcome) -> list[str]:

@@ -26,9 +26,9 @@ from pe_core.search.goals import (
     PRICE,
     WORST_LOSS,
 )
+from pe_core.search.key_figures import blind_area
 from pe_core.search.tolerance import without_each
 from pe_core.study.condition_table import is_by_ap
-from pe_core.study.requirement_search import blind_area
 from pe_core.study.study import EXPECTED_AP, Study
 
 AUGMENTED = 0.05

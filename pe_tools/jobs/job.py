@@ -18,7 +18,8 @@ from pe_core.scene.rig import Rig
 from pe_core.scoring import RigEvaluator
 from pe_core.scoring.requirements import CheckStep, RequirementChecker, Verdict
 from pe_core.scoring.score import ObjectScore, Score, ScoreStopped
-from pe_core.search import EvaluatedRig, Robustness
+from pe_core.search import EvaluatedRig, KeyFigures, Reading, Robustness, dashboard
+from pe_core.search.key_figures import REQUIREMENTS
 from pe_core.study.condition_table import (
     ConditionTable,
     condition_table,
@@ -28,15 +29,7 @@ from pe_core.study.condition_table import (
 from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Study
 
-from ..advice import (
-    Advice,
-    KeyFigures,
-    curve_warnings,
-    gain_sentence,
-    key_figures,
-    search_cost,
-    warnings,
-)
+from ..advice import Advice, curve_warnings, gain_sentence, search_cost, warnings
 from ..sensitivity import Sensitivity
 from .searched_figure import IN_NATS, SearchedFigure
 
@@ -155,6 +148,14 @@ class Outcome(Tabular):
     seed_scatter: float | None = None
     in_traffic: tuple[ObjectScore, ObjectScore] | None = None
     figures: tuple[KeyFigures, KeyFigures] | None = None
+
+    @property
+    def dashboard(self) -> tuple[Reading, ...]:
+        """What the result is decided by, with what is wanted and kept."""
+        search, met = self.study.search, [each.met for each in self.verdicts]
+        figures = None if self.figures is None else self.figures[1]
+        keep = [*search.goals.keep, *[REQUIREMENTS] * (search.requirements is not None)]
+        return dashboard(figures, self.after.entropy, met, search.goals.wanted, keep)
 
     def _rows(self) -> list[dict[str, Any]]:
         told = [{}, {}] if self.figures is None else [_beside(each) for each in self.figures]
@@ -398,7 +399,7 @@ class Job:
 
         def work(_: Watch) -> tuple[KeyFigures, ...]:
             with suppress(InputError):
-                return tuple(key_figures(sight, rig) for rig in rigs)
+                return tuple(KeyFigures.of_rig(sight, rig) for rig in rigs)
             return ()
 
         return (yield from self._beside(work, waiting, to_the_end=True))

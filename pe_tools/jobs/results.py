@@ -85,6 +85,7 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
     if outcome.figures is not None:
         first, last = (each.to_dict() for each in outcome.figures)
         data["figures"] = {"before": first, "after": last}
+    data["dashboard"] = [each.to_dict() for each in outcome.dashboard]
     if is_search:
         data["gain"], data["cost"] = outcome.gain, outcome.cost
     data["ap_model"], data["returns"] = study.model.model, study.returns

@@ -30,7 +30,7 @@ from pe_core.study.requirement_search import (
 )
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 
-from ..advice import Advice, condition_warnings, fragile, unmet
+from ..advice import Advice, condition_warnings, fragile, not_kept, unmet
 from ..sensitivity import Archive, analyse
 from .candidate_workers import ExecutorSource, candidate_workers
 from .job import HistoryRow, Job, Outcome, Progress, ProgressSteps, StartEnd, begun, best_so_far
@@ -211,7 +211,7 @@ class OptimizeJob(Job):
         if found is not None:
             off, errors, tolerant = found.after, found.errors, best.search.tolerance.mounts_off
             sure = fragile(off.rise, off.stderr, errors.position, errors.angle, tolerant)
-        self.outcome = Outcome(
+        outcome = Outcome(
             "optimize",
             self.study,
             best,
@@ -234,6 +234,8 @@ class OptimizeJob(Job):
             (first.in_traffic, last.in_traffic) if first.in_traffic and last.in_traffic else None,
             (figures[0], figures[-1]) if figures else None,
         )
+        warned = (*outcome.warnings, *not_kept(outcome.dashboard))
+        self.outcome = replace(outcome, warnings=warned)
         yield self._about("done", last.value)
 
     def _checked(self) -> list[Objective]:

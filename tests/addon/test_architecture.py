@@ -33,7 +33,7 @@ translation_context:
 language: engine translation_context
 own_catalog: engine
 properties: bridge choices engine sensor_kinds signals view_settings
-bridge: choices engine sensor_kinds view_settings
+bridge: choices engine sensor_kinds
 sensor_cache: bridge
 engine_calls: engine
 analysis_calls: engine engine_calls overlay
@@ -48,7 +48,7 @@ diagnostics: analysis_calls bridge engine engine_process sensor_cache signals ve
 location_query: bridge engine engine_process sensor_cache signals vehicle_cache
 where_map: engine signals
 housing: engine sensor_cache sensor_kinds
-library: engine
+library:
 preferences_panel: engine language library own_catalog properties
     signals translation_context
 live: analysis_calls bridge change_events choices engine engine_calls engine_process language

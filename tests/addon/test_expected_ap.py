@@ -95,8 +95,9 @@ def test_the_panels_show_what_an_objective_needs_and_found(settings):
     assert bpy.ops.pe.optimize() == {"FINISHED"}
     shown = layouts.drawn(main.main, **vars(layouts.Window(scene))).texts("label")
     first, last = (settings.result.figures[w]["traffic"]["ap"] for w in ("before", "after"))
-    row = shown[shown.index("AP in Traffic") + 1]
-    assert row == f"{first:.3f} \N{RIGHTWARDS ARROW} {last:.3f}"
+    row = shown.index("AP in traffic")
+    was, now = f"{first:.3f}", f"{last:.3f}"
+    assert shown[row + 1] == now and (shown[row + 2] == f"({was})") == (was != now)
     settings.objective = "entropy"
     assert "scenes" not in props(search_panels.search)
     assert "search_samples" in props(search_panels.search)

@@ -11,7 +11,7 @@ from mathutils import Matrix
 from blender_addon import diagnostics
 from blender_addon.engine import kinds
 from blender_addon.operators import shortcuts
-from blender_addon.panels import main, sensor_menus
+from blender_addon.panels import CLASSES, main, sensor_menus
 from tests.addon import scenes
 from tests.addon.layouts import Layout, Window, drawn
 
@@ -166,23 +166,22 @@ def test_the_add_menu_has_each_kind_in_object_mode_alone(scene):
         assert layout.texts("menu") == entries
 
 
-def headings():
-    """Return the steps that the first panel names."""
-    shown = drawn(main.main, **vars(Window(bpy.context.scene)))
-    steps = [f"{number}  {text}" for number, text in main.STEPS.items()]
-    return [text for text in shown.texts("label") if text in steps], shown
+def first_panel():
+    """What the first panel shows."""
+    return drawn(main.main, **vars(Window(bpy.context.scene)))
 
 
-def test_the_tab_names_the_next_step_until_there_is_a_sensor(scene):
-    texts, shown = headings()
-    assert texts == ["1  Choose the vehicle"]
-    assert {"pe.use_selected", "pe.open_example"} <= set(shown.texts("operator"))
+@pytest.mark.parametrize("panels", ["SIMPLE", "ALL"])
+def test_an_empty_file_shows_three_things(scene, panels):
+    scene.perception_entropy.panels = panels
+    assert [kind for kind, _ in first_panel().notes] == ["operator"] * 3
+    window = Window(scene)
+    shown = [cls for cls in CLASSES if issubclass(cls, bpy.types.Panel) and cls.poll(window)]
+    assert [cls.__name__ for cls in shown] == ["PE_PT_main", "PE_PT_view"]
     scenes.add_car(scene)
-    texts, shown = headings()
-    assert texts == ["2  Add a sensor"]
-    assert not {"pe.use_selected", "pe.open_example"} & set(shown.texts("operator"))
-    scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))
-    assert headings()[0] == []
+    texts = first_panel().texts("operator")
+    assert "pe.open_example" not in texts and "pe.score" in texts
+    assert any("Then add a sensor" in text for text in first_panel().texts("label"))
 
 
 @pytest.mark.parametrize("factor", [1e30, -1e30, 1e-30, 0.0, -1.0, math.nan, math.inf])

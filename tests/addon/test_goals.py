@@ -22,8 +22,8 @@ def asked(car):
 
 def test_goals_of_the_panel_are_those_of_the_study(asked):
     settings = asked.perception_entropy
-    kept = {"blind_ground": "keep", "blind_sector": "keep"}
-    assert scenes.study().search.goals == Goals(sensitivity="off", **kept)
+    kept = ("blind_ground", "blind_sector")
+    assert scenes.study().search.goals == Goals(sensitivity="off", keep=kept)
     settings.keep_blind_ground = settings.keep_blind_sector = False
     assert scenes.study().search.goals == Goals(sensitivity="off")
     settings.stop_target, settings.stop_gain, settings.stop_over = -1.25, 0.002, 40

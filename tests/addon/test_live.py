@@ -16,8 +16,7 @@ from blender_addon import (
     signals,
 )
 from blender_addon.engine import advice
-from blender_addon.live import background_figures, readout, readout_text, session, state
-from blender_addon.live.state import ShownFigures
+from blender_addon.live import readout, readout_text, session, state, told_figures
 from tests.addon import scenes
 
 SAMPLES = 4096
@@ -206,7 +205,7 @@ def test_after_undo_and_redo_the_result_that_came_back_is_shown(live):
     assert shown.stored and shown.entropy == scene.perception_entropy.result.entropy != moved
     assert state.live_state(scene.name).note == ""
     rows = readout.rows_of(reading(scene), "", shown)
-    assert rows[0].words[0][0] == f"{readout_text.nats_text(shown.entropy)} nats"
+    assert rows[0].words[0][0] == f"{shown.entropy:.3f} nats"
     bpy.ops.ed.redo()
     assert state.shown_score(bpy.context.scene) is None, "it was stale: nothing is known yet"
     rest()
@@ -227,36 +226,20 @@ def test_a_search_s_gain_is_that_of_its_result(live):
     assert state.shown_score(live).before is None, "compared with something else"
 
 
-def lines(scene):
-    score, shown = state.live_state(scene.name).score, state.shown_score(scene)
-    below = background_figures.lines_below(scene.name, score, shown.exact)
-    return [readout_text.text_of(line) for line, _ in below]
-
-
-def figure_texts(shown):
-    return [readout_text.text_of(line) for line in readout_text.figure_lines(shown)]
-
-
-def test_figures_below_the_score_are_the_engine_s_and_of_before_while_it_moves(live, monkeypatch):
-    settings = live.perception_entropy
-    settings.live.figures = True
-    looking, of = scenes.study().sight(), {"height": 0.5, "class_name": "pedestrian"}
-    first = advice.key_figures(looking, reading(live).rig, **of)
-    assert lines(live) == figure_texts(ShownFigures(first, None, True))
+def test_the_figures_are_the_engine_s_and_of_before_while_it_moves(live, monkeypatch):
+    live.perception_entropy.live.figures = True
+    looking = scenes.study().sight()
+    first = advice.KeyFigures.of_rig(looking, reading(live).rig)
+    assert told_figures(live, live=True)[-1] == first
     monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
     drag(live.objects["roof"], 0.6)
-    assert lines(live) == figure_texts(ShownFigures(first)), "of before this move"
+    assert told_figures(live, live=True) == [first], "of before this move"
     rest()
-    second = advice.key_figures(looking, reading(live).rig, **of)
-    assert second != first
-    assert lines(live) == figure_texts(ShownFigures(second, first, True))
-    settings.view.blind_height, settings.view.reach_class = "H100", "car"
-    second = advice.key_figures(looking, reading(live).rig, 1.0, "car")
-    first = advice.key_figures(looking, reading(live).baseline.rig, 1.0, "car")
-    assert lines(live) == figure_texts(ShownFigures(second, first, True))
-    settings.targets = "objects"
+    second = advice.KeyFigures.of_rig(looking, reading(live).rig)
+    assert second != first and told_figures(live, live=True) == [first, second]
+    live.perception_entropy.targets = "objects"
     rest()
-    assert lines(live)[-1].endswith(readout_text.NO_FIGURE), "reaches are in the score"
+    assert told_figures(live, live=True)[-1].reach == {}, "reaches are in the score"
 
 
 def test_only_what_moved_is_measured_and_the_vehicle_is_not_read(live, monkeypatch):

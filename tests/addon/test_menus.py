@@ -24,7 +24,7 @@ def test_a_right_click_offers_what_fits_the_object(addon):
     assert context_menu(scene, None) == context_menu(scene, mesh, "EDIT_MESH") == []
     assert context_menu(scene, mesh) == ["Use Selected Objects as Vehicle"]
     sensor = scenes.add_sensor("roof")
-    assert context_menu(scene, sensor)[:2] == ["pe.look_through", "pe.stand_upright"]
+    assert context_menu(scene, sensor)[0] == "pe.look_through"
     scene.perception_entropy.vehicle = bpy.data.collections.new("Car")
     assert context_menu(scene, mesh) == ["pe.place_sensor"]
 

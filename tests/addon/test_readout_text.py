@@ -2,10 +2,10 @@
 
 from dataclasses import replace
 
-from blender_addon.engine import advice, pe, sight
+from blender_addon.engine import advice, pe, search, sight
 from blender_addon.live import readout, readout_text, state
 from blender_addon.live.readout_text import BETTER, SAME, WORSE
-from blender_addon.live.state import Baseline, ShownFigures, ShownScore
+from blender_addon.live.state import Baseline, ShownScore
 from pe_core.scoring.score import TrafficAp
 
 
@@ -44,45 +44,46 @@ def test_better_and_worse_differ_by_arrow_and_colour():
 
 
 def figures(**changed):
-    told = {"blind_m2": 81.24, "height": 0.5, "within": 10.0, "class_name": "pedestrian"}
-    told |= {"reach_m": 47.2, "at_least": False}
+    told = {"blind_m2": 81.24, "height": 0.5, "within": 10.0}
+    told["reach"] = {"car": (62.4, True), "pedestrian": (changed.pop("reach_m", 47.2), False)}
     told["traffic"] = TrafficAp(changed.pop("ap", 0.617), 0.005, 256, {"near": (0.9, 0.01)})
     widths = changed.pop("widths", (12.01, 0.0))
     told["sectors"] = tuple(map(sight.BlindSector, (0.5, 1.0), widths, (0.0, 0.0)))
     return advice.KeyFigures(**told | changed)
 
 
-def rows(now, before=None):
-    lines = readout_text.figure_lines(ShownFigures(now, before, True))
-    return {name.text: (figure.text, figure.sense) for name, figure in lines}
+def rows(*found):
+    """Text and sense of each key figure, of one rig or of before and now."""
+    told = {}
+    for figure in search.KEY_FIGURES.values():
+        if figure.part:
+            values = [v for each in found if (v := figure.value(each)) is not None]
+            told[figure.label] = readout_text.change_text(figure, values)
+    return told
 
 
-def test_each_gain_and_each_loss_of_the_figures_has_its_colour():
+def test_each_gain_and_each_loss_of_the_figures_is_told():
     """More blind ground is a loss, however much farther objects are detected."""
     before = figures(blind_m2=24.0, reach_m=45.0, ap=0.7, widths=(14.0, 0.0))
-    shown = ShownFigures(figures(blind_m2=53.0), before, True)
-    lines = {line[0].text: line for line in readout_text.figure_lines(shown)}
-    assert [line[1].sense for line in lines.values()] == [WORSE, SAME, BETTER, WORSE, BETTER]
-    drawn = [readout.row_of(lines[name]) for name in ("Blind Ground", "Reach Ahead")]
-    assert drawn[0].words[1][1] == readout.SENSE_COLORS[WORSE]
-    assert drawn[1].words[1][1] == readout.SENSE_COLORS[BETTER]
+    found = rows(before, figures(blind_m2=53.0))
+    senses = {name: sense for name, (_, sense) in found.items() if sense != SAME}
+    gains, losses = ("Blind sector", "Reach"), ("Blind ground", "AP in traffic")
+    assert senses == dict.fromkeys(gains, BETTER) | dict.fromkeys(losses, WORSE)
 
 
 def test_figures_in_words():
+    none = (readout_text.NO_FIGURE, SAME)
     assert rows(figures()) == {
-        "AP in Traffic": ("0.617 ± 0.005", SAME),
-        "Near": ("0.90", SAME),
-        "Blind Sector": ("12.1 deg (0.5 m tall)", SAME),
-        "Blind Ground": ("81.3 m²", SAME),
-        "Reach Ahead": ("47 m (pedestrian)", SAME),
+        "Blind ground": ("81.3 m²", SAME),
+        "Blind sector": ("12.1 deg", SAME),
+        "Reach": ("47 m", SAME),
+        "AP near": ("0.90", SAME),
+        "AP middle": none,
+        "AP far": none,
+        "AP in traffic": ("0.617", SAME),
     }
-    before = figures(blind_m2=84.3, reach_m=45.0, ap=0.6, widths=(14.0, 0.0))
-    told = rows(figures(), before)
-    assert told["Reach Ahead"] == ("45 m \N{RIGHTWARDS ARROW} 47 m (pedestrian)", BETTER)
-    assert told["Blind Sector"][0] == "14.0 deg \N{RIGHTWARDS ARROW} 12.1 deg"
-    told = rows(replace(figures(reach_m=80.0, at_least=True), traffic=None))
-    assert told["AP in Traffic"][0] == readout_text.NO_FIGURE
-    assert told["Reach Ahead"][0] == "≥ 80 m (pedestrian)"
-    assert rows(figures(reach_m=None, class_name=None))["Reach Ahead"][0] == readout_text.NO_FIGURE
-    pending = readout_text.figure_lines(ShownFigures())
-    assert pending == ((readout_text.TextPiece(readout_text.PENDING),),)
+    told = rows(figures(blind_m2=84.3, reach_m=45.0, ap=0.6, widths=(14.0, 0.0)), figures())
+    assert told["Reach"] == ("45 \N{RIGHTWARDS ARROW} 47 m", BETTER)
+    assert told["Blind sector"][0] == "14.0 \N{RIGHTWARDS ARROW} 12.1 deg"
+    assert rows(replace(figures(), traffic=None))["AP in traffic"] == none
+    assert rows(figures(reach={}))["Reach"] == none

@@ -72,7 +72,8 @@ def set_what_is_by_default(settings):
     for _, setting in studies.setting_keys(of_scene=True):
         name = None if setting.panel is None else setting.panel.property
         if name is not None and not settings.is_property_set(name):
-            value = getattr(settings, name)
+            value = max(getattr(settings, name), 0) if name.startswith("wanted_") else None
+            value = getattr(settings, name) if value is None else value
             if studies.is_switch(setting):
                 setattr(settings, name, True)
             elif isinstance(value, bool | int | float):

@@ -275,27 +275,24 @@ def test_two_scenes_have_variants_of_their_own(ideas):
     assert set(poses()) == {"eye", "roof"}
 
 
-def test_comparing_tells_blind_ground_reach_and_ap_for_the_height_and_class_shown(ideas):
-    """Scores that stand are not made again; another height asks for other figures."""
+def test_comparing_tells_blind_ground_reach_and_ap(ideas):
+    """Scores that stand are not made again."""
     bpy.ops.pe.score()
     first = ideas.perception_entropy.variants[0]
     study, kept = scenes.study(), first.score_json
     first.score_json = kept.replace('"voxels"', ' "voxels"')
-    for height, of, name in ((0.5, "H50", "pedestrian"), (1.0, "H100", "car")):
-        ideas.perception_entropy.view.blind_height = of
-        ideas.perception_entropy.view.reach_class = name
-        assert compare_variants.pending_variants(ideas)
-        bpy.ops.pe.compare_variants()
-        assert not compare_variants.pending_variants(ideas) and first.score_json != kept
-        own = advice.key_figures(study.sight(), study.rig, height, name)
-        names, table = compare_variants.comparison_of(ideas)
-        more = advice.compare_figures({"Variant": own})
-        assert table[-len(more) :] == more
+    assert compare_variants.pending_variants(ideas)
+    bpy.ops.pe.compare_variants()
+    assert not compare_variants.pending_variants(ideas) and first.score_json != kept
+    own = advice.KeyFigures.of_rig(study.sight(), study.rig)
+    names, table = compare_variants.comparison_of(ideas)
+    more = advice.compare_figures({"Variant": own})
+    assert table[-len(more) :] == more
     labels, cells = (
         [cell and cell[0] for cell in column]
         for column in compare_variants.columns_of(names, table)
     )
-    assert cells[labels.index("    1 m tall, within 10 m")] == f"{own.blind_m2:.1f}"
+    assert cells[labels.index("    0.5 m tall, within 10 m")] == f"{own.blind_m2:.1f}"
     assert cells[labels.index("    Near, in traffic")] == f"{own.traffic.rings['near'][0]:.3f}"
     ideas.objects["roof"].location.z += 0.3
     bpy.context.view_layer.update()
@@ -306,7 +303,7 @@ def test_comparing_tells_blind_ground_reach_and_ap_for_the_height_and_class_show
 def test_a_comparison_that_is_stopped_keeps_what_is_complete(ideas):
     bpy.ops.pe.duplicate_variant()
     both = {k: compare_variants.PendingVariant(str(k), scenes.study(), True) for k in (1, 2)}
-    job = compare_variants.CompareJob(both, (0.5, "car"))
+    job = compare_variants.CompareJob(both)
     for step in job:
         if step.stage == "scoring 2":
             job.stop()

@@ -48,11 +48,6 @@ def installed_files() -> list[str]:
     return sorted(path.relative_to(folder).as_posix() for path in files)
 
 
-def is_news_shown() -> bool:
-    """Return whether the panel offers what is new, which a first installation has not."""
-    return sys.modules[f"{PACKAGE}.library"].is_updated()
-
-
 def score() -> float:
     """Score the open scene."""
     assert bpy.ops.pe.score() == {"FINISHED"}
@@ -62,16 +57,12 @@ def score() -> float:
 scene = bpy.context.scene.perception_entropy
 scene.space_interval, scene.score_samples = 0.5, 4096
 bpy.context.preferences.addons[PACKAGE].preferences.show_library = False
-before = is_news_shown()
 report = {"score before": score(), "before": state()}
 for path in NEWER.iterdir():
     shutil.copy(path, SERVED)
 bpy.ops.extensions.repo_sync_all()
 bpy.ops.extensions.package_upgrade_all()
 report["after"] = state()
-report["news"] = [before, is_news_shown()]
-bpy.ops.pe.whats_new()
-report["news"].append(is_news_shown())
 report["score after"] = score()
 report["files"] = installed_files()
 REPORT.write_text(json.dumps(report))

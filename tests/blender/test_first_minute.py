@@ -3,7 +3,6 @@
 import shutil
 
 EFFECT_TIMEOUT_S = 120
-ADDONS, MODULE = "bpy.context.preferences.addons", "bl_ext.user_default.perception_entropy"
 
 
 def test_from_an_empty_tab_to_a_vehicle_and_an_example(stage, installed, tmp_path, screenshots):
@@ -22,18 +21,4 @@ def test_from_an_empty_tab_to_a_vehicle_and_an_example(stage, installed, tmp_pat
     stage.wait_until("'Sedan' in bpy.data.collections and not bpy.data.filepath")
     stage.rest()
     stage.photograph(screenshots / "first_example.png")
-    assert "Traceback" not in stage.log.read_text()
-
-
-def test_after_an_update_what_is_new_is_shown_once(stage, installed, sedan, screenshots):
-    seen = f"{ADDONS}['{MODULE}'].preferences.seen_version"
-    stage.load(sedan)
-    stage.do(f"{ADDONS}.new().module = '{MODULE}'")  # the window's is enabled without preferences
-    stage.do(f"{seen} = '0.0.9'")
-    stage.press("pe.whats_new")
-    stage.wait_until(f"{seen} != '0.0.9'", EFFECT_TIMEOUT_S)
-    stage.rest()
-    stage.photograph(screenshots / "whats_new.png")
-    stage.key("Escape")
-    stage.do(f"{ADDONS}.remove({ADDONS}['{MODULE}'])")
     assert "Traceback" not in stage.log.read_text()

@@ -94,10 +94,6 @@ def test_the_update_brings_this_version_and_its_engine(report):
     assert (report["after"]["version"], report["after"]["engine"]) == (version, version)
 
 
-def test_what_is_new_is_shown_once_after_the_update(report):
-    assert report["news"] == [False, True, False]
-
-
 def test_scene_and_preferences_are_kept(report):
     kept = ("enabled", "preference", "interval", "result", "sensors")
     before, after = ({key: report[when][key] for key in kept} for when in ("before", "after"))

@@ -235,14 +235,16 @@ def study():
 
 def test_they_are_those_of_sight(study):
     look = study.sight()
-    found = advice.key_figures(look, study.rig, 0.6, "car")
-    reach, blind = look.reach(study.rig, "car"), look.blind(study.rig, 0.6)
-    assert 0.0 < found.blind_m2 == blind.area and (found.height, found.within) == (0.6, 10.0)
-    assert found.class_name == "car" and found.reach_m == reach.distance[0]
-    assert found.at_least == (reach.distance[0] >= reach.limit[0] - 0.5)
+    found = advice.KeyFigures.of_rig(look, study.rig)
+    reach, blind = look.reach(study.rig, "car"), look.blind(study.rig, 0.5)
+    assert 0.0 < found.blind_m2 == pytest.approx(blind.area, abs=1e-9) and (
+        found.height,
+        found.within,
+    ) == (0.5, 10.0)
+    assert found.reach["car"] == (reach.distance[0], reach.distance[0] >= reach.limit[0] - 0.5)
+    assert found.reach.keys() == set(study.prior.class_names)
     assert found.traffic == look.in_traffic(study.rig) is not None
     assert found.sectors == look.blind_sectors(study.rig)
-    assert advice.key_figures(look, study.rig).class_name == "pedestrian"
     assert advice.KeyFigures.from_dict(json.loads(json.dumps(found.to_dict()))) == found
 
 

@@ -96,40 +96,33 @@ def test_compare_puts_studies_side_by_side(study, tmp_path, capsys):
 def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(tmp_path, capsys):
     """The table and the JSON have the engine's key figures; of a wrong height nothing is scored."""
     study = saved(tmp_path, "car.toml")
-    call = [
-        "compare",
-        study,
-        "--samples",
-        "1024",
-        "--beside",
-        "paper_car_camera60",
-        "--height",
-        "1",
-    ]
-    assert main([*call, "--class", "car"]) == 0
+    call = ["compare", study, "--samples", "1024", "--beside", "paper_car_camera60"]
+    assert main(call) == 0
     lines = capsys.readouterr().out.splitlines()
     first = pe.load_study(study)
     rig = catalog.rig_on(catalog.known_rig("paper_car_camera60"), first.vehicle)
     look = first.sight()
-    figures = [advice.key_figures(look, each, 1.0, "car") for each in (first.rig, rig)]
+    figures = [advice.KeyFigures.of_rig(look, each) for each in (first.rig, rig)]
     assert lines[0].split() == ["car", "paper_car_camera60"]
-    (ground,) = (line for line in lines if line.startswith("  1 m tall, within 10 m"))
+    (ground,) = (line for line in lines if line.startswith("  0.5 m tall, within 10 m"))
     assert f"{figures[0].blind_m2:.1f}" in ground and f"{figures[1].blind_m2:.1f}" in ground
     assert ground.count("*") == 1, "less blind ground is better"
     title = lines.index("reach ahead (AP 0.5) [m]")
-    assert lines[title + 1].split()[:2] == ["car", f"{figures[0].reach_m:.1f}".rstrip("*")]
-    assert main([*call, "--class", "car", "--json"]) == 0
+    assert lines[title + 1].split()[:2] == ["car", f"{figures[0].reach['car'][0]:.1f}".rstrip("*")]
+    assert main([*call, "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
     assert data["figures"] == {
         "car": figures[0].to_dict(),
         "paper_car_camera60": figures[1].to_dict(),
     }
-    *before, blind, reach = [row for row in data["rows"] if row["group"] != "zone"]
-    assert (blind["measure"], reach["measure"]) == ("blind", "reach")
+    rows = [row for row in data["rows"] if row["group"] != "zone"]
+    *before, blind = (row for row in rows if row["measure"] != "reach")
+    reached = [row["name"] for row in rows if row["measure"] == "reach"]
+    assert blind["measure"] == "blind" and reached == list(first.prior.class_names)
     assert [row["measure"] for row in before[-3:]] == ["sector"] * 3
     (traffic,) = (row for row in before if (row["group"], row["name"]) == ("in traffic", ""))
     assert traffic["values"] == [each.traffic.ap for each in figures]
-    for wrong in (["--height", "99"], ["--class", "boat"], ["--beside", "nobody"]):
+    for wrong in (["--beside", "nobody"],):
         assert main([*call, *wrong]) == 1
         out, err = capsys.readouterr()
         assert out == "" and "expected" in err and "scoring" not in err

@@ -8,7 +8,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.search import Front, Goals, Start, Stop
+from pe_core.search import Front, Goals, Start, Stop, Wanted
 from pe_core.study import load_study_data, study_to_dict
 from pe_core.study.requirement_search import INFEASIBLE
 from pe_tools.cli.command import with_options
@@ -54,17 +54,29 @@ def test_a_search_stops_at_its_target_with_the_steps_of_the_whole_one(plain):
     assert result_dict(outcome)["stop_reason"] == "target"
 
 
-def test_blind_ground_is_kept_by_key_or_option(tmp_path):
+def test_figures_are_kept_by_key_or_option(tmp_path):
     path = tmp_path / "study.toml"
-    pt.export_study(study(Goals(blind_ground="keep")), path)
-    assert 'blind_ground = "keep"' in path.read_text()
+    wanted = Wanted(blind_ground=0.0, blind_sector=20, ap_far=0.3)
+    pt.export_study(study(Goals(keep=("blind_ground",), wanted=wanted)), path)
     kept = pe.load_study(path)
-    assert kept.search.goals.blind_ground == "keep"
-    for option, found in (("any", None), ("keep", "keep")):
-        args = parser().parse_args(["optimize", str(path), "--blind-ground", option])
-        assert with_options(kept, args).search.goals.blind_ground == found
-    path.write_text(path.read_text().replace('"keep"', '"less"'))
-    with pytest.raises(pe.InputError, match=r"blind_ground: expected .*keep.*, found 'less'"):
+    assert kept.search.goals.keep == ("blind_ground",) and kept.search.goals.wanted == wanted
+    for options, keep, far in (
+        (["none"], (), 0.3),
+        (["ap_far=0.4", "reach"], ("blind_ground", "ap_far", "reach"), 0.4),
+        ([], ("blind_ground",), 0.3),
+    ):
+        given = [word for option in options for word in ("--keep", option)]
+        goals = with_options(
+            kept, parser().parse_args(["optimize", str(path), *given])
+        ).search.goals
+        assert goals.keep == keep and goals.wanted == replace(wanted, ap_far=far)
+    with pytest.raises(pe.InputError, match="ap_far"):
+        with_options(kept, parser().parse_args(["optimize", str(path), "--keep", "ap_far=2"]))
+    for option in ("entropy", "reach=far"):
+        with pytest.raises(SystemExit):
+            parser().parse_args(["optimize", str(path), "--keep", option])
+    path.write_text(path.read_text().replace('"blind_ground"', '"less"'))
+    with pytest.raises(pe.InputError, match=r"keep: expected .*blind_ground.*, found 'less'"):
         pe.load_study(path)
 
 

@@ -44,6 +44,8 @@ from .ground_cells import (
     without_specks,
 )
 
+WITHIN_M = 10.0
+"""How far from the body blind ground is looked for, unless one says otherwise [m]."""
 BLIND_TO_M = 0.5
 """Height of the object for which blind ground is computed [m]: a post at the kerb or a small child.
 Flat ground would not do: far from the vehicle beams meet it only in rings."""

@@ -31,6 +31,7 @@ from ..targets.object_metric import LoneObjects
 from .blind_ground import (
     SECTOR_HEIGHTS_M,
     STEP_M,
+    WITHIN_M,
     BlindGround,
     BlindSearch,
     BlindSector,
@@ -54,8 +55,6 @@ from .visibility import (
 )
 
 ORIGIN = ((0.0, 0.0), (0.0, 0.0))
-WITHIN_M = 10.0
-"""How far from the body blind ground is looked for, unless one says otherwise [m]."""
 SAMPLES = 65_536
 """Number of voxels for the AP by class."""
 MIN_AP, BEARINGS_SHOWN = 0.5, 72

@@ -1,0 +1,36 @@
+"""What a good score is: that of the known rigs on the same body, in the background."""
+
+from __future__ import annotations
+
+import json
+
+import bpy
+
+from .. import engine_calls, engine_process, signals
+from ..engine import pe
+
+
+def request(scene: bpy.types.Scene, study: pe.Study, surroundings: str) -> None:
+    """Have the known rigs scored on a study's vehicle, once for its surroundings."""
+    name = scene.name
+    if json.loads(scene.perception_entropy.known_rigs_json or "{}").get("of") == surroundings:
+        return
+
+    def deliver(entropies: dict[str, float]) -> None:
+        if (found := bpy.data.scenes.get(name)) is not None:
+            told = {"of": surroundings, "entropies": entropies}
+            found.perception_entropy.known_rigs_json = json.dumps(told)
+            signals.live_score_changed.emit()
+
+    topic = f"known rigs of {name}"
+    engine_process.ask(topic, engine_calls.known_entropies, (study,), deliver, lambda _: None)
+
+
+def told(scene: bpy.types.Scene) -> str:
+    """Return how many known rigs the stored score is better than; empty where it is not known."""
+    settings = scene.perception_entropy
+    entropies = json.loads(settings.known_rigs_json or "{}").get("entropies", {}).values()
+    if not entropies or not settings.has_result:
+        return ""
+    worse = sum(entropy > settings.result.entropy for entropy in entropies)
+    return f"Better than {worse} of {len(entropies)} known rigs"

@@ -1,0 +1,135 @@
+"""The dashboard: what the sensors are decided by, what is wanted, and what *Optimize* keeps."""
+
+from __future__ import annotations
+
+from bpy.types import Context, Scene, UILayout
+
+from ..bridge import shown_state, wanted_of
+from ..engine import advice, search
+from ..language import draw_label
+from ..live import ARROW, BETTER, SAME, SENSE_ICONS, WORSE, change_text, shown_score, told_figures
+from ..operators import known_rigs, shown_verdicts
+from ..sensor_cache import sensors as listed_sensors
+from .layout import columns, draw_sentence, is_simple
+
+MET_ICONS = {True: "COLORSET_03_VEC", False: "ERROR"}
+"""Blender's own green, and its orange triangle."""
+NAME_SHARE, VALUE_SHARE = 0.4, 0.42
+ENTROPY = "entropy"
+KEEP = {"requirements": "keep_requirements"} | {key: f"keep_{key}" for key in search.KEPT}
+"""Properties of what *Optimize* keeps, by figure."""
+LOCKS = {True: "LOCKED", False: "UNLOCKED"}
+
+
+def draw_dashboard(layout: UILayout, context: Context) -> None:
+    """Draw the live score, or the stored one if it is current or Live is off, and its figures.
+
+    Each takes the same rows, those that come late included: what is below stays where it is.
+    """
+    scene, settings = context.scene, context.scene.perception_entropy
+    if not listed_sensors(scene) and not settings.has_result:
+        return
+    live = shown_score(scene)
+    live = None if live is None or live.stored else live
+    now = settings.result if live is None else live
+    result = settings.result if live is None else None
+    column = layout.box().column(align=True)
+    column.active = live is not None or not settings.result_stale
+    head, wanted = columns(column, 0.66)
+    if live is not None:
+        draw_label(head, "Live" if live.exact else "Live: a preview", "REC")
+    elif result is None:
+        draw_label(head, "Not scored yet", "BLANK1")
+    elif settings.result_stale:
+        draw_label(head, "Changed since it was scored", "FILE_REFRESH")
+    else:
+        draw_label(head, "As scored", "CHECKMARK")
+    figures = [] if now is None else told_figures(scene, live=live is not None)
+    entropies = [] if now is None else [now.entropy]
+    if result and result.kind == "optimize":
+        entropies.insert(0, result.entropy_before)
+    met = [v.met for v in shown_verdicts(scene).values() if v.met is not None]
+    rows = search.dashboard(
+        figures[-1] if figures else None, (entropies or [None])[-1], met, wanted_of(settings)
+    )
+    judged = [row.met for row in rows if row.met is not None]
+    draw_label(wanted, f"{sum(judged)} of {len(judged)} met" if judged else "Wanted")
+    for row in rows:
+        known = [row.figure.value(each) for each in figures] if row.figure.part else [row.value]
+        known = entropies if row.figure.key == ENTROPY else known
+        draw_row(column, scene, row, [value for value in known if value is not None])
+    if not is_simple(scene):
+        name, value = columns(column, NAME_SHARE)
+        draw_label(name, "Coverage")
+        draw_label(value, "\N{EN DASH}" if now is None else f"{now.coverage:.1%}")
+    told = "" if result is None else known_rigs.told(scene)
+    draw_label(column, told or "Score: lower is better")
+    if result is not None:
+        draw_outcome(layout, context)
+    if settings.has_result and (state := shown_state(scene)):
+        draw_sentence(layout, context, f"Shown: state {state}. Scored: as drawn", icon="INFO")
+
+
+def draw_row(layout: UILayout, scene: Scene, row: search.Reading, values: list[float]) -> None:
+    """Draw a figure: whether *Optimize* keeps it, its name, its value, and what is wanted."""
+    settings, figure = scene.perception_entropy, row.figure
+    line = layout.row(align=True)
+    if (lock := KEEP.get(figure.key)) is not None:
+        icon = LOCKS[getattr(settings, lock)]
+        line.prop(settings, lock, text="", icon=icon, emboss=False)
+    else:
+        line.label(text="", icon="BLANK1")
+    name, rest = columns(line, NAME_SHARE)
+    is_score = figure.key == ENTROPY and is_simple(scene)
+    draw_label(name, "Score" if is_score else figure.label)
+    value, wanted = columns(rest, VALUE_SHARE)
+    text, sense = change_text(figure, values)
+    text = text.rpartition(ARROW)[2].removesuffix(" nats" if is_score else " met")
+    value.label(text=text, translate=False)
+    wanted = wanted.row(align=True)
+    if row.wanted is None and sense != SAME:
+        before = figure.text(values[0]).partition(" ")[0]
+        draw_label(wanted, f"({before})", SENSE_ICONS[sense])
+    elif figure.rule is None:
+        wanted.label(text="" if row.wanted is None else f"of {row.wanted:.0f}", translate=False)
+    else:
+        draw_wanted(wanted, scene, row)
+    if row.met is not None:
+        wanted.label(text="", icon=MET_ICONS[row.met])
+
+
+def draw_wanted(layout: UILayout, scene: Scene, row: search.Reading) -> None:
+    """Draw the field of what is wanted; without that, a button that begins with what there is."""
+    settings, name = scene.perception_entropy, f"wanted_{row.figure.key}"
+    if row.wanted is not None:
+        layout.prop(settings, name, text="")
+        return
+    kind = settings.bl_rna.properties[name].type.lower()
+    button = layout.operator(f"wm.context_set_{kind}", text="", icon="ADD")
+    button.data_path = f"scene.perception_entropy.{name}"
+    button.value = 0 if row.value is None else row.figure.begin(row.value)
+
+
+def draw_outcome(layout: UILayout, context: Context) -> None:
+    """Draw what the last search gained and cost, and what a stored result says besides."""
+    scene, settings = context.scene, context.scene.perception_entropy
+    result = settings.result
+    column = layout.column(align=True)
+    column.active = not settings.result_stale
+    sense = BETTER if advice.costs_nothing(result.cost) else WORSE
+    for text, mark in ((result.gain, SAME), (result.cost, sense)):
+        if text:
+            draw_sentence(column, context, text, sense=mark)
+    for name, text in (
+        ("Expected AP", result.ap),
+        ("Mounted Off", result.robustness("rise")),
+        ("Sensor Lost", result.robustness("loss")),
+    ):
+        if text and not is_simple(scene):
+            left, right = columns(column, NAME_SHARE)
+            draw_label(left, name)
+            right.label(text=text, translate=False)
+    if text := result.fragile:
+        draw_sentence(column, context, text[:1].upper() + text[1:], icon="ERROR")
+    for line in result.missing:
+        draw_sentence(column, context, f"Scored without it: {line}", icon="ERROR")

@@ -1,0 +1,125 @@
+"""The dashboard: the engine's figures, what is wanted, what is kept; *Simple* and *All*."""
+
+import json
+import re
+
+import bpy
+import pytest
+
+from blender_addon import bridge, engine_calls
+from blender_addon.bridge.scene_settings import write_goals
+from blender_addon.engine import pe, search
+from blender_addon.operators import known_rigs
+from blender_addon.panels import CLASSES, dashboard, main
+from tests.addon import layouts, scenes
+
+TERMS = re.compile(r"\bnats\b|\bprior\b|\bfusion\b|entropy", re.IGNORECASE)
+"""Words that *Simple* does without; the name of the product apart."""
+
+
+def window(scene):
+    return layouts.Window(scene, scene.objects["roof"])
+
+
+def shown(scene):
+    """What the first panel shows."""
+    return layouts.drawn(main.main, **vars(window(scene)))
+
+
+def panels(scene, *, roots=False):
+    """The panels of the sidebar that are there."""
+    there = [cls for cls in CLASSES if issubclass(cls, bpy.types.Panel)]
+    there = [cls for cls in there if cls.poll(window(scene)) and cls.bl_region_type == "UI"]
+    return [cls for cls in there if not (roots and hasattr(cls, "bl_parent_id"))]
+
+
+def test_its_values_are_those_of_the_score(car):
+    bpy.ops.pe.score()
+    texts = shown(car).texts("label")
+    result = car.perception_entropy.result
+    rows = result.data["dashboard"]
+    assert [row["figure"] for row in rows] == list(search.KEY_FIGURES)
+    for row in rows:
+        figure = search.KEY_FIGURES[row["figure"]]
+        if row["value"] is not None and figure.part:
+            assert figure.text(row["value"]).replace("m2", "m²") in texts
+    assert f"{result.entropy:.3f}" in texts
+
+
+def test_what_is_wanted_is_met_or_not_and_is_the_study_s(car):
+    settings = car.perception_entropy
+    bpy.ops.pe.score()
+    value = search.KEY_FIGURES["blind_ground"].value(
+        search.KeyFigures.from_dict(settings.result.data["figures"]["after"])
+    )
+    assert "Wanted" in shown(car).texts("label")
+    for wanted, text in ((0.0, "0 of 1 met"), (value + 1.0, "1 of 1 met")):
+        settings.wanted_blind_ground = wanted
+        assert text in shown(car).texts("label")
+        goals = scenes.study().search.goals
+        assert goals.wanted.blind_ground == pytest.approx(wanted, rel=1e-6)
+    settings.keep_blind_ground, settings.keep_ap_near = False, True
+    assert scenes.study().search.goals.keep == ("blind_sector", "ap_near")
+    bpy.ops.pe.score()
+    (row,) = (r for r in settings.result.data["dashboard"] if r["figure"] == "blind_ground")
+    assert row["met"] and not row["kept"]
+    settings.wanted_blind_ground = -1.0  # nothing, as all below 0
+    assert scenes.study().search.goals.wanted == search.Wanted()
+
+
+def test_goals_that_are_written_are_those_that_are_read(car):
+    wanted = search.Wanted(blind_sector=0, reach=40.0, entropy=-1.5)
+    goals = search.Goals(keep=("reach", "ap_far"), wanted=wanted)
+    write_goals(car.perception_entropy, goals)
+    assert scenes.study().search.goals == goals
+
+
+def test_a_good_score_is_told_by_the_known_rigs_on_this_body(car):
+    """As many are worse as by a score of each in its turn; another body is asked about again."""
+    bpy.ops.pe.score()
+    study, settings = scenes.study(), car.perception_entropy
+    assert not [text for text in shown(car).texts("label") if "known rigs" in text]
+    known_rigs.request(car, study, "of this body")
+    kept = json.loads(settings.known_rigs_json)
+    evaluator = study.evaluator(samples=engine_calls.HELD_SAMPLES)
+    worse = 0
+    for key, value in kept["entropies"].items():
+        rig = pe.catalog.rig_on(pe.catalog.known_rig(key), study.vehicle)
+        assert value == evaluator.entropy(rig)
+        worse += value > settings.result.entropy
+    told = f"Better than {worse} of {len(kept['entropies'])} known rigs"
+    assert told in shown(car).texts("label")
+    settings.known_rigs_json = json.dumps({**kept, "entropies": {}})
+    known_rigs.request(car, study, "of this body")
+    assert not json.loads(settings.known_rigs_json)["entropies"], "asked once"
+    known_rigs.request(car, study, "of another")
+    assert json.loads(settings.known_rigs_json) == {**kept, "of": "of another"}
+
+
+def test_the_button_begins_with_what_is_met():
+    for key in search.KEPT:
+        figure = search.KEY_FIGURES[key]
+        assert figure.is_met(0.61749, figure.begin(0.61749)), key
+
+
+def test_simple_has_eight_headers_at_most_and_no_terms(car):
+    bpy.ops.pe.score()
+    bridge.store_warnings(car.perception_entropy, [])
+    simple = panels(car, roots=True)
+    assert len(simple) <= 8
+    for cls in panels(car):
+        drawn = layouts.drawn(cls, **vars(window(car)))
+        texts = [*drawn.texts("label"), *drawn.texts("operator"), cls.bl_label]
+        found = [text for text in texts if text and TERMS.search(str(text))]
+        assert not [t for t in found if t != "Perception Entropy"], cls.__name__
+    car.perception_entropy.panels = "ALL"
+    assert len(panels(car, roots=True)) > len(simple)
+    assert f"{car.perception_entropy.result.entropy:.3f} nats" in shown(car).texts("label")
+    assert json.loads(car.perception_entropy.result_json)["dashboard"]
+    assert dashboard.KEEP.keys() == {*search.KEPT, "requirements"}
+
+
+def test_all_panels_are_drawn_before_there_is_a_score(car):
+    car.perception_entropy.panels = "ALL"
+    for cls in panels(car):
+        layouts.drawn(cls, **vars(window(car)))

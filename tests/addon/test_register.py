@@ -94,8 +94,8 @@ def test_rounds_leave_no_process_timer_or_read_out_behind(unregistered, monkeypa
     drawn, pids = len(View3D.handles), []
     for _ in range(ROUNDS):
         blender_addon.register()
-        # two of the overlay, one of the read-out and of the search curve
-        assert len(View3D.handles) == drawn + 4
+        # two of the overlay, one of the read-out
+        assert len(View3D.handles) == drawn + 3
         # asked a moment before it is switched off
         engine_process.ask("work", operator.add, (1, 2), pytest.fail, pytest.fail)
         assert bpy.app.timers.is_registered(engine_process.deliver_all)
@@ -113,7 +113,7 @@ def test_rounds_leave_nothing_behind(unregistered, view3d):
     assert not any(before.values())
     for _ in range(ROUNDS):
         blender_addon.register()
-        assert len(view3d.handles) == 4
+        assert len(view3d.handles) == 3
         for timer in TIMERS:  # a change just before it is switched off
             bpy.app.timers.register(timer)
         sensor_cache.sensors(bpy.context.scene)

@@ -98,6 +98,8 @@ def parser(prog: str) -> argparse.ArgumentParser:
     check.set_defaults(function=check_scene_requirements)
     about = "when tracks of what moves are confirmed; 3: some too late"
     driven = verbs.add_parser("drive-by", help=about)
+    about = "as --story; with -o FILM.webm or .mp4 one, which is rendered as a film"
+    driven.add_argument("stories", nargs="*", metavar="STORY", help=about)
     app.add_drive_by_options(driven)
     add_variant_option(driven)
     driven.set_defaults(function=drive_by_scene)

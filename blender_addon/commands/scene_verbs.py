@@ -9,8 +9,8 @@ from pathlib import Path
 
 import bpy
 
-from .. import bridge, result_staleness
-from ..engine import app, jobs, page, pe, studies
+from .. import bridge, film, result_staleness
+from ..engine import app, jobs, page, pe, studies, text
 from .open_file import (
     OPTIMIZED,
     from_file,
@@ -86,7 +86,20 @@ def check_scene_requirements(args: argparse.Namespace) -> app.Answer:
 
 def drive_by_scene(args: argparse.Namespace) -> app.Answer:
     """Drive stories by the scene's rig; the exit status says whether all are confirmed in time."""
-    return app.drive_by_study(opened_study(args.variant), args)
+    study, path = opened_study(args.variant), Path(args.output or "")
+    args.story += args.stories
+    if path.suffix not in film.FORMATS:
+        return app.drive_by_study(study, args)
+    text.require_new(path, replace=args.replace)
+    story, *others = app.chosen_stories(study, args.story)
+    if others:
+        raise pe.InputError("drive-by", "story", "one for a film", 1 + len(others))
+    args.output = None
+    answer = app.drive_by_study(study, args)
+    with quiet_blender():
+        film.write_film(bpy.context.scene, study, story, path)
+    app.tell(f"wrote {path}")
+    return answer
 
 
 def where_in_scene(args: argparse.Namespace) -> app.Answer:

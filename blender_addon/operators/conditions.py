@@ -5,9 +5,10 @@ from __future__ import annotations
 import bpy
 from bpy.props import EnumProperty, IntProperty
 
-from .. import bridge, signals
+from .. import bridge, film, signals
 from ..engine import motion, pe
-from .declared import RowList, operator, remove_row
+from .declared import RowList, chosen_file, operator, remove_row
+from .exports import dialog
 
 DRAWN = -1
 WEATHERS = (
@@ -121,3 +122,14 @@ def play_story(context: bpy.types.Context) -> None:
         settings.view.show_story = settings.show_overlay = True
     if not bpy.app.background:
         bpy.ops.screen.animation_play()
+
+
+@operator(
+    "Film", unless=STORY_ROWS.unless_selected, **dialog("", lambda _self: f"drive_by{film.WEBM}")
+)
+def film_story(context: bpy.types.Context, filepath: str) -> str:
+    """Render the selected story as a film (.webm, .mp4), with what the 3D view shows over it"""
+    settings, path = context.scene.perception_entropy, chosen_file(filepath)
+    story = bridge.story_of(settings.stories[settings.story_index])
+    film.write_film(context.scene, bridge.study_as_drawn(context.scene), story, path)
+    return f"Wrote {path}"

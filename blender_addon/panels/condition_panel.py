@@ -80,6 +80,7 @@ def seen_in_time(layout: UILayout, settings: PropertyGroup, context: Context) ->
         row = layout.row(align=True)
         row.operator("pe.check_requirements", text="Check", icon="VIEWZOOM")
         row.operator("pe.play_story", text="", icon="PLAY")
+        row.operator("pe.film_story", text="", icon="RENDER_ANIMATION")
     if settings.story_index < len(settings.stories):
         row = settings.stories[settings.story_index]
         for body in json.loads(row.result)["bodies"] if row.result else ():

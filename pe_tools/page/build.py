@@ -91,7 +91,9 @@ def _write(
     app.refuse_different(requested)
     about = About(args.title, args.author, args.date, args.revision)
     jobs.prepare_folder(args.output, () if args.replace else (PAGE,))
-    contexts = [context_of(name, study) for name, study in requested.items()]
+    folder = Path(args.output)
+    found = (context_of(name, study) for name, study in requested.items())
+    contexts = [replace(context, folder=folder) for context in found]
     path = write_page(contexts, args.output, replace=args.replace, about=about)
     return str(path), app.DONE
 

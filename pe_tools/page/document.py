@@ -131,6 +131,7 @@ def html_file(
         (
             "default-src 'none'",
             "img-src data: blob:",
+            "media-src data:",
             f"style-src {_hashes(sheets)}",
             f"script-src {_hashes(programs)}",
             "base-uri 'none'",

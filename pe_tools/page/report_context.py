@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import date
+from pathlib import Path
 from string import ascii_lowercase
 from typing import Any, TypeVar
 
@@ -39,6 +40,8 @@ class ReportContext:
         Versions of programs besides the engine's, by name.
     cache : dict
         Derived values by name, filled by `cached`; pages that show the same study share it.
+    folder : Path, optional
+        Folder of the page, where films of its stories may be.
     study_count : int
         Number of studies on the page.
     """
@@ -49,6 +52,7 @@ class ReportContext:
     command: str = ""
     versions: Mapping[str, str] = field(default_factory=dict)
     cache: dict[str, Any] = field(default_factory=dict, repr=False)
+    folder: Path | None = None
     study_count: int = 1
 
     @property

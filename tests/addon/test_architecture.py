@@ -38,6 +38,7 @@ sensor_cache: bridge
 engine_calls: engine
 analysis_calls: engine engine_calls overlay
 own_jobs: engine
+film: engine
 engine_process: analysis_calls engine overlay
 vehicle_cache: bridge engine
 change_events: sensor_cache signals vehicle_cache
@@ -62,13 +63,13 @@ overlay.scheduler: analysis_calls engine engine_process overlay overlay.snapshot
 overlay.surroundings: engine overlay vehicle_cache viewport
 overlay.draw_handler: bridge engine engine_process overlay overlay.scheduler
     overlay.surroundings vehicle_cache viewport
-operators: best_so_far bridge choices diagnostics engine engine_calls engine_process housing
+operators: best_so_far bridge choices diagnostics engine engine_calls engine_process film housing
     language library live location_query overlay overlay.surroundings own_jobs properties
     result_staleness sensor_cache sensor_kinds signals translation_context
     vehicle_cache view_settings viewport where_map
 panels: bridge choices diagnostics engine language live location_query operators properties
     sensor_cache sensor_kinds where_map
-commands: bridge engine result_staleness
+commands: bridge engine film result_staleness
 wiring: bridge change_events consistency diagnostics engine_process housing live location_query
     operators overlay.draw_handler overlay.scheduler result_staleness sensor_cache signals
     vehicle_cache viewport where_map

@@ -1,5 +1,6 @@
 """Entropy over frames, tracks and stories: equations T1 to T5, bits of the paper, the command."""
 
+import base64
 import itertools
 import json
 import math
@@ -23,6 +24,7 @@ from pe_core.scoring.requirements.bodies import BODIES
 from pe_core.scoring.targets.object_metric import FusedObjects
 from pe_core.sensors import ObjectMeasurementCache
 from pe_core.study import study_from_dict, study_to_dict
+from pe_tools import graphics
 from pe_tools.cli.verbs import main
 from pe_tools.page.sections.visibility import drive_by as drive_by_section
 from tests.engine import shapes
@@ -371,10 +373,20 @@ def test_the_how_to_says_what_the_example_gives():
     assert float(rows[0][0]) < float(rows[1][0]) and margins[0] < 0.0 <= margins[1]
 
 
-def test_the_page_has_a_strip_for_each_body():
+def test_the_page_has_a_strip_for_each_body(tmp_path):
     story = replace(stories()["crossing_child"], rate_hz=2.0)
-    data = drive_by_section(SimpleNamespace(study=study(stories=(story,)), rig=rig()))
+    of = study(stories=(story,))
+    data = drive_by_section(SimpleNamespace(study=of, rig=rig(), folder=tmp_path))
     ((driven, body, strip),) = data["strips"]
     assert (driven.story, body.name) == (story, "child")
     assert strip.count("</text>") >= 4 and "must brake" in strip and "roof" in strip
-    assert drive_by_section(SimpleNamespace(study=study(), rig=rig())) is None
+    none = SimpleNamespace(study=study(), rig=rig(), folder=None)
+    assert drive_by_section(none) is None
+    assert data["films"] == {story.name: ""}
+    other = replace(of, stories=(replace(story, speed_kmh=31.0),))
+    film = b"..." + graphics.digest(driven).encode() + b"..."
+    (tmp_path / "any_name.webm").write_bytes(film)
+    data = drive_by_section(SimpleNamespace(study=of, rig=rig(), folder=tmp_path))
+    assert base64.b64decode(data["films"][story.name].split(",")[1]) == film
+    data = drive_by_section(SimpleNamespace(study=other, rig=rig(), folder=tmp_path))
+    assert data["films"] == {story.name: ""}  # it is of another drive-by

@@ -12,6 +12,7 @@ from .charts import linear_map, ticks
 from .svg import Canvas
 
 WIDTH, LEFT, RIGHT = 720.0, 130.0, 640.0
+ENDS = LEFT, RIGHT
 TOP, ROW, GAP, FOOT = 22.0, 16.0, 5.0, 34.0
 NEVER = (0.843, 0.863, 0.882, 1.0)
 """Colour of AP 0."""
@@ -24,7 +25,7 @@ def time_strip(story: Story, body: SeenBody, alt: str) -> Markup:
     """
     rows = graphics.strip_rows(body)
     height = TOP + len(rows) * (ROW + GAP) + FOOT
-    canvas = Canvas(WIDTH, height, alt, "curve strip")
+    canvas = Canvas(WIDTH, height, alt, "curve")
     half = 0.5 / story.rate_hz
     start, end = float(story.times[0]) - half, float(story.times[-1]) + half
     to_x = linear_map(start, end, LEFT, RIGHT)

@@ -27,7 +27,14 @@ from .score import (
     warnings_and_text,
 )
 from .traceability import assumptions, copy_script, reproduction
-from .visibility import dimensions, drive_by, requirement_verdicts, sensor_details, visibility
+from .visibility import (
+    dimensions,
+    drive_by,
+    requirement_verdicts,
+    sensor_details,
+    strip_script,
+    visibility,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +77,7 @@ SECTIONS = (
     Section("view", "3-D view", scene3d.view, scripts=scene3d.scripts),
     Section("plan", "Dimensions", dimensions),
     Section("requirements", "Requirements", requirement_verdicts),
-    Section("drive-by", "Seen in time", drive_by),
+    Section("drive-by", "Seen in time", drive_by, scripts=strip_script),
     Section("conditions", "Conditions", conditions),
     Section("maps", "Visibility", visibility),
     Section("parts", "By class and zone", by_class_and_zone),

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import base64
+from collections.abc import Sequence
 from typing import Any
 
-from ..markup import capitalized, percent
+from pe_core.motion import DriveBy
+
+from ... import graphics
+from ..markup import TEMPLATES, capitalized, percent
 from ..pictures.dimension_drawing import side_view, top_view
 from ..pictures.ground_plan import COVERAGE, ENTROPY, LAYERS, difference_map, ground_map
 from ..pictures.reference_figures import count_text, worst_bodies
 from ..pictures.sensor_views import sensor_view
 from ..pictures.sight_plans import blind_plan, reach_plan, reach_text, requirement_plan, side_text
-from ..pictures.time_strip import time_strip
+from ..pictures.time_strip import ENDS, time_strip
 from ..pictures.vehicle_picture import sensor_key
 from ..report_context import MAP_STEP_M, ReportContext
 
@@ -72,13 +77,28 @@ def visibility(context: ReportContext) -> dict[str, Any]:
 
 def drive_by(context: ReportContext) -> dict[str, Any] | None:
     """Return the stories of a study, as its rig sees them; None for a study without stories."""
+    folder = context.folder
+    films = [p.read_bytes() for p in sorted(folder.glob("*.webm"))] if folder is not None else []
     driven = [context.study.drive_by(each, context.rig) for each in context.study.stories]
     strips = [
         (each, body, time_strip(each.story, body, f"{body.name} in {each.story.name} over time"))
         for each in driven
         for body in each.bodies
     ]
-    return {"driven": driven, "strips": strips} if driven else None
+    shown = {each.story.name: _film_of(each, films) for each in driven}
+    return {"driven": driven, "strips": strips, "films": shown, "ends": ENDS} if driven else None
+
+
+def _film_of(driven: DriveBy, films: Sequence[bytes]) -> str:
+    """Return the film of a drive-by as the URL of its data; empty where it is of another one."""
+    mark = graphics.digest(driven).encode()
+    found = next((data for data in films if mark in data), b"")
+    return f"data:video/webm;base64,{base64.b64encode(found).decode()}" if found else ""
+
+
+def strip_script() -> tuple[str, ...]:
+    """Return the program that moves the cursors of strips, and films with them."""
+    return ((TEMPLATES / "strip.js").read_text("utf-8"),)
 
 
 def requirement_verdicts(context: ReportContext) -> dict[str, Any] | None:

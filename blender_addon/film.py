@@ -7,10 +7,9 @@ scene, and Workbench renders it: with a window or without, wherever OpenGL is, i
 
 from __future__ import annotations
 
-import contextlib
 import math
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -49,9 +48,13 @@ def check_name(path: Path) -> None:
 
 
 def write_film(scene: bpy.types.Scene, study: pe.Study, story: motion.Story, path: Path) -> None:
-    """Render a story as a film, and write the file once it is complete."""
+    """Render a story as a film, and write the file once it is complete; its scene is left.
+
+    Render Animation renders that scene again.
+    """
     check_name(path)
-    with tempfile.TemporaryDirectory() as folder, _temporary(scene, study, story) as film:
+    film = film_scene(scene, study, story)
+    with tempfile.TemporaryDirectory() as folder:
         made = Path(folder) / f"film{path.suffix}"
         film.render.filepath = str(made)
         film.render.ffmpeg.format, film.render.ffmpeg.codec = FORMATS[path.suffix]
@@ -59,24 +62,6 @@ def write_film(scene: bpy.types.Scene, study: pe.Study, story: motion.Story, pat
         if not made.is_file():
             raise pe.InputError("film", "Blender", "FFmpeg in it, and OpenGL", "no film")
         text.write_bytes(path, made.read_bytes())
-
-
-@contextlib.contextmanager
-def _temporary(
-    scene: bpy.types.Scene, study: pe.Study, story: motion.Story
-) -> Iterator[bpy.types.Scene]:
-    """Make the scene of a film, and take all of it away again."""
-    kinds = "meshes", "materials", "curves", "cameras", "worlds", "actions", "objects"
-    before = {kind: {each.name for each in getattr(bpy.data, kind)} for kind in kinds}
-    film = film_scene(scene, study, story)
-    try:
-        yield film
-    finally:
-        bpy.data.scenes.remove(film)
-        for kind in reversed(kinds):
-            of = getattr(bpy.data, kind)
-            for each in [e for e in of if e.name not in before[kind]]:
-                of.remove(each)
 
 
 def film_scene(scene: bpy.types.Scene, study: pe.Study, story: motion.Story) -> bpy.types.Scene:

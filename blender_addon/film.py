@@ -112,7 +112,7 @@ class _Stage(NamedTuple):
 
     film: bpy.types.Scene
     start: int
-    count: int
+    frames: int
 
     def mesh(
         self, name: str, corners: Any, faces: Sequence[Sequence[int]], color: graphics.Rgba
@@ -196,7 +196,8 @@ def _street(stage: _Stage, story: motion.Story) -> None:
     """Add the ground, and dashes that go by with the vehicle's own speed."""
     corners = [(-FAR_M, -FAR_M, -0.03), (FAR_M, -FAR_M, -0.03), (FAR_M, FAR_M, -0.03)]
     stage.mesh("ground", [*corners, (-FAR_M, FAR_M, -0.03)], [(0, 1, 2, 3)], GROUND)
-    dashes, faces = [], []
+    dashes: list[tuple[float, float, float]] = []
+    faces: list[range] = []
     for x in np.arange(-FAR_M, FAR_M, DASH_M + GAP_M):
         for y in (-LANE_M, LANE_M):
             low, high, at = y - 0.06, y + 0.06, len(dashes)
@@ -204,8 +205,8 @@ def _street(stage: _Stage, story: motion.Story) -> None:
             dashes.append((x, high, -0.02))
             faces.append(range(at, at + 4))
     lines = stage.mesh("lane", dashes, faces, DASH)
-    rate = (story.end_s - story.start_s) / max(stage.count - 1, 1)
-    gone = [-story.speed * rate * k for k in range(stage.count)]
+    rate = (story.end_s - story.start_s) / max(stage.frames - 1, 1)
+    gone = [-story.speed * rate * k for k in range(stage.frames)]
     stage.keys(lines, "location", [(math.fmod(x, DASH_M + GAP_M), 0.0, 0.0) for x in gone])
 
 
@@ -246,7 +247,7 @@ def _body(
         shades = [_linear(graphics.color_of_ap(ap)) for ap in found]
         stage.keys(ray.data.materials[0], "diffuse_color", shades)
     for mark in graphics.marks_of(moving.driven, body.seen):
-        k = min(int(np.searchsorted(moving.times, mark.time_s - 1e-6)), stage.count - 1)
+        k = min(int(np.searchsorted(moving.times, mark.time_s - 1e-6)), stage.frames - 1)
         post = stage.box(mark.text, mark.color)
         post.scale = (POST_M, POST_M, 2.0 * middle)
         post.location = centers[k]
@@ -292,6 +293,6 @@ def _strip(stage: _Stage, camera: bpy.types.Object, strip: graphics.TimeStrip) -
         placed(stage.words(mark.text, LETTER * half, mark.color, align), x, y)
     cursor = square("cursor", (-0.002, low, 0.002, high), INK)
     cursor.parent = camera
-    shares = np.linspace(strip.share(strip.start_s), 1.0, stage.count)
+    shares = np.linspace(strip.share(strip.start_s), 1.0, stage.frames)
     ways = [((left + s * (right - left) + aside) * half, up * half, -0.998) for s in shares]
     stage.keys(cursor, "location", ways)

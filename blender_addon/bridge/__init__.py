@@ -43,10 +43,12 @@ from .result import (
     store_warnings,
 )
 from .rig import (
+    TRANSFORM,
     color_of,
     last_written_pose,
     mounted_on_sensor,
     place_at,
+    place_for_now,
     place_poses,
     place_rig,
     pose_from_numbers,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 
 import bpy
@@ -123,6 +123,32 @@ def place_rig(scene: Scene, rig: pe.Rig, start: pe.Rig | None = None) -> list[st
     moved = [s for s in rig if start is None or start[s.name].pose != s.pose]
     left = [s.name for s in rig if s not in moved and not _is_sensor(scene.objects.get(s.name))]
     return place_poses(scene, {sensor.name: sensor.pose for sensor in moved}) + left
+
+
+TRANSFORM = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
+
+
+def place_for_now(scene: Scene, rig: pe.Rig, start: pe.Rig) -> Callable[[], None]:
+    """Place the scene's sensors as in a rig that is not its result yet; return what takes all of it
+    back to the bit."""
+    before = {
+        obj.name: ({k: tuple(getattr(obj, k)) for k in TRANSFORM}, tuple(settings.placed))
+        for obj in map(scene.objects.get, [sensor.name for sensor in rig])
+        if _is_sensor(obj) and (settings := obj.perception_entropy)
+    }
+    with contextlib.suppress(pe.InputError):  # what holds a sensor is told with the result
+        place_rig(scene, rig, start)
+
+    def take_back() -> None:
+        for name, (transform, placed) in before.items():
+            obj = scene.objects.get(name)
+            if _is_sensor(obj):
+                for field, value in transform.items():
+                    setattr(obj, field, value)
+                obj.perception_entropy.placed = placed
+        view_layer_of(scene).update()
+
+    return take_back
 
 
 def place_poses(scene: Scene, poses: Mapping[str, pe.Pose]) -> list[str]:

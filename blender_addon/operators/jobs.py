@@ -42,7 +42,8 @@ class Task(NamedTuple):
 
     `finish` writes its result to the scene, `progressed` what it has found so far: it gets the job.
     `outcome` is the job's attribute of the result; None while there is nothing to keep. `rescue`
-    keeps what a job had found that ended without a result.
+    keeps what a job had found that ended without a result. `place` shows the best so far of a job
+    that was stopped, before its result is there, and returns what takes that back.
     """
 
     job: Any
@@ -50,6 +51,7 @@ class Task(NamedTuple):
     outcome: str = "outcome"
     progressed: Callable[[bpy.types.Scene, Any], None] | None = None
     rescue: Callable[[bpy.types.Scene, Any], None] | None = None
+    place: Callable[[bpy.types.Scene, Any], Callable[[], None]] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +104,8 @@ class JobOperator(OperatorMixin):
     """The operator of jobs."""
 
     row: ClassVar[JobRow]
+    take_back: Callable[[], None] | None = None
+    """Takes back what was placed before the result."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -147,22 +151,28 @@ class JobOperator(OperatorMixin):
         running = running_job.current
         if running is None:  # it was ended from outside
             return {"CANCELLED"}
+        scene = bpy.data.scenes.get(running.scene_name)
         if event.type == "ESC" and event.value == "PRESS" and not event.is_repeat:
             running.stop()
             if not running.ended:
+                if self.task.place is not None and scene is not None:
+                    with bridge.as_drawn(scene):
+                        self.take_back = self.task.place(scene, running.seen)
                 running.show(context)
                 return {"RUNNING_MODAL"}
         elif event.type == "Z" and (event.ctrl or event.oskey):
             return {"RUNNING_MODAL"}  # undo would take back what the job is about to write
         elif event.type != "TIMER":
             return {"PASS_THROUGH"}
-        scene = bpy.data.scenes.get(running.scene_name)
         if self.task.progressed is not None and scene is not None:
             self.task.progressed(scene, running.seen)
         if not running.ended:
             running.show_soon(context)
             return {"PASS_THROUGH"}
         try:
+            if self.take_back is not None and scene is not None:
+                with bridge.as_drawn(scene):
+                    self.take_back()  # its undo step begins where the search began
             lost = running.found is None and not running.seen.dropped
             if lost and scene is not None and self.task.rescue is not None:
                 self.task.rescue(scene, running.seen)
@@ -261,7 +271,10 @@ def optimize_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerp
         if job.best is not study:
             bridge.keep_rig(scene, "Best so far", job.best.rig)
 
-    return Task(job, finish, rescue=rescue)
+    def place(scene: bpy.types.Scene, job: jobs.OptimizeJob) -> Callable[[], None]:
+        return bridge.place_for_now(scene, job.best.rig, study.rig)
+
+    return Task(job, finish, rescue=rescue, place=place)
 
 
 def store_search(

@@ -5,6 +5,7 @@ import math
 from types import SimpleNamespace
 
 import bpy
+import numpy as np
 import pytest
 
 import pe_tools as pt
@@ -188,6 +189,25 @@ def finished_after(car, row, change):
     for _ in steps:
         pass
     row.finish(car, task, getattr(task.job, task.outcome), task.job)
+
+
+def test_the_best_of_a_stopped_search_is_shown_before_its_result_and_taken_back_to_the_bit(car):
+    def seen():
+        roof = car.objects["roof"]
+        transform = {k: tuple(getattr(roof, k)) for k in bridge.TRANSFORM}
+        matrix = np.array(roof.matrix_world).tolist()
+        return transform, matrix, tuple(roof.perception_entropy.placed)
+
+    task = jobs.OPTIMIZE.read(Window(car))
+    before = seen()
+    for _ in task.job:
+        pass
+    best = task.job.best.rig["roof"].pose
+    take_back = task.place(car, task.job)
+    at = np.array(car.objects["roof"].matrix_world)[:3, 3]
+    assert np.allclose(at, best.position, atol=1e-5) and seen() != before
+    take_back()
+    assert seen() == before
 
 
 CHANGES = {

@@ -31,6 +31,7 @@ def test_add_score_and_optimize_beside_the_window_esc_keeps_the_best_and_undo_br
     window.key("ctrl+z")
     assert window.state["running"] and window.state["places"] == start
     window.key("Escape")
+    window.wait_for(lambda: window.state["places"] != start, EFFECT_TIMEOUT_S, "the best so far")
     window.wait_for(lambda: not window.state["running"], SCORE_TIMEOUT_S, "the search to stop")
     window.wait_for(lambda: window.state["kind"] == "optimize", EFFECT_TIMEOUT_S, "a result")
     assert window.state["places"] != start, "the best so far was not kept"

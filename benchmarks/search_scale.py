@@ -28,7 +28,7 @@ from statistics import median
 from typing import Any
 
 import pe_core as pe
-from pe_core.search import Evaluation, Payload, Processes, evaluate_all, send_payload
+from pe_core.search import Payload, Processes, evaluate_all, send_payload
 
 from .scale_counting import (
     BatchNotes,
@@ -203,7 +203,7 @@ def _sizes(study: pe.Study) -> Json:
     return {
         "bytes_once": len(payload.packed.data),
         "bytes_each": len(payload.pickled((objectives[-1], study.rig))),
-        "bytes_answer": len(Payload((Evaluation(1.0, False),)).packed.data),
+        "bytes_answer": len(Payload((1.0,)).packed.data),
     }
 
 

@@ -132,17 +132,18 @@ def place_for_now(scene: Scene, rig: pe.Rig, start: pe.Rig) -> Callable[[], None
     """Place the scene's sensors as in a rig that is not its result yet; return what takes all of it
     back to the bit."""
     before = {
-        obj.name: ({k: tuple(getattr(obj, k)) for k in TRANSFORM}, tuple(settings.placed))
-        for obj in map(scene.objects.get, [sensor.name for sensor in rig])
-        if _is_sensor(obj) and (settings := obj.perception_entropy)
+        obj.name: (
+            {k: tuple(getattr(obj, k)) for k in TRANSFORM},
+            tuple(obj.perception_entropy.placed),
+        )
+        for obj in sensor_objects(scene)
     }
     with contextlib.suppress(pe.InputError):  # what holds a sensor is told with the result
         place_rig(scene, rig, start)
 
     def take_back() -> None:
         for name, (transform, placed) in before.items():
-            obj = scene.objects.get(name)
-            if _is_sensor(obj):
+            if (obj := scene.objects.get(name)) is not None:
                 for field, value in transform.items():
                     setattr(obj, field, value)
                 obj.perception_entropy.placed = placed

@@ -3,7 +3,6 @@
 from .evaluator import Evaluator
 from .sampling import VoxelSample, draw
 from .score import (
-    Evaluation,
     FoundClass,
     GroundMap,
     ObjectScore,
@@ -15,6 +14,6 @@ from .score import (
     SensorScore,
 )
 
-__all__ = ["Evaluation", "Evaluator", "FoundClass", "GroundMap", "ObjectScore", "PartScore"]
+__all__ = ["Evaluator", "FoundClass", "GroundMap", "ObjectScore", "PartScore"]
 __all__ += ["RigEvaluator", "Scatter", "Score", "ScoreStopped", "SensorScore"]
 __all__ += ["VoxelSample", "draw"]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from math import inf
 
 from ..base.values import Number, Whole, vector
 from ..geometry.grids import PerceptionSpace
@@ -16,7 +15,7 @@ from ..sensors import PerceptionModel
 from .grid_scorer import GridScorer, columns_bytes, require_room_for, require_room_for_samples
 from .sampled_scorer import SampledScorer
 from .sampling import CENTERED, SAMPLES_OR_GRID
-from .score import Evaluation, Score, Watch
+from .score import Score, Watch
 
 WORKERS = Whole(0, 1024, "threads")
 SHIFT = Number(0.0, 1.0, below=True)
@@ -118,10 +117,6 @@ class Evaluator:
         `preview` as in `score`.
         """
         return self._scorer.summary(rig, preview)
-
-    def evaluate(self, rig: Rig, cutoff: float = inf) -> Evaluation:
-        """Return the entropy of a rig as a search asks for it, whatever the cutoff."""
-        return Evaluation(self.entropy(rig), False)
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the perception entropy of each of several rigs [nats].

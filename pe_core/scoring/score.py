@@ -12,8 +12,7 @@ import hashlib
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from math import inf
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -415,28 +414,15 @@ def sensor_score(entropy: float, coverage: float, lost: float, occlusion: Occlus
     )
 
 
-class Evaluation(NamedTuple):
-    """The value of a rig: its entropy, or a lower bound of it [nats]."""
-
-    entropy: float
-    is_lower_bound: bool
-
-
 class Objective(Protocol):
     """What a search minimises: an `Evaluator`, or something that wraps one.
 
-    The same rig always has the same value.
+    The same rig always has the same value. A method `below`, of a rig and a value, may return inf
+    sooner where the rig's own value is not below that.
     """
 
     def entropy(self, rig: Rig) -> float:
         """Return the value of a rig; lower is better [nats]."""
-
-    def evaluate(self, rig: Rig, cutoff: float = inf) -> Evaluation:
-        """Return the value of a rig; where it is not below `cutoff`, perhaps a lower bound.
-
-        `is_lower_bound` tells the two apart. A lower bound is itself not below `cutoff`, and must
-        not be ranked.
-        """
 
 
 class RigEvaluator(Protocol):
@@ -455,9 +441,6 @@ class RigEvaluator(Protocol):
 
     def entropy(self, rig: Rig, *, preview: bool = False) -> float:
         """Return a rig's entropy [nats]."""
-
-    def evaluate(self, rig: Rig, cutoff: float = inf) -> Evaluation:
-        """Return a rig's entropy, as an `Objective`."""
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the entropy of each of several rigs [nats]."""

@@ -1,6 +1,6 @@
 """Searches for better placements."""
 
-from ..scoring.score import Evaluation, Objective
+from ..scoring.score import Objective
 from .ask_tell import SearchRun
 from .dispatch import Call, WorkerDied, evaluate_all, run_tasks, shared_parts
 from .domains import (
@@ -51,7 +51,7 @@ from .tolerance import (
 
 __all__ = ["AXES", "DEFAULT_METHOD", "KEPT", "KEY_FIGURES", "METHODS", "PAPER_FREE"]
 __all__ += ["POSITION_AXES", "SCHEDULED_METHOD", "AnyMount", "Call", "Candidate", "Choice"]
-__all__ += ["Constraints", "DesignSearch", "DesignSpace", "EvaluatedRig", "Evaluation"]
+__all__ += ["Constraints", "DesignSearch", "DesignSpace", "EvaluatedRig"]
 __all__ += ["FigureOfMerit", "Front", "Goals", "Journal", "KeyFigures", "LazyProcesses", "Method"]
 __all__ += ["MountArea", "Mounting", "MountingPlaces", "NoGo", "Objective", "Option"]
 __all__ += ["Parametrization", "Payload", "Picks", "Processes", "Reading", "RigRobustness"]

@@ -10,7 +10,6 @@ from typing import Any
 from ..base.errors import InputError, shown
 from ..base.values import Whole, real
 from ..scene.rig import Rig
-from ..scoring.score import Evaluation
 from .journal import BATCH, EvaluatedRig, Journal
 from .methods import METHODS, Given, checked_method
 from .parametrization import Parametrization, feasible_start
@@ -28,7 +27,7 @@ class SearchRun:
     ----------
     rig, search_space, seed, schedule, method, evaluations
         As of `optimize`.
-    journal : iterable of (value, bool, str), optional
+    journal : iterable of (value, str), optional
         The `journal` of an earlier run of the same search, perhaps from a file of JSON: what that
         was told is not asked again.
 
@@ -111,12 +110,12 @@ class SearchRun:
                 if (value := self._journal.replay(rig, 0)) is None:
                     if number not in self._told:
                         return
-                    value = Evaluation(self._told[number], False)
+                    value = self._told[number]
                     self._journal.record(rig, 0, value)
-                self._values.append(value.entropy)
+                self._values.append(value)
                 self.evaluations += 1
-                if value.entropy < self.value:
-                    self.best, self.value = rig, value.entropy
+                if value < self.value:
+                    self.best, self.value = rig, value
             try:
                 self._batch = self._batches.send(self._values)
             except StopIteration:
@@ -139,13 +138,9 @@ class SearchRun:
             left -= len(rigs)
             if not left:
                 return
-            answers = [None if c is None else _bounded(next(values), cutoff) for c in candidates]
+            told = (None if c is None else next(values) for c in candidates)
+            answers = [v if v is None or v < cutoff else math.inf for v in told]
             try:
                 question = questions.send(answers)
             except StopIteration:
                 return
-
-
-def _bounded(value: float, cutoff: float) -> Evaluation:
-    """Return a value as methods are answered everywhere: what is not below the cutoff is alike."""
-    return Evaluation(value, False) if value < cutoff else Evaluation(cutoff, True)

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from ..base.errors import InputError
 from ..scene.rig import Rig
-from ..scoring.score import Evaluation, Objective
+from ..scoring.score import Objective
 from .payload import PackedPayload, Unreadable, send_payload, unpickled
 
 TaskKey = TypeVar("TaskKey", bound=Hashable)
@@ -133,7 +133,7 @@ def evaluate_all(
     rigs: Sequence[Rig],
     cutoff: float = math.inf,
     executor: Executor | None = None,
-) -> list[Evaluation]:
+) -> list[float]:
     """Evaluate several rigs; the result depends neither on the workers nor on earlier calls.
 
     Parameters
@@ -149,27 +149,29 @@ def evaluate_all(
 
     Returns
     -------
-    list of Evaluation
-        For each rig its entropy where that is below `cutoff`; otherwise `cutoff` as a lower bound,
-        even where the entropy is known. `InputError` when two workers died with the same rig.
+    list of float
+        For each rig its entropy where that is below `cutoff`; otherwise inf, even where the entropy
+        is known: that depends on caches. `InputError` when two workers died with the same rig.
     """
     if (own := getattr(objective, "evaluate_all", None)) is not None:  # it knows some already
-        found: list[Evaluation] = own(rigs, cutoff, executor)
+        found: list[float] = own(rigs, cutoff, executor)
         return found
     if executor is not None and rigs:
         with suppress(Unreadable):
             return _evaluate_by_workers(objective, rigs, cutoff, executor)
-    return [_reproducible(objective.evaluate(rig, cutoff), cutoff) for rig in rigs]
+    return [value_below(objective, rig, cutoff) for rig in rigs]
 
 
-def _reproducible(evaluation: Evaluation, cutoff: float) -> Evaluation:
-    """Replace any value that is not below the cutoff: which one it is depends on caches."""
-    return evaluation if evaluation.entropy < cutoff else Evaluation(cutoff, True)
+def value_below(objective: Objective, rig: Rig, cutoff: float) -> float:
+    """Return the value of a rig where it is below the cutoff; otherwise inf."""
+    below = getattr(objective, "below", None)
+    value: float = objective.entropy(rig) if below is None else below(rig, cutoff)
+    return value if value < cutoff else math.inf
 
 
 def _evaluate_by_workers(
     objective: Objective, rigs: Sequence[Rig], cutoff: float, executor: Executor
-) -> list[Evaluation]:
+) -> list[float]:
     models = (sensor.model for rig in rigs for sensor in rig)
     sent = send_payload(executor, (*shared_parts(objective), *models))
     candidates = [sent.payload.pickled((objective, rig)) for rig in rigs]
@@ -181,7 +183,7 @@ def _evaluate_by_workers(
         tried.add(number)
         return Call(_evaluate_in_worker, (payload, candidates[number], cutoff))
 
-    evaluations: dict[int, Evaluation] = {}
+    evaluations: dict[int, float] = {}
     with closing(run_tasks(executor, deque(range(len(rigs))), call_of)) as batches:
         for number, result in chain.from_iterable(batches):
             if isinstance(result, WorkerDied):
@@ -192,6 +194,6 @@ def _evaluate_by_workers(
     return [evaluations[number] for number in range(len(rigs))]
 
 
-def _evaluate_in_worker(payload: PackedPayload, candidate: bytes, cutoff: float) -> Evaluation:
+def _evaluate_in_worker(payload: PackedPayload, candidate: bytes, cutoff: float) -> float:
     objective, rig = unpickled(payload, candidate)
-    return _reproducible(objective.evaluate(rig, cutoff), cutoff)
+    return value_below(objective, rig, cutoff)

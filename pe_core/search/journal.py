@@ -15,10 +15,10 @@ from typing import NamedTuple
 
 from ..base.errors import InputError
 from ..scene.rig import Rig
-from ..scoring.score import Evaluation, Objective
+from ..scoring.score import Objective
 from .dispatch import evaluate_all
 
-OnTold = Callable[[Rig, int, Evaluation], None]
+OnTold = Callable[[Rig, int, float], None]
 """Takes a rig, the level that it was evaluated on, and its value."""
 DIGEST_BYTES = 4
 """Length of the digest that identifies a placement."""
@@ -27,10 +27,9 @@ BATCH = 16
 
 
 class EvaluatedRig(NamedTuple):
-    """The value of a placement, and a digest that identifies the placement."""
+    """The value of a placement (inf: not below the best so far), and a digest of the placement."""
 
     entropy: float
-    is_lower_bound: bool
     digest: str
 
 
@@ -61,7 +60,7 @@ class Journal:
         """
         return [JournaledObjective(self, own, k, told) for k, own in enumerate(objectives)]
 
-    def replay(self, rig: Rig, level: int) -> Evaluation | None:
+    def replay(self, rig: Rig, level: int) -> float | None:
         """Return the journaled value of the next placement; None behind the end of the journal.
 
         `InputError` when the journal has another placement here.
@@ -74,12 +73,11 @@ class Journal:
             field = f"evaluated[{self._position}]"
             raise InputError(self._source, field, expected, "another")
         self._position += 1
-        return Evaluation(entry.entropy, entry.is_lower_bound)
+        return entry.entropy
 
-    def record(self, rig: Rig, level: int, value: Evaluation) -> None:
+    def record(self, rig: Rig, level: int, value: float) -> None:
         """Append the value of a placement that is not in the journal yet."""
-        entry = EvaluatedRig(value.entropy, value.is_lower_bound, _digest(rig, level))
-        self._entries.append(entry)
+        self._entries.append(EvaluatedRig(value, _digest(rig, level)))
         self._position += 1
 
 
@@ -93,30 +91,17 @@ class JournaledObjective:
 
     def entropy(self, rig: Rig) -> float:
         """Return the entropy of a rig, from the journal or from the objective [nats]."""
-        return self._known(rig, lambda: Evaluation(self._objective.entropy(rig), False)).entropy
-
-    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
-        """Return the value of a rig, from the journal or from the objective."""
-        return self._known(rig, lambda: self._objective.evaluate(rig, cutoff))
-
-    def _known(self, rig: Rig, evaluate: Callable[[], Evaluation]) -> Evaluation:
-        value = self._journal.replay(rig, self._level)
-        if value is None:
-            value = evaluate()
-            self._journal.record(rig, self._level, value)
-        if self._told is not None:
-            self._told(rig, self._level, value)
-        return value
+        return self.evaluate_all([rig], math.inf, None)[0]
 
     def evaluate_all(
         self, rigs: Sequence[Rig], cutoff: float, executor: Executor | None
-    ) -> list[Evaluation]:
+    ) -> list[float]:
         """Evaluate several rigs: the first ones may be in the journal, the others are evaluated.
 
         Workers are sent the objective without the journal.
         """
         replayed = (self._journal.replay(rig, self._level) for rig in rigs)
-        values: list[Evaluation] = []
+        values: list[float] = []
         for value in replayed:
             if value is None:
                 break

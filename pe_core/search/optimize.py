@@ -15,7 +15,7 @@ from ..base.errors import InputError, shown
 from ..base.notebook import ShortRepr
 from ..base.values import real
 from ..scene.rig import Rig
-from ..scoring.score import Evaluation, Objective
+from ..scoring.score import Objective
 from .dispatch import evaluate_all
 from .journal import BATCH
 from .methods import METHODS, Given, Question, checked_method
@@ -39,14 +39,10 @@ class FunctionObjective:
             raise InputError("objective", "value", "a number for each rig", shown(found))
         return value
 
-    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
-        """Return the value of a rig, whatever the cutoff."""
-        return Evaluation(self.entropy(rig), False)
-
 
 def as_objective(objective: Any) -> Objective:
     """Return an objective, or a function as one; `InputError` for anything else."""
-    if hasattr(objective, "evaluate") and hasattr(objective, "entropy"):
+    if hasattr(objective, "entropy"):
         found: Objective = objective
         return found
     if not callable(objective):
@@ -192,7 +188,7 @@ def _within(question: Question, left: int) -> Question:
 
 def _evaluated(
     question: Question, objective: Objective, executor: Executor | None
-) -> Iterator[Evaluation | None]:
+) -> Iterator[float | None]:
     """Yield the answers: all evaluated at once by an executor, or one after the other here."""
     rigs = [c.rig for c in question.candidates if c is not None]
     evaluate = partial(evaluate_all, objective, cutoff=question.cutoff, executor=executor)
@@ -204,7 +200,7 @@ def _evaluated(
 def _next_step(
     step: Step,
     candidate: Candidate | None,
-    answer: Evaluation | None,
+    answer: float | None,
     question: Question,
     fraction: float,
 ) -> Step:
@@ -212,8 +208,8 @@ def _next_step(
     best, entropy, count, improved = step.best, step.entropy, step.evaluations, False
     if candidate is not None and answer is not None:
         count += 1
-        improved = answer.entropy < entropy
+        improved = answer < entropy
         if improved:
-            best, entropy = candidate.rig, answer.entropy
+            best, entropy = candidate.rig, answer
     place = min(fraction, 1.0), question.round, improved, step.level
     return Step(best, entropy, count, *place, question.ends)

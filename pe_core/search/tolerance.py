@@ -31,7 +31,7 @@ from ..base.values import Angle, Number, Whole, degrees_in_file, rounded
 from ..geometry.poses import FARTHEST_M, Pose, rotate, rotation_matrix, rpy_from_matrix
 from ..scene.rig import Rig
 from ..scoring.scenarios import mean_or_worst
-from ..scoring.score import Evaluation, Objective, RigEvaluator
+from ..scoring.score import Objective, RigEvaluator
 from .domains import AXES, pose_from_values
 
 DRAWS = 8
@@ -178,10 +178,6 @@ class RobustObjective:
         """Return the mean of the entropies of a rig's cases, or the highest [nats]."""
         entropies = self._evaluator.entropies(self._tolerance.cases(rig, self._seed))
         return mean_or_worst(entropies, self._tolerance.worst)
-
-    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
-        """Return that mean (or highest), whatever the cutoff."""
-        return Evaluation(self.entropy(rig), False)
 
     def shared_parts(self) -> tuple[object, ...]:
         """Return what workers are sent once: the evaluator."""

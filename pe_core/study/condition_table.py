@@ -27,7 +27,7 @@ from ..scene.vehicle import Vehicle
 from ..scene.vehicle_state import State
 from ..scoring import Score
 from ..scoring.scenarios import mean_or_worst
-from ..scoring.score import Evaluation, Objective, RigEvaluator, Watch
+from ..scoring.score import Objective, RigEvaluator, Watch
 from ..scoring.targets import OBJECTS, ObjectEvaluator
 from ..scoring.targets.object_evaluator import MByName
 from ..search import objective_of
@@ -40,11 +40,7 @@ MEAN, WORST = "mean", "worst"
 
 
 class ExpectedApEvaluator(ObjectEvaluator):
-    """An `ObjectEvaluator` whose value of a rig is minus its expected AP; scores are the same.
-
-    Objects and the vehicle occlude and add nothing, so without occlusion the AP is no lower:
-    `evaluate` has lower bounds as for entropy.
-    """
+    """An `ObjectEvaluator` whose value of a rig is minus its expected AP; scores are the same."""
 
     def _value(self, rig: Rig, m: MByName) -> float:
         return -self._sums.expected_ap(self._fused.entropies(rig, m)[0])
@@ -286,10 +282,10 @@ class ConditionObjective:
 
     def entropy(self, rig: Rig) -> float:
         """Return the mean or the worst of a rig's entropies under all conditions [nats]."""
-        return self.evaluate(rig).entropy
+        return self.below(rig, math.inf)
 
-    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
-        """Return that value; of the worst a lower bound once it is not below `cutoff`."""
+    def below(self, rig: Rig, cutoff: float) -> float:
+        """Return that value; inf once one of the conditions whose worst counts is not below."""
         search = self._study.search
         cases = search.tolerance.cases(rig, search.seed) if search.tolerance.is_on else [rig]
         values, weights = list[float](), list[float]()
@@ -301,9 +297,9 @@ class ConditionObjective:
                 part = found[number * len(cases) : (number + 1) * len(cases)]
                 values.append(mean_or_worst(part, search.tolerance.worst))
                 weights.append(condition.weight)
-            if self._worst and max(values) >= cutoff and len(values) < len(self._conditions):
-                return Evaluation(max(values), True)
-        return Evaluation(max(values) if self._worst else weighted_mean(values, weights), False)
+            if self._worst and max(values) >= cutoff:
+                return math.inf
+        return max(values) if self._worst else weighted_mean(values, weights)
 
 
 def study_objective(

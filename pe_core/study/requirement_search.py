@@ -24,9 +24,10 @@ from ..base.errors import InputError
 from ..base.values import rounded
 from ..scene.rig import Rig
 from ..scoring.requirements import RequirementChecker
-from ..scoring.score import Evaluation, Objective
+from ..scoring.score import Objective
 from ..scoring.sight import Sight
 from ..search import Parametrization, Tolerance, shared_parts
+from ..search.dispatch import value_below
 from ..search.domains import METRE, RADIAN, SHARE
 from ..search.key_figures import KEPT, KEY_FIGURES, PARTS, Wanted
 from ..search.methods.method import sampled_candidate
@@ -111,24 +112,17 @@ class FeasibleFirst:
         violation = self.violation(rig)
         return INFEASIBLE + violation if violation else self._objective.entropy(rig)
 
-    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
-        """Return the value of a placement, or a lower bound that is not below `cutoff`.
+    def below(self, rig: Rig, cutoff: float) -> float:
+        """Return the value of a placement; inf where it is not below `cutoff`.
 
         What is not below a cutoff with its entropy is not below it if it breaks a constraint, so
         constraints, which take longer, are then not checked.
         """
         if cutoff > INFEASIBLE:
-            violation = self.violation(rig)
-            return (
-                Evaluation(INFEASIBLE + violation, False)
-                if violation
-                else self._objective.evaluate(rig, cutoff)
-            )
-        found = self._objective.evaluate(rig, cutoff)
-        if found.is_lower_bound or found.entropy >= cutoff:
-            return Evaluation(found.entropy, True)
-        violation = self.violation(rig)
-        return Evaluation(INFEASIBLE + violation, False) if violation else found
+            return self.entropy(rig)
+        found = value_below(self._objective, rig, cutoff)
+        violation = self.violation(rig) if found < cutoff else 0.0
+        return INFEASIBLE + violation if violation else found
 
     def shared_parts(self) -> tuple[object, ...]:
         """Return what workers are sent once: the parts of the objective, and the constraints."""

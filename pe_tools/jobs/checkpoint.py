@@ -74,8 +74,8 @@ def _entries_of(path: Path, field: str, rows: Any) -> tuple[EvaluatedRig, ...]:
     rows = rows if isinstance(rows, list) else [rows]
     for number, row in enumerate(rows):
         kinds = [type(value) for value in row] if isinstance(row, list) else []
-        if kinds != [float, bool, str]:
-            expected = "an entropy, a truth value, a digest"
+        if kinds != [float, str]:
+            expected = "an entropy, a digest"
             raise InputError(path, f"{field}[{number}]", expected, shown(row))
     return tuple(EvaluatedRig(*row) for row in rows)
 

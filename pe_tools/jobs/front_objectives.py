@@ -12,7 +12,7 @@ from pe_core.base.values import rounded
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigEvaluator
 from pe_core.scoring.requirements import FARTHEST_M, Verdict
-from pe_core.scoring.score import Evaluation, Score
+from pe_core.scoring.score import Score
 from pe_core.search import objective_of
 from pe_core.search.build_figures import BUILD_FIGURES, SUMS, Placement
 from pe_core.search.goals import (
@@ -210,10 +210,6 @@ class ScalarValue:
     def entropy(self, rig: Rig) -> float:
         """Return the value of a rig."""
         return self.scalar(self._figures.costs(rig))
-
-    def evaluate(self, rig: Rig, cutoff: float = math.inf) -> Evaluation:
-        """Return the value of a rig."""
-        return Evaluation(self.entropy(rig), False)
 
 
 def weights_of(count: int, objectives: int) -> list[tuple[float, ...]]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import islice
-from math import dist, inf, sqrt
+from math import dist, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +16,7 @@ from pe_core.base.errors import InputError, one_of, shown
 from pe_core.base.values import rounded
 from pe_core.scene.rig import Rig, Sensor
 from pe_core.scoring.requirements import RequirementChecker
-from pe_core.scoring.score import Evaluation, Objective
+from pe_core.scoring.score import Objective
 from pe_core.scoring.sight import Sight
 from pe_core.search import MountingPlaces, SurfaceMount, SurfacePlace, evaluate_all
 from pe_core.study.condition_table import search_evaluator
@@ -42,10 +42,6 @@ class _RigValue(NamedTuple):
         if isinstance(self.of, Sight):
             return max(sector.width for sector in self.of.blind_sectors(rig))
         return -float(sum(not off for off in self.of.shortfalls(rig)))
-
-    def evaluate(self, rig: Rig, cutoff: float = inf) -> Evaluation:
-        """Return the value of a rig, whatever the cutoff."""
-        return Evaluation(self.entropy(rig), False)
 
 
 def _by_ap(study: Study, samples: int) -> Objective:

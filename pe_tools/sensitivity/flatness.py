@@ -145,7 +145,7 @@ class StepCosts:
         new = {key: rig for rig in rigs if (key := _key(rig)) not in self._values}
         if new:
             found = evaluate_all(self._objective, list(new.values()), executor=self._helpers())
-            self._values |= zip(new, (each.entropy for each in found), strict=True)
+            self._values |= zip(new, found, strict=True)
 
     def change(self, rig: Rig, base: Rig | None = None) -> float:
         """Return how much higher the value of a rig is than that of `base` (the reference)."""

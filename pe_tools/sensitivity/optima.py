@@ -16,7 +16,6 @@ from typing import Any
 
 from pe_core.base.values import degrees_in_file, rounded
 from pe_core.scene.rig import Rig
-from pe_core.scoring.score import Evaluation
 from pe_core.search import Parametrization
 from pe_core.search.search_space import SearchSpace
 from pe_core.study.requirement_search import is_infeasible
@@ -47,7 +46,7 @@ def is_near(one: Rig, other: Rig) -> bool:
 
 
 class Archive:
-    """Keeps the best placement of each neighbourhood, by level; lower bounds are not kept.
+    """Keeps the best placement of each neighbourhood, by level.
 
     The content follows from what the search was told, in its order: a search that resumes from its
     journal fills its archive with the same placements.
@@ -56,18 +55,18 @@ class Archive:
     def __init__(self) -> None:
         self._levels: dict[int, list[tuple[float, Rig]]] = {}
 
-    def note(self, rig: Rig, level: int, value: Evaluation) -> None:
+    def note(self, rig: Rig, level: int, value: float) -> None:
         """Keep a placement if it is the best of its neighbourhood."""
-        if value.is_lower_bound or is_infeasible(value.entropy):
+        if is_infeasible(value):  # or not below the best so far
             return
         kept = self._levels.setdefault(level, [])
-        if len(kept) == KEPT and value.entropy >= kept[-1][0]:
+        if len(kept) == KEPT and value >= kept[-1][0]:
             return
         for known, other in kept:
-            if known <= value.entropy and is_near(rig, other):
+            if known <= value and is_near(rig, other):
                 return
-        better = [each for each in kept if each[0] <= value.entropy or not is_near(rig, each[1])]
-        better.append((value.entropy, rig))
+        better = [each for each in kept if each[0] <= value or not is_near(rig, each[1])]
+        better.append((value, rig))
         better.sort(key=lambda each: each[0])
         self._levels[level] = better[:KEPT]
 

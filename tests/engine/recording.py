@@ -2,7 +2,6 @@
 
 import math
 
-from pe_core.scoring import Evaluation
 from pe_core.search import AXES, pose_values
 
 
@@ -10,7 +9,7 @@ class Recorder:
     """Scores a rig by a function of its poses; keeps every rig, its value and what it was told.
 
     Duck-typed: what a search asks of an `Evaluator`, and nothing else. With `bounds`, candidates
-    that are no better are answered with what they have to be below, a lower bound.
+    that are no better than what they have to be below are answered by inf.
     """
 
     def __init__(self, landscape, bounds=False):
@@ -18,15 +17,14 @@ class Recorder:
         self.rigs, self.values, self.cutoff = [], [], []
 
     def entropy(self, rig):
-        return self.evaluate(rig, math.inf).entropy
+        return self.below(rig, math.inf)
 
-    def evaluate(self, rig, cutoff):
+    def below(self, rig, cutoff):
         value = self.landscape(rig)
         self.rigs.append(rig)
         self.values.append(value)
         self.cutoff.append(cutoff)
-        told = cutoff if self.bounds and value >= cutoff else value
-        return Evaluation(told, told != value)
+        return math.inf if self.bounds and value >= cutoff else value
 
     def of(self, sensor):
         """Coordinates of one sensor in every rig asked for, by axis: metres and radians."""

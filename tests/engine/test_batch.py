@@ -18,7 +18,6 @@ from pathlib import Path
 import pytest
 
 import pe_core as pe
-from pe_core.scoring import Evaluation
 from pe_core.search import Processes, evaluate_all, processes, start_processes
 from pe_core.search.payload import Payload
 from pe_tools.cli.executors import workplace
@@ -63,14 +62,14 @@ class Landscape:
         vars(self).update(state)
         (self.folder / f"unpacked {os.getpid()} {time.monotonic_ns()}").touch()
 
-    def evaluate(self, rig, cutoff):
+    def entropy(self, rig):
         x = rig.sensors[0].pose.position[0]
         if x > 0.5:
             for number in range(self.deaths):
                 self.die_unless(self.folder / f"death {number}")
             if self.error:
                 raise self.error
-        return Evaluation(x, False)
+        return x
 
     def die_unless(self, it_was):
         if not it_was.exists():
@@ -90,18 +89,17 @@ def test_results_do_not_depend_on_who_evaluates(evaluator, rigs, pool):
     foreign = ProcessPoolExecutor(1, get_context("spawn"))
     with ThreadPoolExecutor(3) as threads, foreign:
         for executor in (None, threads, foreign, pool):
-            evaluated = evaluate_all(evaluator, rigs, math.inf, executor)
-            assert evaluated == [(entropy, False) for entropy in alone]
+            assert evaluate_all(evaluator, rigs, math.inf, executor) == alone
         backward = evaluate_all(evaluator, rigs[::-1], math.inf, pool)
-    assert [found.entropy for found in backward[::-1]] == alone
+    assert backward[::-1] == alone
 
 
 def test_what_is_not_below_is_reported_alike_by_all(evaluator, rigs, pool):
     """Whether an evaluator needs the vehicle to tell so depends on what it measured before."""
     alone = [evaluator.entropy(rig) for rig in rigs]
     cutoff = sorted(alone)[2]
-    expected = [(e, False) if e < cutoff else (cutoff, True) for e in alone]
-    assert sum(bound for _, bound in expected) == CANDIDATES - 2
+    expected = [entropy if entropy < cutoff else math.inf for entropy in alone]
+    assert expected.count(math.inf) == CANDIDATES - 2
     for executor in (None, pool):
         assert evaluate_all(evaluator, rigs, cutoff, executor) == expected
         assert evaluate_all(evaluator, rigs[::-1], cutoff, executor) == expected[::-1]
@@ -123,14 +121,14 @@ def test_workers_of_a_cluster_have_an_objective_by_a_plugin(tmp_path, evaluator,
         executor, calls, objective = client.get_executor(pure=False), [], Landscape(tmp_path)
         submit = executor.submit
         executor.submit = lambda *call: calls.append(call) or submit(*call)
-        expected = [objective.evaluate(rig, math.inf) for rig in rigs]
+        expected = [objective.entropy(rig) for rig in rigs]
         for _ in range(2):
             assert evaluate_all(objective, rigs, math.inf, executor) == expected
         assert 1 <= len(objective.unpacked) <= 2
         assert len(calls) == 2 * CANDIDATES
         assert not any(call[2].data for call in calls)
         found = evaluate_all(evaluator, rigs, math.inf, executor)
-    assert [each.entropy for each in found] == [evaluator.entropy(rig) for rig in rigs]
+    assert found == [evaluator.entropy(rig) for rig in rigs]
 
 
 def test_what_objectives_and_rigs_share_is_sent_once(evaluator, rigs):
@@ -147,7 +145,7 @@ def test_what_objectives_and_rigs_share_is_sent_once(evaluator, rigs):
 def test_a_worker_that_dies_is_replaced_and_its_rig_evaluated_again(tmp_path, rigs, pool):
     objective = Landscape(tmp_path, deaths=1)
     evaluated = evaluate_all(objective, rigs, math.inf, pool)
-    assert [j.entropy for j in evaluated] == [rig.sensors[0].pose.position[0] for rig in rigs]
+    assert evaluated == [rig.sensors[0].pose.position[0] for rig in rigs]
     assert (tmp_path / "death 0").exists()
 
 
@@ -167,7 +165,7 @@ def test_what_an_objective_raises_in_a_worker_is_raised(tmp_path, rigs, pool):
     assert str(raised.value) == str(error)
     with pytest.raises(ZeroDivisionError) as fault:
         evaluate_all(Landscape(tmp_path, error=ZeroDivisionError()), rigs, math.inf, pool)
-    assert "in evaluate" in fault.value.__notes__[0], "the worker's traceback comes along"
+    assert "in entropy" in fault.value.__notes__[0], "the worker's traceback comes along"
 
 
 def test_an_objective_that_cannot_be_sent_evaluates_here(tmp_path, rigs, pool):

@@ -1,22 +1,17 @@
-"""Search methods: what they share, CMA-ES, and block descent with its parts."""
+"""Search methods: what they share, and where each begins."""
 
-import contextlib
 import hashlib
 import math
 from concurrent.futures import ThreadPoolExecutor
-from importlib.resources import files
 from itertools import pairwise
 
-import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.search import METHODS, Evaluation, Parametrization, pose_values
-from pe_core.search.methods import Given, Question, block_descent
-from pe_core.search.methods.block_descent import to_best_corners
-from pe_core.search.methods.cma_es import Evolution, SymmetricCma
+from pe_core.search import METHODS, Parametrization, pose_values
+from pe_core.search.methods import Given, Question
 from pe_core.search.methods.method import Incumbent, Phase
-from pe_core.search.parametrization import feasible_start
+from pe_core.search.methods.portfolio_survey import to_best_corners
 from tests.engine import mounting, shapes
 from tests.engine.mounting import can, roof
 from tests.engine.recording import Recorder, distance_to
@@ -59,10 +54,10 @@ def test_algorithm_1_on_a_roof_with_a_no_go_area_takes_the_steps_it_always_took(
 
 
 @pytest.mark.parametrize(
-    ("seed", "told"), [(0, (600, "3569b1ddca222fee")), (1, (600, "0fc0d9b59656c5d1"))]
+    ("seed", "told"), [(0, (600, "2bb3e6917248963d")), (1, (600, "96e0f9caf74f02bf"))]
 )
 def test_the_portfolio_takes_the_steps_it_always_took(seed, told):
-    """On two levels, with two sensors that hinder each other: corners, races, blocks, descents."""
+    """On two levels, with two sensors that hinder each other: surveys, corners, a race, steps."""
     rig = pe.Rig([shapes.lidar_on_roof(), shapes.camera()])
     space = pe.SearchSpace.on_vehicle(rig, shapes.box_car())
     levels = [Recorder(rugged(wide)) for wide in (0.9, 1.0)]
@@ -139,75 +134,9 @@ def test_what_a_method_asks_follows_from_its_answers_alone():
             for number in range(8):
                 questions.append([c and c.vector for c in question.candidates])
                 values = [math.sin(number + k) for k in range(len(question.candidates))]
-                question = asking.send([pe.scoring.Evaluation(v, False) for v in values])
+                question = asking.send(values)
             asked.append(questions)
         assert asked[0] == asked[1]
-
-
-RELEASED = {
-    "_cma.py": "a0f27c93e7a6b1dffd1097fa4adcc2026b396adcc50d21b8121edb01228a5be5",
-    "LICENSE": "f37ff0eaa67cd538d2fac0e5868e412bd17973d3261ec8ff7e8116dc69eab695",
-}
-"""SHA-256 of the two files in cmaes-0.13.1-py3-none-any.whl of the Python package index."""
-
-
-@pytest.mark.parametrize(("name", "digest"), RELEASED.items())
-def test_the_file_of_the_package_cmaes_and_its_licence_are_as_released(name, digest):
-    data = files("pe_core").joinpath("search", "_vendor", "cmaes", name).read_bytes()
-    assert hashlib.sha256(data).hexdigest() == digest
-
-
-def test_samples_do_not_depend_on_which_eigenvectors_are_found(monkeypatch):
-    """Where eigenvalues are equal, LAPACKs differ: here each eigenvector is turned round."""
-
-    def asked():
-        cma = SymmetricCma(np.zeros(3), 0.5, seed=1, population_size=6)
-        for _ in range(4):
-            points = [cma.ask() for _ in range(6)]
-            cma.tell([(p, float(np.round(p @ p, 9))) for p in points])
-        return np.array([cma.ask() for _ in range(5)])
-
-    plain, eigh = asked(), np.linalg.eigh
-    monkeypatch.setattr(np.linalg, "eigh", lambda c: (eigh(c)[0][::-1], -eigh(c)[1][:, ::-1]))
-    assert asked() == pytest.approx(plain, abs=1e-12)
-
-
-def given_on_the_car(**options):
-    rig, space = mounting.space(can(), **options)
-    coding = Parametrization(rig, space)
-    return Given(coding, coding.start, 1.0, seed=3)
-
-
-def test_no_lower_bound_is_ranked_before_an_entropy():
-    """Of the later half only what is below the worst of the first half is told as it is."""
-    given = given_on_the_car()
-    evolution = Evolution(given, given.parametrization.blocks[0], given.start, [1])
-    asking, told = evolution.evaluate(given.start, Phase(0, 8)), []
-    evolution._cma.tell = told.extend
-    question = next(asking)
-    assert question.cutoff == math.inf and len(question.candidates) == 4
-    question = asking.send([Evaluation(v, False) for v in (4.0, 2.0, 3.0, 1.0)])
-    assert question.cutoff == 4.0 and len(question.candidates) == 4
-    answers = [Evaluation(4.0, True), Evaluation(0.5, False), Evaluation(9.0, True), None]
-    with pytest.raises(StopIteration):
-        asking.send(answers)
-    assert [value for _, value in told] == [4.0, 2.0, 3.0, 1.0, 4.0, 0.5, 4.0, math.inf]
-
-
-def test_every_candidate_is_in_its_range_and_keeps_to_the_rules():
-    """Two metres of steps on a roof of 2.3 m with a hatch in it."""
-    limits = pe.Constraints(no_go=[pe.NoGo("hatch", x=(-0.2, 3.0))])
-    given = given_on_the_car(mount={"roof": roof()}, constraints=limits)
-    evolution = Evolution(given, given.parametrization.blocks[0], given.start, [1])
-    evolution._cma._sigma = 2.0
-    asking = evolution.evaluate(given.start, Phase(0, 8))
-    question = next(asking)
-    found = [c for c in question.candidates if c is not None]
-    assert len({c.vector for c in found}) == len(found) >= 3
-    for candidate in found:
-        assert not given.parametrization.broken(candidate.rig)
-        for unknown, value in zip(given.parametrization.variables, candidate.vector, strict=True):
-            assert unknown.low - 1e-9 <= value <= unknown.high + 1e-9
 
 
 PHASE = Phase(0, 1000)
@@ -223,7 +152,7 @@ def answered(asking, value):
     try:
         question = next(asking)
         while True:
-            answers = [c and Evaluation(value(c), False) for c in question.candidates]
+            answers = [c and value(c) for c in question.candidates]
             question = asking.send(answers)
     except StopIteration as stop:
         return stop.value
@@ -254,35 +183,3 @@ def test_the_last_placements_are_evaluated_on_all_voxels_of_the_search():
     assert pose_values(steps[-1].best["roof"].pose)["x"] == pytest.approx(0.6, abs=0.01)
     for before, after in pairwise(steps):
         assert after.entropy <= before.entropy or after.level > before.level
-
-
-def driven(part, landscape):
-    """Answer the questions of a part of the method; the number of placements of each question."""
-    counts = []
-    with contextlib.suppress(StopIteration):
-        question = next(part)
-        while True:
-            counts.append(len(question.candidates))
-            answers = [Evaluation(landscape(c.rig), False) for c in question.candidates]
-            question = part.send(answers)
-    return counts
-
-
-def given_of(landscape, *sensors, evaluations=0):
-    rig, space = mounting.space(*sensors)
-    parametrization = Parametrization(rig, space)
-    start = feasible_start(parametrization, 0)
-    return Given(parametrization, start, landscape(start.rig), evaluations=evaluations)
-
-
-def test_a_descent_ends_where_its_last_cycle_comes_nearest_to_its_budget():
-    """All cycles are alike: 1.4 of them are 1, 1.6 are 2, and a budget of 0 evaluates nothing."""
-    landscape = distance_to({"x": 0.5, "y": 0.1})
-    cycles = []
-    for share in (0.0, 1.0, 1.4, 1.6, 3.4, 3.6):
-        given = given_of(landscape, can())
-        descent = block_descent.Descent(given, given.start, given.entropy, [1])
-        cycle = sum(driven(descent.cycle(Phase(0, 1)), landscape))
-        driven(descent.descend(Phase(0, 1), share * cycle), landscape)
-        cycles.append(descent.count / cycle - 1.0)
-    assert cycles == [0.0, 1.0, 1.0, 2.0, 3.0, 4.0]

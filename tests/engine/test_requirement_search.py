@@ -22,6 +22,7 @@ from pe_core.scoring.requirements import (
 from pe_core.scoring.sight import BLIND_TO_M
 from pe_core.search import Goals, Wanted
 from pe_core.search.key_figures import KEPT, KEY_FIGURES, KeyFigures
+from pe_core.search.dispatch import value_below
 from pe_core.study.requirement_search import INFEASIBLE, constraints_of, feasible_first, suggestions
 from pe_tools import advice
 from pe_tools.cli.terminal import summary
@@ -260,12 +261,11 @@ def test_workers_and_cutoffs_keep_the_same_blind_ground():
     again = pickle.loads(pickle.dumps(limit))
     assert again.violation(level) == limit.violation(level)
     value = objective.entropy(level)
-    assert value == INFEASIBLE + limit.violation(level) == objective.evaluate(level).entropy
+    assert value == INFEASIBLE + limit.violation(level)
     entropy = given.evaluator().entropy(given.rig)
     for cutoff in (entropy - 0.5, entropy, entropy + 0.5, INFEASIBLE + 2.0):
         for rig in (given.rig, level):
-            found = objective.evaluate(rig, cutoff)
-            assert (found.entropy < cutoff) == (objective.entropy(rig) < cutoff)
-            assert found.is_lower_bound or found.entropy == objective.entropy(rig)
+            value = objective.entropy(rig)
+            assert value_below(objective, rig, cutoff) == (value if value < cutoff else math.inf)
     one, two = (finished(pt.OptimizeJob(given, workers)) for workers in (1, 2))
     assert one.evaluated == two.evaluated and one.after == two.after

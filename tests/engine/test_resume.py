@@ -212,17 +212,11 @@ def begun_in(folder, **changes):
         ({"study": 3}, "file: expected the state of a search"),
         ({"study": "a = 1"}, "sensor: expected at least one [[sensor]], found none"),
         ({"study_sha256": "0"}, "study: expected unchanged files beside the study, found"),
-        (
-            {"evaluated": [[1.0, False, "a"], [1, 2]]},
-            "evaluated[1]: expected an entropy, a truth value, a digest",
-        ),
-        ({"evaluated": [[math.nan, False, "a"]]}, "file: expected valid JSON, found NaN"),
-        ({"evaluated": [[1.0, False, "\ud800"]]}, "file: expected valid JSON, found half a"),
+        ({"evaluated": [[1.0, "a"], [1, 2]]}, "evaluated[1]: expected an entropy, a digest"),
+        ({"evaluated": [[math.nan, "a"]]}, "file: expected valid JSON, found NaN"),
+        ({"evaluated": [[1.0, "\ud800"]]}, "file: expected valid JSON, found half a"),
         ({"inputs": {"study": "\udfff"}}, "file: expected valid JSON, found half a surrogate"),
-        (
-            {"evaluated": None},
-            "evaluated[0]: expected an entropy, a truth value, a digest, found None",
-        ),
+        ({"evaluated": None}, "evaluated[0]: expected an entropy, a digest, found None"),
     ],
 )
 def test_a_state_that_is_none_is_refused_in_one_line(out, changes, complaint, capsys):

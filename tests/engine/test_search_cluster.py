@@ -30,9 +30,6 @@ class Noted:
     def entropy(self, rig):
         return self.evaluator.entropy(rig)
 
-    def evaluate(self, rig, cutoff=np.inf):
-        return self.evaluator.evaluate(rig, cutoff)
-
 
 @pytest.fixture(scope="module")
 def study():
@@ -59,11 +56,8 @@ class Evaluated:
         return (self.evaluator,)
 
     def entropy(self, rig):
-        return self.evaluate(rig).entropy
-
-    def evaluate(self, rig, cutoff=np.inf):
         self.here.append(rig)
-        return self.evaluator.evaluate(rig, cutoff)
+        return self.evaluator.entropy(rig)
 
 
 def steps(objective, study, executor=None):
@@ -119,7 +113,7 @@ def test_a_worker_that_joins_later_has_the_payload(study):
         distributed.Client(cluster) as client,
     ):
         executor = client.get_executor(pure=False)
-        here = [evaluator.evaluate(rig) for rig in rigs]
+        here = [evaluator.entropy(rig) for rig in rigs]
         assert evaluate_all(evaluator, rigs, executor=executor) == here
         (first,) = client.scheduler_info()["workers"]
         cluster.scale(2)

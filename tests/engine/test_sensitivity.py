@@ -1,5 +1,6 @@
 """How sure a search is: costs by axis, active constraints, other optima; its limits."""
 
+import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
@@ -7,7 +8,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.search import Evaluation, Goals, Parametrization
+from pe_core.search import Goals, Parametrization
 from pe_tools.cli.terminal import summary
 from pe_tools.jobs import result_dict
 from pe_tools.sensitivity import (
@@ -92,8 +93,8 @@ class Known:
     def __init__(self, value):
         self.value = value
 
-    def evaluate(self, rig, cutoff=None):
-        return Evaluation(self.value(*rig["roof"].pose.position), False)
+    def entropy(self, rig):
+        return self.value(*rig["roof"].pose.position)
 
 
 def slope(rig):
@@ -183,8 +184,8 @@ def test_another_optimum_is_told_from_the_flank_of_the_same_one():
     archive = Archive()
     for x in (-1.0, -0.98, -0.4, -0.1, 0.7, 1.0, 1.05):
         rig = at(given.rig, x)
-        archive.note(rig, 0, Evaluation(wells(x), False))
-    archive.note(at(given.rig, 1.9), 0, Evaluation(0.0, True))  # a lower bound is none to rank by
+        archive.note(rig, 0, wells(x))
+    archive.note(at(given.rig, 1.9), 0, math.inf)  # not below the best so far
     xs = [rig["roof"].pose.position[0] for rig in archive.placements()]
     assert xs == [-1.0, 1.05, 0.7, -0.4, -0.1]
     endings = Basins(StepCosts(best, Known(wells)), given.search_space()).endings(

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
-from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +19,7 @@ from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
 from ...sensors import ObjectMeasurementCache, PerceptionModel, kind_of
 from ..scenarios import Scenarios
-from ..score import Evaluation, ObjectScore, Score, ScoreProgress, SensorScore, TrafficAp, Watch
+from ..score import ObjectScore, Score, ScoreProgress, SensorScore, TrafficAp, Watch
 from .object_metric import FusedObjects, LoneObjects, ObjectSums
 from .object_sampling import CENTERED, OBJECTS, SampledObjects, TargetRule, sample_objects
 
@@ -84,10 +83,6 @@ class ObjectEvaluator:
         with self._lock:
             self._fused.check(rig)
             return self._value(rig, self._sensors.measure(rig))
-
-    def evaluate(self, rig: Rig, cutoff: float = inf) -> Evaluation:
-        """Return the object entropy of a rig as a search asks for it, whatever the cutoff."""
-        return Evaluation(self.entropy(rig), False)
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the object entropy of each of several rigs [nats], as `Evaluator.entropies`."""

@@ -24,7 +24,6 @@ from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from ...scoring.score import Evaluation
 from ..parametrization import Candidate, Parametrization
 from ..search_space import Schedule
 
@@ -71,8 +70,7 @@ class Question:
     candidates : sequence of Candidate or None
         None where no feasible candidate was sampled; its answer is None.
     cutoff : float
-        A value that is not below the cutoff may be answered by a lower bound [nats]; inf: every
-        answer is an entropy.
+        A value that is not below the cutoff is answered by inf [nats].
     round : int
         From 0, for progress reports.
     total : int
@@ -91,7 +89,7 @@ class Question:
     ends: tuple[float, ...] = ()
 
 
-Answered = list[Evaluation | None]
+Answered = list[float | None]
 QuestionStream = Generator[Question, Answered, None]
 
 
@@ -118,7 +116,7 @@ class Method:
 
 T = TypeVar("T")
 Evaluated = list[tuple[Candidate, float]]
-"""Placements, and their entropies or lower bounds [nats]."""
+"""Placements, and their entropies [nats]."""
 MethodPart = Generator[Question, Answered, T]
 """A part of a method: it yields questions, and returns its result."""
 
@@ -144,14 +142,11 @@ class Phase:
     def evaluate(
         self, candidates: Sequence[Candidate | None], cutoff: float = math.inf
     ) -> MethodPart[list[float]]:
-        """Evaluate the candidates; return one value for each.
-
-        A candidate that is not below the cutoff returns the cutoff; one that is missing returns
-        inf.
-        """
+        """Evaluate the candidates; return one value for each: inf for one that is missing or not
+        below the cutoff."""
         shared = self.round, self.total, self.level, self.ends
         answers = yield Question(candidates, cutoff, *shared)
-        return [math.inf if answer is None else min(answer.entropy, cutoff) for answer in answers]
+        return [math.inf if answer is None else answer for answer in answers]
 
 
 MAX_SAMPLED = 100

@@ -7,8 +7,8 @@ length is uniform finds the small ones and leaps over the large ones; nothing ha
 neighbourhood distribution, 2004). Variables whose steps gained lately are moved more often.
 
 Sensors of one model have optima in common: where beams of one LiDAR fall between those of another,
-both have the same pitch to a tenth of a degree. So a step may give a sensor another one's value, or
-move both alike: a valley that no step of one sensor follows.
+both have the same pitch to a tenth of a degree. So a step may give a sensor values of another one,
+or move both alike: a valley that no step of one sensor follows.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ HALVINGS = 9
 SECOND = 0.7
 """Probability that a second variable of the same sensor moves, too."""
 COPIED, TOGETHER = 0.2, 0.2
-"""Where there is another sensor of the same model: probability that a variable takes its value, and
-that both move by the same step."""
+"""Where there is another sensor of the same model: probability that a sensor takes its values, and
+that both move by the same steps."""
 EVEN = 0.1
 """Probability that a variable is chosen whatever its steps gained."""
 FULL_GAIN, MEMORY = 0.02, 0.1
@@ -96,8 +96,8 @@ class MultiscaleDescent:
                 vector[k] += step
                 if COPIED <= way < COPIED + TOGETHER:
                     vector[k + away] += step
-            if way < COPIED:
-                vector[first] = base.vector[first + away]
+                if way < COPIED:
+                    vector[k] = base.vector[k + away]
             return vector
 
         return sampled_candidate(self._parametrization, sample)

@@ -28,8 +28,8 @@ def ask(given: Given) -> QuestionStream:
             candidates = [_neighbour(center, given, scale, rng) for _ in range(count)]
             answers = yield Question(candidates, entropy, number, total)
             for candidate, answer in zip(candidates, answers, strict=True):
-                if candidate is not None and answer is not None and answer.entropy < entropy:
-                    best, entropy = candidate, answer.entropy
+                if candidate is not None and answer is not None and answer < entropy:
+                    best, entropy = candidate, answer
 
 
 def _neighbour(

@@ -1,1 +1,0 @@
-"""The class CMA of the package cmaes, see the folder above."""

@@ -251,7 +251,7 @@ class WhereJob(Job):
         self._places = MountingPlaces(study.rig, self.sensor, *where, **own)
         self.surface = self._places.surface.triangles
         objective = row.objective(study, SAMPLES)
-        self.base = rounded(row.sign * objective.evaluate(study.rig).entropy)
+        self.base = rounded(row.sign * objective.entropy(study.rig))
         steps = iter(self._places)
         ahead = begun(lambda: list(islice(steps, BATCH)))
         with candidate_workers(self, [objective], [self.sensor.model]) as workers:
@@ -273,7 +273,7 @@ class WhereJob(Job):
     ) -> list[SurfacePlace]:
         rigs = [self._places.with_sensor(each.pose) for each in some if not each.reason]
         found, sign = evaluate_all(objective, rigs, executor=workers()), self.row.sign
-        values = iter([rounded(sign * each.entropy) for each in found])
+        values = iter([rounded(sign * each) for each in found])
         return [each if each.reason else replace(each, value=next(values)) for each in some]
 
     def _off(self) -> float:
@@ -283,10 +283,10 @@ class WhereJob(Job):
         if row.exact or not ranked:
             return 0.0
         objective = row.objective(self.study, self.study.samples or DEFAULT_SEARCH_SAMPLES)
-        base = row.sign * objective.evaluate(self.study.rig).entropy
+        base = row.sign * objective.entropy(self.study.rig)
         off = []
         for k in np.unique(np.linspace(0, len(ranked) - 1, COMPARED).astype(int)).tolist():
             rig = self._places.with_sensor(ranked[k].pose)
-            gain = row.sign * objective.evaluate(rig).entropy - base
+            gain = row.sign * objective.entropy(rig) - base
             off.append((ranked[k].value or 0.0) - self.base - gain)
         return rounded(sqrt(float(np.mean(np.square(off)))))

@@ -65,7 +65,11 @@ ROOMS = {
 STOREYS = 8
 MAX_CHAIN_LENGTH = 30
 """Of pe_core: storeys of rooms, and files in a row of which each imports the next, at most."""
-MAX_LINES = 77_517
+<<<<<<< HEAD
+MAX_LINES = 76819
+=======
+MAX_LINES = 76819
+>>>>>>> 37d6807f (The product's cap)
 """Of the product: every file of our own in both packages and the add-on."""
 LIBRARIES = {
     "collada": {"pe_tools/formats"},

@@ -21,8 +21,8 @@ from pe_core.scoring.requirements import (
 )
 from pe_core.scoring.sight import BLIND_TO_M
 from pe_core.search import Goals, Wanted
-from pe_core.search.key_figures import KEPT, KEY_FIGURES, KeyFigures
 from pe_core.search.dispatch import value_below
+from pe_core.search.key_figures import KEPT, KEY_FIGURES, KeyFigures
 from pe_core.study.requirement_search import INFEASIBLE, constraints_of, feasible_first, suggestions
 from pe_tools import advice
 from pe_tools.cli.terminal import summary

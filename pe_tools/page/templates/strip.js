@@ -30,5 +30,5 @@ for (const box of document.querySelectorAll("[data-strip]")) {
   };
   svg.addEventListener("pointerdown", follow);
   svg.addEventListener("pointermove", follow);
-  film?.addEventListener("timeupdate", () => show(Math.min(first + film.currentTime, end)));
+  film?.addEventListener("timeupdate", () => film.paused || show(Math.min(first + film.currentTime, end)));
 }

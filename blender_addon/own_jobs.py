@@ -169,8 +169,7 @@ class CompareJob(jobs.Job):
                 break
             looking = jobs.Progress("seeing", 1.0 - FIGURES_SHARE)
             yield self._progress(name, len(compared), looking)
-            figures = advice.KeyFigures.of_rig(study.sight(), study.rig)
-            compared[key] = ComparedVariant(score, figures)
+            compared[key] = ComparedVariant(score, study.key_figures())
         self.compared = None if self.dropped else compared or None
 
     def _progress(self, name: str, done: int, step: jobs.Progress) -> jobs.Progress:

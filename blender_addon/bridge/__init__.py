@@ -105,6 +105,7 @@ from .variant_results import (
     copy_scene_score,
     copy_score,
     figures_of,
+    figures_signature,
     hardware_note,
     keep_rig,
     restore_result,

@@ -15,6 +15,7 @@ from .fingerprint import Fingerprint
 from .result import FrontRow, ShownFront, score_from_dict, scored_data, store_outcome
 from .scene_diagnostics import check_placeable, scene_advice
 from .sensor_records import SensorRecord, records_of, records_of_scene, rig_of
+from .time import story_signatures
 from .variants import Variant, find_or_add_variant, mark_active, study_of_variant
 
 BEFORE = "Before choosing"
@@ -183,6 +184,13 @@ def _with_choice(record: SensorRecord, sensor: pe.Sensor) -> SensorRecord:
 
 def _note(design: jobs.Design, currency: str) -> str:
     return f"{design.price:,.10g} {currency}".strip()
+
+
+def figures_signature(scene: Scene, now: Fingerprint) -> str:
+    """Return what key figures of a variant depend on besides its sensors."""
+    return " ".join(story_signatures(scene.perception_entropy, now.surroundings).values()) or (
+        now.surroundings
+    )
 
 
 def write_figures(variant: Variant, figures: advice.KeyFigures, signature: str) -> None:

@@ -21,6 +21,7 @@ MIN_WIDTH_PX, LETTER_PX = 560, 7
 """Smallest width of the table, and width of a letter of the sentences above it."""
 MAX_VARIANTS = 8
 TITLES = {
+    "margin": "Margin of stories [s], –: never confirmed",
     "sector": "Widest blind sector [°], lower is better",
     "blind": "Blind ground [m²], lower is better",
     "reach": "Reach ahead [m], AP 0.5 or more",
@@ -29,7 +30,7 @@ TITLES = {
     "coverage": "Coverage",
 }
 """In the order of the table: what a designer asks for first."""
-KEY_FIGURES = ("sector", "blind", "reach", "ap")
+KEY_FIGURES = ("margin", "sector", "blind", "reach", "ap")
 FORMATS = {
     "entropy": ".3f",
     "coverage": ".1%",
@@ -37,6 +38,7 @@ FORMATS = {
     "reach": ".1f",
     "blind": ".1f",
     "sector": ".1f",
+    "margin": ".1f",
 }
 """Formats of the figures by measure."""
 WHOLE_RIG = "Everywhere"
@@ -69,7 +71,7 @@ def compare_task(context: bpy.types.Context) -> Task | None:
                 score, figures = found[row.key]
                 if score is not None:
                     bridge.store_variant_score(row, score, taken.surroundings)
-                bridge.write_figures(row, figures, taken.surroundings)
+                bridge.write_figures(row, figures, bridge.figures_signature(scene, taken))
         scored = sum(variant.score is not None for variant in found.values())
         return Told(f"{scored} scored, {len(found)} compared", tuple(map(str, refused)))
 
@@ -170,7 +172,7 @@ def pending_variants(scene: bpy.types.Scene) -> list[bpy.types.PropertyGroup]:
     """Return variants without a valid score, or without figures of the present settings."""
     fingerprint = result_staleness.fingerprint(scene)
     bridge.check_variants(scene, fingerprint)
-    of = fingerprint.surroundings
+    of = bridge.figures_signature(scene, fingerprint)
     rows = scene.perception_entropy.variants
     return [r for r in rows if not r.has_result or r.stale or bridge.figures_of(r, of) is None]
 
@@ -182,7 +184,7 @@ def comparison_of(scene: bpy.types.Scene) -> tuple[list[str], tuple[advice.Compa
     """
     rows = compared_variants(scene)
     scores = {row.name: bridge.score_of(row) for row in rows}
-    of = result_staleness.fingerprint(scene).surroundings
+    of = bridge.figures_signature(scene, result_staleness.fingerprint(scene))
     figures = {row.name: bridge.figures_of(row, of) for row in rows}
     known = {name: each for name, each in figures.items() if each is not None}
     more = advice.compare_figures(known) if len(known) == len(figures) else ()

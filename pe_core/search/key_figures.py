@@ -80,6 +80,8 @@ class KeyFigures:
         objects are scored: that score already has it.
     over_frames : float or None
         Entropy over the study's frames [nats]; None for one frame.
+    margins : mapping of str to float or None
+        By story, where a study has some: its margin [s]; None: never confirmed.
     built, unknown : mapping of str
         What can be built, by the names of `BUILD_FIGURES`: the figures that are known, and of which
         sensors the others are not.
@@ -92,6 +94,7 @@ class KeyFigures:
     within: float
     reach: Mapping[str, tuple[float, bool]] = field(default_factory=dict)
     over_frames: float | None = None
+    margins: Mapping[str, float | None] = field(default_factory=dict)
     built: Mapping[str, float] = field(default_factory=dict)
     unknown: Mapping[str, Sequence[str]] = field(default_factory=dict)
 

@@ -57,6 +57,7 @@ from ..search import (
     checked_method,
 )
 from ..search.build_figures import housings_of
+from ..search.key_figures import KeyFigures
 from ..sensors import PerceptionModel
 from ..sensors.lidar import ALL, RETURNS
 from ..sensors.weather import with_returns
@@ -329,6 +330,11 @@ class Study(Tabular):
                 frames=self.frames,
                 samples=self.samples,
             )
+
+    def key_figures(self) -> KeyFigures:
+        """Return the key figures of this study's rig, with the margins of its stories."""
+        margins = {story.name: self.drive_by(story).margin_s for story in self.stories}
+        return replace(KeyFigures.of_rig(self.sight(), self.rig), margins=margins)
 
     def drive_by(self, story: Story, rig: Rig | None = None) -> DriveBy:
         """Return a story as a rig, the study's by default, sees it."""

@@ -24,6 +24,7 @@ MIN_CHANGE = {
     "reach": 0.05,
     "blind": 0.05,
     "sector": 1.0,
+    "margin": 0.05,
 }
 """Smallest difference of each measure that counts: half of the last digit that is shown; of a blind
 sector the error of its edges [deg]."""
@@ -96,7 +97,7 @@ def _error(score: Score, figure: FigureKey) -> float:
 
 
 ENTROPY, COVERAGE, AP, REACH, BLIND = "entropy", "coverage", "ap", "reach", "blind"
-SECTOR, TRAFFIC = "sector", "in traffic"
+SECTOR, TRAFFIC, MARGIN = "sector", "in traffic", "margin"
 OTHER_HARDWARE = (
     "The rigs differ in models or numbers of sensors. On simulated rigs of LiDARs entropy was not "
     "shown to rank better than the number of beams, and it can prefer a rig with a blind sector; "
@@ -118,9 +119,9 @@ class ComparedRow:
     ----------
     group, name : str
         "rig", "zone", "class" or "in traffic", and the name of the zone or class.
-    measure : {"entropy", "coverage", "ap", "reach", "blind", "sector"}
+    measure : {"entropy", "coverage", "ap", "reach", "blind", "sector", "margin"}
         Entropy [nats], blind ground [m2] and widest blind sector [deg]: lower is better. Coverage
-        and expected AP, 0 to 1, and reach ahead [m]: higher is better.
+        and expected AP, 0 to 1, reach ahead [m] and margin [s]: higher is better.
     values : tuple of float or None
         By score; None for a score without this zone or class.
     errors : tuple of tuple of float
@@ -213,6 +214,9 @@ def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...
     over_frames = tuple(f.over_frames for f in columns)
     if any(value is not None for value in over_frames):
         rows.append(ComparedRow("rig", "over frames", ENTROPY, over_frames, none))
+    for story in dict.fromkeys(name for own in columns for name in own.margins):
+        margins = tuple(own.margins.get(story) for own in columns)
+        rows.append(ComparedRow("story", story, MARGIN, margins, none))
     height_text = f"{columns[0].height:g} m tall, within {columns[0].within:g} m"
     rows.append(ComparedRow("rig", height_text, BLIND, tuple(f.blind_m2 for f in columns), none))
     for name in columns[0].reach:

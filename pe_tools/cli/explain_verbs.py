@@ -28,6 +28,7 @@ MEASURES = {
     "entropy": ("entropy [nats], lower is better", ".4f", 1.0),
     "coverage": ("seen, of where objects are", ".1%", 100.0),
     "ap": ("expected AP", ".3f", 1.0),
+    "margin": ("margin of stories [s], none: never confirmed", ".1f", 1),
     "sector": ("widest blind sector [deg], lower is better", ".1f", 1),
     "reach": ("reach ahead (AP 0.5) [m]", ".1f", 1),
     "blind": ("blind ground [m2], lower is better", ".1f", 1),
@@ -119,9 +120,7 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     """Score studies by name, and print a table that compares them."""
     refuse_different(studies)
     studies = {**studies, **_beside(studies, args.beside)}
-    figures = {
-        name: advice.KeyFigures.of_rig(study.sight(), study.rig) for name, study in studies.items()
-    }
+    figures = {name: study.key_figures() for name, study in studies.items()}
     scores = {name: scored(study, args.workers).after for name, study in studies.items()}
     rows, figure_rows = advice.compare(scores), advice.compare_figures(figures)
     alike = len({vehicle_digest(study.vehicle) for study in studies.values()}) == 1

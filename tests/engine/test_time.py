@@ -24,7 +24,7 @@ from pe_core.scoring.requirements.bodies import BODIES
 from pe_core.scoring.targets.object_metric import FusedObjects
 from pe_core.sensors import ObjectMeasurementCache
 from pe_core.study import study_from_dict, study_to_dict
-from pe_tools import graphics
+from pe_tools import advice, graphics
 from pe_tools.cli.verbs import main
 from pe_tools.page.sections.visibility import drive_by as drive_by_section
 from tests.engine import shapes
@@ -390,3 +390,15 @@ def test_the_page_has_a_strip_for_each_body(tmp_path):
     assert base64.b64decode(data["films"][story.name].split(",")[1]) == film
     data = drive_by_section(SimpleNamespace(study=other, rig=rig(), folder=tmp_path))
     assert data["films"] == {story.name: ""}  # it is of another drive-by
+
+
+def test_a_comparison_has_the_margin_of_each_story():
+    story = stories()["cyclist_from_right"]
+    figures = {
+        name: replace(study(stories=(each,)), vehicle=None).key_figures()
+        for name, each in (("now", story), ("later", replace(story, before_s=0.5)))
+    }
+    (row,) = [r for r in advice.compare_figures(figures) if r.measure == "margin"]
+    assert (row.group, row.name, row.best) == ("story", story.name, (True, False))
+    assert row.values[0] - row.values[1] == pytest.approx(0.5)
+    assert not row.lower_is_better

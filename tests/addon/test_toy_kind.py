@@ -48,7 +48,8 @@ def test_it_is_offered_beside_the_others(ring_kind):
     settings.kind_to_add = "toyring"
     panels.main.draw_add(layout, settings)
     assert layout.notes == [
-        *(("prop", "kind_to_add"), ("operator", "Add"), ("operator", "Place"), ("operator", ""))
+        *(("prop", "kind_to_add"), ("operator", "Add"), ("operator", "Place"), ("operator", "")),
+        ("operator", "pe.where"),
     ]
 
 

@@ -183,11 +183,6 @@ class Incumbent:
             self.count += 1
             self._take(candidate, value)
 
-    def descended(self, descent: Incumbent) -> None:
-        """Take the result of a descent."""
-        self.count += descent.count
-        self._take(descent.best, descent.entropy)
-
     def _take(self, candidate: Candidate, value: float) -> None:
         if value < self.entropy:
             self.best, self.entropy = candidate, value

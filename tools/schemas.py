@@ -171,6 +171,7 @@ def study_schema() -> dict[str, Any]:
         "tolerance": table(declared["optimize.tolerance"]),
         "stop": table(declared["optimize.stop"]),
         "front": table(declared["optimize.front"]),
+        "wanted": table(declared["optimize.wanted"]),
         "mount": tables(mount, "name"),
         "no_go": tables({"name": TEXT, **declared["optimize.no_go"]}, "name"),
         **{"pair": tie, "group": tie, "start": tables(start, "name", "placements")},

@@ -53,6 +53,7 @@ def window(rig, monkeypatch):
     space = SimpleNamespace(type="VIEW_3D", overlay=overlay, local_view=None, camera=None)
     look = SimpleNamespace(view_perspective="PERSP")
     region = SimpleNamespace(as_pointer=lambda: 1)
+    monkeypatch.setattr(draw_handler.viewport, "is_lower_left", lambda _context: False)
     context = SimpleNamespace(scene=rig, space_data=space, region_data=look, region=region)
     monkeypatch.setattr(draw_handler, "bpy", SimpleNamespace(context=context, app=bpy.app))
     monkeypatch.setattr(draw_handler, "gpu", card)

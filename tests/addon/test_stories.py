@@ -68,7 +68,7 @@ def test_place_score_optimize_check_and_export(scene, tmp_path, small_pictures):
     start = poses()
     assert stored(scene) == without_run(jobs.result_dict(finished(jobs.ScoreJob(scenes.study()))))
     labels = layouts.drawn(main.main, **vars(layouts.Window(scene))).texts("label")
-    assert any("Coverage" in label for label in labels)
+    assert any("Blind ground" in label for label in labels)
 
     # Optimize: what the engine finds is placed, scored and kept; undo takes the poses back.
     first = settings.result.entropy

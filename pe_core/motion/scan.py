@@ -113,7 +113,7 @@ def ap_with_latency(
     """
     v, near = np.abs(np.asarray(speed, dtype=float))[..., None], np.asarray(distances_m, float)
     s = np.sqrt(scatter_m**2 + (v * spread_s) ** 2)
-    found = _phi((near - v * latency_s) / s) / _phi(near / np.sqrt(scatter_m**2))
+    found = _phi((near - v * latency_s) / s) / _phi(near / scatter_m)
     return np.asarray(np.asarray(ap, dtype=float) * found.mean(axis=-1))
 
 

@@ -74,6 +74,8 @@ class Confirmation:
 
     def in_time(self, ap: Floats, speed: Floats) -> Floats:
         """Return AP of bodies of a speed [m/s] when boxes are late, eq. T5."""
+        if not (self.box_latency_s or self.box_spread_s):
+            return ap
         return ap_with_latency(ap, speed, self.box_latency_s, self.box_spread_s, self.box_scatter_m)
 
     def confirmed(self, found: ArrayLike) -> Floats:

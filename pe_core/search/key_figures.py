@@ -283,7 +283,7 @@ class Wanted:
 class Reading:
     """A row of the dashboard: a figure, its value, what is wanted, whether a search keeps it.
 
-    `value` is None where it is not known, `of` the number of requirements that were checked.
+    `value` is None where it is not known. Of requirements `wanted` is how many were checked.
     """
 
     figure: FigureOfMerit

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from .method import Given, Incumbent, MethodPart, Phase, QuestionStream
 from .portfolio_steps import MultiscaleDescent
-from .portfolio_survey import CORNERS, Survey, to_best_corners
+from .portfolio_survey import Survey, to_best_corners
 
 FEW, PER_SENSOR = (0, 400, 950, 1275), 400
 """Placements where no budget is given: for none to three sensors that move, and for each of
@@ -26,8 +26,7 @@ of the race, until half of them leave it, and twice that for each of the others.
 SURVEYS, SURVEYED = 2, 6
 """Surveys before the first descent, and places that each of them tries for each sensor,"""
 SURVEY_SHARE = 0.3
-"""but at most this share of the budget in all. A sensor tries its `CORNERS` only where those of all
-take no more."""
+"""but at most this share of the budget in all."""
 NEAR, NEAR_COUNT = 0.3, 3
 """Reach of the surveys between descents, as a share of each range, and places for each sensor."""
 STEP_SHARE, LAST_STEPS = 0.5, 30
@@ -98,15 +97,13 @@ def _race(
     first, last = Phase(0, total), Phase(1, total, given.levels - 1)
     per_start = PLACEMENTS_PER_START * len(given.parametrization.blocks)
     runners = min(RACING, max(1, total // per_start))
-    tries_corners = CORNERS * len(given.parametrization.blocks) <= SURVEY_SHARE * total
     racing, before = list[tuple[Incumbent, MultiscaleDescent]](), incumbent.count
     for k in range(runners):
         begun = (given.start, given.entropy) if k % 2 else (incumbent.best, incumbent.entropy)
         own = Incumbent(*begun)
         if k > 1:
             yield from survey.survey(own, first, surveyed)
-        if tries_corners:
-            yield from to_best_corners(given, own, first)
+        yield from to_best_corners(given, own, first)
         racing.append((own, MultiscaleDescent(given, [given.seed, k])))
     used = before + sum(own.count for own, _ in racing)
     for own, steps in racing:

@@ -18,8 +18,6 @@ from .method import Evaluated, Given, Incumbent, MethodPart, Phase, sampled_cand
 
 TWO_MOVED = 16
 """Placements with two sensors in other slots, tried at once."""
-CORNERS = 8
-"""Corners of a sensor's bounds, at most."""
 MAX_SLOTS = 16
 """Slots evaluated in one turn; of a longer list, so many are sampled."""
 

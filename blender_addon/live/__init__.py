@@ -14,16 +14,7 @@ from . import background_figures, readout, session
 from .readout_text import ARROW, BETTER, SAME, SENSE_ICONS, WORSE, change_text
 from .state import FinishedScore, ShownScore, live_state, shown_score
 
-__all__ = [
-    "ARROW",
-    "BETTER",
-    "SAME",
-    "SENSE_ICONS",
-    "WORSE",
-    "FinishedScore",
-    "ShownScore",
-    "built_lines",
-]
+__all__ = ["ARROW", "BETTER", "SAME", "SENSE_ICONS", "WORSE", "FinishedScore", "ShownScore"]
 __all__ += ["built_lines", "change_text", "live_state", "register", "shown_score"]
 __all__ += ["told_figures", "unregister"]
 

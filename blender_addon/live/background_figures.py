@@ -13,7 +13,7 @@ import bpy
 from .. import analysis_calls, engine_process, signals
 from ..engine import advice, pe, text
 from ..engine_calls import Problem, ScoreRequest, rig_key
-from .state import Baseline, FigureRequest, live_state, states
+from .state import Baseline, live_state, states
 
 figure_cache: text.RecentCache[advice.KeyFigures] = text.RecentCache(24)
 """By problem and rig: those of the last moves, and what they are compared with."""
@@ -22,10 +22,10 @@ figure_cache: text.RecentCache[advice.KeyFigures] = text.RecentCache(24)
 def request(scene: bpy.types.Scene, score: ScoreRequest, baseline: Baseline | None) -> None:
     """Request the figures of an idle scene that are not known yet, where they are wanted."""
     name, problem = scene.name, score.problem
-    if not scene.perception_entropy.live.figures:
-        live_state(name).figures = None
+    is_wanted = scene.perception_entropy.live.figures
+    live_state(name).figures = problem if is_wanted else None
+    if not is_wanted:
         return
-    live_state(name).figures = FigureRequest(score, baseline)
     rigs = [score.rig, *([baseline.rig] if baseline is not None and baseline.rig else [])]
     if missing := [rig for rig in rigs if figure_cache.get(_key(problem, rig)) is None]:
         deliver, topic = partial(_keep, problem, missing), f"live figures of {name}"
@@ -38,10 +38,9 @@ def figures_of(scene: bpy.types.Scene) -> list[advice.KeyFigures]:
     Those that were shown last while its own are not known; none where no figures are wanted.
     """
     state = live_state(scene.name)
-    score = state.exact
-    if state.figures is None or score is None:
+    score, problem = state.exact, state.figures
+    if problem is None or score is None:
         return []
-    problem = state.figures.request.problem
     now = figure_cache.get(_key(problem, score.rig))
     if now is None or score is not state.score:
         return state.shown_figures[-1:]

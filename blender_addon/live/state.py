@@ -14,7 +14,7 @@ import bpy
 from .. import bridge
 from ..choices import BEFORE_MOVE
 from ..engine import advice, pe
-from ..engine_calls import ScoreRequest
+from ..engine_calls import Problem
 
 
 @dataclass(slots=True, eq=False)
@@ -60,13 +60,6 @@ class LiveScore:
         return None if self.baseline is None else self.baseline.summary
 
 
-class FigureRequest(NamedTuple):
-    """A request of key figures: for which score, compared with what."""
-
-    request: ScoreRequest
-    baseline: Baseline | None
-
-
 class LastRead(NamedTuple):
     """What a scene was when it was read last.
 
@@ -100,9 +93,9 @@ class LiveState:
     """The sensors before the last move."""
     chosen: tuple[tuple[Hashable, ...], Baseline] | None = None
     """The variant that the settings choose, and what it was made from."""
-    figures: FigureRequest | None = None
+    figures: Problem | None = None
     shown_figures: list[advice.KeyFigures] = field(default_factory=list)
-    """The last request of key figures, and those that were shown last."""
+    """The problem whose key figures are wanted, and those that were shown last."""
     prior: tuple[Hashable, pe.Prior] | None = None
     """The prior that was read last, and its key: a file of boxes takes long to read."""
 

@@ -188,9 +188,8 @@ def _note(design: jobs.Design, currency: str) -> str:
 
 def figures_signature(scene: Scene, now: Fingerprint) -> str:
     """Return what key figures of a variant depend on besides its sensors."""
-    return " ".join(story_signatures(scene.perception_entropy, now.surroundings).values()) or (
-        now.surroundings
-    )
+    stories = story_signatures(scene.perception_entropy, now.surroundings)
+    return " ".join(stories.values()) or now.surroundings
 
 
 def write_figures(variant: Variant, figures: advice.KeyFigures, signature: str) -> None:

@@ -64,6 +64,7 @@ def compare_task(context: bpy.types.Context) -> Task | None:
         if not pending:
             return None
         taken = result_staleness.fingerprint(scene, depsgraph)
+        figures_of = bridge.figures_signature(scene, taken)
 
     def finish(scene: bpy.types.Scene, found: dict[int, ComparedVariant]) -> Told:
         for row in scene.perception_entropy.variants:  # those that still exist
@@ -71,7 +72,7 @@ def compare_task(context: bpy.types.Context) -> Task | None:
                 score, figures = found[row.key]
                 if score is not None:
                     bridge.store_variant_score(row, score, taken.surroundings)
-                bridge.write_figures(row, figures, bridge.figures_signature(scene, taken))
+                bridge.write_figures(row, figures, figures_of)
         scored = sum(variant.score is not None for variant in found.values())
         return Told(f"{scored} scored, {len(found)} compared", tuple(map(str, refused)))
 

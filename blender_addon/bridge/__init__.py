@@ -93,6 +93,7 @@ from .sensor_records import (
 from .time import (
     clear_stale_stories,
     confirmation_of,
+    frame_rate,
     read_animation,
     store_driven,
     story_of,

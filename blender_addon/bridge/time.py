@@ -65,8 +65,13 @@ def write_story(row: PropertyGroup, story: motion.Story) -> None:
     row.table = json.dumps(studies.story_table(story))
 
 
-def read_animation(scene: Scene, row: PropertyGroup) -> None:
-    """Read into a row what the test bodies of a scene do, frame by frame, round the vehicle.
+def frame_rate(scene: Scene) -> float:
+    """Return how many frames of a scene a second has [Hz]."""
+    return scene.render.fps / scene.render.fps_base
+
+
+def read_animation(scene: Scene) -> str:
+    """Return what the test bodies of a scene do, frame by frame, round the vehicle: a row's table.
 
     The last frame is time 0. `InputError` when no object is a test body.
     """
@@ -74,7 +79,7 @@ def read_animation(scene: Scene, row: PropertyGroup) -> None:
     if not bodies:
         raise pe.InputError("scene", "test bodies", "an object with one, in Vehicle Part", "none")
     frames, shown = range(scene.frame_start, scene.frame_end + 1), scene.frame_current
-    rate = scene.render.fps / scene.render.fps_base
+    rate = frame_rate(scene)
     paths: dict[str, list[list[float]]] = {each.name: [] for each in bodies}
     try:
         for frame in frames:
@@ -89,7 +94,7 @@ def read_animation(scene: Scene, row: PropertyGroup) -> None:
         scene.frame_set(shown)
     actors = [_test_body(each, paths[each.name]) for each in bodies]
     start = {"start_s": round((frames[0] - frames[-1]) / rate, DIGITS), "anchor": motion.ORIGIN}
-    row.table = json.dumps({"title": "Own animation", **start, "body": actors})
+    return json.dumps({"title": "Own animation", **start, "body": actors})
 
 
 def _test_body(obj: Object, path: list[list[float]]) -> dict[str, Any]:

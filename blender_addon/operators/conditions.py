@@ -7,7 +7,7 @@ from bpy.props import EnumProperty, IntProperty
 
 from .. import bridge, film, signals
 from ..engine import motion, pe
-from .declared import RowList, chosen_file, operator, remove_row
+from .declared import RowList, chosen_file, operator
 from .exports import dialog
 
 DRAWN = -1
@@ -92,19 +92,14 @@ STORY_ITEMS += [(name, each.title, each.source) for name, each in motion.stories
 )
 def add_story(context: bpy.types.Context, story: str) -> None:
     """Add a story of what moves: when is it confirmed, and does the vehicle stop in time?"""
-    settings = context.scene.perception_entropy
+    table = bridge.read_animation(context.scene) if story == ANIMATED else ""
     row = STORY_ROWS.add(context.scene, story)
     name = row.name
-    if story != ANIMATED:
+    if table:
+        row.animated, row.table = True, table
+    else:
         bridge.write_story(row, motion.stories()[story])
         row.name = name
-        return
-    row.animated = True
-    try:
-        bridge.read_animation(context.scene, row)
-    except pe.InputError:
-        remove_row(settings, "stories", "story_index", len(settings.stories) - 1)
-        raise
 
 
 @operator("Play", signal=signals.study_changed, unless=STORY_ROWS.unless_selected)
@@ -115,9 +110,10 @@ def play_story(context: bpy.types.Context) -> None:
     playing = context.screen is not None and context.screen.is_animation_playing
     if not playing:
         if row.animated:
-            bridge.read_animation(scene, row)
-        story, rate = bridge.story_of(row), scene.render.fps / scene.render.fps_base
-        scene.frame_end = scene.frame_start + round((story.end_s - story.start_s) * rate)
+            row.table = bridge.read_animation(scene)
+        story = bridge.story_of(row)
+        frames = round((story.end_s - story.start_s) * bridge.frame_rate(scene))
+        scene.frame_end = scene.frame_start + frames
         scene.frame_set(scene.frame_start)
         settings.view.show_story = settings.show_overlay = True
     if not bpy.app.background:

@@ -154,8 +154,7 @@ def _legend(scene: str, layer: str, name: str) -> graphics.ColorKey | None:
 
 def _seconds(scene: bpy.types.Scene) -> float:
     """Return how long after the first frame of a scene its present one is [s]."""
-    render = scene.render
-    return (scene.frame_current - scene.frame_start) * render.fps_base / render.fps
+    return (scene.frame_current - scene.frame_start) / bridge.frame_rate(scene)
 
 
 def uploaded(scene: str, layer: Layer, names: list[str], seconds: float = 0.0) -> list[Batches]:

@@ -241,7 +241,7 @@ def _requirements(scene: bpy.types.Scene) -> dict[str, Any]:
 
 def _story(scene: bpy.types.Scene) -> dict[str, Any]:
     """Return the selected story of a scene; none where it is wrong: a check says what is."""
-    settings, render = scene.perception_entropy, scene.render
+    settings = scene.perception_entropy
     if settings.story_index >= len(settings.stories):
         return {}
     try:
@@ -250,4 +250,4 @@ def _story(scene: bpy.types.Scene) -> dict[str, Any]:
     except pe.InputError:
         return {}
     shown = {"story": found, "confirmation": bridge.confirmation_of(settings)}
-    return {**shown, "rates": tuple(rates.items()), "rate_hz": render.fps / render.fps_base}
+    return {**shown, "rates": tuple(rates.items()), "rate_hz": bridge.frame_rate(scene)}

@@ -41,18 +41,13 @@ GOP = 12
 """Frames from one key frame to the next: a page jumps to any moment."""
 
 
-def check_name(path: Path) -> None:
-    """Raise `InputError` where a file's suffix is none of `FORMATS`."""
-    if path.suffix not in FORMATS:
-        raise pe.InputError("film", "file", f"a name that ends in {' or '.join(FORMATS)}", path)
-
-
 def write_film(scene: bpy.types.Scene, study: pe.Study, story: motion.Story, path: Path) -> None:
     """Render a story as a film, and write the file once it is complete; its scene is left.
 
-    Render Animation renders that scene again.
+    Render Animation renders that scene again. `InputError` where the suffix is none of `FORMATS`.
     """
-    check_name(path)
+    if path.suffix not in FORMATS:
+        raise pe.InputError("film", "file", f"a name that ends in {' or '.join(FORMATS)}", path)
     film = film_scene(scene, study, story)
     with tempfile.TemporaryDirectory() as folder:
         made = Path(folder) / f"film{path.suffix}"
@@ -172,13 +167,10 @@ class _Stage(NamedTuple):
         eye = Vector((-way * (reach + 8.0), side * 4.5, 5.4))
         target = Vector((way * (reach + 5.5), -side * 1.0, 0.0))
         camera = self._add("Film", data)
-        camera.matrix_world = Matrix.Translation(eye) @ _towards(target - eye)
+        turn = (target - eye).to_track_quat("-Z", "Y")
+        camera.matrix_world = Matrix.LocRotScale(eye, turn, None)
         self.film.camera = camera
         return camera
-
-
-def _towards(way: Vector) -> Matrix:
-    return way.to_track_quat("-Z", "Y").to_matrix().to_4x4()
 
 
 def _material(name: str, color: graphics.Rgba) -> bpy.types.Material:

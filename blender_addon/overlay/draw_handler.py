@@ -119,15 +119,15 @@ def draw_text() -> None:
         return
     scene, now = context.scene.name, _seconds(context.scene)
     visible = [(layer.name, name) for layer, names in _visible(context) for name in names]
-    shapes = [shown_of(scene, layer)[name].shape.at(now) for layer, name in visible]
+    written: list[graphics.Tag] = []
     for layer, name in visible:
         item = shown_of(scene, layer)[name]
+        written += item.shape.at(now).labels
         below = getattr(item.shape, "strip", None)
         if below is not None and viewport.is_lower_left(context):
             old = scheduler.is_preview(scene, layer, name, item)
             drawn = strip.draw_strip(context, below, now, OUT_OF_DATE if old else "")
             viewport.reserve_plate(region, viewport.STRIP, drawn)
-    written = [label for shape in shapes for label in shape.labels]
     eye = _eye(context)
     if eye is not None:
         written += surroundings.labels_around(context.scene, eye)

@@ -12,7 +12,6 @@ from ..engine import Floats, graphics, pe, sight
 from ..view_settings import WHOLE
 
 if TYPE_CHECKING:
-    from ..engine import pe, sight
     from .layer_cache import LayerCache
     from .request import ViewRequest
 

@@ -38,18 +38,24 @@ class Manager:
         pass
 
 
-def test_a_running_search_tells_the_view_each_time_it_finds_better(car, monkeypatch):
-
-    job = jobs.OptimizeJob(scenes.study())
-    context = type("Context", (), {"scene": car, "window_manager": Manager(), "window": None})
+def lines_while_running(scene, job, monkeypatch):
+    """Run a search, which the view shows at each step; return the lines of its progress."""
+    context = type("Context", (), {"scene": scene, "window_manager": Manager(), "window": None})
     running = RunningJob(context, job, "outcome")
     running.seen = job
     monkeypatch.setattr("blender_addon.operators.running_job.BEST_EVERY_S", 0.0)
-    best_lines = []
+    lines = []
     for progress in job:
         running.progress = progress
         running._show_search()
-        best_lines += [running.text] if progress.stage == "optimizing" else []
+        lines.append(running.text)
+    return lines
+
+
+def test_a_running_search_tells_the_view_each_time_it_finds_better(car, monkeypatch):
+    job = jobs.OptimizeJob(scenes.study())
+    lines = lines_while_running(car, job, monkeypatch)
+    best_lines = [line for line in lines if line.startswith("Optimizing")]
     assert f"best \N{ALMOST EQUAL TO} {job.curve[-1][1]:.3f}" in best_lines[-1]
     assert best_so_far.searches.pop(car.name) == tuple(job.best.rig) != tuple(job.study.rig)
 

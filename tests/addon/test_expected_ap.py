@@ -9,12 +9,11 @@ import pe_core as pe
 import pe_tools as pt
 from blender_addon import best_so_far, bridge
 from blender_addon.operators import compare_variants
-from blender_addon.operators.running_job import RunningJob
 from blender_addon.panels import main, search_panels
 from pe_tools.jobs import result_dict
 from tests.addon import layouts, scenes
 from tests.addon.command_line import pe_here, run_here
-from tests.addon.test_best_so_far import Manager
+from tests.addon.test_best_so_far import lines_while_running
 
 OPTIONS = ("--objective", "expected_ap", "--evaluations", "12", "--seed", "4", "--json")
 ALONE = ("run", "inputs")
@@ -68,15 +67,7 @@ def test_a_job_the_command_lines_and_the_panel_find_the_same_bits(settings, tmp_
 def test_the_curve_of_a_running_search_is_an_ap_that_rises(settings, monkeypatch):
     job = pt.OptimizeJob(scenes.study(), 1)
     scene = bpy.context.scene
-    context = type("Context", (), {"scene": scene, "window_manager": Manager(), "window": None})
-    running = RunningJob(context, job, "outcome")
-    running.seen = job
-    monkeypatch.setattr("blender_addon.operators.running_job.BEST_EVERY_S", 0.0)
-    texts = []
-    for progress in job:
-        running.progress = progress
-        running._show_search()
-        texts.append(running.text)
+    texts = lines_while_running(scene, job, monkeypatch)
     assert best_so_far.searches.pop(scene.name) == tuple(job.best.rig)
     assert any(", best AP ≈ 0." in text for text in texts)
 

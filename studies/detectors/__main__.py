@@ -11,7 +11,7 @@ from pathlib import Path
 import pe_core as pe
 from pe_core.base import dump_json, write_bytes
 from pe_tools import prepare_folder
-from pe_tools.cli import DONE, Answer, count_up_to
+from pe_tools.cli import DONE, Answer
 
 from ..command import main, page_parser
 from ..pages import PAGE, check_page
@@ -29,7 +29,7 @@ from .findings import answer_after_search, short_answer
 from .page import OWN, TITLE, Plans, Study, page
 from .placements import Placement, placements
 from .plan import AFTER_SEARCH, CAMERAS, StudyPlan, full_plan, quick_plan
-from .runs import MAX_RUNS, Run, RunFiles, do_runs, runs, seed_by_seed
+from .runs import Run, RunFiles, add_run_options, do_runs, runs, seed_by_seed
 from .scan_curves import scan_curves
 from .scores import placement_scores
 from .segmentation import segmentation_scores
@@ -159,9 +159,7 @@ if __name__ == "__main__":
     which.add_argument("--cameras", action="store_true", help=about)
     about = "the study before and after a search: its searches, unless they are done, and its runs"
     which.add_argument("--after-search", action="store_true", help=about)
-    parser.add_argument("--resume", action="store_true", help="go on where the folder's runs end")
-    about = "do at most so many runs now"
-    parser.add_argument("--runs", type=count_up_to(MAX_RUNS), metavar="N", help=about)
+    add_run_options(parser)
     about = 'write the curves of [ap] model = "scans", fitted to the runs, to this file'
     parser.add_argument("--curves", metavar="FILE", help=about)
     main(parser, validate_own)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from pe_core import InputError
 from pe_core.base import Number, Table, dump_json, write_bytes
-from pe_tools.cli import noted_when_interrupted
+from pe_tools.cli import count_up_to, noted_when_interrupted
 
 from ..results_file import Json, print_progress, read_json
 from .placements import Placement, placements
@@ -136,6 +136,13 @@ class RunFiles:
         for part in [table] if parts is None else [parts.table(k) for k in parts.names]:
             part.number("ap", rule=SHARE)
         return data
+
+
+def add_run_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `do_runs` to the parser of a study."""
+    parser.add_argument("--resume", action="store_true", help="go on where the folder's runs end")
+    about = "do at most so many runs now"
+    parser.add_argument("--runs", type=count_up_to(MAX_RUNS), metavar="N", help=about)
 
 
 def do_runs(args: argparse.Namespace, files: RunFiles, result_of: Callable[[Run], Json]) -> None:

@@ -7,12 +7,12 @@ from pathlib import Path
 
 from pe_core.base import dump_json, write_bytes
 from pe_tools import prepare_folder
-from pe_tools.cli import DONE, Answer, count_up_to
+from pe_tools.cli import DONE, Answer
 
 from ...command import main, page_parser
 from ...pages import PAGE, check_page, render
 from ...results_file import RESULTS, Json, print_progress
-from ..runs import MAX_RUNS, Run, RunFiles, do_runs
+from ..runs import Run, RunFiles, add_run_options, do_runs
 from ..scores import placement_scores
 from .analysis import frame_scorer, frames_analysis
 from .plan import FRAMES, frames_placements, frames_runs, full_frames_plan, quick_frames_plan
@@ -50,7 +50,5 @@ if __name__ == "__main__":
         (f"docs/validity/own/{FRAMES}", "validity-frames-quick"),
         "a few runs of few scenes, in minutes",
     )
-    parser.add_argument("--resume", action="store_true", help="go on where the folder's runs end")
-    about = "do at most so many runs now"
-    parser.add_argument("--runs", type=count_up_to(MAX_RUNS), metavar="N", help=about)
+    add_run_options(parser)
     main(parser, rank_over_frames)

@@ -7,13 +7,13 @@ from pathlib import Path
 
 from pe_core.base import dump_json, write_bytes
 from pe_tools import prepare_folder
-from pe_tools.cli import DONE, Answer, count_up_to
+from pe_tools.cli import DONE, Answer
 
 from ...command import main, page_parser
 from ...results_file import RESULTS, Json, print_progress
 from ..after_search.searches import searched_placements
 from ..rank_tests import MIN_GROUP
-from ..runs import MAX_RUNS, Run, RunFiles, do_runs
+from ..runs import Run, RunFiles, add_run_options, do_runs
 from ..scores import placement_scores
 from .analysis import second_analysis
 from .layouts import LAYOUTS, Layouts
@@ -87,7 +87,5 @@ if __name__ == "__main__":
     which.add_argument("--layouts", metavar="FOLDER", help=about)
     about = "part 4 instead: its searches, unless they are done, and its runs"
     which.add_argument("--searches", action="store_true", help=about)
-    parser.add_argument("--resume", action="store_true", help="go on where the folder's runs end")
-    about = "do at most so many runs now"
-    parser.add_argument("--runs", type=count_up_to(MAX_RUNS), metavar="N", help=about)
+    add_run_options(parser)
     main(parser, validate_second)

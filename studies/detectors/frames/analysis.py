@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 import pe_core as pe
+from pe_core.base.arrays import Floats, Ints
 from pe_core.metric.frames import Frames
 
 from ...ranks import holm
@@ -32,7 +33,6 @@ ONE, FIVE, ONE_FRAME = "one", "five", "one_frame"
 """The arms, and where a run has the results of the first."""
 BETTER, WORSE, ALIKE = "ranks better", "ranks worse", "alike"
 MORE, FEWER = "five frames find more", "five frames find fewer"
-Floats = NDArray[np.float64]
 
 
 def key_of(q: float) -> str:
@@ -78,7 +78,7 @@ def frames_analysis(plan: FramesPlan, results: Results, scores: Results) -> Json
         row["verdict"] = HOLDS if p < rule.alpha and row["rho"] > 0.0 else UNDECIDED
     less = {key: _minus(plan, v, value[key_of(np.inf)], five.samples) for key, v in value.items()}
     by_arm = [r[ONE_FRAME] for r in results.values()], list(results.values())
-    gained = PlacementSamples(arms[FIVE].aps - arms[ONE].aps, *_same(five.samples))
+    gained = replace(five.samples, aps=arms[FIVE].aps - arms[ONE].aps)
     return {
         **found,
         "ranks": ranks,
@@ -105,10 +105,6 @@ def difference_verdict(low: float, high: float, alike: float) -> str:
     return ALIKE if -alike <= low and high <= alike else UNDECIDED
 
 
-def _same(samples: PlacementSamples) -> tuple[NDArray, NDArray]:
-    return samples.groups, samples.hardware
-
-
 def _range(ap: Floats) -> list[float]:
     return [round(float(v), 4) for v in (ap.min(), ap.mean(), ap.max())]
 
@@ -126,7 +122,7 @@ def _rank(plan: FramesPlan, value: Floats, samples: PlacementSamples) -> Json:
 def _minus(plan: FramesPlan, value: Floats, other: Floats, samples: PlacementSamples) -> Json:
     """Return rho of a figure minus that of another, of the same placements and seeds."""
 
-    def less(index: NDArray[np.int64], ap: Floats) -> Floats:
+    def less(index: Ints, ap: Floats) -> Floats:
         rho = [rho_within(v[index], ap, samples.members) for v in (value, other)]
         return np.asarray(rho[0] - rho[1])
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
+
+from pe_core.base.arrays import Floats
 
 from ..batches import LAYERS
 from ..casting import Caster, RegionVoxels, region_objects, voxel_counts
@@ -14,8 +16,6 @@ from ..placements import Placement, vehicle
 from ..plan import SPLITS, StudyPlan
 from ..scenes import Scene, Things, assembled, standing
 from .plan import FramesPlan
-
-Floats = NDArray[np.float64]
 
 MOTION = 11
 """Makes the seed of the motion another one than that of the scene."""
@@ -127,4 +127,4 @@ def _channels(cells: NDArray[np.int32], channel: int) -> NDArray[np.int32]:
 def _moved(things: Things, by: Floats) -> Things:
     feet = things.feet.copy()
     feet[:, :2] += by
-    return Things(things.names, feet, things.sizes, things.yaws)
+    return replace(things, feet=feet)

@@ -40,6 +40,7 @@ from .colors import srgb_of_linear as srgb_of_linear
 from .colors import with_alpha as with_alpha
 from .drive_by import CORNERS as CORNERS
 from .drive_by import FACES as FACES
+from .drive_by import NEVER as NEVER
 from .drive_by import UNSEEN as UNSEEN
 from .drive_by import BodiesInTime as BodiesInTime
 from .drive_by import MovingBody as MovingBody

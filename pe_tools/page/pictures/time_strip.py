@@ -14,8 +14,6 @@ from .svg import Canvas
 WIDTH, LEFT, RIGHT = 720.0, 130.0, 640.0
 ENDS = LEFT, RIGHT
 TOP, ROW, GAP, FOOT = 22.0, 16.0, 5.0, 34.0
-NEVER = (0.843, 0.863, 0.882, 1.0)
-"""Colour of AP 0."""
 
 
 def time_strip(story: Story, body: SeenBody, alt: str) -> Markup:
@@ -35,7 +33,7 @@ def time_strip(story: Story, body: SeenBody, alt: str) -> Markup:
         canvas.text(LEFT - 8.0, y + ROW - 4.0, name, text_anchor="end")
         for first, last, ap in cells:
             box = {"x": LEFT + first * width, "y": y, "width": (last - first) * width}
-            color = graphics.color_text(graphics.color_of_ap(ap, NEVER))
+            color = graphics.color_text(graphics.color_of_ap(ap, graphics.NEVER))
             canvas.add("rect", fill=color, height=ROW, **box)
         y += ROW + GAP
     for tick in ticks(start, end, 6):

@@ -28,7 +28,7 @@ KEPT = 48
 """Neighbourhoods that are kept for each level of the search."""
 MAX_RUNNERS_UP = 3
 EXAMINED = 16
-"""Placements of the archive that are evaluated the best first."""
+"""Placements of the archive that are evaluated, the best first."""
 BETWEEN = (0.25, 0.5, 0.75)
 """Shares of the way between two placements at which a hill is looked for."""
 

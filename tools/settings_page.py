@@ -101,20 +101,22 @@ def range_text(rule: object) -> str:
         case Triple():
             return range_text(rule.rule)
         case Whole():
-            return f"{rule.minimum:,} to {rule.maximum:,}"
+            return f"{rule.minimum:,}–{rule.maximum:,}"
         case Number() if rule.minimum > -float("inf"):
-            return f"{_low(rule)}{_high(rule)}"
+            return _span(rule)
     return ""
 
 
-def _low(rule: Number) -> str:
-    return f"{'above ' if rule.above else ''}{rule.minimum:,.12g}"
-
-
-def _high(rule: Number) -> str:
+def _span(rule: Number) -> str:
+    """Return the range of a number; `> 0` and `< 1` are themselves not allowed."""
+    low, high = (f"{value:,.12g}" for value in (rule.minimum, rule.maximum))
     if rule.maximum == float("inf"):
-        return "" if rule.above else " and more"
-    return f" to {'below ' if rule.below else ''}{rule.maximum:,.12g}"
+        return f"{'>' if rule.above else '≥'} {low}"
+    if rule.below:
+        return f"{'> ' if rule.above else ''}{low} to < {high}"
+    if rule.above:
+        return f"> {low} to {high}"
+    return f"{low}–{high}" if rule.minimum >= 0.0 else f"{low} to {high}"
 
 
 if __name__ == "__main__":

@@ -74,14 +74,11 @@ class Frames:
     frames: int = setting(
         1,
         Whole(1, 1000),
-        "Frames that the entropy over frames is of; 1: it is not computed",
+        "Frames of the entropy over frames; 1: off",
         Panel("time_frames", "Frames", soft_max=20),
     )
     q: float = setting(
-        1.0,
-        NOISE,
-        "Process noise of a class [1/s]: how soon a frame is out of date",
-        Panel("time_q", "Process Noise"),
+        1.0, NOISE, "Process noise of a class [1/s]", Panel("time_q", "Process Noise")
     )
     rate_hz: float = setting(
         10.0, RATE, "Frames of a sensor in a second", Panel("time_rate_hz", "Frame Rate")

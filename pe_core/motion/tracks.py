@@ -44,14 +44,13 @@ class Confirmation:
     correlation: float = setting(
         0.8,
         SHARE,
-        "Correlation of a frame with the one before; 0: independent. 0.7 to 0.8 was measured on "
-        "cars and pedestrians in real traffic",
+        "Correlation of neighbouring frames; 0: independent. Measured in real traffic: 0.7 to 0.8",
         Panel("track_correlation", "Correlation"),
     )
     box_latency_s: float = setting(
         0.0,
         Number(0.0, 10.0, unit="s"),
-        "How late boxes are when they are used: what moves is further on then",
+        "How late boxes are when they are used",
         Panel("box_latency_s", "Boxes Late By (s)", soft_max=1.0),
     )
     box_spread_s: float = setting(
@@ -63,7 +62,7 @@ class Confirmation:
     box_scatter_m: float = setting(
         0.5,
         Number(0.0, 10.0, above=True, unit="m"),
-        "Standard deviation of a box's place without latency; it counts only with one",
+        "Standard deviation of a box's place without latency",
         Panel("box_scatter_m", "Scatter of Boxes", min=0.01),
     )
 

@@ -90,8 +90,7 @@ class Focus:
 
     factor: float = required_setting(
         WEIGHT,
-        "Factor of the weight: 2 doubles the weight, 0 leaves the objects out. Where several "
-        "regions overlap, their factors multiply",
+        "Factor of the weight; 0 leaves the objects out. Where regions overlap, factors multiply",
         Panel("factor", "Factor", default=2.0, soft_max=10.0),
         scored=True,
     )

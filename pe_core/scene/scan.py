@@ -33,8 +33,7 @@ class ScanTiming:
     phase: float = setting(
         0.0,
         Number(0.0, 1.0, noun="phase"),
-        "Share of a frame that passes, after a clock that all sensors share, before this one is "
-        "exposed, or its scan is at azimuth 0",
+        "Share of a frame from the common clock to this exposure, or to azimuth 0 of this scan",
         Panel("scan_phase", "Phase", precision=3),
     )
 

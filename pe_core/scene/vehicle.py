@@ -88,7 +88,7 @@ class Vehicle(Tabular):
     clearance: float = setting(
         DEFAULT_CLEARANCE_M,
         CLEARANCE,
-        "How far a flush-mounted sensor is taken to stand out of the vehicle's skin",
+        "How far a flush-mounted sensor counts as outside of the vehicle's skin",
         Panel("clearance", "Clearance", max=0.99),
         scored=True,
     )

@@ -139,8 +139,7 @@ class Front:
     points: int = setting(
         6,
         Whole(2, 64),
-        "Searches that share the budget of a front of several objectives: one for each of its "
-        "points",
+        "Searches that share the budget of a front, one for each point",
         Panel("front_points", "Points", soft_max=12),
     )
 
@@ -215,8 +214,7 @@ class Goals:
     sensitivity: str | None = setting(
         None,
         OneOf((FULL, OFF)),
-        "The analysis of a search's result (flatness, active constraints, other optima): all of "
-        "it or none; without the key as much as an eighth of the evaluations allow",
+        "Analysis of a result: all or none; without it as much as an eighth of the evaluations",
         Panel(
             "sensitivity",
             "Analyse",
@@ -225,10 +223,7 @@ class Goals:
         ),
     )
     keep: Sequence[str] = setting(
-        (),
-        Several(KEPT),
-        "Key figures that placements keep: as wanted, or as good as the start's where nothing is "
-        "wanted. A candidate takes longer",
+        (), Several(KEPT), "Key figures that placements keep: as wanted, or as good as at the start"
     )
     wanted: Wanted = field(default_factory=Wanted)
 

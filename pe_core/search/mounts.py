@@ -95,7 +95,7 @@ class SurfaceMount:
     standoff: float = setting(
         0.0,
         STANDOFF,
-        "From the surface to the middle of the housing's base; a base plate of 40 mm is 0.04",
+        "From the surface to the middle of the housing's base",
         Panel("standoff", "Stand-off", precision=3),
     )
     orientation: str = setting(
@@ -209,8 +209,7 @@ class Constraints:
     clear_housings: bool = setting(
         False,
         FLAG,
-        "No housing reaches into the body or into another housing. For sensors on a surface "
-        "this always holds",
+        "Housings do not reach into the body or into each other. On a surface this always holds",
         Panel("clear_housings", "Clear Housings"),
     )
     no_go: Sequence[NoGo] = ()
@@ -228,8 +227,7 @@ class Constraints:
     )
     min_overlap: float | None = _limit(
         *("min_overlap", "deg", 90.0, 0),
-        "Chains of sensors whose fields have at least so many degrees of azimuth in common join "
-        "all sensors, so that they can be calibrated to each other",
+        "Smallest azimuth that neighbours have in common, to calibrate them to each other",
     )
     max_mass: float | None = _limit("max_mass", "kg", 100.0, 2, "Largest mass of all sensors")
     max_power: float | None = _limit("max_power", "W", 1e3, 1, "Largest power of all sensors")

@@ -198,7 +198,7 @@ class Schedule:
     candidates: int = setting(
         1000,
         Whole(1, 10_000_000),
-        "Placements tried in each of the seven rounds of a search. The paper tries 1000",
+        "Placements in each round of a search; the paper has 1000",
         Panel("candidates", "Candidates", default=150, soft_max=1000),
     )
     reach_m: float = setting(

@@ -66,7 +66,7 @@ class Tolerance:
     angle: float = setting(
         0.0,
         Angle(0.0, 45.0),
-        "How far off sensors are turned about each of their axes, in degrees: 1 sigma",
+        "How far off sensors are turned about each of their axes: 1 sigma",
         Panel("tolerance_angle", "Angle °", default=0.3, precision=2, step=1.0),
     )
     draws: int = setting(

@@ -31,7 +31,7 @@ CURVE_MODELS = (PAPER, SCANS, BEVFUSION, CENTERPOINT)
 MODEL: str = setting(
     PAPER,
     OneOf(CURVE_MODELS),
-    "AP curves of whole objects: from publications, or of LiDARs fitted to detectors",
+    "AP curves of whole objects",
     Panel(
         "ap_model",
         "Object AP",
@@ -48,8 +48,7 @@ MODEL: str = setting(
 PROTOCOL_FLOOR: float = setting(
     0.0,
     Number(0.0, 1.0, below=True),
-    "Recall and precision up to this do not count in expected AP, as in a protocol: nuScenes "
-    "has 0.1, the paper 0",
+    "Recall and precision up to this do not count in expected AP: nuScenes has 0.1, the paper 0",
     Panel("protocol_floor", "Protocol Floor", precision=2, max=0.99),
     scored=True,
 )

@@ -134,15 +134,14 @@ class Search(ShortRepr):
     evaluations: int = setting(
         0,
         Whole(0, 1_000_000_000),
-        "Largest number of placements to evaluate; 0: as many as the method takes",
+        "Most placements to evaluate; 0: the method's own number",
         Panel("evaluations", "Budget", soft_max=10_000, beside="All"),
     )
     tolerance: Tolerance = field(default_factory=Tolerance)
     requirements: str | None = setting(
         None,
         OneOf(("keep",)),
-        "Placements that meet all requirements are better than those that do not; without it, a "
-        "search minimizes the entropy alone",
+        "Placements that meet all requirements come first",
         Panel("keep_requirements", "Keep in Searches"),
     )
     goals: Goals = field(default_factory=Goals)
@@ -163,7 +162,7 @@ class Search(ShortRepr):
     objective: str = setting(
         ENTROPY,
         OneOf(OBJECTIVES),
-        "What a search improves: the entropy, or the expected AP of objects in traffic",
+        "What a search improves: entropy, or expected AP of objects in traffic",
         Panel(
             "objective",
             "Objective",
@@ -243,7 +242,7 @@ class Study(Tabular):
     returns: str = setting(
         ALL,
         OneOf(RETURNS),
-        "Beams of LiDARs that return: all, as in the paper, or as many as measured in real traffic",
+        "LiDAR beams that return: all (the paper), or as measured in real traffic",
         Panel(
             "returns",
             "LiDAR Returns",

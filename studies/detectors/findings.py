@@ -25,7 +25,6 @@ DESIGNS = {
 WORDS = {START: START, "entropy": "perception entropy", "expected_ap": "expected AP in traffic"}
 NO_RUNS = "Whether detectors find more at a better score is open: not all runs are done."
 
-
 # The answer in short.
 
 
@@ -209,10 +208,7 @@ def designs(found: Json, alpha: float) -> list[list[str]]:
         [
             marked(score),
             rho(tables[FIXED], score),
-            *(
-                with_interval(tables[FIXED].get(score, {}).get(k))
-                for k in ("given_height", "better_half")
-            ),
+            with_interval(tables[FIXED].get(score, {}).get("given_height")),
             *(rho(tables[name], score) for name in (ACROSS, MIXED, FRESH)),
         ]
         for score in names

@@ -45,14 +45,12 @@ GOALS = {
     "3. Nothing is seen that is not there": ("all", "invented", 0.0, 0.1),
 }
 
-
 @dataclass(frozen=True)
 class Effort:
     """What `made_by` notes besides the versions."""
 
     resamples: int
     seed: int
-
 
 def held_against_tracks(args: argparse.Namespace, folder: Path) -> Answer:
     """Write the page and results.json."""
@@ -65,7 +63,6 @@ def held_against_tracks(args: argparse.Namespace, folder: Path) -> Answer:
     )
     write_bytes(folder / PAGE, page.encode())
     return dump_json(found) if args.json else "\n".join(" | ".join(r) for r in goals(found)), DONE
-
 
 def measured(args: argparse.Namespace) -> Json:
     """Return all figures as JSON data; the model `road` has what was fitted to the other logs."""
@@ -87,7 +84,6 @@ def measured(args: argparse.Namespace) -> Json:
         found["counts"][log.name] = len(np.unique(log.tracks))
     found["made"] = made_by(Effort(RESAMPLES, SEED))
     return found
-
 
 def goals(found: Json) -> list[list[str]]:
     """Return a row for each goal and model: verdict and value in each log."""
@@ -111,14 +107,12 @@ def goals(found: Json) -> list[list[str]]:
         texts.append(f"{_text(errors[0])}, {_text(errors[1])}: {better}")
     return [*table, ["4. Error of *confirmed*, default and road", "both", *texts]]
 
-
 def rows(found: Json) -> list[list[str]]:
-    """Return a row for each log, number of points, cell and model that has figures."""
+    """Return rows of cars and pedestrians: each log, number of points and model with figures."""
     return [
         [
             log[:8],
             n,
-            name,
             model,
             f"{cell['both']} of {cell['tracks']}",
             *(_text(cell[key]) for key in ("first_s", "confirmed_s", "near", "missed", "invented")),
@@ -126,19 +120,15 @@ def rows(found: Json) -> list[list[str]]:
         ]
         for log, by_model in found["logs"].items()
         for n in map(str, POINTS)
-        for name in by_model["default"][n]
-        if name.startswith(("all", "car", "pedestrian"))
         for model in by_model
-        if "near" in (cell := by_model[model][n].get(name, {}))
+        if "near" in (cell := by_model[model][n].get("car and pedestrian", {}))
     ]
-
 
 def _text(values: list[float] | None) -> str:
     if values is None:
         return "too few"
     value, low, high = values
     return f"{value:+.2f} ({low:+.2f} to {high:+.2f})"
-
 
 if __name__ == "__main__":
     parser = Parser(prog="python -m studies.tracks", description=__doc__)

@@ -53,27 +53,24 @@ class Criterion:
         (), NAMES, "Only these kinds of sensors count; by default all", Panel("of", "Only Kinds")
     )
     points: int = setting(
-        1,
-        COUNT,
-        "A LiDAR sees a body with at least so many points on it",
-        Panel("points", "Points"),
+        1, COUNT, "Fewest points with which a LiDAR sees a body", Panel("points", "Points")
     )
     pixels: float = setting(
         1.0,
         Number(1e-6, 1e9, unit="px"),
-        "A camera sees a body with at least so many pixels of it",
+        "Fewest pixels with which a camera sees a body",
         Panel("pixels", "Pixels"),
     )
     pixels_high: float | None = setting(
         None,
         Number(0.0, 1e6, above=True, unit="px"),
-        "A camera sees a body with at least so many pixels in height",
+        "Fewest pixels in height with which a camera sees a body",
         Panel("pixels_high", "Pixels in Height"),
     )
     per_degree: float | None = setting(
         None,
         Number(0.0, 1e4, above=True),
-        "A sensor sees a body with at least so many beams or pixels on a degree",
+        "Fewest beams or pixels a degree with which a sensor sees a body",
         Panel("per_degree", "Per Degree"),
     )
     share: float | None = setting(
@@ -92,10 +89,7 @@ class Criterion:
         Panel("zone_share", "Share of Zone"),
     )
     blind_m2: float | None = setting(
-        None,
-        AREA,
-        "At most so many square metres of the zone's ground are blind",
-        Panel("blind_m2", "Blind Area"),
+        None, AREA, "Largest area of blind ground in the zone", Panel("blind_m2", "Blind Area")
     )
     blind_out: float | None = setting(
         None,
@@ -166,28 +160,19 @@ class Under:
     """
 
     one_lost: bool = setting(
-        False,
-        FLAG,
-        "It has to be met without any one of the sensors, too",
-        Panel("one_lost", "One Sensor Lost"),
+        False, FLAG, "Met without any one of the sensors, too", Panel("one_lost", "One Sensor Lost")
     )
     mounting: bool = setting(
         False,
         FLAG,
-        "It has to be met with the mounting errors of the search, too",
+        "Met with the mounting errors of the search, too",
         Panel("mounting", "Mounting Errors"),
     )
     states: tuple[str, ...] = setting(
-        (),
-        NAMES,
-        'It has to be met in these states of the vehicle ("*": in all), too',
-        Panel("states", "States"),
+        (), NAMES, "Met in these states of the vehicle, too (*: in all)", Panel("states", "States")
     )
     weathers: tuple[str, ...] = setting(
-        (),
-        NAMES,
-        'It has to be met in these weathers ("*": in all), too',
-        Panel("weathers", "Weathers"),
+        (), NAMES, "Met in these weathers, too (*: in all)", Panel("weathers", "Weathers")
     )
 
     def __post_init__(self) -> None:

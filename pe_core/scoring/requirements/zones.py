@@ -115,7 +115,7 @@ class Zone:
     below: float | None = setting(
         None,
         HEIGHT,
-        "What of the vehicle is higher than this does not count for its planes",
+        "What is higher does not count for the vehicle's planes",
         Panel("below", "Planes Below"),
     )
     near_side: str = setting(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import sys
+from itertools import groupby
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -32,25 +33,27 @@ from pe_core.study import (  # noqa: E402
 PAGE = ROOT / "docs" / "settings.md"
 HEAD = """# Settings
 
-Numbers and switches of a study: `optimize.seed` is the key `seed` of `[optimize]`. Angles are in
-degrees. [study.md](study.md) explains the file. Blender's panels have most of them, with the same
-text as tooltip.
-
-| key | values, and default | meaning |
-| --- | --- | --- |
+Numbers and switches of a study, by their table in the file: `max_height` below `[optimize]` is
+`optimize.max_height` for `pe set`. Each has its values, its default, if it has one, and its meaning.
+[study.md](study.md) explains the file. Blender's panels have most of them, with the same text as
+tooltip.
 """
 
 
 def page() -> str:
-    """Return the whole page."""
-    return HEAD + "".join(row(key, setting) for key, setting in setting_keys())
+    """Return the whole page: the settings of each table of the file below a heading."""
+    lines = [HEAD]
+    for table, rows in groupby(setting_keys(), key=lambda row: row[0].rpartition(".")[0]):
+        lines += ["", f"## [{table}]", ""] if table else [""]
+        lines += [item(key.rpartition(".")[2], setting) for key, setting in rows]
+    return "\n".join(lines).replace("\n\n\n", "\n\n") + "\n"
 
 
-def row(key: str, setting: Setting) -> str:
-    """Return the row of one setting: its type with unit, range and default in one cell."""
+def item(key: str, setting: Setting) -> str:
+    """Return the line of one setting: type with unit, range and default, then its meaning."""
     parts = type_text(setting.rule), range_text(setting.rule), default_text(setting)
     values = ", ".join(part for part in parts if part)
-    return f"| `{key}` | {values} | {setting.text} |\n"
+    return f"- `{key}` ({values}): {setting.text}"
 
 
 def type_text(rule: object) -> str:

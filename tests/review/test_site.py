@@ -35,7 +35,7 @@ SOME = ("index.html", "guide.html", "settings.html", "howto/requirements.html",
 QUESTIONS = {
     "How do I install it and get updates in Blender?": ("installing.html", "Install from Disk"),
     "How do I bring in my own car?": ("howto/vehicle.html", "Use Selected Objects"),
-    "What is the default and the range of a key?": ("settings.html", "optimize.max_height"),
+    "What is the default and the range of a key?": ("settings.html", "max_height"),
     "My LiDAR is not in the catalogue; now what?": ("howto/own_sensor.html", "elevations_deg"),
     "What does the number mean, and is it good?": ("howto/read_a_score.html", "lower is better"),
     "Does my rig see a child behind the car?": ("howto/requirements.html", "ncap26_reverse_static"),

@@ -19,7 +19,7 @@ GENERATED_FOLDERS = {"Catalogue of sensors": catalogue.FOLDER, "Python names": p
 
 LAST = "Explanation"
 """The section whose last pages are those of docs/ that mkdocs.yml does not name."""
-WIDE = ("settings.md", "requirements.md", "known_rigs.md", "validity/road/README.md")
+WIDE = ("requirements.md", "known_rigs.md", "validity/road/README.md")
 """Pages without a table of contents at the right, because their tables are wide."""
 
 

@@ -89,8 +89,9 @@ class SensorRecord:
 
     @property
     def scored(self) -> tuple[object, ...]:
-        """The values that a score depends on."""
-        return self.name, self.model, self.fusion, self.numbers, self.visible, self.curve
+        """The values that a score and its key figures depend on."""
+        own = self.curve, self.scan
+        return self.name, self.model, self.fusion, self.numbers, self.visible, *own
 
     @property
     def identity(self) -> tuple[object, ...]:

@@ -12,7 +12,6 @@ from mathutils import Vector
 
 from ..choices import NO_BODY
 from ..engine import motion, pe, requirements, studies
-from .rig import scan_of, sensor_objects
 from .scene_settings import values_of, write_values
 
 DIGITS = 4
@@ -112,8 +111,7 @@ def _test_body(obj: Object, path: list[list[float]]) -> dict[str, Any]:
 
 def story_signatures(settings: PropertyGroup, scene: str) -> dict[str, str]:
     """Return by name what the result of each row depends on; `scene` is the scene's fingerprint."""
-    scans = [scan_of(obj.perception_entropy) for obj in sensor_objects(settings.id_data)]
-    rule = f"{values_of(settings, motion.Confirmation)!r} {settings.time_text} {scans!r}"
+    rule = f"{values_of(settings, motion.Confirmation)!r} {settings.time_text}"
     return {
         row.name: f"{scene} {rule} {row.table} {values_of(row, motion.Story)!r}"
         for row in settings.stories

@@ -23,7 +23,7 @@ MAX_NAME_LENGTH = 60
 
 
 def same_score(records: Sequence[SensorRecord], others: Sequence[SensorRecord]) -> bool:
-    """Whether two lists of sensors have the same score; free axes have no influence."""
+    """Whether two lists of sensors have the same score and figures, whatever their free axes."""
     return [record.scored for record in records] == [record.scored for record in others]
 
 
@@ -55,8 +55,8 @@ def _is_rig(variant: Variant, rig: pe.Rig, returns: str) -> bool:
 
 
 def _scored_values(sensor: pe.Sensor) -> tuple[object, ...]:
-    """Return what a score depends on; the catalogue has one object for each of its models."""
-    return sensor.name, id(sensor.model), sensor.fusion, sensor.pose, sensor.curve
+    """Return what scores and key figures depend on; the catalogue has each model once."""
+    return sensor.name, id(sensor.model), sensor.fusion, sensor.pose, sensor.curve, sensor.scan
 
 
 def store_search(scene: Scene, outcome: jobs.Outcome, surroundings: str) -> int:

@@ -29,6 +29,7 @@ from .moments import (
     persistence,
     verdict,
 )
+from .order import TABLE, expected, statements
 
 FOLDER = "docs/validity/tracks"
 TITLE = "# When is an object noticed: predicted and real tracks"
@@ -58,11 +59,16 @@ def held_against_tracks(args: argparse.Namespace, folder: Path) -> Answer:
     folder = prepare_folder(folder)
     found = measured(args) if args.logs else read_json(folder / RESULTS)
     write_bytes(folder / RESULTS, dump_json(found).encode())
-    page = render(
-        Path(__file__).parent, {"found": found, "rows": rows(found), "goals": goals(found)}
-    )
-    write_bytes(folder / PAGE, page.encode())
+    write_bytes(folder / PAGE, page_of(found).encode())
     return dump_json(found) if args.json else "\n".join(" | ".join(r) for r in goals(found)), DONE
+
+
+def page_of(found: Json) -> str:
+    """Return the page of all figures, with the published ones."""
+    own = {"found": found, "rows": rows(found), "goals": goals(found)}
+    published = {"order": statements(), "expected": expected(), "published": read_json(TABLE)}
+    return render(Path(__file__).parent, own | published)
+
 
 def measured(args: argparse.Namespace) -> Json:
     """Return all figures as JSON data; the model `road` has what was fitted to the other logs."""

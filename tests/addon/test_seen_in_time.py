@@ -11,6 +11,7 @@ from mathutils import Vector
 import pe_core as pe
 from blender_addon import bridge, film, result_staleness, sensor_cache
 from blender_addon.bridge.sensor_records import sensor_of
+from blender_addon.operators.compare_variants import pending_variants
 from blender_addon.panels.condition_panel import seen_in_time
 from pe_core.motion import stories
 from pe_tools import graphics
@@ -97,6 +98,24 @@ def test_how_sensors_scan_gives_seams_and_is_kept(car):
     low.perception_entropy.scan_phase = 0.25
     result_staleness.update_result()
     assert not settings.stories[0].result
+
+
+def test_variants_that_differ_in_a_scan_are_two_and_keep_their_own_figures(car):
+    settings, roof = car.perception_entropy, bpy.data.objects["roof"].perception_entropy
+    bpy.ops.pe.add_story(story="cyclist_from_right")
+    roof.scan_turns = "left"
+    bpy.ops.pe.add_variant()
+    roof.scan_phase = 0.25
+    bpy.ops.pe.add_variant()
+    first, second = settings.variants
+    assert not bridge.same_score(bridge.records_of(first), bridge.records_of(second))
+    assert bpy.ops.pe.compare_variants() == {"FINISHED"}
+    roof.scan_phase = 0.5
+    assert not pending_variants(car)
+    assert bpy.ops.pe.score() == {"FINISHED"}
+    assert bool(settings.has_result)
+    settings.stories[0].latency_s = 0.9
+    assert len(pending_variants(car)) == 2
 
 
 def animated(scene, name, body, path):

@@ -6,10 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from pe_core.metric.entropy import BLIND_PRECISION
 from pe_core.scene.objects import Objects
-from studies.pages import PAGE, render
+from studies.pages import PAGE
 from studies.road.logs import CLASSES, Log
 from studies.tracks import __main__ as study
+from studies.tracks import order
 from studies.tracks.moments import (
     HOLDS,
     OPEN,
@@ -96,10 +98,19 @@ def test_verdicts_follow_the_interval():
     assert verdict([0.4, 0.2, 0.6], -0.5, 0.5) == verdict(None, -0.5, 0.5) == OPEN
 
 
+def test_published_order_follows_from_the_equations():
+    assert all(order.follows().values())
+    one = np.array([0.3, 0.6, 0.9])
+    assert order.over_frames(one, 1, 1.0) == pytest.approx(one)
+    twice = 2.0 / (1.0 / one - 1.0) ** 2 - BLIND_PRECISION  # two frames without noise
+    assert order.over_frames(one, 2, 0.0) == pytest.approx(1.0 / (1.0 + twice**-0.5))
+    verdicts = [row[-1] for row in order.statements()]
+    assert verdicts == [order.HOLDS, order.FAILS, order.HOLDS, order.HOLDS, order.FAILS]
+
+
 def test_the_page_is_that_of_the_saved_figures():
     found = json.loads((FOLDER / "results.json").read_text())
-    values = {"found": found, "rows": study.rows(found), "goals": study.goals(found)}
-    assert (FOLDER / PAGE).read_text() == render(Path(study.__file__).parent, values)
+    assert (FOLDER / PAGE).read_text() == study.page_of(found)
     linked = [
         own["correlation"]
         for by_n in found["persistence"].values()

@@ -17,11 +17,12 @@ import numpy as np
 from ..base.arrays import Floats
 from ..base.values import rounded
 from ..metric.entropy import H_BLIND, ap_of_entropy
+from ..scene.objects import Objects
 from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
 from ..scoring.targets.object_metric import FusedObjects
 from ..sensors import ObjectMeasurementCache, PerceptionModel
-from .scan import factor_of, seam
+from .scan import exposed, factor_of, seam
 from .story import Story, outline
 from .tracks import Confirmation, first_frame
 
@@ -160,11 +161,11 @@ def drive_by(
     watched = np.repeat([float(actor.watched) for actor in story.actors], count)
     fused = FusedObjects(objects, watched, model or PerceptionModel())
     fused.check(rig)
-    whole_scan = ObjectMeasurementCache(objects, vehicle, True).measure(rig)
+    scans = _measured(rig, objects, vehicle, count)
     hz = {s.name: (rates or {}).get(s.kind, story.rate_hz) for s in rig}
     bearings, speeds = {s.name: _bearings(s, where) for s in rig}, story.speeds
     measured = {
-        s.name: whole_scan[s.name]
+        s.name: scans[s.name]
         * factor_of(s, bearings[s.name], 1.0 / story.rate_hz, hz[s.name]).ravel()
         for s in rig
     }
@@ -187,6 +188,21 @@ def drive_by(
             body = _seen(story, actor.name, whole[k], by_sensor, where[k], vehicle, confirmation)
             bodies.append(_with_seam(body, {pair: apart[k] for pair, apart in seams.items()}))
     return DriveBy(story, tuple(bodies))
+
+
+def _measured(rig: Rig, objects: Objects, vehicle: Vehicle | None, count: int) -> dict[str, Floats]:
+    """Return m of objects, actor by actor with a number of frames each, by sensor.
+
+    A pattern that takes several frames has an exposure a frame (`scan.exposed`).
+    """
+    rows, by_exposure = np.arange(len(objects)), []
+    for k in range(max(sensor.scan.exposures for sensor in rig)):
+        exposure = Rig([exposed(sensor, k) for sensor in rig])
+        by_exposure.append(ObjectMeasurementCache(objects, vehicle, True).measure(exposure))
+    return {
+        s.name: np.stack([m[s.name] for m in by_exposure])[rows % count % s.scan.exposures, rows]
+        for s in rig
+    }
 
 
 def _bearings(sensor: Sensor, where: Floats) -> Floats:

@@ -8,18 +8,38 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
+from ..base.errors import InputError
 from ..scene.rig import Sensor
 from ..scene.scan import SENSE, UNKNOWN
 from ..sensors.lidar import LIDAR
+from ..sensors.lidar.model import lidar_of
 
 DISTANCES_M = (0.5, 1.0, 2.0, 4.0)
 """Distances up to which a box counts as found: nuScenes (arXiv 1903.11027)."""
 SAME_RATE = 1e-9
+
+
+def exposed(sensor: Sensor, frame: int) -> Sensor:
+    """Return a sensor with the beams of one frame: a LiDAR's pattern may take several.
+
+    `InputError` when it takes more than it has channels.
+    """
+    count = sensor.scan.exposures
+    if sensor.kind != LIDAR.name or count == 1:
+        return sensor
+    lidar = lidar_of(sensor)
+    if count > len(lidar.elevations):
+        expected = f"at most {len(lidar.elevations)}, its channels"
+        raise InputError(f"sensor {sensor.name!r}", "exposures", expected, count)
+    channels = np.array_split(np.arange(len(lidar.elevations)), count)[frame % count]
+    kept = {k: getattr(lidar, k)[channels] for k in ("elevations", "azimuth_offsets")}
+    return replace(sensor, model=replace(lidar, **kept))
 
 
 def scan_factor(bearing_rate: ArrayLike, rate_hz: float) -> Floats:

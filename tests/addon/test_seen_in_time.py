@@ -104,9 +104,9 @@ def test_variants_that_differ_in_a_scan_are_two_and_keep_their_own_figures(car):
     settings, roof = car.perception_entropy, bpy.data.objects["roof"].perception_entropy
     bpy.ops.pe.add_story(story="cyclist_from_right")
     roof.scan_turns = "left"
-    bpy.ops.pe.add_variant()
+    bpy.ops.pe.save_variant()
     roof.scan_phase = 0.25
-    bpy.ops.pe.add_variant()
+    bpy.ops.pe.save_variant()
     first, second = settings.variants
     assert not bridge.same_score(bridge.records_of(first), bridge.records_of(second))
     assert bpy.ops.pe.compare_variants() == {"FINISHED"}

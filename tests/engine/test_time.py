@@ -17,7 +17,7 @@ import pe_tools as pt
 from pe_core.metric.entropy import BLIND_PRECISION, ap_of_entropy
 from pe_core.metric.frames import Frames, predicted, steady, updated
 from pe_core.motion import Actor, Confirmation, Story, drive_by, stories
-from pe_core.motion.scan import ap_with_latency, factor_of, scan_factor, seam
+from pe_core.motion.scan import ap_with_latency, exposed, factor_of, scan_factor, seam
 from pe_core.motion.tracks import first_frame
 from pe_core.scene.objects import Objects
 from pe_core.scoring.requirements.bodies import BODIES
@@ -230,6 +230,26 @@ def test_the_scan_and_latency_change_no_bit_of_what_stands():
     assert after == before
     entropies = [study(each).evaluator().entropy(each) for each in (scanned, rig())]
     assert entropies[0] == entropies[1]
+
+
+def test_a_pattern_of_several_frames_covers_more_the_longer_it_looks():
+    roof = rig()["roof"]
+    rosette = replace(roof, scan=pe.ScanTiming(exposures=16))
+    parts = [exposed(rosette, k).model.elevations for k in range(17)]
+    assert np.concatenate(parts[:16]).tolist() == roof.model.elevations.tolist()
+    assert parts[16].tolist() == parts[0].tolist() and exposed(roof, 3) is roof
+    whole, seen = (drive_by(STANDING, pe.Rig([s])).bodies[0] for s in (roof, rosette))
+    apart = [
+        drive_by(STANDING, pe.Rig([replace(exposed(rosette, k), scan=pe.ScanTiming())])).bodies[0]
+        for k in range(len(seen.ap))
+    ]
+    assert seen.ap.tolist() == [float(one.ap[k]) for k, one in enumerate(apart)]
+    assert (seen.ap < whole.ap).all() and seen.ap.min() == 0.0 < seen.ap.max()
+    met = [one.ap[0] > 0.0 for one in apart]  # one exposure misses the body, several do not
+    assert not met[0] and any(met)
+    few = replace(rosette, scan=pe.ScanTiming(exposures=65))
+    with pytest.raises(pe.InputError, match="exposures"):
+        drive_by(STANDING, pe.Rig([few]))
 
 
 def test_a_crossing_child_is_seen_apart_and_late():

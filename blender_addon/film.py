@@ -238,7 +238,7 @@ def _body(
         stage.keys(ray, "scale", [(w.length, t, t) for w, t in zip(ways, thick, strict=True)])
         shades = [_linear(graphics.color_of_ap(ap)) for ap in found]
         stage.keys(ray.data.materials[0], "diffuse_color", shades)
-    for row, mark in enumerate(sorted(graphics.marks_of(moving.driven, body.seen))):
+    for row, mark in enumerate(graphics.marks_of(moving.driven.story, body.seen)):
         k = min(int(np.searchsorted(moving.times, mark.time_s - 1e-6)), stage.frames - 1)
         post = stage.box(mark.text, mark.color)
         post.scale = (POST_M, POST_M, 2.0 * middle)
@@ -277,7 +277,7 @@ def _strip(stage: _Stage, camera: bpy.types.Object, strip: graphics.TimeStrip) -
         words = stage.words(name, LETTER * half, FAINT, "RIGHT")
         placed(words, left - 0.02, high - (number + 0.75) * ROW)
     placed(stage.words(strip.title, 1.2 * LETTER * half, INK), -SIDE + 0.02, high + 0.5 * ROW)
-    for k, mark in enumerate(sorted(strip.marks)):
+    for k, mark in enumerate(strip.marks):
         x = left + strip.share(mark.time_s) * (right - left)
         line = (-0.002, low - 0.3 * ROW, 0.002, high)
         placed(square("moment", line, mark.color), x)

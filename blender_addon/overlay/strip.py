@@ -51,7 +51,7 @@ def draw_strip(
         return x + strip.share(time_s) * (end - x)
 
     line = max(1.0, scale)
-    for k, mark in enumerate(sorted(strip.marks)):
+    for k, mark in enumerate(strip.marks):
         place = at(mark.time_s)
         viewport.fill_box((place - line, y - 4.0 * scale, place + line, top), mark.color)
         share = viewport.text_size(mark.text, small)[0] / 2.0

@@ -38,6 +38,8 @@ from .colors import sensor_colors_on_paper as sensor_colors_on_paper
 from .colors import sensor_palette as sensor_palette
 from .colors import srgb_of_linear as srgb_of_linear
 from .colors import with_alpha as with_alpha
+from .drive_by import BRAKE as BRAKE
+from .drive_by import CONFIRMED as CONFIRMED
 from .drive_by import CORNERS as CORNERS
 from .drive_by import FACES as FACES
 from .drive_by import NEVER as NEVER
@@ -50,6 +52,7 @@ from .drive_by import color_of_ap as color_of_ap
 from .drive_by import digest as digest
 from .drive_by import marks_of as marks_of
 from .drive_by import moving_shape as moving_shape
+from .drive_by import strip_ends as strip_ends
 from .drive_by import strip_rows as strip_rows
 from .drive_by import time_strip as time_strip
 from .ground import AS_SCORED as AS_SCORED

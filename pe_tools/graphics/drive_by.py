@@ -16,7 +16,7 @@ import numpy as np
 
 from pe_core.base import dump_json
 from pe_core.base.arrays import Floats
-from pe_core.motion import MAX_FRAMES, Actor, DriveBy, SeenBody
+from pe_core.motion import MAX_FRAMES, Actor, DriveBy, SeenBody, Story
 from pe_core.scene import Rig, Vehicle
 
 from .colors import CIVIDIS, Rgba, on_scale, with_alpha
@@ -133,13 +133,19 @@ class Mark(NamedTuple):
     color: Rgba
 
 
-def marks_of(driven: DriveBy, body: SeenBody) -> list[Mark]:
-    """Return when a body is confirmed, and when the vehicle has to brake."""
-    story, moment = driven.story, body.moments[driven.story.chance]
+def strip_ends(story: Story) -> tuple[float, float]:
+    """Return the times at both ends of a strip [s], in which each frame has an equal width."""
+    half = 0.5 / story.rate_hz
+    return float(story.times[0]) - half, float(story.times[-1]) + half
+
+
+def marks_of(story: Story, body: SeenBody) -> list[Mark]:
+    """Return when a body is confirmed, and when the vehicle has to brake, the first one first."""
+    moment = body.moments[story.chance]
     marks = [Mark(max(story.brake_s, story.start_s), "must brake here", BRAKE)]
     if moment is not None:
         marks.append(Mark(moment.time_s, f"confirmed here {story.chance:.0%}", CONFIRMED))
-    return marks
+    return sorted(marks)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -180,14 +186,12 @@ def time_strip(driven: DriveBy) -> TimeStrip:
             parts.append(Primitives.of([(*p, 0.0) for p in square], color_of_ap(cell.ap, DARK)))
     margin = body.shown_margin_s
     told = "never confirmed" if margin is None else f"margin {margin:+.1f} s"
-    half = 0.5 / story.rate_hz
     return TimeStrip(
         f"{story.name}: {body.name}, {told}",
         tuple(rows),
         LayerShape(faces=Primitives.joined(parts)),
-        tuple(marks_of(driven, body)),
-        float(story.times[0]) - half,
-        float(story.times[-1]) + half,
+        tuple(marks_of(story, body)),
+        *strip_ends(story),
     )
 
 
@@ -238,7 +242,7 @@ def _moments(moving: BodiesInTime, body: MovingBody) -> tuple[Primitives, list[T
     assert body.seen is not None
     path = np.column_stack([body.positions, np.full(len(moving.times), 0.02)])
     parts, tags = [Primitives.of(polyline(path), with_alpha(NEVER, PATH_ALPHA))], []
-    for mark in marks_of(moving.driven, body.seen):
+    for mark in marks_of(moving.driven.story, body.seen):
         k = int(np.searchsorted(moving.times, mark.time_s - 1e-6).clip(0, len(path) - 1))
         foot = path[k]
         top = foot + np.array((0.0, 0.0, MARK_M))

@@ -12,8 +12,14 @@ from .charts import linear_map, ticks
 from .svg import Canvas
 
 WIDTH, LEFT, RIGHT = 720.0, 130.0, 640.0
-ENDS = LEFT, RIGHT
-TOP, ROW, GAP, FOOT = 22.0, 16.0, 5.0, 34.0
+TOP, ROW, GAP, FOOT, LETTERS = 36.0, 16.0, 5.0, 34.0, 14.0
+INKS = {graphics.BRAKE: "#c4320a", graphics.CONFIRMED: "#1a7f4b"}
+"""Colours of moments on a light ground, by those on a dark one."""
+
+
+def strip_data(story: Story) -> str:
+    """Return what moves a cursor: times and places of both ends, and the time of a film's start."""
+    return " ".join(map(str, (*graphics.strip_ends(story), LEFT, RIGHT, story.start_s)))
 
 
 def time_strip(story: Story, body: SeenBody, alt: str) -> Markup:
@@ -24,11 +30,10 @@ def time_strip(story: Story, body: SeenBody, alt: str) -> Markup:
     rows = graphics.strip_rows(body)
     height = TOP + len(rows) * (ROW + GAP) + FOOT
     canvas = Canvas(WIDTH, height, alt, "curve")
-    half = 0.5 / story.rate_hz
-    start, end = float(story.times[0]) - half, float(story.times[-1]) + half
+    start, end = graphics.strip_ends(story)
     to_x = linear_map(start, end, LEFT, RIGHT)
     y = TOP
-    width = to_x(half * 2.0) - to_x(0.0)
+    width = (RIGHT - LEFT) / len(story.times)
     for name, cells in rows.items():
         canvas.text(LEFT - 8.0, y + ROW - 4.0, name, text_anchor="end")
         for first, last, ap in cells:
@@ -39,15 +44,9 @@ def time_strip(story: Story, body: SeenBody, alt: str) -> Markup:
     for tick in ticks(start, end, 6):
         if start <= tick <= end:
             canvas.text(to_x(tick), height - 18.0, f"{number(tick, 1)} s", text_anchor="middle")
-    _mark(canvas, to_x(max(story.brake_s, start)), y, "must brake", "#c4320a", left=False)
-    if (moment := body.moments[story.chance]) is not None:
-        text = f"confirmed {story.chance:.0%}, {moment.distance_m:.1f} m"
-        _mark(canvas, to_x(moment.time_s), y, text, "#1a7f4b", left=True)
+    for row, mark in enumerate(graphics.marks_of(story, body)):
+        x, ink, base = to_x(mark.time_s), INKS[mark.color], TOP - 9.0 - LETTERS * row
+        canvas.add("line", x1=x, x2=x, y1=base - 9.0, y2=y, stroke=ink, stroke_width=2.0)
+        anchor, away = ("end", -5.0) if x > (LEFT + RIGHT) / 2.0 else ("start", 5.0)
+        canvas.text(x + away, base, mark.text, text_anchor=anchor, fill=ink)
     return canvas.svg()
-
-
-def _mark(canvas: Canvas, x: float, bottom: float, text: str, color: str, left: bool) -> None:
-    canvas.add("line", x1=x, x2=x, y1=TOP - 6.0, y2=bottom, stroke=color, stroke_width=2.0)
-    to_left = left and x > LEFT + 150.0
-    anchor, away = ("end", -5.0) if to_left else ("start", 5.0)
-    canvas.text(x + away, TOP - 9.0, text, text_anchor=anchor, fill=color)

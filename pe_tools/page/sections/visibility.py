@@ -15,7 +15,7 @@ from ..pictures.ground_plan import COVERAGE, ENTROPY, LAYERS, difference_map, gr
 from ..pictures.reference_figures import count_text, worst_bodies
 from ..pictures.sensor_views import sensor_view
 from ..pictures.sight_plans import blind_plan, reach_plan, reach_text, requirement_plan, side_text
-from ..pictures.time_strip import ENDS, time_strip
+from ..pictures.time_strip import strip_data, time_strip
 from ..pictures.vehicle_picture import sensor_key
 from ..report_context import MAP_STEP_M, ReportContext
 
@@ -86,7 +86,8 @@ def drive_by(context: ReportContext) -> dict[str, Any] | None:
         for body in each.bodies
     ]
     shown = {each.story.name: _film_of(each, films) for each in driven}
-    return {"driven": driven, "strips": strips, "films": shown, "ends": ENDS} if driven else None
+    data = {each.story.name: strip_data(each.story) for each in driven}
+    return {"driven": driven, "strips": strips, "films": shown, "data": data} if driven else None
 
 
 def _film_of(driven: DriveBy, films: Sequence[bytes]) -> str:

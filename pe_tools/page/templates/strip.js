@@ -10,7 +10,7 @@ for (const box of document.querySelectorAll("[data-strip]")) {
   told.setAttribute("text-anchor", "middle");
   const show = (time) => {
     const x = left + (time - start) / (end - start) * (right - left);
-    for (const [name, value] of Object.entries({x1: x, x2: x, y1: 16, y2: height - 34})) {
+    for (const [name, value] of Object.entries({x1: x, x2: x, y1: 30, y2: height - 34})) {
       line.setAttribute(name, value);
     }
     told.setAttribute("x", x);
@@ -30,5 +30,9 @@ for (const box of document.querySelectorAll("[data-strip]")) {
   };
   svg.addEventListener("pointerdown", follow);
   svg.addEventListener("pointermove", follow);
-  film?.addEventListener("timeupdate", () => film.paused || show(Math.min(first + film.currentTime, end)));
+  const play = () => {
+    show(Math.min(first + film.currentTime, end));
+    if (!film.paused) requestAnimationFrame(play);
+  };
+  film?.addEventListener("play", play);
 }

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import tempfile
 from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -188,14 +189,11 @@ def _street(stage: _Stage, story: motion.Story) -> None:
     """Add the ground, and dashes that go by with the vehicle's own speed."""
     corners = [(-FAR_M, -FAR_M, -0.03), (FAR_M, -FAR_M, -0.03), (FAR_M, FAR_M, -0.03)]
     stage.mesh("ground", [*corners, (-FAR_M, FAR_M, -0.03)], [(0, 1, 2, 3)], GROUND)
-    dashes: list[tuple[float, float, float]] = []
-    faces: list[range] = []
-    for x in np.arange(-FAR_M, FAR_M, DASH_M + GAP_M):
-        for y in (-LANE_M, LANE_M):
-            low, high, at = y - 0.06, y + 0.06, len(dashes)
-            dashes += [(x, low, -0.02), (x + DASH_M, low, -0.02), (x + DASH_M, high, -0.02)]
-            dashes.append((x, high, -0.02))
-            faces.append(range(at, at + 4))
+    dash = np.array([(0.0, -0.06, -0.02), (DASH_M, -0.06, -0.02), (DASH_M, 0.06, -0.02)])
+    dash = np.vstack([dash, (0.0, 0.06, -0.02)])
+    starts = product(np.arange(-FAR_M, FAR_M, DASH_M + GAP_M), (-LANE_M, LANE_M))
+    dashes = np.concatenate([np.add(dash, (x, y, 0.0)) for x, y in starts])
+    faces = np.arange(len(dashes)).reshape(-1, 4).tolist()
     lines = stage.mesh("lane", dashes, faces, DASH)
     rate = (story.end_s - story.start_s) / max(stage.frames - 1, 1)
     gone = [-story.speed * rate * k for k in range(stage.frames)]

@@ -186,7 +186,11 @@ def drive_by(
         if actor.watched:
             by_sensor = {name: found[k] for name, found in alone.items()}
             body = _seen(story, actor.name, whole[k], by_sensor, where[k], vehicle, confirmation)
-            bodies.append(_with_seam(body, {pair: apart[k] for pair, apart in seams.items()}))
+            if seams:
+                pair = max(seams, key=lambda each: seams[each][k].max())
+                widest = rounded(float(seams[pair][k].max()))
+                body = replace(body, seam_m=widest, seam_of=pair)
+            bodies.append(body)
     return DriveBy(story, tuple(bodies))
 
 
@@ -209,14 +213,6 @@ def _bearings(sensor: Sensor, where: Floats) -> Floats:
     """Return the bearings (A, K) of positions from a sensor in the ground frame [rad]."""
     away = where - np.array(sensor.pose.position[:2])
     return np.unwrap(np.arctan2(away[..., 1], away[..., 0]), axis=1)
-
-
-def _with_seam(body: SeenBody, seams: Mapping[tuple[str, str], Floats]) -> SeenBody:
-    """Return a body with its widest seam, from those of pairs of sensors (K,)."""
-    if not seams:
-        return body
-    widest = max(seams, key=lambda pair: seams[pair].max())
-    return replace(body, seam_m=rounded(float(seams[widest].max())), seam_of=widest)
 
 
 def _seen(

@@ -215,6 +215,12 @@ def designs(found: Json, alpha: float) -> list[list[str]]:
     ]
 
 
+def pairs(found: Json) -> str:
+    """Return the share of pairs of other hardware that each score orders rightly."""
+    rows = found["pairs"]["scores"].items()
+    return "; ".join(f"{name} {with_interval(row, 'share')}" for name, row in rows)
+
+
 def steps(found: Json) -> list[list[str]]:
     """Return the lines of the table of steps towards reality."""
     lines = []

@@ -7,7 +7,7 @@ from ..ranks import min_significant_rho
 from ..results_file import Json
 from .correlations import MAIN_CLASS, SIGNIFICANCE, TREATMENTS, ValidityResults, detectors_disagree
 from .published import Paper, papers
-from .scores import BODY_M, CANDIDATES, variants
+from .scores import BODY_M, CANDIDATES
 
 HEIGHT = "mean height"
 
@@ -25,12 +25,10 @@ def page_values(results: ValidityResults) -> Json:
         "results": results,
         "papers": papers(),
         "significant": results.significant(),
-        "significance": SIGNIFICANCE,
         "opposite": results.opposite_in_papers(),
         "height": [results.correlation_of(p, MAIN_CLASS, HEIGHT)["mean"] for p in papers()],
         "worst": min(rows, key=lambda row: row["mean"]),
         "best": max(rows, key=lambda row: row["mean"]),
-        "positive": [row["score"] for row in rows if min(row["rho"]) > 0.0],
         "disagreements": disagreements,
         "evidence": [_paper_line(paper) for paper in papers()],
         "least_rho": min_significant_rho(8),
@@ -38,7 +36,6 @@ def page_values(results: ValidityResults) -> Json:
         "body": " x ".join(f"{side:g}" for side in BODY_M),
         "treatments": list(TREATMENTS.values()),
         "tests": [_test_line(results, score) for score in results.scores],
-        "choices": [c.name for c in variants(results.effort.all_variants) if c.name],
     }
 
 

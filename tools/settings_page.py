@@ -38,6 +38,7 @@ Numbers and switches of a study, by their table in the file: `max_height` below 
 [study.md](study.md) explains the file. Blender's panels have most of them.
 """
 
+
 def page() -> str:
     """Return the whole page: the settings of each table of the file below a heading."""
     lines = [HEAD]
@@ -46,11 +47,13 @@ def page() -> str:
         lines += [item(key.rpartition(".")[2], setting) for key, setting in rows]
     return "\n".join(lines).replace("\n\n\n", "\n\n") + "\n"
 
+
 def item(key: str, setting: Setting) -> str:
     """Return the line of one setting: type with unit, range and default, then its meaning."""
     parts = type_text(setting.rule), range_text(setting.rule), default_text(setting)
     values = ", ".join(part for part in parts if part)
     return f"- `{key}` ({values}): {setting.text}"
+
 
 def type_text(rule: object) -> str:
     """Return the type of a rule's values, with their unit."""
@@ -75,8 +78,10 @@ def type_text(rule: object) -> str:
             return f"[{rule.unit}]" if rule.unit else "number"
     return str(getattr(rule, "words", type(rule).__name__))
 
+
 def _unit(unit: str) -> str:
     return f" [{unit}]" if unit else ""
+
 
 def default_text(setting: Setting) -> str:
     """Return the default as a file has it; nothing for a setting that may be absent."""
@@ -84,6 +89,7 @@ def default_text(setting: Setting) -> str:
         return "required"
     value = value_in_file(setting, setting.default)
     return "" if value is None else f"`{json.dumps(value)}`".replace("Infinity", "inf")
+
 
 def range_text(rule: object) -> str:
     """Return what a rule allows, in a few words."""
@@ -102,6 +108,7 @@ def range_text(rule: object) -> str:
             return _span(rule)
     return ""
 
+
 def _span(rule: Number) -> str:
     """Return the range of a number; `> 0` and `< 1` are themselves not allowed."""
     low, high = (f"{value:,.12g}" for value in (rule.minimum, rule.maximum))
@@ -112,6 +119,7 @@ def _span(rule: Number) -> str:
     if rule.above:
         return f"> {low} to {high}"
     return f"{low}–{high}" if rule.minimum >= 0.0 else f"{low} to {high}"
+
 
 if __name__ == "__main__":
     PAGE.write_text(page(), "utf-8")

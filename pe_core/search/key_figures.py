@@ -27,9 +27,11 @@ NO_FIGURE = "-"
 NONE_WANTED = -100
 """A field of the panel with this value or a lower one asks for nothing: 0 may be wanted."""
 
+
 def blind_height(sight: Sight) -> float:
     """Return the height for which blind ground is computed [m]: the space may begin above it."""
     return max(BLIND_TO_M, sight.space.z[0])
+
 
 def blind_area(sight: Sight, rig: Rig) -> float:
     """Return the ground within 10 m of the body where a child is invisible to a rig [m2].
@@ -38,6 +40,7 @@ def blind_area(sight: Sight, rig: Rig) -> float:
     if that is greater. It is never too small.
     """
     return rounded(sight.blind_area(rig, blind_height(sight)))
+
 
 def reaches(sight: Sight, rig: Rig) -> dict[str, tuple[float, bool]]:
     """Return by class how far ahead it is found [m], and whether that ends with the space.
@@ -48,6 +51,7 @@ def reaches(sight: Sight, rig: Rig) -> dict[str, tuple[float, bool]]:
         return {}
     return {name: sight.reach_ahead(rig, name) for name in sight.prior.class_names}
 
+
 PARTS: dict[str, Callable[[Sight, Rig], Any]] = {
     "blind_m2": blind_area,
     "sectors": lambda sight, rig: sight.blind_sectors(rig),
@@ -55,6 +59,7 @@ PARTS: dict[str, Callable[[Sight, Rig], Any]] = {
     "traffic": lambda sight, rig: sight.in_traffic(rig),
 }
 """Computations by the field of `KeyFigures` that they give; several figures share one."""
+
 
 @dataclass(frozen=True, slots=True)
 class KeyFigures:
@@ -128,6 +133,7 @@ class KeyFigures:
         reach = {name: (metres, more) for name, (metres, more) in data["reach"].items()}
         return cls(**{**data, "traffic": traffic, "sectors": sectors, "reach": reach})
 
+
 @dataclass(frozen=True, slots=True)
 class FigureOfMerit:
     """A figure that a rig is decided by.
@@ -189,14 +195,18 @@ class FigureOfMerit:
         value = math.ceil(value * scale - 1e-6) / scale if self.up else value
         return f"{value:.{self.decimals}f} {self.unit}".strip()
 
+
 def _ring(name: str) -> Callable[[TrafficAp | None], Sequence[float]]:
     return lambda found: [found.rings[name][0]] if found and name in found.rings else []
+
 
 def _whole(found: TrafficAp | None) -> Sequence[float]:
     return [] if found is None else [found.ap]
 
+
 def _missed(ap: float) -> float:
     return 1.0 - ap
+
 
 _Ap = partial(FigureOfMerit, part="traffic", higher=True, cost=_missed, rule=Number(0.0, cap=1.0))
 _Blind = partial(FigureOfMerit, decimals=1, up=True)
@@ -242,6 +252,7 @@ KEY_FIGURES = {
 KEPT = tuple(key for key, row in KEY_FIGURES.items() if row.part)
 """Figures that a search may keep."""
 
+
 def _wanted(key: str) -> Any:
     row = KEY_FIGURES[key]
     assert row.rule is not None
@@ -249,6 +260,7 @@ def _wanted(key: str) -> Any:
     digits = None if isinstance(row.rule, Whole) else row.decimals
     panel = Panel(f"wanted_{key}", row.label, none=NONE_WANTED, precision=digits)
     return setting(None, row.rule, f"{row.about} (wanted: at {worst})", panel)
+
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
@@ -265,6 +277,7 @@ class Wanted:
 
     def __post_init__(self) -> None:
         check_settings(self, "optimize", "wanted.")
+
 
 @dataclass(frozen=True, slots=True)
 class Reading:
@@ -301,6 +314,7 @@ class Reading:
         """Return the row as plain JSON data."""
         found = {"value": self.value, "wanted": self.wanted, "met": self.met, "kept": self.kept}
         return {"figure": self.figure.key, "unit": self.figure.unit, **found}
+
 
 def dashboard(
     figures: KeyFigures | None,

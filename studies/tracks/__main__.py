@@ -46,12 +46,14 @@ GOALS = {
     "3. Nothing is seen that is not there": ("all", "invented", 0.0, 0.1),
 }
 
+
 @dataclass(frozen=True)
 class Effort:
     """What `made_by` notes besides the versions."""
 
     resamples: int
     seed: int
+
 
 def held_against_tracks(args: argparse.Namespace, folder: Path) -> Answer:
     """Write the page and results.json."""
@@ -91,6 +93,7 @@ def measured(args: argparse.Namespace) -> Json:
     found["made"] = made_by(Effort(RESAMPLES, SEED))
     return found
 
+
 def goals(found: Json) -> list[list[str]]:
     """Return a row for each goal and model: verdict and value in each log."""
     table = []
@@ -113,6 +116,7 @@ def goals(found: Json) -> list[list[str]]:
         texts.append(f"{_text(errors[0])}, {_text(errors[1])}: {better}")
     return [*table, ["4. Error of *confirmed*, default and road", "both", *texts]]
 
+
 def rows(found: Json) -> list[list[str]]:
     """Return rows of cars and pedestrians: each log, number of points and model with figures."""
     return [
@@ -130,11 +134,13 @@ def rows(found: Json) -> list[list[str]]:
         if "near" in (cell := by_model[model][n].get("car and pedestrian", {}))
     ]
 
+
 def _text(values: list[float] | None) -> str:
     if values is None:
         return "too few"
     value, low, high = values
     return f"{value:+.2f} ({low:+.2f} to {high:+.2f})"
+
 
 if __name__ == "__main__":
     parser = Parser(prog="python -m studies.tracks", description=__doc__)

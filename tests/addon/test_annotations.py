@@ -6,7 +6,7 @@ import pytest
 
 from blender_addon.engine import advice, catalog, pe
 from blender_addon.overlay import layers
-from blender_addon.overlay.annotations import OCCLUDED, VISIBLE, ghost_sensors, location_mark
+from blender_addon.overlay.annotations import OCCLUDED, VISIBLE, location_mark
 from tests.addon import scenes
 
 
@@ -23,13 +23,6 @@ def joins(shape, start, end):
     """Whether one of the lines goes from a point to another."""
     ends = np.array([start, end], np.float32)
     return bool((np.abs(segments(shape) - ends).max(axis=(1, 2)) < 1e-6).any())
-
-
-def test_a_moved_sensor_has_a_line_to_where_it_stands_now():
-    shape = ghost_sensors([sensor("roof", 0.0)], [sensor("roof", 1.5)], "Low")
-    assert joins(shape, (0.0, 0.0, 1.8), (1.5, 0.0, 1.8))
-    assert [label.text for label in shape.labels] == ["roof"]
-    assert shape.legend.classes[0][1] == "Low"
 
 
 def test_lines_tell_who_sees_the_place_and_from_whom_it_is_hidden():

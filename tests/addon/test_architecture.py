@@ -2,7 +2,6 @@
 
 import ast
 import functools
-import importlib
 import itertools
 import re
 from pathlib import Path
@@ -272,20 +271,3 @@ def test_only_the_faces_of_rooms_are_used():
 def test_the_rule_of_faces_catches_what_goes_deeper():
     source = "from .engine import pe, bogus\npe.Study, pe.nothing_of_the_kind\n"
     assert sorted(beside_the_faces(source)) == ["bogus", "pe_core.nothing_of_the_kind"]
-
-
-def test_every_module_can_be_imported():
-    for name in set(FILES) - {"__init__", "__main__"}:
-        assert importlib.import_module(f"{PACKAGE}.{name}")
-
-
-def test_properties_call_functions_by_their_names():
-    """Blender evaluates annotations apart from their module: a lambda there finds none of its."""
-    wrong = [
-        f"{path.name}:{node.lineno}"
-        for path in sorted(ROOT.rglob("*.py"))
-        for node in nodes_of(path.read_text("utf-8"))
-        if isinstance(node, ast.AnnAssign)
-        and any(isinstance(part, ast.Lambda) for part in ast.walk(node.annotation))
-    ]
-    assert not wrong

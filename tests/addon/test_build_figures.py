@@ -32,18 +32,3 @@ def test_the_panel_and_a_job_of_the_exported_study_say_the_same(roof, car, tmp_p
     assert live.built_lines(car) == lines
     panel = layouts.drawn(search_panels.constraints, **vars(layouts.Window(car)))
     assert "mass 1.23 kg" in " ".join(panel.texts("label"))
-
-
-def test_limits_and_options_of_the_panel_are_those_of_the_study(roof, car):
-    settings, own = car.perception_entropy, roof.perception_entropy
-    settings.max_mass, settings.min_overlap = 2.5, 20.0
-    row = own.options.add()
-    row.model, row.price, row.power = "Hesai Pandar64", 600.0, 22.0
-    study = scenes.study()
-    constraints = study.search.mounting.constraints
-    assert (constraints.max_mass, constraints.min_overlap) == (2.5, 20.0)
-    assert constraints.max_power is None and constraints.max_protrusion is None
-    (choice,) = study.selection.choices
-    assert choice.options[0].sheet == pe.DataSheet(power=22.0, price=600.0)
-    own.price = 99.5
-    assert scenes.study().rig["roof"].sheet.price == 99.5

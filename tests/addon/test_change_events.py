@@ -90,15 +90,6 @@ def test_a_drag_is_reported_as_long_as_it_lasts_and_its_rest_once(car, timers, h
     assert heard == [MOVED] * 5 + [RESTED] and not timers.waiting
 
 
-def test_a_rest_is_told_last_when_a_redraw_takes_longer_than_the_wait(car, timers, heard):
-    drag(car.objects["roof"])
-    timers.pass_by(0.1)
-    drag(car.objects["roof"])
-    timers.now += 2.0 * change_events.IDLE_S  # no timer is called while Blender draws
-    timers.pass_by(10.0)
-    assert heard == [MOVED, MOVED, RESTED] and not timers.waiting
-
-
 def test_a_drag_is_no_rest_where_a_redraw_takes_longer_than_the_wait(car, timers, heard):
     for _ in range(5):
         drag(car.objects["roof"])
@@ -195,22 +186,3 @@ def test_what_blender_calls_after_a_step_back_or_a_load_is_reported(car, timers,
         handler(car, bpy.context.evaluated_depsgraph_get())
     timers.pass_by(10.0)
     assert heard == [MOVED, RESTED]
-
-
-def test_without_a_window_there_is_no_timer(car):
-    drag(car.objects["roof"])
-    assert not any(
-        map(bpy.app.timers.is_registered, (change_events.emit_moving, change_events.emit_idle))
-    )
-
-
-def test_a_result_is_marked_once_all_rests_and_unmarked_when_it_is_as_it_was(car, timers):
-    bpy.ops.pe.score()
-    timers.pass_by(10.0)
-    assert not car.perception_entropy.result_stale
-    for by, expected in ((0.5, True), (-0.5, False)):
-        car.objects["roof"].location.z += by
-        bpy.context.view_layer.update()
-        assert car.perception_entropy.result_stale != expected, "it is still moving"
-        timers.pass_by(10.0)
-        assert car.perception_entropy.result_stale == expected

@@ -38,18 +38,6 @@ def test_explain_says_what_it_says_without_blender(blend, tmp_path):
         assert inside.returncode == outside.returncode == 0
 
 
-def test_a_search_that_cannot_place_is_refused_before_it_begins(car, tmp_path):
-    car.objects["roof"].keyframe_insert("location", frame=1)
-    path = tmp_path / "car.blend"
-    bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    answer = run_here(path, "optimize", *FAST, "-o", tmp_path / "out")
-    assert answer.returncode == 1
-    (line,) = complaints(answer)
-    assert "sensor 'roof': placement: expected an object that can be placed" in line
-    assert str(path) in line and not (tmp_path / "out").exists()
-    assert run_here(path, "score", *FAST[:2]).returncode == 0
-
-
 def test_optimize_and_export_agree_with_the_engine(blend, tmp_path, all_errors):
     inside, study, outside = (tmp_path / name for name in ("inside", "study", "outside"))
     before = blend.read_bytes()
@@ -66,28 +54,6 @@ def test_optimize_and_export_agree_with_the_engine(blend, tmp_path, all_errors):
         assert (inside / name).read_bytes() == (outside / name).read_bytes(), name
     check_optimized_scene(inside)
     check_resumed(blend, inside)
-
-
-@pytest.mark.parametrize("prior", ["highway", "boxes"])
-def test_focus_and_prior_of_the_scene_agree_with_the_engine(car, tmp_path, prior):
-    labels, blend = tmp_path / "labels.csv", tmp_path / "car.blend"
-    labels.write_text("class,x,y,z,length,width,height,yaw\ncar,20,3,0.8,4,2,1.6,30\n")
-    settings = car.perception_entropy
-    settings.prior, settings.boxes = prior, str(labels)
-    bpy.ops.pe.add_focus(region="far")
-    bpy.ops.pe.add_focus(region="custom")
-    settings.focus[1].x_range, settings.focus[1].classes = (0.1, 33.3), {"car"}
-    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
-    inside, study, outside = (tmp_path / name for name in ("inside", "study", "outside"))
-    samples = FAST[:2]
-    answer = run_here(blend, "score", *samples, "-o", inside)
-    assert answer.returncode == 0, answer.stderr
-    assert run_here(blend, "export", "-o", study).returncode == 0
-    answer = pe_here("score", study / "study.toml", *samples, "-o", outside)
-    assert answer.returncode == 0, answer.stderr
-    result = without_run(inside / "result.json")
-    assert result == without_run(outside / "result.json")
-    assert len(result["inputs"]["study"]["prior"]["focus"]) == 3
 
 
 def check_resumed(blend: Path, folder: Path) -> None:
@@ -132,12 +98,6 @@ def test_bad_file_is_one_line_and_status_1(addon, tmp_path, name, found):
 def test_usage(blend):
     assert run_here(blend, "score", "--no-such-option").returncode == 2
     assert main([]) == 2
-
-
-def test_sensors(blend):
-    listed = run_here(blend, "sensors")
-    assert listed.returncode == 0 and "lidar   Pandar64" in listed.stdout
-    assert listed.stdout == pe_here("sensors").stdout
 
 
 DRIVE = """

@@ -89,14 +89,6 @@ def test_a_part_that_bends_is_refused_by_name(car):
     assert not car.perception_entropy.states and car.frame_current == OPEN_FRAME
 
 
-def test_a_state_is_shown_and_the_vehicle_as_drawn_again(car):
-    add_open_state(car)
-    bpy.ops.pe.show_state(index=0)
-    assert car.frame_current == OPEN_FRAME
-    bpy.ops.pe.show_state(index=-1)
-    assert car.frame_current == 1
-
-
 def idle():
     bpy.context.view_layer.update()
     result_staleness.update_result()
@@ -175,20 +167,6 @@ def test_a_search_places_sensors_as_drawn_in_whatever_state_is_shown(car):
     idle()
     assert not settings.result_stale
     assert mirror.matrix_world.translation[:2] == pytest.approx((0.6, 0.97), abs=1e-4)
-
-
-def test_after_opening_a_file_with_another_state_shown_the_saved_mark_holds(car, tmp_path):
-    scored_with_a_state(car)
-    car.frame_set(OPEN_FRAME)
-    blend = str(tmp_path / "open.blend")
-    bpy.ops.wm.save_as_mainfile(filepath=blend)
-    bpy.ops.wm.open_mainfile(filepath=blend)
-    scene = bpy.context.scene
-    idle()
-    assert marks(scene.perception_entropy) == (False, False, False)
-    scene.frame_set(1)
-    idle()
-    assert marks(scene.perception_entropy) == (False, False, False)
 
 
 def test_the_stored_score_is_not_shown_as_that_of_another_state(car):

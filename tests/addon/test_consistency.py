@@ -30,16 +30,6 @@ def test_a_duplicate_is_a_new_sensor_without_a_result(scored, linked):
     assert before["roof"] is not None
 
 
-def test_a_renamed_sensor_keeps_its_result_and_its_duplicate_gets_none(scored):
-    entropy = results(scored)["roof"]
-    scored.objects["roof"].name = "top"
-    consistency.repair_scenes()
-    assert results(scored) == {"top": entropy}
-    bpy.ops.object.duplicate()
-    consistency.repair_scenes()
-    assert results(scored) == {"top": entropy, "top.001": None}
-
-
 def test_an_appended_sensor_is_a_new_one(scored, tmp_path):
     """Appended under a name that is free here, it brings its result under its own name."""
     blend = str(tmp_path / "other.blend")

@@ -3,12 +3,10 @@
 import json
 
 import bpy
-import numpy as np
 import pytest
 
 from blender_addon import bridge
 from blender_addon.engine import exchange, pe
-from blender_addon.overlay import annotations
 from pe_tools.cli.verbs import main
 from tests.addon import scenes
 from tests.addon.command_line import run_here
@@ -59,16 +57,6 @@ def test_a_bad_file_changes_nothing(car, tmp_path):
         bpy.ops.pe.import_rig(filepath=str(tmp_path / "objects.json"))
     assert [s.pose for s in scenes.study().rig] == [s.pose for s in before]
     assert not car.perception_entropy.variants
-
-
-def test_axles_are_drawn_across_the_body_and_axes_on_the_ground():
-    shape = annotations.axles(AXLE, 0.9)
-    ends = shape.through.points.reshape(-1, 2, 3)
-    across = [pair for pair in ends if pair[0][1] < 0.0]
-    assert [round(float(pair[0][0]), 2) for pair in across] == [-1.31, 1.49]
-    assert all(abs(pair[0][1]) > 0.9 and np.allclose(pair[:, 2], 0.33) for pair in across)
-    triad = [pair for pair in ends if pair[0][1] == 0.0]
-    assert len(triad) == 3 and all(np.allclose(pair[0], (-1.31, 0, 0)) for pair in triad)
 
 
 def test_the_command_in_blender_writes_a_rig(axled, tmp_path):

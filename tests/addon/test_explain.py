@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from blender_addon import bridge, diagnostics, location_query, panels
-from blender_addon.engine import advice, jobs, pe
+from blender_addon.engine import advice, jobs
 from tests.addon import scenes
-from tests.addon.layouts import Layout, Window, drawn
+from tests.addon.layouts import Layout, Window
 
 
 def told(scene):
@@ -73,33 +73,6 @@ def test_a_vehicle_that_lies_along_y_is_turned_with_the_sensor_on_it(car):
     assert ("", "faces") not in told(car)
 
 
-def test_a_scaled_sensor_is_reported_and_mended(car):
-    roof = car.objects["roof"]
-    place = roof.location.copy()
-    roof.scale = (2.0, 2.0, 2.0)
-    bpy.context.view_layer.update()
-    assert ("roof", "refused") in told(car)
-    mend(car, "refused")
-    assert told(car) == [] and scenes.study().rig["roof"].pose.position == pytest.approx(place)
-
-
-def test_units_are_reported_and_mended(car):
-    car.unit_settings.system = "IMPERIAL"
-    assert ("", "units") in told(car)
-    mend(car, "units")
-    assert ("", "units") not in told(car)
-    assert scenes.study()
-
-
-def test_a_camera_upside_down_is_turned(car):
-    eye = scenes.add_sensor("eye", model="Camera 60 deg", location=(0.7, 0.0, 1.55))
-    eye.rotation_euler.x = math.pi
-    bpy.context.view_layer.update()
-    assert ("eye", "upside_down") in told(car)
-    mend(car, "upside_down")
-    assert ("eye", "upside_down") not in told(car)
-
-
 def test_words_are_the_engines(car):
     bpy.ops.pe.score()
     study = scenes.study()
@@ -144,22 +117,6 @@ def test_the_table_has_every_sensor_of_the_score(car):
     assert len(score.per_sensor) == 7
 
 
-def test_a_part_is_selected_by_its_name(car):
-    assert bpy.ops.pe.select_part(name="cabin") == {"FINISHED"}
-    assert bpy.context.object.name == "cabin"
-    assert [obj.name for obj in bpy.context.selected_objects] == ["cabin"]
-    car.objects["cabin"].hide_set(True)
-    assert bpy.ops.pe.select_part(name="cabin") == {"CANCELLED"}
-
-
-def test_the_eye_takes_a_sensor_out_of_the_score(car):
-    scenes.add_sensor("eye", model="Camera 60 deg", location=(0.7, 0.0, 1.55))
-    bpy.ops.pe.toggle_sensor(name="eye")
-    assert [s.name for s in scenes.study().rig] == ["roof"]
-    bpy.ops.pe.toggle_sensor(name="eye")
-    assert [s.name for s in scenes.study().rig] == ["eye", "roof"]
-
-
 def test_a_place_is_asked_as_the_engine_does(car):
     assert bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0)) == {"FINISHED"}
     study = scenes.study()
@@ -172,12 +129,6 @@ def test_a_place_is_asked_as_the_engine_does(car):
     assert location_query.answer(car).lines != expected.text
     bpy.ops.pe.dismiss_place()
     assert location_query.answer(car) is None
-
-
-def test_another_file_brings_no_answer_of_this_one(car):
-    bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0))
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    assert location_query.answer(bpy.context.scene) is None
 
 
 def lost_roof(tmp_path):
@@ -210,45 +161,6 @@ def test_a_lost_library_is_reported_by_name_and_marks_the_result(car, tmp_path):
     assert '"code": "missing"' in settings.result_json
 
 
-def test_a_driver_that_failed_is_reported_by_name(car):
-    curve = car.objects["roof"].driver_add("location", 0)
-    curve.driver.expression = "no_such_thing + 1"
-    scenes.depsgraph().update()
-    assert ("roof", "driver") in told(car)
-    bpy.ops.pe.score()
-    assert "driver of its location did not run" in car.perception_entropy.result.missing[0]
-
-
-def test_panels_show_words_warnings_and_the_place(car):
-    car.objects["roof"].location.z = 3.0
-    bpy.context.view_layer.update()
-    bpy.ops.pe.score()
-    bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0))
-    window = Window(car, car.objects["roof"])
-    layout = drawn(panels.main.warnings, **vars(window))
-    assert "clear of the vehicle" in " ".join(layout.texts("label"))
-    explain = type("Explain", (), {"layout": (shown := Layout())})
-    panels.score_details.explain.draw(explain, window)
-    text = " ".join(shown.texts("label"))
-    assert "of where objects are is seen" in text.replace("  ", " ")
-    assert "Ask" not in text and "pe.ask_place" in shown.texts("operator")
-
-
-def test_sensors_that_no_score_would_take_are_no_reason_to_tell_nothing(car):
-    scenes.add_sensor("odd", location=(0.0, 0.0, 2.0)).scale = (3.0, 3.0, 3.0)
-    bpy.context.view_layer.update()
-    found = told(car)
-    assert ("odd", "refused") in found
-    with pytest.raises(pe.InputError):
-        scenes.study()
-
-
-def test_a_place_is_asked_in_the_scene_s_own_space(car):
-    car.perception_entropy.space_x = (-20.0, 20.0)
-    bpy.ops.pe.ask_place(point=(30.0, 0.0, 0.0))
-    assert "-20 to 20 m" in location_query.answer(car).lines[0]
-
-
 def hide_it(layer):
     layer.hide_viewport = True
 
@@ -275,12 +187,3 @@ def test_a_vehicle_that_is_out_of_the_view_is_reported_by_name_and_can_be_shown(
     assert bpy.ops.pe.mend(fix=advice.fix) == {"FINISHED"}
     assert scenes.study().vehicle is not None
     assert not [each for each in bridge.scene_advice(car) if each.code == "hidden_vehicle"]
-
-
-def test_a_part_of_the_vehicle_that_is_hidden_is_reported_and_left(car):
-    inner = scenes.add_collection(bpy.data.collections["Car"], "Seats")
-    scenes.add_box(inner, "seat", (0.1, 0.1, 0.1))
-    layer = bpy.context.view_layer.layer_collection.children["Car"].children["Seats"]
-    layer.exclude = True
-    (advice,) = [each for each in bridge.scene_advice(car) if each.code == "hidden_vehicle"]
-    assert "Seats is excluded" in advice.text and advice.fix is None

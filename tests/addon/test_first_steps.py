@@ -9,11 +9,9 @@ import pytest
 from mathutils import Matrix
 
 from blender_addon import diagnostics
-from blender_addon.engine import kinds
-from blender_addon.operators import shortcuts
-from blender_addon.panels import CLASSES, main, sensor_menus
+from blender_addon.panels import CLASSES, main
 from tests.addon import scenes
-from tests.addon.layouts import Layout, Window, drawn
+from tests.addon.layouts import Window, drawn
 
 
 def select(*chosen):
@@ -51,13 +49,6 @@ def test_the_selected_meshes_become_a_collection_of_their_own_in_one_undo_step(b
     assert len(bpy.data.collections["Imported"].objects) == 4
 
 
-def test_a_collection_of_the_selected_meshes_alone_is_taken(body):
-    bpy.data.objects.remove(body.tree)
-    select(body.shell, body.wheel)
-    bpy.ops.pe.use_selected()
-    assert vehicle().name == "Imported" and len(bpy.data.collections) == 1
-
-
 def test_sensors_and_their_housings_are_no_parts(car):
     roof = car.objects["roof"]
     select(roof)
@@ -68,29 +59,10 @@ def test_sensors_and_their_housings_are_no_parts(car):
     assert vehicle().name == "Car", "the collection that has both parts"
 
 
-def test_the_example_has_no_name_so_that_saving_it_does_not_change_the_extension(scene):
-    assert bpy.ops.pe.open_example() == {"FINISHED"}
-    assert bpy.data.filepath == "" and vehicle().name == "Sedan"
-    assert bpy.ops.pe.score.poll()
-
-
 def points_of(names, scene):
     """Return the centres of objects, in the ground frame, rounded [m]."""
     bpy.context.view_layer.update()
     return [tuple(round(c, 5) for c in scene.objects[n].matrix_world.translation) for n in names]
-
-
-def test_turn_round_turns_the_vehicle_and_the_sensors_on_it_where_it_is(car):
-    for obj in car.objects:
-        obj.location.x += 3.0
-    assert bpy.ops.pe.turn_round() == {"FINISHED"}
-    assert points_of(("body", "cabin", "roof"), car) == [
-        (3.0, 0.0, 0.55),
-        (3.3, 0.0, 1.2),
-        (3.43, 0.0, 1.8),
-    ]
-    bpy.ops.pe.turn_round()
-    assert points_of(("cabin", "roof"), car) == [(2.7, 0.0, 1.2), (2.57, 0.0, 1.8)]
 
 
 def test_stand_on_wheels_puts_the_vehicle_on_the_ground(scene):
@@ -133,39 +105,6 @@ def test_a_mesh_of_z_up_imported_as_y_up_is_mended_by_one_button(car, quarter):
     assert not [row.code for row in car.perception_entropy.result_warnings]
 
 
-def test_an_arrow_ahead_of_the_vehicle_is_shown_until_there_is_a_sensor(scene):
-    assert "front" not in scenes.drawn(scene)
-    scenes.add_car(scene)
-    bpy.context.view_layer.update()
-    (shape,) = scenes.drawn(scene)["front"].values()
-    assert shape.faces.points[:, 0].min() > 2.0 and abs(shape.faces.points[:, 1]).max() < 0.5
-    labels = {tag.text: tag.place[0] for tag in shape.labels}
-    assert labels["front"] > 2.0 and labels["rear"] < -2.0
-    scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))
-    assert "front" not in scenes.drawn(scene)
-
-
-def test_keys_are_added_and_all_of_them_removed(scene):
-    keymap = bpy.context.window_manager.keyconfigs.new("test").keymaps.new(name="3D View")
-    shortcuts.add_to(keymap)
-    items = {(each.idname, each.type): each for each in keymap.keymap_items}
-    assert len(items) == len(shortcuts.SHORTCUTS)
-    toggled = items["wm.context_toggle", "L"].properties.data_path
-    assert bpy.context.path_resolve(toggled) is False, "Live is a switch"
-    assert all(each.ctrl and each.alt for (_, key), each in items.items() if key != "ESC")
-    shortcuts.unregister()
-    assert not keymap.keymap_items
-
-
-def test_the_add_menu_has_each_kind_in_object_mode_alone(scene):
-    menu = drawn(sensor_menus.PE_MT_add)
-    assert menu.texts("operator") == [*(kind.label for kind in kinds.KINDS.values()), "Search..."]
-    for mode, entries in (("OBJECT", ["PE_MT_add"]), ("EDIT_MESH", [])):
-        layout = Layout()
-        sensor_menus.draw_add_menu(SimpleNamespace(layout=layout), SimpleNamespace(mode=mode))
-        assert layout.texts("menu") == entries
-
-
 def first_panel():
     """What the first panel shows."""
     return drawn(main.main, **vars(Window(bpy.context.scene)))
@@ -182,12 +121,3 @@ def test_an_empty_file_shows_three_things(scene, panels):
     texts = first_panel().texts("operator")
     assert "pe.open_example" not in texts and "pe.score" in texts
     assert any("Then add a sensor" in text for text in first_panel().texts("label"))
-
-
-@pytest.mark.parametrize("factor", [1e30, -1e30, 1e-30, 0.0, -1.0, math.nan, math.inf])
-def test_a_scale_that_no_file_can_have_is_refused(car, factor):
-    before = [obj.matrix_world.copy() for obj in bpy.data.objects]
-    with pytest.raises(RuntimeError, match="mend: amount: expected a"):
-        bpy.ops.pe.mend(fix="scale_vehicle", amount=(factor, 0.0, 0.0))
-    bpy.context.view_layer.update()
-    assert [obj.matrix_world for obj in bpy.data.objects] == before

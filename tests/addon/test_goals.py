@@ -5,7 +5,6 @@ import pytest
 
 import pe_core as pe
 from blender_addon import bridge, diagnostics
-from pe_core.search import Goals
 from pe_tools import jobs
 from pe_tools.jobs import FrontJob, front_dict
 from tests.addon import scenes
@@ -18,27 +17,6 @@ def asked(car):
     settings.evaluations, settings.search_samples = 60, 1024
     settings.score_samples, settings.sensitivity = 1024, "off"
     return car
-
-
-def test_goals_of_the_panel_are_those_of_the_study(asked):
-    settings = asked.perception_entropy
-    kept = ("blind_ground", "blind_sector")
-    assert scenes.study().search.goals == Goals(sensitivity="off", keep=kept)
-    settings.keep_blind_ground = settings.keep_blind_sector = False
-    assert scenes.study().search.goals == Goals(sensitivity="off")
-    settings.stop_target, settings.stop_gain, settings.stop_over = -1.25, 0.002, 40
-    bpy.data.objects["roof"].perception_entropy.stays = True
-    goals = scenes.study().search.goals
-    assert (goals.stop.target, goals.stop.seconds, goals.stop.over) == (-1.25, None, 40)
-    assert goals.stop.gain == 0.002 and goals.fixed == ("roof",)
-    settings.start_variants = True
-    assert scenes.study().search.goals.starts == ()
-    assert bpy.ops.pe.save_variant() == {"FINISHED"}
-    bpy.data.objects["roof"].location.x += 0.2
-    assert bpy.ops.pe.save_variant() == {"FINISHED"}
-    [start] = scenes.study().search.goals.starts
-    now = scenes.study().rig["roof"].pose.position[0]
-    assert start.poses["roof"].position[0] == pytest.approx(now - 0.2, abs=1e-5)
 
 
 def test_the_panel_finds_the_front_of_the_job(asked):
@@ -58,12 +36,6 @@ def test_the_panel_finds_the_front_of_the_job(asked):
     [row] = [each for each in settings.variants if each.key == settings.front.rows[0].key]
     study = bridge.study_of_variant(asked, row, scenes.depsgraph())
     assert study.rig["roof"].pose == job.trade_off.front[0].study.rig["roof"].pose
-
-
-def test_a_front_needs_two_objectives(asked):
-    asked.perception_entropy.front_objectives = {"entropy"}
-    with pytest.raises(RuntimeError, match=r"front\.objectives: expected two or more of entropy"):
-        bpy.ops.pe.choose_sensors()
 
 
 def test_runners_up_are_variants_and_their_lines_are_in_the_scene(asked, monkeypatch):

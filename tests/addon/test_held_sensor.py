@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mathutils import Vector
 
-from blender_addon import operators, viewport
+from blender_addon import viewport
 from blender_addon.engine import catalog, graphics, pe
 from blender_addon.operators import place_sensor, placement, surface_pose
 from blender_addon.operators.surface_pose import SurfaceSpot
@@ -63,14 +63,6 @@ def test_its_score_is_reported_beside_where_it_stands(held):
     assert "nats" in score and "coverage" in score
 
 
-def test_beside_the_vehicle_it_is_nowhere(held):
-    held.put(ROOF)
-    held.put(None)
-    assert held.matrix is None
-    assert held.text == ("Camera 60 deg", placement.POINT_AT)
-    assert not len(held.lines.points)
-
-
 def test_a_stand_off_is_typed_stepped_and_taken_back(held):
     held.put(ROOF)
     for letter in "0.25":
@@ -117,31 +109,6 @@ def test_it_is_drawn_where_it_stands_and_as_it_is_turned(held):
     assert pinhole.sum() >= 4  # the frustum's edges begin there
     held.stand(surface_pose.Stance(0.05, along_normal=True))
     assert held.lines.points[:, 2].max() > place[2] + 1.5  # it looks up now
-
-
-def test_a_scene_without_a_score_says_why(car, monkeypatch):
-    monkeypatch.setattr(viewport, "VIEW", View3D)
-    car.perception_entropy.vehicle = None
-    workspace = SimpleNamespace(name="none", status_text_set=print)
-    context = SimpleNamespace(
-        scene=car, workspace=workspace, evaluated_depsgraph_get=scenes.depsgraph
-    )
-    try:
-        placement.begin(context, catalog.load("Pandar64"), surface_pose.Stance(0.15))
-        placement.current.put(ROOF)
-        assert "vehicle collection" in placement.current.text[2]
-    finally:
-        placement.end()
-
-
-def test_it_lets_go_when_the_extension_is_disabled(held):
-    held.put(ROOF)
-    assert len(View3D.handles) == 2 and placement.busy()
-    operators.unregister()
-    try:
-        assert placement.current is None and not View3D.handles and not placement.busy()
-    finally:
-        operators.register()
 
 
 def test_the_shape_is_worked_out_in_the_sensor_s_own_frame(car):

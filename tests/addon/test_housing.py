@@ -6,11 +6,10 @@ import pytest
 
 import pe_core as pe
 from blender_addon import housing as surfaces
-from blender_addon.housing import KEY, MATERIALS, housing_mesh, model_surface
+from blender_addon.housing import KEY, housing_mesh, model_surface
 from tests.addon import scenes
 
 MODELS = ["Pandar64", "Velodyne HDL-32E", "Hesai QT128C2X", "Hesai AT128E2X", "Camera 60 deg"]
-BOX = pe.Housing("box", (0.06, 0.12, 0.05), (0.01, 0.02, 0.03), "a test")
 
 
 def triangles_of(surface):
@@ -39,19 +38,6 @@ def test_its_surface_is_closed_and_looks_outwards(name):
     assert {surfaces.BODY, surfaces.GLASS, surfaces.MARK} <= set(surface.made_of)
 
 
-def test_a_window_is_where_the_beams_come_out():
-    """A level beam leaves the can through its glass, a camera looks out of its lens."""
-    for name in ("Pandar64", "Velodyne VLP-16 Puck", "Velodyne HDL-32E"):
-        surface = model_surface(name)
-        glass = [
-            f for f, m in zip(surface.faces, surface.made_of, strict=True) if m == surfaces.GLASS
-        ]
-        heights = surface.points[np.unique(np.concatenate(glass)), 2]
-        assert heights.min() < 0.0 < heights.max(), name
-    ahead = model_surface("Camera 60 deg").points[:, 0]
-    assert ahead.max() == pytest.approx(0.0, abs=1e-9)
-
-
 @pytest.fixture
 def car(car):
     """Return the car with a Pandar64 on its roof: its size is known from a table of its maker."""
@@ -68,14 +54,6 @@ def test_adding_a_sensor_gives_it_its_body_where_a_size_is_known(car):
     assert camera.type == "EMPTY"
     bpy.ops.pe.add_sensor(model="Pandar64", housing=False)
     assert bpy.context.object.type == "EMPTY"
-
-
-def test_sensors_of_a_model_share_their_mesh_and_materials(car):
-    first, second = car.objects["roof"], scenes.add_sensor("second")
-    assert first.data == second.data
-    assert len([m for m in bpy.data.materials if m.name.startswith("PE ")]) == len(MATERIALS)
-    scenes.add_sensor("puck", "Velodyne VLP-16 Puck")
-    assert len([m for m in bpy.data.materials if m.name.startswith("PE ")]) == len(MATERIALS)
 
 
 def test_a_body_changes_no_score(car):
@@ -96,28 +74,6 @@ def test_a_body_changes_no_score(car):
         for study in (with_body, among_parts, other_body, scenes.study())
     }
     assert len(entropies) == 1
-
-
-def test_a_body_is_no_vehicle(scene):
-    """The first collection with meshes is taken for the vehicle: not that of the sensors."""
-    scenes.add_sensor("one")
-    assert scene.perception_entropy.vehicle is None
-    car = scenes.add_collection(scene.collection, "Car")
-    scenes.add_box(car, "body")
-    scenes.add_sensor("two")
-    assert scene.perception_entropy.vehicle == car
-
-
-def test_another_model_is_another_body(car):
-    roof = car.objects["roof"]
-    other = scenes.add_sensor("other")
-    roof.perception_entropy.model = "Velodyne VLP-16 Puck"
-    assert roof.data[KEY] == "Velodyne VLP-16 Puck"
-    assert other.data[KEY] == "Pandar64"
-    roof.perception_entropy.model = "no such sensor"
-    assert roof.data[KEY] == "Velodyne VLP-16 Puck"
-    roof.perception_entropy.model = "Camera 60 deg"
-    assert roof.data[KEY] == "Camera 60 deg"
 
 
 def test_a_mesh_of_the_user_s_own_is_left_alone(car):

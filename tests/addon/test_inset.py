@@ -8,7 +8,7 @@ import pytest
 from mathutils import Vector
 
 from blender_addon import bridge
-from blender_addon.engine import catalog, graphics, pe
+from blender_addon.engine import catalog, pe
 from blender_addon.operators import inset
 from tests.addon import scenes
 
@@ -67,16 +67,3 @@ def test_a_lidar_s_ranges_are_asked_for_beside_the_window(car, monkeypatch):
     whose, image = inset._ranges
     assert whose == ("roof", "Velodyne VLP-16 Puck")
     assert (image.width, image.height) == (round(359.8 * 3), 30 * 3)
-
-
-def test_a_bent_lens_is_reported_in_the_title(car):
-    straight = pe.Sensor("front", catalog.load("KITTI cam2"))
-    assert inset.title_of(straight) == "front"
-    bent = next(n for n in catalog.names("camera") if catalog.load(n).lens is not None)
-    assert "as a pinhole" in inset.title_of(pe.Sensor("side", catalog.load(bent)))
-
-
-def test_pixels_are_linear_light_again_where_a_view_encodes_them():
-    pixels = np.array([[[0.0, 0.5, 1.0, 0.25]]], np.float32)
-    found = graphics.linear(pixels)[0, 0]
-    assert found == pytest.approx([0.0, 0.21404, 1.0, 0.25], abs=1e-4)

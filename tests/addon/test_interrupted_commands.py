@@ -10,7 +10,6 @@ from pathlib import Path
 import bpy
 import pytest
 
-from blender_addon.commands import open_file
 from blender_addon.engine import jobs, pe
 from tests.addon import scenes
 from tests.addon.command_line import FAST, ROOT, command, complaints, run_here, wait_for
@@ -24,21 +23,6 @@ def blend(car, tmp_path) -> Path:
     path = tmp_path / "car.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
     return path
-
-
-def contents(folder: Path) -> dict[str, bytes]:
-    return {p.name: p.read_bytes() for p in folder.iterdir()}
-
-
-def test_a_users_own_file_is_refused_before_the_work(blend, tmp_path):
-    out, name = tmp_path / "out", "optimized.blend"
-    out.mkdir()
-    (out / name).write_text("mine")
-    answer = run_here(blend, "optimize", *FAST, "-o", out)
-    assert answer.returncode == 1
-    (line,) = complaints(answer)
-    assert line.startswith(f"pe: {out / name}: output: ") and "scoring" not in answer.stderr
-    assert contents(out) == {name: b"mine"}
 
 
 def test_the_same_folder_again_is_one_set(blend, tmp_path, small_pictures):
@@ -104,14 +88,6 @@ def test_a_scene_that_does_not_fit_on_the_disk_is_told(blend, tmp_path):
     assert [p.name for p in out.glob(".*")] == [".perception-entropy.json"]
 
 
-@pytest.mark.parametrize("name", ["cut.blend", "empty.blend"])
-def test_half_a_file_is_reported(addon, tmp_path, name):
-    path = tmp_path / name
-    path.write_bytes(b"\x28\xb5\x2f\xfdhalf" if name == "cut.blend" else b"")
-    with pytest.raises(pe.InputError, match="expected enough space on the disk"):
-        open_file.check_complete(path)
-
-
 def test_the_export_of_the_panel_replaces_the_chosen_file_and_no_other(car, tmp_path):
     path, mesh = tmp_path / "car.toml", tmp_path / "car.npz"
     path.write_text("chosen in the dialog")
@@ -122,14 +98,3 @@ def test_the_export_of_the_panel_replaces_the_chosen_file_and_no_other(car, tmp_
     mesh.unlink()
     assert bpy.ops.pe.export_study(filepath=str(path)) == {"FINISHED"}
     assert pe.load_study(path).rig["roof"].pose == scenes.study().rig["roof"].pose
-
-
-def test_the_verb_export_replaces_what_it_wrote_and_no_other(blend, tmp_path):
-    out = tmp_path / "out"
-    for _ in range(2):
-        assert run_here(blend, "export", "-o", out).returncode == 0
-    (out / "study.toml").write_text("mine now")
-    answer = run_here(blend, "export", "-o", out)
-    assert answer.returncode == 1
-    assert complaints(answer)[0].startswith(f"pe: {out / 'study.toml'}: output: ")
-    assert (out / "study.toml").read_text() == "mine now"

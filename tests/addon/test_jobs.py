@@ -11,7 +11,7 @@ import pytest
 import pe_tools as pt
 from blender_addon import bridge, result_staleness
 from blender_addon.engine import jobs as pe_jobs
-from blender_addon.engine import pe, text
+from blender_addon.engine import pe
 from blender_addon.live import state
 from blender_addon.operators import declared, jobs, running_job
 from blender_addon.panels import main
@@ -31,27 +31,6 @@ def stored(scene) -> dict:
     for score in (data["before"], data["after"]):
         score.pop("scatter", None)  # for the error of a difference: no part of result.json
     return data
-
-
-def data_of(outcome) -> dict:
-    data = json.loads(text.dump_json(pt.result_dict(outcome)))
-    del data["run"]
-    return data
-
-
-def test_result_is_shown(car):
-    scenes.add_sensor("front", model="Camera 60 deg")
-    bpy.ops.pe.score()
-    settings, data = car.perception_entropy, stored(car)
-    assert settings.has_result and not settings.result_stale
-    assert settings.result.entropy == pytest.approx(data["entropy"], abs=1e-6)
-    roof = bridge.figures_of_sensor(car.objects["roof"])
-    assert roof is not None and roof.beams == 16 * 1800
-    assert roof.occluded == data["after"]["per_sensor"]["roof"]["occluded"] > 0
-    assert "cabin" in roof.occluded_by
-    front = bridge.figures_of_sensor(car.objects["front"])
-    told = data["after"]["per_sensor"]["front"]
-    assert (front.beams, front.occluded) == (told["beams"], told["occluded"]), "rays of its picture"
 
 
 def test_warnings_are_stored_as_the_result_has_them(car):
@@ -88,21 +67,6 @@ def test_what_a_search_cost_is_stored_and_shown(car):
     up = [f"{math.ceil(10.0 * figures.blind_m2) / 10.0:.1f}" for figures in expected.figures]
     assert f"Blind ground {up[1]} m²" in labels and (up[0] == up[1] or f"({up[0]})" in labels)
     assert expected.cost.split("(")[0].strip() in labels
-
-
-def test_stopped_before_a_score_is_complete_changes_nothing(car):
-    with pytest.raises(declared.Stopped):
-        task = jobs.OPTIMIZE.read(Window(car))
-        jobs.OPTIMIZE.finish(car, task, None, task.job)
-    assert not car.perception_entropy.has_result
-
-
-def test_bad_input_is_an_error_and_changes_nothing(car):
-    car.perception_entropy.vehicle = None
-    for operator in (bpy.ops.pe.score, bpy.ops.pe.optimize):
-        with pytest.raises(RuntimeError, match="vehicle collection: expected a collection"):
-            operator()
-    assert not car.perception_entropy.has_result
 
 
 def test_one_job_at_a_time(car, monkeypatch):
@@ -254,22 +218,6 @@ def test_the_start_of_a_search_is_not_scored_again_when_it_is_known(car, monkeyp
     assert made == [known, None]
 
 
-def test_before_is_where_the_first_of_several_searches_began(car):
-    bpy.ops.pe.score()
-    first = car.perception_entropy.result.entropy
-    for _ in range(2):
-        bpy.ops.pe.optimize()
-        assert car.perception_entropy.result.entropy_before == first
-        car.perception_entropy.seed += 1
-
-
-def test_nothing_free_is_reported_before_the_work(car):
-    car.objects["roof"].perception_entropy.free = (False,) * 6
-    with pytest.raises(RuntimeError, match="Yaw ticked of at least one sensor"):
-        bpy.ops.pe.optimize()
-    assert not car.perception_entropy.has_result
-
-
 def animate(sensor):
     sensor.keyframe_insert("location", frame=1)
 
@@ -306,15 +254,3 @@ def test_a_second_stop_leaves_all_as_it_was(car):
     with pytest.raises(declared.Stopped):
         jobs.OPTIMIZE.finish(car, task, task.job.outcome, task.job)
     assert scenes.study().rig["roof"].pose == before and not car.perception_entropy.has_result
-
-
-def test_zones_and_classes_are_kept_for_the_panel(car):
-    bpy.ops.pe.score()
-    after = stored(car)["after"]
-    rows = {row.name: row for row in car.perception_entropy.result.parts}
-    assert {n.lower() for n, row in rows.items() if row.is_class} == set(after["per_class"])
-    assert sum(not row.is_class for row in rows.values()) == len(after["per_zone"])
-    assert rows["Ahead"].coverage == pytest.approx(after["per_zone"]["front"]["coverage"])
-    assert rows["Car"].entropy == pytest.approx(after["per_class"]["car"]["entropy"])
-    bpy.ops.pe.score()
-    assert len(car.perception_entropy.result.parts) == len(rows)

@@ -8,37 +8,12 @@ import pytest
 
 import blender_addon
 from blender_addon import language, translation_context
-from blender_addon.engine import pe
 from blender_addon.panels import layout, main
 from blender_addon.translation_context import CONTEXT
 from tests.addon import layouts, scenes
 
 SIDEBAR_PX, POINTS = 252.0, 11.0
 """Width of a sidebar as Blender opens it, and size of its text, at a scale of 1."""
-NARROW = {
-    **dict.fromkeys(("Score", "Live", "Optimize"), 58.0),
-    **dict.fromkeys(("LiDAR", "Camera", "Radar", "Ultrasonic"), 66.0),
-    **dict.fromkeys(("Add", "Place"), 44.0),
-    **dict.fromkeys(("Look Through", "Picture in View", "Mirror", "Mirror Linked"), 92.0),
-    **dict.fromkeys(("X", "Y", "Z", "Roll", "Pitch", "Yaw"), 38.0),
-    **dict.fromkeys(("Sensor", "Model"), 60.0),
-    **dict.fromkeys(("Vehicle", "Mounted on"), 80.0),
-    "Loss": 84.0,
-    **dict.fromkeys(("Entropy", "Coverage"), 82.0),
-}
-"""Labels of narrow places, and the room there [px]: looked at in a window of that sidebar."""
-
-
-@pytest.mark.parametrize("scale", [1.0, 2.0])
-@pytest.mark.parametrize("code", language.LANGUAGES)
-def test_labels_of_narrow_places_are_not_cut_off(addon, code, scale):
-    layout.blf.size(layout.FONT, POINTS * scale)
-    catalog = language.catalog(code)
-    shown = {text: catalog.get(text, text) for text in NARROW}
-    widths = {text: layout.blf.dimensions(layout.FONT, to)[0] for text, to in shown.items()}
-    assert not {
-        (text, shown[text], width) for text, width in widths.items() if width > NARROW[text] * scale
-    }
 
 
 @pytest.mark.parametrize("code", language.LANGUAGES)
@@ -67,21 +42,6 @@ def test_locales_of_blender_have_their_languages():
     assert [of(x) for x in ("de_DE", "ja_JP", "zh_HANS", "zh_HANT", "en_US", "")] == [
         *("de", "ja", "zh", "", "", "")
     ]
-
-
-@pytest.mark.parametrize(
-    "content, expected",
-    [
-        (b'msgid "a"\nmsgstr oops\n', r"xx\.po: line 2: expected msgid or msgstr"),
-        (b'"a"\n', r"xx\.po: line 1: expected msgid or msgstr"),
-        ('msgid "a"\nmsgstr "ä"\n'.encode("latin-1"), r"xx\.po: text: expected UTF-8"),
-    ],
-)
-def test_a_damaged_catalogue_is_told_with_its_line(tmp_path, content, expected):
-    path = tmp_path / "xx.po"
-    path.write_bytes(content)
-    with pytest.raises(pe.InputError, match=expected):
-        language.read_po(path)
 
 
 def rna_of(cls):

@@ -39,17 +39,6 @@ def test_a_linked_vehicle_is_the_vehicle(car, tmp_path):
     assert "cabin [library.blend]" in parts
 
 
-def test_parts_of_a_linked_vehicle_are_selected_and_it_is_not_turned(car, tmp_path):
-    _, scene, linked = linked_car(tmp_path)
-    scene.collection.children.link(linked)
-    scene.perception_entropy.vehicle = linked
-    scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))
-    name = scenes.study().vehicle.part_names[0]
-    assert bpy.ops.pe.select_part(name=name) == {"FINISHED"}
-    with pytest.raises(RuntimeError, match="expected an object of this file, found linked from"):
-        bpy.ops.pe.mend(fix="turn_vehicle", amount=(90.0, 0.0, 0.0))
-
-
 def test_an_instanced_vehicle_is_the_vehicle(car, tmp_path):
     expected, scene, linked = linked_car(tmp_path)
     holder = scenes.add_collection(scene.collection, "Holder")

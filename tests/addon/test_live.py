@@ -1,6 +1,5 @@
 """The live score: previews while the hand moves, exact once it rests, and nothing left behind."""
 
-import json
 from dataclasses import replace
 
 import bpy
@@ -16,7 +15,7 @@ from blender_addon import (
     signals,
 )
 from blender_addon.engine import advice
-from blender_addon.live import readout, readout_text, session, state, told_figures
+from blender_addon.live import readout, session, state, told_figures
 from tests.addon import scenes
 
 SAMPLES = 4096
@@ -101,16 +100,6 @@ def test_a_drag_is_previewed_exact_at_rest_and_compared_with_where_it_began(live
     assert not is_exact(live), "asked for, not there yet"
 
 
-def test_a_stored_result_is_not_shown_while_something_moves(live, monkeypatch):
-    """Whether it is stale is known once the scene is idle."""
-    bpy.ops.pe.score()
-    drag(live.objects["roof"])
-    rest()
-    live.perception_entropy.result_stale = False
-    drag(live.objects["roof"])
-    assert not reading(live).exact and not state.shown_score(live).stored
-
-
 def test_a_hand_that_rests_for_a_moment_does_not_begin_a_new_drag(live, monkeypatch):
     start = reading(live).summary
     monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
@@ -141,19 +130,6 @@ def test_the_change_stays_when_the_hand_lets_go(live, monkeypatch, by):
     bpy.context.view_layer.update()
     rest()
     assert reading(live).before == start
-
-
-def test_of_two_moves_in_a_row_the_first_one_s_end_is_scored_later(live, monkeypatch):
-    for operator in (4711, 0, 4712):
-        monkeypatch.setattr(session, "_moving_operator", lambda op=operator: op)
-        drag(live.objects["roof"])
-        if operator == 0:
-            between = exact()
-    assert reading(live).before is None and reading(live).baseline is not None
-    rest()
-    assert told(reading(live).before) == told(between) and told(reading(live).summary) != told(
-        between
-    )
 
 
 def test_a_variant_is_what_it_is_compared_with(live):
@@ -212,20 +188,6 @@ def test_after_undo_and_redo_the_result_that_came_back_is_shown(live):
     assert state.shown_score(bpy.context.scene).entropy == moved
 
 
-def test_a_search_s_gain_is_that_of_its_result(live):
-    bpy.ops.pe.score()
-    settings = live.perception_entropy
-    data = json.loads(settings.result_json)
-    data["kind"], data["before"]["entropy"] = "optimize", data["entropy"] + 0.25
-    settings.result_json = json.dumps(data)
-    rest()
-    text = readout_text.readout_of(reading(live), state.shown_score(live))
-    assert (text.change, text.against) == ("0.250 better", "compared with before the search")
-    assert bpy.ops.pe.save_variant() == {"FINISHED"}
-    bpy.ops.pe.live_against(key=live.perception_entropy.variants[0].key)
-    assert state.shown_score(live).before is None, "compared with something else"
-
-
 def test_the_figures_are_the_engine_s_and_of_before_while_it_moves(live, monkeypatch):
     live.perception_entropy.live.figures = True
     looking = scenes.study().sight()
@@ -264,15 +226,6 @@ def kernels(scene):
     return evaluator_of(scene)._scorer._sensors._kernels
 
 
-def test_what_is_no_sensor_asks_for_nothing(live, monkeypatch):
-    monkeypatch.setattr(engine_process, "ask", lambda *_, **__: pytest.fail("asked"))
-    lamp = bpy.data.objects.new("lamp", None)
-    live.collection.objects.link(lamp)
-    drag(lamp)
-    live.frame_current = 1
-    bpy.context.view_layer.update()
-
-
 def test_a_vehicle_that_moves_is_read_once_it_rests(live, monkeypatch):
     before = reading(live)
     with monkeypatch.context() as while_it_moves:
@@ -302,28 +255,6 @@ def test_what_is_wrong_is_said_in_a_line_until_it_is_mended(live):
     assert state.live_state(live.name).note == "" and told(reading(live).summary) == told(exact())
 
 
-def test_a_sensor_deleted_in_the_middle_of_a_drag(live):
-    drag(live.objects["roof"])
-    bpy.data.objects.remove(live.objects["roof"])
-    bpy.context.view_layer.update()
-    rest()
-    assert next(iter(reading(live).rig.sensors)).name == "front"
-    assert told(reading(live).summary) == told(exact())
-    bpy.data.objects.remove(live.objects["front"])
-    bpy.context.view_layer.update()
-    rest()
-    assert "at least one visible sensor" in state.live_state(live.name).note
-
-
-def test_the_vehicle_deleted_in_the_middle_of_a_drag(live):
-    drag(live.objects["roof"])
-    bpy.data.collections.remove(bpy.data.collections["Car"])
-    bpy.context.view_layer.update()
-    drag(live.objects["roof"])
-    rest()
-    assert "vehicle collection: expected a collection" in state.live_state(live.name).note
-
-
 def test_undo_in_the_middle_of_a_drag(live):
     for message in ("before", "after"):
         drag(live.objects["roof"])
@@ -332,39 +263,6 @@ def test_undo_in_the_middle_of_a_drag(live):
     rest()
     scene = bpy.context.scene
     assert told(reading(scene).summary) == told(exact())
-
-
-def test_another_file_in_the_middle_of_a_drag(live):
-    drag(live.objects["roof"])
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    assert not state.states and reading(bpy.context.scene) is None
-    rest()
-    assert reading(bpy.context.scene) is None
-
-
-def test_switched_off_it_forgets_and_follows_no_more(live, monkeypatch):
-    live.perception_entropy.live.on = False
-    assert state.live_state(live.name).last_read is None and reading(live) is None
-    monkeypatch.setattr(engine_process, "ask", lambda *_, **__: pytest.fail("asked"))
-    drag(live.objects["roof"])
-    rest()
-    assert reading(live) is None
-
-
-def test_of_two_scenes_each_has_its_own(live):
-    other = bpy.data.scenes.new("other")
-    other.perception_entropy.live.on = True
-    assert reading(other) is None, "no window shows it"
-    bpy.context.window.scene = other
-    rest()
-    assert (
-        "vehicle collection" in state.live_state("other").note
-        and state.live_state(live.name).note == ""
-    )
-    live.name = "renamed"
-    bpy.context.window.scene = live
-    rest()
-    assert told(reading(live).summary) == told(exact())
 
 
 def test_the_extension_disabled_in_the_middle_of_a_drag(live):

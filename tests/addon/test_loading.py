@@ -1,7 +1,6 @@
 """A study put into a scene: the scene is that study again, to the bit, or says what it is not."""
 
 import math
-from dataclasses import replace
 
 import bpy
 import numpy as np
@@ -15,7 +14,6 @@ from pe_core.study.study_file import SECTIONS
 from tests.addon import scenes
 
 CORNERS = scenes.ASSETS / "examples" / "four_corners" / "study.toml"
-CAN = "Velodyne VLP-16 Puck"
 
 
 def load(study):
@@ -104,28 +102,6 @@ def test_each_declared_setting_is_held_by_the_scene_as_it_was(scene, section, se
     if setting.is_optional:
         setattr(group, name, bridge.property_value(setting, None))
         assert bridge.value_of_property(setting, getattr(group, name)) is None
-
-
-def test_a_sensor_named_like_a_part_is_reported_with_its_new_name(scene):
-    """Objects of Blender have unique names: the part has it, as it was there before."""
-    study = pe.load_study(CORNERS)
-    part = next(iter(study.vehicle.part_names))
-    first, *others = study.rig
-    named = pe.Study(pe.Rig([replace(first, name=part), *others]), study.vehicle)
-    lines = load(named)
-    assert lines[0] == f"sensor '{part}' (here '{part}.001': another object has its name)"
-    assert "sensor" not in lines
-    assert f"{part}.001" in {sensor.name for sensor in scenes.study().rig}
-
-
-def test_a_vehicle_that_is_the_study_s_stays(car, tmp_path):
-    study, collection = scenes.study(), car.perception_entropy.vehicle
-    assert load(study) == []
-    assert car.perception_entropy.vehicle == collection
-    bpy.data.objects["cabin"].location.z += 0.1
-    bpy.context.view_layer.update()
-    load(study)
-    assert car.perception_entropy.vehicle != collection
 
 
 def test_coordinates_in_double_precision_come_back_to_the_bit(scene):

@@ -1,14 +1,12 @@
 """Looking through a sensor: the right lens in the right place, and everything as before after."""
 
-import math
-
 import bpy
 import numpy as np
 import pytest
 from mathutils import Vector
 
 from blender_addon import bridge, consistency, sensor_kinds
-from blender_addon.engine import catalog, graphics, kinds, pe
+from blender_addon.engine import graphics, kinds
 from blender_addon.operators import look_through
 from tests.addon import scenes
 
@@ -48,27 +46,6 @@ def test_blender_s_picture_is_the_sensor_s(car, eye, model):
         u = camera.width / 2 - camera.focal_px * left / ahead
         v = camera.height / 2 - camera.focal_px * up / ahead
         assert rendered_at(car, point) == pytest.approx((u, v), abs=0.02)
-
-
-def test_a_lens_wider_than_blender_s_shortest(car, eye):
-    wide = {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 175}
-    catalog.add("Wide", wide)
-    try:
-        eye.perception_entropy.model = "Wide"
-        assert look(eye).data.angle_x == pytest.approx(math.radians(175), abs=1e-4)
-    finally:
-        catalog.remove("Wide")
-
-
-def test_again_comes_back_to_what_was_before(car, eye):
-    own = bpy.data.objects.new("own", bpy.data.cameras.new("own"))
-    car.collection.objects.link(own)
-    car.camera, car.render.resolution_x, car.render.resolution_percentage = own, 777, 50
-    view = look(eye)
-    assert car.camera == view and car.render.resolution_percentage == 100
-    look(eye)
-    assert car.camera == own
-    assert (car.render.resolution_x, car.render.resolution_percentage) == (777, 50)
 
 
 def view_area():
@@ -147,26 +124,6 @@ def test_the_view_is_what_it_was_whatever_way_back(car, eye, leave, orthographic
     assert not look_through._states
 
 
-def test_a_view_that_has_left_the_picture_is_not_turned_back(car, eye):
-    area = view_area()
-    looking(area, eye)
-    look = area.spaces.active.region_3d
-    look.view_perspective = "PERSP"  # as turning the view does
-    leave_by_operator(car, area)
-    assert look.view_distance == 3.0
-
-
-def test_from_one_sensor_to_another_and_back(car, eye):
-    other = scenes.add_sensor("other", model="Camera 60 deg", location=(0.0, 0.0, 1.6))
-    before = car.render.resolution_x
-    look(eye)
-    look(other)
-    assert car.camera.parent == other
-    assert bpy.ops.pe.look_back() == {"FINISHED"}
-    assert car.camera is None and car.render.resolution_x == before
-    assert not bpy.ops.pe.look_back.poll()
-
-
 def test_it_is_no_part_of_the_vehicle_and_follows_the_sensor(car, eye):
     bpy.data.collections["Car"].objects.link(eye)
     before = scenes.study()
@@ -177,38 +134,6 @@ def test_it_is_no_part_of_the_vehicle_and_follows_the_sensor(car, eye):
     eye.location.x += 1.0
     bpy.context.view_layer.update()
     assert (view.matrix_world.translation - eye.matrix_world.translation).length < 1e-6
-
-
-def test_it_goes_with_its_sensor(car, eye):
-    look(eye)
-    bpy.data.objects.remove(eye)
-    consistency.repair_scenes()
-    assert not [obj for obj in car.objects if obj.type == "CAMERA"]
-    assert not bpy.data.cameras and car.camera is None
-    assert car.perception_entropy.before_look == ""
-
-
-def test_it_has_the_lens_of_another_model_as_soon_as_that_is_chosen(car, eye):
-    view = look(eye)
-    eye.perception_entropy.model = "Camera 120 deg"
-    consistency.repair_scenes()
-    assert view.data.angle_x == pytest.approx(math.radians(120), abs=1e-5)
-    assert (car.render.resolution_x, car.render.resolution_y) == (1920, 1080)
-
-
-def test_a_duplicate_has_none_of_its_original_s(car, eye):
-    look(eye)
-    bpy.ops.object.select_all(action="DESELECT")
-    eye.select_set(True)
-    bpy.context.view_layer.objects.active = eye
-    bpy.ops.object.duplicate()
-    consistency.repair_scenes()
-    assert bridge.view_camera(bpy.context.object) is None and bridge.view_camera(eye) is not None
-
-
-def test_of_what_is_no_sensor_one_line_is_said(car):
-    with pytest.raises(RuntimeError, match="expected a sensor, found body"):
-        bpy.ops.pe.look_through(name="body")
 
 
 def test_a_lidar_s_picture_is_shown_in_the_corner(car):
@@ -230,9 +155,3 @@ def _share(picture):
     edges = (picture.elevations[1:] + picture.elevations[:-1]) / 2
     bounds = np.concatenate([picture.elevations[:1], edges, picture.elevations[-1:]])
     return float(np.average(picture.occluded.mean(axis=1), weights=-np.diff(bounds)))
-
-
-def test_without_a_vehicle_there_is_the_ground(car):
-    car.perception_entropy.vehicle = None
-    assert bpy.ops.pe.look_through(name="roof") == {"FINISHED"}
-    assert isinstance(catalog.load("Pandar64"), pe.Lidar)

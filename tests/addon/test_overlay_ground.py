@@ -1,7 +1,6 @@
 """Ground map, blind ground, reach and heat as arrays: right places, figures and colours."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +9,7 @@ import pe_core as pe
 from blender_addon.overlay import ground_layers, heatmap
 from pe_core.scoring.sight import BlindGround, BlindSpot, GroundSight, Reach
 from pe_tools.graphics import beams, colors, ground
-from tests.engine.drawn import box, car, lidar, mounted
+from tests.engine.drawn import box, car, mounted
 
 
 def seen(entropy=None, sensors=None, step=1.0, shape=(30, 20), coverage=None):
@@ -32,12 +31,6 @@ def test_a_scale_rises_evenly_in_lightness():
         lightness = 116.0 * np.cbrt(linear @ [0.2126, 0.7152, 0.0722]) - 16.0
         steps = np.diff(lightness)
         assert steps.min() > 0.0 and steps.max() < 2.5 * steps.mean()
-
-
-def test_a_scale_ends_in_its_outer_colours_and_clips():
-    found = colors.on_scale([-1.0, 0.0, 1.0, 2.0], colors.VIRIDIS)
-    np.testing.assert_allclose(found[:2], [colors.VIRIDIS[0]] * 2, atol=1e-6)
-    np.testing.assert_allclose(found[2:], [colors.VIRIDIS[-1]] * 2, atol=1e-6)
 
 
 def test_the_map_lies_where_it_was_looked_and_is_clear_in_the_vehicle():
@@ -94,22 +87,6 @@ def test_a_difference_is_blue_where_it_is_better_and_orange_where_worse(quantity
     assert np.ptp(again.sheet.image[..., :3], axis=(0, 1)).max() < 1e-6
 
 
-def test_counts_are_four_classes_and_the_vehicle_is_clear():
-    sensors = np.repeat([0, 1, 2, 3, 7, -1], 5)[:, None] * np.ones((30, 20), int)
-    shape = ground.ground_map(seen(sensors=sensors), ground.SENSORS, 1.0, faded=False)
-    row = shape.sheet.image[10]
-    for at, expected in ((2, 0), (7, 1), (12, 2), (17, 3), (22, 3)):
-        np.testing.assert_allclose(row[at, :3], colors.COUNTS[expected], atol=1e-6)
-    assert row[27, 3] == 0.0
-    assert [name for _, name in shape.legend.classes] == [*ground.COUNT_NAMES]
-
-
-def test_the_map_fades_towards_its_edges():
-    shape = ground.ground_map(seen(step=2.0), ground.COVERAGE, 0.6, faded=True)
-    alpha = shape.sheet.image[..., 3]
-    assert alpha[10, 15] == pytest.approx(0.6) and alpha[0].max() < 0.05 < alpha[4, 15]
-
-
 def square(low, high):
     (x0, y0), (x1, y1) = low, high
     return np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)], float)
@@ -147,20 +124,6 @@ def test_blind_ground_is_measured_by_side():
     assert (shape.lines.points[:, 2] == 0.0).all() and len(shape.thin.points)
 
 
-def test_blind_ground_that_does_not_end_says_so_and_a_strip_is_not_measured():
-    endless, strip = square((2.0, -1.0), (12.0, 1.0)), square((-2.0, 1.0), (2.0, 1.2))
-    nearest = {"front": ((2.0, 0.0), 0.0), "left": ((0.0, 1.0), 0.0)}
-    found = found_blind((endless, strip), nearest, {"front": None, "left": 0.2})
-    shape = ground_layers.blind_ground(found, car().bounds, 0.0)
-    assert [label.text for label in shape.labels] == ["blind beyond 10 m out"]
-
-
-def test_nothing_blind_is_an_empty_shape():
-    shape = ground_layers.blind_ground(found_blind(()), car().bounds, 0.0)
-    assert not len(shape.lines.points) and not shape.labels
-    assert not ground_layers.blind_ground(found_blind(()), None, 0.0).labels
-
-
 def found_reach(distance, limit=80.0):
     bearings = np.radians(np.arange(0, 360, 5.0))
     full = np.broadcast_to(np.asarray(distance, float), bearings.shape)
@@ -177,37 +140,6 @@ def test_reach_is_a_closed_line_with_metres():
     assert [label.text for label in shape.labels] == ["30 m"] * ground_layers.LABEL_COUNT
     assert shape.labels[0].place == pytest.approx((30.0, 0.0, 0.0))
     assert "Pedestrian" in shape.legend.title and "AP" in shape.legend.title
-
-
-def test_reach_beyond_the_space_is_at_least_that_far_and_fainter():
-    limit = np.where(np.arange(72) < 36, 30.0, 80.0)
-    shape = ground_layers.reach_of_rig(found_reach(np.minimum(limit, 40.0), limit))
-    assert {label.text for label in shape.labels} == {"≥ 30 m", "40 m"}, "as the page has"
-    alpha = shape.lines.colors.reshape(-1, 2, 4)[..., 3]
-    assert alpha[18].max() < 0.5 * alpha[50].min()
-
-
-def test_a_rig_that_finds_nothing_has_no_figures():
-    assert not ground_layers.reach_of_rig(found_reach(0.0)).labels
-
-
-def test_sensors_have_their_own_line_and_colour():
-    shape = ground_layers.reach_of_sensors(found_reach(30.0), {"roof": (0.1, 0.2, 0.3)})
-    np.testing.assert_allclose(np.linalg.norm(shape.lines.points, axis=1), 15.0, rtol=1e-6)
-    assert shape.legend.classes[0][1] == "roof"
-    assert shape.legend.classes[0][0][:3] == (0.1, 0.2, 0.3)
-
-
-def test_another_rig_has_its_line_in_another_palette():
-    class Look:
-        def reach(self, rig, name, **_):
-            assert (rig, name) == ("rig", "car")
-            return found_reach(20.0)
-
-    palette = SimpleNamespace(reach=(1.0, 0.0, 0.0, 1.0), words=(1.0, 1.0, 1.0, 1.0))
-    shape = ground_layers.rig_reach(Look(), "rig", "car", palette, "variant B")
-    assert (shape.lines.colors[:, :3] == [1.0, 0.0, 0.0]).all()
-    assert shape.legend.classes == ((palette.reach, "variant B"),)
 
 
 def test_heat_is_hits_per_area_on_the_surface():
@@ -234,23 +166,3 @@ def test_heat_is_hits_per_area_on_the_surface():
     per_sr = (1440 / (2.0 * math.pi)) / math.radians(0.25)
     expected = per_sr * 2.0 / (4.0 + r**2) / r / 100.0
     assert np.median(tiles.density[at]) == pytest.approx(expected, rel=0.15)
-
-
-def test_nothing_stopped_is_no_heat():
-    far = box((50.0, 0.0, 0.0), (51.0, 1.0, 1.0))
-    shape = heatmap.hit_density([beams.cast(mounted(lidar(max_range=10.0)), far)], far.triangles)
-    assert not len(shape.faces.points) and shape.legend is None
-    assert not len(heatmap.hit_density([], far.triangles).faces.points)
-
-
-def test_a_sheet_as_triangles_has_its_colours_in_the_middles_of_squares():
-    image = np.zeros((4, 6, 4), np.float32)
-    image[1, 2] = [0.1, 0.2, 0.3, 1.0]
-    points, shades, triangles = ground.GroundSheet(image, (-3.0, -2.0), (3.0, 2.0)).mesh
-    at = np.flatnonzero(shades[:, 3])
-    np.testing.assert_allclose(points[at], [[-0.5, -0.5, 0.0]], atol=1e-6)
-    assert len(triangles) == 6, "those that touch it, and no more"
-    assert all(at[0] in triangle for triangle in triangles.tolist())
-    a, b, c = points[triangles].transpose(1, 0, 2)
-    assert (np.cross(b - a, c - a)[:, 2] > 0.0).all()
-    assert all(each.flags.c_contiguous for each in (points, shades, triangles))

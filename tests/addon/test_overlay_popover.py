@@ -1,13 +1,11 @@
 """The popover in the 3D view's header offers every layer, and computes nothing."""
 
-from types import SimpleNamespace
-
 import bpy
 
 from blender_addon.overlay import layers
 from blender_addon.panels import overlay_popover
 from blender_addon.properties.view import classes_of
-from tests.addon.layouts import Layout, drawn
+from tests.addon.layouts import drawn
 
 
 def offered(scene) -> list[str]:
@@ -32,15 +30,6 @@ def test_every_setting_of_the_view_is_offered(car):
     of_group = {p.identifier for p in view.bl_rna.properties} - {"rna_type", "name"}
     of_group -= {"ghost_key", "ground_fits"}  # by buttons: in the list of variants, Fit Colors
     assert of_group <= shown
-
-
-def test_the_header_has_a_switch_and_the_button_once(car):
-    functions = bpy.types.VIEW3D_HT_header.draw._draw_funcs
-    assert functions.count(overlay_popover.draw_in_header) == 1
-    layout = Layout()
-    header = SimpleNamespace(layout=layout)
-    overlay_popover.draw_in_header(header, SimpleNamespace(scene=car))
-    assert layout.notes == [("prop", "show_overlay"), ("popover", "PE_PT_view")]
 
 
 def test_classes_of_reach_are_those_of_the_prior(car):

@@ -1,12 +1,10 @@
 """What is shown follows the scene: worked out once a change, and never while drawing."""
 
-import pickle
-
 import bpy
 import numpy as np
 import pytest
 
-from blender_addon import analysis_calls, bridge, signals, vehicle_cache
+from blender_addon import analysis_calls, bridge, signals
 from blender_addon.engine import graphics, sight
 from blender_addon.live import state
 from blender_addon.overlay import draw_handler, ground_layers, layers, scheduler
@@ -71,15 +69,6 @@ def test_each_layer_has_a_switch_and_all_of_them_one(rig):
     assert set(scenes.drawn(rig)) == ALL_LAYERS
 
 
-def test_shapes_can_be_sent_as_they_are(rig):
-    """By the engine's process: what a first redraw needs is in them."""
-    for layer, shapes in scenes.drawn(rig).items():
-        for shape in shapes.values():
-            sent = pickle.loads(pickle.dumps(shape))
-            assert len(sent.lines.points) == len(shape.lines.points), layer
-            assert (sent.sheet is None) or "mesh" in vars(sent.sheet)
-
-
 def test_nothing_is_worked_out_without_a_change(rig, worked):
     scenes.drawn(rig)
     assert len(worked) == 13
@@ -133,25 +122,6 @@ def test_while_something_moves_it_is_rough_and_fine_at_rest(rig, worked):
     assert not shown_of(rig.name, "ground")[""].rough
     assert shown_of(rig.name, "ground")[""].shape.sheet.image.shape == fine
     assert {name for name, _ in worked} == {layer.name for layer in layers.LAYERS if layer.rough}
-
-
-def test_what_is_not_moved_stays_fine_while_another_moves(rig, worked):
-    scenes.drawn(rig)
-    worked.clear()
-    rig.objects["eye"].location.x += 0.1
-    bpy.context.view_layer.update()
-    scheduler.on_moving()
-    assert ("beams", "roof") not in worked and ("heat", "") not in worked
-    assert not shown_of(rig.name, "beams")["roof"].rough
-
-
-def test_a_heavy_vehicle_is_read_when_it_rests(rig, monkeypatch):
-    reader, depsgraph = scheduler.SnapshotReader(), scenes.depsgraph()
-    before = reader.request(rig, depsgraph).body_key
-    monkeypatch.setattr(reader, "_took_s", 10.0)
-    vehicle_cache.shared.invalidate()
-    assert reader.request(rig, depsgraph, moving=True).body_key == before
-    assert reader.request(rig, depsgraph).body_key != before
 
 
 def test_settings_count(rig):
@@ -228,23 +198,6 @@ def test_the_map_keeps_its_scale_from_the_first_score_until_it_is_fitted_again(r
     assert ends() == again
 
 
-def test_colours_are_fitted_at_rest_and_kept_while_moving(rig):
-    def ends():
-        return shown_of(rig.name, "ground")[""].shape.legend.bounds
-
-    scenes.drawn(rig)
-    fitted = ends()
-    assert fitted[0] > fitted[1], "the bright end is the lower entropy"
-    assert fitted != (graphics.QUANTITIES["ENTROPY"].low, graphics.QUANTITIES["ENTROPY"].high)
-    rig.objects["roof"].location = (0.0, 0.0, 0.7)  # in the car: it sees little
-    bpy.context.view_layer.update()
-    scheduler.update(moving=True)
-    assert ends() == fitted
-    scheduler.update(moving=False)
-    other = ends()
-    assert other != fitted
-
-
 def test_the_difference_map_is_of_the_variant_that_live_is_compared_with(rig):
     bpy.ops.pe.save_variant()
     settings = rig.perception_entropy
@@ -268,37 +221,6 @@ def test_the_difference_map_is_of_the_variant_that_live_is_compared_with(rig):
     assert "Seen by" in scenes.drawn(rig)["ground"][""].legend.title
 
 
-def test_beams_of_the_selected_sensors_alone(rig):
-    view = rig.perception_entropy.view
-    scenes.add_sensor("second", "Pandar40", location=(0.0, 0.5, 1.8))
-    view.beams_of = "SELECTED"
-    for obj in rig.objects:
-        obj.select_set(obj.name == "second")
-    assert set(scenes.drawn(rig)["beams"]) == {"second"}
-    rig.objects["second"].select_set(False)
-    bpy.context.view_layer.objects.active = None
-    assert "beams" not in scenes.drawn(rig)
-
-
-def test_hidden_sensors_do_not_count_for_the_map(rig):
-    before = scenes.drawn(rig)["ground"][""]
-    rig.objects["roof"].hide_set(True)
-    after = scenes.drawn(rig)["ground"][""]
-    assert not np.array_equal(before.sheet.image, after.sheet.image)
-
-
-def test_without_a_vehicle_no_beam_is_stopped(rig):
-    assert len(scenes.drawn(rig)["beams"]["roof"].through.points)
-    rig.perception_entropy.vehicle = None
-    drawn = scenes.drawn(rig)
-    assert not len(drawn["beams"]["roof"].through.points) and "heat" not in drawn
-
-
-def test_a_prior_with_a_mistake_leaves_the_rest(rig):
-    rig.perception_entropy.prior = "boxes"  # no file is chosen
-    assert set(scenes.drawn(rig)) == ALL_LAYERS - {"ground", "blind", "reach"}
-
-
 def show_alone(view, layer):
     """Switch all layers off but one."""
     for name in ALL_LAYERS:
@@ -317,11 +239,6 @@ def test_the_map_is_of_the_scene_s_own_space(rig):
     for name in ALL_LAYERS:
         setattr(view, f"show_{name}", True)
     assert set(scenes.drawn(rig)) == ALL_LAYERS - {"ground", "blind", "reach", "focus"}
-
-
-def test_a_class_that_the_prior_does_not_know_is_replaced(rig):
-    rig.perception_entropy.view.reach_class = "zebra"
-    assert "Car" in scenes.drawn(rig)["reach"][""].legend.title
 
 
 def test_changes_are_heard_and_another_file_forgets(rig):

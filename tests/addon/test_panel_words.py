@@ -7,7 +7,7 @@ import pytest
 
 from blender_addon import bridge
 from blender_addon.engine import advice
-from blender_addon.panels import CLASSES, layout, main, sensor_lists
+from blender_addon.panels import layout, main, sensor_lists
 from tests.addon import layouts, scenes
 
 SENTENCE = "the vehicle collection Sedan is excluded from the view layer: nothing of it is scored"
@@ -27,14 +27,6 @@ def test_no_line_is_wider_than_its_room_and_no_word_is_lost(addon, text, room, s
     for line, after in itertools.pairwise(lines):  # as much as fits stands in a line
         joined = f"{line} {after.split()[0]}"
         assert blf.dimensions(0, joined)[0] > room
-
-
-def test_sections_are_root_panels_that_can_be_moved_and_pinned(addon):
-    panels = {cls.__name__: cls for cls in CLASSES if issubclass(cls, bpy.types.Panel)}
-    roots = {name for name, cls in panels.items() if not hasattr(cls, "bl_parent_id")}
-    assert {"PE_PT_prior", "PE_PT_targets", "PE_PT_search", "PE_PT_export"} <= roots
-    for cls in panels.values():
-        assert getattr(cls, "bl_parent_id", "PE_PT_main") in panels
 
 
 def drawn_of(scene):

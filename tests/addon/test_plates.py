@@ -30,13 +30,6 @@ def test_a_plate_stands_above_what_it_would_cover(shown, region, sides, bottom):
     assert viewport.free_bottom(region, sides, 16.0, 6.0) == bottom
 
 
-def test_what_is_not_drawn_any_more_leaves_its_room(shown):
-    viewport.reserve_plate(7, "search", (20.0, 250.0, 320.0, 400.0))
-    assert viewport.free_bottom(7, (0.0, 100.0), 16.0, 6.0) == 406.0
-    viewport.reserve_plate(7, "search", None)
-    assert viewport.free_bottom(7, (0.0, 100.0), 16.0, 6.0) == 246.0
-
-
 CAR = (500.0, 150.0, 900.0, 560.0)
 GIZMOS, SIDEBAR = (940.0, 200.0, 1040.0, 860.0), (1040.0, 0.0, 1600.0, 860.0)
 ROOM = (130.0, 32.0, 1008.0, 640.0)
@@ -55,9 +48,3 @@ def test_in_a_narrow_view_no_legend_is_lost_or_over_the_car(readout):
         assert not any(graphics.boxes_overlap(box, other) for other in others)
         if not readout:
             assert not graphics.boxes_overlap(box, CAR)
-
-
-def test_in_a_wide_view_they_stand_in_the_lower_right_corner():
-    clear = arranged(LEGENDS, (60.0, 16.0, 1300.0, 640.0), [], CAR, 6.0)
-    assert [(box[0], box[1]) for box in clear] == [(950.0, 16.0), (950.0, 180.0), (950.0, 274.0)]
-    assert arranged(LEGENDS, (60.0, 16.0, 300.0, 640.0), [], None, 6.0) == [None] * 3

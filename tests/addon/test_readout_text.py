@@ -33,16 +33,6 @@ def test_the_read_out_says_what_is_in_the_way_below_what_was():
     assert readout.rows_of(None, "", None)[0].words[0][0] == "Live: scoring ..."
 
 
-def test_better_and_worse_differ_by_arrow_and_colour():
-    lines = [
-        readout.rows_of(reading_of(summary(), summary(h)), "", score_of(summary()))[0].words[1]
-        for h in (3.1, 2.9)
-    ]
-    (better, blue), (worse, orange) = lines
-    assert better.startswith("\N{DOWNWARDS ARROW}") and worse.startswith("\N{UPWARDS ARROW}")
-    assert blue[2] > blue[0] and orange[0] > orange[2]
-
-
 def figures(**changed):
     told = {"blind_m2": 81.24, "height": 0.5, "within": 10.0}
     told["reach"] = {"car": (62.4, True), "pedestrian": (changed.pop("reach_m", 47.2), False)}

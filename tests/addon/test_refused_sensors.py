@@ -6,8 +6,6 @@ import pytest
 
 import pe_core as pe
 from blender_addon import bridge
-from blender_addon.engine import catalog
-from blender_addon.properties import callbacks
 from tests.addon import scenes
 
 
@@ -41,16 +39,3 @@ def test_scale_and_mirroring_are_mended_by_the_button(roof, scale):
     looks = before[:3, 0] * np.sign(scale[0])  # mirrored along x it looks the other way
     assert after[:3, 0] == pytest.approx(looks, abs=1e-6)
     assert after[:3, 2] == pytest.approx(before[:3, 2], abs=1e-6)
-
-
-def test_a_part_of_a_name_is_taken_for_the_only_one_it_is_in(roof):
-    roof.perception_entropy.model = "qt128"
-    assert roof.perception_entropy.model == "Hesai QT128C2X"
-
-
-@pytest.mark.parametrize(("model", "kind"), [("Pandar64", "lidar"), ("Camera 60 deg", "camera")])
-def test_the_field_lists_models_of_the_sensor_s_kind_alone(roof, model, kind):
-    roof.perception_entropy.model = model
-    listed = callbacks.models_of_a_kind(roof.perception_entropy, bpy.context, "")
-    assert [name for name, _ in listed] == catalog.names(kind)
-    assert all(told for _, told in listed)

@@ -11,13 +11,10 @@ import pe_tools as pt
 from blender_addon import analysis_calls, bridge
 from blender_addon.operators import jobs
 from blender_addon.operators import requirements as operators
-from blender_addon.overlay.requirement_zones import FILL_ALPHA, MET, NOT_MET
-from pe_core.scoring.requirements import VerdictSummary
+from blender_addon.overlay.requirement_zones import MET, NOT_MET
 from pe_core.sensors import ObjectMeasurementCache
 from pe_core.study import requirement_file
-from pe_tools import graphics
 from tests.addon import scenes
-from tests.engine.test_drawn_beams import EYES, lab
 
 AHEAD = 'x = ["front + 1", "front + 2"], y = ["right", "left"]'
 
@@ -93,18 +90,6 @@ def test_bodies_are_one_several_or_of_an_own_size(held):
     assert len(scenes.study().requirements[1].bodies) == 2
     row.bodies = row.bodies
     assert row.problem == "" and len(scenes.study().requirements[1].bodies) == 2
-
-
-def test_a_changed_preset_is_said_to_be_changed(held):
-    """In the verdict and in the panel; the vehicle's own eyes and kerb change no preset."""
-    row = rows(held)[0]
-    shown = bridge.after_of(row)
-    assert shown and "changed" not in shown
-    row.near_side = "left"
-    assert bridge.after_of(row) == shown
-    row.points = 7
-    assert bridge.after_of(row) == f"{shown}, changed"
-    assert scenes.study().verdicts()[0].summary.check == f"{shown}, changed"
 
 
 def test_states_and_weathers_of_a_requirement_are_those_of_the_study_file(held, tmp_path):
@@ -186,57 +171,6 @@ def test_each_field_is_set_read_back_and_taken_away(held):
         assert row.table == before, path
 
 
-def test_a_change_that_a_preset_cannot_say_makes_it_an_own_one(held):
-    """A share can be added to a preset and is stored as a change; its criterion's end cannot."""
-    held.perception_entropy.requirements.clear()
-    bpy.ops.pe.add_requirement(preset="fmvss111_rear")
-    (row,) = rows(held)
-    row.sensors = 2
-    assert json.loads(row.table) == {"preset": "fmvss111_rear", "criterion": {"sensors": 2}}
-    row.share = 0.0
-    assert row.problem == "" and bridge.preset_of(row) is None
-    made = scenes.study().requirements[0]
-    assert made.criterion.share is None and made.criterion.sensors == 2
-    assert made.check == "FMVSS 111" and len(made.zone.spots) == 6
-
-
-def test_rows_are_copied_moved_and_undone(held):
-    settings = held.perception_entropy
-    names = [row.name for row in rows(held)]
-    settings.requirement_index = 1
-    assert bpy.ops.pe.copy_requirement() == {"FINISHED"}
-    assert [row.name for row in rows(held)] == [*names[:2], "My requirement 3", names[2]]
-    assert rows(held)[2].table == rows(held)[1].table and settings.requirement_index == 2
-    assert bpy.ops.pe.move_requirement(step=-1) == {"FINISHED"}
-    assert [row.name for row in rows(held)][1:3] == ["My requirement 3", names[1]]
-    settings.requirement_index = 0
-    assert bpy.ops.pe.move_requirement(step=-1) == {"CANCELLED"}
-    scenes.study()
-
-
-def test_what_cannot_be_checked_keeps_none_of_the_others_from_it(held):
-    """The box car has no door: the row says what was looked for, the others have verdicts."""
-    bpy.ops.pe.add_requirement(preset="ncap26_dooring")
-    assert bpy.ops.pe.check_requirements() == {"FINISHED"}
-    *others, door = rows(held)
-    assert all(isinstance(bridge.stored_verdict(row), VerdictSummary) for row in others)
-    assert "a part whose name has the word door" in bridge.stored_verdict(door)
-
-
-def test_a_wrong_value_is_refused_and_said_and_the_requirement_stays(held):
-    row = rows(held)[1]
-    before = row.table
-    row.zone = AHEAD.replace("front", "bumper")
-    assert row.table == before and "bumper" in row.problem
-    row.zone = AHEAD
-    assert row.problem == ""
-
-
-def test_a_requirement_that_is_switched_off_is_not_in_the_study(held):
-    rows(held)[0].enabled = False
-    assert [each.name for each in scenes.study().requirements] == [r.name for r in rows(held)][1:]
-
-
 def test_check_stores_the_verdicts_of_the_engine(held):
     bpy.ops.pe.check_requirements()
     verdicts = scenes.study().verdicts()
@@ -269,11 +203,6 @@ def test_verdicts_come_row_by_row_and_esc_keeps_those_that_are_found(held):
     told = check_by_hand(held, lambda job: job.stop() if job.verdicts else None)
     assert told.level == "WARNING"
     assert stored(held) == [whole[0], None, None]
-
-
-def test_a_requirement_that_is_changed_meanwhile_gets_no_verdict(held):
-    check_by_hand(held, lambda job: setattr(rows(held)[2], "kinds", 1))
-    assert [each is not None for each in stored(held)] == [True, True, False]
 
 
 @pytest.mark.parametrize("first", ["view", "check"])
@@ -358,14 +287,3 @@ class TestZones:
         for row in rows(held):
             row.enabled = False
         assert "requirements" not in scenes.drawn(held)
-
-
-@pytest.mark.parametrize("eyes", EYES)
-@pytest.mark.parametrize("scale", [graphics.VIRIDIS, graphics.CIVIDIS, graphics.COUNTS])
-@pytest.mark.parametrize("opacity", [0.5, 1.0])
-def test_zones_that_are_met_can_be_told_from_the_map_below(scale, eyes, opacity):
-    """A green at 22 % was lost on the greens of the map."""
-    for color in graphics.on_scale(np.linspace(0.0, 1.0, 13), scale):
-        ground = 0.24 + opacity * (color - 0.24)
-        zone = ground + FILL_ALPHA * (np.array(MET[:3]) - ground)
-        assert np.linalg.norm(lab(zone, EYES[eyes]) - lab(ground, EYES[eyes])) > 10.0

@@ -82,14 +82,6 @@ def test_moved_after_placing_is_read_as_it_stands(car):
     assert read(car.objects["roof"]).position == (1.00002, 2.0, 3.0)
 
 
-def test_placing_keeps_the_drawn_size(car):
-    sensor = car.objects["roof"]
-    size = sensor.empty_display_size
-    bridge.place_rig(car, rig_of("roof", pe.Pose((1.0, 2.0, 3.0), (0.1, 0.2, 0.3))))
-    assert sensor.empty_display_size == size
-    assert np.abs(np.array(sensor.scale) - 1.0).max() < 1e-6
-
-
 def test_sensor_on_a_sensor(car):
     """The outer one is moved first, or it would carry the inner one away."""
     inner = scenes.add_sensor("a_inner", model="Camera 60 deg", parent=car.objects["roof"])
@@ -109,10 +101,6 @@ def test_quaternion_sensor(car):
     assert read(sensor) == pose
 
 
-def test_gone_sensor_is_named(car):
-    assert bridge.place_rig(car, rig_of("nobody", pe.Pose((0.0, 0.0, 1.0)))) == ["nobody"]
-
-
 def test_held_sensor_is_refused(car):
     sensor = car.objects["roof"]
     sensor.constraints.new("LIMIT_LOCATION").use_max_x = True
@@ -127,21 +115,6 @@ def test_axes_are_blenders(car):
     rotation = read(sensor).ground_from_sensor
     expected = np.array(Euler((0.1, 0.2, 0.3), "XYZ").to_matrix())
     assert np.abs(rotation - expected).max() < 1e-6
-
-
-def test_sensors_come_by_name(car):
-    scenes.add_sensor("b")
-    scenes.add_sensor("a", model="Camera 60 deg")
-    assert [s.name for s in scenes.study().rig] == ["a", "b", "roof"]
-
-
-def test_model_fusion_and_free_axes(car):
-    settings = scenes.add_sensor("front", model="Camera 60 deg").perception_entropy
-    settings.fusion, settings.free = "ring", (False, False, True, False, False, True)
-    study = scenes.study()
-    assert study.rig["front"].model is pe.catalog.load("Camera 60 deg")
-    assert study.rig["front"].group == "ring"
-    assert study.search.free == {"front": ("z", "yaw"), "roof": ("x", "y", "z", "pitch")}
 
 
 def sheared(car):

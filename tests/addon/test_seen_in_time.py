@@ -9,7 +9,7 @@ import pytest
 from mathutils import Vector
 
 import pe_core as pe
-from blender_addon import bridge, film, result_staleness, sensor_cache
+from blender_addon import bridge, film, result_staleness
 from blender_addon.bridge.sensor_records import sensor_of
 from blender_addon.operators.compare_variants import pending_variants
 from blender_addon.panels.condition_panel import seen_in_time
@@ -45,36 +45,6 @@ def test_a_story_is_added_checked_and_shown(car):
     assert len(scenes.study().stories) == 1
     bpy.ops.pe.remove_story()
     assert len(settings.stories) == 1
-
-
-def test_its_table_that_is_damaged_is_one_line(car):
-    bpy.ops.pe.add_story(story="cut_in")
-    car.perception_entropy.stories[0].table = "{"
-    with pytest.raises(RuntimeError, match="story"):
-        bpy.ops.pe.check_requirements()
-
-
-def test_a_result_goes_when_a_sensor_or_the_story_changes(car):
-    settings = car.perception_entropy
-    for story in ("cut_in", "roundabout"):
-        bpy.ops.pe.add_story(story=story)
-
-    def shown():
-        result_staleness.update_result()
-        return [bool(row.result) for row in settings.stories]
-
-    bpy.ops.pe.check_requirements()
-    assert shown() == [True, True]
-    settings.stories[0].latency_s = 0.9
-    assert shown() == [False, True]
-    bpy.ops.pe.check_requirements()
-    bpy.data.objects["roof"].location.z = 2.6
-    bpy.context.view_layer.update()
-    sensor_cache.invalidate()
-    assert shown() == [False, False]
-    bpy.ops.pe.check_requirements()
-    settings.track_needed = 2
-    assert shown() == [False, False]
 
 
 def test_how_sensors_scan_gives_seams_and_is_kept(car):

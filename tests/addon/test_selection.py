@@ -31,12 +31,6 @@ def offered(car):
     return car
 
 
-def refused(match):
-    with pytest.raises(RuntimeError, match=match) as told:
-        bpy.ops.pe.choose_sensors()
-    return told
-
-
 def test_the_scene_s_choices_are_the_study_s(offered):
     scenes.add_sensor("eye", model="Camera 60 deg")
     offer("eye", ("Camera 30 deg", 1.0), left_out=True)
@@ -47,12 +41,6 @@ def test_the_scene_s_choices_are_the_study_s(offered):
     roof = selection.choices[1].options
     assert [(o.model.name, o.price) for o in roof] == [(LARGE, 99.1), (CAN, 7.3)]
     assert (selection.max_price, selection.currency) == (99.2, "EUR")
-
-
-def test_a_scene_without_models_to_choose_from_has_no_selection(car):
-    car.perception_entropy.max_price = 5.0
-    assert "choice" not in pe.study_to_dict(scenes.study())
-    refused("choices: expected a sensor with models to choose from")
 
 
 def test_each_design_of_the_front_is_a_variant_and_nothing_moves(offered):
@@ -73,43 +61,6 @@ def test_each_design_of_the_front_is_a_variant_and_nothing_moves(offered):
     assert bpy.ops.pe.switch_variant(key=settings.front.rows[0].key) == {"FINISHED"}
     assert offered.objects["roof"].perception_entropy.model == CAN
     assert len(offered.objects["roof"].perception_entropy.options) == 2
-
-
-def test_a_design_without_a_sensor_is_a_variant_without_it(offered):
-    scenes.add_sensor("eye", model="Camera 60 deg")
-    offered.objects["eye"].perception_entropy.free = (False,) * 6
-    offer("eye", ("Camera 60 deg", 1.0), left_out=True)
-    bpy.ops.pe.choose_sensors()
-    settings = offered.perception_entropy
-    cheapest = settings.front.rows[0]
-    assert (cheapest.name, cheapest.figures.split(",")[0]) == (CAN, "price 7.3")
-    bpy.ops.pe.switch_variant(key=cheapest.key)
-    assert [s.name for s in scenes.study().rig] == ["roof"]
-
-
-@pytest.mark.parametrize(
-    ("options", "line"),
-    [
-        ([(CAN, 0.0)], f"sensor 'roof': price of {CAN}: expected a price above 0"),
-        ([("Puck 17", 1.0)], "sensor 'roof': model: expected .* such as"),
-        ([(CAN, 1.0), (CAN, 2.0)], "sensor 'roof': option: expected each model once"),
-    ],
-)
-def test_bad_offers_are_one_line_that_names_the_sensor(car, options, line):
-    offer("roof", *options)
-    refused(line)
-
-
-def test_models_are_added_and_removed_in_the_panel(car):
-    bpy.context.view_layer.objects.active = car.objects["roof"]
-    own = car.objects["roof"].perception_entropy
-    assert bpy.ops.pe.add_option() == {"FINISHED"}
-    assert bpy.ops.pe.add_option() == {"FINISHED"}
-    assert [row.model for row in own.options] == [CAN, ""]
-    own.options[1].model = LARGE
-    assert bpy.ops.pe.remove_option(index=0) == {"FINISHED"}
-    assert [row.model for row in own.options] == [LARGE]
-    assert bpy.ops.pe.remove_option(index=3) == {"CANCELLED"}
 
 
 def test_the_command_leaves_the_front_and_a_scene_with_its_designs(offered, tmp_path):

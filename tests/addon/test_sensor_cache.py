@@ -9,7 +9,6 @@ from blender_addon import result_staleness, sensor_cache
 from blender_addon.bridge.rig import sensor_objects
 from blender_addon.overlay.snapshot import SnapshotReader
 from blender_addon.sensor_cache import sensors as listed_sensors
-from tests.addon import scenes
 
 OTHERS = 2000
 
@@ -87,20 +86,3 @@ def test_a_change_is_seen_at_the_next_redraw(car):
     assert draw(car, cache) == ([], [])
     copy.perception_entropy.is_sensor = True
     assert draw(car, cache)[0] == ["zenith"]
-
-
-def test_undo_and_a_new_file_are_seen(car):
-    bpy.ops.ed.undo_push(message="before")
-    bpy.ops.pe.add_sensor("EXEC_DEFAULT", True)
-    assert len(listed_sensors(bpy.context.scene)) == 2
-    bpy.ops.ed.undo()
-    assert [obj.name for obj in listed_sensors(bpy.context.scene)] == ["roof"]
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    assert listed_sensors(bpy.context.scene) == []
-
-
-def test_scenes_are_reported_apart(car):
-    other = bpy.data.scenes.new("other")
-    assert [obj.name for obj in listed_sensors(car)] == ["roof"]
-    assert listed_sensors(other) == []
-    assert scenes.study().rig.sensors[0].name == "roof"

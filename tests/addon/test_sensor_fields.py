@@ -9,11 +9,7 @@ import pytest
 
 from blender_addon import bridge, consistency
 from blender_addon.engine import graphics
-from blender_addon.overlay import layers
-from blender_addon.panels import selected_object as sensor_panel
-from pe_tools.graphics import colors as tints
 from tests.addon import scenes
-from tests.addon.layouts import Layout, Window
 
 TURNED = (0.3, -0.2, 1.0)
 
@@ -44,16 +40,6 @@ def test_the_fields_are_the_transform_of_the_object(car, parented):
     roof.matrix_world = roof.matrix_world @ roof.matrix_world.Translation((0.5, 0.0, 0.0))
     assert pose(roof).position != read.position  # moved by hand: the fields follow
     assert tuple(fields.ground_position) == pytest.approx(pose(roof).position, abs=1e-6)
-
-
-def test_what_is_held_is_reported_and_not_typed(car):
-    roof = car.objects["roof"]
-    layout = Layout()
-    sensor_panel.draw_pose(layout, Window(car), roof)
-    assert not layout.texts("label")
-    roof.constraints.new("COPY_LOCATION").name = "to the mast"
-    sensor_panel.draw_pose(layout, Window(car), roof)
-    assert "to the mast" in " ".join(layout.texts("label"))
 
 
 def colors_of(scene):
@@ -105,37 +91,6 @@ def test_a_sensor_keeps_its_colour_whatever_becomes_of_others(car):
     bpy.ops.wm.save_as_mainfile(filepath=str(Path(bpy.app.tempdir) / "kept.blend"))
     bpy.ops.wm.open_mainfile(filepath=str(Path(bpy.app.tempdir) / "kept.blend"))
     assert colors_of(bpy.context.scene) == found
-
-
-def test_a_colour_that_is_picked_stays_and_a_new_kind_gets_its_hue(car):
-    eye = scenes.add_sensor("eye", "Camera 60 deg", location=(2.0, 0.0, 1.0))
-    first = colors_of(car)["eye"]
-    assert first in tints.TINTS["camera"]
-    eye.perception_entropy.model = "Pandar64"
-    assert colors_of(car)["eye"] in tints.TINTS["lidar"]
-    eye.perception_entropy.color = (1.0, 0.5, 0.0)
-    assert colors_of(car)["eye"] == "#ff8000"
-    eye.perception_entropy.model = "Camera 60 deg"
-    assert colors_of(car)["eye"] == "#ff8000"
-    assert not car.perception_entropy.result_stale
-
-
-def test_focus_regions_are_boxes_with_their_factors(car):
-    bpy.ops.pe.add_focus(region="far")
-    bpy.ops.pe.add_focus(region="custom")
-    row = car.perception_entropy.focus[1]
-    row.x_range, row.y_range, row.factor, row.classes = (5.0, 25.0), (-4.0, 4.0), 0.5, {"car"}
-    shape = scenes.drawn(car)["focus"][layers.WHOLE_RIG]
-    texts = [label.text for label in shape.labels]
-    assert texts == ["Focus 1: × 2", "Focus 1: × 2", "Focus 2: × 0.5 (car)"]
-    assert shape.labels[2].place == pytest.approx((15.0, 0.0, 0.0))
-    assert len(shape.lines.points) == 3 * 24
-    space = bridge.space_of(car.perception_entropy)
-    assert (
-        shape.lines.points[:, 0].min() > space.x[0] and shape.lines.points[:, 0].max() < space.x[1]
-    )
-    car.perception_entropy.view.show_focus = False
-    assert "focus" not in scenes.drawn(car)
 
 
 def test_a_no_go_area_begins_round_the_part_or_outside_the_car(car):

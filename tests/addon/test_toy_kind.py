@@ -86,46 +86,6 @@ def test_the_search_moves_it(ring_kind, ring):
     assert scenes.study().rig["bumper"].pose != start
 
 
-def test_it_is_drawn_where_it_is_and_where_it_looks(ring_kind, ring):
-    ring.rotation_euler.z = np.pi / 2  # to the left
-    bpy.context.view_layer.update()
-    ring_kind.perception_entropy.view.beams_of = "ALL"
-    shown = scenes.drawn(ring_kind)
-    lines, faces = shown["frustums"]["bumper"].lines, shown["frustums"]["bumper"].faces
-    offsets = lines.points - np.array([2.1, 0.0, 0.5], np.float32)
-    distance = np.linalg.norm(offsets, axis=1)
-    radius = distance[0]
-    assert 0.5 < radius < 5.0
-    np.testing.assert_allclose(distance[:-1], radius, rtol=1e-5)
-    np.testing.assert_allclose(offsets[-2] / radius, [0, 1, 0], atol=1e-5)  # the tick begins here
-    assert offsets[-1][1] > 1.2 * radius and abs(offsets[-1][0]) < 1e-5
-    np.testing.assert_allclose(offsets[:, 2], 0.0, atol=1e-6)
-    assert not len(faces.points)
-    assert list(shown["beams"]) == ["roof"], "the ring took its share of the beams"
-
-
-def test_an_own_sensor_of_it_is_defined_by_its_keys(ring_kind):
-    items = {name: number for name, _, _, number in sensor_kinds.own_kinds(None, None)}
-    assert (items["lidar"], items["camera"]) == (0, 1) and items["toyring"] >= 1000
-    assert bpy.ops.pe.add_own_sensor(kind="toyring") == {"FINISHED"}
-    row = ring_kind.perception_entropy.own_sensors[-1]
-    assert row.name == "My Toy Ring" and row.problem != "", "it has no keys yet"
-    row.keys = "range_m = 7.5"
-    assert row.problem == "" and catalog.load(row.name).range_m == 7.5
-    assert bridge.add_own_sensor(ring_kind, "Other Ring", {"kind": "toyring", "range_m": 3.0})
-    assert ring_kind.perception_entropy.own_sensors[-1].keys == "range_m = 3.0"
-    assert sensor_kinds.row_of("toyring").own_fields == ("keys",)
-    assert sensor_kinds.kind_label("toyring") == "Toy Ring"
-    row.keys = "range_m = "
-    assert "keys" in row.problem, "a line that cannot be read is refused by the engine"
-    bridge.remove_own_sensors()
-
-
-def test_without_a_picture_of_its_kind_looking_through_says_so(ring_kind, ring):
-    assert bpy.ops.pe.look_through(name="bumper") == {"CANCELLED"}
-    assert bpy.context.scene.camera is None
-
-
 def test_a_row_gives_it_a_picture_a_housing_and_fields(ring_kind, ring, monkeypatch):
     box = pe.Housing("box", (0.5, 0.4, 0.3), (0.0, 0.0, 0.15), "a test")
     row = sensor_kinds.KindRow(
@@ -141,26 +101,6 @@ def test_a_row_gives_it_a_picture_a_housing_and_fields(ring_kind, ring, monkeypa
     assert sensor_kinds.row_of("toyring").own_fields == ("max_range",)
     surface = housing.model_surface(PRESET)
     np.testing.assert_allclose(np.ptp(surface.points, axis=0), (0.5, 0.4, 0.3), atol=0.01)
-
-
-def test_a_preset_of_a_kind_that_is_gone_is_refused(car):
-    """The preset was forgotten when the kind went: one line, no sensor of another kind."""
-    kinds.register(RING)
-    catalog.add(PRESET, {"kind": "toyring", "range_m": 12.0})
-    try:
-        scenes.add_sensor("bumper", PRESET)
-        kinds.unregister("toyring")
-        assert PRESET not in dict(properties.model_suggestions(None, None, ""))
-        assert PRESET not in models(None)
-        for operator in (bpy.ops.pe.score, bpy.ops.pe.optimize):
-            with pytest.raises(RuntimeError, match="kind: expected one of lidar, camera") as said:
-                operator()
-            assert "Traceback" not in str(said.value)
-        with pytest.raises(RuntimeError, match="kind: expected one of lidar, camera"):
-            bpy.ops.pe.add_sensor(model=PRESET)
-        assert bridge.signature(car)
-    finally:
-        catalog.remove(PRESET)
 
 
 def test_the_add_on_never_heard_of_it():

@@ -1,14 +1,12 @@
 """Variants: kept, put back exactly, nothing lost; their scores are those of the scene."""
 
 import json
-from dataclasses import replace
 
 import bpy
 import numpy as np
 import pytest
 
 from blender_addon import bridge, diagnostics, result_staleness
-from blender_addon.bridge import apply_variant
 from blender_addon.engine import advice
 from blender_addon.operators import compare_variants
 from tests.addon import scenes
@@ -97,85 +95,6 @@ def test_lacking_sensors_are_made_and_surplus_ones_set_aside(ideas):
     assert ideas.objects["third"] == third, "the very object, with all that it has"
 
 
-def test_what_hangs_on_a_sensor_goes_aside_and_comes_back_with_it(ideas):
-    housing = scenes.add_box(ideas.collection, "housing", (0.1, 0.1, 0.1))
-    housing.parent = ideas.objects["eye"]
-    own = scenes.add_collection(ideas.collection, "Own")
-    own.objects.link(housing)
-    eye = ideas.objects["eye"]
-    apply_variant.deactivate(ideas, eye)
-    bpy.context.view_layer.update()
-    assert not housing.visible_get()
-    apply_variant.reactivate(ideas, eye)
-    bpy.context.view_layer.update()
-    assert housing.visible_get()
-    assert {c.name for c in housing.users_collection} == {ideas.collection.name, "Own"}
-
-
-def test_hidden_sensors_stay_hidden_and_where_they_were(ideas, tmp_path):
-    """Blender does not work out the place of what is hidden, and a file does not hold it."""
-    ideas.objects["eye"].hide_set(True)
-    bpy.ops.pe.update_variant()
-    before = bridge.records_of_scene(ideas)
-    assert [record.visible for record in before] == [False, True]
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "hidden.blend"))
-    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "hidden.blend"))
-    scene = bpy.context.scene
-    assert bridge.same_sensors(bridge.records_of_scene(scene), before)
-    remove(scene, "eye")
-    switch(scene, "Variant")
-    assert bridge.same_sensors(bridge.records_of_scene(scene), before)
-    assert not scene.objects["eye"].visible_get()
-
-
-def test_undo_takes_a_switch_back_in_one_step(ideas):
-    ideas.objects["roof"].location.z = 2.5
-    scenes.add_sensor("third", location=(1.0, 0.0, 2.0))
-    bpy.ops.ed.undo_push(message="before")
-    before = poses()
-    key = rows(ideas)["Variant"].key
-    assert bpy.ops.pe.switch_variant("EXEC_DEFAULT", True, key=key) == {"FINISHED"}
-    assert poses() != before
-    bpy.ops.ed.undo()
-    assert poses() == before
-    assert variants(bpy.context.scene) == ["Variant"]
-
-
-def test_a_held_sensor_is_reported_and_nothing_is_changed(ideas):
-    bpy.ops.pe.save_variant()
-    roof = ideas.objects["roof"]
-    roof.location.z = 2.5
-    scenes.add_sensor("third", location=(1.0, 0.0, 2.0))
-    roof.constraints.new("LIMIT_LOCATION").use_min_z = True
-    roof.constraints[0].min_z = 2.4
-    bpy.context.view_layer.update()
-    before = poses()
-    with pytest.raises(RuntimeError, match="sensor 'roof': placement: expected an object that can"):
-        switch(ideas, "Variant")
-    bpy.context.view_layer.update()
-    assert poses() == before
-
-
-def test_names_are_never_alike_and_never_empty(ideas):
-    bpy.ops.pe.duplicate_variant()
-    first, second = ideas.perception_entropy.variants
-    assert (first.name, second.name) == ("Variant", "Variant 2")
-    second.name = "Variant"
-    assert second.name == "Variant 2"
-    second.name = "  "
-    assert second.name == "Variant 2" or second.name.startswith("Variant")
-    first.name = "Roof only"
-    assert ideas.perception_entropy.variant_key == first.key
-
-
-def test_deleting_the_active_one_leaves_the_sensors(ideas):
-    before = poses()
-    bpy.ops.pe.delete_variant()
-    assert variants(ideas) == [] and poses() == before
-    assert not bpy.ops.pe.switch_variant.poll()
-    assert not bpy.ops.pe.update_variant.poll()
-
-
 def test_the_mark_tells_that_the_scene_is_another(ideas):
     settings = ideas.perception_entropy
     result_staleness.update_variants()
@@ -241,40 +160,6 @@ def test_a_variant_that_is_switched_to_shows_its_own_result(ideas):
     assert ideas.perception_entropy.result_stale, "its score was made under another prior"
 
 
-def test_the_start_of_a_search_is_no_second_variant(ideas):
-    ideas.perception_entropy.keep_blind_sector = False  # a VLP-16 anywhere else has a wider one
-    bpy.ops.pe.optimize()
-    assert variants(ideas) == ["Variant", "Optimized, seed 0"]
-    assert rows(ideas)["Variant"].has_result
-
-
-def test_a_name_that_something_else_has(ideas):
-    """A mesh may be called as a sensor is: the sensor gets another name, in the variant too."""
-    remove(ideas, "eye")
-    scenes.add_box(ideas.collection, "eye", (0.1, 0.1, 0.1))
-    switch(ideas, "Variant")
-    assert set(poses()) == {"eye.001", "roof"}
-    result_staleness.update_variants()
-    assert not ideas.perception_entropy.variant_changed
-    assert [s.name for s in bridge.records_of(rows(ideas)["Variant"])] == ["eye.001", "roof"]
-
-
-def test_two_scenes_have_variants_of_their_own(ideas):
-    first = bpy.context.scene
-    bpy.ops.scene.new(type="NEW")
-    second = bpy.context.scene
-    scenes.add_car(second)
-    for z in (1.9, 2.1):
-        scenes.add_sensor("roof of two", location=(0.0, 0.0, z))
-        bpy.ops.pe.save_variant()
-    switch(second, "Variant")
-    assert set(poses()) == {"roof of two"}
-    assert variants(first) == ["Variant"] and variants(second) == ["Variant", "Variant 2"]
-    assert len(bridge.sensor_objects(first)) == 2
-    bpy.context.window.scene = first
-    assert set(poses()) == {"eye", "roof"}
-
-
 def test_comparing_tells_blind_ground_reach_and_ap(ideas):
     """Scores that stand are not made again."""
     bpy.ops.pe.score()
@@ -298,30 +183,3 @@ def test_comparing_tells_blind_ground_reach_and_ap(ideas):
     bpy.context.view_layer.update()
     bpy.ops.pe.update_variant()
     assert compare_variants.pending_variants(ideas), "they were of the sensors as they stood"
-
-
-def test_a_comparison_that_is_stopped_keeps_what_is_complete(ideas):
-    bpy.ops.pe.duplicate_variant()
-    both = {k: compare_variants.PendingVariant(str(k), scenes.study(), True) for k in (1, 2)}
-    job = compare_variants.CompareJob(both)
-    for step in job:
-        if step.stage == "scoring 2":
-            job.stop()
-    assert set(job.compared) == {1}
-
-
-def unknown(variant):
-    """Give the first sensor of a variant a model that there is not."""
-    first, *others = bridge.records_of(variant)
-    bridge.write_records(variant, [replace(first, model="no such sensor"), *others])
-
-
-def test_a_variant_that_cannot_be_scored_is_reported_and_the_others_are(ideas):
-    bpy.ops.pe.duplicate_variant()
-    unknown(ideas.perception_entropy.variants[0])
-    bpy.ops.pe.compare_variants()
-    assert [row.has_result for row in ideas.perception_entropy.variants] == [False, True]
-    unknown(ideas.perception_entropy.variants[1])
-    ideas.perception_entropy.variants[1].score_json = ""
-    with pytest.raises(RuntimeError, match=r"variant .Variant.*names, such as"):
-        bpy.ops.pe.compare_variants()

@@ -4,7 +4,6 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon.engine import pe
 from tests.addon import scenes
 
 BOX_VOLUME = 8.0
@@ -69,14 +68,6 @@ def test_collection_instances_are_made_real(parts):
     assert bounds(vehicle) == [0.0, -6.0, -1.0, 2.0, 6.0, 1.0]
 
 
-def test_instances_in_instances(parts):
-    wheel, axle = bpy.data.collections.new("Wheel"), bpy.data.collections.new("Axle")
-    scenes.add_box(wheel, "tyre")
-    axle.objects.link(instance_of(wheel, "left", location=(0.0, 5.0, 0.0)))
-    parts.objects.link(instance_of(axle, "front", location=(3.0, 0.0, 0.0)))
-    assert bounds(scenes.vehicle(parts)) == [2.0, 4.0, -1.0, 4.0, 6.0, 1.0]
-
-
 def test_geometry_nodes_instances(parts):
     """A box on every corner of a box, and the box itself gone, as the node has it."""
     tree = bpy.data.node_groups.new("boxes", "GeometryNodeTree")
@@ -94,19 +85,6 @@ def test_geometry_nodes_instances(parts):
     assert bounds(vehicle) == [-1.5, -1.5, -1.5, 1.5, 1.5, 1.5]
 
 
-def test_collections_in_the_collection_count(parts):
-    inner = scenes.add_collection(scenes.add_collection(parts, "Inner"), "Innermost")
-    scenes.add_box(inner, "deep")
-    scenes.add_box(parts, "top")
-    assert scenes.vehicle(parts).part_names == ("deep", "top")
-
-
-def test_others_do_not_count(parts):
-    scenes.add_box(parts, "mine")
-    scenes.add_box(bpy.context.scene.collection, "another", location=(9.0, 0.0, 0.0))
-    assert scenes.vehicle(parts).part_names == ("mine",)
-
-
 @pytest.mark.parametrize("how", ["hide_viewport", "hide_render", "eye", "collection", "excluded"])
 def test_hidden_does_not_count(parts, how):
     scenes.add_box(parts, "seen")
@@ -122,22 +100,6 @@ def test_hidden_does_not_count(parts, how):
     else:
         setattr(hidden, how, True)
     assert scenes.vehicle(parts).part_names == ("seen",)
-
-
-@pytest.mark.parametrize("how", ["the instance", "in the instance"])
-def test_instances_hidden_in_renders_do_not_count(parts, how):
-    wheel = bpy.data.collections.new("Wheel")
-    scenes.add_box(wheel, "rim")
-    tyre = scenes.add_box(wheel, "tyre")
-    left, right = (instance_of(wheel, side, location=(0, y, 0)) for side, y in (("l", 5), ("r", 9)))
-    for instance in (left, right):
-        parts.objects.link(instance)
-    (left if how == "the instance" else tyre).hide_render = True
-    vehicle = scenes.vehicle(parts)
-    rows = {"the instance": ("rim", "tyre"), "in the instance": ("rim",)}
-    assert vehicle.part_names == rows[how]
-    assert len(vehicle.triangles) == 2 * BOX_TRIANGLES
-    assert (vehicle.triangles[..., 1].min() > 7.0) == (how == "the instance")
 
 
 def test_curve_counts_once(parts):
@@ -166,25 +128,3 @@ def test_glass_is_named(parts):
     scenes.add_box(parts, "body")
     scenes.add_box(parts, "window").perception_entropy.see_through = True
     assert scenes.vehicle(parts).glass == ("window",)
-
-
-def test_order_of_parts_is_that_of_their_names(parts):
-    for name in ("c", "a", "b"):
-        scenes.add_box(parts, name)
-    vehicle = scenes.vehicle(parts)
-    assert vehicle.part_names == ("a", "b", "c")
-    assert vehicle.parts.tolist() == sorted(vehicle.parts.tolist())
-
-
-def test_empty_collection_is_one_line(parts):
-    with pytest.raises(pe.InputError) as caught:
-        scenes.vehicle(parts)
-    expected = "scene: vehicle collection 'Parts': expected visible meshes, found none"
-    assert str(caught.value) == expected
-
-
-def test_nan_names_the_object(parts):
-    scenes.add_box(parts, "good")
-    scenes.add_box(parts, "bad").data.vertices[0].co.x = float("nan")
-    with pytest.raises(pe.InputError, match="scene: vehicle object 'bad': expected finite coord"):
-        scenes.vehicle(parts)

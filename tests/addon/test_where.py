@@ -7,7 +7,6 @@ import numpy as np
 
 from blender_addon import panels, where_map
 from blender_addon.engine import catalog, jobs, pe
-from blender_addon.overlay.place_colors import place_colors
 from tests.addon import scenes
 from tests.addon.command_line import pe_here, run_here
 from tests.addon.layouts import Window, drawn
@@ -53,27 +52,6 @@ def test_a_click_puts_the_sensor_there_and_the_score_is_the_promised_one(car):
     assert study.evaluator(2048).entropy(study.rig) == best.value
 
 
-def test_forbidden_and_far_places_are_refused_with_the_reason(car):
-    found = asked(car, places=120)
-    low = next(each for each in found.places if each.reason)
-    count = len(car.objects)
-    assert bpy.ops.pe.take_place(point=low.point) == {"CANCELLED"}
-    assert bpy.ops.pe.take_place(point=(30.0, 0.0, 0.0)) == {"CANCELLED"}
-    assert len(car.objects) == count
-
-
-def test_a_mount_is_covered_instead_of_the_body(car):
-    part = next(iter(car.perception_entropy.vehicle.all_objects))
-    mount = scenes.add_mount(car, "roof mount", part, standoff=0.08)
-    found = asked(car, on="roof mount")
-    assert found.mount == mount.name
-    assert bpy.ops.pe.take_place(point=found.best()[0].point) == {"FINISHED"}
-    assert bpy.context.active_object.perception_entropy.mount == "roof mount"
-    low, high = np.array(part.bound_box).min(axis=0), np.array(part.bound_box).max(axis=0)
-    at = np.array([each.point for each in found.places]) - np.array(part.matrix_world.translation)
-    assert (at > low - 1e-3).all() and (at < high + 1e-3).all()
-
-
 def test_the_layer_colours_the_body_and_its_legend_has_units_and_reasons(car):
     found = asked(car, places=120)
     shape = scenes.drawn(car)["where"][""]
@@ -88,16 +66,6 @@ def test_the_layer_colours_the_body_and_its_legend_has_units_and_reasons(car):
     assert "before the last change" in scenes.drawn(car)["where"][""].legend.title
     bpy.ops.pe.dismiss_places()
     assert "where" not in scenes.drawn(car)
-
-
-def test_colours_are_those_of_the_places(car):
-    found = asked(car, places=60)
-    shape = place_colors(found, found.rig.sensors)
-    best = np.array(found.best()[0].point)
-    worst = np.array(found.best(60)[-1].point)
-    away = [np.linalg.norm(shape.faces.points - at, axis=1).argmin() for at in (best, worst)]
-    bright, dark = (shape.faces.colors[k, :3].sum() for k in away)
-    assert bright > dark + 0.2
 
 
 def test_the_panel_offers_it_and_another_file_has_no_places(car):

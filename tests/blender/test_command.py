@@ -10,15 +10,6 @@ from tests.blender.runner import output_of
 from tests.limits import HANG_S
 
 FAST = ("--samples", 4096)  # to be quick: all else is the same as on the whole grid
-IN_TRAFFIC = """
-import sys, bpy
-start, saved, folder = sys.argv[-3:]
-bpy.ops.wm.open_mainfile(filepath=start)
-settings = bpy.context.scene.perception_entropy
-settings.targets, settings.traffic, settings.scenes = "objects", True, 8
-bpy.ops.wm.save_as_mainfile(filepath=saved)
-assert bpy.ops.pe.export_study(filepath=folder + "/study.toml") == {"FINISHED"}
-"""
 NUSCENES_IN_THE_WEATHER = """
 import sys, bpy
 start, saved, folder = sys.argv[-3:]
@@ -64,11 +55,6 @@ def test_missing_file_is_one_line_and_status_1(installed, tmp_path):
     assert "Traceback" not in answer.stderr
 
 
-def test_wrong_usage_is_status_2(installed, sedan):
-    answer = installed.pe(sedan, "score", "--no-such-option")
-    assert answer.returncode == 2, output_of(answer)
-
-
 def test_blender_and_engine_agree_to_the_last_bit(installed, sedan, tmp_path):
     inside = installed.pe(sedan, "score", *FAST, "--json", "--output", tmp_path / "inside")
     assert inside.returncode == 0, output_of(inside)
@@ -89,12 +75,6 @@ def both_scores(installed, code, sedan, folder) -> tuple[dict, dict]:
     inside = installed.pe(saved, "score", *FAST, "--json")
     assert inside.returncode == 0, output_of(inside)
     return document_in(inside.stdout), alone("score", folder / "study.toml", *FAST, "--json")
-
-
-def test_they_agree_on_objects_in_traffic(installed, sedan, tmp_path):
-    inside, outside = both_scores(installed, IN_TRAFFIC, sedan, tmp_path)
-    assert inside["after"]["objects"]["traffic"] is True
-    assert inside["after"] == outside["after"]
 
 
 def test_radars_weathers_and_states_of_nuscenes_have_the_same_bits(installed, sedan, tmp_path):

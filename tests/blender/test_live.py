@@ -114,25 +114,6 @@ def test_a_drag_is_followed_and_ends_exact_to_the_bit(live, screenshots, install
     assert "Traceback" not in live.log.read_text()
 
 
-def test_vertices_moved_in_edit_mode_count_and_make_a_result_stale(live):
-    live.press_until("pe.score", lambda: live.state["has_result"], "a score")
-    assert not live.state["stale"]
-    start = wait_for_rest(live)
-    live.do("""
-        roof = window.scene.objects["roof"]
-        for each in window.scene.objects:
-            each.select_set(each == roof, view_layer=window.view_layer)
-        window.view_layer.objects.active = roof
-        bpy.ops.object.mode_set(mode="EDIT")
-        bpy.ops.mesh.select_all(action="SELECT")
-    """)
-    grab_and_move(live)
-    live.mouse("click", 1)
-    live.wait_for(lambda: live.state["stale"], EFFECT_TIMEOUT_S, "the mark of a change")
-    assert wait_for_rest(live, other_than=start) != start
-    assert "Traceback" not in live.log.read_text()
-
-
 def test_disabled_in_the_middle_of_anything_it_leaves_nothing_and_works_again(
     live, spent_stage, screenshots
 ):

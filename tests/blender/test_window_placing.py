@@ -83,20 +83,6 @@ def test_a_click_places_what_is_held_shift_goes_on_esc_leaves_and_undo_takes_eac
     assert "Traceback" not in window.log.read_text()
 
 
-def test_a_duplicate_by_shift_d_is_a_sensor_without_a_result(window):
-    window.press_until("pe.score", lambda: window.state["has_result"], "a score")
-    (original,) = sensors(window)
-    window.point_at_view()
-    window.key("shift+d")
-    window.wait_for(lambda: len(sensors(window)) == 2, EFFECT_TIMEOUT_S, "a second sensor")
-    window.key("Return")
-    assert f"{original}.001" in sensors(window)
-    window.wait_for(
-        lambda: window.state["own_results"] == [original], EFFECT_TIMEOUT_S, "one result alone"
-    )
-    assert "Traceback" not in window.log.read_text()
-
-
 def test_look_through_a_camera_and_esc_comes_back(window, screenshots):
     before = sensors(window)
     window.do("bpy.context.scene.perception_entropy.kind_to_add = 'camera'")

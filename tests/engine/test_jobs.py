@@ -2,16 +2,13 @@
 
 import csv
 import json
-import math
 import threading
 from concurrent.futures import Future
-from dataclasses import replace
 
 import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.base import dump_json
 from pe_tools.jobs import HistoryRow, score_and_optimize
 from tests.engine import shapes
 
@@ -105,22 +102,6 @@ def test_a_stop_ends_the_analysis_and_the_result_does_not_wait_for_it(when, monk
     assert job.outcome.after.entropy <= job.outcome.before.entropy
     assert pt.result_dict(job.outcome)["entropy"] == job.outcome.after.entropy
     goes_on.set()
-
-
-def test_an_exception_in_the_scoring_thread_is_raised():
-    given = study()
-    nothing_counts = pe.Prior.road([pe.Focus(0.0)])
-    with pytest.raises(pe.InputError, match="some weight left in the space"):
-        finished(pt.ScoreJob(replace(given, prior=nothing_counts)))
-
-
-def test_what_is_no_number_is_null_in_the_result():
-    _, outcome = finished(pt.ScoreJob(study()))
-    broken = replace(outcome, after=replace(outcome.after, entropy=math.nan, stderr=math.inf))
-    data = pt.result_dict(broken)
-    assert (data["entropy"], data["after"]["entropy"]) == (None, None)
-    assert data["after"]["stderr"] == "inf"
-    assert "NaN" not in dump_json(data)
 
 
 def test_stop_keeps_the_best_so_far():

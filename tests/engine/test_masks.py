@@ -10,16 +10,15 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import InputError, catalog
+from pe_core import catalog
 from pe_core.catalog import load
 from pe_core.scoring.requirements import BODIES
 from pe_core.sensors import BrownConrady, Camera, FTheta, KannalaBrandt, Lidar, range_picture
 from pe_core.sensors.field_of_view import FREE
 from pe_tools import graphics
-from pe_tools.graphics import range_colors, surroundings
+from pe_tools.graphics import surroundings
 from pe_tools.graphics.surroundings import FAR_M, PAINT, STANDING
 from pe_tools.outputs import scene_files
-from tests.engine import shapes
 
 TRIANGLES = np.array(
     [  # a wall on the left of the view, a pane ahead on the right, a rod thinner than a pixel
@@ -121,21 +120,6 @@ def test_files_say_what_the_arrays_do():
     assert told["eye/left"]["rays_by_part"].keys() <= {"wall", "rod"}
 
 
-def test_without_a_vehicle_all_is_white_and_said():
-    files, lines = scene_files(study(None), "masks")
-    assert "the study has no vehicle: masks are white" in lines
-    assert decoded(files["top_mask.png"]).min() == 255
-
-
-def test_a_picture_of_too_many_pixels_is_refused_before_a_ray_is_cast(monkeypatch):
-    monkeypatch.setattr(Camera, "projection", property(lambda self: pytest.fail("rays are cast")))
-    model = Camera("c", 1_000_000, 51, math.radians(60.0))
-    sensor = pe.Sensor("wide", model, pe.Pose((0, 0, 1)))
-    words = "wide: mask: expected at most 50,000,000 pixels or beams, found 51,000,000"
-    with pytest.raises(pe.InputError, match=words):
-        ego_mask(sensor, BODY)
-
-
 WALL = pe.Vehicle(
     np.array(
         [  # a wall across, 2 m ahead, 4 m wide, from the ground up to 3 m
@@ -165,12 +149,6 @@ def test_by_hand():
     assert picture.occluded.tolist() == [[False, False, True, False], [False] * 4]
 
 
-def test_beyond_its_range_is_nothing():
-    sensor = pe.Sensor("toy", lidar([-45, 0], max_range=1.4), pe.Pose((0.0, 0.0, 1.0)))
-    picture = range_picture(sensor, WALL)
-    assert np.isinf(picture.distance).all() and not picture.occluded.any()
-
-
 @pytest.mark.parametrize("model", ["Hesai AT128E2X", "Velodyne VLP-16 Puck", "RoboSense RS-Bpearl"])
 def test_each_pixel_is_its_beam_s_first_hit(model):
     """Beam by beam, from directions worked out anew, turned and tilted."""
@@ -191,18 +169,6 @@ def test_each_pixel_is_its_beam_s_first_hit(model):
         assert picture.occluded[row, column] == (body <= ground and expected < math.inf)
         seen.add((bool(picture.occluded[row, column]), expected < math.inf))
     assert (True, True) in seen  # some met the wall
-
-
-def test_nearer_than_its_least_range_nothing_comes_back():
-    """The wall 2 m ahead stops the beam all the same; the ground sqrt 2 away is not seen."""
-    table = {"kind": "lidar", "elevations_deg": [0, -45], "azimuth_count": 4, "max_range_m": 50.0}
-    near = catalog.from_table("toy", table | {"min_range_m": 2.5})
-    picture = range_picture(pe.Sensor("toy", near, pe.Pose((0.0, 0.0, 1.0))), WALL)
-    assert np.isinf(picture.distance).all()
-    assert picture.occluded.tolist() == [[False, False, True, False], [False] * 4]
-    colors = range_colors(picture, 50.0)
-    silent, nothing = colors[0, 2], colors[0, 0]
-    assert silent[0] > silent[2] + 0.3 and np.ptp(nothing) < 0.02  # brown, and grey
 
 
 def test_things_end_beams_unless_something_is_before_them():
@@ -243,13 +209,6 @@ def test_bodies_of_the_requirements_stand_at_5_10_and_20_metres(rotation):
         diagonal = np.hypot(*(high - low)[:2])
         assert diagonal <= math.sqrt(2.0) * math.hypot(*body.size[:2]) + 1e-6
         assert f"{distance:g} m" in tag.text
-
-
-def test_none_stands_in_the_vehicle():
-    low, high = np.array([-9.0, -1.4, 0.0]), np.array([6.0, 1.4, 3.0])
-    found = surroundings(eye((0.5, 0.0, 3.1)), (low, high)).bodies
-    assert [tag.text for tag in found.labels] == ["car, 20 m", "cyclist, 10 m"]
-    assert len(surroundings(eye((0.5, 0.0, 3.1)), shapes.box_car().bounds).bodies.labels) == 3
 
 
 def test_lanes_are_three_and_a_half_metres_wide_and_the_ground_ends_at_the_horizon():
@@ -314,16 +273,3 @@ def test_a_picture_is_read_back(shape):
     ):
         found = decoded(graphics.png_bytes(each))
         np.testing.assert_array_equal(found.reshape(shape), each)
-
-
-@pytest.mark.parametrize(
-    "pixels", [np.zeros((3, 3)), np.zeros((3, 3, 2), np.uint8), np.zeros((0, 3), np.uint8)]
-)
-def test_what_is_no_picture_is_refused(pixels):
-    with pytest.raises(InputError, match="expected"):
-        graphics.png_bytes(pixels)
-
-
-def test_colours_become_whole_numbers():
-    found = graphics.as_bytes([-0.1, 0.0, 0.5, 1.0, 1.2])
-    assert found.dtype == np.uint8 and found.tolist() == [0, 0, 128, 255, 255]

@@ -9,8 +9,7 @@ import pe_core as pe
 import pe_tools as pt
 from pe_core.scene.mesh import AXIS_NAMES
 from pe_core.study.study_file import study_from_dict, study_to_dict
-from tests.engine.mesh_files import glb_file, gltf, obj_bytes, ply_binary, read, stl_binary
-from tests.engine.refusals import wrongly_refused
+from tests.engine.mesh_files import glb_file, gltf, obj_bytes, read, stl_binary
 
 SENSOR = {"name": "roof", "model": "Pandar64", "position": [0, 0, 2]}
 # A car in the ground frame: a body, a cabin nearer to its rear, a nose. No side is like another.
@@ -144,29 +143,11 @@ def test_scale_and_rotation_come_last(tmp_path):
     np.testing.assert_allclose([low, high], [(-0.75, -0.5, 0.125), (0.5, 2.0, 1.0)], atol=1e-12)
 
 
-def test_a_body_that_tells_nothing_stays_as_it_is(tmp_path):
-    cube = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
-    mesh = read(tmp_path, "cube.ply", ply_binary("<", cube, [(0, 1, 2), (5, 6, 7)]))
-    assert mesh.triangles[0].tolist() == cube[:3].tolist()
-    assert mesh.axes == "faces +x (assumed), up is +z (assumed)"
-
-
 def study_of(folder, data, **vehicle):
     (folder / "car.obj").write_bytes(data)
     return study_from_dict(
         {"sensor": [SENSOR], "vehicle": {"mesh": "car.obj", **vehicle}}, folder=folder
     )
-
-
-def test_a_study_tells_its_vehicle_in_one_line(tmp_path):
-    line = study_of(tmp_path, obj("Blender, Y up")).vehicle_line
-    assert line == (
-        "car.obj: 4.00 x 1.80 x 1.50 m, faces +x (part names), up is +y (part names), "
-        "60 triangles, 5 parts"
-    )
-    head = b"# x forward, y left, z up"
-    line = study_of(tmp_path, obj("-Y forward, Z up", head=head)).vehicle_line
-    assert line == "car.obj: 1.80 x 4.00 x 1.50 m, faces -y, 60 triangles, 5 parts"
 
 
 def test_the_keys_come_back_from_a_file(tmp_path):
@@ -186,28 +167,6 @@ def test_an_exported_mesh_is_not_turned_again(tmp_path):
     again = pe.load_study(tmp_path / "out" / "study.toml")
     assert again.axes == pe.MeshAxes() and again.faces == ""
     assert np.array_equal(again.vehicle.triangles, study.vehicle.triangles)
-
-
-IMPOSSIBLE_KEYS = [
-    ("vehicle.up", {"up": "north"}),
-    ("vehicle.forward", {"up": "+z", "forward": "-z"}),
-    ("vehicle.scale", {"scale": 0}),
-    ("vehicle.scale", {"scale": -1}),
-    ("vehicle.scale", {"scale": True}),
-    ("vehicle.rotation", {"rotation": [0, 0]}),
-    ("vehicle.rotation", {"rotation": [0, 0, 9999]}),
-    ("vehicle.rotation", {"rotation": "left"}),
-]
-
-
-def test_impossible_keys_are_refused(tmp_path):
-    refused = wrongly_refused(lambda v: study_of(tmp_path, obj("ours"), **v), IMPOSSIBLE_KEYS)
-    assert refused == []
-
-
-def test_the_keys_need_a_mesh():
-    with pytest.raises(pe.InputError, match=r"vehicle\.mesh"):
-        study_from_dict({"sensor": [SENSOR], "vehicle": {"up": "+y"}})
 
 
 def slab(low, high):

@@ -131,21 +131,3 @@ def test_an_area_needs_a_vehicle():
     where = pe.Mounting({"area": area_mount()}, {"roof": "area"})
     with pytest.raises(pe.InputError, match="area: expected a vehicle that it is an area of"):
         pe.Study(rig, search=pe.Search(mounting=where)).coding()
-
-
-@pytest.mark.parametrize(
-    "make",
-    [
-        lambda: pe.MountArea(np.zeros((0, 3, 3))),
-        lambda: pe.MountArea(np.full((1, 3, 3), np.nan)),
-        lambda: pe.MountArea("roof"),
-        lambda: pe.MountArea(painted(), ""),
-        lambda: pe.MountArea(painted(), "a.npz", "roof"),
-        lambda: pe.SurfaceMount(["roof"], area=pe.MountArea(painted())),
-        lambda: pe.SurfaceMount(area=painted()),
-        lambda: pe.SurfaceMount(),
-    ],
-)
-def test_an_impossible_area_is_refused(make):
-    with pytest.raises(pe.InputError):
-        make()

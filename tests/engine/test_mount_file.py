@@ -79,10 +79,6 @@ def test_a_file_says_all_that_there_is(folder):
     assert again.search == study.search
 
 
-def test_a_study_that_says_nothing_of_mounts_has_none(folder):
-    assert read(folder, sensor()).search.mounting == pe.Mounting()
-
-
 def test_the_example_of_the_page_is_a_study(folder):
     """What docs/mounts_and_search.md shows under its heading is read as it stands there."""
     page = (ROOT / "docs" / "mounts_and_search.md").read_text("utf-8")

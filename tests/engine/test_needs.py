@@ -66,12 +66,3 @@ def test_too_little_memory_is_one_line_with_what_would_fit(monkeypatch):
         evaluator.entropy(ours.rig)
     with pytest.raises(pe.InputError, match="memory"):  # before the prior is laid out
         ours.evaluator(0)
-
-
-def test_too_large_a_sample_is_reported_with_one_that_fits(monkeypatch):
-    ours = study(1, 0)
-    monkeypatch.setattr(grid_scorer, "available_bytes", lambda: 100_000_000)
-    words = r"score: memory: .*100\.0 MB .*try samples = 131072, found about 10\.0 GB"
-    with pytest.raises(pe.InputError, match=words):
-        ours.evaluator(16_777_216)
-    assert ours.evaluator(4096).entropy(ours.rig) > 0.0

@@ -8,12 +8,8 @@ import pytest
 import pe_core as pe
 from pe_core import catalog
 from pe_core.scene import cuts_body
-from pe_core.study import study_to_dict
-from pe_tools.cli import new_verb
-from pe_tools.cli.new_verb import study_text
 from pe_tools.cli.roof import find_roof
 from pe_tools.cli.verbs import main
-from pe_tools.formats import read_mesh
 from tests.engine.mesh_files import glb_file, gltf, obj_bytes, ply_binary, stl_binary
 from tests.engine.test_docs import ROOT
 from tests.engine.test_mesh_axes import car, obj, triangles_of
@@ -93,16 +89,6 @@ def test_axes_and_units_of_every_format_are_found_and_written(tmp_path, capsys):
     assert "scale = 0.001" in (tmp_path / "millimetres.stl.toml").read_text()
 
 
-def test_a_box_without_names_has_its_roof_as_an_area(tmp_path):
-    (tmp_path / "box.obj").write_bytes(obj_bytes())
-    assert new(tmp_path / "box.obj", tmp_path / "study.toml") == 0
-    area = read_mesh(tmp_path / "study_roof.npz")
-    assert len(area.triangles) == 2 and (area.triangles[..., 2] == 2.0).all()
-    study = checked(tmp_path / "study.toml")
-    x, y, _ = study.rig.sensors[0].pose.position
-    assert (x, y) == (1.5, 0.25), "the middle of its top"
-
-
 def test_most_keys_have_a_comment_and_those_that_are_off_work(tmp_path):
     """Without the "# " before them, the proposed camera and limits are a study that runs, too."""
     new(ASSETS / "sedan.npz", tmp_path / "study.toml")
@@ -123,17 +109,6 @@ def test_most_keys_have_a_comment_and_those_that_are_off_work(tmp_path):
     assert study.search.mounting.constraints.max_height > lidar.pose.position[2]
 
 
-def test_the_text_is_read_as_the_study_it_was_written_from(tmp_path, monkeypatch):
-    meant = []
-    monkeypatch.setattr(
-        new_verb, "study_text", lambda first: meant.append(first.study()) or study_text(first)
-    )
-    for name in ("sedan", "bus"):
-        assert new(ASSETS / f"{name}.npz", tmp_path / f"{name}.toml") == 0
-        found = study_to_dict(pe.load_study(tmp_path / f"{name}.toml"))
-        assert found == study_to_dict(meant.pop())
-
-
 def test_files_that_are_there_are_never_overwritten(tmp_path, capsys):
     (tmp_path / "box.obj").write_bytes(obj_bytes())
     study, area = tmp_path / "study.toml", tmp_path / "study_roof.npz"
@@ -149,29 +124,6 @@ def test_files_that_are_there_are_never_overwritten(tmp_path, capsys):
     mesh = (tmp_path / "box.obj").read_bytes()
     assert new(tmp_path / "box.obj", tmp_path / "box.obj", "--replace") == 1
     assert (tmp_path / "box.obj").read_bytes() == mesh
-
-
-def test_a_mesh_that_floats_is_warned_of_and_a_plate_has_no_mount(tmp_path, capsys):
-    """A plate has no roof that a housing is clear of: the LiDAR is above it and moves in a box."""
-    points = np.array([(x, y, 1.0) for x in (-2.0, 2.0) for y in (-0.9, 0.9)])
-    (tmp_path / "plate.obj").write_bytes(obj_bytes(points, [(0, 1, 3, 2)]))
-    study = tmp_path / "study.toml"
-    assert new(tmp_path / "plate.obj", study, "--forward=+x", "--up=+z") == 0
-    assert "pe: warning: vehicle: " in capsys.readouterr().err
-    found = pe.load_study(study)
-    assert not found.search.mounting.mounts and not (tmp_path / "study_roof.npz").exists()
-    assert found.search.free["roof"] == ("x", "y", "pitch")
-    assert found.rig.sensors[0].pose.position[2] > 1.0
-    found.coding()
-
-
-def test_what_is_asked_for_holds_against_what_is_found(tmp_path):
-    (tmp_path / "car.obj").write_bytes(obj("ours"))
-    asked = ["--forward=-x", "--up=+z", "--scale", "2", "--sensor", "Hesai Pandar40P"]
-    assert new(tmp_path / "car.obj", tmp_path / "study.toml", *asked) == 0
-    study = checked(tmp_path / "study.toml")
-    assert study.axes == pe.MeshAxes("+z", "-x", 2.0)
-    assert study.rig.sensors[0].model.name == "Hesai Pandar40P"
 
 
 @pytest.mark.parametrize(

@@ -62,28 +62,6 @@ def test_a_grid_is_read_at_the_centres_of_another_space_and_takes_focus_weights(
     assert voxels(halved)[20:].sum() == pytest.approx(0.75)
 
 
-@pytest.mark.parametrize(
-    "weights",
-    [np.ones((3, 3)), -np.ones((40, 24)), np.zeros((40, 24)), np.full((40, 24), np.nan), "x"],
-)
-def test_wrong_weights_are_told(weights):
-    with pytest.raises(pe.InputError) as told:
-        pe.Prior.from_grid(weights, SPACE)
-    assert told.value.field == "weights"
-
-
-def test_other_wrong_priors_are_told():
-    with pytest.raises(pe.InputError):
-        pe.Prior.from_function(lambda x, y, z: np.ones(7), SPACE)
-    with pytest.raises(pe.InputError):
-        pe.Prior("grid")
-    with pytest.raises(pe.InputError):
-        pe.Prior.from_grid(np.ones((40, 24)), SPACE).objects_at_once(SPACE)
-    tall = pe.PerceptionSpace((0, 2), (0, 2), (0, 50), 0.5)
-    with pytest.raises(pe.InputError):
-        pe.Prior.from_function(lambda x, y, z: 1.0 + z + 0.0 * x, tall)
-
-
 @pytest.mark.parametrize("by_height", [False, True])
 def test_a_study_with_a_grid_is_written_and_read_to_the_bit(tmp_path, by_height):
     weights = np.random.default_rng(3).random(SPACE.shape if by_height else SPACE.shape[:2])
@@ -163,13 +141,6 @@ def test_a_function_is_an_objective_here_and_in_workers():
         assert [step.entropy for step in there]
 
 
-@pytest.mark.parametrize("wrong", [3, None, [3], lambda rig: "low", lambda rig: float("nan")])
-def test_what_is_no_objective_is_told(wrong):
-    one = study()
-    with pytest.raises(pe.InputError):
-        list(pe.optimize(wrong, one.rig, one.search_space(), evaluations=9))
-
-
 @pytest.fixture(scope="module")
 def values():
     """Values of many types, big ones among them."""
@@ -199,13 +170,6 @@ def values():
         *(score, score.scatter, one.evaluator().summary(one.rig), outcome, step, *seen, area),
         *(LIDAR, pe.catalog.load("Camera 60 deg"), field, maps, one.search_space(), one.model),
     ]
-
-
-def test_values_are_short_in_a_console(values):
-    long = {type(value).__name__: repr(value) for value in values if len(repr(value)) > 200}
-    assert not long
-    assert repr(values[1]) == "Rig(sensors=(<roof>))"
-    assert all(repr(each).startswith(type(each).__name__) for each in values)
 
 
 def test_public_dataclasses_that_hold_arrays_are_short():
@@ -242,14 +206,6 @@ def test_without_a_package_a_line_says_what_to_install(monkeypatch, values, pack
     with pytest.raises(pe.InputError, match=r"pip install .perception-entropy") as told:
         values[1].to_pandas() if package == "pandas" else pt.plot.ground(values[0])
     assert told.value.field == package
-
-
-def test_a_job_runs_with_a_bar_and_without_one(monkeypatch, capsys):
-    outcome = pt.ScoreJob(study()).run()
-    assert "done" in capsys.readouterr().err and outcome.after.entropy
-    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
-    assert pt.ScoreJob(study()).run().after.entropy == outcome.after.entropy
-    assert not capsys.readouterr().err
 
 
 def test_plots_draw_on_given_axes_and_refuse_what_is_none():

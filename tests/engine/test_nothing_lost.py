@@ -3,7 +3,6 @@
 import errno
 import json
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -95,19 +94,6 @@ def test_a_signal_during_the_first_score_ends_it_with_nothing_written(study, out
     assert list(out.iterdir()) == []
 
 
-def test_nohup_means_it(study, out):
-    def ignore_hangups():
-        signal.signal(signal.SIGHUP, signal.SIG_IGN)
-
-    with Command(
-        "optimize", "--no-review", study, "-o", out, *ENDLESS, preexec_fn=ignore_hangups
-    ) as command:
-        command.wait_for_better()
-        command.send(signal.SIGHUP)
-        command.send(signal.SIGTERM)
-        assert command.end() == 143  # of two signals that count, it would be the second
-
-
 @pytest.mark.parametrize("module", ["numpy", "pe_tools.cli.terminal"])
 def test_ctrl_c_while_loading_is_one_line(module):
     """Python tells of each module that it has loaded; many more follow these."""
@@ -129,17 +115,6 @@ def test_ctrl_c_while_loading_is_one_line(module):
     assert (process.returncode, [line.strip() for line in own]) == (130, ["pe: interrupted"])
 
 
-def test_a_full_stderr_ends_nothing(study, out):
-    with (
-        open("/dev/full", "w") as full,
-        Command("optimize", "--no-review", study, "-o", out, *SHORT, stderr=full) as command,
-    ):
-        text = command.process.stdout.read()
-        assert command.end() == 0
-    assert text.startswith("entropy ")
-    assert not result(out)["stopped"]
-
-
 def test_closed_streams_end_nothing(study, out):
     def close():
         for number in (0, 1, 2):
@@ -148,45 +123,6 @@ def test_closed_streams_end_nothing(study, out):
     with Command("optimize", "--no-review", study, "-o", out, *SHORT, preexec_fn=close) as command:
         assert command.end() == 0
     assert not result(out)["stopped"]
-
-
-def test_a_folder_that_vanishes_is_made_again(study, out):
-    with Command("optimize", "--no-review", study, "-o", out, *ENDLESS) as command:
-        command.wait_for_better()
-        shutil.rmtree(out)
-        command.send(signal.SIGTERM)
-        assert command.end() == 143
-    assert result(out)["stopped"]
-
-
-def test_a_folder_in_whose_way_a_file_is_is_told(study, out):
-    with Command("optimize", "--no-review", study, "-o", out, *ENDLESS) as command:
-        command.wait_for_better()
-        shutil.rmtree(out)
-        out.write_text("in the way")
-        command.send(signal.SIGINT)
-        text = command.process.stdout.read()
-        assert command.end() == 1
-    assert text.startswith("entropy ") and out.read_text() == "in the way"
-
-
-def test_a_full_disk_leaves_the_old_set_whole(study, out):
-    """A file may have no more bytes than a small study has: the result is larger."""
-    import resource
-
-    def quota():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
-
-    with Command("optimize", "--no-review", study, "-o", out, *SHORT) as command:
-        assert command.end() == 0
-    before = {p.name: p.read_bytes() for p in out.iterdir()}
-    line = "optimize", "--no-review", study, "-o", out, *SHORT, "--seed", 9
-    with Command(*line, preexec_fn=quota) as command:
-        text = command.process.stdout.read()
-        assert command.end() == 1
-    assert {p.name: p.read_bytes() for p in out.iterdir()} == before
-    assert text.startswith("entropy ")  # what nobody could write is at least said
-    assert "file too large" in command.complaints[0].lower()
 
 
 def test_a_disk_that_fills_after_a_checkpoint_over_an_older_set_is_told(
@@ -243,19 +179,6 @@ def test_a_file_that_appears_meanwhile_is_not_written_over(study, out):
         command.send(signal.SIGTERM)
         assert command.end() == 1
     assert (out / "history.csv").read_text() == "mine"
-
-
-def test_a_signal_between_two_scores_is_a_line(study):
-    """Where no verb looks for signals itself: they interrupt as Ctrl-C does."""
-    code = (
-        "import os, signal\n"
-        "from pe_tools.cli import command\n"
-        "def work():\n    os.kill(os.getpid(), signal.SIGTERM)\n    raise AssertionError\n"
-        "before = signal.getsignal(signal.SIGTERM)\n"
-        "print(command.run(work), signal.getsignal(signal.SIGTERM) == before)\n"
-    )
-    run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
-    assert (run.stdout, run.stderr) == ("143 True\n", "pe: interrupted\n")
 
 
 def test_a_signal_to_the_whole_group_is_the_parent_s_affair():

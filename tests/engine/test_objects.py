@@ -1,6 +1,5 @@
 """Objects: what is refused, and the definition of m on boxes that a hand can work out."""
 
-import math
 import pickle
 
 import numpy as np
@@ -18,29 +17,6 @@ def objects(centers=((10.0, 0.0, 0.5),), size=(1.0, 1.0, 1.0), yaw=0.0, scenes=N
     count = len(centers)
     own = np.zeros(count, int)
     return pe.Objects(centers, [size] * count, [yaw] * count, own, ("box",), scenes)
-
-
-BAD = {
-    "no object": ({"centers": np.zeros((0, 3))}, "at least one object"),
-    "flat centres": ({"centers": [1.0, 2.0, 3.0]}, "centers: expected"),
-    "NaN": ({"centers": [[math.nan, 0.0, 0.0]]}, "object 0: centers"),
-    "size of zero": ({"sizes": [[1.0, 0.0, 1.0]]}, "object 0: sizes: expected lengths above 0 m"),
-    "two sizes": ({"sizes": [[1.0, 1.0, 1.0]] * 2}, "1 rows, one an object"),
-    "a heading too many": ({"yaws": [0.0, 1.0]}, "1 rows, one an object"),
-    "no such class": ({"labels": [1]}, "below 1"),
-    "half a scene": ({"scenes": [0.5]}, "scenes: expected 1 whole numbers"),
-    "text": ({"labels": ["box"]}, "labels"),
-}
-
-
-@pytest.mark.parametrize("case", BAD)
-def test_bad_objects_are_refused_in_one_line(case):
-    changed, words = BAD[case]
-    plain = {"centers": [[10.0, 0.0, 0.5]], "sizes": [[1.0, 1.0, 1.0]], "yaws": [0.0]}
-    plain |= {"labels": [0], "class_names": ("box",)}
-    with pytest.raises(pe.InputError, match=words) as caught:
-        pe.Objects(**plain | changed)
-    assert "\n" not in str(caught.value)
 
 
 def test_objects_cannot_be_changed_and_are_sent_whole():

@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -78,21 +77,6 @@ def test_a_users_own_file_is_refused_before_the_work(study, out, name, capsys, n
     assert contents(out) == {name: b"mine"}
 
 
-@pytest.mark.parametrize("make", [Path.mkdir, lambda p: p.symlink_to("nowhere")])
-def test_a_folder_or_a_link_of_that_name_is_refused(study, out, make, capsys, no_work):
-    make(out / "result.json")
-    assert optimize(study, out) == 1
-    assert "result.json: output: " in one_line(capsys)
-
-
-def test_files_that_a_run_does_not_write_are_nobodys_business(study, out):
-    for name in ("history.csv", "optimized.blend", ".writable", "notes.txt"):
-        (out / name).write_text("mine")
-    assert main(["score", str(study), "-o", str(out)]) == 0
-    for name in ("history.csv", "optimized.blend", ".writable", "notes.txt"):
-        assert (out / name).read_text() == "mine"
-
-
 def test_the_folder_of_the_study_is_refused(tmp_path, capsys, monkeypatch, no_work):
     pt.export_study(a_study(), tmp_path / "study.toml")
     before = contents(tmp_path)
@@ -104,23 +88,6 @@ def test_the_folder_of_the_study_is_refused(tmp_path, capsys, monkeypatch, no_wo
         "found the study's folder: study.toml would be overwritten"
     )
     assert contents(tmp_path) == before
-
-
-def test_an_edited_study_in_a_result_folder_is_the_users(study, out, capsys):
-    assert optimize(study, out) == 0
-    edited = (out / "study.toml").read_text() + "# a note\n"
-    (out / "study.toml").write_text(edited)
-    capsys.readouterr()
-    assert optimize(study, out) == 1
-    assert f"{out / 'study.toml'}: output: " in one_line(capsys)
-    assert (out / "study.toml").read_text() == edited
-
-
-@pytest.mark.parametrize("text", ["", "{}", "[1]", '{"perception-entropy": 1, "files": [3]}'])
-def test_a_damaged_list_is_reported(study, out, text, capsys):
-    (out / LISTING).write_text(text)
-    assert optimize(study, out) == 1
-    assert f"{out / LISTING}: file: expected this program's list" in one_line(capsys)
 
 
 def test_an_export_replaces_what_was_chosen_and_not_its_neighbours(tmp_path):
@@ -138,16 +105,6 @@ def test_an_export_replaces_what_was_chosen_and_not_its_neighbours(tmp_path):
     assert pe.load_study(path).rig["roof"].pose.position[0] == -0.43
     pt.export_study(a_study(x=0.1), path)  # all three are ours now
     assert pe.load_study(path).rig["roof"].pose.position[0] == 0.1
-
-
-def test_the_same_bytes_are_left_alone_and_stay_the_users(tmp_path):
-    for _ in range(2):
-        with FileSet(tmp_path) as files:
-            (tmp_path / "mesh.npz").write_bytes(b"mine")
-            files.add("mesh.npz", b"mine")
-    with pytest.raises(pe.InputError, match="expected no file"), FileSet(tmp_path) as files:
-        files.add("mesh.npz", b"another")
-    assert contents(tmp_path) == {"mesh.npz": b"mine"}
 
 
 def test_a_set_is_written_whole_or_not_at_all(tmp_path):
@@ -217,19 +174,3 @@ def test_what_another_run_left_is_taken_away(study, out, capsys):
     assert "not of this run" not in capsys.readouterr().err
     assert optimize(study, out) == 0
     assert "history.csv" in contents(out)
-
-
-def test_what_somebody_changed_of_another_run_stays(study, out):
-    assert optimize(study, out) == 0
-    (out / "history.csv").write_text("mine")
-    assert main(["score", str(study), "-o", str(out)]) == 0
-    assert (out / "history.csv").read_text() == "mine"
-
-
-@pytest.mark.parametrize("found", ["a file", "below a file", "nothing"])
-def test_an_output_that_is_no_folder_is_one_line(study, tmp_path, found, capsys, no_work):
-    (tmp_path / "file").write_text("mine")
-    folder = {"a file": tmp_path / "file", "below a file": tmp_path / "file" / "out", "nothing": ""}
-    assert optimize(study, folder[found]) == 1
-    assert "output: expected " in one_line(capsys)
-    assert (tmp_path / "file").read_text() == "mine"

@@ -1,7 +1,6 @@
 """Out of what came in comes what came in: kinds that are not known here, comments, entries."""
 
 import json
-import math
 from pathlib import Path
 
 import pytest
@@ -23,8 +22,6 @@ FILES = {
     for folder in sorted(FOREIGN.iterdir())
 }
 CARLA = json.loads(FILES["carla"]["objects.json"])
-
-
 LEFT_OUT = {
     "carla": "1 collision sensor (collision), "
     "1 lane_invasion sensor (lane_invasion), 1 pseudo sensor (tf)",
@@ -152,39 +149,6 @@ def test_a_lens_of_a_kit_is_written_when_it_is_another(tmp_path):
     other = pe.Sensor("camera0", pe.catalog.load("KITTI cam2"), rig["camera0"].pose)
     pt.export_rig(pe.Rig([other]), "autoware", kit, AXLE, replace=True)
     assert "image_width: 1242" in file.read_text()
-
-
-def test_a_model_that_was_chosen_is_written_and_one_that_stands_in_is_not(tmp_path):
-    path = written(tmp_path / "in", "driveworks")
-    chosen = {"lidar:top": "Hesai OT128 (Pandar128E4X)"}
-    for models, word in ((chosen, "model=Hesai OT128 (Pandar128E4X)"), ({}, "device=LUMINAR")):
-        found = import_rig(path, None, AXLE, models)
-        out = tmp_path / word[:5] / "rig.json"
-        pt.export_rig(found.rig, "driveworks", out, AXLE, passthrough=found.passthrough)
-        row = json.loads(out.read_text())["rig"]["sensors"][1]
-        assert row["name"] == "lidar:top" and row["parameter"].startswith(word)
-
-
-def test_the_file_s_own_place_is_taken_back(tmp_path):
-    """A file whose origin was put somewhere goes out from there, its radar where it was."""
-    path = written(tmp_path / "in", "carla")
-    placed = pe.Pose((0.4, 0.1, -0.2), (0.0, 0.1, 0.3))
-    found = import_rig(path, None, None, None, placed)
-    assert found.rig["lidar"].pose.position != (0.0, 0.0, 2.4)
-    pt.export_rig(found.rig, "carla", tmp_path / "objects.json", passthrough=found.passthrough)
-    assert json.loads((tmp_path / "objects.json").read_text()) == CARLA
-
-
-def test_carla_s_horizontal_fov_is_the_lidar_s(tmp_path):
-    """320,000 points a second, 20 turns, 32 channels: 500 steps in 120 degrees, both edges on."""
-    lidar = import_rig(written(tmp_path / "in", "carla")).rig["lidar"].model
-    assert math.degrees(lidar.horizontal_fov[1]) == pytest.approx(60.0)
-    assert lidar.beam_count == 501 * 32
-    rig = pe.Rig([pe.Sensor("lidar", lidar, pe.Pose((0, 0, 2)))])
-    pt.export_rig(rig, "carla", tmp_path / "objects.json")
-    (row,) = json.loads((tmp_path / "objects.json").read_text())["objects"][0]["sensors"]
-    assert row["horizontal_fov"] == pytest.approx(120.0)
-    assert row["points_per_second"] / 10 == 501 * 32
 
 
 def test_osi_s_radars_keep_their_ids_and_all_else(tmp_path):

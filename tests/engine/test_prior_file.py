@@ -48,10 +48,6 @@ def test_models_are_saved_by_their_name_alone(prior_of, model):
     assert saved(prior) == {"model": model}
 
 
-def test_the_road_is_the_default(prior_of):
-    assert prior_of("") == pe.Prior.road()
-
-
 def test_a_class_of_the_road_can_be_changed(prior_of):
     car, *others = pe.Prior.road().classes
     prior = prior_of(FAR_CAR)
@@ -82,35 +78,3 @@ def test_focus_knows_the_classes_of_one_s_own(prior_of):
     assert prior_of(TRAM + focus).focus == (pe.Focus(2.0, classes=("tram",)),)
     with pytest.raises(pe.InputError, match=r"classes: expected one of car, .*cone, found 'tram'"):
         prior_of(focus)
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ('[prior]\nmodel = "motorway"\n', "prior.model: expected one of road, highway, uniform"),
-        ('[prior]\nmodel = "boxes"\n', "prior.model: expected one of road, highway, uniform"),
-        ('[prior]\nclasses = ["horse"]\n', "prior.classes: expected some of car, .*found 'horse'"),
-        ("[prior]\nclasses = []\n", "prior: classes: expected at least one"),
-        ('[prior]\nclasses = ["car", "car"]\n', "prior: classes: expected each name once"),
-        ('[prior]\nmodel = "uniform"\n' + FAR_CAR, "prior.class: expected nothing beside model"),
-        ('[prior]\nmodel = "uniform"\nclasses = []\n', "prior.classes: expected nothing beside"),
-        (FAR_CAR + FAR_CAR, "prior.class: expected each name once, found 'car' twice"),
-        (FAR_CAR + "colour = 3\n", r"prior.class\[0\].colour: expected one of"),
-        (FAR_CAR.replace("60", "0"), r"prior.class\[0\].decay_x: expected a length above 0 m"),
-        (FAR_CAR.replace("60", "nan"), r"prior.class\[0\].decay_x: expected a number, found nan"),
-        (FAR_CAR.replace("60", "'60'"), r"prior.class\[0\].decay_x: expected a number, found '60'"),
-        (FAR_CAR + "size = [1, 2]\n", r"prior.class\[0\].size: expected a list of 3 numbers"),
-        (FAR_CAR + "lanes = []\n", r"prior.class\[0\].lanes: expected one or more finite numbers"),
-        (FAR_CAR + "lanes = ['a']\n", r"prior.class\[0\].lanes: expected a list of 1 numbers"),
-        (FAR_CAR + "lanes = 3\n", r"prior.class\[0\].lanes: expected a list of 1 numbers"),
-        (TRAM.replace("gauss_y = 2.0", ""), r"prior.class\[0\].gauss_y: expected a value, found n"),
-        (
-            "[[prior.class]]\ndecay_x = 2\n",
-            r"prior.class\[0\].name: expected a value, found nothing",
-        ),
-    ],
-)
-def test_bad_priors_are_one_clear_line(prior_of, text, message):
-    with pytest.raises(pe.InputError, match=message) as caught:
-        prior_of(text)
-    assert "study.toml: " in str(caught.value) and "\n" not in str(caught.value)

@@ -13,7 +13,6 @@ sys.path.insert(0, str(ROOT / "tools"))
 import fresh_machine
 
 GITHUB = ROOT / ".github"
-FORMS = sorted((GITHUB / "ISSUE_TEMPLATE").glob("[!c]*.yml"))
 
 
 def read(path):
@@ -26,23 +25,6 @@ def test_the_citation_is_of_this_version_and_of_the_paper():
     paper = cited["preferred-citation"]
     assert [each["family-names"] for each in paper["authors"]] == ["Ma", "Liu", "Li"]
     assert paper["title"] in (ROOT / "README.md").read_text("utf-8")
-
-
-@pytest.mark.parametrize("path", FORMS, ids=lambda path: path.stem)
-def test_forms_ask_for_what_is_needed(path):
-    form = read(path)
-    assert form["name"] and form["description"]
-    fields = {field["id"]: field for field in form["body"]}
-    assert len(fields) == len(form["body"]) and all(
-        f["attributes"]["label"] for f in fields.values()
-    )
-    assert all(field["validations"]["required"] for field in fields.values())
-    wanted = "doctor" if path.stem == "bug" else "source"
-    assert wanted in fields
-
-
-def test_there_is_a_form_for_each_kind_of_report():
-    assert {path.stem for path in FORMS} == {"bug", "sensor", "rig", "acceptance_test"}
 
 
 def test_workflows_do_what_the_makefile_does_and_cover_all_systems():

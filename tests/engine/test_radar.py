@@ -17,7 +17,6 @@ from pe_tools.advice.vehicle_checks import Bodywork
 from tests.engine import shapes
 from tests.engine.kernels import every_voxel
 from tests.engine.radar_oracle import expected_detections
-from tests.engine.refusals import wrongly_refused
 
 ARS = "Continental ARS408-21"
 MODE = {
@@ -207,66 +206,6 @@ def test_presets_and_tables_go_through_files():
     assert catalog.to_table(catalog.from_table("own", own))["rcs_dbsm"] == own["rcs_dbsm"]
     side = Reflectivity((10.0, 20.0, 12.0), (0.0, math.pi / 2, math.pi))
     assert side.square_metres(np.radians([0, 45, 90])) == pytest.approx([10, 10**1.5, 100])
-
-
-def test_accuracies_of_sources_are_no_resolutions():
-    """Presets whose sources have no resolution find a car once; an accuracy below c / 2B ends."""
-    car = pe.Objects([[20.0, 0.0, 0.75]], [[4.5, 1.8, 1.5]], [0], [0], ("car",))
-    for name in ("Bosch LRR3", "Delphi ESR", "Autoliv NB SRR 80 m"):
-        model = catalog.load(name)
-        m = kinds.measure_objects(radar(model, (0, 0, 0.5)), car)[0]
-        assert 0.9 < m <= 1.0
-        assert all(mode.range_resolution is None for mode in model.modes)
-    table = catalog.to_table(catalog.load("Bosch LRR3"))
-    (mode,) = table["mode"]
-    for depth, allowed in ((0.1, False), (0.1499, True), (0.3, True)):
-        own = {**table, "mode": [{**mode, "range_resolution_m": depth}]}
-        if allowed:
-            kept = catalog.to_table(catalog.from_table("own", own))["mode"][0]
-            assert kept["range_resolution_m"] == depth and kept["bandwidth_mhz"] == 1000
-        else:
-            with pytest.raises(pe.InputError, match=r"range_resolution_m: .*, found 0\.1$"):
-                catalog.from_table("own", own)
-
-
-BAD_MODES = [
-    ("mode 'scan': min_range_m", {"min_range_m": 200.0}),
-    ("mode 'scan': range_resolution_m", {"range_resolution_m": 0}),
-    ("mode 'scan': bandwidth_mhz", {"bandwidth_mhz": 0}),
-    ("mode 'scan': range_resolution_m", {"bandwidth_mhz": 299.0}),
-    ("mode 'scan': azimuth_resolution_deg", {"azimuth_resolution_deg": 0}),
-    ("mode 'scan': elevation_resolution_deg", {"elevation_resolution_deg": 0.0}),
-    ("mode 'scan': azimuth_deg", {"azimuth_deg": [10, -10, 20]}),
-    ("mode 'scan': azimuth_deg", {"azimuth_deg": 10}),
-    ("mode 'scan': range_m", {"range_m": [1, 2]}),
-    ("mode 'scan': range_m", {"range_m": 0}),
-    ("mode 'scan': elevation_scale", {"elevation_scale": 2}),
-    ("mode 1: widht", {"widht": 2}),
-]
-
-
-def test_bad_modes_are_refused():
-    def made(change):
-        catalog.from_table("own", {"kind": "radar", "mode": [{**MODE, **change}]})
-
-    assert wrongly_refused(made, BAD_MODES, "own") == []
-
-
-BAD_RADARS = [
-    ("detection_probability", {"detection_probability": 1.0}),
-    ("detection_probability", {"detection_probability": 0.0}),
-    ("false_alarm", {"false_alarm": 0.95}),
-    ("list_length", {"list_length": 0}),
-    ("cover_loss_db", {"cover_loss_db": -1}),
-    ("rcs_dbsm.car", {"rcs_dbsm": {"car": "big"}}),
-    ("rcs_dbsm.car.aspect_deg", {"rcs_dbsm": {"car": {"aspect_deg": [9, 3], "dbsm": [1, 2]}}}),
-    ("mode", {"mode": []}),
-    ("mode.name", {"mode": [MODE, MODE]}),
-]
-
-
-def test_bad_radars_are_refused():
-    assert wrongly_refused(lambda v: catalog.from_table("own", {**TABLE, **v}), BAD_RADARS) == []
 
 
 def test_a_study_of_radars_scores_voxels_and_objects(tmp_path):

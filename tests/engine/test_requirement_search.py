@@ -22,10 +22,8 @@ from pe_core.scoring.requirements import (
 from pe_core.scoring.sight import BLIND_TO_M
 from pe_core.search import Goals, Wanted
 from pe_core.search.dispatch import value_below
-from pe_core.search.key_figures import KEPT, KEY_FIGURES, KeyFigures
 from pe_core.study.requirement_search import INFEASIBLE, constraints_of, feasible_first, suggestions
 from pe_tools import advice
-from pe_tools.cli.terminal import summary
 from pe_tools.jobs import result_dict
 from tests.engine import shapes
 
@@ -209,46 +207,6 @@ def test_a_search_that_keeps_blind_ground_ends_with_no_more_of_it(method):
     told = result_dict(kept)
     assert [told["figures"][which]["blind_m2"] for which in ("before", "after")] == [start, result]
     assert told["cost"] == kept.cost
-
-
-def test_what_is_wanted_may_be_worse_than_the_start_and_is_the_limit():
-    start = tilted().sight().blind_area(tilted().rig, BLIND_TO_M)
-    outcome = finished(pt.OptimizeJob(tilted(BLIND, blind_ground=start + 40.0), 1))
-    assert start < outcome.figures[1].blind_m2 <= start + 40.0
-    (row,) = (row for row in outcome.dashboard if row.figure.key == "blind_ground")
-    assert row.met and row.kept and row.value == outcome.figures[1].blind_m2
-    told = result_dict(outcome)["dashboard"]
-    assert told[0] == {"figure": "blind_ground", "unit": "m2", **told[0]} and told[0]["met"]
-    assert [each["wanted"] for each in told[1:]] == [None] * (len(told) - 1)
-    assert f" -> {row.text}\n" in summary(outcome)
-
-
-def test_a_figure_that_cannot_be_kept_is_told_with_how_far_it_is_off():
-    outcome = finished(pt.OptimizeJob(tilted(BLIND, blind_ground=0.5), 1))
-    (told,) = (each for each in outcome.warnings if each.code == advice.NOT_KEPT)
-    off = outcome.figures[1].blind_m2 - 0.5
-    assert off > 0.0 and f"off by {math.ceil(10.0 * off - 1e-6) / 10.0:.1f} m2" in told.text
-    free = finished(pt.OptimizeJob(tilted(blind_ground=0.5), 1))
-    assert not [each for each in free.warnings if each.code == advice.NOT_KEPT]
-    assert free.before == outcome.before and free.dashboard[0].met is False
-
-
-@pytest.mark.parametrize("key", sorted(KEPT))
-def test_each_figure_is_kept_in_its_own_unit(key):
-    """A limit at the start's value is met by the start, one that is a little better is not."""
-    own = tilted()
-    figure, value = (
-        KEY_FIGURES[key],
-        KEY_FIGURES[key].value(KeyFigures.of_rig(own.sight(), own.rig)),
-    )
-    if value is None:
-        pytest.skip("the small space has no ring so far away")
-    better = 1.0 if figure.unit == "deg" else 0.01
-    for by, is_kept in ((0.0, True), (better, False)):
-        wanted = value + by if figure.higher else value - by
-        wanted = math.ceil(wanted) if figure.unit == "deg" else wanted
-        (limit,) = constraints_of(tilted((key,), **{key: wanted}))
-        assert (limit.violation(own.rig) == 0.0) == is_kept == figure.is_met(value, wanted)
 
 
 def test_workers_and_cutoffs_keep_the_same_blind_ground():

@@ -201,14 +201,6 @@ def test_a_stricter_requirement_is_never_easier():
     assert any((loose.passed & ~v.passed).any() for v in others)
 
 
-def test_a_preview_asks_of_the_zone_alone_and_says_so():
-    requirement = Requirement("ahead", MIDDLE, (BODIES["child"],))
-    (whole,), (preview,) = check(requirement), check(requirement, preview=True)
-    assert preview.summary.preview and preview.margin is None
-    assert len(preview.passed) == whole.samples.inside.sum()
-    assert preview.passed.tolist() == whole.passed[whole.samples.inside].tolist()
-
-
 def test_mounting_errors_count_where_they_are_asked_for():
     """A case that sees nothing breaks the requirement under mounting errors, and that one alone."""
     two = [

@@ -80,17 +80,6 @@ def test_every_method_goes_on_to_the_bits_of_an_unbroken_search(method):
     assert end.evaluated == whole.evaluated
 
 
-def test_what_the_journal_knows_is_not_evaluated_again():
-    study = a_study()
-    plain = Recorder(distance_to({"x": 0.1, "z": 1.9}))
-    journal = Journal()
-    list(search(study, journal.wrap([plain])))
-    assert len(journal.entries) == len(plain.rigs) > 50
-    again = Recorder(distance_to({"x": 0.1, "z": 1.9}))
-    list(search(study, Journal(journal.entries[:50]).wrap([again])))
-    assert [placed(rig) for rig in again.rigs] == [placed(rig) for rig in plain.rigs[50:]]
-
-
 def test_candidates_evaluated_together_are_known_as_well():
     study, journal = a_study(), Journal()
     rigs = [shapes.lidar_on_roof(shapes.small_lidar(16, 90), (0.1 * k, 0.0, 1.8)) for k in range(6)]
@@ -185,16 +174,6 @@ def test_a_kill_at_any_moment_loses_at_most_a_round(path, tmp_path, out):
     assert result(out) == result(tmp_path / "whole")
 
 
-@pytest.mark.usefixtures("heeded_signals")
-def test_a_search_that_ctrl_c_stopped_goes_on(path, tmp_path, out):
-    assert main(["optimize", "--no-review", str(path), "-o", str(tmp_path / "whole")]) == 0
-    told = broken_off(signal.SIGINT, ("told", 31), "optimize", "--no-review", path, "-o", out)
-    assert json.loads((out / "result.json").read_text("utf-8"))["stopped"]
-    assert 31 <= told <= len(read_search(out).evaluated) < 40, "all is kept, not just whole rounds"
-    assert main(["optimize", "--no-review", "--resume", str(out)]) == 0
-    assert result(out) == result(tmp_path / "whole")
-
-
 def begun_in(folder, **changes):
     """Leave the state of a search in a folder, with other words in it."""
     study = a_study()
@@ -224,27 +203,6 @@ def test_a_state_that_is_none_is_refused_in_one_line(out, changes, complaint, ca
     assert main(["optimize", "--resume", str(out)]) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"pe: {out / SEARCH}: {complaint}")
-
-
-def test_another_study_or_option_is_refused_in_one_line(path, out, capsys):
-    begun_in(out)
-    study = pe.load_study(path)
-    lower = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90), (-0.43, 0.0, 1.7))])
-    pt.export_study(study.with_rig(lower), path.with_name("lower.toml"))
-    for more in ([str(path.with_name("lower.toml"))], ["--seed", "9"], [str(path), "--seed", "9"]):
-        assert main(["optimize", *more, "--resume", str(out)]) == 1
-        (line,) = capsys.readouterr().err.splitlines()
-        expected = "study: expected the study and the options that it was begun with, found others"
-        assert line == f"pe: {out / SEARCH}: {expected}"
-
-
-def test_a_mesh_that_changed_is_refused(out, capsys):
-    begun_in(out)
-    body = shapes.box_car()
-    moved = pe.Mesh(body.triangles + 0.5, body.parts, body.part_names)
-    pt.write_mesh(out / "vehicle.npz", moved)
-    assert main(["optimize", "--resume", str(out)]) == 1
-    assert "study: expected unchanged files beside the study" in capsys.readouterr().err
 
 
 def test_a_fingerprint_tells_studies_apart_by_what_they_are(tmp_path):

@@ -1,6 +1,5 @@
 """Beams that return as on the road: by hand, kernels against the definition, one door for all."""
 
-import json
 from dataclasses import replace
 from statistics import NormalDist
 
@@ -8,7 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import InputError, catalog
+from pe_core import catalog
 from pe_core.scene.objects import Objects
 from pe_core.scoring.targets import TargetRule
 from pe_core.sensors import ObjectMeasurementCache
@@ -16,8 +15,6 @@ from pe_core.sensors.boxes import BodyParts
 from pe_core.sensors.lidar.definition import count_beams, count_on_objects, count_on_parts
 from pe_core.sensors.lidar.returns import ANY, SPREAD, SURFACES, return_probability
 from pe_core.sensors.weather import Weather, with_returns
-from pe_tools.advice.score_comparison import OTHER_RETURNS
-from pe_tools.cli.verbs import main
 
 PUCK = catalog.load("Velodyne VLP-16 Puck")
 UPRIGHT, TILTED = (0.0, 0.0, 0.2), (0.04, -0.03, 0.5)
@@ -139,23 +136,3 @@ def test_weather_shortens_the_range_and_leaves_the_returns():
     study = pe.Study(lidars("all", UPRIGHT), returns="road")
     model = Weather("fog", fog_mor_m=50.0)(study.rig)[0].sensors[0].model
     assert model.returns == "road" and model.max_range < PUCK.max_range
-
-
-def test_a_comparison_of_other_returns_says_so(tmp_path, capsys):
-    for returns in ("all", "road"):
-        study = pe.Study(lidars("all", UPRIGHT), samples=1024, returns=returns)
-        pe.study.save_study(study, tmp_path / f"{returns}.toml")
-    files = [str(tmp_path / f"{returns}.toml") for returns in ("all", "road")]
-    assert main(["compare", *files, "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["notes"] == [OTHER_RETURNS]
-    assert main(["compare", files[1], files[1], "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["notes"] == []
-    assert main(["score", files[0], "--returns", "road", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["returns"] == "road" and "returns" in [w["code"] for w in told["warnings"]]
-
-
-def test_unknown_returns_are_refused():
-    with pytest.raises(InputError) as error:
-        pe.Study(lidars("all", UPRIGHT), returns="some")
-    assert error.value.field == "returns"

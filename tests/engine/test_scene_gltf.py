@@ -8,7 +8,6 @@ import pytest
 
 import pe_core as pe
 from pe_tools.outputs import scene_files
-from pe_tools.outputs.request import linear
 
 from .shapes import box_car, camera, lidar_on_roof, small_lidar
 
@@ -94,35 +93,3 @@ def test_the_vehicle_s_triangles_are_all_there(scene):
     triangles = corners[0][corners[1].ravel()].reshape(-1, 3, 3) @ OURS_FROM_GLTF.T
     car = box_car()
     assert triangles == pytest.approx(car.triangles[car.parts == 0], abs=1e-6)
-
-
-def test_names_are_openmaterial_s_where_it_has_them(scene):
-    places = in_world(scene[0])
-    assert OURS_FROM_GLTF @ places["Grp_Rear_Axle_Center"][1] == pytest.approx([-1.3, 0.0, 0.32])
-    assert {"Grp_Root", "Grp_Exterior", "Grp_Exterior_Static", "body", "cabin"} <= set(places)
-
-
-def test_a_part_called_as_a_sensor_gets_another_name():
-    rig = pe.Rig([camera(name="cabin")])
-    document, _ = document_of(scene_files(pe.Study(rig, box_car()), "gltf")[0]["scene.glb"])
-    assert {"cabin", "cabin (body)"} <= {node["name"] for node in document["nodes"]}
-
-
-def test_what_gltf_cannot_say_is_reported():
-    bent = pe.Camera("fish", 800, 600, lens=pe.KannalaBrandt(300, 300, 410, 300))
-    rig = pe.Rig([pe.Sensor("fish", bent, pe.Pose((0, 0, 2)))])
-    lines = scene_files(pe.Study(rig), "gltf")[1]
-    assert lines[0] == "no vehicle: sensors alone"
-    assert "distortion" in lines[1] and "principal point" in lines[2] and len(lines) == 3
-
-
-def test_meshes_have_the_material_that_they_are_made_of(scene):
-    document, _ = scene
-    names = [material["name"] for material in document["materials"]]
-    used = {m["name"]: names[m["primitives"][0]["material"]] for m in document["meshes"]}
-    assert (used["body"], used["cabin"]) == ("body", "body")
-
-
-def test_colours_are_in_linear_light():
-    """IEC 61966-2-1: a straight line up to 0.04045, then a power."""
-    assert linear((0.0, 0.04, 0.5)) == pytest.approx([0.0, 0.04 / 12.92, 0.21404114])

@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.search import evaluate_all
-from pe_core.search.payload import plugin_name
 from tests.engine import shapes
 from tests.thorough import THOROUGH
 
@@ -44,20 +42,6 @@ def study():
     body = shapes.refined(shapes.box((-2.2, -0.9, 0.3), (2.2, 0.9, 1.5)), 4)
     car = pe.Vehicle(body, np.zeros(len(body), np.int32), ("body",))
     return pe.Study(pe.Rig(sensors), car, shapes.small_space())
-
-
-class Evaluated:
-    """An evaluator whose content is sent already; it notes what is evaluated in this process."""
-
-    def __init__(self, evaluator):
-        self.evaluator, self.here = evaluator, []
-
-    def shared_parts(self):
-        return (self.evaluator,)
-
-    def entropy(self, rig):
-        self.here.append(rig)
-        return self.evaluator.entropy(rig)
 
 
 def steps(objective, study, executor=None):
@@ -100,26 +84,3 @@ def test_a_search_of_sixteen_sensors_by_workers_of_a_cluster_takes_the_steps_of_
         assert 0 < len(unpickled) == len(set(unpickled)) <= count, "the mesh comes once to each"
         for path in files:
             path.unlink()
-
-
-@pytest.mark.skipif(not THOROUGH, reason="starts two processes of a cluster")
-@pytest.mark.skipif(sys.platform == "win32", reason="as the other test of a cluster")
-def test_a_worker_that_joins_later_has_the_payload(study):
-    distributed = pytest.importorskip("distributed")
-    options = {"host": "127.0.0.1", "dashboard_address": None, "threads_per_worker": 1}
-    evaluator, rigs = study.evaluator(1024), [study.rig] * 2
-    with (
-        distributed.LocalCluster(n_workers=1, processes=True, **options) as cluster,
-        distributed.Client(cluster) as client,
-    ):
-        executor = client.get_executor(pure=False)
-        here = [evaluator.entropy(rig) for rig in rigs]
-        assert evaluate_all(evaluator, rigs, executor=executor) == here
-        (first,) = client.scheduler_info()["workers"]
-        cluster.scale(2)
-        client.wait_for_workers(2)
-        client.retire_workers([first])
-        untried = Evaluated(evaluator)
-        assert evaluate_all(untried, rigs, executor=executor) == here
-        assert not untried.here, "the workers evaluate"
-        client.unregister_worker_plugin(plugin_name(client))

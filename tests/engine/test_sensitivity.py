@@ -1,7 +1,6 @@
 """How sure a search is: costs by axis, active constraints, other optima; its limits."""
 
 import math
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
@@ -11,15 +10,7 @@ import pe_tools as pt
 from pe_core.search import Goals, Parametrization
 from pe_tools.cli.terminal import summary
 from pe_tools.jobs import result_dict
-from pe_tools.sensitivity import (
-    NEAR,
-    Archive,
-    StepCosts,
-    analyse,
-    budget_of,
-    sensitivity_from_dict,
-    sensitivity_lines,
-)
+from pe_tools.sensitivity import NEAR, Archive, StepCosts, sensitivity_from_dict, sensitivity_lines
 from pe_tools.sensitivity.flatness import Neighbourhood, PoseStep, active_constraints, flatness
 from pe_tools.sensitivity.optima import Basins
 from tests.engine import shapes
@@ -61,25 +52,6 @@ def test_costs_are_those_of_plain_evaluations_and_the_result_is_not_touched(outc
     without = finished(pt.OptimizeJob(study("off"), 1))
     assert without.sensitivity is None and without.evaluated == outcome.evaluated
     assert without.study.rig["roof"].pose == pose and without.after.entropy == outcome.after.entropy
-
-
-class CountingThreads(ThreadPoolExecutor):
-    """Threads as workers, which count their tasks."""
-
-    tasks = 0
-
-    def submit(self, fn, /, *args, **kwargs):
-        self.tasks += 1
-        return super().submit(fn, *args, **kwargs)
-
-
-def test_workers_do_the_analysis_and_find_the_same(outcome):
-    job = pt.OptimizeJob(study(), 1)
-    with CountingThreads(2) as threads:
-        job.executor = threads
-        by_workers = finished(job)
-    assert threads.tasks > by_workers.sensitivity.evaluations
-    assert by_workers.sensitivity.to_dict() == outcome.sensitivity.to_dict()
 
 
 def test_yaw_of_a_spinning_lidar_is_flatter_than_its_height(outcome):
@@ -204,26 +176,3 @@ def test_it_is_in_result_json_on_the_terminal_and_read_back(outcome):
     text = summary(outcome)
     for line in sensitivity_lines(outcome.sensitivity):
         assert line in text
-
-
-def test_a_short_search_is_not_outlasted_by_its_analysis():
-    auto = study(None)
-    assert budget_of(auto, 50) is None and budget_of(study("off"), 10**6) is None
-    assert budget_of(auto, 100) == ((1.0,), False)
-    assert budget_of(auto, 200) == ((1.0, 5.0), False)
-    assert budget_of(auto, 2000) == ((1.0, 5.0), True)
-    given = (auto, auto, Archive(), 10**6, Known(wells))
-    assert analyse(*given, goes_on=lambda: False) is None
-
-
-def test_a_link_forbids_steps_of_one_of_the_linked_sensors():
-    model = shapes.small_lidar(4, 90)
-    names = {"left": 0.4, "right": -0.4}
-    rig = pe.Rig([shapes.lidar_on_roof(model, (0.0, y, 1.7), name=n) for n, y in names.items()])
-    mounting = pe.Mounting(pairs=[("left", "right")])
-    settings = pe.Search(free={"left": ("x",)}, mounting=mounting)
-    given = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=settings)
-    design = Neighbourhood(rig, given.search_space())
-    assert [design.status(name, "x") for name in names] == ["free", "linked"]
-    for name in names:
-        assert design.forbidding(PoseStep(name, "x", 1.0)) == ("link of 'right' to 'left'",)

@@ -77,28 +77,6 @@ def test_a_change_replaces_one_place_and_leaves_the_rest(path, change, capsys):
     assert f": {change.partition('=')[0]}: " in capsys.readouterr().out
 
 
-WRONG = {
-    "sensor.rof.model=X": "roof",
-    "sensor.roof.modle=X": "model",
-    "sensor.roof.model=Pandar46": "Pandar64, ",
-    "optimise.seed=3": "optimize",
-    "samples=-3": ">= 0",
-    "samples=1,2": "one value",
-    "samples": "KEY=VALUE",
-    "samples.x=1": "a table",
-    "space.interval=0.33": "divides",
-}
-"""A change that does not fit, and what its line offers."""
-
-
-@pytest.mark.parametrize("change", WRONG)
-def test_a_wrong_change_is_told_in_a_line_and_changes_nothing(path, change, capsys):
-    assert main(["set", str(path), "optimize.evaluations=8", change]) == 1
-    told = capsys.readouterr()
-    assert WRONG[change] in told.err and told.err.count("\n") == 1 and not told.out
-    assert path.read_text("utf-8") == COMMENTED
-
-
 def leaves(data, path=()):
     if isinstance(data, dict) and data:
         for key, value in data.items():

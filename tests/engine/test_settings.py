@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-import pe_core as pe
-from pe_core.base.setting import REQUIRED, check_settings, settings_of
+from pe_core.base.setting import REQUIRED, settings_of
 from pe_core.study import setting_keys
 from pe_core.study.study_file import SECTIONS
 
@@ -54,19 +53,3 @@ def test_every_declared_setting_is_a_key_of_the_study_file():
     }
     assert {section.cls for section in SECTIONS} == classes
     assert sum(len(settings_of(cls)) for cls in classes) == len(SETTINGS)
-
-
-def test_an_absent_setting_is_not_checked_and_a_wrong_one_names_its_field():
-    pe.Constraints(max_height=None)
-    with pytest.raises(pe.InputError, match=r"optimize: max_height: expected .*, found -1"):
-        pe.Constraints(max_height=-1)
-    with pytest.raises(pe.InputError, match=r"tolerance.draws: expected a whole number >= 2"):
-        pe.Tolerance(draws=1)
-    with pytest.raises(pe.InputError, match=r"space: interval: expected a length"):
-        check_settings(broken(pe.PerceptionSpace(), "interval", -1), "space")
-
-
-def broken(instance, name, value):
-    """Return a frozen instance with a value that its class would refuse."""
-    object.__setattr__(instance, name, value)
-    return instance

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_tools.cli.verbs import main
 from pe_tools.outputs import scene_files
 from pe_tools.outputs.solid import free_solid, mounted_view
 
@@ -86,14 +85,6 @@ def test_where_nothing_is_seen_all_is_blind_but_the_vehicle(plugin):
     assert plugin.volume(plugin.blind_volume("blind", away, block)) == pytest.approx(1312.0)
 
 
-def test_a_gap_of_one_cube_is_no_blind_volume(plugin):
-    """Seen from above, layer by layer: a square of two by two, with a strip on either side."""
-    layer = np.array([[0, 0, 1, 0, 0], [1, 1, 1, 1, 0], [0, 1, 1, 0, 1]], bool)
-    kept = np.array([[0, 0, 0, 0, 0], [0, 1, 1, 0, 0], [0, 1, 1, 0, 0]], bool)
-    flags = np.stack([layer, ~layer & False, layer], axis=2)
-    assert (plugin._squares(flags) == np.stack([kept, kept & False, kept], axis=2)).all()
-
-
 def a_study(*sensors, vehicle=None):
     space = pe.PerceptionSpace((-16, 16), (-16, 16), (0, 3), 0.5)
     return pe.Study(pe.Rig(sensors), vehicle, space, reference=pe.Reference(-1.3, 0.3))
@@ -116,39 +107,3 @@ def test_every_file_is_one_closed_solid_with_normals_outwards(files):
         assert is_watertight(triangles) and volume(triangles) > 0.0
         across = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
         assert ((across * normals).sum(axis=1) >= 0.0).all()
-
-
-def test_what_there_is_to_know_is_reported_in_lines():
-    own = scene_files(a_study(camera(name="a b")), "solids")[1]
-    assert own == [
-        "a b: called a_b in names of files",
-        "a b: has no range of its own; its solids end at 80 m (--range)",
-        "no vehicle: nothing is occluded, and there is no blind volume near it",
-    ]
-
-
-@pytest.mark.parametrize("range_m", [0.0, -3.0, math.nan, math.inf])
-def test_a_range_that_is_none_is_refused_in_a_line(range_m):
-    with pytest.raises(pe.InputError, match=r"export: range: expected a .*length above 0 m"):
-        scene_files(a_study(camera()), "solids", range_m)
-
-
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        (["--to", "solids", "--range", "0"], "export: range: expected a length above 0 m"),
-        (["--to", "solids", "-o", "taken"], "taken: folder: expected a path that can be written"),
-        (["--to", "gltf", "-o", "taken/scene.glb"], "expected a path that can be written"),
-        (["--to", "gltf", "-o", "taken.glb"], "taken.glb: file: expected a new file"),
-        (["--to", "csv", "-o", "rig.csv", "--range", "5"], "--range: option: expected one of "),
-    ],
-)
-def test_what_cannot_be_written_is_reported(options, words, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    pe.save_study(a_study(camera()), "study.toml")
-    for name in ("taken", "taken.glb"):
-        (tmp_path / name).write_text("mine")
-    assert main(["export", "study.toml", "-o", "out", *options]) == 1
-    told = capsys.readouterr().err
-    assert words in told and told.count("\n") == 1
-    assert (tmp_path / "taken").read_text() == "mine" and not (tmp_path / "out").exists()

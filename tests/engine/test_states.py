@@ -86,25 +86,6 @@ def test_a_body_heaves_pitches_and_leans_on_its_wheels():
     assert left > right  # it leans to the right
 
 
-def test_a_part_driven_through_the_ground_is_told():
-    sunk = pe.State("sunk", heave=-0.5, unsprung=["wheel_left"])
-    assert sunk.below_ground(car()) == pytest.approx({"body": 0.2, "door_left": 0.15})
-    assert OPEN.below_ground(car()) == {}
-
-
-@pytest.mark.parametrize(
-    ("state", "text"),
-    [
-        (pe.State("s", [pe.Motion(["dor_left"])]), "door_left"),
-        (pe.State("s", [pe.Motion(["door_left"], sensors=["miror"])]), "mirror"),
-        (pe.State("s", heave=0.1, unsprung=["weel_left"]), "wheel_left"),
-    ],
-)
-def test_unknown_names_are_refused_and_the_nearest_ones_offered(state, text):
-    with pytest.raises(pe.InputError, match=text):
-        pe.Study(rig(), car(), conditions=Conditions([state]))
-
-
 def test_states_and_weathers_stay_the_same_in_a_study_file():
     weathers = [pe.Weather("sun", 0.9), pe.Weather("fog", 0.1, fog_mor_m=80.0, reflectivity=0.5)]
     body = pe.State("b", heave=0.02, roll_rad=math.radians(1.5), about=(0.1, 0, 0.3), frame=20)

@@ -8,7 +8,6 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_core.base.table_reader import dumps
-from pe_core.study.study_file import study_from_dict, study_to_dict
 from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
 
@@ -159,15 +158,3 @@ def test_toml_text_reads_back_as_it_was():
         "empty": [],
     }
     assert tomllib.loads(dumps(data)) == data
-
-
-def test_a_study_from_plain_data_names_its_source():
-    with pytest.raises(pe.InputError, match=r"^scene: document: expected a table, found list"):
-        study_from_dict([], "scene")
-
-
-def test_models_of_the_catalogue_are_written_by_their_names():
-    names = list(pe.catalog.entries())
-    sensors = [pe.Sensor(f"s{k}", pe.catalog.load(name)) for k, name in enumerate(names)]
-    written = study_to_dict(pe.Study(pe.Rig(sensors)))["sensor"]
-    assert [sensor["model"] for sensor in written] == names

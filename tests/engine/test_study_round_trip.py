@@ -364,46 +364,6 @@ def test_a_difference_of_one_bit_or_a_forgotten_field_is_seen():
     assert differences(0.0, -0.0) and differences(1, 1.0) and differences((1,), (1, 2))
 
 
-def test_bounds_are_degrees_in_files_and_radians_in_python():
-    sensor = SENSOR | {"bounds": {"yaw": [-10, 20], "z": [1, 3]}}
-    study = study_from_dict({"sensor": [sensor]})
-    held = {"z": (1.0, 3.0), "yaw": (math.radians(-10), math.radians(20))}
-    assert study.search.limits == {"roof": held}
-    assert study_to_dict(study)["sensor"][0]["bounds"] == {"z": [1.0, 3.0], "yaw": [-10.0, 20.0]}
-
-
-def test_a_search_knows_its_rig_s_sensors():
-    search = pe.Search({"gone": ("x",)}, {"gone": {"x": (0.0, 1.0)}, "roof": {}})
-    study = pe.Study(pe.Rig([shapes.lidar_on_roof()]), search=search)
-    assert study.search.free == {"roof": ("x", "y", "z", "pitch")} and study.search.limits == {}
-
-
-@pytest.mark.parametrize("mesh", [None, "gone.npz"])
-def test_a_vehicle_in_no_file_is_not_saved_but_exported(tmp_path, mesh):
-    study = pe.Study(pe.Rig([shapes.lidar_on_roof()]), shapes.box_car(), mesh=mesh)
-    with pytest.raises(pe.InputError, match=r"vehicle\.mesh: .*export_study of pe_tools"):
-        pe.save_study(study, tmp_path / "study.toml")
-    assert not list(tmp_path.iterdir())
-    pt.export_study(study, tmp_path / "study.toml")
-    again = pe.load_study(tmp_path / "study.toml")
-    assert not differences(again.vehicle, study.vehicle)
-
-
-def test_boxes_in_no_file_are_not_saved_but_exported(tmp_path):
-    boxes = [("car", 1.0, 2.0, 0.75, 4.0, 2.0, 1.5, 0.5)]
-    study = pe.Study(pe.Rig([shapes.lidar_on_roof()]), prior=pe.Prior.from_boxes(boxes))
-    with pytest.raises(pe.InputError, match=r"prior\.boxes: .*export_study of pe_tools"):
-        pe.save_study(study, tmp_path / "study.toml")
-    pt.export_study(study, tmp_path / "study.toml")
-    assert pe.load_study(tmp_path / "study.toml").prior == study.prior
-
-
-def test_a_vehicle_s_figures_without_its_mesh_are_refused():
-    with pytest.raises(pe.InputError, match=r"vehicle\.mesh: expected the file .*, found nothing"):
-        study_from_dict({"sensor": [SENSOR], "vehicle": {"glass": ["cabin"], "clearance": 0.1}})
-    assert study_from_dict({"sensor": [SENSOR], "vehicle": {}}).vehicle is None
-
-
 def test_a_placement_rounded_past_its_bound_can_be_read_again():
     sensor = SENSOR | {"position": [0, 0, 1.5], "bounds": {"z": [1.500004, 2.0]}}
     assert study_from_dict({"sensor": [sensor]}).rig["roof"].pose.position[2] == 1.5

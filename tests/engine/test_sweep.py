@@ -130,12 +130,6 @@ def test_sweeps_that_cannot_be_are_one_line(study, out, more, complaint, capsys,
     assert line.startswith(f"pe: {complaint}"), line
 
 
-def test_a_cluster_without_its_package_says_what_to_install(study, out, capsys, monkeypatch):
-    monkeypatch.setitem(sys.modules, "distributed", None)
-    assert main(["sweep", str(study), "-o", str(out), "--executor", "tcp://a:1"]) == 1
-    assert 'pip install "perception-entropy[cluster]"' in capsys.readouterr().err
-
-
 def test_files_of_somebody_s_own_are_refused_before_the_work(study, out, capsys):
     (out / "car").mkdir(parents=True)
     (out / "car" / "result.json").write_text("mine")
@@ -179,22 +173,6 @@ def test_a_sweep_leaves_each_run_and_a_table(study, out, capsys):
         job = pt.OptimizeJob(changed.with_rig(pe.Rig([placed])))
         list(job)
         assert job.outcome.after.entropy == result["entropy"]
-
-
-def test_a_sweep_by_expected_ap_has_a_column_of_it(study, out, capsys):
-    """Read again from the folders, it is the same table."""
-    call = ["sweep", str(study), "--optimize", "--set", "optimize.seed=1,2", "-o", str(out)]
-    call += ["--objective", "expected_ap", "--set", "metric.scenes=8", "--workers", "1"]
-    call += ["--set", "optimize.candidates=1"]
-    assert main(call) == 0
-    first = capsys.readouterr().out
-    assert "coverage   start  expected AP" in first.splitlines()[0] and "*" in first
-    for row in table(out):
-        data = json.loads((out / row["run"] / "result.json").read_text())["expected_ap"]
-        aps = [float(row[f"expected_ap{when}"]) for when in ("_before", "")]
-        assert aps == [data[when]["ap"] for when in ("before", "after")]
-    assert main(call) == 0
-    assert capsys.readouterr().out == first
 
 
 def test_a_sweep_goes_on_and_does_nothing_twice(study, out, capsys):
@@ -304,23 +282,6 @@ def test_a_small_disk_that_fills(study, out, tmp_path, capfd, size, done):
         subprocess.run(["umount", str(out)], check=True)
 
 
-def test_a_result_that_no_folder_takes_is_told_and_not_called_done(study, out):
-    """No file may have more bytes than a small study has: the results are larger."""
-    import resource
-
-    def quota():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (2500, 2500))
-
-    argv = ["sweep", study, "--set", "optimize.seed=1,2", "--samples", 1024, "-o", out]
-    with Command(*argv, "--workers", 1, preexec_fn=quota) as command:
-        text = command.process.stdout.read()
-        assert command.end() == 1
-    assert sum("file too large" in line for line in command.complaints) >= 2
-    assert [row["status"] for row in table(out)] == ["not written", "not written"]
-    assert all(row["entropy"] and "file too large" in row["message"] for row in table(out))
-    assert text.count("not written: ") == 2
-
-
 class Dying(Executor):
     """An executor whose workers die with some tasks, and with all others handed out meanwhile."""
 
@@ -396,38 +357,3 @@ def test_parts_in_processes_of_their_own_and_the_same_command_after_them_merge(s
     assert main(argv) == 0
     assert [row["optimize.seed"] for row in table(out)] == ["0", "1", "2", "3", "4"]
     assert {row["status"] for row in table(out)} == {"done"}
-
-
-def test_an_executor_of_a_function_finds_the_same(study, out, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "mine.py").write_text(
-        "from concurrent.futures import ThreadPoolExecutor\ndef threads():\n"
-        "    return ThreadPoolExecutor(2)\n"
-    )
-    for name, more in (("here", []), ("there", ["--executor", "mine:threads"])):
-        argv = ["sweep", str(study), "--optimize", "-o", str(out / name), "--workers", "2", *more]
-        assert main(argv) == 0
-        argv = ["optimize", str(study), "-o", str(out / f"one {name}"), "--workers", "2", *more]
-        assert main([*argv, "--no-review"]) == 0
-    found = [
-        json.loads((out / name / "result.json").read_text())
-        for name in ("here/car", "there/car", "one here", "one there")
-    ]
-    assert len({json.dumps(each["placements"]) for each in found}) == 1
-
-
-def test_a_sweep_is_a_table_of_parquet_too(study, out):
-    parquet = pytest.importorskip("pyarrow.parquet")
-    keys = ["--set", "optimize.seed=1,2", "--set", "space.interval=0.5"]
-    assert main(["sweep", str(study), *keys, "-o", str(out), "--parquet", "--workers", "1"]) == 0
-    found = parquet.read_table(out / "sweep.parquet").to_pylist()
-    rows = table(out)
-    assert [list(row) for row in found] == [list(row) for row in rows]
-    for row, line in zip(found, rows, strict=True):
-        assert row["entropy"] == float(line["entropy"]) and row["run"] == line["run"]
-
-
-def test_without_pyarrow_a_line_comes_before_the_work(study, out, monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
-    assert main(["sweep", str(study), "-o", str(out), "--parquet"]) == 1
-    assert "[argoverse]" in capsys.readouterr().err and not out.exists()

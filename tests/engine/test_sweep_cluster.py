@@ -1,6 +1,5 @@
 """A sweep by a real Dask scheduler with two workers on the loopback; one of them is killed."""
 
-import asyncio
 import json
 import os
 import signal
@@ -8,16 +7,13 @@ import subprocess
 import sys
 import threading
 import time
-from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
 import pe_core as pe
 import pe_tools as pt
 from pe_tools.cli import sweep_verb
-from pe_tools.cli.executors import workplace
 from pe_tools.cli.verbs import main
-from pe_tools.jobs import read_search
 from tests.engine import shapes
 from tests.engine.processes import ROOT
 from tests.limits import HANG_S
@@ -137,37 +133,6 @@ def test_a_worker_that_is_killed_costs_no_result(study, cluster, tmp_path, monke
         assert result["entropy"] == row["entropy"]
     assert cluster.workers[0].poll() == -signal.SIGKILL
     assert "Traceback" not in capsys.readouterr().err
-
-
-def test_searches_on_a_cluster_find_what_they_find_here(cluster, tmp_path):
-    (cluster.folder / "go").touch()
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90))])
-    schedule = pe.Schedule(candidates=2)
-    search = pe.Search({"roof": ("x", "z")}, {}, 3, 1024, schedule, method="random")
-    study = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search)
-    path, out = tmp_path / "car.toml", tmp_path / "out"
-    pt.export_study(study, path)
-    argv = ["sweep", str(path), "--optimize", "-o", str(out), "--executor", cluster.address]
-
-    assert main(argv) == 0
-    whole = pt.OptimizeJob(pe.load_study(path))
-    list(whole)
-    evaluated = read_search(out / "car").evaluated
-    assert evaluated == whole.outcome.evaluated
-    assert json.loads((out / "car" / "result.json").read_text())["entropy"] == (
-        whole.outcome.after.entropy
-    )
-
-
-def test_a_cluster_is_reached_where_a_loop_runs_already(cluster):
-    """As in a notebook; in a thread of its own, as this one may have a loop, too."""
-
-    async def in_a_notebook():
-        with workplace(1, cluster.address) as workers:
-            return workers.width()
-
-    with ThreadPoolExecutor(1) as thread:
-        assert thread.submit(asyncio.run, in_a_notebook()).result() > 0
 
 
 def test_a_scheduler_that_goes_away_is_one_line(study, cluster, tmp_path, monkeypatch, capsys):

@@ -122,17 +122,6 @@ def test_trimesh_has_the_scene_s_nodes_where_the_sensors_are():
     assert (low[0], high[0]) == pytest.approx((-2.3, 2.3), abs=1e-6)
 
 
-def test_trimesh_finds_every_solid_closed_and_outwards(example_plugin):
-    trimesh = pytest.importorskip("trimesh", reason="of the extra test")
-    files, _ = scene_files(STUDY, "solids", 10.0)
-    solids = {name: data for name, data in files.items() if name.endswith(".stl")}
-    assert {"eye_free.stl", "roof_field.stl", "blind_volume.stl"} <= set(solids)
-    for name, data in solids.items():
-        solid = trimesh.load(io.BytesIO(data), file_type="stl")
-        assert solid.is_watertight and solid.is_winding_consistent, name
-        assert solid.volume > 0.0, name
-
-
 def test_kitti_s_lines_project_as_its_readers_do():
     """pykitti and the devkit: ``key: numbers`` a line; y = P R0_rect Tr_velo_to_cam x."""
     lines = rig_files(RIG, "kitti")[0]["calib.txt"].decode().splitlines()

@@ -12,7 +12,6 @@ from pe_core.search import RobustObjective
 from pe_core.search.tolerance import COMBINATIONS, FRESH, mounted_off, with_error, without_each
 from pe_core.study.study_file import study_from_dict, study_to_dict
 from tests.engine import shapes
-from tests.engine.refusals import wrongly_refused
 
 USUAL = pe.Tolerance(0.01, math.radians(0.3))
 BOTH = pe.Tolerance(0.02, math.radians(1.0), 2, failures=True)
@@ -147,14 +146,6 @@ def test_failures_are_the_loss_of_each_sensor():
     assert [len(each) for each in without_each(rig())] == [2, 2, 2]
 
 
-@pytest.mark.parametrize("worst", [False, True])
-def test_the_value_is_the_mean_of_the_cases_or_the_worst(worst, evaluator):
-    tolerance = pe.Tolerance(0.02, 0.02, 2, worst=worst)
-    entropies = [evaluator.entropy(case) for case in tolerance.cases(rig())]
-    expected = max(entropies) if worst else pytest.approx(np.mean(entropies), abs=1e-8)
-    assert RobustObjective(evaluator, tolerance).entropy(rig()) == expected
-
-
 def test_a_search_minimises_what_placements_are_worth_mounted_off(evaluator):
     bounds = {"roof": {"z": (1.5, 2.2), "pitch": (-0.2, 0.2)}}
     objective = RobustObjective(evaluator, BOTH)
@@ -178,22 +169,6 @@ def test_a_study_says_tolerance_and_failures():
     assert study.search.tolerance == pe.Tolerance(0.02, math.radians(0.5), 6, True, True)
     again = study_from_dict(study_to_dict(study))
     assert again.search == study.search
-
-
-BAD = [
-    ("optimize.tolerance.position", {"tolerance": {"position": -0.01}}),
-    ("optimize.tolerance.angle", {"tolerance": {"angle": -0.3}}),
-    ("optimize.tolerance.position", {"tolerance": {"position": math.nan}}),
-    ("optimize.tolerance.draws", {"tolerance": {"angle": 0.3, "draws": 7}}),
-    ("optimize.tolerance.sigma", {"tolerance": {"sigma": 1}}),
-    ("optimize.tolerance", {"tolerance": 0.01}),
-    ("optimize.failures", {"failures": 1}),
-    ("optimize.worst", {"worst": True}),
-]
-
-
-def test_what_is_wrong_is_refused():
-    assert wrongly_refused(lambda v: read(**v), BAD, "study.toml") == []
 
 
 def test_failures_need_a_second_sensor():

@@ -12,7 +12,6 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core import catalog
 from pe_core import sensors as kinds
 from pe_core.metric import entropy_of, late_fusion, precision_of
 from pe_tools.cli.verbs import main
@@ -125,46 +124,6 @@ def test_the_command_scores_searches_and_leaves_results(ring_kind, tmp_path, cap
     assert len(moved) > 1, "the search never moved the ring"
 
 
-def test_a_preset_of_ones_own_is_listed_and_told(ring_kind, capsys):
-    catalog.add("Parking Ring", {"kind": "toyring", "range_m": 2.5, "source": "this test"})
-    try:
-        assert "Parking Ring" in catalog.names("toyring")
-        assert catalog.load("Parking Ring") is catalog.load("Parking Ring")
-        assert main(["sensors", "Parking Ring"]) == 0
-        told = capsys.readouterr().out
-        assert "2.5 m" in told and "this test" in told
-        with pytest.raises(pe.InputError, match="a name used once"):
-            catalog.add("Parking Ring", {"kind": "toyring", "range_m": 3.0})
-    finally:
-        catalog.remove("Parking Ring")
-    assert "Parking Ring" not in catalog.entries()
-    with pytest.raises(pe.InputError, match="model"):
-        catalog.load("Parking Ring")
-
-
-def test_a_kind_that_is_not_in_the_table_is_refused_everywhere():
-    rig = pe.Rig([ring()])
-    for samples in (0, 1024):
-        with pytest.raises(pe.InputError, match=r"bumper: kind: expected one of lidar, camera"):
-            pe.Evaluator(SPACE, pe.Prior.uniform(), samples=samples).entropy(rig)
-    with pytest.raises(pe.InputError, match="kind"):
-        pe.measure(rig["bumper"], np.zeros((1, 3)), 0.5)
-    with pytest.raises(pe.InputError, match="kind: expected one of lidar, camera"):
-        catalog.from_table("ring", {"kind": "toyring", "range_m": 4.0})
-    with pytest.raises(pe.InputError, match="the model of a sensor, found str"):
-        pe.Sensor("wrong", "Pandar64")
-    with pytest.raises(pe.InputError, match="toyring"):
-        pe.PerceptionModel(toyring=CURVE)
-
-
-def test_the_table_takes_each_name_once_and_only_its_own_model(ring_kind):
-    with pytest.raises(pe.InputError, match="a name used once"):
-        kinds.register(RING)
-    with pytest.raises(pe.InputError, match=r"model\.kind: expected 'odd', found 'toyring'"):
-        kinds.register(replace(RING, name="odd"))
-    assert list(kinds.KINDS) == ["lidar", "camera", "radar", "ultrasonic", "toyring"]
-
-
 def test_kernels_of_ones_own_are_asked():
     """A kind with a grid kernel of its own is measured by it: here one that sees everything."""
 
@@ -207,18 +166,3 @@ def test_it_goes_through_other_programs_files(ring_kind, tmp_path):
         assert any("away" in line and ("left out" in line or "no toy" in line) for line in lines), (
             name
         )
-
-
-def test_without_its_kind_its_row_passes_through(tmp_path):
-    """Imported where the kind is unknown, or has no model: left out, and written as it came."""
-    kinds.register(RING)
-    rig = pe.Rig([ring(), shapes.lidar_on_roof()])
-    try:
-        (path,), _ = pt.export_rig(rig, "csv", tmp_path / "rig.csv")
-    finally:
-        kinds.unregister(RING.name)
-    found = pt.import_rig(path)
-    assert [sensor.name for sensor in found.rig] == ["roof"]
-    options = {"passthrough": found.passthrough}
-    (again,), _ = pt.export_rig(found.rig, "csv", tmp_path / "again.csv", **options)
-    assert again.read_text().splitlines()[5] == path.read_text().splitlines()[5]

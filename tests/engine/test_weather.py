@@ -9,7 +9,6 @@ import pytest
 import pe_core as pe
 from pe_core.sensors import weather
 from pe_core.sensors.weather import Weather, camera_range, fog_return_range, lidar_range
-from pe_core.study import Conditions
 from tests.engine import shapes
 
 
@@ -72,29 +71,6 @@ def test_a_camera_s_range_is_where_contrast_ends_or_the_lamps_light():
     both = camera_range(math.inf, named(night=True, fog_mor_m=50.0))
     lamps = 24.0 * (25.0 / both) ** 2 * math.exp(-math.log(20) / 50.0 * both)
     assert 5.0 <= lamps < 5.01
-
-
-@pytest.mark.parametrize(
-    ("values", "text"),
-    [
-        ({"rain_mm_h": 5.0, "fog_mor_m": 100.0}, "one of rain, snow and visibility"),
-        ({"rain_mm_h": -1.0}, "rain_mm_h"),
-        ({"fog_mor_m": 0.5}, "fog_mor_m"),
-        ({"weight": -1.0}, "weight"),
-        ({"lit_m": 30.0}, "night = true"),
-    ],
-)
-def test_what_cannot_be_is_refused_in_one_line(values, text):
-    with pytest.raises(pe.InputError) as error:
-        named(**values)
-    assert text in str(error.value) and "\n" not in str(error.value)
-
-
-def test_weights_of_weathers_are_not_all_0_and_names_stand_once():
-    with pytest.raises(pe.InputError, match="at least one weight above 0"):
-        Conditions(weathers=[Weather("a", 0.0), Weather("b", 0.0)])
-    with pytest.raises(pe.InputError, match="each name once"):
-        Conditions(weathers=[Weather("a"), Weather("a")])
 
 
 def test_a_sensor_in_a_weather_has_the_bits_of_one_with_that_range():

@@ -2,7 +2,6 @@
 
 import csv
 import json
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -103,16 +102,6 @@ def test_forbidden_places_have_the_rule_as_reason_and_no_value(study):
             assert each.reason in ("", IN_BODY)
 
 
-def test_places_inside_the_body_are_forbidden():
-    shell, seat = shapes.box_car().triangles, shapes.box((-0.5, -0.4, 0.5), (0.5, 0.4, 0.9))
-    parts = np.repeat([0, 1], [len(shell), len(seat)])
-    car = pe.Vehicle(np.concatenate([shell, seat]), parts, ("shell", "seat"))
-    study = pe.Study(pe.Rig([shapes.camera()]), car, shapes.small_space())
-    found = mapped(study, parts=("seat",))
-    assert found.reasons() == {IN_BODY: 40}
-    assert found.best() == []
-
-
 def test_places_on_a_mount_are_where_a_search_would_put_the_sensor(study):
     mount = search.SurfaceMount(study.vehicle.part_names, 0.07, "facing")
     mounting = search.Mounting({"skin": mount})
@@ -120,31 +109,6 @@ def test_places_on_a_mount_are_where_a_search_would_put_the_sensor(study):
     for each in mapped(study, mount="skin").places:
         there = replace(LIDAR, pose=each.pose)
         assert search.snap_to_mount(there, mount, study.vehicle) == each.pose
-
-
-@pytest.mark.parametrize(
-    ("options", "field"),
-    [
-        ({"figure": "price"}, "figure"),
-        ({"parts": ("rof",)}, "parts"),
-        ({"mount": "roof"}, "mount"),
-        ({"count": 0}, "places"),
-        ({"figure": "verdicts"}, "requirements"),
-    ],
-)
-def test_what_is_impossible_is_named(study, options, field):
-    with pytest.raises(pe.InputError) as error:
-        mapped(study, **options)
-    assert error.value.field == field
-
-
-def test_workers_and_fewer_places_change_no_value(study):
-    here = mapped(study)
-    with ThreadPoolExecutor(2) as executor:
-        job = where_job.WhereJob(study, LIDAR, count=40)
-        job.executor = executor
-        assert list(job)[-1].fraction == 1.0
-    assert job.found == replace(here, sensor=job.sensor)
 
 
 def test_the_error_is_that_of_the_gains(study):
@@ -161,16 +125,6 @@ def test_verdicts_count_requirements_that_are_met(study):
     assert found.base == 0.0
     assert {each.value for each in found.places} == {None, 0.0, 1.0}
     assert found.best()[0].pose.position[0] < 0.0
-
-
-def test_a_job_that_is_stopped_keeps_what_it_has(study):
-    job = where_job.WhereJob(study, LIDAR, count=200, workers=1)
-    for _ in job:
-        if job.places:
-            job.stop()
-    assert 0 < len(job.found.places) < 200
-    job.drop()
-    assert job.found is None
 
 
 def test_the_command_writes_what_the_job_finds(study, tmp_path, capsys):

@@ -7,7 +7,6 @@ import re
 import shlex
 import shutil
 import tomllib
-from pathlib import Path
 
 import pytest
 
@@ -93,15 +92,6 @@ def test_ctrl_c_while_the_page_is_written_leaves_all_as_it_was(
     assert "interrupted" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("given", [["missing.toml"], ["car.toml", "missing.toml"], ["broken.toml"]])
-def test_a_study_that_cannot_be_read_leaves_no_folder(study, tmp_path, capsys, monkeypatch, given):
-    monkeypatch.chdir(tmp_path)
-    study.rename("car.toml")
-    Path("broken.toml").write_text("[space")
-    assert main(["review", *given, "-o", "new/out"]) == 1
-    assert given[-1] in capsys.readouterr().err and not Path("new").exists()
-
-
 @pytest.mark.parametrize(
     ("key", "value", "message"),
     [
@@ -124,14 +114,6 @@ def test_a_result_that_is_none_is_one_line(found, tmp_path, capsys, key, value, 
     assert main(["review", str(out), "-o", str(tmp_path / "page")]) == (message is not None)
     if message is not None:
         assert message in capsys.readouterr().err.splitlines()[-1]
-
-
-def test_studies_of_different_spaces_are_not_put_side_by_side(study, tmp_path, capsys):
-    other = tmp_path / "other.toml"
-    other.write_text(study.read_text("utf-8").replace("interval = 0.5", "interval = 1.0"))
-    assert main(["review", str(study), str(other), "-o", str(tmp_path / "out")]) == 1
-    assert "space: expected the same as in" in capsys.readouterr().err
-    assert not (tmp_path / "out" / PAGE).exists()
 
 
 def test_a_search_leaves_its_page(study, tmp_path, capsys):

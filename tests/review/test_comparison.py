@@ -13,7 +13,6 @@ from pe_tools.page.markup import escaped, price_text, render
 from pe_tools.page.sections.comparison import comparison as comparison_section
 from pe_tools.page.sections.comparison import price_of, sensor_differences
 from pe_tools.page.sections.score import overview
-from pe_tools.page.sections.visibility import sensor_details
 from tests.review.conftest import NAMES, html_of, outcome_of, small_study
 
 LIDAR, CAMERA = NAMES
@@ -63,17 +62,6 @@ def test_a_row_a_sensor_with_what_differs():
     assert html.count("Price") == 0 and sensor_differences(each)["differing"] == [*NAMES]
 
 
-def test_what_is_alike_stands_once_and_what_is_missing_is_reported():
-    alike = beside(rig(), rig())
-    assert not sensor_differences(alike)["differing"]
-    assert [row[1] for row in cells(differences(alike))] == ["all", "all"]
-    missing = cells(differences(beside(rig(without=[CAMERA]), rig())))
-    assert missing[1][1:3] == ["A", "not mounted"] and missing[2][1] == "B"
-    model = dataclasses.replace(rig()[LIDAR].model, max_range=50.0)
-    own = pe.Rig([dataclasses.replace(rig()[LIDAR], model=model), rig()[CAMERA]])
-    assert "small LiDAR (other values)" in differences(beside(rig(), own))
-
-
 def test_prices_are_those_of_the_study_s_choices():
     options = [pe.Option(load(name), price) for name, price in PRICES.items()]
     choice = pe.Choice(options, sensors=[CAMERA])
@@ -104,23 +92,6 @@ def test_the_comparison_marks_the_engine_s_winner(scored, other, comparison):
     first = re.search(r'class="wins whose-(\w)-ink">([^<]*)<', comparison)
     assert first.groups() == ("ab"[winner], f"{better.after.entropy:.2f}")
     assert comparison_section(keyed_contexts([scored, other]))["overall"] == rows[0]
-
-
-def test_other_hardware_is_a_line_of_the_comparison():
-    wide = outcome_of(pt.ScoreJob(small_study().with_rig(rig(camera="Camera 120 deg"))))
-    narrow = outcome_of(pt.ScoreJob(small_study().with_rig(rig())))
-    both = [ReportContext("wide", wide), ReportContext("narrow", narrow)]
-    assert escaped(pt.advice.OTHER_HARDWARE) in html_of(comparison_section, *keyed_contexts(both))
-
-
-def test_tables_of_several_studies_are_one(scored, other, comparison):
-    """What each sensor is worth stands in the comparison, and in no column beside it."""
-    both = keyed_contexts([scored, other])
-    assert "Contribution of each sensor" in html_of(sensor_details, scored)
-    assert "Contribution of each sensor" not in html_of(sensor_details, both[0])
-    lost = [one.after.per_sensor[LIDAR].lost for one in both]
-    row = next(row for row in cells(comparison.rpartition("<table")[2]) if row and "roof" in row[0])
-    assert row[1:] == [f"+{value:.2f}" for value in lost]
 
 
 def test_a_camera_in_the_body_is_named_in_the_summary(scored):

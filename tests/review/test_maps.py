@@ -12,7 +12,6 @@ from pe_core.scoring.sight import GroundSight
 from pe_tools import graphics
 from pe_tools.page.pictures.ground_plan import (
     BETTER,
-    COVERAGE,
     ENTROPY,
     SENSORS,
     WORSE,
@@ -22,7 +21,6 @@ from pe_tools.page.pictures.ground_plan import (
     outline_of,
 )
 from pe_tools.page.pictures.sight_plans import reach_text, side_text
-from pe_tools.page.pictures.svg import Canvas, path_of
 from pe_tools.page.sections.visibility import visibility
 from tests.engine.test_masks import decoded
 from tests.review.conftest import box, html_of
@@ -65,13 +63,6 @@ def test_the_key_has_the_colours_of_the_map():
     assert [t for t in ("none", "3 or more") if t in svg] == ["none", "3 or more"]
 
 
-def test_the_same_value_has_the_same_colour_on_every_map():
-    one, two = np.array([[0.0, 5.0]]), np.array([[5.0, -10.0]])
-    first, second = (pixels_of(ground_map(seen(e), ENTROPY, None, "alt")) for e in (one, two))
-    np.testing.assert_array_equal(first[0, 0], second[1, 0])
-    assert (pixels_of(ground_map(seen(one), COVERAGE, None, "alt"))[0, 0] == first[0, 0]).sum() < 4
-
-
 def test_a_difference_is_blue_where_the_second_is_better():
     one, two = np.array([[0.0, 0.0, 0.0]]), np.array([[-20.0, 0.0, 20.0]])
     pixels = pixels_of(difference_map(seen(one), seen(two), None, "alt", ("better", "worse")))
@@ -95,22 +86,6 @@ def test_the_outline_of_a_box_is_its_rectangle():
     (line,) = outline_of(pe.Vehicle(box((-2.0, -0.9, 0.2), (2.0, 0.9, 1.5))))
     np.testing.assert_allclose(line.min(axis=0), [-2.0, -0.9], atol=0.05)
     np.testing.assert_allclose(line.max(axis=0), [2.0, 0.9], atol=0.05)
-
-
-def test_points_on_the_way_are_left_out_of_a_path():
-    square = np.array([[0, 0], [1, 0], [2, 0], [2, 2], [0, 2], [0, 1], [0, 0]], float)
-    assert path_of(square, closed=True) == "M0 0 2 0 2 2 0 2z"
-    assert path_of(square[:3], closed=False) == "M0 0 2 0"
-    assert path_of(np.empty((0, 2)), closed=True) == ""
-
-
-def test_what_stands_in_a_drawing_is_escaped():
-    canvas = Canvas(10.0, 10.0, '<alt "1">')
-    canvas.text(1.0, 2.0, "a <b> & c", text_anchor="end", css="strong")
-    element = ET.fromstring(canvas.svg())
-    (text,) = element
-    assert element.get("aria-label") == '<alt "1">' and text.text == "a <b> & c"
-    assert text.get("text-anchor") == "end" and text.get("class") == "strong"
 
 
 def test_the_section_tells_what_the_engine_found(scored):

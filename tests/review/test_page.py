@@ -13,7 +13,6 @@ import pe_core as pe
 from pe_tools.page import PAGE, About, page_bytes, write_page
 from pe_tools.page.markup import escaped, macros
 from pe_tools.page.sections import Section
-from tests.review.conftest import NAMES
 
 VOID = {"meta", "img", "br", "link", "input", "hr", "wbr", "path", "rect", "circle", "line"}
 
@@ -91,11 +90,6 @@ def test_a_page_says_what_it_is(scored, monkeypatch):
         About("a" * 201)
 
 
-def test_names_end_no_element_and_no_script(page):
-    assert escaped(NAMES[0]) in page
-    assert NAMES[0] not in page and "<i>c</i>" not in page
-
-
 def test_what_does_not_print_is_written_out():
     assert escaped("a\x1b[31m\u202eb\ud800") == "a\\x1b[31m\\u202eb\\ud800"
     assert "<td>1 &lt; 2</td>" in macros().table("t", ["a", "b"], [["x", "1 < 2"]])
@@ -131,8 +125,3 @@ def test_a_page_of_ours_is_replaced_another_is_not(scored, tmp_path, monkeypatch
         write_page([scored], tmp_path)
     assert path.read_text() == "mine"
     assert write_page([scored], tmp_path, replace=True).read_bytes() == page_bytes([scored])
-
-
-def test_too_many_studies_are_refused(scored):
-    with pytest.raises(pe.InputError, match="expected 1 to 6, found 7"):
-        page_bytes([scored] * 7)

@@ -10,14 +10,9 @@ import pe_tools as pt
 from pe_core.catalog import load
 from pe_tools.page import ReportContext, picture_file
 from pe_tools.page.pictures import vehicle_picture as picture_module
-from pe_tools.page.pictures.painted_mesh import Paint, PaintedMesh, corner_normals, painted_vehicle
+from pe_tools.page.pictures.painted_mesh import Paint, PaintedMesh, painted_vehicle
 from pe_tools.page.pictures.ray_scene import GROUND, SKY, RayCamera, RayScene, Viewpoint
-from pe_tools.page.pictures.vehicle_picture import (
-    RADIUS,
-    default_view,
-    spread_apart,
-    vehicle_picture,
-)
+from pe_tools.page.pictures.vehicle_picture import vehicle_picture
 from tests.engine.test_masks import decoded
 from tests.review.conftest import box
 
@@ -62,25 +57,6 @@ def test_what_stands_left_is_drawn_left():
     assert (surface[0] == SKY).all() and (surface[-1] == GROUND).all()
 
 
-def test_a_shadow_lies_away_from_the_sun():
-    """Straight above, with a sun from the left, the ground right of the box is dark."""
-    solids = RayScene([PaintedMesh(pe.Vehicle(box((-1, -1, 0), (1, 1, 1))), (RED,))])
-    floor = np.array([[0.0, -1.3, 0.0], [0.0, 1.3, 0.0], [0.0, -9.0, 0.0]])
-    lit = solids.lit(np.array([0.0, 50.0, 50.0]), floor)
-    assert lit.tolist() == [False, True, True]
-
-
-def test_corners_of_a_box_are_sharp_and_of_a_sheet_smooth():
-    faces = box((-1, -1, -1), (1, 1, 1))
-    normals = corner_normals(faces)
-    flat = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
-    flat /= np.linalg.norm(flat, axis=1, keepdims=True)
-    np.testing.assert_allclose(normals, np.repeat(flat[:, None], 3, axis=1), atol=1e-12)
-    bend = np.array([[[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 0, 0], [0, 1, 0], [-1, 0, 0.2]]])
-    met = corner_normals(bend.astype(float))
-    np.testing.assert_allclose(met[0, 0], met[1, 0], atol=1e-12)
-
-
 def test_a_still_shows_the_vehicle_and_is_the_same_each_time(car):
     png = vehicle_picture(*car, SIZE)
     assert png == vehicle_picture(*car, SIZE)
@@ -90,15 +66,6 @@ def test_a_still_shows_the_vehicle_and_is_the_same_each_time(car):
     middle = pixels[20:34, 40:56].reshape(-1, 3)
     assert (pixels[0, 0] - middle).max(axis=1).mean() > 15  # the body is darker
     assert decoded(vehicle_picture(None, car[1], SIZE)).shape == (54, 96, 3)
-
-
-def test_all_of_a_vehicle_is_in_the_usual_view(car):
-    view = default_view(*car)
-    low, high = car[0].bounds
-    corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, 8).T
-    right, down = view.project(corners, 960, 540)
-    assert right.min() > 0 and right.max() < 960 and down.min() > 0 and down.max() < 540
-    assert right.max() - right.min() > 400 or down.max() - down.min() > 300
 
 
 def test_glass_is_looked_through_by_a_camera_alone():
@@ -111,14 +78,6 @@ def test_glass_is_looked_through_by_a_camera_alone():
     for from_sensor, part in ((False, 0), (True, 1)):
         camera = RayCamera(eye, 1, 1, lambda *_: ahead, 0.1, from_sensor)
         assert solids.first_hits(camera, ahead).part.tolist() == [part]
-
-
-def test_numbers_stand_apart_and_in_the_picture():
-    places = np.array([[96.0, 54.0]] * 4 + [[-50.0, 160.0], [99.0, 58.0]])
-    found = spread_apart(places)
-    apart = np.sqrt(((found[:, None] - found[None]) ** 2).sum(axis=2))[np.triu_indices(6, 1)]
-    assert apart.min() > 2 * RADIUS
-    assert found.min() > 0 and (found < picture_module.SIZE).all()
 
 
 def test_a_sensor_behind_the_body_is_reported_apart(car):

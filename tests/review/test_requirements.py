@@ -9,7 +9,6 @@ import pytest
 import pe_tools as pt
 from pe_core.scoring import requirements
 from pe_tools.page import ReportContext
-from pe_tools.page.document import STYLES
 from pe_tools.page.pictures.reference_figures import worst_bodies
 from pe_tools.page.pictures.sight_plans import MET_RGBA, NOT_MET_RGBA, requirement_plan
 from pe_tools.page.sections.visibility import requirement_verdicts
@@ -85,36 +84,6 @@ def test_a_plan_is_filled_by_the_verdict_where_the_zone_is(context, number, colo
     assert shown == pytest.approx(np.ptp(rows) * np.ptp(columns), rel=0.1), "one rectangle"
 
 
-def test_samples_are_not_painted_beyond_an_edge_that_runs_across_them(context):
-    """A triangle of 8 m2 at a step of 1 m: the painted pixels are those of the triangle."""
-    corners = (("front + 2", -2.0), ("front + 6", 0.0), ("front + 2", 2.0))
-    zone = requirements.Zone(polygon=corners, step=1.0)
-    held = dataclasses.replace(BEHIND, zone=zone)
-    checker = requirements.RequirementChecker([held], context.vehicle)
-    (verdict,) = checker.check(context.rig)
-    pixels = pixels_of(requirement_plan(verdict, context.vehicle, "alt"))
-    rear, front = (corner[0] for corner in context.vehicle.bounds)
-    length = front - rear + 6.0 + 2.0
-    meters = length / pixels.shape[1]
-    assert (pixels[..., 3] > 0).sum() * meters**2 == pytest.approx(8.0, rel=0.03)
-
-
-def test_a_plan_holds_all_of_its_margin_line(context):
-    """The dashed line of a zone that could grow far is inside the frame on all sides."""
-    verdict = context.outcome.verdicts[0]
-    assert verdict.met and verdict.margin > 1.5
-    drawing = str(requirement_plan(verdict, context.vehicle, "alt"))
-    (dashed,) = re.findall(r'<path d="([^"]*)"[^>]*stroke-dasharray', drawing)
-    points = np.array(re.findall(r"(-?[\d.]+)[ ,](-?[\d.]+)", dashed), float)
-    frame = re.search(r'<rect[^>]*class="axis"[^>]*>', drawing)[0]
-    x, y, width, height = (
-        float(re.search(rf' {key}="([\d.]+)"', frame)[1]) for key in ("x", "y", "width", "height")
-    )
-    low, high = points.min(axis=0), points.max(axis=0)
-    assert (low > [x, y]).all() and (high < [x + width, y + height]).all()
-    assert np.allclose(points[0], points[-1], atol=2.0), "one closed line"
-
-
 def test_blind_ground_is_drawn_where_the_engine_has_it(context):
     verdict = context.outcome.verdicts[1]
     pixels = pixels_of(requirement_plan(verdict, context.vehicle, "alt"))
@@ -129,10 +98,3 @@ def test_bodies_have_the_points_that_the_engine_counts(context):
     ahead, behind = worst_bodies(context.outcome.verdicts, context.rig, context.vehicle)
     assert (ahead.number, behind.number) == (1, 3)
     assert ahead.counts[NAMES[1]] > 100.0 and behind.counts[NAMES[1]] == 0.0
-
-
-def test_colours_are_those_of_the_tags():
-    css = (STYLES / "parts.css").read_text("utf-8")
-    for rgba, name in ((MET_RGBA, "met"), (NOT_MET_RGBA, "not-met")):
-        found = re.search(rf"\.tag\.{name} {{ background: (#\w+)", css)
-        assert found[1] == "#" + "".join(f"{value:02x}" for value in rgba[:3])

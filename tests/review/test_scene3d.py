@@ -9,17 +9,7 @@ import pytest
 
 import pe_core as pe
 from pe_tools import graphics
-from pe_tools.page.scene3d import (
-    SCRIPTS,
-    THREE,
-    packed_points,
-    packed_primitives,
-    scene_data,
-    scripts,
-    vehicle_data,
-    view,
-)
-from tests.review.conftest import html_of
+from pe_tools.page.scene3d import SCRIPTS, THREE, packed_points, scene_data, scripts, vehicle_data
 
 THREE_SHA256 = "3e322f986588f7ebb331c039f732ec0f5284e86a643f09eade7be1cd4eba5fd8"
 """Of what tools/vendor_three.sh makes of the versions that it names."""
@@ -44,18 +34,6 @@ def test_places_come_back_within_half_a_step():
     packed = packed_points(some)
     assert packed["step"] == pytest.approx(np.ptp(some[:, 0]) / 65535)
     np.testing.assert_allclose(points(packed), some, atol=0.51 * packed["step"], rtol=0.0)
-
-
-@pytest.mark.parametrize("some", [np.empty((0, 3)), np.full((1, 3), 7.0)])
-def test_no_point_and_a_single_one(some):
-    np.testing.assert_allclose(points(packed_points(some)), some)
-
-
-def test_colors_are_bytes():
-    packed = packed_primitives(
-        graphics.Primitives.of([(0, 0, 0), (1, 0, 0)], (1.0, 0.5, 0.0, 0.25))
-    )
-    np.testing.assert_array_equal(numbers(packed["colors"], "u1"), [255, 128, 0, 64] * 2)
 
 
 def test_the_vehicle_has_all_triangles_by_part(scored):
@@ -107,12 +85,6 @@ def test_a_camera_s_own_vehicle_is_drawn_where_it_sees_it(scored):
     np.testing.assert_allclose(ends[:, 0], -2.2, atol=1e-5)
     assert np.abs(ends[:, 1]).max() <= 0.9 and len(ends) > 20
     assert not len(graphics.hidden_lines(behind, None, graphics.PAPER.occluded).points)
-
-
-def test_without_a_vehicle_sensors_are_drawn_alone(bare):
-    found = scene_data(bare)
-    assert found["vehicle"] is None and "See through" not in html_of(view, bare)
-    assert "lines" not in found["sensors"][0]["layers"]["occluded"]
 
 
 def test_it_is_small_and_a_whole_program(scored):

@@ -19,11 +19,9 @@ from studies.detectors.after_search.plan import (
 from studies.detectors.after_search.searches import PLACEMENTS, searched_placements, study_of
 from studies.detectors.analysis import HOLDS, OPEN, REFUTED
 from studies.detectors.findings import answer_after_search
-from studies.detectors.placements import SHUTTLE
-from studies.detectors.plan import AFTER_SEARCH, PLAIN, full_plan
+from studies.detectors.plan import AFTER_SEARCH, full_plan
 from studies.detectors.rank_tests import student_interval
 from studies.detectors.runs import RunFiles, seed_by_seed
-from studies.detectors.scenes import scene
 from studies.paper.paper import STUDIES
 from tests.studies.conftest import ROOT, study
 
@@ -70,12 +68,6 @@ def test_rigs_are_the_lidars_of_the_studies_that_the_plan_names():
     assert len({study_of(PLAN, PLAN.rigs[0], o, 1).search.objective for o in PLAN.objectives}) == 2
 
 
-def test_scenes_of_the_bus_are_those_of_the_study_and_the_shuttle_has_its_own():
-    one, other = (scene(plan, "bus", "test", PLAIN, 3) for plan in (full_plan(), PLAN.study))
-    assert (one.triangles == other.triangles).all()
-    assert len(scene(PLAN.study, SHUTTLE, "test", PLAIN, 3).labels)
-
-
 def test_a_short_search_is_kept_and_its_runs_are_gone_on_with_by_resume_alone(tmp_path):
     """It ends within its bounds, and its file is not searched again."""
     plan, said = quick_after_search_plan(), []
@@ -98,14 +90,6 @@ def test_a_short_search_is_kept_and_its_runs_are_gone_on_with_by_resume_alone(tm
     with pytest.raises(InputError, match="plan"):
         changed = replace(plan, study=replace(plan.study, digest="other"))
         searched_placements(changed, tmp_path / AFTER_SEARCH)
-
-
-def test_runs_come_seed_by_seed():
-    placements = searched_placements(PLAN, FOLDER_OF_DOCS / AFTER_SEARCH)
-    names = [run.name for run in seed_by_seed(PLAN.study, placements)]
-    assert len(set(names)) == 18
-    assert names[0] == "after-experiment-4-start-s1" and names[-1] == "after-shuttle-expected-ap-s3"
-    assert [name[-1] for name in names] == sorted(name[-1] for name in names)
 
 
 def test_student_s_interval_by_hand():

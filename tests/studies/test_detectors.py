@@ -16,11 +16,8 @@ from benchmarks.embree import Embree
 from pe_core import InputError
 from pe_core.geometry.ray_traversal import TriangleTree
 from pe_core.geometry.raycast import VisibleTriangles
-from studies.detectors import runs as of_runs
-from studies.detectors import shapes
 from studies.detectors.after_search.plan import full_after_search_plan
 from studies.detectors.after_search.searches import searched_placements
-from studies.detectors.analysis import UNDECIDED
 from studies.detectors.batches import NEITHER, detections, inputs, targets
 from studies.detectors.cameras.placements import camera_placements
 from studies.detectors.cameras.plan import full_camera_plan, quick_camera_plan
@@ -41,8 +38,7 @@ from studies.detectors.plan import (
 )
 from studies.detectors.precision import ClassScene, average_precision, in_ring
 from studies.detectors.runs import RunFiles, run_digest, runs, seed_by_seed
-from studies.detectors.scenes import CLASSES, NOBODY, scene
-from studies.detectors.scores import PRIMARY
+from studies.detectors.scenes import scene
 from tests.limits import HANG_S
 from tests.studies.conftest import ROOT, study
 from tests.thorough import THOROUGH
@@ -108,22 +104,6 @@ def test_scenes_and_their_noise_are_the_same_in_every_session(voxels):
     assert digest.hexdigest()[:16] == SCENE
 
 
-@pytest.mark.parametrize("name", [*CLASSES, *shapes.DISTRACTORS])
-def test_shapes_fill_their_box_and_stand_on_the_ground(name):
-    mesh = shapes.placed_mesh(name, np.array([3.0, 2.0, 0.0]), np.array([4.0, 2.0, 1.5]), 0.0)
-    low, high = mesh.reshape(-1, 3).min(axis=0), mesh.reshape(-1, 3).max(axis=0)
-    assert low == pytest.approx([1.0, 1.0, 0.0]) and high == pytest.approx([5.0, 3.0, 1.5])
-    across = np.cross(mesh[:, 1] - mesh[:, 0], mesh[:, 2] - mesh[:, 0])
-    assert (across * (mesh[:, 0] - [3.0, 2.0, 0.75])).sum() > 0.0  # normals point outward
-
-
-def test_nothing_overlaps_in_a_scene():
-    content = scene(PLAN, "bus", "train", PLAIN, 5)
-    gaps = np.linalg.norm(content.centers[:, None] - content.centers[None], axis=2)
-    assert gaps[~np.eye(len(gaps), dtype=bool)].min() > 0.5
-    assert len(content.owners) == len(content.triangles) and NOBODY in content.owners
-
-
 @pytest.mark.parametrize("world", [PLAIN, TOWN])
 def test_beams_end_where_embree_says(world):
     content = scene(PLAN, "sedan", "train", world, 1)
@@ -139,13 +119,6 @@ def test_beams_end_where_embree_says(world):
     assert ((owners != named) | ((face < 0) != (expected < 0))).mean() < 2e-4  # along an edge
 
 
-def test_points_on_flat_ground_lie_on_it(caster):
-    _, points = caster.points("test", 0)
-    assert np.abs(points.positions[:, 2]).min() < 0.01
-    assert points.positions[:, 2].min() > -0.1
-    assert points.beams.sum() > 0
-
-
 @pytest.mark.parametrize("mirror", [NEITHER, (True, False), (False, True), (True, True)])
 def test_a_perfect_heat_map_gives_the_objects_back(voxels, mirror):
     """Targets as outputs: every object that a beam meets is found where it is, mirrored alike."""
@@ -158,12 +131,6 @@ def test_a_perfect_heat_map_gives_the_objects_back(voxels, mirror):
             gaps = np.linalg.norm(objects[:, None] - tops[None], axis=2).min(axis=1, initial=9.0)
             assert (gaps < 1.2).all()  # two in one cell are one peak
             assert len(objects) == 0 or np.median(gaps) < 1e-4
-
-
-def test_a_mirrored_input_has_its_points_at_the_mirrored_places(voxels):
-    plain = inputs(voxels[:1], PLAN.region, [NEITHER])[0]
-    mirrored = inputs(voxels[:1], PLAN.region, [(True, False)])[0]
-    assert plain.sum() > 0 and (mirrored == plain[::-1]).all()
 
 
 def test_points_are_in_their_pillars_and_those_of_objects_come_first(caster):
@@ -212,17 +179,6 @@ def test_an_object_is_found_once_and_rings_cut_both():
     assert average_precision(twice, 1.0) == pytest.approx(1 / 2)
     assert average_precision([in_ring(twice[0], 0.0, 15.0)], 1.0) == 1.0
     assert average_precision([in_ring(twice[0], 30.0, 60.0)], 1.0) == 0.0
-
-
-def test_runs_come_seed_by_seed_and_designs_by_turns():
-    ordered = runs(PLAN)
-    assert len({run.name for run in ordered}) == len(ordered)
-    seeds = [run.seed for run in ordered if not run.name.startswith(("town", "plain"))]
-    assert seeds == sorted(seeds) and seeds.count(1) == 32 + 18 + 1
-    assert [run.name for run in ordered[:4]] == [
-        *("across-sedan-01-s1", "fixed-sedan-01-s1"),
-        *("fixed-bus-01-s1", "across-bus-01-s1"),
-    ]
 
 
 def test_files_of_another_plan_are_refused(tmp_path):
@@ -312,38 +268,6 @@ def test_other_pages_give_the_answer_of_the_study_and_the_readme_in_seventy_word
     number = r"\d+(?:\.\d+)?"
     assert re.findall(number, told) == re.findall(number, answer), "each figure of the answer"
     assert "blind sector" in told and told.index("Not shown") < told.index("cameras")
-
-
-def test_the_better_half_is_not_decided_and_other_methods_lean_to_it():
-    """As others computed it from the same runs, with code of their own."""
-    found = saved()
-    half = found["afterwards"]["better_half"]
-    assert found["statements"][2]["verdict"] == UNDECIDED
-    assert half["p"] == pytest.approx(0.017, abs=1e-3)
-    assert half["bca"] == pytest.approx([0.18, 0.88], abs=0.01)
-    assert half["bootstrap_mean"] == pytest.approx(0.53, abs=0.005)
-    assert 0.25 < half["power"][0]["share"] < half["power"][1]["share"] < 0.52
-    rows = found["afterwards"]
-    assert rows["minus_beams"]["interval"] == pytest.approx([-0.006, 0.11], abs=0.005)
-    assert (rows["fewer_beams"]["pairs"], rows["fewer_beams"]["wrong"][PRIMARY]) == (10, 10)
-    assert rows["curves_across"]["rmse"] == pytest.approx(0.020, abs=5e-4)
-
-
-def test_a_run_s_digest_covers_plan_code_prior_and_versions(tmp_path, monkeypatch):
-    versions = {"python": "3.11", "numpy": "1.26.4", "tensorflow": "2.21.0"}
-    first = run_digest("plan", versions)
-    assert first == run_digest("plan", versions)
-    assert first != run_digest("other", versions)
-    assert first != run_digest("plan", {**versions, "numpy": "2.0.0"})
-    roots = {"pe_core": tmp_path / "core", "studies.detectors": tmp_path / "own"}
-    for root in roots.values():
-        (root / "prior").mkdir(parents=True)
-        (root / "prior" / "classes.py").write_text("x = 1")
-    monkeypatch.setattr(of_runs.resources, "files", lambda package: roots[package])
-    one = run_digest("plan", versions)
-    for root in roots.values():
-        (root / "prior" / "classes.py").write_text("x = 2")
-        assert one != (one := run_digest("plan", versions))
 
 
 @pytest.mark.parametrize(

@@ -9,12 +9,10 @@ import sys
 
 import pytest
 
-from pe_core import InputError
-from studies.paper import experiments, plots
-from studies.paper.__main__ import page, read_results
-from studies.paper.experiments import FULL, QUICK, plan, scores_and_figures
+from studies.paper import plots
+from studies.paper.__main__ import page
+from studies.paper.experiments import QUICK, plan
 from studies.paper.findings import Findings, statements
-from studies.results_file import ResultsFile
 from tests.limits import HANG_S
 from tests.studies.conftest import ROOT, numbers, study
 
@@ -117,57 +115,3 @@ def test_what_is_done_is_kept_when_it_is_interrupted(quick, tmp_path):
     assert process.returncode == 128 + signal.SIGTERM and "Traceback" not in error
     kept = json.loads((tmp_path / "results.json").read_text("utf-8"))["results"]
     assert data["results"].keys() < kept.keys() < quick.data["results"].keys()
-
-
-def test_incomplete_results_and_a_page_of_the_users_own_are_refused(tmp_path):
-    (tmp_path / "results.json").write_text('{"schema": 1, "made": {}, "results": {}}')
-    run = study("paper", "--page-only", "--output", tmp_path)
-    assert run.returncode == 1 and run.stderr.count("\n") == 1
-    (tmp_path / "README.md").write_text("# My project")
-    (tmp_path / "results.json").write_bytes((DOCS / "results.json").read_bytes())
-    run = study("paper", "--page-only", "--json", "--output", tmp_path)
-    assert run.returncode == 1 and not run.stdout and run.stderr.count("\n") == 1
-    assert (tmp_path / "README.md").read_text() == "# My project"
-
-
-@pytest.mark.parametrize("place", ["claims/0/better_entropy", "results/pitch|0/value/entropy"])
-def test_claims_that_do_not_follow_from_the_values_are_refused(tmp_path, place):
-    data = at = copy.deepcopy(COMMITTED)
-    *folders, last = (k.replace("|", "/") for k in place.split("/"))
-    for key in folders:
-        at = at[int(key) if isinstance(at, list) else key]
-    at[last] += 1.0
-    (tmp_path / "results.json").write_text(json.dumps(data), "utf-8")
-    with pytest.raises(InputError, match="claims"):
-        read_results(tmp_path / "results.json")
-
-
-def test_results_of_another_commit_are_kept_under_a_name_of_their_own(tmp_path):
-    results = ResultsFile(tmp_path, QUICK)
-    results.add("pitch/0", {"entropy": 1.0}, 0.1)
-    assert ResultsFile(tmp_path, QUICK).loaded == 1
-    for name in ("results-2.json", "results-3.json"):
-        assert ResultsFile(tmp_path, FULL).loaded == 0
-        assert (tmp_path / name).exists() and not results.path.exists()
-        results.save()
-
-
-def kind_of(task_name):
-    return task_name.partition("/")[0]
-
-
-def test_check_reports_what_is_not_equal(quick, tmp_path, monkeypatch):
-    """Of results with one figure changed, that one alone is not equal: a task of every kind."""
-    tasks = scores_and_figures(QUICK)
-    tasks = list({kind_of(task.name): task for task in reversed(tasks)}.values())
-    monkeypatch.setattr(experiments, "scores_and_figures", lambda _: tasks)
-    data = copy.deepcopy(quick.data)
-    data["results"]["bound/2_60deg/road"]["value"]["in_view"] += 1e-15
-    (tmp_path / "results.json").write_text(json.dumps(data), "utf-8")
-    run = study("paper", "--quick", "--check", "--output", tmp_path)
-    assert run.returncode == 1
-    first, last = run.stdout.splitlines()
-    assert first == "not equal: bound/2_60deg/road"
-    checked = {name for name in data["results"] if kind_of(name) not in ("search", "pilot")}
-    assert {kind_of(task.name) for task in tasks} == {kind_of(name) for name in checked}
-    assert last == f"{len(tasks) - 1} of {len(tasks)} scores and figures are equal"

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from studies.ranks import (
-    agreement,
     exact_p,
     exact_p_of_mean,
     holm,
@@ -34,19 +33,10 @@ def test_rho_with_ties_is_the_correlation_of_midranks():
     assert spearman(a, b) == pytest.approx(expected, abs=1e-12)
 
 
-def test_a_score_that_ranks_nothing_has_no_rho():
-    assert spearman([1, 1, 1], [1, 2, 3]) is None
-    assert under_chance([1, 1, 1], [[1, 2, 3]]) is None
-
-
 @pytest.mark.parametrize(("count", "least"), [(5, 1.0), (6, 0.886), (7, 0.786), (8, 0.738)])
 def test_critical_values_are_the_tables(count, least):
     """Two-sided 5 %, as in tables of Spearman's rho (Zar 1972)."""
     assert min_significant_rho(count) == pytest.approx(least, abs=5e-4)
-
-
-def test_four_placements_tell_nothing():
-    assert min_significant_rho(4) is None
 
 
 def test_chance_is_the_mean_over_detectors_of_shuffled_placements():
@@ -77,9 +67,3 @@ def test_p_is_two_sided():
 def test_holm_by_hand():
     """0.01 x 4; 0.02 x 3; 0.03 x 2, not below the one before; 0.5 x 1."""
     assert holm([0.03, 0.01, 0.5, 0.02]) == pytest.approx([0.06, 0.04, 0.5, 0.06])
-
-
-def test_detectors_that_rank_alike_agree():
-    alike = [[1, 2, 3, 4], [2, 4, 6, 8], [0, 1, 5, 9]]
-    assert agreement(alike) == pytest.approx(1.0)
-    assert agreement([[1, 2, 3, 4], [4, 3, 2, 1]]) == pytest.approx(-1.0)

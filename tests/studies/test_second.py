@@ -12,14 +12,14 @@ from pe_core import InputError, catalog
 from pe_core.scene.objects import Objects
 from pe_core.sensors.kernels import ObjectView
 from studies.detectors.after_search.plan import START
-from studies.detectors.after_search.searches import placement_of, searched_placements, study_of
+from studies.detectors.after_search.searches import placement_of
 from studies.detectors.analysis import HOLDS, REFUTED, UNDECIDED
-from studies.detectors.placements import placements, vehicle
+from studies.detectors.placements import placements
 from studies.detectors.plan import FIXED, full_plan
 from studies.detectors.scan_curves import counts_of
 from studies.detectors.scenes import NOBODY
 from studies.detectors.scores import COVERAGE, PRIMARY
-from studies.detectors.second.analysis import BEYOND, FINDS_MORE, second_analysis, tie_verdict
+from studies.detectors.second.analysis import BEYOND, FINDS_MORE, second_analysis
 from studies.detectors.second.law import (
     PUBLISHED,
     camera_law,
@@ -41,7 +41,6 @@ from studies.detectors.second.plan import (
     quick_second_plan,
     second_runs,
 )
-from tests.studies.conftest import study
 from tests.studies.test_detectors import in_a_process
 from tests.studies.test_road import write_log
 from tests.thorough import THOROUGH
@@ -81,12 +80,6 @@ def test_w_of_made_up_scans_is_found():
     ap = [0.8 + 0.1 * (2 * 0.7 * rows + 2 * 0.3 * columns) for rows, columns in shares]
     assert published_law(ap) == {"w": 0.7, "a": 0.1, "rmse": 0.0}
     assert all(0.65 < published_law(ap)["w"] < 0.78 for ap in PUBLISHED.values())
-
-
-def test_half_is_the_number_of_beams():
-    rows, beams = np.array([1.0, 4.0, 0.0]), np.array([7.0, 60.0, 0.0])
-    assert weighted(rows, beams, 0.5) == pytest.approx(beams, rel=0.006)
-    assert weighted(rows, beams, 1.0) == pytest.approx(rows**2, rel=0.006)
 
 
 def test_rows_are_channels_of_each_lidar_that_meet_the_object():
@@ -207,23 +200,6 @@ def test_verdicts_of_made_up_runs():
     assert list(same[SEARCHES]["minus_entropy"].values())[1]["verdict"] == FINDS_MORE[-1]
 
 
-def test_no_verdict_before_a_part_is_done():
-    plan = quickly(full_second_plan())
-    results, scores = made_up(plan, 0.05)
-    for name, part in (
-        ("good-bus-48-s2", GOOD),
-        ("equal-m-64-bus-02-s3", EQUAL_M),
-        ("layouts-grid-mixed-s3", LAYOUTS),
-        ("after-bus-4-entropy-k3-s2", SEARCHES),
-    ):
-        rest = {run: found for run, found in results.items() if run != name}
-        found = second_analysis(plan, parts(plan), rest, scores)
-        assert [n for n in found["parts"] if found[n] is None] == [part]
-    unsearched = parts_of(plan, [])
-    assert second_analysis(plan, unsearched, results, scores)[SEARCHES] is None
-    assert tie_verdict(-0.005, 0.02, 0.01) == UNDECIDED
-
-
 def rows_of_a_log():
     """Return 41 frames: a car at 20 m, one that meets the vehicle, a bollard, a sign; a person."""
     always = [
@@ -250,36 +226,6 @@ def test_real_layouts_are_every_twentieth_frame_with_feet_on_the_ground(tmp_path
     write_log(tmp_path / "no" / "two", [(0, "a", "SIGN", 9, 9.0, 0.0, 0.0)])
     with pytest.raises(InputError, match="category"):
         Layouts(tmp_path / "no")
-
-
-def test_searches_start_on_the_roof_of_three_vehicles():
-    searches = full_second_plan().searches
-    assert [rig.name for rig in searches.rigs] == [
-        f"{name}_{count}" for name in ("sedan", "bus", "shuttle") for count in (2, 4)
-    ]
-    for rig in searches.rigs:
-        assert len(rig.poses) == int(rig.name[-1])
-        ours = [study_of(searches, rig, o, seed) for o in searches.objectives for seed in (1, 3)]
-        assert [s.search.seed for s in ours] == [1, 3, 1, 3]
-        assert all(s.search.method == "portfolio" and not s.search.evaluations for s in ours)
-        body = vehicle(rig.vehicle)
-        for x, y, z, *angles in rig.poses:
-            hit = body.first_hit_from(np.array([x, y, z]), np.array([[0.0, 0.0, -1.0]]))
-            assert 0.05 < hit.distance[0] < 0.3 and angles == [0.0, 0.0, 0.0]
-    names = [run.name for run in parts(full_second_plan())[SEARCHES]]
-    assert len(names) == len(set(names)) == 84
-
-
-def test_short_searches_are_kept_by_their_seed(tmp_path):
-    plan = quick_second_plan()
-    found = searched_placements(plan.searches, tmp_path, lambda line: None)
-    assert [p.name for p in found][:3] == [
-        "after-sedan-2-start", "after-sedan-2-entropy-k1", "after-sedan-2-entropy-k2"
-    ]  # fmt: skip
-    assert len({p.poses for p in found}) > 1, "some search moved"
-    assert searched_placements(plan.searches, tmp_path) == found
-    run = study("detectors.second", "--quick", "--searches", "--runs", 0, "--output", tmp_path)
-    assert run.returncode == 0 and "0 of 5 runs of searches are done" in run.stdout
 
 
 @pytest.mark.skipif(not THOROUGH, reason="a detector is trained: with CI=true")

@@ -59,13 +59,6 @@ def test_an_exported_study_scores_and_searches_the_same(full, tmp_path):
     assert read.evaluator().entropy(read.rig) == study.evaluator().entropy(study.rig)
 
 
-def test_sensors_go_with_a_model_that_is_renamed(full):
-    full.perception_entropy.own_sensors[0].name = "Bumper LiDAR"
-    bridge.sync_own_sensors()
-    assert bpy.data.objects["bumper"].perception_entropy.model == "Bumper LiDAR"
-    assert "My LiDAR" not in catalog.entries() and "Bumper LiDAR" in catalog.entries()
-
-
 def test_a_name_that_is_taken_and_figures_that_cannot_be_are_said_at_the_row(car):
     row = add_own(name="Pandar64")
     bridge.sync_own_sensors()

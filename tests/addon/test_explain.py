@@ -9,7 +9,7 @@ import pytest
 from blender_addon import bridge, diagnostics, location_query, panels
 from blender_addon.engine import advice, jobs
 from tests.addon import scenes
-from tests.addon.layouts import Layout, Window
+from tests.addon.layouts import Layout, Window, drawn
 
 
 def told(scene):
@@ -187,3 +187,18 @@ def test_a_vehicle_that_is_out_of_the_view_is_reported_by_name_and_can_be_shown(
     assert bpy.ops.pe.mend(fix=advice.fix) == {"FINISHED"}
     assert scenes.study().vehicle is not None
     assert not [each for each in bridge.scene_advice(car) if each.code == "hidden_vehicle"]
+
+
+def test_panels_show_words_warnings_and_the_place(car):
+    car.objects["roof"].location.z = 3.0
+    bpy.context.view_layer.update()
+    bpy.ops.pe.score()
+    bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0))
+    window = Window(car, car.objects["roof"])
+    layout = drawn(panels.main.warnings, **vars(window))
+    assert "clear of the vehicle" in " ".join(layout.texts("label"))
+    explain = type("Explain", (), {"layout": (shown := Layout())})
+    panels.score_details.explain.draw(explain, window)
+    text = " ".join(shown.texts("label"))
+    assert "of where objects are is seen" in text.replace("  ", " ")
+    assert "Ask" not in text and "pe.ask_place" in shown.texts("operator")

@@ -5,6 +5,7 @@ import pytest
 
 import pe_core as pe
 from blender_addon import bridge, diagnostics
+from pe_core.search import Goals
 from pe_tools import jobs
 from pe_tools.jobs import FrontJob, front_dict
 from tests.addon import scenes
@@ -48,3 +49,24 @@ def test_runners_up_are_variants_and_their_lines_are_in_the_scene(asked, monkeyp
     settings = asked.perception_entropy
     assert "Runner-up 1" in {row.name for row in settings.variants}
     assert "1 cm or 1 deg" in "\n".join(diagnostics.explanation(settings.id_data).search)
+
+
+def test_goals_of_the_panel_are_those_of_the_study(asked):
+    settings = asked.perception_entropy
+    kept = ("blind_ground", "blind_sector")
+    assert scenes.study().search.goals == Goals(sensitivity="off", keep=kept)
+    settings.keep_blind_ground = settings.keep_blind_sector = False
+    assert scenes.study().search.goals == Goals(sensitivity="off")
+    settings.stop_target, settings.stop_gain, settings.stop_over = -1.25, 0.002, 40
+    bpy.data.objects["roof"].perception_entropy.stays = True
+    goals = scenes.study().search.goals
+    assert (goals.stop.target, goals.stop.seconds, goals.stop.over) == (-1.25, None, 40)
+    assert goals.stop.gain == 0.002 and goals.fixed == ("roof",)
+    settings.start_variants = True
+    assert scenes.study().search.goals.starts == ()
+    assert bpy.ops.pe.save_variant() == {"FINISHED"}
+    bpy.data.objects["roof"].location.x += 0.2
+    assert bpy.ops.pe.save_variant() == {"FINISHED"}
+    [start] = scenes.study().search.goals.starts
+    now = scenes.study().rig["roof"].pose.position[0]
+    assert start.poses["roof"].position[0] == pytest.approx(now - 0.2, abs=1e-5)

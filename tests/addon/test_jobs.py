@@ -1,6 +1,5 @@
 """Score and optimize from the scene: the engine's own numbers, to the bit."""
 
-import json
 import math
 from types import SimpleNamespace
 
@@ -22,38 +21,6 @@ def finished(work):
     for _ in work:
         pass
     return work.outcome
-
-
-def stored(scene) -> dict:
-    """Return the stored result without what differs from run to run."""
-    data = json.loads(scene.perception_entropy.result_json)
-    del data["run"]
-    for score in (data["before"], data["after"]):
-        score.pop("scatter", None)  # for the error of a difference: no part of result.json
-    return data
-
-
-def test_warnings_are_stored_as_the_result_has_them(car):
-    """A sensor in the body, and the vehicle turned; what is mended is gone with the next score."""
-    settings, roof = car.perception_entropy, car.objects["roof"]
-    before = roof.location.copy()
-    roof.location = (1.5, 0.0, 0.1)
-    body = car.objects["body"]
-    body.location.z -= 0.5
-    bpy.ops.pe.score()
-    told = stored(car)["warnings"]
-    rows = settings.result_warnings
-    assert [(each["subject"], each["code"]) for each in told] == [
-        *((None, "height"), ("roof", "inside"))
-    ]
-    assert [(row.subject, row.code, row.values) for row in rows] == [
-        (each["subject"], each["code"], each["values"]) for each in told
-    ]
-    assert rows[0].fix == "move_vehicle"
-    assert list(rows[0].amount) == pytest.approx(told[0]["amount"])
-    roof.location, body.location.z = before, body.location.z + 0.5
-    bpy.ops.pe.score()
-    assert not settings.result_warnings and stored(car)["warnings"] == []
 
 
 def test_what_a_search_cost_is_stored_and_shown(car):

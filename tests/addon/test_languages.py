@@ -4,28 +4,15 @@ import ast
 from pathlib import Path
 
 import bpy
-import pytest
 
 import blender_addon
 from blender_addon import language, translation_context
-from blender_addon.panels import layout, main
+from blender_addon.panels import main
 from blender_addon.translation_context import CONTEXT
 from tests.addon import layouts, scenes
 
 SIDEBAR_PX, POINTS = 252.0, 11.0
 """Width of a sidebar as Blender opens it, and size of its text, at a scale of 1."""
-
-
-@pytest.mark.parametrize("code", language.LANGUAGES)
-def test_names_wrap_in_the_sidebar_in_every_language(addon, code):
-    """No line is wider than the sidebar, also without gaps between words, and nothing is lost."""
-    room, size = SIDEBAR_PX - layout.BESIDE_PX, POINTS
-    layout.blf.size(layout.FONT, size)
-    for text in (10 * name for name in language.catalog(code).values()):
-        lines = layout.wrapped_lines(text, room, size)
-        assert "".join(lines).replace(" ", "") == "".join(text.split()), text
-        assert all(layout.blf.dimensions(layout.FONT, line)[0] <= room for line in lines), text
-        assert not any(line[:1] in "。、，：；）" for line in lines[1:] if len(line) > 1), lines
 
 
 def test_the_panel_is_in_the_language_of_the_interface(addon, monkeypatch):

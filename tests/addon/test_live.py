@@ -1,5 +1,6 @@
 """The live score: previews while the hand moves, exact once it rests, and nothing left behind."""
 
+import json
 from dataclasses import replace
 
 import bpy
@@ -15,7 +16,7 @@ from blender_addon import (
     signals,
 )
 from blender_addon.engine import advice
-from blender_addon.live import readout, session, state, told_figures
+from blender_addon.live import readout, readout_text, session, state, told_figures
 from tests.addon import scenes
 
 SAMPLES = 4096
@@ -291,3 +292,17 @@ def test_without_a_window_nothing_follows(car):
     car.perception_entropy.live.on = True
     drag(car.objects["roof"])
     assert reading(car) is None
+
+
+def test_a_search_s_gain_is_that_of_its_result(live):
+    bpy.ops.pe.score()
+    settings = live.perception_entropy
+    data = json.loads(settings.result_json)
+    data["kind"], data["before"]["entropy"] = "optimize", data["entropy"] + 0.25
+    settings.result_json = json.dumps(data)
+    rest()
+    text = readout_text.readout_of(reading(live), state.shown_score(live))
+    assert (text.change, text.against) == ("0.250 better", "compared with before the search")
+    assert bpy.ops.pe.save_variant() == {"FINISHED"}
+    bpy.ops.pe.live_against(key=live.perception_entropy.variants[0].key)
+    assert state.shown_score(live).before is None, "compared with something else"

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import bpy
 
 from blender_addon.panels import menus
-from tests.addon import layouts
+from tests.addon import layouts, scenes
 
 
 def test_every_button_of_the_menu_is_an_operator(addon):
@@ -20,3 +20,22 @@ def test_every_button_of_the_menu_is_an_operator(addon):
     for name in names:
         module, function = name.split(".")
         getattr(getattr(bpy.ops, module), function).get_rna_type()
+
+
+def context_menu(scene, obj, mode="OBJECT"):
+    """Buttons of a right click on an object."""
+    layout = layouts.Layout()
+    context = SimpleNamespace(scene=scene, active_object=obj, mode=mode)
+    menus.draw_context_menu(SimpleNamespace(layout=layout), context)
+    return layout.texts("operator")
+
+
+def test_a_right_click_offers_what_fits_the_object(addon):
+    scene = bpy.context.scene
+    mesh = bpy.data.objects.new("part", bpy.data.meshes.new("part"))
+    assert context_menu(scene, None) == context_menu(scene, mesh, "EDIT_MESH") == []
+    assert context_menu(scene, mesh) == ["Use Selected Objects as Vehicle"]
+    sensor = scenes.add_sensor("roof")
+    assert context_menu(scene, sensor)[0] == "pe.look_through"
+    scene.perception_entropy.vehicle = bpy.data.collections.new("Car")
+    assert context_menu(scene, mesh) == ["pe.place_sensor"]

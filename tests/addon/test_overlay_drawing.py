@@ -115,26 +115,3 @@ def test_overlays_off_hides_all(window, rig):
     window.space.overlay.show_overlays = False
     redraw()
     assert not window.card.drawn and not window.card.written
-
-
-def test_hidden_sensors_local_view_and_the_eye_looked_through(window, rig):
-    scenes.drawn(rig)
-    window.visible["roof"] = False
-    redraw()
-    assert "roof" not in window.card.written and "eye" in window.card.written
-    window.card.drawn.clear()
-    window.space.local_view = object()
-    redraw()
-    assert len(window.card.drawn) == 2, "the rig's own layers belong to no local view"
-    window.look.view_perspective, window.space.camera = "CAMERA", rig.objects["eye"]
-    window.card.drawn.clear()
-    window.card.written.clear()
-    objects = set(bpy.data.objects)
-    redraw()
-    ground, bodies = window.card.drawn
-    assert len(ground.faces.points) and len(ground.thin.points), "not a grey box"
-    assert window.card.written == [tag.text for tag in bodies.labels]
-    assert len(window.card.written) == len(graphics.surroundings(pe.Pose((0, 0, 1))).bodies.labels)
-    assert set(bpy.data.objects) == objects, "it is drawn, and nothing of the file"
-    redraw()
-    assert window.card.drawn[2:] == [ground, bodies], "made once for a pose"

@@ -7,8 +7,8 @@ import pytest
 
 from blender_addon import bridge
 from blender_addon.engine import advice
-from blender_addon.panels import layout, main, sensor_lists
-from tests.addon import layouts, scenes
+from blender_addon.panels import layout, main
+from tests.addon import layouts
 
 SENTENCE = "the vehicle collection Sedan is excluded from the view layer: nothing of it is scored"
 
@@ -53,28 +53,3 @@ def test_score_live_and_optimize_stand_first_and_late_lines_have_their_room(car)
     bridge.store_warnings(settings, [advice.Advice("roof", "clear", {"gap": 0.6})])
     assert len(drawn_of(car).texts("label")) == counts[0], "warnings move nothing"
     assert main.warnings.poll(layouts.Window(car))
-
-
-def test_many_sensors_are_a_list_that_scrolls(car):
-    class Listed(layouts.Layout):
-        """Takes Blender's own list as well."""
-
-        def template_list(self, name, _id, data, listed, settings, index, **more):
-            assert more["maxrows"] == sensor_lists.MAX_ROWS
-            self.shown = name, list(getattr(data, listed)), getattr(settings, index)
-
-    for k in range(sensor_lists.MAX_ROWS):
-        scenes.add_sensor(f"more {k}", "Camera 60 deg", location=(0.1 * k, 0.0, 2.0))
-    car.view_layers[0].objects.active = car.objects["more 2"]
-    layout = Listed()
-    layout._inner = lambda **_: layout
-    layout.row = layout.column = layout.split = layout.box = layout._inner
-    sensor_lists.draw_sensors(layout, layouts.Window(car))
-    _, objects, index = layout.shown
-    assert objects[index].name == "more 2"
-    flags, places = sensor_lists.shown_rows(objects, sensor_lists.listed_sensors(car))
-    sensors = {o.name for o, flag in zip(objects, flags, strict=True) if flag}
-    assert sensors == {o.name for o in objects if o.perception_entropy.is_sensor}
-    assert sorted(places) == list(range(len(objects)))
-    car.perception_entropy.selected_sensor = objects.index(car.objects["more 5"])
-    assert bpy.context.object.name == "more 5" and not car.objects["more 2"].select_get()

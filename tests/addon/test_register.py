@@ -1,26 +1,15 @@
 """Registering, unregistering, and what is left behind: nothing."""
 
-import operator
 import subprocess
 import sys
 from pathlib import Path
 from typing import ClassVar
 
 import bpy
-import psutil
 import pytest
 
 import blender_addon
-from blender_addon import (
-    change_events,
-    commands,
-    engine_process,
-    sensor_cache,
-    signals,
-    viewport,
-    wiring,
-)
-from blender_addon.live import state
+from blender_addon import change_events, commands, sensor_cache, signals, viewport, wiring
 from blender_addon.operators import running_job
 from blender_addon.overlay import draw_handler, scheduler
 
@@ -84,28 +73,6 @@ def view3d(monkeypatch):
     """Return a stand-in for the 3D views: Blender does not tell what is drawn into its own."""
     monkeypatch.setattr(viewport, "VIEW", View3D)
     return View3D
-
-
-def test_rounds_leave_no_process_timer_or_read_out_behind(unregistered, monkeypatch):
-    """Blender is taken to have a window, with its own timers."""
-    app = type("App", (), {"background": False, "timers": bpy.app.timers})
-    monkeypatch.setattr(engine_process, "bpy", type("Bpy", (), {"app": app}))
-    monkeypatch.setattr(viewport, "VIEW", View3D)
-    drawn, pids = len(View3D.handles), []
-    for _ in range(ROUNDS):
-        blender_addon.register()
-        # two of the overlay, one of the read-out
-        assert len(View3D.handles) == drawn + 3
-        # asked a moment before it is switched off
-        engine_process.ask("work", operator.add, (1, 2), pytest.fail, pytest.fail)
-        assert bpy.app.timers.is_registered(engine_process.deliver_all)
-        pids.append(engine_process._engine.pid)
-        state.live_state("Scene").note = "a line"
-        blender_addon.unregister()
-        assert not bpy.app.timers.is_registered(engine_process.deliver_all)
-        assert not engine_process.busy() and engine_process._engine.pid is None
-        assert len(View3D.handles) == drawn and not state.live_state("Scene").note
-    assert not any(map(psutil.pid_exists, pids)) and len(set(pids)) == ROUNDS
 
 
 def test_rounds_leave_nothing_behind(unregistered, view3d):

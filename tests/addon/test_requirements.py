@@ -268,22 +268,3 @@ class TestZones:
         assert any(f"{verdict.margin:.2f} m" in text for text in texts)
         top = verdict.requirement.bodies[0].size[2]
         assert shape.lines.points[..., 2].max() == pytest.approx(top, abs=1e-5)
-
-    def test_what_a_move_loses_is_named(self, held):
-        """The camera turns round: nothing sees the child ahead any more."""
-        assert self.shape(held).verdicts[1].met
-        name = rows(held)[1].name
-        for each in ("eye", "roof"):
-            if each in bpy.data.objects:
-                bpy.data.objects[each].location.z = 40.0
-        for obj in held.objects:
-            if obj.perception_entropy.is_sensor:
-                obj.location.z = 40.0
-        bpy.context.view_layer.update()
-        legend = self.shape(held).legend
-        assert any(text == f"lost: {name}" for _, text in legend.classes)
-
-    def test_without_requirements_there_is_no_layer(self, held):
-        for row in rows(held):
-            row.enabled = False
-        assert "requirements" not in scenes.drawn(held)

@@ -4,12 +4,13 @@ The drag that the live score follows is in `test_live`.
 """
 
 import json
+import math
 
 import bpy
 import numpy as np
 import pytest
 
-from blender_addon import bridge, consistency, result_staleness
+from blender_addon import bridge, consistency, diagnostics, result_staleness
 from blender_addon.engine import exchange, jobs, outputs, page, pe, text
 from blender_addon.operators import compare_variants
 from blender_addon.panels import main
@@ -17,6 +18,7 @@ from tests.addon import layouts, scenes
 from tests.addon.command_line import pe_here, run_here
 
 PUCK = "Velodyne VLP-16 Puck"
+CAMERA = "Camera 60 deg"
 
 
 def finished(job):
@@ -291,3 +293,118 @@ def test_undo_save_and_reload(car, tmp_path):
     bpy.context.view_layer.update()
     result_staleness.update_result()
     assert settings.result_stale
+
+
+def turn():
+    """Let the add-on have its turn, as Blender's timer does."""
+    bpy.context.view_layer.update()
+    consistency.repair_scenes()
+    bpy.context.view_layer.update()
+
+
+def test_rename_duplicate_and_remove_what_others_are_tied_to(car):
+    settings, roof = car.perception_entropy, car.objects["roof"]
+
+    # A pair keeps together under other names; its duplicate is nobody's image.
+    left = scenes.add_sensor("front_left", CAMERA, location=(1.9, 0.5, 0.8))
+    assert bpy.ops.pe.mirror_sensor(name="front_left", linked=True) == {"FINISHED"}
+    turn()
+    left.name = "another"
+    turn()
+    left.location = (1.5, 0.9, 1.0)
+    turn()
+    right = car.objects["front_right"]
+    assert tuple(right.location) == pytest.approx((1.5, -0.9, 1.0), abs=2e-5)
+    left.select_set(True)
+    bpy.ops.object.duplicate()
+    turn()
+    copied = next(s for s in bridge.sensor_objects(car) if s.name.startswith("another."))
+    assert copied.perception_entropy.mirror_of == "" and bridge.mirror_of(left, car) == right
+    right.hide_set(True)
+    assert scenes.study().search.mounting.pairs == ()
+    bpy.data.objects.remove(right)
+    turn()
+    assert left.perception_entropy.mirror_of == ""
+    bpy.data.objects.remove(copied)
+    turn()
+
+    # A mount takes its sensors along under another name, and lets them go.
+    cabin = car.objects["cabin"]
+    scenes.add_mount(car, "roof area", cabin)
+    assert bpy.ops.pe.mount_sensor(name="roof", mount="roof area") == {"FINISHED"}
+    settings.mounts[0].name = "top"
+    assert roof.perception_entropy.mount == "top"
+    scenes.add_mount(car, "top")
+    assert names(settings.mounts) == ["top", "top 2"], "no name is there twice"
+    settings.mount_index = 0
+    bpy.ops.pe.remove_mount()
+    assert not roof.perception_entropy.mount
+
+    # So does a model of one's own; models to choose from come and go.
+    bpy.ops.pe.add_own_sensor(kind="lidar")
+    roof.perception_entropy.model = "My LiDAR"
+    settings.own_sensors[0].name = "Mine"
+    bridge.sync_own_sensors()
+    assert roof.perception_entropy.model == "Mine"
+    bpy.context.view_layer.objects.active = roof
+    assert [bpy.ops.pe.add_option() for _ in range(2)] == 2 * [{"FINISHED"}]
+    assert bpy.ops.pe.remove_option(index=1) == {"FINISHED"}
+    assert [row.model for row in roof.perception_entropy.options] == ["Mine"]
+    bpy.ops.pe.remove_own_sensor()
+    with pytest.raises(RuntimeError, match=r"roof.*model"):
+        bpy.ops.pe.score()
+    roof.perception_entropy.model = PUCK
+    roof.perception_entropy.options.clear()
+
+    # The eye takes a sensor out of the score; parts are found; a state is shown and left.
+    bpy.ops.pe.toggle_sensor(name="another")
+    assert {s.name for s in scenes.study().rig} == {"roof"}
+    bpy.ops.pe.toggle_sensor(name="another")
+    assert {s.name for s in scenes.study().rig} == {"roof", "another"}
+    assert bpy.ops.pe.select_part(name="cabin") == {"FINISHED"} and bpy.context.object == cabin
+    car.frame_set(20)
+    bpy.ops.pe.add_state()
+    car.frame_set(1)
+    for index, frame in ((0, 20), (-1, 1)):
+        bpy.ops.pe.show_state(index=index)
+        assert car.frame_current == frame
+
+    # Rows of a list keep their order, and the selection is where the removed one was.
+    for _ in range(3):
+        bpy.ops.pe.add_focus()
+    settings.focus_index = 1
+    bpy.ops.pe.remove_focus()
+    assert (names(settings.focus), settings.focus_index) == (["Focus 1", "Focus 3"], 1)
+    assert scenes.study()
+
+
+ODD = {
+    "upside_down": lambda eye: setattr(eye, "rotation_euler", (math.pi, 0.0, 0.0)),
+    "refused": lambda eye: setattr(eye, "scale", (2.0, 2.0, 2.0)),
+    "units": lambda _: setattr(bpy.context.scene.unit_settings, "system", "IMPERIAL"),
+}
+
+
+def test_what_is_odd_is_told_with_a_button_that_mends_it(car):
+    eye = scenes.add_sensor("eye", CAMERA, location=(0.7, 0.0, 1.55))
+
+    def told():
+        bpy.context.view_layer.update()
+        diagnostics.run_checks()
+        return {row.code: row for row in car.perception_entropy.result_warnings}
+
+    assert not told()
+    for code, change in ODD.items():
+        change(eye)
+        row = told()[code]
+        amount = (*row.amount, 0.0, 0.0, 0.0)[:3]
+        assert bpy.ops.pe.mend(fix=row.fix, subject=row.subject or "", amount=amount)
+        assert not told(), code
+    assert scenes.study().rig["eye"].pose.position == pytest.approx((0.7, 0.0, 1.55), abs=1e-5)
+    curve = car.objects["roof"].driver_add("location", 0)
+    curve.driver.expression = "no_such_thing + 1"
+    scenes.depsgraph().update()
+    assert told()["driver"].subject == "roof"
+    for factor in (1e30, 1e-30, 0.0, -1.0, math.nan, math.inf):
+        with pytest.raises(RuntimeError, match="mend: amount: expected a"):
+            bpy.ops.pe.mend(fix="scale_vehicle", amount=(factor, 0.0, 0.0))

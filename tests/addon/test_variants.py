@@ -1,6 +1,7 @@
 """Variants: kept, put back exactly, nothing lost; their scores are those of the scene."""
 
 import json
+from dataclasses import replace
 
 import bpy
 import numpy as np
@@ -183,3 +184,51 @@ def test_comparing_tells_blind_ground_reach_and_ap(ideas):
     bpy.context.view_layer.update()
     bpy.ops.pe.update_variant()
     assert compare_variants.pending_variants(ideas), "they were of the sensors as they stood"
+
+
+def test_hidden_sensors_stay_hidden_and_where_they_were(ideas, tmp_path):
+    """Blender does not work out the place of what is hidden, and a file does not hold it."""
+    ideas.objects["eye"].hide_set(True)
+    bpy.ops.pe.update_variant()
+    before = bridge.records_of_scene(ideas)
+    assert [record.visible for record in before] == [False, True]
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "hidden.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "hidden.blend"))
+    scene = bpy.context.scene
+    assert bridge.same_sensors(bridge.records_of_scene(scene), before)
+    remove(scene, "eye")
+    switch(scene, "Variant")
+    assert bridge.same_sensors(bridge.records_of_scene(scene), before)
+    assert not scene.objects["eye"].visible_get()
+
+
+def test_a_held_sensor_is_reported_and_nothing_is_changed(ideas):
+    bpy.ops.pe.save_variant()
+    roof = ideas.objects["roof"]
+    roof.location.z = 2.5
+    scenes.add_sensor("third", location=(1.0, 0.0, 2.0))
+    roof.constraints.new("LIMIT_LOCATION").use_min_z = True
+    roof.constraints[0].min_z = 2.4
+    bpy.context.view_layer.update()
+    before = poses()
+    with pytest.raises(RuntimeError, match="sensor 'roof': placement: expected an object that can"):
+        switch(ideas, "Variant")
+    bpy.context.view_layer.update()
+    assert poses() == before
+
+
+def unknown(variant):
+    """Give the first sensor of a variant a model that there is not."""
+    first, *others = bridge.records_of(variant)
+    bridge.write_records(variant, [replace(first, model="no such sensor"), *others])
+
+
+def test_a_variant_that_cannot_be_scored_is_reported_and_the_others_are(ideas):
+    bpy.ops.pe.duplicate_variant()
+    unknown(ideas.perception_entropy.variants[0])
+    bpy.ops.pe.compare_variants()
+    assert [row.has_result for row in ideas.perception_entropy.variants] == [False, True]
+    unknown(ideas.perception_entropy.variants[1])
+    ideas.perception_entropy.variants[1].score_json = ""
+    with pytest.raises(RuntimeError, match=r"variant .Variant.*names, such as"):
+        bpy.ops.pe.compare_variants()

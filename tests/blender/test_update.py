@@ -85,29 +85,18 @@ def report(blender, repositories, served, sedan, tmp_path_factory):
     return json.loads((folder / "report.json").read_text())
 
 
-def test_the_older_version_is_installed_from_the_repository(report):
-    assert (report["before"]["version"], report["before"]["engine"]) == (OLDER, OLDER)
-
-
-def test_the_update_brings_this_version_and_its_engine(report):
+def test_an_update_brings_this_version_and_keeps_scene_preferences_and_score(report, extension_zip):
+    before, after = report["before"], report["after"]
     version = release.agreed_version()
-    assert (report["after"]["version"], report["after"]["engine"]) == (version, version)
-
-
-def test_scene_and_preferences_are_kept(report):
-    kept = ("enabled", "preference", "interval", "result", "sensors")
-    before, after = ({key: report[when][key] for key in kept} for when in ("before", "after"))
-    assert after == before
+    assert (before["version"], before["engine"]) == (OLDER, OLDER)
+    assert (after["version"], after["engine"]) == (version, version)
+    for key in ("enabled", "preference", "interval", "result", "sensors"):
+        assert after[key] == before[key], key
     assert not after["preference"] and after["sensors"]
-
-
-def test_the_open_scene_scores_the_same_after_the_update(report):
     assert report["score after"] == report["score before"]
-
-
-def test_nothing_is_written_into_the_folder_of_the_installation(report, extension_zip):
     with zipfile.ZipFile(extension_zip) as archive:
-        assert report["files"] == sorted(n for n in archive.namelist() if not n.endswith("/"))
+        own = sorted(name for name in archive.namelist() if not name.endswith("/"))
+    assert report["files"] == own, "nothing is written into the folder of the installation"
 
 
 def test_the_page_has_a_link_to_drag_into_blender(repositories):

@@ -15,7 +15,6 @@ from pe_core.catalog import load
 from pe_core.scoring.requirements import BODIES
 from pe_core.sensors import BrownConrady, Camera, FTheta, KannalaBrandt, Lidar, range_picture
 from pe_core.sensors.field_of_view import FREE
-from pe_tools import graphics
 from pe_tools.graphics import surroundings
 from pe_tools.graphics.surroundings import FAR_M, PAINT, STANDING
 from pe_tools.outputs import scene_files
@@ -260,16 +259,3 @@ def decoded(png):
         rows.append(row)
         above = row
     return np.array(rows, np.uint8).reshape(height, width, n)
-
-
-@pytest.mark.parametrize("shape", [(1, 1), (5, 7), (5, 7, 3), (6, 4, 4)])
-def test_a_picture_is_read_back(shape):
-    """Noise and slopes, so that every filter is taken by some row."""
-    pixels = np.random.default_rng(0).integers(0, 256, shape, np.uint8)
-    slope = np.add.outer(np.arange(shape[0]) * 9, np.arange(shape[1]) * 5).astype(np.uint8)
-    for each in (
-        pixels,
-        np.broadcast_to(slope.reshape(slope.shape + (1,) * (len(shape) - 2)), shape),
-    ):
-        found = decoded(graphics.png_bytes(each))
-        np.testing.assert_array_equal(found.reshape(shape), each)

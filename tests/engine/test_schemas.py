@@ -1,6 +1,5 @@
 """The JSON Schemas of docs/schemas: of the declarations, true of files, strict as the reader."""
 
-import copy
 import json
 import re
 import sys
@@ -14,7 +13,7 @@ import pe_core as pe
 import pe_tools as pt
 from pe_core.base.table_reader import Table
 from tests.engine.test_docs import ROOT
-from tests.engine.test_docs_examples import STUDY, files_of_a_reader
+from tests.engine.test_docs_examples import files_of_a_reader
 
 sys.path.insert(0, str(ROOT / "tools"))
 import schemas
@@ -84,39 +83,6 @@ def test_examples_are_valid_as_written_by_hand_and_by_the_program(path):
     jsonschema.validate(tomllib.loads(path.read_text("utf-8")), STUDY_SCHEMA)
     if path in READ:
         jsonschema.validate(pe.study_to_dict(pe.load_study(path)), STUDY_SCHEMA)
-
-
-WRONG = {
-    ("samples",): -1,
-    ("smaples",): 1024,
-    ("space", "interval"): "0.5",
-    ("space", "x"): [1, 2, 3],
-    ("prior",): {"model": "raod"},
-    ("sensor",): [],
-    ("sensor", 0, "color"): "red",
-    ("sensor", 0, "mounted"): True,
-    ("sensor", 0, "position"): [0, 0],
-    ("optimize", "seed"): 1.5,
-    ("optimize", "method"): "luck",
-    ("optimize", "stop"): {"gain": 0},
-    ("requirement", 0, "zone", "step"): "small",
-    ("weather",): [{"rain_mm_h": 3}],
-}
-
-
-@pytest.mark.parametrize("where", WRONG, ids=lambda w: ".".join(map(str, w)))
-def test_what_the_reader_refuses_the_schema_refuses(where, folder):
-    good = tomllib.loads(STUDY)
-    jsonschema.validate(good, STUDY_SCHEMA)
-    pe.study_from_dict(good, folder=folder)
-    wrong = node = copy.deepcopy(good)
-    for key in where[:-1]:
-        node = node[key]
-    node[where[-1]] = WRONG[where]
-    with pytest.raises(pe.InputError):
-        pe.study_from_dict(wrong, folder=folder)
-    with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate(wrong, STUDY_SCHEMA)
 
 
 @pytest.mark.parametrize("made", [pt.ScoreJob, pt.OptimizeJob], ids=["score", "optimize"])

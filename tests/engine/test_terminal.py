@@ -104,24 +104,3 @@ def test_a_log_has_lines_and_no_bar():
     lines = told(io.StringIO()).splitlines()
     assert lines[0] == "scoring the start   0%" and lines[-1] == "optimizing 100%  entropy 1.1000"
     assert len(lines) == len(SCORING + SEARCHING)
-
-
-@pytest.mark.parametrize("stream", [Screen, io.StringIO])
-def test_what_takes_long_is_told_once_and_without_its_preparation(stream, monkeypatch):
-    """12 s to prepare, then 1 % a second: after 3 s of that, 96 s are left."""
-    now = [0.0]
-    monkeypatch.setattr(progress_line.time, "monotonic", lambda: now[0])
-    screen = stream()
-    reporter = Reporter(screen)
-    for second in range(60):
-        now[0] = float(second)
-        reporter.report(Progress("scoring", max(0, second - 12) / 100))
-    assert re.findall(r"scoring: about \d+ s left\n", screen.getvalue()) == [
-        "scoring: about 96 s left\n"
-    ]
-    quick = stream()
-    reporter = Reporter(quick)
-    for second in range(20):
-        now[0] = 100.0 + second
-        reporter.report(Progress("scoring", second / 20))
-    assert "about" not in quick.getvalue()

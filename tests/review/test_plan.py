@@ -4,15 +4,13 @@ import dataclasses
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
-import pytest
-
 import pe_core as pe
 import pe_tools as pt
 from pe_core.catalog import load
 from pe_core.scoring.sight import BlindGround
 from pe_core.scoring.sight.blind_ground import BlindSpot
 from pe_tools.page import ReportContext, keyed_contexts
-from pe_tools.page.pictures.dimension_drawing import side_view, spread_labels, top_view
+from pe_tools.page.pictures.dimension_drawing import side_view, top_view
 from pe_tools.page.pictures.sight_plans import blind_plan
 from pe_tools.page.sections.comparison import bill_of_materials
 from pe_tools.page.sections.traceability import (
@@ -28,23 +26,6 @@ from tests.review.test_comparison import beside, cells, rig
 
 ROOT = Path(__file__).resolve().parents[2]
 CAR = small_study().vehicle  # 4.4 x 1.8 x 1.5 m, its floor 0.2 m over the ground
-
-
-@pytest.mark.parametrize(
-    "places, moved",
-    [
-        ([], []),
-        ([50.0], [50.0]),
-        ([10.0, 40.0], [10.0, 40.0]),
-        ([50.0, 50.0], [45.0, 55.0]),
-        ([50.0, 48.0, 90.0], [54.0, 44.0, 90.0]),
-        ([50.0, 50.0, 58.0], [42.667, 52.667, 62.667]),
-        ([0.0, 0.0], [0.0, 10.0]),
-        ([100.0, 100.0], [90.0, 100.0]),
-    ],
-)
-def test_labels_are_moved_apart_and_no_farther(places, moved):
-    assert spread_labels(places, 10.0, 0.0, 100.0) == pytest.approx(moved, abs=1e-3)
 
 
 def texts(svg):

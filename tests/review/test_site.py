@@ -245,22 +245,3 @@ def test_the_search_finds_a_key_and_leads_to_it(chromium, address):
     page.wait_for_url(re.compile("settings|mounts_and_search"))
     assert "max_height" in page.inner_text("main")
     context.close()
-
-
-@pytest.mark.parametrize("link", ["[gone](gone.md)", "[gone](#gone)", "![gone](gone.png)"])
-def test_a_dead_link_or_a_missing_picture_stops_the_build(tmp_path, link):
-    """Our own settings are strict: here for a site of one page."""
-    settings = pytest.importorskip("mkdocs.config")
-    (tmp_path / "docs").mkdir()
-    (tmp_path / "docs" / "index.md").write_text(f"# Page\n\n{link}\n", "utf-8")
-    changes = {"plugins": [], "hooks": [], "nav": None, "extra_css": []}
-    folders = {"docs_dir": str(tmp_path / "docs"), "site_dir": str(tmp_path / "site")}
-    (tmp_path / "theme").mkdir()
-    (tmp_path / "theme" / "main.html").write_text("{{ page.content }}", "utf-8")
-    changes["theme"] = {"name": None, "custom_dir": str(tmp_path / "theme")}
-    config = settings.load_config(str(ROOT / "mkdocs.yml"), **changes, **folders)
-    from mkdocs.commands.build import build
-    from mkdocs.exceptions import Abort
-
-    with pytest.raises(Abort, match="strict mode"):
-        build(config)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from blender_addon import bridge, diagnostics, location_query, panels
-from blender_addon.engine import advice, jobs
+from blender_addon.engine import advice
 from tests.addon import scenes
 from tests.addon.layouts import Layout, Window, drawn
 
@@ -82,39 +82,6 @@ def test_words_are_the_engines(car):
     shares = advice.occluded_shares(study.rig["roof"], score.per_sensor["roof"], study.vehicle)
     assert dict(told.rows["roof"].occluded_by) == pytest.approx(shares)
     assert shares, "a score without a part in the way proves nothing here"
-
-
-def test_the_table_has_every_sensor_of_the_score(car):
-    """Seven sensors, two of which see nothing: a row each, the engine's figures in it."""
-    places = [(0.7, 0.0, 1.55), (0.2, 0.9, 1.0), (0.2, -0.9, 1.0), (-2.0, 0.0, 1.2), (0.0, 0.0, -3)]
-    for number, place in enumerate(places):
-        scenes.add_sensor(f"cam_{number}", model="Camera 60 deg", location=place)
-    scenes.add_sensor("zz_last", location=(0.0, 0.0, 0.9))  # in the body: it sees nothing
-    car.perception_entropy.score_samples = 4096
-    bpy.context.view_layer.update()
-    bpy.ops.pe.score()
-    study = scenes.study()
-    seen = advice.outlook(study.sight(), study.rig)
-    score = study.evaluator().score(study.rig)
-    outcome = jobs.Outcome("score", study, study, score, score)
-    diagnostics._explained[car.name] = diagnostics._words(
-        outcome, car.perception_entropy.result_signature, seen
-    )
-    told = diagnostics.explanation(car)
-    assert any(row.zone for row in told.rows.values())
-    assert not any("without it" in line for line in told.rig)
-    for width in (240, 600):
-        window, layout = Window(car, car.objects["roof"]), Layout()
-        window.region.width = width
-        panels.sensor_lists.draw_sensor_table(layout, window)
-        for name, loss, where, _ in (
-            row.cells for row in advice.sensor_rows(score, study.rig, study.vehicle, seen)
-        ):
-            assert layout.texts("operator").count(name) == 1
-            at = layout.notes.index(("operator", name))
-            assert layout.notes[at + 1] == ("label", loss)
-            assert layout.notes[at + 2] == ("label", where)
-    assert len(score.per_sensor) == 7
 
 
 def test_a_place_is_asked_as_the_engine_does(car):

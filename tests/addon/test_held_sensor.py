@@ -63,26 +63,6 @@ def test_its_score_is_reported_beside_where_it_stands(held):
     assert "nats" in score and "coverage" in score
 
 
-def test_a_stand_off_is_typed_stepped_and_taken_back(held):
-    held.put(ROOF)
-    for letter in "0.25":
-        held.typed(letter)
-    assert held.standoff_text == "0.25 m" and held.matrix.translation.z == pytest.approx(1.75)
-    held.typed("")
-    assert held.standoff_text == "0.2 m" and held.matrix.translation.z == pytest.approx(1.7)
-    held.step(0.01)
-    assert held.stance.stand_off_m == 0.21
-    held.typed(".")  # no number yet
-    assert held.stance.stand_off_m == 0.21
-    for letter in "99":
-        held.typed(letter)
-    assert held.stance.stand_off_m == 0.99
-    held.typed("")
-    held.typed("")
-    held.typed("")
-    assert held.stance.stand_off_m == 0.05  # nothing typed: as usual for its kind
-
-
 def test_arrow_keys_turn_it_from_the_direction_of_its_place(held):
     held.put(ROOF)
     assert held.angles == (180.0, 0.0), "behind the middle it looks back"

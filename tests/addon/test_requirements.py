@@ -6,8 +6,6 @@ import bpy
 import numpy as np
 import pytest
 
-import pe_core as pe
-import pe_tools as pt
 from blender_addon import analysis_calls, bridge
 from blender_addon.operators import jobs
 from blender_addon.operators import requirements as operators
@@ -90,33 +88,6 @@ def test_bodies_are_one_several_or_of_an_own_size(held):
     assert len(scenes.study().requirements[1].bodies) == 2
     row.bodies = row.bodies
     assert row.problem == "" and len(scenes.study().requirements[1].bodies) == 2
-
-
-def test_states_and_weathers_of_a_requirement_are_those_of_the_study_file(held, tmp_path):
-    """In fog the LiDAR and the camera lose the child behind; names are the engine's to check."""
-    bpy.ops.pe.add_state()
-    bpy.ops.pe.add_weather(weather="FOG")
-    (state,), (fog,) = held.perception_entropy.states, held.perception_entropy.weathers
-    fog.fog_mor_m = 1.0
-    row = rows(held)[1]
-    before = row.table
-    row.states, row.weathers = f" {state.name}, ", "*"
-    assert (row.states, row.weathers, row.problem) == (state.name, "*", "")
-    study = scenes.study()
-    assert study.requirements[1].under.states == (state.name,)
-    assert study.requirements[1].under.weathers == ("*",)
-    pt.export_study(study, tmp_path / "study.toml")
-    again = pe.load_study(tmp_path / "study.toml")
-    assert again.requirements == study.requirements
-    bpy.ops.pe.check_requirements()
-    verdicts = again.verdicts()
-    assert stored(held) == [verdict.summary for verdict in verdicts]
-    assert fog.name in verdicts[1].condition and not verdicts[1].met
-    row.weathers = "drizzle"
-    with pytest.raises(pe.InputError, match="drizzle"):
-        scenes.study().verdicts()
-    row.states = row.weathers = ""
-    assert row.table == before
 
 
 FIELDS = [

@@ -91,24 +91,3 @@ def test_a_sensor_keeps_its_colour_whatever_becomes_of_others(car):
     bpy.ops.wm.save_as_mainfile(filepath=str(Path(bpy.app.tempdir) / "kept.blend"))
     bpy.ops.wm.open_mainfile(filepath=str(Path(bpy.app.tempdir) / "kept.blend"))
     assert colors_of(bpy.context.scene) == found
-
-
-def test_a_no_go_area_begins_round_the_part_or_outside_the_car(car):
-    """Round the selected part, at a cursor that was moved, else on the roof."""
-    cabin = car.objects["cabin"]
-    for obj in bpy.context.selected_objects:
-        obj.select_set(False)
-    cabin.select_set(True)
-    bpy.context.view_layer.update()
-
-    bpy.ops.pe.add_no_go()
-    bpy.context.view_layer.update()
-    (box,) = bridge.no_go_boxes(car)
-    assert box.low == pytest.approx((-1.32, -0.82, 0.88)) and box.high == pytest.approx(
-        (0.72, 0.82, 1.52)
-    )
-    bpy.data.objects.remove(bpy.context.object)
-    bpy.ops.pe.add_no_go()  # nothing of the car is selected
-    bpy.context.view_layer.update()
-    (box,) = bridge.no_go_boxes(car)
-    assert box.low == pytest.approx((-0.25, -0.25, 1.5)) and box.high[2] == pytest.approx(2.0)

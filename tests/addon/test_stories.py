@@ -315,6 +315,7 @@ def test_rename_duplicate_and_remove_what_others_are_tied_to(car):
     turn()
     right = car.objects["front_right"]
     assert tuple(right.location) == pytest.approx((1.5, -0.9, 1.0), abs=2e-5)
+    right.select_set(False)
     left.select_set(True)
     bpy.ops.object.duplicate()
     turn()

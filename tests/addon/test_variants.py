@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 from blender_addon import bridge, diagnostics, result_staleness
-from blender_addon.engine import advice
-from blender_addon.operators import compare_variants
 from tests.addon import scenes
 
 
@@ -159,31 +157,6 @@ def test_a_variant_that_is_switched_to_shows_its_own_result(ideas):
     ideas.perception_entropy.prior = "uniform"
     switch(ideas, "Variant 2")
     assert ideas.perception_entropy.result_stale, "its score was made under another prior"
-
-
-def test_comparing_tells_blind_ground_reach_and_ap(ideas):
-    """Scores that stand are not made again."""
-    bpy.ops.pe.score()
-    first = ideas.perception_entropy.variants[0]
-    study, kept = scenes.study(), first.score_json
-    first.score_json = kept.replace('"voxels"', ' "voxels"')
-    assert compare_variants.pending_variants(ideas)
-    bpy.ops.pe.compare_variants()
-    assert not compare_variants.pending_variants(ideas) and first.score_json != kept
-    own = advice.KeyFigures.of_rig(study.sight(), study.rig)
-    names, table = compare_variants.comparison_of(ideas)
-    more = advice.compare_figures({"Variant": own})
-    assert table[-len(more) :] == more
-    labels, cells = (
-        [cell and cell[0] for cell in column]
-        for column in compare_variants.columns_of(names, table)
-    )
-    assert cells[labels.index("    0.5 m tall, within 10 m")] == f"{own.blind_m2:.1f}"
-    assert cells[labels.index("    Near, in traffic")] == f"{own.traffic.rings['near'][0]:.3f}"
-    ideas.objects["roof"].location.z += 0.3
-    bpy.context.view_layer.update()
-    bpy.ops.pe.update_variant()
-    assert compare_variants.pending_variants(ideas), "they were of the sensors as they stood"
 
 
 def test_hidden_sensors_stay_hidden_and_where_they_were(ideas, tmp_path):

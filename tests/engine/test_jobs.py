@@ -3,7 +3,6 @@
 import csv
 import json
 import threading
-from concurrent.futures import Future
 
 import pytest
 
@@ -35,24 +34,6 @@ def test_a_score_job_scores_what_the_evaluator_scores():
     assert outcome.after.to_dict() == study().evaluator().score(study().rig).to_dict()
     assert progress[-1].fraction == 1.0
     assert outcome.before is outcome.after and outcome.history == ()
-
-
-class EndsAfterTheWait(Future):
-    """A future whose work ends in the moment between a wait that ran out and the look at it."""
-
-    def done(self):
-        if not super().done():
-            self.set_result("the result")
-        return True
-
-
-def test_work_that_ends_just_after_a_wait_is_taken(monkeypatch):
-    monkeypatch.setattr("pe_tools.jobs.job.begun", lambda work: EndsAfterTheWait())
-    steps = pt.ScoreJob(study())._beside(str, pt.Progress("waiting", 0.0))
-    next(steps)
-    with pytest.raises(StopIteration) as ended:
-        next(steps)
-    assert ended.value.value == "the result"
 
 
 def test_an_optimize_job_improves_and_tells_its_history():

@@ -77,30 +77,6 @@ def test_a_study_with_a_grid_is_written_and_read_to_the_bit(tmp_path, by_height)
         pe.save_study(again, tmp_path / "other.toml")
 
 
-@pytest.mark.parametrize(
-    "data",
-    [
-        b"",
-        b"hello",
-        np.array([None]),
-        np.ones((2, 2)),
-        np.ones((40, 24)) * 1j,
-        b"\x93NUMPY\x01\x00",
-    ],
-)
-def test_a_file_that_is_no_grid_is_told_in_a_line(tmp_path, data):
-    one = study(prior=pe.Prior.from_grid(np.ones((40, 24)), SPACE))
-    pt.export_study(one, tmp_path / "car.toml")
-    path = tmp_path / "car.prior.npy"
-    if isinstance(data, bytes):
-        path.write_bytes(data)
-    else:
-        np.save(path, data, allow_pickle=True)
-    with pytest.raises(pe.InputError) as told:
-        pe.load_study(tmp_path / "car.toml")
-    assert "\n" not in str(told.value) and "car.prior.npy" in str(told.value)
-
-
 def done(job):
     for _ in job:
         pass

@@ -151,32 +151,6 @@ def test_a_lens_of_a_kit_is_written_when_it_is_another(tmp_path):
     assert "image_width: 1242" in file.read_text()
 
 
-def test_osi_s_radars_keep_their_ids_and_all_else(tmp_path):
-    """Cameras are numbered round them; three times."""
-    radar = {"sensorId": {"value": "0"}, "emitterFrequency": 77e9}
-    camera = {"sensorId": {"value": "3"}, "mountingPosition": {"position": {"x": 2.5, "z": 1.0}}}
-    data = {
-        "radarSensorViewConfiguration": [radar],
-        "ultrasonicSensorViewConfiguration": [{"sensor_id": {"value": 7}}],
-        "cameraSensorViewConfiguration": [camera],
-    }
-    path = tmp_path / "0.json"
-    path.write_text(json.dumps(data))
-    for number in (1, 2, 3):
-        found = import_rig(path, "osi", AXLE)
-        assert not any("left out" in line for line in found.lines)
-        assert {s.kind for s in found.rig} == {"camera", "radar", "ultrasonic"}
-        path = tmp_path / f"{number}.json"
-        pt.export_rig(found.rig, "osi", path, AXLE, passthrough=found.passthrough)
-        out = json.loads(path.read_text())
-        (ours,) = out["radar_sensor_view_configuration"]
-        assert ours == {"sensor_id": {"value": "0"}, "emitter_frequency": 77e9}
-        assert out["ultrasonic_sensor_view_configuration"] == [{"sensor_id": {"value": 7}}]
-        (eye,) = out["camera_sensor_view_configuration"]
-        assert eye["sensor_id"] == {"value": 1}
-        assert eye["mounting_position"]["position"] == pytest.approx({"x": 2.5, "y": 0, "z": 1})
-
-
 def test_it_is_a_text_and_back_and_says_what_is_wrong(tmp_path):
     for name in FILES:
         kept = import_rig(written(tmp_path / name, name), name, AXLE).passthrough

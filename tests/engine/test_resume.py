@@ -114,20 +114,6 @@ def test_a_journal_of_other_placements_is_refused():
         list(search(other, again.wrap([Recorder(distance_to({"x": 0.1}))])))
 
 
-def test_a_resumed_search_leaves_the_same_files(path, tmp_path, capsys):
-    """Broken off by a kill between two rounds; gone on with, with and without naming the study."""
-    assert main(["optimize", "--no-review", str(path), "-o", str(tmp_path / "whole")]) == 0
-    for number, named in enumerate(([], [str(path)])):
-        out = tmp_path / f"out{number}"
-        study = pe.load_study(path)
-        job = pt.OptimizeJob(study)
-        outcome_of(job, 30)
-        SearchState(study).save(out, job.best, job.journal.entries)
-        assert main(["optimize", "--no-review", *named, "--resume", str(out)]) == 0
-        assert result(out) == result(tmp_path / "whole")
-    assert "going on after" in capsys.readouterr().err
-
-
 ENDING_ITSELF = """
 import os, signal, sys
 from pe_tools.cli import run_job

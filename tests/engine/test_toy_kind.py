@@ -11,11 +11,9 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-import pe_tools as pt
 from pe_core import sensors as kinds
 from pe_core.metric import entropy_of, late_fusion, precision_of
 from pe_tools.cli.verbs import main
-from pe_tools.exchange import RIG_FORMATS
 from tests.engine import shapes
 from tests.engine.toy_kind import CURVE, RING, Ring
 
@@ -146,23 +144,3 @@ def test_kernels_of_ones_own_are_asked():
     assert score.coverage == 1.0
     nine = float(entropy_of(precision_of(9, CURVE)))
     assert score.entropy == pytest.approx(nine, abs=1e-9)
-
-
-def test_it_goes_through_other_programs_files(ring_kind, tmp_path):
-    """By its table where a format has room for it; elsewhere a line says what is left out."""
-    away = pe.Sensor(
-        "away", Ring("long", 7.5), pe.Pose.from_degrees((2, 1, 0.5), (0, 5, 30)), "all"
-    )
-    rig = pe.Rig([away, shapes.lidar_on_roof(shapes.small_lidar()), shapes.camera()])
-    told = {}
-    for name in RIG_FORMATS:
-        _, told[name] = pt.export_rig(rig, name, tmp_path / name, pe.Reference(-1.3, 0.3))
-    for name in ("csv", "urdf"):
-        assert not any("parameters" in line for line in told.pop(name))
-        back = pt.import_rig(tmp_path / name, name).rig["away"]
-        assert (back.model.name, back.model.range_m, back.fusion) == ("long", 7.5, "all")
-        assert back.pose.position == pytest.approx(away.pose.position, abs=1e-9)
-    for name, lines in told.items():
-        assert any("away" in line and ("left out" in line or "no toy" in line) for line in lines), (
-            name
-        )

@@ -83,11 +83,6 @@ def test_the_view_is_drawn(view):
     assert found["width"] == 1600 and found["colors"] > 200 and found["most"] < 0.9
 
 
-def test_a_view_at_rest_is_drawn_the_same_again(view):
-    """Else the tests below would pass whatever a switch does."""
-    assert pixels(view) == pixels(view)
-
-
 @pytest.mark.parametrize("layer", ["fov", "ground"])
 def test_a_sensor_s_switch_shows_and_hides(view, layer):
     before, box = pixels(view), view.locator(f"input[data-sensor='0'][data-layer='{layer}']")
@@ -96,15 +91,6 @@ def test_a_sensor_s_switch_shows_and_hides(view, layer):
     assert changed != before
     box.click()
     assert pixels(view) == before
-
-
-def test_the_switch_of_all_is_that_of_each(view):
-    every = view.locator("input[data-all='fov']")
-    own = view.locator("input[data-sensor][data-layer='fov']")
-    every.click()
-    assert [box.is_checked() for box in own.all()] == [False, False]
-    own.first.click()
-    assert every.evaluate("box => box.indeterminate")
 
 
 def test_maps_lie_on_the_ground_with_a_legend(view):
@@ -167,14 +153,6 @@ def test_nothing_overflows_sideways(chromium, file, desktop, size):
         assert page.locator(".v3-canvas").evaluate("c => c.style.touchAction") != "none"
         page.locator(".v3-canvas").tap(position={"x": 20, "y": 20})
         assert page.locator(".v3-canvas").evaluate("c => c.style.touchAction") == "none"
-
-
-def test_a_long_name_overflows_nothing(view):
-    name = view.locator(".v3-table button span").first
-    own = name.inner_text()
-    name.evaluate("span => { span.textContent = 'lidar_'.repeat(20) }")
-    assert view.evaluate(SIDEWAYS) <= 0
-    name.evaluate("(span, own) => { span.textContent = own }", own)
 
 
 def test_without_webgl_a_note_leads_to_the_picture_at_the_top(chromium, file):

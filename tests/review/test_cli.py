@@ -63,17 +63,6 @@ def test_a_study_s_page_is_written_and_its_path_printed(study, tmp_path, capsys)
     assert [each.name for each in path.parent.glob("*.html")] == [PAGE]
 
 
-def test_a_page_of_somebody_s_own_is_refused_before_the_work(study, tmp_path, capsys):
-    (tmp_path / PAGE).write_text("mine")
-    for verb in ("review", "optimize"):
-        assert main([verb, str(study), "-o", str(tmp_path)]) == 1
-        said = capsys.readouterr().err
-        assert said.count("\n") == 1 and f"{PAGE}: output: expected no file, or one" in said
-    assert (tmp_path / PAGE).read_text() == "mine"
-    assert main(["review", str(study), "-o", str(tmp_path), "--replace"]) == 0
-    assert (tmp_path / PAGE).read_text().startswith("<!DOCTYPE html>")
-
-
 def test_ctrl_c_while_the_page_is_written_leaves_all_as_it_was(
     study, tmp_path, capsys, monkeypatch
 ):

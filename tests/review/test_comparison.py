@@ -9,11 +9,10 @@ import pe_core as pe
 import pe_tools as pt
 from pe_core.catalog import load
 from pe_tools.page import ReportContext, keyed_contexts
-from pe_tools.page.markup import escaped, price_text, render
+from pe_tools.page.markup import render
 from pe_tools.page.sections.comparison import comparison as comparison_section
-from pe_tools.page.sections.comparison import price_of, sensor_differences
-from pe_tools.page.sections.score import overview
-from tests.review.conftest import NAMES, html_of, outcome_of, small_study
+from pe_tools.page.sections.comparison import sensor_differences
+from tests.review.conftest import NAMES, html_of, small_study
 
 LIDAR, CAMERA = NAMES
 
@@ -62,22 +61,6 @@ def test_a_row_a_sensor_with_what_differs():
     assert html.count("Price") == 0 and sensor_differences(each)["differing"] == [*NAMES]
 
 
-def test_prices_are_those_of_the_study_s_choices():
-    options = [pe.Option(load(name), price) for name, price in PRICES.items()]
-    choice = pe.Choice(options, sensors=[CAMERA])
-    each = beside(
-        rig(), rig(camera="Camera 120 deg"), selection=pe.Selection([choice], currency="EUR")
-    )
-    html = differences(each)
-    assert [row[3] for row in cells(html)] == ["", "1,200 EUR", "99.50 EUR"]
-    values = sensor_differences(each)
-    assert values["has_prices"] and values["lacks_prices"]
-    assert price_of(each[0].study, each[0].rig[LIDAR]) is None and price_text(5.0, "") == "5"
-
-
-PRICES = {"Camera 60 deg": 1200.0, "Camera 120 deg": 99.5}
-
-
 @pytest.fixture(scope="module")
 def comparison(scored, other):
     """The comparison of two studies, as HTML."""
@@ -92,14 +75,3 @@ def test_the_comparison_marks_the_engine_s_winner(scored, other, comparison):
     first = re.search(r'class="wins whose-(\w)-ink">([^<]*)<', comparison)
     assert first.groups() == ("ab"[winner], f"{better.after.entropy:.2f}")
     assert comparison_section(keyed_contexts([scored, other]))["overall"] == rows[0]
-
-
-def test_a_camera_in_the_body_is_named_in_the_summary(scored):
-    inside = dataclasses.replace(small_study().rig[CAMERA], pose=pe.Pose((0.0, 0.0, 0.9)))
-    study = small_study().with_rig(pe.Rig([small_study().rig[LIDAR], inside]))
-    one = ReportContext("inside", outcome_of(pt.ScoreJob(study)))
-    (line,) = overview((one,))["hidden"]
-    assert line.startswith(f"<b>{escaped(CAMERA)}</b>") and line in html_of(overview, one)
-    assert not overview((scored,))["hidden"]
-    lines = comparison_section(keyed_contexts([scored, one]))["lines"]
-    assert sum(f"{line}." in each for each in lines) == 1

@@ -7,7 +7,6 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-import pe_core as pe
 from pe_core.scoring.sight import GroundSight
 from pe_tools import graphics
 from pe_tools.page.pictures.ground_plan import (
@@ -18,12 +17,11 @@ from pe_tools.page.pictures.ground_plan import (
     PlanDrawing,
     difference_map,
     ground_map,
-    outline_of,
 )
 from pe_tools.page.pictures.sight_plans import reach_text, side_text
 from pe_tools.page.sections.visibility import visibility
 from tests.engine.test_masks import decoded
-from tests.review.conftest import box, html_of
+from tests.review.conftest import html_of
 
 
 def seen(entropy, sensors=None):
@@ -80,12 +78,6 @@ def test_a_plan_has_metres_where_they_are():
     texts = {e.text: float(e.get("x")) for e in ET.fromstring(plan.canvas.svg()).iter("text")}
     assert {"80 m", "0", "\N{MINUS SIGN}40"} <= set(texts)
     assert texts["80 m"] == pytest.approx(corners[1, 0], abs=0.1)
-
-
-def test_the_outline_of_a_box_is_its_rectangle():
-    (line,) = outline_of(pe.Vehicle(box((-2.0, -0.9, 0.2), (2.0, 0.9, 1.5))))
-    np.testing.assert_allclose(line.min(axis=0), [-2.0, -0.9], atol=0.05)
-    np.testing.assert_allclose(line.max(axis=0), [2.0, 0.9], atol=0.05)
 
 
 def test_the_section_tells_what_the_engine_found(scored):

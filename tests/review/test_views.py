@@ -9,8 +9,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.catalog import load
-from pe_core.sensors import Camera, KannalaBrandt, range_picture
-from pe_tools import graphics
+from pe_core.sensors import Camera, KannalaBrandt
 from pe_tools.page.pictures import sensor_views
 from pe_tools.page.pictures.reference_figures import reference_figures
 from pe_tools.page.pictures.sensor_views import camera_picture, lidar_picture, ray_camera
@@ -96,18 +95,6 @@ def test_a_lidar_s_picture_has_left_on_the_left():
         assert len(x) == 2 and x[0] < 360 < x[1]
 
 
-def test_a_lidar_s_picture_has_the_colours_of_its_ranges():
-    """Rows are channels, top first, each as high; columns the nearest azimuth."""
-    sensor = mounted(load("Velodyne VLP-16 Puck"))
-    pixels = decoded(lidar_picture(sensor, None).png)
-    picture = range_picture(sensor, None)
-    high = len(pixels) // len(picture.elevations)
-    colors = graphics.as_bytes(graphics.range_colors(picture, sensor.model.max_range))
-    for row in range(len(picture.elevations)):
-        np.testing.assert_array_equal(pixels[row * high, 0], colors[row, 0])
-        np.testing.assert_array_equal(pixels[row * high + high - 1, -1], colors[row, -1])
-
-
 def test_the_section_tells_where_and_how_much(scored):
     html = html_of(sensor_details, scored)
     ET.fromstring(f"<div>{html}</div>")
@@ -115,10 +102,3 @@ def test_the_section_tells_where_and_how_much(scored):
     for name, score in scored.after.per_sensor.items():
         assert f"<td>{percent(score.coverage, 1)}</td>" in html, name
     assert html.count("<table") == 2, "none from the rear axle"
-
-
-def test_places_are_reported_from_the_rear_axle_where_it_is_known(scored):
-    study = dataclasses.replace(scored.study, reference=pe.Reference(-1.4, 0.33))
-    outcome = dataclasses.replace(scored.outcome, study=study)
-    html = html_of(sensor_details, dataclasses.replace(scored, outcome=outcome))
-    assert "<td>3.700</td>" in html and "<td>0.870</td>" in html  # 2.3 + 1.4, and 1.2 - 0.33

@@ -47,10 +47,6 @@ def test_a_story_is_added_checked_and_shown(car):
     assert len(settings.stories) == 1
 
 
-
-
-
-
 def test_how_sensors_scan_gives_seams_and_is_kept(car):
     settings = car.perception_entropy
     low = scenes.add_sensor("low", location=(2.3, 0.3, 0.8))

@@ -157,8 +157,6 @@ def test_the_search_has_every_key_verb_and_sensor(site):
         assert name in text, name
 
 
-
-
 def clicks_from(pages, first, most):
     """Return how many links lead from a page to each other one, of at most so many."""
     distance, waiting = {first: 0}, deque([first])
@@ -227,5 +225,3 @@ def test_the_search_finds_a_key_and_leads_to_it(chromium, address):
     page.wait_for_url(re.compile("settings|mounts_and_search"))
     assert "max_height" in page.inner_text("main")
     context.close()
-
-

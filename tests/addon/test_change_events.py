@@ -100,25 +100,6 @@ def test_a_drag_is_no_rest_where_a_redraw_takes_longer_than_the_wait(car, timers
     assert heard == [MOVED] * 5 + [RESTED] and not timers.waiting
 
 
-@pytest.mark.parametrize("signal", [signals.moving, signals.idle], ids=[MOVED, RESTED])
-def test_a_move_during_a_move_s_signal_is_reported_too(car, timers, heard, signal):
-    """Timers run before Blender's update of a move; who listens may bring it about."""
-    late = [car.objects["roof"]]
-
-    def listener():
-        if late:
-            drag(late.pop())
-
-    signal.connect(listener)
-    try:
-        drag(car.objects["roof"])
-        timers.pass_by(10.0)
-    finally:
-        signal.disconnect(listener)
-    told = [MOVED, MOVED, RESTED] if signal is signals.moving else [MOVED, RESTED, MOVED, RESTED]
-    assert heard == told and not timers.waiting
-
-
 def move_a_point(car):
     car.objects["body"].data.vertices[0].co.x += 0.1
     car.objects["body"].data.update()

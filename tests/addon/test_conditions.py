@@ -136,23 +136,6 @@ def test_showing_another_state_makes_no_score_stale_and_a_change_there_does(car)
     assert settings.result_stale
 
 
-def test_a_score_made_while_another_state_is_shown_is_current(car):
-    settings = scored_with_a_state(car)
-    drawn = settings.result.entropy
-    car.frame_set(OPEN_FRAME)
-    assert bpy.ops.pe.score() == {"FINISHED"} and settings.result.entropy == drawn
-    assert bpy.ops.pe.save_variant() == {"FINISHED"}
-    first, second = settings.variants
-    assert bridge.records_of(first) == bridge.records_of(second)  # both as drawn
-    assert car.frame_current == OPEN_FRAME
-    idle()
-    assert marks(settings) == (False, False, False)
-    assert bridge.shown_state(car) == "door open"
-    car.frame_set(1)
-    idle()
-    assert marks(settings) == (False, False, False) and not bridge.shown_state(car)
-
-
 def test_a_search_places_sensors_as_drawn_in_whatever_state_is_shown(car):
     settings = scored_with_a_state(car)
     mirror = bpy.data.objects["mirror"]

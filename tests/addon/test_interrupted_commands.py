@@ -9,8 +9,7 @@ from pathlib import Path
 import bpy
 import pytest
 
-from blender_addon.engine import jobs, pe
-from tests.addon import scenes
+from blender_addon.engine import jobs
 from tests.addon.command_line import FAST, ROOT, command, run_here, wait_for
 from tests.limits import HANG_S
 
@@ -59,15 +58,3 @@ def test_being_told_to_end_keeps_the_best(blend, tmp_path):
     assert result["stopped"] and result["entropy"] <= result["before"]["entropy"]
     assert jobs.files_of_other_runs(out) == []
     assert (out / "optimized.blend").exists()
-
-
-def test_the_export_of_the_panel_replaces_the_chosen_file_and_no_other(car, tmp_path):
-    path, mesh = tmp_path / "car.toml", tmp_path / "car.npz"
-    path.write_text("chosen in the dialog")
-    mesh.write_text("mine")
-    with pytest.raises(RuntimeError, match=r"car\.npz: output: expected no file"):
-        bpy.ops.pe.export_study(filepath=str(path))
-    assert (path.read_text(), mesh.read_text()) == ("chosen in the dialog", "mine")
-    mesh.unlink()
-    assert bpy.ops.pe.export_study(filepath=str(path)) == {"FINISHED"}
-    assert pe.load_study(path).rig["roof"].pose == scenes.study().rig["roof"].pose

@@ -11,7 +11,6 @@ import pe_tools as pt
 from blender_addon import bridge, result_staleness
 from blender_addon.engine import jobs as pe_jobs
 from blender_addon.engine import pe
-from blender_addon.live import state
 from blender_addon.operators import declared, jobs, running_job
 from blender_addon.panels import main
 from tests.addon import layouts, scenes
@@ -168,21 +167,6 @@ def test_a_change_while_a_job_runs_leaves_its_result_stale(car, row, change):
     finished_after(car, row, lambda: CHANGES[change](car))
     # What the search has placed stands where it put it, wherever it was meanwhile.
     assert car.perception_entropy.result_stale == (row is jobs.SCORE)
-
-
-def test_the_start_of_a_search_is_not_scored_again_when_it_is_known(car, monkeypatch):
-    bpy.ops.pe.score()
-    known = state.live_state(car.name).finished.score
-    made = []
-    monkeypatch.setattr(
-        jobs.jobs, "OptimizeJob", lambda study, before: made.append(before) or SimpleNamespace()
-    )
-    jobs.OPTIMIZE.read(Window(car))
-    assert made == [known]
-    car.objects["roof"].location.z += 0.1
-    bpy.context.view_layer.update()
-    jobs.OPTIMIZE.read(Window(car))
-    assert made == [known, None]
 
 
 def animate(sensor):

@@ -116,25 +116,6 @@ def test_what_every_placement_keeps_to(car):
     assert found == pe.Constraints(1.9, 1.7, 0.2, True, [area])
 
 
-def test_the_view_tints_mounts_and_draws_boxes(roof):
-    sensor = bpy.data.objects["roof"]
-    sensor.select_set(True)
-    bpy.ops.pe.add_no_go()
-    (shape,) = scenes.drawn(roof)["mounts"].values()
-    assert len(shape.faces.points) == 2 * len(faces()) * 3
-    names = [name for _, name in shape.legend.classes]
-    assert names == ["a sensor may be mounted here", "no-go area"]
-    rim_and_box = len(shape.lines.points)
-    assert rim_and_box == 2 * 4 + 24
-    own = sensor.perception_entropy
-    own.bounded[0], own.bounds_low[0], own.bounds_high[0] = True, -0.8, 0.2
-    sensor.select_set(True)
-    (shape,) = scenes.drawn(roof)["mounts"].values()
-    assert "bounds" in [name for _, name in shape.legend.classes]
-    roof.perception_entropy.view.show_mounts = False
-    assert "mounts" not in scenes.drawn(roof)
-
-
 def test_a_mount_is_added_of_what_is_selected_or_painted(car):
     cabin = bpy.data.objects["cabin"]
     bpy.ops.object.select_all(action="DESELECT")

@@ -1,10 +1,7 @@
 """The popover in the 3D view's header offers every layer, and computes nothing."""
 
-import bpy
-
 from blender_addon.overlay import layers
 from blender_addon.panels import overlay_popover
-from blender_addon.properties.view import classes_of
 from tests.addon.layouts import drawn
 
 
@@ -30,11 +27,3 @@ def test_every_setting_of_the_view_is_offered(car):
     of_group = {p.identifier for p in view.bl_rna.properties} - {"rna_type", "name"}
     of_group -= {"ghost_key", "ground_fits"}  # by buttons: in the list of variants, Fit Colors
     assert of_group <= shown
-
-
-def test_classes_of_reach_are_those_of_the_prior(car):
-    view = car.perception_entropy.view
-    context = bpy.context
-    assert "pedestrian" in classes_of(view, context, "")
-    car.perception_entropy.prior = "highway"
-    assert "pedestrian" not in classes_of(view, context, "")

@@ -51,18 +51,6 @@ def test_an_upright_camera_looks_away_from_the_middle_of_the_vehicle(bare, place
     assert ahead == pytest.approx(expected, abs=1e-6) and up == pytest.approx([0, 0, 1], abs=1e-6)
 
 
-NORMALS = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0.6, 0.0, 0.8)]
-
-
-@pytest.mark.parametrize("normal", NORMALS)
-def test_along_the_normal_a_camera_looks_along_it(bare, normal):
-    sensor = place("Camera 60 deg", location=(1, 1, 1), normal=normal, along_normal=True)
-    ahead, up = axes(sensor)
-    assert ahead == pytest.approx(normal, abs=1e-6)
-    assert up[2] == pytest.approx(math.sqrt(1 - normal[2] ** 2), abs=1e-6)  # as upright as it can
-    assert np.linalg.det(np.array(sensor.matrix_world)[:3, :3]) == pytest.approx(1.0, abs=1e-6)
-
-
 def spot_below(scene, x, y):
     """Where a ray from high above meets the vehicle."""
     depsgraph = scenes.depsgraph()

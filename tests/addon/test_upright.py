@@ -59,11 +59,3 @@ def test_an_asset_dropped_on_a_surface_stands_on_it_once(car, model, point, norm
     sensor.rotation_euler = (0.5, 0.0, 0.0)  # whoever turns it now wants that
     upright.place_dropped()
     assert axes(sensor)[1][2] == pytest.approx(math.cos(0.5), abs=1e-6)
-
-
-def test_what_is_still_an_asset_is_left_alone(car):
-    sensor = dropped("new", "Camera 60 deg", TAIL, (-1.0, 0.0, 0.0))
-    sensor.asset_mark()
-    before = sensor.matrix_world.copy()
-    upright.place_dropped()
-    assert sensor.matrix_world == before and sensor.perception_entropy.stands_when_dropped

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-import pe_tools as pt
 from pe_core.scene.mesh import AXIS_NAMES
 from pe_core.study.study_file import study_from_dict, study_to_dict
 from tests.engine.mesh_files import glb_file, gltf, obj_bytes, read, stl_binary
@@ -157,15 +156,6 @@ def test_the_keys_come_back_from_a_file(tmp_path):
     assert study.axes == pe.MeshAxes("+y", "-z", 1.5, (0.0, 0.0, 30.0))
     again = study_from_dict(study_to_dict(study), folder=tmp_path)
     assert again.axes == study.axes and again.faces == study.faces
-    assert np.array_equal(again.vehicle.triangles, study.vehicle.triangles)
-
-
-def test_an_exported_mesh_is_not_turned_again(tmp_path):
-    study = study_of(tmp_path, obj("Blender, Y up"), scale=1.1, rotation=[0, 0, 3])
-    (tmp_path / "out").mkdir()
-    pt.export_study(study, tmp_path / "out" / "study.toml")
-    again = pe.load_study(tmp_path / "out" / "study.toml")
-    assert again.axes == pe.MeshAxes() and again.faces == ""
     assert np.array_equal(again.vehicle.triangles, study.vehicle.triangles)
 
 

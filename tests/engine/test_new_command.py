@@ -109,23 +109,6 @@ def test_most_keys_have_a_comment_and_those_that_are_off_work(tmp_path):
     assert study.search.mounting.constraints.max_height > lidar.pose.position[2]
 
 
-def test_files_that_are_there_are_never_overwritten(tmp_path, capsys):
-    (tmp_path / "box.obj").write_bytes(obj_bytes())
-    study, area = tmp_path / "study.toml", tmp_path / "study_roof.npz"
-    study.write_text("mine")
-    assert new(tmp_path / "box.obj", study) == 1 and study.read_text() == "mine"
-    study.unlink()
-    area.write_text("mine")
-    assert new(tmp_path / "box.obj", study) == 1
-    assert area.read_text() == "mine" and not study.exists()
-    assert "--replace" in capsys.readouterr().err
-    assert new(tmp_path / "box.obj", study, "--replace") == 0
-    checked(study)
-    mesh = (tmp_path / "box.obj").read_bytes()
-    assert new(tmp_path / "box.obj", tmp_path / "box.obj", "--replace") == 1
-    assert (tmp_path / "box.obj").read_bytes() == mesh
-
-
 @pytest.mark.parametrize(
     ("name", "more", "words"),
     [

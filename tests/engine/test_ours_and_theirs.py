@@ -107,22 +107,6 @@ def test_an_export_replaces_what_was_chosen_and_not_its_neighbours(tmp_path):
     assert pe.load_study(path).rig["roof"].pose.position[0] == 0.1
 
 
-def test_a_set_is_written_whole_or_not_at_all(tmp_path):
-    with FileSet(tmp_path) as files:
-        files.add("a", b"1")
-        files.add("b", b"1")
-    before = contents(tmp_path)
-
-    def fails(path):
-        path.write_bytes(b"half")
-        raise OSError(28, "No space left on device")
-
-    with pytest.raises(pe.InputError, match="no space left"), FileSet(tmp_path) as files:
-        files.add("a", b"2")
-        files.add("b", fails)
-    assert contents(tmp_path) == before
-
-
 @pytest.mark.parametrize("stops_at", [0, 1, 2])
 def test_killed_between_two_files_all_of_them_are_still_ours(tmp_path, stops_at, monkeypatch):
     """The list is written first: what was not replaced yet is known by its old digest."""

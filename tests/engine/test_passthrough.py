@@ -133,24 +133,6 @@ def test_a_kit_that_is_there_keeps_its_text_without_the_study_s_help(tmp_path):
         assert again[name].pose.position == pytest.approx(rig[name].pose.position, abs=1e-9)
 
 
-def test_a_lens_of_a_kit_is_written_when_it_is_another(tmp_path):
-    kit = written(tmp_path / "kit", "autoware")
-    info = (
-        "# calibrated in March\nimage_width: 800\nimage_height: 400\ncamera_matrix:\n"
-        "  data: [526.2, 0, 401.0, 0, 526.2, 199.0, 0, 0, 1]\n"
-        "distortion_coefficients:\n  data: [0.01, 0, 0, 0, 0]\n"
-    )
-    (kit / "camera_info").mkdir()
-    file = kit / "camera_info" / "camera0.yaml"
-    file.write_text(info)
-    rig = import_rig(kit, None, AXLE).rig
-    pt.export_rig(rig, "autoware", kit, AXLE, replace=True)
-    assert file.read_text() == info
-    other = pe.Sensor("camera0", pe.catalog.load("KITTI cam2"), rig["camera0"].pose)
-    pt.export_rig(pe.Rig([other]), "autoware", kit, AXLE, replace=True)
-    assert "image_width: 1242" in file.read_text()
-
-
 def test_it_is_a_text_and_back_and_says_what_is_wrong(tmp_path):
     for name in FILES:
         kept = import_rig(written(tmp_path / name, name), name, AXLE).passthrough

@@ -194,20 +194,6 @@ def _wall(x):
     return corners[[[0, 1, 2], [0, 2, 3]]]
 
 
-def test_presets_and_tables_go_through_files():
-    names = catalog.names("radar")
-    assert ARS in names and len(names) >= 8
-    for name in names:
-        model = catalog.load(name)
-        again = catalog.from_table(name, catalog.to_table(model))
-        assert catalog.to_table(again) == catalog.to_table(model)
-        assert catalog.entries()[name].source
-    own = {**TABLE, "rcs_dbsm": {"car": {"aspect_deg": [0, 90, 180], "dbsm": [10, 20, 12]}}}
-    assert catalog.to_table(catalog.from_table("own", own))["rcs_dbsm"] == own["rcs_dbsm"]
-    side = Reflectivity((10.0, 20.0, 12.0), (0.0, math.pi / 2, math.pi))
-    assert side.square_metres(np.radians([0, 45, 90])) == pytest.approx([10, 10**1.5, 100])
-
-
 def test_a_study_of_radars_scores_voxels_and_objects(tmp_path):
     path = tmp_path / "study.toml"
     path.write_text(

@@ -5,14 +5,13 @@ import math
 import signal
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.search import METHODS, Journal, evaluate_all
+from pe_core.search import METHODS, Journal
 from pe_core.study import SEARCH
 from pe_tools import jobs
 from pe_tools.cli.verbs import main
@@ -78,25 +77,6 @@ def test_every_method_goes_on_to_the_bits_of_an_unbroken_search(method):
     del data["run"], expected["run"]
     assert data == expected
     assert end.evaluated == whole.evaluated
-
-
-def test_candidates_evaluated_together_are_known_as_well():
-    study, journal = a_study(), Journal()
-    rigs = [shapes.lidar_on_roof(shapes.small_lidar(16, 90), (0.1 * k, 0.0, 1.8)) for k in range(6)]
-    rigs = [pe.Rig([sensor]) for sensor in rigs]
-    [whole] = journal.wrap([study.evaluator()])
-    with ThreadPoolExecutor(2) as executor:
-        told = evaluate_all(whole, rigs, executor=executor)
-        plain = Recorder(distance_to({"x": 0.1}))
-        [again] = Journal(journal.entries[:4]).wrap([plain])
-        both = evaluate_all(again, rigs[:2]) + evaluate_all(again, rigs[2:], executor=executor)
-    assert told == evaluate_all(study.evaluator(), rigs)
-    assert both[:4] == told[:4]
-    assert [placed(rig) for rig in plain.rigs] == [placed(rig) for rig in rigs[4:]]
-
-
-def placed(rig):
-    return [(sensor.name, sensor.pose) for sensor in rig]
 
 
 def search(study, objectives):

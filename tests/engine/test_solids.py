@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_tools.outputs import scene_files
 from pe_tools.outputs.solid import free_solid, mounted_view
 
 from .shapes import box, box_car, camera, lidar_on_roof, small_lidar
-from .surfaces import is_watertight, read_stl, volume
+from .surfaces import is_watertight
 
 RANGE = 20.0
 STEP = math.radians(2.0)
@@ -83,27 +82,3 @@ def test_where_nothing_is_seen_all_is_blind_but_the_vehicle(plugin):
     block = pe.Vehicle(box((-2.0, -1.0, 0.0), (2.0, 1.0, 1.0)))
     away = pe.Rig([lidar_on_roof(small_lidar(max_range=1.0), (500.0, 0.0, 2.0))])
     assert plugin.volume(plugin.blind_volume("blind", away, block)) == pytest.approx(1312.0)
-
-
-def a_study(*sensors, vehicle=None):
-    space = pe.PerceptionSpace((-16, 16), (-16, 16), (0, 3), 0.5)
-    return pe.Study(pe.Rig(sensors), vehicle, space, reference=pe.Reference(-1.3, 0.3))
-
-
-@pytest.fixture(scope="module")
-def files(plugin):
-    """Solids of a car with a LiDAR and a camera whose names are alike as files."""
-    rig = lidar_on_roof(small_lidar(), name="roof/top"), camera(name="Roof top")
-    return scene_files(a_study(*rig, vehicle=box_car()), "solids", RANGE)
-
-
-def test_every_file_is_one_closed_solid_with_normals_outwards(files):
-    stl = {name: data for name, data in files[0].items() if name.endswith(".stl")}
-    kinds = ("field", "free", "hidden")
-    assert {f"roof_top_{kind}.stl" for kind in kinds} | {"blind_volume.stl"} <= set(stl)
-    assert "Roof_top_2_field.stl" in stl
-    for data in stl.values():
-        normals, triangles = read_stl(data)
-        assert is_watertight(triangles) and volume(triangles) > 0.0
-        across = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-        assert ((across * normals).sum(axis=1) >= 0.0).all()

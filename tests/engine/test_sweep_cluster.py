@@ -133,18 +133,3 @@ def test_a_worker_that_is_killed_costs_no_result(study, cluster, tmp_path, monke
         assert result["entropy"] == row["entropy"]
     assert cluster.workers[0].poll() == -signal.SIGKILL
     assert "Traceback" not in capsys.readouterr().err
-
-
-def test_a_scheduler_that_goes_away_is_one_line(study, cluster, tmp_path, monkeypatch, capsys):
-    """What is done by then is kept, and the same command goes on."""
-    monkeypatch.setattr("pe_tools.cli.executors.CONNECT_S", 1.0)
-    came = at_first_result(monkeypatch, lambda: cluster.scheduler.send_signal(signal.SIGKILL))
-    values, out = f"sensor.roof.position.2={','.join(HEIGHTS)}", tmp_path / "out"
-    argv = ["sweep", str(study), "--set", values, "-o", str(out)]
-    assert main([*argv, "--executor", cluster.address]) == 1
-    *_, line = capsys.readouterr().err.splitlines()
-    assert line.startswith(f"pe: {cluster.address}: scheduler: expected a scheduler that runs")
-    done = len(came)
-    assert 1 <= done < len(HEIGHTS)
-    assert main([*argv, "--workers", "1"]) == 0
-    assert f"pe: {done} of {len(HEIGHTS)} runs are done already" in capsys.readouterr().err

@@ -134,3 +134,14 @@ def test_kitti_s_lines_project_as_its_readers_do():
     velodyne = roof.ground_from_sensor.T @ (GROUND - roof.position)
     u, v, w = rows["P0"].reshape(3, 4) @ rectified @ to_camera @ [*velodyne, 1.0]
     assert (u / w, v / w) == pytest.approx(PIXEL)
+
+
+def test_trimesh_finds_every_solid_closed_and_outwards(example_plugin):
+    trimesh = pytest.importorskip("trimesh", reason="of the extra test")
+    files, _ = scene_files(STUDY, "solids", 10.0)
+    solids = {name: data for name, data in files.items() if name.endswith(".stl")}
+    assert {"eye_free.stl", "roof_field.stl", "blind_volume.stl"} <= set(solids)
+    for name, data in solids.items():
+        solid = trimesh.load(io.BytesIO(data), file_type="stl")
+        assert solid.is_watertight and solid.is_winding_consistent, name
+        assert solid.volume > 0.0, name

@@ -10,7 +10,6 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_core import catalog, search
-from pe_core.scoring.requirements import BODIES, Requirement, Zone
 from pe_core.search.places import IN_BODY, LOW, surface_points
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import where_job
@@ -115,16 +114,6 @@ def test_the_error_is_that_of_the_gains(study):
     found = mapped(study)
     assert 0.0 < found.error < 0.2
     assert mapped(study, figure="blind", count=8).error == 0.0
-
-
-def test_verdicts_count_requirements_that_are_met(study):
-    zone = Zone(x=("rear + 1.5", "rear + 0.5"), y=(-0.5, 0.5), step=0.5)
-    behind = Requirement("behind", zone, (BODIES["child"],))
-    study = replace(study, requirements=(behind,))
-    found = mapped(study, figure="verdicts", count=24)
-    assert found.base == 0.0
-    assert {each.value for each in found.places} == {None, 0.0, 1.0}
-    assert found.best()[0].pose.position[0] < 0.0
 
 
 def test_the_command_writes_what_the_job_finds(study, tmp_path, capsys):

@@ -3,14 +3,12 @@
 import numpy as np
 
 import pe_core as pe
+from tests.engine import shapes
 
 
 def box(low, high) -> pe.Vehicle:
-    """Vehicle that is a box: (12, 3, 3) triangles."""
-    corners = np.array(np.meshgrid(*zip(low, high, strict=True), indexing="ij")).reshape(3, 8).T
-    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    faces = [face for a, b, c, d in quads for face in ((a, b, c), (a, c, d))]
-    return pe.Vehicle(corners[np.array(faces)])
+    """A vehicle that is a box."""
+    return pe.Vehicle(shapes.box(low, high))
 
 
 def car() -> pe.Vehicle:

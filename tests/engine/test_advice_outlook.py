@@ -49,14 +49,6 @@ def test_what_is_said():
     ]
 
 
-def test_what_is_found_nowhere_and_no_blind_ground():
-    lines = said(reach({}, "any"), blind(front=0.0, rear=0.0, left=0.0, right=0.0))
-    assert lines[1:] == [
-        "an object is found (AP 0.5 or more) nowhere ahead, behind, left or right",
-        "blind to what is 0.5 m tall nowhere at the body",
-    ]
-
-
 def test_an_outlook_is_sight_s():
     """Its figures are those of `Sight`, and the class is pedestrians unless it is asked for."""
     study = pe.Study(
@@ -73,13 +65,6 @@ def test_an_outlook_is_sight_s():
     data = found.to_dict()
     assert data["reach"]["bearings_deg"][:2] == [0.0, 5.0]
     assert data["seen_by_at_least"] == list(sight.shares(study.rig).by_number)
-
-
-def test_a_space_above_the_ground_has_its_floor_looked_at():
-    space = pe.PerceptionSpace((-20, 20), (-10, 10), (1, 5), 0.5)
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
-    sight = pe.Study(rig, shapes.box_car(), space).sight()
-    assert advice.outlook(sight, rig).blind.height == 1.0
 
 
 def test_shares_by_number_and_by_sensor_by_hand():

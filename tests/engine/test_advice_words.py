@@ -2,7 +2,6 @@
 
 import dataclasses
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,7 +12,6 @@ from pe_core.scoring import FoundClass
 from pe_core.scoring.score import TrafficAp
 from pe_core.scoring.targets.object_metric import SECTORS
 from pe_tools import advice
-from pe_tools.cli.terminal import summary
 from tests.engine import shapes
 
 
@@ -123,26 +121,6 @@ def test_a_search_warns_of_the_placement_it_found():
 
 REACH = {way: 0.0 for way in SECTORS} | {"front": 25.6, "left": 12.2}
 CAR = FoundClass(40, 0.5, 1.0, 0.1, 0.453, 0.01, {1: 1.0, 5: 0.9, 20: 0.5}, REACH)
-CONE = replace(CAR, ap=0.2, points={}, reach=dict.fromkeys(SECTORS, 0.0))
-
-
-def scored(ap=0.33, traffic=True, **classes):
-    found = pe.ObjectScore(ap, 0.004, 80, 8, traffic, {"car": CAR, "cone": CONE} | classes)
-    return pe.Score(3.0, 0.5, 0.1, {}, {}, {}, 0, objects=found)
-
-
-def test_a_score_comes_back_from_its_data():
-    score = scored()
-    assert pe.ObjectScore.from_dict(score.to_dict()["objects"]) == score.objects
-
-
-def test_the_summary_says_what_was_evaluated():
-    study = pe.Study(pe.Rig([shapes.lidar_on_roof()]), targets=pe.TargetRule("objects", scenes=64))
-    own = pe.SensorScore(3.0, 0.5, 1.0, 0, 0, {})
-    score = replace(scored(), per_sensor={"roof": own})
-    text = summary(pt.Outcome("optimize", study, study, score, score, evaluations=7))
-    assert "expected AP 0.33" in text and "on 80 objects in 8 scenes, in traffic" in text
-    assert "7 placements evaluated on 32, then 64 scenes of objects" in text
 
 
 INSIDE, SIDE = "camera in the boot", "side"
@@ -186,29 +164,6 @@ def test_what_is_reported_of_it(stopped, coverage, warned, stderr, lines):
     assert advice.hidden_words(advice.hidden_sensors(RIG, score, warnings)) == lines
     assert advice.rig_words(score, None, RIG, warnings)[: len(lines)] == lines
     assert not advice.rig_words(score)[0].startswith("camera")
-
-
-def test_several_are_one_line_a_kind_and_the_dead_come_first():
-    names = ["a", "b", "c"]
-    rig = pe.Rig([dataclasses.replace(shapes.camera(60.0), name=name) for name in names])
-    own = {"a": sensor_score(0.1, 700), "b": sensor_score(0.0, 1000), "c": sensor_score(0.0, 1000)}
-    found = advice.hidden_sensors(rig, pe.Score(2.0, 0.1, 0.0, {}, {}, own, 9))
-    assert [each.name for each in found] == ["b", "c", "a"]
-    assert advice.hidden_words(found) == (
-        "b (100% of its picture occluded) and c (100% of its picture occluded) see nothing",
-        "a (70% of its picture occluded) is mostly occluded",
-    )
-
-
-def test_a_camera_inside_the_body_is_named_by_the_summary():
-    inside = dataclasses.replace(shapes.camera(60.0, (0.0, 0.0, 0.9)), name=INSIDE)
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(8, 90)), inside])
-    study = pe.Study(rig, shapes.box_car(), shapes.small_space(1.0))
-    job = pt.ScoreJob(study)
-    for _ in job:
-        pass
-    line = f"ATTENTION: {INSIDE} (inside the body, 100% of its picture occluded) sees nothing"
-    assert line in summary(job.outcome).splitlines()
 
 
 @pytest.mark.parametrize("samples", [0, 2048])
@@ -264,21 +219,3 @@ def test_a_move_is_told_with_its_gain_and_its_error(study):
         "far 0.33 to 0.33 (+- 0.02)"
     )
     assert advice.gain_sentence(study.rig, study.rig, *told) == ""
-
-
-def test_figures_that_prefer_different_rigs_are_told():
-    none = ((0.0, 0.0),) * 2
-
-    def told(entropies, aps, widths):
-        rows = [
-            advice.ComparedRow("rig", "", "entropy", entropies, none, 2.0),
-            advice.ComparedRow(advice.TRAFFIC, "", "ap", aps, none, 2.0),
-            advice.ComparedRow("rig", "0.5 m tall, at 20 m", "sector", widths, none),
-        ]
-        return advice.disagreement(["one", "other"], rows)
-
-    assert told((1.0, 2.0), (0.6, 0.5), (0.0, 0.0)) == ""
-    assert told((1.0, 2.0), (0.6, 0.5), (20.0, 0.0)) == (
-        "The figures disagree: best is one by entropy, one by expected AP in traffic, "
-        "other by the widest blind sector."
-    )

@@ -311,33 +311,19 @@ def test_programs_outside_import_public_faces_only():
     assert not offenders
 
 
-def test_importing_the_engine_loads_no_numpy_until_a_name_is_asked_for():
+def test_imports_load_what_is_used_alone():
+    """No NumPy until a name is asked for, nothing of Blender or the tools; `pe sensors` no page."""
     code = (
         "import sys, pe_core as pe; assert 'numpy' not in sys.modules; pe.Study; "
         "assert 'numpy' in sys.modules; assert set(pe.__all__) <= set(dir(pe)); "
         "assert all(hasattr(pe, n) for n in (*pe.__all__, 'scene', 'study')); "
-        "assert not hasattr(pe, 'bogus')"
+        "assert not hasattr(pe, 'bogus'); tops = {m.split('.')[0] for m in sys.modules}; "
+        "assert not tops & {'bpy', 'mathutils', 'gpu', 'pe_tools'}, tops; "
+        "from pe_tools.cli.verbs import parser; parser(); "
+        "found = [m for m in sys.modules if m.startswith(('pe_tools.page', 'matplotlib'))]; "
+        "assert found == ['pe_tools.page'], found"
     )
     assert subprocess.run([sys.executable, "-c", code], cwd=CHECKOUT).returncode == 0
-
-
-def test_importing_the_engine_loads_neither_blender_nor_the_tools():
-    code = (
-        "import sys, pe_core; pe_core.Study; sys.exit(any("
-        "m.split('.')[0] in ('bpy', 'mathutils', 'gpu', 'pe_tools') for m in sys.modules))"
-    )
-    assert subprocess.run([sys.executable, "-c", code], cwd=CHECKOUT).returncode == 0
-
-
-def test_the_parser_loads_neither_sections_nor_matplotlib():
-    """`pe sensors` does not wait for what it does not use."""
-    rooms = ("pe_tools.page", "matplotlib")
-    code = (
-        "import sys; from pe_tools.cli.verbs import parser; parser(); "
-        f"print(*sorted(m for m in sys.modules if m.startswith({rooms})))"
-    )
-    run = subprocess.run([sys.executable, "-c", code], cwd=CHECKOUT, capture_output=True, text=True)
-    assert run.stdout.split() == ["pe_tools.page"], run.stderr
 
 
 def test_sections_of_the_page_are_found_by_their_table_alone():

@@ -3,7 +3,6 @@
 import math
 import multiprocessing.synchronize
 import os
-import platform
 import signal
 import socket
 import subprocess
@@ -22,7 +21,6 @@ from pe_core.search import Processes, evaluate_all, processes, start_processes
 from pe_core.search.payload import Payload
 from pe_tools.cli.executors import workplace
 from tests.engine import shapes
-from tests.engine.processes import ROOT
 from tests.limits import HANG_S
 
 CANDIDATES = 7
@@ -300,34 +298,3 @@ def test_a_worker_can_be_ended_by_a_signal():
     with Processes(1) as processes:
         blocked = processes.submit(signal.pthread_sigmask, signal.SIG_BLOCK, ()).result()
     assert signal.SIGTERM not in blocked
-
-
-DASK = {"MALLOC_TRIM_THRESHOLD_": "65536"}
-"""The environment in which Dask starts its workers."""
-FAULTS = """
-import resource, sys
-import numpy as np
-from pe_core.search.payload import keep_freed_memory
-assert "keep" not in sys.argv or keep_freed_memory()
-def faults():
-    return resource.getrusage(resource.RUSAGE_SELF).ru_minflt
-np.ones(1 << 17).sum()
-before = faults()
-for _ in range(100):
-    np.ones(1 << 17).sum()
-print(faults() - before)
-"""
-"""Prints how many pages the system makes for a hundred arrays of 1 MB, one after the other."""
-
-
-def page_faults(*arguments):
-    command = [sys.executable, "-c", FAULTS, *arguments]
-    env = {**os.environ, **DASK}
-    done = subprocess.run(command, cwd=ROOT, env=env, capture_output=True, text=True, check=True)
-    return int(done.stdout)
-
-
-@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="settings of glibc")
-def test_arrays_of_a_worker_of_dask_are_not_paged_in_anew():
-    assert page_faults() > 100 * 100
-    assert page_faults("keep") < 1000

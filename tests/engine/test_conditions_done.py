@@ -9,23 +9,16 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 import pe_core as pe
 import pe_tools as pt
 from pe_core import catalog
 from pe_core.study import Conditions, condition_table, save_study
 from pe_core.study.requirement_file import preset
-from pe_tools.cli import study_of_rig
 from pe_tools.cli.verbs import main
 from tests.engine import shapes
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-WEATHERS = [
-    pe.Weather("sun", 0.7),
-    pe.Weather("rain", 0.2, rain_mm_h=25.0),
-    pe.Weather("fog", 0.1, fog_mor_m=50.0),
-]
 
 
 def written(tmp_path, study):
@@ -35,38 +28,6 @@ def written(tmp_path, study):
     path = tmp_path / "study.toml"
     save_study(replace(study, mesh="car.npz"), path)
     return path
-
-
-def scored(capsys, path):
-    """``conditions`` of the result of ``pe score --json``."""
-    assert main(["score", str(path), "--json"]) == 0
-    return json.loads(capsys.readouterr().out)["conditions"]
-
-
-@pytest.mark.parametrize("targets", ["voxels", "objects"])
-def test_nuscenes_rig_with_five_radars_in_sun_rain_and_fog(targets):
-    """By class; fog takes most from all, and a rig without its radars loses more in it."""
-    plain = study_of_rig(catalog.known_rig("nuscenes"), shapes.box_car(), stretched=True)
-    study = replace(
-        plain,
-        samples=4096,
-        targets=pe.TargetRule(targets, scenes=48),
-        conditions=Conditions(weathers=WEATHERS),
-    )
-    assert sum(sensor.kind == "radar" for sensor in study.rig) == 5
-    table = condition_table(study)
-    sun, rain, fog = table.rows
-    for name in ("car", "pedestrian", "cyclist"):
-        assert sun.per_class[name] < rain.per_class[name] < fog.per_class[name]
-    if targets == "objects":
-        assert all(1.0 > sun.ap_per_class[n] > fog.ap_per_class[n] for n in ("car", "pedestrian"))
-        reach = [row.reach["car"]["front"] for row in table.rows]
-        assert reach[2] < reach[0]
-    else:
-        without = pe.Rig([sensor for sensor in study.rig if sensor.kind != "radar"])
-        clear, foggy = condition_table(study.with_rig(without)).rows[::2]
-        assert foggy.entropy - clear.entropy > fog.entropy - sun.entropy > 0.5
-    assert all(fog.without[s.name] >= fog.entropy for s in study.rig)
 
 
 CAB_REAR, HITCH = 1.2, (-0.5, 0.0, 1.1)
@@ -80,40 +41,6 @@ def truck():
     ]
     parts = np.repeat([0, 1], [len(b) for b in boxes])
     return pe.Vehicle(np.concatenate(boxes), parts, ("cab", "trailer"))
-
-
-def test_a_turned_trailer_takes_from_the_sensors_of_its_side(tmp_path, capsys):
-    """It turns left: the left side's radar and camera lose, those of the right side win."""
-    radar, camera = catalog.load("Continental ARS408-21"), pe.Camera("c", 640, 480, 1.0)
-    sensors = []
-    for side, sign in (("left", 1), ("right", -1)):
-        back = pe.Pose.from_degrees((2.9, sign * 1.45, 1.9), (0, 8, sign * 175))
-        corner = pe.Pose.from_degrees((1.5, sign * 1.35, 0.8), (0, 0, sign * 150))
-        sensors += [pe.Sensor(f"mirror_{side}", camera, back)]
-        sensors += [pe.Sensor(f"radar_{side}", radar, corner)]
-    turned = pe.State(
-        "trailer turned",
-        [pe.Motion(["trailer"], (0.0, 0.0, math.radians(-35.0)), HITCH, sensors=())],
-    )
-    study = pe.Study(
-        pe.Rig(sensors),
-        truck(),
-        samples=8192,
-        conditions=Conditions([pe.State("straight"), turned]),
-    )
-    table = condition_table(study)
-    straight, turn = table.rows
-    assert straight.covered is None and {"mirror_left", "radar_left"} <= set(turn.covered)
-    hidden = {name: turn.covered.get(name, {}).get("trailer", 0.0) for name in straight.without}
-    assert hidden["mirror_left"] > max(0.2, 2.0 * hidden["mirror_right"]), hidden
-    assert hidden["radar_left"] > 0.05 > hidden["radar_right"], hidden
-    assert turn.entropy > straight.entropy
-    lost = {}
-    for sensor in study.rig:
-        before, after = condition_table(study.with_rig(pe.Rig([sensor]))).rows
-        lost[sensor.name] = after.entropy - before.entropy
-    assert lost["mirror_left"] > max(0.1, lost["mirror_right"]) and lost["radar_left"] > 0.02, lost
-    assert scored(capsys, written(tmp_path, study)) == table.to_dict()
 
 
 def test_the_example_s_turned_trailer_takes_from_the_mirror_and_corner_of_its_side():

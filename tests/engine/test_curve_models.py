@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-import pe_tools as pt
 from pe_core import catalog
 from pe_core.metric import average_precision
 from pe_core.metric.entropy import ranged
@@ -36,15 +35,6 @@ position = [0.0, 0.0, 1.9]
 name = "front"
 model = "Camera 60 deg"
 position = [1.0, 0.0, 1.4]
-"""
-ADULT = """
-[vehicle]
-mesh = "car.npz"
-[[requirement]]
-name = "adult ahead"
-body = "adult"
-zone = { x = [12, 14], y = [-1, 1], step = 0.5 }
-criterion = { ap = 0.6 }
 """
 
 
@@ -120,28 +110,6 @@ def test_what_is_not_the_paper_s_is_one_line(verb, path, floored, capsys):
     more = [str(path)] * (verb == "compare")
     assert main([verb, str(path), *more]) == 0
     assert floored and capsys.readouterr().out.count(floored) == 1
-
-
-def test_a_check_takes_the_curves_and_tells_the_floor(path, floored, capsys):
-    """An adult whom a rig has to find with an AP of 0.6: it does by the curves from scans alone."""
-    path.write_text(f"{STUDY}{ADULT}", "utf-8")
-    car = shapes.box_car()
-    pt.write_mesh(path.parent / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
-    assert main(["check", str(path)]) == 3
-    assert floored not in capsys.readouterr().err
-    path.write_text(f"{STUDY}[ap]\nprotocol_floor = 0.1\n{ADULT}", "utf-8")
-    assert main(["check", str(path), "--ap-model", "scans"]) == 0
-    assert capsys.readouterr().err.count(floored) == 1
-
-
-def test_the_result_says_which_curves_it_used(path, tmp_path, floored, capsys):
-    for model in ("paper", "scans"):
-        folder = tmp_path / model
-        assert main(["score", str(path), "--ap-model", model, "-o", str(folder)]) == 0
-        result = json.loads((folder / "result.json").read_text("utf-8"))
-        assert result["ap_model"] == model
-        assert [each["code"] for each in result["warnings"]].count("protocol_floor") == 1
-        assert pe.load_study(folder / "study.toml").model.model == model
 
 
 @pytest.mark.parametrize("model", ["bevfusion", "centerpoint"])

@@ -24,7 +24,6 @@ from pe_core.scoring import ScoreStopped, draw
 from pe_core.sensors import Voxels, kind_of
 from pe_core.sensors.lidar.beams import RotatedBeams
 from pe_core.sensors.lidar.occlusion import ApproximateOcclusion, BeamSlopes, TopMap
-from pe_tools.cli.terminal import summary, with_error
 from tests.engine import shapes
 from tests.limits import HANG_S
 from tests.thorough import THOROUGH, pairs
@@ -110,17 +109,6 @@ def test_the_truth_lies_within_two_reported_errors():
     assert within >= 45
 
 
-def test_the_ground_map_averages_to_the_score():
-    vehicle, rig = shapes.box_car(), rig_of_all_kinds()
-    score = pe.Evaluator(SPACE, pe.Prior.uniform(), vehicle).score(rig)
-    tops = vehicle.top(SPACE)
-    mass = (SPACE.centers(2) >= tops[..., None]).sum(axis=-1)
-    inside = mass == 0
-    assert np.isnan(score.ground_map.entropy[inside]).all()
-    mean = np.average(score.ground_map.entropy[~inside], weights=mass[~inside])
-    assert mean == pytest.approx(score.entropy, abs=1e-4)
-
-
 @pytest.mark.parametrize("samples", [0, 20_000], ids=["grid", "sampled"])
 def test_a_further_sensor_never_makes_it_worse(samples):
     evaluator = pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=samples)
@@ -135,22 +123,6 @@ def test_workers_do_not_change_a_bit():
         pe.Evaluator(SPACE, ROAD, shapes.box_car(), workers=n).score(rig).to_dict() for n in (1, 3)
     ]
     assert scores[0] == scores[1]
-
-
-def test_turning_rig_and_scene_together_changes_nothing():
-    """Half a turn about z maps the symmetric space and prior onto themselves."""
-    space = pe.PerceptionSpace((-10, 10), (-10, 10), (0, 4), 0.5)
-    vehicle = shapes.box_car()
-    turned = pe.Vehicle(vehicle.triangles * [-1, -1, 1], vehicle.parts, vehicle.part_names)
-    position, pitch, yaw = (0.61, 0.27, 1.83), 4.0, 12.0
-    there = shapes.lidar_on_roof(position=position, rotation=(0, pitch, yaw))
-    back = shapes.lidar_on_roof(
-        position=(-position[0], -position[1], position[2]), rotation=(0, pitch, yaw + 180)
-    )
-    a = pe.Evaluator(space, ROAD, vehicle).score(pe.Rig([there]))
-    b = pe.Evaluator(space, ROAD, turned).score(pe.Rig([back]))
-    assert a.entropy == pytest.approx(b.entropy, abs=2e-3)  # beams at 0 and 180 deg swap owners
-    assert a.per_sensor["roof"].occluded == pytest.approx(b.per_sensor["roof"].occluded, abs=2)
 
 
 def test_a_vehicle_that_fills_the_space_is_refused():
@@ -334,14 +306,14 @@ STANDARD_ERROR_RIGS = {
 
 @pytest.mark.parametrize("rig", STANDARD_ERROR_RIGS)
 def test_it_is_the_scatter_of_scores_on_other_samples(rig):
-    """120 samples of 4096 voxels: it errs high, by less than 2, and never low.
+    """60 samples of 2048 voxels: it errs high, by less than 2, and never low.
 
     Each of its 16 runs fills space evenly by itself and the whole more so, which is why it errs
     high: 1.4 for the LiDAR, 1.7 for the camera. Half of it would be too low, twice too high.
     """
     scores = []
-    for shift in np.random.default_rng(11).random((120, 3)):
-        evaluator = pe.Evaluator(SPACE, pe.Prior.road(), samples=4096, shift=tuple(shift))
+    for shift in np.random.default_rng(11).random((60, 3)):
+        evaluator = pe.Evaluator(SPACE, pe.Prior.road(), samples=2048, shift=tuple(shift))
         scores.append(evaluator.score(STANDARD_ERROR_RIGS[rig]))
     told = math.sqrt(fmean(s.stderr**2 for s in scores))
     assert 1.0 < told / stdev(s.entropy for s in scores) < 2.0
@@ -394,17 +366,6 @@ def test_it_covers_what_a_sample_that_sees_nothing_has_missed():
         sample = pe.Evaluator(SPACE, pe.Prior.uniform(), samples=1024, shift=tuple(shift))
         score = sample.score(pe.Rig([camera]))
         assert abs(score.entropy - truth.entropy) <= 2.0 * score.stderr
-
-
-def test_no_sample_is_printed_as_exact():
-    """Not where nothing is seen, and not where the error is less than the last digit."""
-    study = pe.Study(pe.Rig([BLIND]), space=SPACE, samples=2048)
-    job = pt.ScoreJob(study)
-    for _ in job:
-        pass
-    assert summary(job.outcome).startswith("entropy   16.6514 +- 0.0202 nats\n")
-    assert with_error(16.6514, 2e-6) == "16.6514 +- 0.0001 nats"
-    assert with_error(16.6514, 0.0) == "16.6514 nats"
 
 
 WATCH_SPACE = pe.PerceptionSpace((-40, 40), (-10, 10), (0, 4), 0.5)  # five blocks of 32 planes

@@ -193,11 +193,3 @@ def test_a_kit_of_several_units_is_a_study_and_a_kit_again(bus):
             assert list(new[parent]) == list(frames)
             for frame, values in frames.items():
                 assert new[parent][frame] == pytest.approx(values, abs=1e-6), frame
-
-
-def test_a_unit_that_stands_nowhere_is_refused(bus):
-    table = yaml.safe_load((bus / "sensors_calibration.yaml").read_text())
-    del table["base_link"]["rear_unit_base_link"]
-    (bus / "sensors_calibration.yaml").write_text(yaml.safe_dump(table))
-    with pytest.raises(pe.InputError, match="base_link: expected rear_unit_base_link, found"):
-        pt.import_rig(bus, None, pe.Reference(-2.0, 0.4))

@@ -8,10 +8,8 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.sensors.camera.lens import Pinhole
-from pe_tools.exchange import csv_table, driveworks, import_rig, rig_files, ros
-from pe_tools.exchange.lens_pictures import Picture
-from pe_tools.exchange.ros import info_name, picture_of_info, without_comments
+from pe_tools.exchange import import_rig, rig_files, ros
+from pe_tools.exchange.ros import info_name, without_comments
 
 PUCK = "Velodyne VLP-16 Puck"
 IMU = (
@@ -92,13 +90,6 @@ def test_frames_of_sensors_and_of_the_format_stay_apart(name, tmp_path):
         assert name == "ros" or theirs.kind == ours.kind
 
 
-def test_autoware_s_frames_stay_apart():
-    rig = pe.Rig([sensor("sensor_kit"), sensor("base_link"), sensor("roof")])
-    files, _ = rig_files(rig, "autoware", pe.Reference(-1.3, 0.3))
-    frames = re.findall(r"^  (\S+):", "".join(f.decode() for f in files.values()), re.M)
-    assert len(frames) == len(set(frames)) == 4 and frames[0] == "sensor_kit_base_link"
-
-
 def test_a_robot_s_origin_is_the_link_on_the_ground_else_its_root(tmp_path):
     (tmp_path / "r.urdf").write_text(ROBOT)
     found = import_rig(tmp_path / "r.urdf")
@@ -172,13 +163,6 @@ def test_a_frame_with_an_optical_frame_below_it_is_a_camera(tmp_path):
     assert [(s.name, s.kind) for s in ros.read(path)] == [("eye", "camera"), ("ears", None)]
 
 
-def test_a_call_of_too_many_characters_is_refused_by_its_number(tmp_path):
-    path = tmp_path / "rig.launch.xml"
-    path.write_text(CALL.format("a", "b", "") + CALL.format("a", "c", " " * 10_000))
-    with pytest.raises(pe.InputError, match="transform 2: expected at most 10,000 characters"):
-        ros.read(path)
-
-
 def test_a_damaged_file_beside_the_one_that_is_read_is_named(tmp_path):
     path = tmp_path / "rig.launch.xml"
     path.write_text(CALL.format("base_link", "eye", "") + CALL.format("eye", "eye_optical", ""))
@@ -195,62 +179,3 @@ def test_comments_are_left_out_wherever_they_begin():
         text = "-" * before + "<!--a--><!--b-->x<!-- -- > -->y"
         assert without_comments(text) == "-" * before + "xy"
     assert without_comments("a<!-- no end") == "a"
-
-
-def test_rows_of_a_table_whose_model_is_known_need_no_entry(tmp_path):
-    head = ",".join(("name", "kind", "model", "x_m,y_m,z_m,roll_deg,pitch_deg,yaw_deg"))
-    rows = "a,lidar,,0,0,2,0,0,0", "b,,,0,0,2,0,0,0", "c,sonar,,0,0,2,0,0,0"
-    path = tmp_path / "rig.csv"
-    path.write_text("\n".join((head, *rows)))
-    found = csv_table.read(path)
-    assert [(s.name, s.kind, bool(s.entry)) for s in found] == [
-        ("a", "lidar", False),
-        ("b", None, False),
-        ("c", "sonar", True),
-    ]
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [({"width_px": "0"}, "row 2, width_px"), ({"lens": "magnifier"}, "row 2, lens: expected one")],
-)
-def test_a_bad_picture_in_a_table_is_refused_by_its_row(change, words, tmp_path):
-    good = {"name": "a", "kind": "camera", **dict.fromkeys(csv_table.POSITION_KEYS, "1")}
-    good |= dict.fromkeys(csv_table.ROTATION_KEYS, "0") | dict.fromkeys(csv_table.FIGURES, "100")
-    good |= {"lens": "pinhole"}
-    rows = [",".join(row.values()) for row in (good, good | {"name": "b"} | change)]
-    path = tmp_path / "rig.csv"
-    path.write_text("\n".join([",".join(good), *rows]))
-    with pytest.raises(pe.InputError, match=words):
-        csv_table.read(path)
-
-
-def test_a_scan_without_a_vertical_part_has_one_channel(tmp_path):
-    scan = "<scan><horizontal><samples>90</samples><min_angle>-1</min_angle>"
-    scan += "<max_angle>1</max_angle></horizontal></scan><range><max>30</max></range>"
-    path = tmp_path / "rig.urdf"
-    path.write_text(
-        f'<robot name="r"><link name="roof"/><gazebo reference="roof">'
-        f'<sensor name="l" type="gpu_lidar"><lidar>{scan}</lidar></sensor></gazebo></robot>'
-    )
-    (roof,) = import_rig(path).rig
-    assert roof.model.elevations.tolist() == [0.0]
-
-
-@pytest.mark.parametrize(("count", "taken"), [(3, False), (4, True), (5, True), (6, False)])
-def test_plumb_bob_has_four_coefficients_or_five(count, taken):
-    text = (
-        "image_width: 640\nimage_height: 480\ndistortion_model: plumb_bob\n"
-        "camera_matrix:\n  rows: 3\n  cols: 3\n  data: [400, 0, 320, 0, 400, 240, 0, 0, 1]\n"
-        f"distortion_coefficients:\n  rows: 1\n  cols: {count}\n  data: {[0.01] * count}\n"
-    )
-    if taken:
-        assert picture_of_info("it", text).lens.k1 == 0.01
-    else:
-        with pytest.raises(pe.InputError, match="4 or 5 numbers"):
-            picture_of_info("it", text)
-
-
-def test_driveworks_has_a_width_of_0_where_none_is_known():
-    properties = driveworks.write_properties(Picture(Pinhole(400.0, 400.0, 320.0, 240.0)))
-    assert (properties["width"], properties["height"]) == ("0", "0")

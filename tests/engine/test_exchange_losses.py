@@ -46,17 +46,6 @@ def test_what_a_format_cannot_hold_is_one_line(name):
     assert line == f"left out of {RIG_FORMATS[name].title}: {expected}"
 
 
-@pytest.mark.parametrize("name", RIG_FORMATS)
-def test_of_a_rig_that_a_format_holds_nothing_is_said(name):
-    rig = pe.Rig([pe.Sensor("eye", pe.catalog.load("KITTI cam2"), pe.Pose((1.0, 0.0, 1.5)))])
-    if name == "kitti":
-        return  # it wants a LiDAR
-    if name == "argoverse2":
-        pytest.importorskip("pyarrow", reason="of the extra argoverse")
-    _, lines = rig_files(rig, name, AXLE)
-    assert not [each for each in lines if each.startswith("left out of ")]
-
-
 @pytest.mark.parametrize("name", ["csv", "urdf"])
 def test_ranges_and_fusion_groups_come_back(name, tmp_path):
     (path,), _ = pt.export_rig(RIG, name, tmp_path / RIG_FORMATS[name].files[0])
@@ -88,12 +77,3 @@ def test_a_foreign_clip_is_no_range(tmp_path):
     )
     (eye,) = pt.import_rig(path).rig
     assert (eye.model.min_range, eye.model.max_range) == (0.0, math.inf)
-
-
-@pytest.mark.parametrize(("name", "asking"), [("urdf", "Gazebo"), ("carla", "CARLA")])
-def test_channels_that_stand_apart_in_azimuth_are_reported(name, asking):
-    offsets = np.radians([0.0, -2.5, 0.0])
-    own = pe.Lidar("own", np.radians([-10, 0, 10]), 36, 80.0, offsets)
-    _, lines = rig_files(pe.Rig([pe.Sensor("roof", own, pe.Pose((0.0, 0.0, 2.0)))]), name)
-    said = f"{asking} has no azimuth offsets of channels; those of own, up to 2.5 deg, are left out"
-    assert f"roof: {said}" in lines

@@ -1,6 +1,5 @@
 """Expected AP in traffic as the objective of a search: its values, all that goes with it, files."""
 
-import json
 import pickle
 from dataclasses import replace
 
@@ -15,13 +14,9 @@ from pe_core.search.tolerance import without_each
 from pe_core.study import Conditions, load_study_data, study_from_dict, study_to_dict
 from pe_core.study.condition_table import ExpectedApEvaluator, search_evaluator, study_objective
 from pe_tools import jobs
-from pe_tools.cli.choose_verb import front_summary
 from pe_tools.cli.terminal import summary
-from pe_tools.cli.verbs import main
 from pe_tools.jobs import front_dict, front_job, result_dict
-from pe_tools.jobs.results import history_csv
 from pe_tools.page import ReportContext
-from pe_tools.page.build import outcome_of_folder
 from pe_tools.page.sections.score import sensitivity as sensitivity_section
 from pe_tools.sensitivity import sensitivity_from_dict
 from tests.engine import shapes
@@ -78,9 +73,9 @@ def plain():
 def test_the_value_is_minus_the_ap_of_a_score_in_traffic():
     given = study(names=("roof", "front"))
     evaluator = search_evaluator(given, given.search.samples)
-    values = [evaluator.entropy(rig) for rig in placed(given, 12)]
-    assert values == [-ap_of(given, rig) for rig in placed(given, 12)]
-    assert len(set(values)) > 6
+    values = [evaluator.entropy(rig) for rig in placed(given, 6)]
+    assert values == [-ap_of(given, rig) for rig in placed(given, 6)]
+    assert len(set(values)) > 3
     again = pickle.loads(pickle.dumps(evaluator))
     assert isinstance(again, ExpectedApEvaluator)
     assert again.entropy(placed(given, 1)[0]) == values[0]
@@ -101,28 +96,6 @@ def test_a_search_raises_the_ap_and_tells_both(plain):
     assert f"AP in traffic {first.ap:.3f} -> {last.ap:.3f}\n" in text
     assert f"{plain.before.entropy:.4f} -> {plain.after.entropy:.4f} nats" in text
     assert "30 placements evaluated on 8 scenes of objects" in text
-
-
-def test_a_search_goes_by_half_of_the_scenes_and_its_result_is_scored_on_all():
-    given = replace(study(), targets=pe.TargetRule(scenes=80))
-    given = replace(given, search=replace(given.search, evaluations=6))
-    outcome = finished(given)
-    own, last = outcome.history[-1], outcome.in_traffic[1]
-    assert jobs.searched_on(given) == ("40", "scenes of objects") and last.scenes == 80
-    half = replace(given, targets=pe.TargetRule(scenes=40))
-    assert own.entropy == -ap_of(half, own.rig) != -ap_of(given, own.rig)
-    assert last.ap == ap_of(given, outcome.study.rig)
-
-
-def test_files_have_the_ap_and_never_its_negative(plain):
-    data = result_dict(plain)
-    assert data["objective"] == AP and data[AP]["after"]["ap"] == plain.in_traffic[1].ap
-    assert data["entropy"] == plain.after.entropy
-    aps = [row[AP] for row in data["history"]]
-    assert aps == [-row.entropy for row in plain.history] and "entropy" not in data["history"][0]
-    text = history_csv(plain.history, jobs.searched_figure(plain.start))
-    assert text.startswith("evaluation,round,expected_ap,roof.x_m")
-    assert [float(line.split(",")[2]) for line in text.splitlines()[1:]] == aps
 
 
 def test_the_objective_is_in_the_file_and_another_one_is_refused(tmp_path):
@@ -188,7 +161,7 @@ def test_requirements_come_before_the_ap():
     """The start looks over a child ahead; the search first meets the requirement."""
     zone = Zone(x=("front + 1.5", "front + 3.5"), y=(-0.6, 0.6), step=0.5)
     given = study(
-        evaluations=120,
+        evaluations=60,
         requirements=[Requirement("ahead", zone, (BODIES["child"],))],
         rig=pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180), (-1.5, 0.0, 1.7))]),
         free={"roof": ("x", "z", "pitch")},
@@ -204,42 +177,6 @@ def test_requirements_come_before_the_ap():
     assert first[AP] < -100.0  # no AP: what breaks a requirement is worse than any
 
 
-def test_the_command_line_and_a_job_find_the_same_bits(tmp_path, capsys):
-    given = study(objective="entropy")
-    pt.export_study(given, tmp_path / "study.toml")
-    call = ["optimize", str(tmp_path / "study.toml"), "-o", str(tmp_path / "out"), "--json"]
-    assert main([*call, "--objective", AP, "--no-review"]) == 0
-    printed = json.loads(capsys.readouterr().out)
-    loaded = pe.load_study(tmp_path / "study.toml")
-    asked = replace(loaded, search=replace(loaded.search, objective=AP))
-    assert {**printed, "run": 0} == {**result_dict(finished(asked, None)), "run": 0}
-    read = outcome_of_folder(tmp_path / "out", lambda s: _scored(s))
-    assert read.in_traffic[1].ap == printed[AP]["after"]["ap"]
-    assert [-row.entropy for row in read.history] == [row[AP] for row in printed["history"]]
-    assert main(["review", str(tmp_path / "out"), "-o", str(tmp_path / "page")]) == 0
-    page = (tmp_path / "page" / "review.html").read_text("utf-8")
-    assert "Expected AP in traffic" in page and "Best expected AP so far: from 0." in page
-    assert "raises the expected AP of objects in traffic by" in page
-    assert "Best entropy so far" not in page
-    begun = jobs.read_search(tmp_path / "out")
-    jobs.SearchState(begun.study, begun.inputs).save(
-        tmp_path / "out", begun.study, begun.evaluated[:7]
-    )
-    resume = ["optimize", str(tmp_path / "study.toml"), "--resume", str(tmp_path / "out")]
-    capsys.readouterr()
-    assert main([*resume, "--objective", AP, "--no-review", "--json"]) == 0
-    resumed, told = capsys.readouterr()
-    assert {**json.loads(resumed), "run": 0} == {**printed, "run": 0}
-    assert "going on after 7 placements" in told
-    assert main([*resume, "--no-review"]) == 1  # the search of another objective
-
-
-def _scored(given):
-    job = pt.ScoreJob(given, 1)
-    list(job)
-    return job.outcome
-
-
 def chosen(**more):
     """A study with a choice of two LiDARs, many beams for more money."""
     given = study(**more)
@@ -248,10 +185,7 @@ def chosen(**more):
     return replace(given, selection=pe.Selection([pe.Choice(options, ["roof"])]))
 
 
-@pytest.mark.parametrize("screened", [False, True])
-def test_choices_are_a_front_of_price_and_ap(screened, monkeypatch):
-    if screened:
-        monkeypatch.setattr(front_job, "ALL_SEARCHED_UP_TO", 1)
+def test_choices_are_a_front_of_price_and_ap():
     job = pt.FrontJob(chosen(), 1)
     list(job)
     found = job.trade_off
@@ -263,10 +197,6 @@ def test_choices_are_a_front_of_price_and_ap(screened, monkeypatch):
     assert by_price["many"] > by_price["few"] and len(found.front) == 2
     data = front_dict(found)
     assert data["objectives"] == ["price", "ap"] and data["notes"] == []
-    head = front_summary(found).splitlines()[0].split("  ")
-    assert [cell.strip() for cell in head if cell] == [
-        *("price", "expected AP", "entropy [nats]", "design")
-    ]
 
 
 def test_a_front_of_objectives_has_the_ap_in_traffic_and_wants_it_among_them():

@@ -28,16 +28,6 @@ def study(tmp_path):
     return saved(tmp_path, "car.toml")
 
 
-def test_explain_tells_the_score_in_words_and_warns(tmp_path, capsys):
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(), (1.5, 0.0, 0.5))])
-    path = saved(tmp_path, "car.toml", rig)
-    assert main(["explain", path]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[0].startswith("perception entropy ")
-    assert "0% of where objects are is seen" in lines
-    assert lines[-1] == "warning: roof: it is inside the body and sees next to nothing"
-
-
 def test_explain_as_json(study, capsys):
     assert main(["explain", study, "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
@@ -71,26 +61,6 @@ def test_explain_one_place(study, capsys):
     assert main(["explain", study, "--at", "8", "-2.2", "0.7", "--json"]) == 0
     data = json.loads(capsys.readouterr().out)["place"]
     assert data == json.loads(json.dumps(place.to_dict())) and data["sensors"][0]["name"] == "roof"
-
-
-def test_compare_puts_studies_side_by_side(study, tmp_path, capsys):
-    higher = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180), (-0.4, 0, 2.4))])
-    other = saved(tmp_path, "higher.toml", higher)
-    assert main(["compare", study, other]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[0].split() == ["car", "higher"]
-    values = [
-        pe.load_study(p).evaluator().score(pe.load_study(p).rig).entropy for p in (study, other)
-    ]
-    figures = lines[2].replace("*", "").split()
-    assert figures[:2] == ["all", f"{values[0]:.4f}"]
-    assert figures[2:] == [f"{values[1]:.4f}", f"({values[1] - values[0]:+.4f})"]
-    assert lines[2].count("*") == 1 and lines[2].endswith("*") == (values[1] < values[0])
-    assert main(["compare", study, other, "--json"]) == 0
-    data = json.loads(capsys.readouterr().out)
-    assert [s["entropy"] for s in data["scores"].values()] == values
-    assert data["rows"][0]["values"] == values
-    assert data["notes"] == [] and not any("hardware" in line for line in lines)
 
 
 def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(tmp_path, capsys):

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from pe_core.base import errors, files
-from pe_core.base.errors import InputError, available_bytes, report_memory_errors, require_memory
+from pe_core.base.errors import InputError, available_bytes, require_memory
 from pe_core.base.files import (
     csv_text,
     file_stem,
@@ -119,12 +119,6 @@ def test_work_that_fits_is_let_through_and_other_work_refused(monkeypatch):
     require_memory("car.npz", "triangles", 10**18)
 
 
-@pytest.mark.parametrize("error", [MemoryError, RecursionError])
-def test_what_nobody_foresaw_is_one_line_too(error):
-    with pytest.raises(InputError, match=r"^car: file: expected data"), report_memory_errors("car"):
-        raise error
-
-
 def test_several_files_are_written_together_or_not_at_all(tmp_path):
     (tmp_path / "first").write_bytes(b"old")
     (tmp_path / "second").mkdir()
@@ -203,16 +197,6 @@ def test_no_cell_of_a_table_is_a_formula_and_ours_are_read_back(text):
     assert (cell == text) == (text in PLAIN) and (number, empty) == ("-1.5", "")
     assert cell == text or cell[0] == "'"
     assert unmarked(cell) == text
-
-
-def test_every_table_goes_through_the_one_writer():
-    writers = [
-        path.relative_to(ROOT)
-        for package in ("pe_core", "pe_tools", "blender_addon")
-        for path in (ROOT / package).rglob("*.py")
-        if re.search(r"csv\.(Dict)?[wW]riter", path.read_text("utf-8"))
-    ]
-    assert writers == [Path("pe_core/base/files.py")]
 
 
 @pytest.mark.parametrize("joint", ["_", "-"])

@@ -12,7 +12,7 @@ from pe_core.geometry.poses import cross, dot
 from pe_core.geometry.ray_traversal import TriangleTree
 from pe_core.geometry.raycast import VisibleTriangles
 from tests.engine import shapes
-from tests.thorough import pairs, tries
+from tests.thorough import tries
 
 ASSETS = Path(pe.__file__).parents[1] / "blend_assets"
 
@@ -148,29 +148,6 @@ def test_followed_rays_leave_no_gap_in_a_fine_mesh(distance):
     hits = assert_same(seen, directions)
     assert np.count_nonzero(hits.face >= 0) > 100
     assert np.isfinite(hits.distance[(directions == [0.0, 0.0, -1.0]).all(axis=1)]).all()
-
-
-@pytest.mark.parametrize(
-    ("distance", "way"),
-    pairs([0.03, 1.0, 5.0, 20.0, 80.0], [(0.0, 0.0, 1.0), (0.6, -0.8, 0.0), (-0.48, 0.6, 0.64)]),
-)
-def test_from_near_and_from_afar(distance, way):
-    """Over the face of a lattice box, beside it, and off its corner."""
-    rng = np.random.default_rng(5)
-    triangles = shapes.refined(shapes.box((-2.0, -1.0, 0.0), (2.0, 1.0, 1.5)), 3)
-    way = np.array(way)
-    outside = np.min(np.where(way == 0, np.inf, [2.0, 1.0, 1.5] / np.where(way == 0, 1, abs(way))))
-    origin = way * (outside + distance)
-    seen = triangles - origin
-    hits = assert_same(seen, rays_at(seen, rng, 400))
-    assert np.count_nonzero(hits.face >= 0) > 100
-
-
-@pytest.mark.parametrize("count", [1, 2, 50])
-def test_few_rays_at_many_triangles(count):
-    triangles = shapes.refined(shapes.box((1.0, -3.0, -2.0), (4.0, 3.0, 2.0)), 5)
-    rng = np.random.default_rng(count)
-    assert_same(triangles, directions_of(rng.normal([5, 0, 0], 1, (count, 3))))
 
 
 def test_no_rays_and_no_triangles():

@@ -8,9 +8,8 @@ import pytest
 
 from pe_core import catalog
 from pe_tools.formats import m_by_range
-from tests.engine.processes import ROOT, pe
+from tests.engine.processes import pe
 
-TABLE = ROOT / "studies" / "paper" / "data" / "paper_lidar.csv"
 LINE = """m,ap
 0.01,0.001
 1,0.2
@@ -28,14 +27,6 @@ def test_it_prints_the_curve_what_was_left_out_and_the_snippet(tmp_path):
     assert "a  0.1500 +- 0.0289" in run.stdout and "b  0.1833 +- 0.0373" in run.stdout
     assert "points  3 of 4; left out: 1 at the clip" in run.stdout
     assert "[ap.lidar]" in run.stdout
-
-
-def test_it_writes_a_snippet(tmp_path):
-    (tmp_path / "line.csv").write_text(LINE)
-    run = pe("fit", tmp_path / "line.csv", "--kind", "camera", "--output", tmp_path / "new")
-    assert run.returncode == 0
-    curve = tomllib.loads((tmp_path / "new" / "ap.toml").read_text("utf-8"))["ap"]["camera"]
-    assert curve == {"a": 0.15, "b": 0.183333}
 
 
 RADAR, RANGES = "Continental ARS408-21", (60.0, 80.0, 100.0, 120.0)
@@ -70,11 +61,3 @@ def test_wrong_options_of_a_table_by_range_are_one_line(tmp_path, options, line)
     (tmp_path / "r.csv").write_text("range_m,ap\n10,0.5\n20,0.4\n30,0.3\n")
     run = pe("fit", tmp_path / "r.csv", *options)
     assert run.returncode == 1 and line in run.stderr and run.stderr.count("\n") == 1
-
-
-def test_a_file_of_the_users_own_is_not_written_over(tmp_path):
-    (tmp_path / "ap.toml").write_text("mine")
-    run = pe("fit", TABLE, "--output", tmp_path)
-    assert run.returncode == 1 and run.stderr.count("\n") == 1 and "ap.toml" in run.stderr
-    assert [p.name for p in tmp_path.iterdir()] == ["ap.toml"]
-    assert (tmp_path / "ap.toml").read_text() == "mine"

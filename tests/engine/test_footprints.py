@@ -63,23 +63,12 @@ def test_the_body_s_outline_is_that_from_above(plugin):
     assert np.abs(np.vstack(outline)).max(axis=0) == pytest.approx([2.3, 0.9], abs=0.02)
 
 
-def test_what_sees_no_ground_is_reported(plan_of):
-    up = camera(rotation=(0.0, -90.0, 0.0), name="up")
-    plan, lines = plan_of(up)
-    assert plan.footprints[0].outlines == ()
-    assert lines[0] == "up: sees no ground within 20 m"
-
-
 @pytest.fixture(scope="module")
 def drawing():
     rig = lidar_on_roof(small_lidar(), name="roof <1>"), camera(name="front/eye")
     files, lines = scene_files(pe.Study(pe.Rig(rig), box_car()), "footprints", RANGE)
     assert lines == []
     return ElementTree.fromstring(files["footprints.svg"])
-
-
-def layer(drawing, label):
-    return next(g for g in drawing.iter(f"{SVG}g") if g.get(LABEL) == label)
 
 
 def test_the_drawing_is_to_scale_and_has_a_layer_a_sensor(drawing):

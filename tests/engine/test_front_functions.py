@@ -56,11 +56,3 @@ def test_several_functions_alone_are_those_of_processes_too():
 def test_objectives_that_are_none_are_refused(objectives):
     with pytest.raises(pe.InputError, match=r"front\.objectives"):
         pt.FrontJob(study(()), 1, objectives=objectives)
-
-
-def test_a_function_may_not_take_an_objective_s_name():
-    def entropy(rig):
-        return droop(rig)
-
-    with pytest.raises(pe.InputError, match=r"front\.objectives"):
-        pt.FrontJob(study(()), 1, objectives=(entropy, droop))

@@ -1,7 +1,6 @@
 """Equations 4 to 9 and fusion, worked by hand; planes against them; own curves."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,8 +8,6 @@ import pytest
 import pe_core as pe
 from pe_core import sensors as kinds
 from pe_core.metric import (
-    BLIND_PRECISION,
-    H_BLIND,
     POINTPILLARS,
     RTM3D,
     average_precision,
@@ -227,15 +224,6 @@ def test_average_precision_is_the_paper_s_line_clipped():
     assert average_precision(1e-9, RTM3D) == pytest.approx(0.001)
 
 
-def test_blind_sensors_change_nothing_unless_the_letter_is_asked_for():
-    blind = [BLIND_PRECISION] * 10
-    assert late_fusion(blind) == pytest.approx(BLIND_PRECISION, rel=1e-12)
-    literal = entropy_of(late_fusion(blind, "literal"))
-    assert literal == pytest.approx(H_BLIND - math.log(10.0))
-    seen = precision_of(2, POINTPILLARS)
-    assert late_fusion([seen, *blind]) == pytest.approx(float(seen), rel=1e-12)
-
-
 def test_one_sensor_is_the_paper_s_formula():
     m = np.array([0, 1, 3, 50])
     ap = np.clip(0.152 * np.log(np.maximum(m, 1)) + 0.659, 0.001, 0.999)
@@ -341,43 +329,6 @@ def test_the_rounding_of_areas_averages_out():
     plain = entropy_of(precision_of(area[0], RTM3D))
     assert np.abs(found - plain).max() < 3e-3
     assert abs(found.mean() - plain.mean()) < 1e-5
-
-
-@pytest.fixture(scope="module")
-def two_cameras():
-    """A LiDAR and two cameras with a common view, and m of each by the definition."""
-    cameras = [
-        shapes.camera(80.0, (0.9, side, 1.6), (0, 5, 20 * side), name)
-        for name, side in (("left", 0.5), ("right", -0.5))
-    ]
-    sensors = [shapes.lidar_on_roof(shapes.small_lidar(32, 360)), *cameras]
-    space, vehicle = pe.PerceptionSpace((-12, 12), (-8, 8), (0, 4), 0.5), shapes.box_car()
-    index = np.stack(np.unravel_index(np.arange(space.size), space.shape), axis=1)
-    centers = space.center_of(index)
-    weights = sum(
-        (d.ground[:, :, None] * d.profile).reshape(-1) for d in pe.Prior.road().densities(space)
-    )
-    weights = weights * (centers[:, 2] >= vehicle.top(space)[index[:, 0], index[:, 1]])
-    measured = {s.name: pe.measure(s, centers, space.interval, vehicle) for s in sensors}
-    return SimpleNamespace(
-        sensors=sensors, space=space, vehicle=vehicle, weights=weights, measured=measured
-    )
-
-
-@pytest.mark.parametrize("groups", [("", ""), ("one", "one")], ids=["late", "early"])
-def test_cameras_with_a_common_view_fuse_as_their_group_says(groups, two_cameras):
-    lidar, *cameras = two_cameras.sensors
-    cameras = [pe.Sensor(c.name, c.model, c.pose, g) for c, g in zip(cameras, groups, strict=True)]
-    rig = pe.Rig([lidar, *cameras])
-    grid = pe.Evaluator(two_cameras.space, pe.Prior.road(), two_cameras.vehicle).score(rig)
-    model = pe.PerceptionModel()
-    precisions = [
-        precision_of(sum(two_cameras.measured[s.name] for s in own), model.curve(own[0].kind))
-        for own in rig.groups.values()
-    ]
-    assert len(precisions) == (3 if groups[0] == "" else 2)
-    entropy = np.average(entropy_of(late_fusion(precisions)), weights=two_cameras.weights)
-    assert grid.entropy == pytest.approx(entropy, abs=1e-3)
 
 
 BETTER = pe.ApCurve(0.2, 0.8)

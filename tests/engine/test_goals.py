@@ -86,11 +86,6 @@ def test_a_search_stops_for_want_of_gain(plain):
     assert finished(study(Goals(Stop(gain=1e-9, over=1000)))).evaluated == plain.evaluated
 
 
-def test_a_search_stops_after_seconds():
-    outcome = finished(study(Goals(Stop(seconds=1e-6))))
-    assert outcome.stop_reason == "seconds" and outcome.evaluations == 1
-
-
 def test_a_search_that_races_tells_within_what_another_seed_would_end(plain):
     """Its descents share nothing but their start; a short search has no race."""
     assert plain.seed_scatter is None and result_dict(plain)["seed_scatter"] is None

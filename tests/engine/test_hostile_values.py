@@ -12,7 +12,6 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.base.table_reader import dumps
 from pe_core.study.study_file import study_from_dict
 from tests.engine import shapes
 from tests.thorough import pairs, tries
@@ -32,9 +31,7 @@ VALUES = {
     "inf": math.inf,
     "-inf": -math.inf,
     "1e308": 1e308,
-    "-1e308": -1e308,
     "5e-324": 5e-324,
-    "1e-320": 1e-320,
     "0": 0,
     "-1": -1,
     "0.5": 0.5,
@@ -44,11 +41,9 @@ VALUES = {
     "5000 digits": 10**5000,
     "true": True,
     "empty": "",
-    "blank": "  ",
     "long": "x" * 10**6,
     "turned": "a\u202eb",
     "bell": "a\x07\x1b[31mb",
-    "line": "a\nb",
     "nul": "a\0b",
     "surrogate": "a\ud800b",
     "[]": [],
@@ -60,15 +55,11 @@ VALUES = {
     "three nan": [math.nan] * 3,
     "two 1e308": [-1e308, 1e308],
     "two inf": [-math.inf, math.inf],
-    "two 10**400": [0, 10**400],
     "two 5000 digits": [0, 10**5000],
     "two texts": ["a", "\u202e"],
-    "three 1e308": [1e308] * 3,
     "three 5000 digits": [10**5000] * 3,
     "null": None,
 }
-NOT_WRITTEN = {"surrogate", "null", "lists", "tables", *(n for n in VALUES if "5000" in n)}
-"""Of these Python writes no TOML; the texts below hold their like."""
 
 STUDIES = Path(__file__).parent / "hostile_studies"
 STUDY = tomllib.loads((STUDIES / "study.toml").read_text("utf-8"))
@@ -205,48 +196,20 @@ def test_every_key_takes_a_hostile_value_or_refuses_it_in_one_line(folder):
     assert {where: fault for where, fault in tried.items() if fault} == {}
 
 
-def test_a_fault_of_a_hostile_value_is_seen(folder, monkeypatch):
-    place = ("samples",)
-    assert complaint_about(place, "x", folder) is None
-    monkeypatch.setitem(globals(), "names_of", lambda _: ["no such word"])
-    assert complaint_about(place, "x", folder).startswith("AssertionError")
-    monkeypatch.setitem(globals(), "study_from_dict", lambda *_: 1 / 0)
-    assert complaint_about(place, "x", folder).startswith("ZeroDivisionError")
-
-
 STEP = tries(6, 3)
 """In CI every key is given every third value, each key others than the one before it."""
 
 
-def test_a_file_is_refused_in_the_same_way(folder):
-    file, places = folder / "hostile.toml", [("samples",), ("space", "interval")]
-    places += [("sensor", 0, "name"), ("optimize", "seed")]
-    for name in VALUES.keys() - NOT_WRITTEN:
-        for path in places:
-            file.write_text(dumps(changed(path, VALUES[name])), "utf-8")
-            refused(lambda: pe.load_study(file), key_of(path), "TOML")
+NO_TOML = ["samples = " + "[" * 5000 + "]" * 5000, "samples = 1979-13-45", "samples = \x00"]
+NO_TOML += ['samples = "\\ud800"', "\x1b[31m = \u202e"]
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "samples = " + "9" * 5000,
-        "samples = " + "[" * 5000 + "]" * 5000,
-        "a" + ".a" * 1500 + " = 1",
-        "samples = " + "{a=" * 3000 + "1" + "}" * 3000,
-        'samples = "\\ud800"',
-        "samples = 1979-13-45",
-        "samples = \x00",
-        "\x1b[31m = \u202e",
-    ],
-    ids=["digits", "lists", "dotted", "tables", "surrogate", "date", "nul", "terminal"],
-)
-def test_a_file_that_python_cannot_hold_is_one_line(tmp_path, text):
+def test_a_file_that_is_no_toml_is_one_line(tmp_path):
+    """More of them are in test_hostile_files."""
     file = tmp_path / "study.toml"
-    file.write_text(text, "utf-8")
-    assert refused(
-        lambda: pe.load_study(file), "TOML", "parts", "sensor", "samples", "a.a", "one of"
-    )
+    for text in NO_TOML:
+        file.write_text(text, "utf-8")
+        assert refused(lambda: pe.load_study(file), "TOML", "sensor", "samples"), text
 
 
 def test_a_study_of_nothing_hostile_is_taken(folder):
@@ -259,28 +222,20 @@ EXTREMES = [
     ("ap", "lidar", "a", 1e-12),
     ("ap", "lidar", "a", 1e3),
     ("ap", "lidar", "b", -1e3),
-    ("ap", "camera", "b", 1e3),
     ("prior", "focus", 0, "factor", 1e9),
     ("prior", "focus", 0, "factor", 5e-324),
     ("prior", "focus", 0, "x", [-math.inf, math.inf]),
-    ("prior", "class", 0, "size", [1e9, 1e9, 1e9]),
     ("prior", "class", 0, "size", [5e-324, 5e-324, 5e-324]),
     ("prior", "class", 0, "height_spread", 5e-324),
-    ("prior", "class", 0, "height_spread", 1e9),
     ("prior", "class", 0, "decay_x", 5e-324),
     ("prior", "class", 0, "laplace_y", 5e-324),
-    ("prior", "class", 0, "gauss_y", 5e-324),
     ("prior", "class", 0, "gauss_y", 1e9),
-    ("prior", "class", 0, "share", 1e9),
     ("prior", "class", 0, "share", 0.0),
     ("prior", "class", 0, "lanes", [1e9]),
     ("sensor", 0, "position", [1e4, -1e4, 1e4]),
-    ("sensor", 0, "position", [0.0, 0.0, 0.0]),
     ("sensor", 0, "rotation", [3600.0, -3600.0, 3600.0]),
     ("sensor", 0, "model", "max_range_m", 0.001),
-    ("sensor", 0, "model", "max_range_m", 1e5),
     ("sensor", 0, "model", "elevations_deg", [-90.0, 90.0, 5e-324]),
-    ("sensor", 0, "model", "elevations_deg", [-90.0, 0.0, 1e-320]),
     ("sensor", 0, "rotation", [1e-320, 0.0, 0.0]),
     ("sensor", 0, "model", "azimuth_count", 1),
     ("sensor", 2, "model", "hfov_deg", 0.001),
@@ -299,6 +254,7 @@ EXTREMES = [
     ids=lambda c: str(c) if isinstance(c, int) else "-".join(map(str, c)),
 )
 def test_the_extremes_that_are_taken_score_to_finite_numbers(folder, change, samples):
+    """Without a warning; a prior of no weight is refused."""
     data = changed(change[:-1], change[-1]) | {"samples": samples}
     if change[0] in ("sensor", "space"):
         for sensor in data["sensor"]:
@@ -307,65 +263,67 @@ def test_the_extremes_that_are_taken_score_to_finite_numbers(folder, change, sam
         warnings.simplefilter("error")
         study = study_from_dict(data, "study.toml", folder)
         try:
-            (*_, _) = job = pt.ScoreJob(study, 1)
+            score = study.evaluator().score(study.rig)
         except pe.InputError as error:
             assert "weight" in str(error) or "no box" in str(error)
             return
-    text = json.dumps(pt.result_dict(job.outcome), allow_nan=False)
-    assert "NaN" not in text and math.isfinite(job.outcome.after.entropy)
+    json.dumps(score.to_dict(), allow_nan=False)
+    assert math.isfinite(score.entropy)
 
 
 NUMBERS = [v for v in VALUES.values() if isinstance(v, (int, float))]
 
 
-@pytest.mark.parametrize(
-    "make",
-    [
-        lambda v: pe.Pose((v, 0, 0)),
-        lambda v: pe.Pose((0, 0, 0), (v, 0, 0)),
-        lambda v: pe.PerceptionSpace(interval=v),
-        lambda v: pe.PerceptionSpace(x=(0, v)),
-        lambda v: pe.Vehicle(shapes.box((0, 0, 0), (1, 1, 1)), clearance=v),
-        lambda v: pe.Vehicle([[[v] * 3] * 3]),
-        lambda v: pe.Vehicle(shapes.box((0, 0, 0), (1, 1, 1)), [v] * 12),
-        lambda v: pe.Boxes(["car"], *([v] for _ in range(7))),
-        lambda v: pe.Boxes.of([("car", v, 0, 0, 1, 1, 1, 0)]),
-        lambda v: pe.Focus(v),
-        lambda v: pe.Focus(1.0, (0, v)),
-        lambda v: pe.ApCurve(v, 0.0),
-        lambda v: pe.ApCurve(0.1, v),
-        lambda v: pe.Schedule(candidates=v),
-        lambda v: pe.Schedule(decay=v),
-        lambda v: pe.Schedule(reach_m=v),
-        lambda v: pe.Schedule(floor_rad=v),
-        lambda v: pe.Search(seed=v),
-        lambda v: pe.Search(samples=v),
-        lambda v: pe.Search(limits={"a": {"x": (0, v)}}),
-        lambda v: pe.SurfaceMount(["a"], v),
-        lambda v: pe.Constraints(max_height=v),
-        lambda v: pe.Constraints(max_width=v),
-        lambda v: pe.Constraints(min_distance=v),
-        lambda v: pe.NoGo("a", x=(-1e9, v)),
-        lambda v: pe.Mounting(mounts=v),
-        lambda v: pe.Mounting(on=v),
-        lambda v: pe.Mounting(pairs=v),
-        lambda v: pe.Mounting(groups=[v]),
-        lambda v: pe.Lidar("a", [0.0], v, 10.0),
-        lambda v: pe.Lidar("a", [v], 10, 10.0),
-        lambda v: pe.Lidar("a", [0.0], 10, v),
-        lambda v: pe.Lidar("a", [0.0], 10, 10.0, [v]),
-        lambda v: pe.Lidar("a", [0.0], 10, 10.0, None, (0, v)),
-        lambda v: pe.Camera("a", v, 10, 1.0),
-        lambda v: pe.Camera("a", 10, 10, v),
-        lambda v: pe.Evaluator(SPACE, pe.Prior.uniform(), samples=v if v != 10**18 else 5),
-        lambda v: pe.Evaluator(SPACE, pe.Prior.uniform(), workers=v),
-        lambda v: pe.Evaluator(SPACE, pe.Prior.uniform(), samples=1024, shift=(v, 0.5, 0.5)),
-    ],
-)
-def test_what_is_made_in_python_is_checked_by_the_same_rules(make):
-    for value in NUMBERS:
-        refused(lambda v=value: make(v), "")
-        if isinstance(value, float):
-            refused(lambda v=value: make(np.float64(v)), "")
-    for value in (math.nan, np.float64("nan"), 10**400, 10**5000, True, np.True_, "1", "x" * 10**6):
-        assert refused(lambda v=value: make(v), ""), value
+MADE = [
+    lambda v: pe.Pose((v, 0, 0)),
+    lambda v: pe.Pose((0, 0, 0), (v, 0, 0)),
+    lambda v: pe.PerceptionSpace(interval=v),
+    lambda v: pe.PerceptionSpace(x=(0, v)),
+    lambda v: pe.Vehicle(shapes.box((0, 0, 0), (1, 1, 1)), clearance=v),
+    lambda v: pe.Vehicle([[[v] * 3] * 3]),
+    lambda v: pe.Vehicle(shapes.box((0, 0, 0), (1, 1, 1)), [v] * 12),
+    lambda v: pe.Boxes(["car"], *([v] for _ in range(7))),
+    lambda v: pe.Boxes.of([("car", v, 0, 0, 1, 1, 1, 0)]),
+    lambda v: pe.Focus(v),
+    lambda v: pe.Focus(1.0, (0, v)),
+    lambda v: pe.ApCurve(v, 0.0),
+    lambda v: pe.ApCurve(0.1, v),
+    lambda v: pe.Schedule(candidates=v),
+    lambda v: pe.Schedule(decay=v),
+    lambda v: pe.Schedule(reach_m=v),
+    lambda v: pe.Schedule(floor_rad=v),
+    lambda v: pe.Search(seed=v),
+    lambda v: pe.Search(samples=v),
+    lambda v: pe.Search(limits={"a": {"x": (0, v)}}),
+    lambda v: pe.SurfaceMount(["a"], v),
+    lambda v: pe.Constraints(max_height=v),
+    lambda v: pe.Constraints(max_width=v),
+    lambda v: pe.Constraints(min_distance=v),
+    lambda v: pe.NoGo("a", x=(-1e9, v)),
+    lambda v: pe.Mounting(mounts=v),
+    lambda v: pe.Mounting(on=v),
+    lambda v: pe.Mounting(pairs=v),
+    lambda v: pe.Mounting(groups=[v]),
+    lambda v: pe.Lidar("a", [0.0], v, 10.0),
+    lambda v: pe.Lidar("a", [v], 10, 10.0),
+    lambda v: pe.Lidar("a", [0.0], 10, v),
+    lambda v: pe.Lidar("a", [0.0], 10, 10.0, [v]),
+    lambda v: pe.Lidar("a", [0.0], 10, 10.0, None, (0, v)),
+    lambda v: pe.Camera("a", v, 10, 1.0),
+    lambda v: pe.Camera("a", 10, 10, v),
+    lambda v: pe.Evaluator(SPACE, pe.Prior.uniform(), samples=v if v != 10**18 else 5),
+    lambda v: pe.Evaluator(SPACE, pe.Prior.uniform(), workers=v),
+    lambda v: pe.Evaluator(SPACE, pe.Prior.uniform(), samples=1024, shift=(v, 0.5, 0.5)),
+]
+NEVER = (math.nan, np.float64("nan"), 10**400, 10**5000, True, np.True_, "1", "x" * 10**6)
+
+
+def test_what_is_made_in_python_is_checked_by_the_same_rules():
+    taken = []
+    for number, make in enumerate(MADE):
+        for value in NUMBERS:
+            refused(lambda v=value, make=make: make(v), "")
+        for value in NEVER:
+            if not refused(lambda v=value, make=make: make(v), ""):
+                taken.append((number, value))
+    assert not taken

@@ -105,15 +105,13 @@ def test_the_score_is_that_of_the_curves(path):
     assert now == then
 
 
-@pytest.mark.parametrize("verb", ["score", "explain", "compare"])
-def test_what_is_not_the_paper_s_is_one_line(verb, path, floored, capsys):
-    more = [str(path)] * (verb == "compare")
-    assert main([verb, str(path), *more]) == 0
+def test_what_is_not_the_paper_s_is_one_line(path, floored, capsys):
+    assert main(["explain", str(path)]) == 0
     assert floored and capsys.readouterr().out.count(floored) == 1
 
 
 @pytest.mark.parametrize("model", ["bevfusion", "centerpoint"])
-def test_curves_of_published_detectors_are_told_with_source_and_span(model, path, capsys):
+def test_curves_of_published_detectors_are_told_with_source_and_span(model, capsys):
     """They take the place of the classes' own; a class that they lack keeps its own."""
     known, own = detectors()[model], pe.PerceptionModel()
     chosen = pe.PerceptionModel(model=model)
@@ -128,8 +126,6 @@ def test_curves_of_published_detectors_are_told_with_source_and_span(model, path
     assert main(["curves"]) == 0
     told = capsys.readouterr().out
     assert f"\n{model}: {known.label}, {known.trust}; {known.source}\n" in told
-    assert main(["score", str(path), "--ap-model", model, "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["ap_model"] == model
 
 
 FADING = pe.ApCurve(0.055, 0.6, 0.12)

@@ -165,9 +165,7 @@ def in_outline(outline, points):
     return found
 
 
-@pytest.mark.parametrize(
-    "rotation", [(0, 0, 0), (0, 20, 40), (10, 45, -100), (0, 89, 0), (0, -5, 180), (90, 10, 0)]
-)
+@pytest.mark.parametrize("rotation", [(0, 0, 0), (10, 45, -100), (0, 89, 0), (0, -5, 180)])
 def test_a_footprint_is_the_ground_in_the_picture(rotation):
     """Against every place of a raster, whichever way the camera looks; the horizon included."""
     sensor, far_m = mounted(WIDE, (1.0, -0.5, 1.4), rotation), 12.0

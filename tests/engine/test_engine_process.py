@@ -24,8 +24,9 @@ def own_sensors():
     return pe.catalog.replace_added, (pe.catalog.added(),)
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def engine():
+    """One process for all tests; it is replaced wherever a test kills it."""
     made = EngineProcess(lambda: {pe.Vehicle: 2, pe.Lidar: 9}, own_sensors)
     yield made
     made.stop()
@@ -97,7 +98,7 @@ def test_what_cannot_be_sent_fails_at_once_and_harms_nothing(engine):
     assert isinstance(answer[0], Exception)
 
 
-def test_a_vehicle_is_sent_once_and_comes_back_as_the_same_object(engine):
+def test_a_vehicle_is_sent_once_and_comes_back_as_the_same_object(engine, monkeypatch):
     car, sent = shapes.box_car(), []
     send = EngineProcess._send
 
@@ -106,7 +107,7 @@ def test_a_vehicle_is_sent_once_and_comes_back_as_the_same_object(engine):
             sent.append(len(pickle.dumps(message, pickle.HIGHEST_PROTOCOL)))
             send(self, message)
 
-    engine.__class__ = Counted
+    monkeypatch.setattr(engine, "__class__", Counted)
     for _ in range(2):
         got = ask(engine, "car", itemgetter(0), [car, car])
         settled(engine)
@@ -164,6 +165,7 @@ def test_too_little_memory_is_an_answer(engine):
     got = ask(engine, "large", bytes, 1 << 30)
     settled(engine)
     assert isinstance(got[0], MemoryError)
+    killed(engine)
 
 
 def small_search():

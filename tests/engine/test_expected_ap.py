@@ -15,7 +15,7 @@ from pe_core.study import Conditions, load_study_data, study_from_dict, study_to
 from pe_core.study.condition_table import ExpectedApEvaluator, search_evaluator, study_objective
 from pe_tools import jobs
 from pe_tools.cli.terminal import summary
-from pe_tools.jobs import front_dict, front_job, result_dict
+from pe_tools.jobs import front_dict, result_dict
 from pe_tools.page import ReportContext
 from pe_tools.page.sections.score import sensitivity as sensitivity_section
 from pe_tools.sensitivity import sensitivity_from_dict

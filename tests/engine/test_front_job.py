@@ -14,6 +14,7 @@ from pe_core.search import Front, Goals, pareto_front
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import FrontJob, FrontJournals, front_dict
 from pe_tools.jobs.front_objectives import FrontFigures, ScalarValue, spread, weights_of
+from pe_tools.page.build import write_front_page
 from tests.engine import shapes
 
 NAMES = ("entropy", "height", "worst_loss")
@@ -191,3 +192,51 @@ def test_a_front_by_an_executor_is_the_same():
     assert asked[None] == asked[workers]
     evaluated = sum(map(len, asked[None][1].values()))
     assert workers.tasks == evaluated - len(asked[None][1]), "all but the starts"
+
+
+def apart(rig):
+    """How far the sensors are apart along x [m]; lower is better."""
+    along = [sensor.pose.position[0] for sensor in rig]
+    return max(along) - min(along)
+
+
+def droop(rig):
+    """How far the sensors are below the highest place, summed [m]."""
+    return sum(2.6 - sensor.pose.position[2] for sensor in rig)
+
+
+def front_of(objectives, workers=1):
+    job = pt.FrontJob(study(()), workers, objectives=objectives)
+    list(job)
+    return job.trade_off
+
+
+def test_functions_are_objectives_beside_those_of_a_name(tmp_path):
+    found = front_of(("entropy", droop))
+    assert found.objectives == ("entropy", "droop") and len(found.front) >= 2
+    for design in found.designs:
+        assert design.figures["droop"] == pytest.approx(droop(design.study.rig), abs=1e-9)
+    lowest = min(found.front, key=lambda d: d.figures["droop"])
+    best = min(found.front, key=lambda d: d.figures["entropy"])
+    assert lowest.figures["droop"] < best.figures["droop"]
+    assert lowest.figures["entropy"] > best.figures["entropy"]
+    pt.write_front(found, tmp_path)
+    data = json.loads((tmp_path / "front.json").read_text())
+    assert data["objectives"] == ["entropy", "droop"]
+    write_front_page(data, tmp_path)
+    assert "Droop" in (tmp_path / "front.html").read_text()
+
+
+def test_several_functions_alone_are_those_of_processes_too():
+    here, there = front_of((apart, droop)), front_of((apart, droop), workers=2)
+    assert here.objectives == ("apart", "droop")
+    assert [d.figures for d in here.front] == [d.figures for d in there.front]
+    assert front_of((spread, lambda rig: droop(rig)), workers=2).objectives[1] == "<lambda>"
+
+
+@pytest.mark.parametrize(
+    "objectives", [(droop,), (droop, droop), ("entropy", "beauty"), ("entropy",)]
+)
+def test_objectives_that_are_none_are_refused(objectives):
+    with pytest.raises(pe.InputError, match=r"front\.objectives"):
+        pt.FrontJob(study(()), 1, objectives=objectives)

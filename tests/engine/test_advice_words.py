@@ -1,7 +1,9 @@
-"""Scores in words: figures as people read them, tables, and sensors that see nothing."""
+"""Scores and what a rig sees in words: figures as people read them, tables, moves."""
 
 import dataclasses
 import json
+import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from pe_core.scoring import FoundClass
 from pe_core.scoring.score import TrafficAp
 from pe_core.scoring.targets.object_metric import SECTORS
 from pe_tools import advice
+from pe_tools.advice.summary import outlook_words
 from tests.engine import shapes
 
 
@@ -27,20 +30,6 @@ SENSORS = {
     "roof": pe.SensorScore(4.0, 0.8, 0.42, 1000, 75, {"hood": 15, "roof": 60}),
     "spare": pe.SensorScore(9.0, 0.1, 0.0, 0, 0, {}),
 }
-
-
-def test_the_table_has_a_row_a_sensor():
-    rows = advice.sensor_rows(score(sensors=SENSORS))
-    assert advice.sensor_table(rows) == [
-        "sensor  loss [nats]  costs most  occluded by",
-        "roof           0.42  -           roof 6.0%, hood 1.5%",
-        "spare          none  -           -",
-    ]
-    alone = advice.sensor_rows(score(sensors={"roof": SENSORS["roof"]}))
-    assert alone[0].loss is None
-    losses = (None, 0.0, 0.00004, 0.0012, 0.006, 3.396, -0.2)
-    texts = ["only", "none", "none", "0.00", "0.01", "3.40", "-0.20"]
-    assert [advice.loss_text(loss) for loss in losses] == texts
 
 
 def test_a_loss_is_reported_where_it_costs_most():
@@ -108,17 +97,6 @@ def test_warnings_are_in_the_result_and_below_the_summary():
     assert last == "warning: roof: it is inside the body and sees next to nothing"
 
 
-def test_a_search_warns_of_the_placement_it_found():
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(), (1.5, 0.0, 0.5))])
-    bounds = {"roof": {"z": (0.5, 1.6)}}
-    search = pe.Search({"roof": ("z",)}, bounds, 0, 1024, pe.Schedule(8), method="random")
-    study = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search, samples=1024)
-    job = pt.OptimizeJob(study, 1)
-    assert list(job) and job.outcome.study.rig["roof"].pose.position[2] > 0.95
-    told = [each.code for each in job.outcome.warnings]
-    assert told == [advice.FRAGILE], "it is in the body no more; a few beams are easily off"
-
-
 REACH = {way: 0.0 for way in SECTORS} | {"front": 25.6, "left": 12.2}
 CAR = FoundClass(40, 0.5, 1.0, 0.1, 0.453, 0.01, {1: 1.0, 5: 0.9, 20: 0.5}, REACH)
 
@@ -136,26 +114,19 @@ RIG = pe.Rig([shapes.lidar_on_roof(), dataclasses.replace(shapes.camera(60.0), n
 @pytest.mark.parametrize(
     "stopped, coverage, warned, stderr, lines",
     [
-        (0, 0.5, (), 0.0, ()),
         (500, 0.5, (), 0.0, ()),  # half is the limit
-        (
-            *(860, 0.02, (), 0.0),
-            ("camera in the boot (86% of its picture occluded) is mostly occluded",),
-        ),
+        (860, 0.02, (), 0.0, (f"{INSIDE} (86% of its picture occluded) is mostly occluded",)),
         (
             *(1000, 0.0, ("inside",), 0.0),
-            ("camera in the boot (inside the body, 100% of its picture occluded) sees nothing",),
+            (f"{INSIDE} (inside the body, 100% of its picture occluded) sees nothing",),
         ),
         (
             *(1000, 0.0, (), 0.02),
-            ("camera in the boot (100% of its picture occluded) sees nothing, or next to it",),
+            (f"{INSIDE} (100% of its picture occluded) sees nothing, or next to it",),
         ),
-        (
-            *(0, 0.0, (), 0.0),
-            ("camera in the boot (no object is expected where it looks) sees nothing",),
-        ),
+        (0, 0.0, (), 0.0, (f"{INSIDE} (no object is expected where it looks) sees nothing",)),
     ],
-    ids=["well", "half", "mostly", "inside", "sampled", "away"],
+    ids=["half", "mostly", "inside", "sampled", "away"],
 )
 def test_what_is_reported_of_it(stopped, coverage, warned, stderr, lines):
     own = {"roof": sensor_score(0.6), INSIDE: sensor_score(coverage, stopped)}
@@ -219,3 +190,84 @@ def test_a_move_is_told_with_its_gain_and_its_error(study):
         "far 0.33 to 0.33 (+- 0.02)"
     )
     assert advice.gain_sentence(study.rig, study.rig, *told) == ""
+
+
+def reach(by_degrees, name="pedestrian", limit=80.0):
+    """A reach along eight bearings: what is not named is 0."""
+    degrees = [0, 45, 90, 135, 180, 225, 270, 315]
+    return SimpleNamespace(
+        class_name=name,
+        ap=0.5,
+        bearings=np.radians(degrees),
+        distance=np.array([float(by_degrees.get(d, 0.0)) for d in degrees]),
+        limit=np.full(8, limit),
+        per_sensor={},
+    )
+
+
+def blind(**zone):
+    """Blind ground that begins at the body: how far it reaches by side."""
+    return SimpleNamespace(zone=zone, within=10.0, height=0.5)
+
+
+ROUND = blind(front=4.24, rear=None, left=0.0, right=2.0)
+
+
+def said(reach, blind):
+    shares = SimpleNamespace(by_number=(1.0, 0.8, 0.22), zones={})
+    found = advice.Outlook({"car": 0.614, "cone": 0.2}, shares, reach, blind)
+    return list(outlook_words(found))
+
+
+def test_what_is_said():
+    assert said(reach({0: 43.2, 180: 80.0, 270: 12.0, 45: 99.0}), ROUND) == [
+        "expected AP: car 0.61, cone 0.20",
+        "a pedestrian is found (AP 0.5 or more) up to 43 m ahead, 80 m and more behind, "
+        "nowhere left, 12 m right",
+        "blind to what is 0.5 m tall, from the body: to 4.3 m ahead, beyond 10 m behind, "
+        "none left, to 2.0 m right",
+    ]
+
+
+def test_an_outlook_is_sight_s():
+    """Its figures are those of `Sight`, and the class is pedestrians unless it is asked for."""
+    study = pe.Study(
+        pe.Rig([shapes.lidar_on_roof(shapes.small_lidar()), shapes.camera()]),
+        shapes.box_car(),
+        shapes.small_space(),
+    )
+    sight = study.sight()
+    found, car = advice.outlook(sight, study.rig), advice.outlook(sight, study.rig, "car")
+    assert found.reach.class_name == "pedestrian" and car.reach.class_name == "car"
+    assert found.expected_ap == sight.expected_ap(study.rig)
+    assert np.array_equal(car.reach.distance, sight.reach(study.rig, "car").distance)
+    assert found.blind.area == sight.blind(study.rig, 0.5).area
+    data = found.to_dict()
+    assert data["reach"]["bearings_deg"][:2] == [0.0, 5.0]
+    assert data["seen_by_at_least"] == list(sight.shares(study.rig).by_number)
+
+
+def test_shares_by_number_and_by_sensor_by_hand():
+    """One camera looks ahead, one behind, one as the first: none is seen by all three."""
+    space, prior = shapes.small_space(), pe.Prior.uniform()
+    ahead, again, behind = (
+        shapes.camera(90.0, (0.0, 0.0, 1.5), (0, 0, yaw), name)
+        for yaw, name in ((0, "ahead"), (0, "again"), (180, "behind"))
+    )
+    shares = (
+        pe.Study(pe.Rig([ahead, again, behind]), None, space, prior)
+        .sight()
+        .shares(pe.Rig([ahead, again, behind]))
+    )
+    one = shares.zones["ahead"]
+    assert one == shares.zones["again"] and one["rear"] == 0.0 < one["front"]
+    assert shares.by_number[0] == 1.0 and shares.by_number[3] == 0.0
+    assert shares.by_number[2] == pytest.approx(one["front"] / 2, abs=1e-3)
+    behind_too = shares.zones["behind"]["rear"] / 2
+    assert shares.by_number[1] == pytest.approx(one["front"] / 2 + behind_too, abs=1e-3)
+    aside = shapes.camera(90.0, (0.0, 0.0, 1.5), (0, 0, 90), "aside")
+    left = pe.Study(pe.Rig([aside]), None, space, prior).sight().shares(pe.Rig([aside])).zones
+    assert left["aside"]["left"] > 0.1 and left["aside"]["right"] == 0.0
+    score = pe.Evaluator(space, prior).score(pe.Rig([ahead]))
+    assert one["front"] == pytest.approx(score.per_zone["front"].coverage, abs=0.01)
+    assert math.isclose(one["left"], score.per_zone["left"].coverage, abs_tol=0.01)

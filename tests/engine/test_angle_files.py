@@ -4,8 +4,6 @@ Directions are checked as a hand would: at azimuth step 0 a counter-clockwise of
 positive y.
 """
 
-import math
-
 import numpy as np
 import pytest
 
@@ -73,18 +71,6 @@ def test_hesai_and_the_catalogue_agree_on_the_sign(write):
     read = degrees(write(HESAI))[:2]
     assert np.degrees(ours.elevations[:2]) == pytest.approx([e for e, _ in read])
     assert np.degrees(ours.azimuth_offsets[:2]) == pytest.approx([a for _, a in read])
-
-
-@pytest.mark.parametrize(
-    ("text", "side"),
-    [("elevation,azimuth_offset\n0,5\n", 1), ("Laser id,Elevation,Azimuth\n1,0,5\n", -1)],
-    ids=["columns", "hesai"],
-)
-def test_which_side_five_degrees_are(write, text, side):
-    path = write(text)
-    lidar = catalog.from_table("own", MODEL | {"angles": path.name}, path.parent)
-    expected = (math.cos(math.radians(5)), side * math.sin(math.radians(5)), 0.0)
-    assert lidar.directions[0] == pytest.approx(expected, abs=1e-15)
 
 
 def study(angles, **more):

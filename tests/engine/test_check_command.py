@@ -105,18 +105,6 @@ def test_all_presets_are_checked_or_said_why_not(study, tmp_path, capsys):
     assert "compl" not in text.lower() and "no approval" in text
 
 
-def test_the_list_of_presets_names_standard_and_confidence(capsys):
-    assert main(["requirements"]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines[: len(presets())]] == list(presets())
-    assert main(["requirements", "r158_camera"]) == 0
-    shown = capsys.readouterr().out
-    assert "rear + 0.3" in shown and "secondary" in shown
-    assert main(["requirements", "--json"]) == 0
-    assert len(json.loads(capsys.readouterr().out)) == len(presets())
-    assert main(["requirements", "r000"]) == 1
-
-
 def test_a_score_has_the_verdicts_in_its_result(study, tmp_path, capsys):
     assert main(["score", str(study), "-o", str(tmp_path / "out"), "--json"]) == 0
     found = json.loads((tmp_path / "out" / "result.json").read_text())

@@ -60,25 +60,6 @@ def test_a_schedule_of_another_method_is_refused_and_one_that_is_left_out_is_tol
 
 
 @pytest.mark.parametrize(
-    ("argv", "status", "message"),
-    [
-        (["score", "none.toml"], 1, "pe: none.toml: no such file"),
-        (["score", "x.toml", "--workers", "many"], 2, "whole number"),
-    ],
-)
-def test_exit_status(argv, status, message, capsys):
-    try:
-        code = main(argv)
-    except SystemExit as stop:
-        code = stop.code
-    out, err = capsys.readouterr()
-    assert (code, out) == (status, "")
-    assert message in err
-    if status == 1:
-        assert len(err.strip().splitlines()) == 1
-
-
-@pytest.mark.parametrize(
     ("line", "nearest"),
     [
         ("scoer", "such as score, "),

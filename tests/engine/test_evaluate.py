@@ -96,19 +96,6 @@ def test_the_sampled_score_agrees_with_the_grid_within_its_error():
         assert (other.beams, other.occluded_by) == (own.beams, own.occluded_by)
 
 
-def test_the_truth_lies_within_two_reported_errors():
-    """Over 50 random shifts of the sequence, at least 90 times in 100."""
-    rng = np.random.default_rng(11)
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
-    truth = pe.Evaluator(SPACE, ROAD, shapes.box_car()).entropy(rig)
-    within = 0
-    for shift in rng.random((50, 3)):
-        evaluator = pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=4096, shift=tuple(shift))
-        score = evaluator.score(rig)
-        within += abs(score.entropy - truth) <= 2 * score.stderr
-    assert within >= 45
-
-
 @pytest.mark.parametrize("samples", [0, 20_000], ids=["grid", "sampled"])
 def test_a_further_sensor_never_makes_it_worse(samples):
     evaluator = pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=samples)
@@ -359,13 +346,6 @@ def rig():
     return pe.Rig([shapes.lidar_on_roof(), shapes.camera()])
 
 
-def test_the_share_rises_to_the_whole_and_changes_no_score():
-    told = []
-    score = evaluator_of_watch().score(rig(), watch=lambda share: told.append(share) or True)
-    assert told == pytest.approx([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
-    assert score.to_dict() == evaluator_of_watch().score(rig()).to_dict()
-
-
 def test_a_sample_tells_its_share_after_each_sensor_and_ends_when_asked():
     """Thousands of sensors take hours: how long is known after the first few."""
     told, some = [], evaluator_of_watch(4096)
@@ -392,7 +372,8 @@ def test_a_score_ends_when_it_is_reported_and_the_next_is_sound(at):
 
     with pytest.raises(ScoreStopped):
         own.score(rig(), watch=watch)
-    assert told[-1] == pytest.approx(at) and told == sorted(told)
+    assert told == pytest.approx([0.0, 0.2, 0.4, 0.6, 0.8, 1.0][: len(told)])
+    assert told[-1] == pytest.approx(at)
     assert own.score(rig()).to_dict() == evaluator_of_watch().score(rig()).to_dict()
 
 

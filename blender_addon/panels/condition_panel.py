@@ -83,7 +83,10 @@ def seen_in_time(layout: UILayout, settings: PropertyGroup, context: Context) ->
         row.operator("pe.film_story", text="", icon="RENDER_ANIMATION")
     if settings.story_index < len(settings.stories):
         row = settings.stories[settings.story_index]
-        for body in json.loads(row.result)["bodies"] if row.result else ():
+        told = json.loads(row.result or "{}")
+        if told:
+            draw_sentence(layout, context, f"Stops in {told['stop_m']:.1f} m")
+        for body in told.get("bodies", ()):
             draw_sentence(layout, context, _body_text(body))
             if "seam_m" in body:
                 apart = f"{' and '.join(body['seam_of'])} see it up to {body['seam_m']:.2f} m apart"

@@ -129,6 +129,7 @@ class DriveBy:
             "margin_s": self.margin_s,
             "shown_margin_s": shown_margin(self.margin_s),
             "brake_s": rounded(self.story.brake_s),
+            "stop_m": rounded(self.story.stop_m),
             "bodies": [body.summary() for body in self.bodies],
         }
 

@@ -146,11 +146,13 @@ class Story:
 
     @property
     def brake_s(self) -> float:
-        """The last moment at which a track has to be confirmed to stop before the anchor [s].
-
-        The vehicle stops within ``v latency + v^2 / (2 a)``: a time of ``latency + v / (2 a)``.
-        """
+        """The last moment at which a track has to be confirmed to stop before the anchor [s]."""
         return -(self.latency_s + abs(self.speed) / (2.0 * self.deceleration))
+
+    @property
+    def stop_m(self) -> float:
+        """The stopping distance after a confirmed track, ``v latency + v^2 / (2 a)`` [m]."""
+        return abs(self.speed * self.brake_s)
 
     def positions(self, vehicle: Vehicle | None) -> tuple[Floats, Floats]:
         """Return positions (A, K, 2) and headings (A, K) of the actors in the ground frame."""

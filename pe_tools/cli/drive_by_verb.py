@@ -91,7 +91,9 @@ def story_lines(driven: Sequence[DriveBy]) -> list[str]:
     """Return stories as a table: a row for each watched body."""
     chances = sorted({chance for each in driven for body in each.bodies for chance in body.moments})
     head = ["", "story", "body", *(f"confirmed {c:.0%}" for c in chances), "lost", "margin"]
-    head += ["seam"] * any(body.seam_m is not None for each in driven for body in each.bodies)
+    head += ["stops in"] + ["seam"] * any(
+        body.seam_m is not None for each in driven for body in each.bodies
+    )
     rows = [[*_row(each, body, chances)] for each in driven for body in each.bodies]
     met = sum(each.is_met for each in driven)
     return [*aligned([head, *rows]), f"{met} of {len(driven)} stories confirmed in time"]
@@ -103,4 +105,5 @@ def _row(driven: DriveBy, body: SeenBody, chances: Sequence[float]) -> list[str]
     margin = "-" if body.margin_s is None else f"{body.shown_margin_s:+.1f} s"
     met = "met" if body.is_met else "NOT MET"
     seam = [] if body.seam_m is None else [f"{body.seam_m:.2f} m, {' and '.join(body.seam_of)}"]
-    return [met, driven.story.name, body.name, *texts, f"{body.lost_s:.1f} s", margin, *seam]
+    rest = f"{body.lost_s:.1f} s", margin, f"{driven.story.stop_m:.1f} m", *seam
+    return [met, driven.story.name, body.name, *texts, *rest]

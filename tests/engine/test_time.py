@@ -263,6 +263,7 @@ def test_bodies_move_as_the_vehicle_drives_on():
     turned = replace(moving, actors=(crossing,)).positions(car)
     assert turned[1][0] == pytest.approx(math.pi / 2)
     assert moving.brake_s == pytest.approx(-(0.5 + 10.0 / 12.0))
+    assert moving.stop_m == pytest.approx(10.0 * 0.5 + 10.0**2 / 12.0)
 
 
 def test_a_study_keeps_its_frames_tracks_and_stories(tmp_path):

@@ -76,7 +76,7 @@ def film_scene(scene: bpy.types.Scene, study: pe.Study, story: motion.Story) -> 
     places = {sensor.name: Vector(sensor.pose.position) for sensor in study.rig}
     for body in moving.bodies:
         _body(stage, camera, moving, body, places)
-    _strip(stage, camera, graphics.time_strip(driven))
+    _strip(stage, camera, graphics.time_strip(driven), moving.times)
     return film
 
 
@@ -247,8 +247,10 @@ def _body(
         words.rotation_euler, words.scale = turn, [away] * 3
 
 
-def _strip(stage: _Stage, camera: bpy.types.Object, strip: graphics.TimeStrip) -> None:
-    """Add the strip in front of the camera, 1 m away."""
+def _strip(
+    stage: _Stage, camera: bpy.types.Object, strip: graphics.TimeStrip, times: np.ndarray
+) -> None:
+    """Add the strip in front of the camera, 1 m away; `times` (K,) are those of its cursor [s]."""
     half = math.tan(camera.data.angle / 2.0)
     aside, up = 2.0 * camera.data.shift_x, 2.0 * camera.data.shift_y
     rows = len(strip.names)
@@ -284,6 +286,6 @@ def _strip(stage: _Stage, camera: bpy.types.Object, strip: graphics.TimeStrip) -
         placed(stage.words(mark.text, LETTER * half, mark.color, align), x, y)
     cursor = square("cursor", (-0.002, low, 0.002, high), INK)
     cursor.parent = camera
-    shares = np.linspace(strip.share(strip.start_s), 1.0, stage.frames)
+    shares = [strip.share(float(time)) for time in times]
     ways = [((left + s * (right - left) + aside) * half, up * half, -0.998) for s in shares]
     stage.keys(cursor, "location", ways)

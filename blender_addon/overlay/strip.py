@@ -58,7 +58,7 @@ def draw_strip(
         ends = 0.0 if place - share < x else 1.0 if place + share > end else 0.5
         base = y - small - (4.0 + 13.0 * (k % 2)) * scale
         viewport.draw_text(mark.text, place, base, small, mark.color, left_of_x=ends)
-    now = strip.start_s + seconds
+    now = strip.first_s + seconds
     place = at(now)
     viewport.fill_box((place - line, y, place + line, top), INK)
     viewport.draw_text(f"{now:+.1f} s", end, top + 0.3 * small, small, INK, left_of_x=1.0)

@@ -153,18 +153,20 @@ class TimeStrip:
     """AP over time of the body with the least margin, in a unit square of K columns.
 
     `names` are those of the rows from above; `cells` (triangles) lie in x and y from 0 to 1.
+    `ends` are the times at both ends, `first_s` is that of the first frame [s].
     """
 
     title: str
     names: tuple[str, ...]
     cells: LayerShape
     marks: tuple[Mark, ...]
-    start_s: float
-    end_s: float
+    first_s: float
+    ends: tuple[float, float]
 
     def share(self, seconds: float) -> float:
         """Return where a time is, from 0 at the left to 1."""
-        return min(max((seconds - self.start_s) / (self.end_s - self.start_s), 0.0), 1.0)
+        start, end = self.ends
+        return min(max((seconds - start) / (end - start), 0.0), 1.0)
 
 
 def time_strip(driven: DriveBy) -> TimeStrip:
@@ -191,7 +193,8 @@ def time_strip(driven: DriveBy) -> TimeStrip:
         tuple(rows),
         LayerShape(faces=Primitives.joined(parts)),
         tuple(marks_of(story, body)),
-        *strip_ends(story),
+        float(story.times[0]),
+        strip_ends(story),
     )
 
 

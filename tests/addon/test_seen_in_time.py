@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import bpy
+import numpy as np
 import pytest
 from mathutils import Vector
 
@@ -156,10 +157,13 @@ def test_a_film_is_a_scene_of_its_own(car):
     assert made.render.stamp_note_text == graphics.digest(driven)
     assert "cabin" in made.objects, list(made.objects)
     moving = graphics.BodiesInTime.of(driven, study.vehicle, 24.0)
+    strip, left = graphics.time_strip(driven), made.objects["cells"].location.x
+    cursor = []
     layer = made.view_layers[0]
     for k in (0, 30, 48):
         made.frame_set(made.frame_start + k)
         layer.update()
+        cursor.append(made.objects["cursor"].evaluated_get(layer.depsgraph).location.x - left)
         body = made.objects["cyclist"].evaluated_get(layer.depsgraph)
         assert tuple(body.location)[:2] == pytest.approx(moving.bodies[0].positions[k], abs=1e-4)
         ray = made.objects["roof cyclist"].evaluated_get(layer.depsgraph)
@@ -167,5 +171,7 @@ def test_a_film_is_a_scene_of_its_own(car):
         if moving.bodies[0].by_sensor["roof"][k] > 0.0:
             assert tuple(ends[0]) == pytest.approx((0.0, 0.0, 2.5), abs=1e-3)
             assert tuple(ends[1]) == pytest.approx(tuple(body.location), abs=1e-3)
+    shares = [strip.share(time) for time in (-2.0, -0.75, 0.0)]
+    assert np.array(cursor) / cursor[-1] == pytest.approx(np.array(shares) / shares[-1], abs=1e-5)
     with pytest.raises(pe.InputError, match=r"\.webm"):
         film.write_film(car, study, story, Path("film.gif"))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,8 +24,6 @@ BOUNDS: graphics.Rgba = (0.92, 0.92, 0.96, 0.80)
 NO_GO: graphics.Rgba = (0.95, 0.45, 0.25, 0.95)
 LIFT_M = 0.003
 """Distance of the tint from the surface, on both sides: it would flicker in it."""
-CORNERS = np.array(list(product((0, 1), repeat=3)), float)
-EDGES = [(a, b) for a in range(8) for b in range(a) if np.abs(CORNERS[a] - CORNERS[b]).sum() == 1]
 
 
 def mount_regions(several: Sequence[MountFaces], boxes: Sequence[LimitBox]) -> graphics.LayerShape:
@@ -91,8 +88,8 @@ def _corners(triangles: Floats) -> NDArray[np.int64]:
 
 def box_edges(low: Sequence[float] | Floats, high: Sequence[float] | Floats) -> Floats:
     """Return ends (24, 3) of a box's edges; it may be flat, or a line."""
-    corners = np.array(low) + CORNERS * (np.array(high) - np.array(low))
-    return corners[np.array(EDGES)].reshape(-1, 3)
+    corners = np.array(low) + (graphics.CORNERS + 0.5) * (np.array(high) - np.array(low))
+    return corners[np.array(graphics.EDGES)].reshape(-1, 3)
 
 
 FOCUS_HEIGHT_M = 2.0

@@ -41,6 +41,7 @@ from .colors import with_alpha as with_alpha
 from .drive_by import BRAKE as BRAKE
 from .drive_by import CONFIRMED as CONFIRMED
 from .drive_by import CORNERS as CORNERS
+from .drive_by import EDGES as EDGES
 from .drive_by import FACES as FACES
 from .drive_by import NEVER as NEVER
 from .drive_by import UNSEEN as UNSEEN

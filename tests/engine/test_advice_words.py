@@ -271,3 +271,17 @@ def test_shares_by_number_and_by_sensor_by_hand():
     score = pe.Evaluator(space, prior).score(pe.Rig([ahead]))
     assert one["front"] == pytest.approx(score.per_zone["front"].coverage, abs=0.01)
     assert math.isclose(one["left"], score.per_zone["left"].coverage, abs_tol=0.01)
+
+
+def test_figures_that_prefer_different_rigs_are_told():
+    none = ((0.0, 0.0),) * 2
+
+    def told(widths):
+        rows = [
+            advice.ComparedRow("rig", "", "entropy", (1.0, 2.0), none, 2.0),
+            advice.ComparedRow(advice.TRAFFIC, "", "ap", (0.6, 0.5), none, 2.0),
+            advice.ComparedRow("rig", "0.5 m tall, at 20 m", "sector", widths, none),
+        ]
+        return advice.disagreement(["one", "other"], rows)
+
+    assert told((0.0, 0.0)) == "" and "other by the widest blind sector" in told((20.0, 0.0))

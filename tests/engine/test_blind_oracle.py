@@ -38,7 +38,7 @@ def van():
 def from_assets(name):
     """An example vehicle of few triangles: rays are tested against each of them."""
     with np.load(ASSETS / f"{name}.npz") as file:
-        few, _ = simplified(pe.Vehicle(file["triangles"]), 600)
+        few, _ = simplified(pe.Vehicle(file["triangles"]), 1000)
     a, b, c = few.triangles.transpose(1, 0, 2)
     area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     return pe.Vehicle(few.triangles[area > 1e-9], clearance=0.0)

@@ -10,9 +10,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.scoring import FoundClass
 from pe_core.scoring.score import TrafficAp
-from pe_core.scoring.targets.object_metric import SECTORS
 from pe_tools import advice
 from pe_tools.advice.summary import outlook_words
 from tests.engine import shapes
@@ -24,12 +22,6 @@ def part(entropy, coverage, share=0.5):
 
 def score(entropy=3.0, coverage=0.854, zones=None, classes=None, sensors=None):
     return pe.Score(entropy, coverage, 0.0, classes or {}, zones or {}, sensors or {}, 1000)
-
-
-SENSORS = {
-    "roof": pe.SensorScore(4.0, 0.8, 0.42, 1000, 75, {"hood": 15, "roof": 60}),
-    "spare": pe.SensorScore(9.0, 0.1, 0.0, 0, 0, {}),
-}
 
 
 def test_a_loss_is_reported_where_it_costs_most():
@@ -97,11 +89,7 @@ def test_warnings_are_in_the_result_and_below_the_summary():
     assert last == "warning: roof: it is inside the body and sees next to nothing"
 
 
-REACH = {way: 0.0 for way in SECTORS} | {"front": 25.6, "left": 12.2}
-CAR = FoundClass(40, 0.5, 1.0, 0.1, 0.453, 0.01, {1: 1.0, 5: 0.9, 20: 0.5}, REACH)
-
-
-INSIDE, SIDE = "camera in the boot", "side"
+INSIDE = "camera in the boot"
 
 
 def sensor_score(coverage, stopped=0, beams=1000):

@@ -148,7 +148,7 @@ def test_a_worker_that_dies_is_replaced_and_its_rig_evaluated_again(tmp_path, ri
 
 
 def test_a_rig_that_kills_two_workers_is_named(tmp_path, rigs):
-    with Processes(2) as fresh, pytest.raises(pe.InputError) as raised:
+    with Processes(1) as fresh, pytest.raises(pe.InputError) as raised:
         evaluate_all(Landscape(tmp_path, deaths=9), rigs, math.inf, fresh)
     assert str(raised.value) == (
         "workers: process: expected a worker that survives its task, "

@@ -174,18 +174,6 @@ def test_a_limit_of_what_is_not_known_is_refused_in_one_line():
         assert "\n" not in str(error.value) and "can" not in error.value.found
 
 
-def kept(**limits):
-    """The rig that a short search ends with, from cans low on the box car's roof."""
-    sensors = cans((-0.4, 0, 1.5), (0.4, 0, 1.5))
-    free = dict.fromkeys(("can 0", "can 1"), ("x", "y", "z"))
-    mounts = pe.Mounting(constraints=pe.Constraints(**limits))
-    search = pe.Search(free, samples=1024, evaluations=80, mounting=mounts)
-    study = pe.Study(pe.Rig(sensors), shapes.box_car(), shapes.small_space(), search=search)
-    job = pt.OptimizeJob(replace(study, samples=1024), 1)
-    list(job)
-    return job.outcome
-
-
 def choice_study(**more):
     """A study that chooses each of two cans' models by price, mass and power."""
     small, large = (shapes.small_lidar(n, 90) for n in (4, 16))

@@ -95,7 +95,7 @@ PATHS = (
 def test_a_path_that_cannot_be_is_one_line(study, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     before, offenders = sorted(tmp_path.iterdir()), []
-    for argv, path in product(PATHS, ["", "x" * 300, f"a/{'ü' * 200}/b", "a\0b"]):
+    for argv, path in product(PATHS, ["", f"a/{'ü' * 200}/b", "a\0b"]):
         status = main([part.format(path) for part in argv.split()])
         told = capsys.readouterr().err.splitlines()
         if status != 1 or len(told) != 1 or not told[0].startswith("pe: command line: "):

@@ -1,4 +1,4 @@
-"""What radars, weather and states are for, as whole runs: nuScenes' rig, a truck, a parked car.
+"""What states are for, as whole runs: the example of a truck, and a parked car.
 
 `tests/addon/test_conditions_done.py` holds the panel, headless Blender and `pe` to the same bits.
 """
@@ -28,19 +28,6 @@ def written(tmp_path, study):
     path = tmp_path / "study.toml"
     save_study(replace(study, mesh="car.npz"), path)
     return path
-
-
-CAB_REAR, HITCH = 1.2, (-0.5, 0.0, 1.1)
-
-
-def truck():
-    """A tractor and its trailer, 2.5 m wide, 1.0 m of the trailer ahead of the kingpin."""
-    boxes = [
-        shapes.box((CAB_REAR, -1.25, 0.4), (3.5, 1.25, 3.4)),
-        shapes.box((-11.5, -1.25, 1.15), (0.5, 1.25, 3.95)),
-    ]
-    parts = np.repeat([0, 1], [len(b) for b in boxes])
-    return pe.Vehicle(np.concatenate(boxes), parts, ("cab", "trailer"))
 
 
 def test_the_example_s_turned_trailer_takes_from_the_mirror_and_corner_of_its_side():

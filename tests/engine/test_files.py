@@ -132,7 +132,6 @@ def test_several_files_are_written_together_or_not_at_all(tmp_path):
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == new
 
 
-ROOT = Path(files.__file__).parents[2]
 FAULTS = ("ENOSPC", "EDQUOT", "EIO")
 
 

@@ -41,7 +41,7 @@ def directions_of(points):
     return points[size > 0] / size[size > 0, None]
 
 
-RAYS = tries(300, 600)
+RAYS = tries(150, 600)
 
 
 def rays_at(triangles, rng, count=RAYS):
@@ -120,7 +120,7 @@ def test_hits_do_not_depend_on_how_much_is_looked_at_at_once(mesh, monkeypatch):
     monkeypatch.setattr(raycast, "RAYS_AT_ONCE", 700)
     rng = np.random.default_rng(9)
     triangles = MESHES[mesh](rng)
-    assert_same(triangles, rays_at(triangles, rng, 200))
+    assert_same(triangles, rays_at(triangles, rng, 100))
 
 
 @pytest.mark.parametrize("mesh", MESHES)
@@ -133,7 +133,7 @@ def test_rays_followed_by_themselves_hit_the_same(mesh, few, monkeypatch):
     monkeypatch.setattr(ray_traversal, "PAIRS_AT_ONCE", 100 if few == 3 else 1 << 11)
     rng = np.random.default_rng(4)
     triangles = MESHES[mesh](rng)[:283]  # no multiple of what a box holds
-    hits = assert_same(triangles, rays_at(triangles, rng, 300))
+    hits = assert_same(triangles, rays_at(triangles, rng, 150))
     assert np.count_nonzero(hits.face >= 0) > 50
 
 

@@ -231,7 +231,7 @@ def test_several_functions_alone_are_those_of_processes_too():
     here, there = front_of((apart, droop)), front_of((apart, droop), workers=2)
     assert here.objectives == ("apart", "droop")
     assert [d.figures for d in here.front] == [d.figures for d in there.front]
-    assert front_of((spread, lambda rig: droop(rig)), workers=2).objectives[1] == "<lambda>"
+    assert front_of((apart, lambda rig: droop(rig)), workers=2).objectives[1] == "<lambda>"
 
 
 @pytest.mark.parametrize(

@@ -25,8 +25,8 @@ def study(goals=None, names=("roof",), **search):
     )
     goals = replace(goals or Goals(), sensitivity="off")
     given = {"free": dict.fromkeys(names, ("z", "pitch")), "evaluations": 60} | search
-    settings = pe.Search(samples=2048, goals=goals, **given)
-    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=settings, samples=2048)
+    settings = pe.Search(samples=1024, goals=goals, **given)
+    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=settings, samples=1024)
 
 
 def finished(given, **more):
@@ -125,7 +125,7 @@ def test_several_starts_share_the_budget_and_the_best_end_is_the_result(plain):
     assert [end.name for end in outcome.starts] == ["", "high"]
     assert outcome.evaluations == 60 and outcome.starts[0].evaluations == 30
     best = min(outcome.starts, key=lambda end: end.entropy)
-    evaluator = study().evaluator(2048)
+    evaluator = study().evaluator(1024)
     assert evaluator.entropy(outcome.study.rig) == pytest.approx(best.entropy, abs=1e-12)
     assert "the start high ended at" in summary(outcome)
     again = finished(study(Goals(starts=[Start("high", poses)])), journal=journal_of(outcome, 40))

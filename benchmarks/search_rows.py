@@ -57,7 +57,7 @@ def candidates_in_traffic() -> Timing:
         )
         for evaluator in evaluates
     )
-    work = f"the same by {targets.scenes} scenes of objects in traffic, processor time"
+    work = f"8 candidates by {targets.scenes} scenes of objects in traffic, processor time"
     yardstick = f"by {study.search.samples:,} samples"
     return Timing(work, ours, peak_mb(), yardstick, theirs)
 

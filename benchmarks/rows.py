@@ -97,9 +97,7 @@ def full_score() -> Timing:
     study = plain_study(car())
     evaluator, rig = study.evaluator(0), two_lidars_two_cameras(study).rig
     ours, theirs = best_in_turn(lambda: evaluator.score(rig), lambda: evaluator.score(study.rig), 2)
-    work = (
-        "score of two Pandar40 and two cameras, each sensor alone and failing, zones, map"
-    )
+    work = "score of two Pandar40 and two cameras, each sensor alone and failing, zones, map"
     return Timing(work, ours, peak_mb(), "the same of one Pandar64", theirs)
 
 

@@ -351,11 +351,6 @@ class SearchProblem:
     evaluations: int
     mark: str = ""
 
-    @property
-    def about(self) -> str:
-        """What the problem is, in one sentence."""
-        return (self.make.__doc__ or "").strip().rstrip(".")
-
 
 PROBLEMS = {
     "two free": SearchProblem(two_free, 250),

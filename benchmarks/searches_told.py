@@ -46,7 +46,7 @@ def table(runs: list[Json]) -> list[str]:
         "highest. All methods have the same evaluator and the same number of evaluations. Shares",
         "and counts of the race were chosen on experiment 4; that it replaces other descents also",
         "for small budgets, on all of the first twelve. The new ones came after that.",
-        "`python -m benchmarks.searches` writes this; search_problems.py has the problems.",
+        "`python -m benchmarks.searches` writes this; search_problems.py says what each is.",
         "",
         f"| problem | evaluations | {' | '.join(NAMES.get(m, m) for m in methods)} |",
         f"|{' --- |' * (len(methods) + 2)}",
@@ -61,8 +61,6 @@ def table(runs: list[Json]) -> list[str]:
     lines.append(f"| seeds, at most | | {' | '.join(map(str, counts))} |")
     seconds = [f"{sum(r['seconds'] for r in runs if r['method'] == m):.0f} s" for m in methods]
     lines.append(f"| processor time of all runs | | {' | '.join(seconds)} |")
-    lines += ["", "| problem | what it is |", "| --- | --- |"]
-    lines += [f"| {name} | {problem.about} |" for name, problem in PROBLEMS.items()]
     return lines
 
 

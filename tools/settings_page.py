@@ -59,7 +59,7 @@ def type_text(rule: object) -> str:
     """Return the type of a rule's values, with their unit."""
     match rule:
         case Toggle():
-            return "switch"
+            return ""
         case OneOf():
             return ""
         case Name():
@@ -67,7 +67,7 @@ def type_text(rule: object) -> str:
         case Several():
             return "list"
         case Texts():
-            return "list of texts"
+            return "texts"
         case Pair():
             return f"low, high{_unit(rule.rule.unit)}"
         case Triple():
@@ -75,7 +75,7 @@ def type_text(rule: object) -> str:
         case Whole():
             return f"whole{_unit(rule.unit)}"
         case Number():
-            return f"[{rule.unit}]" if rule.unit else "number"
+            return f"[{rule.unit}]" if rule.unit else "" if range_text(rule) else "number"
     return str(getattr(rule, "words", type(rule).__name__))
 
 

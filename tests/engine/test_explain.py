@@ -118,7 +118,7 @@ def test_the_page_s_examples_are_what_is_reported(asked, monkeypatch, capsys):
 
 
 def test_the_page_names_every_warning():
-    rows = set(re.findall(r"`(\w+)`", "\n".join(re.findall(r"^\| (`.*?) \|", PAGE, re.M))))
+    rows = set(re.findall(r"`(\w+)`", "\n".join(re.findall(r"^- (`.*?`):", PAGE, re.M))))
     room = Path(advice.__file__).parent
     text = "".join((room / name).read_text() for name in ("mount_checks.py", "vehicle_checks.py"))
     told = set(re.findall(r"(?:Advice|_stand)\(\s*[\w.]+, \"(\w+)\"", text))

@@ -29,7 +29,7 @@ HIDDEN = 0.9
 HEAD = f"""\
 # Known rigs
 
-Published rigs, as `pe rigs` lists them, in Blender's panel *Variants*, and as studies:
+Published rigs, also in Blender's panel *Variants*:
 
 ```sh
 pe rigs                                     # the list
@@ -39,8 +39,8 @@ pe rigs waymo -o study.toml --mesh car.npz  # a study, stretched onto a vehicle
 
 Scored at default settings on {SAMPLES:,} voxels, each rig alone in the open and on a vehicle of
 `blend_assets`: stretched from its own vehicle's box, or as published where that is not known.
-Entropies in nats, lower is better, with their standard errors; coverage in percent. They are of
-these placements on that body, with this prior: no verdict on the vehicles they come from. No
+Entropies in nats, lower is better, with their standard errors; coverage in percent. They are no
+verdict on the vehicles they come from. No
 published positions of MAN TruckScenes' and EDGAR's sensors were found. Written by
 `tools/known_rigs.py`.
 

@@ -7,7 +7,7 @@ from ..ranks import min_significant_rho
 from ..results_file import Json
 from .correlations import MAIN_CLASS, SIGNIFICANCE, TREATMENTS, ValidityResults, detectors_disagree
 from .published import Paper, papers
-from .scores import BODY_M, CANDIDATES
+from .scores import BODY_M
 
 HEIGHT = "mean height"
 
@@ -32,7 +32,7 @@ def page_values(results: ValidityResults) -> Json:
         "disagreements": disagreements,
         "evidence": [_paper_line(paper) for paper in papers()],
         "least_rho": min_significant_rho(8),
-        "candidates": _candidates(),
+        "surrogates": [f"{name} ({p.short})" for p in papers() for name in p.surrogates],
         "body": " x ".join(f"{side:g}" for side in BODY_M),
         "treatments": list(TREATMENTS.values()),
         "tests": [_test_line(results, score) for score in results.scores],
@@ -48,16 +48,6 @@ def _paper_line(paper: Paper) -> list[str]:
         ", ".join(paper.classes.values()),
         ", ".join(detectors),
         ", ".join(paper.ap).replace("_", " "),
-    ]
-
-
-def _candidates() -> list[list[str]]:
-    """Return the lines of the table of scores; those in traffic are in the text."""
-    lines = [[c.name, c.about] for c in CANDIDATES if "traffic" not in c.name]
-    authors = [f"{name} ({p.short})" for p in papers() for name in p.surrogates]
-    return [
-        *lines,
-        [", ".join(authors), "the authors' own scores of their placements, as published"],
     ]
 
 

@@ -4,7 +4,9 @@ from types import SimpleNamespace
 
 import bpy
 
-from blender_addon.panels import menus
+from blender_addon.engine import catalog, kinds
+from blender_addon.operators import add_sensor
+from blender_addon.panels import menus, overlay_popover, sensor_menus
 from tests.addon import layouts, scenes
 
 
@@ -39,3 +41,19 @@ def test_a_right_click_offers_what_fits_the_object(addon):
     assert context_menu(scene, sensor)[0] == "pe.look_through"
     scene.perception_entropy.vehicle = bpy.data.collections.new("Car")
     assert context_menu(scene, mesh) == ["pe.place_sensor"]
+
+
+def test_sensors_are_in_blender_s_menu_add_and_the_view_in_its_header(car):
+    menu = layouts.drawn(sensor_menus.PE_MT_add)
+    assert menu.texts("operator") == [*(kind.label for kind in kinds.KINDS.values()), "Search..."]
+    for mode, entries in (("OBJECT", ["PE_MT_add"]), ("EDIT_MESH", [])):
+        layout = layouts.Layout()
+        sensor_menus.draw_add_menu(SimpleNamespace(layout=layout), SimpleNamespace(mode=mode))
+        assert layout.texts("menu") == entries
+    items = add_sensor._menu_items(SimpleNamespace(kind="lidar"), bpy.context)
+    assert [each[0] for each in items] == catalog.names("lidar")
+    (found,) = [each for each in items if "QT128" in each[1]]
+    assert "range 50 m" in found[2], "figures are searched too"
+    header = layouts.Layout()
+    overlay_popover.draw_in_header(SimpleNamespace(layout=header), SimpleNamespace(scene=car))
+    assert header.notes == [("prop", "show_overlay"), ("popover", "PE_PT_view")]

@@ -204,9 +204,7 @@ row.hail = 7.0
 assert bridge.load_into(scene, study) == []
 assert bridge.study_as_drawn(scene).conditions == study.conditions
 assert ("prop", "hail") in layouts.drawn(conditions, **vars(layouts.Window(scene))).notes
-assert "| `weather.hail` | [m], 0 to 90, `0.0` | Size of hailstones |" in (
-    settings_page().page()
-)
+assert "- `hail` ([m], 0–90, `0.0`): Size of hailstones" in settings_page().page()
 print("seen everywhere")
 sys.stdout.flush()
 os._exit(0)

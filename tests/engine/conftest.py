@@ -8,7 +8,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from pe_core.base.errors import InputError
 from pe_core.base.plugins import GROUP
+from pe_tools.advice import KeyFigures
 from pe_tools.outputs import scene_outputs
 from tests.few_errors import few_errors
 
@@ -36,6 +38,16 @@ def failing_call(monkeypatch):
         return count
 
     return fail
+
+
+@pytest.fixture
+def no_key_figures(monkeypatch):
+    """Results without key figures, as in a space without ground: they take longer than the rest."""
+
+    def none(*_):
+        raise InputError("space", "z", "the ground", "none")
+
+    monkeypatch.setattr(KeyFigures, "of_rig", none)
 
 
 CHECKOUT = Path(__file__).parents[2]

@@ -17,7 +17,7 @@ from pe_tools.jobs import design_study, front_job, write_front
 from tests.engine import mounting
 from tests.engine.refusals import wrongly_refused
 
-pytestmark = pytest.mark.usefixtures("few_errors")
+pytestmark = pytest.mark.usefixtures("few_errors", "no_key_figures")
 SPACE = pe.PerceptionSpace((-12, 12), (-8, 8), (0, 3), 0.5)
 PRICES = {"Pandar64": 9.0, "Pandar40": 7.0, "Velodyne VLP-16 Puck": 2.0}
 

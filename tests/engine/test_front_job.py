@@ -19,6 +19,8 @@ from tests.engine import shapes
 
 NAMES = ("entropy", "height", "worst_loss")
 
+pytestmark = pytest.mark.usefixtures("few_errors", "no_key_figures")
+
 
 def study(objectives=("entropy", "height"), points=4, **more):
     model = shapes.small_lidar(4, 90)

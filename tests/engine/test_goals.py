@@ -17,6 +17,8 @@ from pe_tools.cli.verbs import parser
 from pe_tools.jobs import HistoryRow, best_so_far, result_dict, stopping
 from tests.engine import shapes
 
+pytestmark = pytest.mark.usefixtures("few_errors", "no_key_figures")
+
 
 def study(goals=None, names=("roof",), **search):
     model = shapes.small_lidar(4, 90)

@@ -1,7 +1,5 @@
 """What stands round the engine and needs no Blender: files, exchange, pictures, pages, commands.
-
-The names in `pe_tools.public` are here too, loaded when one is first asked for.
-"""
+The names in `pe_tools.public` are here too, loaded when one is first asked for."""
 
 from typing import TYPE_CHECKING
 

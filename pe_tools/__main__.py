@@ -1,7 +1,5 @@
-"""``python -m pe_tools`` and the script ``pe``: Ctrl-C is answered from the start.
-
-Nothing is imported on top that takes long.
-"""
+"""``python -m pe_tools`` and the script ``pe``: Ctrl-C is answered from the start. Nothing is
+imported on top that takes long."""
 
 import os
 import signal

@@ -31,10 +31,8 @@ QUANTITY_KEYS = {"entropy": ENTROPY, "coverage": COVERAGE}
 VIEWS = {"top": (0, 1, 2, 1.0), "side": (0, 2, 1, -1.0), "front": (1, 2, 0, 1.0)}
 """Axes to the right and up, the one towards the reader, and its sign, by view."""
 LABELS = ("x, forward [m]", "y, to the left [m]", "z, up [m]")
-LIGHT, DARK = 0.93, 0.55
-"""Grey of a surface that faces the reader, and of one seen from its edge."""
-BORESIGHT_M = 0.5
-"""Length of the line in which a sensor looks."""
+LIGHT, DARK = 0.93, 0.55  # Grey of a surface that faces the reader, and of one seen from its edge
+BORESIGHT_M = 0.5  # Length of the line in which a sensor looks
 MOST_BEAMS = 60_000
 SKY, GREY = "#56B4E9", "#8A8A8A"
 PALETTE = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7")
@@ -57,7 +55,6 @@ def ground(
 
     Parameters
     ----------
-    study : Study
     rig : Rig, optional
         By default the study's.
     quantity : {"entropy", "coverage"}
@@ -100,7 +97,6 @@ def rig(
 
     Parameters
     ----------
-    study : Study
     rig : Rig, optional
         By default the study's.
     view : {"side", "top", "front"}
@@ -131,7 +127,6 @@ def beams(study: Study, sensor: str | Sensor, *, axes: Axes | None = None) -> Ax
 
     Parameters
     ----------
-    study : Study
     sensor : str or Sensor
         A LiDAR of the study's rig by its name, or any other.
     """

@@ -1,8 +1,5 @@
 """Values of the engine in words: what is stored and handed on are the values, each front end asks
-here for the texts.
-"""
-
-from __future__ import annotations
+here for the texts."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -12,10 +9,8 @@ from pe_core.scoring.requirements import Reason, VerdictSummary
 
 
 def percent(share: float, digits: int | None = None) -> str:
-    """Return a share, 0 to 1, in percent with `digits` decimals: "81.4%".
-
-    Without `digits`: "85%" as in a sentence, with one decimal for shares near 0 or 1: "0.4%".
-    """
+    """Return a share, 0 to 1, in percent with `digits` decimals: "81.4%". Without `digits`: "85%"
+    as in a sentence, with one decimal for shares near 0 or 1: "0.4%"."""
     if digits is not None:
         return f"{100.0 * share:.{digits}f}%"
     value = 100.0 * share
@@ -51,10 +46,8 @@ def joined(texts: Sequence[str]) -> str:
 
 
 def aligned(table: Sequence[Sequence[str]], texts: int | None = None) -> list[str]:
-    """Return rows of cells as lines: the first `texts` columns (default: all) to the left.
-
-    Other columns are to the right.
-    """
+    """Return rows of cells as lines: the first `texts` columns (default: all) to the left. Other
+    columns are to the right."""
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
     lines = []
     for cells in table:
@@ -74,9 +67,7 @@ def off_by(position: float, angle: float) -> str:
 
 def warning_text(code: str, part: str | None, values: Mapping[str, Any]) -> str:
     """Say a warning (`pe_tools.advice.Advice`) in a sentence, without the name of its subject.
-
-    `part` is the part of the vehicle that causes it. A code without a text stands for itself.
-    """
+    `part` is the part of the vehicle that causes it. A code without a text stands for itself."""
     return WARNINGS[code](part, **values) if code in WARNINGS else code.replace("_", " ")
 
 
@@ -132,8 +123,7 @@ def _not_centred(_part: str | None, axis: str, off: float) -> str:
     return f"not centred: its axis is {side}; mirror images of sensors would be off the vehicle"
 
 
-PARTS_NAMED = 3
-"""So many parts of the vehicle are named in a warning."""
+PARTS_NAMED = 3  # So many parts of the vehicle are named in a warning
 WARNINGS: Mapping[str, Callable[..., str]] = {
     "fragile": lambda _, rise, position, angle, tolerant: (
         f"{off_by(position, angle)} (1 sigma) it is {rise:.2f} nats worse on average"
@@ -207,16 +197,14 @@ WARNINGS: Mapping[str, Callable[..., str]] = {
         else f"the vehicle's collection {collection} is {how}: it is not scored"
     ),
     "refused": lambda _, field, found, expected: f"its {field} is {found}; expected {expected}",
-}
-"""How warnings are said, by code: of the part of the vehicle and the warning's values."""
+}  # How warnings are said, by code: of the part of the vehicle and the warning's values
 
 
 REASONS = {
     "too few": "too few on it",
     "in part": "seen in part at most",
     "not counted": "of a kind that does not count",
-}
-"""Texts of the codes that are not their own text."""
+}  # Texts of the codes that are not their own text
 
 
 def reason_text(reason: Reason) -> str:
@@ -233,10 +221,8 @@ def unseen_text(unseen_by: Mapping[str, Reason]) -> str:
 
 
 def margin_text(verdict: VerdictSummary, noun: str = "") -> str:
-    """Say a margin: "0.42 m", "fails 0.15 m inside", "blind 0.40 m2, at least 0.30 m".
-
-    `noun` stands before the margin of a requirement that is met.
-    """
+    """Say a margin: "0.42 m", "fails 0.15 m inside", "blind 0.40 m2, at least 0.30 m". `noun`
+    stands before the margin of a requirement that is met."""
     parts = [] if verdict.blind_m2 is None else [f"blind {verdict.blind_m2:.2f} m2"]
     if verdict.margin_m is not None:
         at_least = "at least " if verdict.margin_at_least else ""

@@ -23,50 +23,25 @@ from .open_file import (
 
 
 def run_job(args: argparse.Namespace) -> app.Answer:
-    """Score or optimize, and write the results to the output folder."""
-    study, kind = app.with_options(opened_study(args.variant), args), args.kind
-    if kind == "optimize" and jobs.has_front(study):
-        return choose_sensors(study, args)
-    if kind == "optimize":
+    """Score or optimize, and write the results to the output folder; the designs of a front are
+    variants of the new scene."""
+    study, searches = app.with_options(opened_study(args.variant), args), args.kind == "optimize"
+    is_front = searches and jobs.has_front(study)
+    if searches:
         with from_file():
-            bridge.check_placeable(bpy.context.scene, study)
-    job, name = app.job_and_folder(study, args, app.begun_search(args))
+            check = bridge.check_choosable if is_front else bridge.check_placeable
+            check(bpy.context.scene, study)
 
-    def leave(outcome: jobs.Outcome, data: dict, folder: Path) -> None:
+    def leave(found: jobs.Outcome | jobs.TradeOff, data: dict, folder: Path) -> None:
         with quiet_blender():
-            write_optimized(outcome, data, folder)
+            if isinstance(found, jobs.TradeOff):
+                write_front(found, folder)
+            else:
+                write_optimized(found, data, folder)
 
-    more = app.with_pages(args, app.More([OPTIMIZED], leave) if kind == "optimize" else None)
-    output = None
-    if name is not None:
-        names = [*(more.names if more else ()), *jobs.result_names(study, kind)]
-        output = jobs.prepare_folder(name, names)
-    job.notes = bridge.missing_data(bpy.context.scene)
-    return app.carry_out(
-        job,
-        output,
-        as_json=args.json,
-        host=bridge.blender_version(),
-        more=more,
-        executor=getattr(args, "executor", None),
-    )
-
-
-def choose_sensors(study: pe.Study, args: argparse.Namespace) -> app.Answer:
-    """Search for the front of a scene with choices; its designs are variants of the new scene."""
-    scene, output = bpy.context.scene, None
-    with from_file():
-        bridge.check_choosable(scene, study)
-    job, host = jobs.FrontJob(study, args.workers), bridge.blender_version()
-    if (folder := app.resumed(job, args)) is not None:
-        output = jobs.prepare_folder(folder, [OPTIMIZED])
-
-    def leave(found: jobs.TradeOff, folder: Path) -> None:
-        with quiet_blender():
-            write_front(found, folder)
-
-    executor = args.executor
-    return app.choose(job, output, as_json=args.json, host=host, more=leave, executor=executor)
+    host, notes = bridge.blender_version(), bridge.missing_data(bpy.context.scene)
+    more = [app.More([OPTIMIZED], leave)] if searches else []
+    return app.run_study(study, args, host=host, more=more, notes=notes)
 
 
 def export_study(args: argparse.Namespace) -> app.Answer:

@@ -40,7 +40,6 @@ EXTRAS = {
     "matplotlib": "notebook",
     "pandas": "notebook",
     "pyarrow": "argoverse",
-    "pyarrow.parquet": "argoverse",
     "tqdm.auto": "notebook",
     "distributed": "cluster",
 }

@@ -1,51 +1,18 @@
 """Texts for the designer of a rig: warnings, scores in words, comparisons, and one location.
-
-Nothing here computes a score; results of `pe_core` are checked, compared and described.
-"""
+Nothing here computes a score; results of `pe_core` are checked, compared and described."""
 
 from pe_core.search.key_figures import KeyFigures
 from pe_tools.wording import joined, percent
-
 from ..wording import off_by
 from .advice import FRAGILE, NOT_KEPT, UNMET, Advice, fragile, not_kept, unmet
 from .key_figures import SensorRow, loss_text, sensor_rows, sensor_table
-from .key_figures import built_lines as built_lines
+from .key_figures import built_lines
 from .location import AskedPlace, SensorAtPlace, ask_place
 from .mount_checks import check_mirror_image, occluded_shares
 from .ranking import costs_nothing, disagreement, gain_sentence, ranking, search_cost
-from .score_comparison import (
-    OTHER_HARDWARE,
-    TRAFFIC,
-    ComparedRow,
-    compare,
-    compare_figures,
-    hardware_note,
-)
-from .summary import Outlook, class_of, lone_reach, object_words, objects_looked_at, outlook
-from .summary_text import WHERE, rig_words
-from .warnings import (
-    condition_warnings,
-    curve_note,
-    curve_warnings,
-    hidden_sensors,
-    hidden_words,
-    warnings,
-)
-
-__all__ = ["FRAGILE", "NOT_KEPT", "OTHER_HARDWARE", "UNMET", "WHERE", "Advice"]
-__all__ += ["AskedPlace", "ComparedRow", "KeyFigures", "Outlook", "SensorAtPlace"]
-__all__ += ["SensorRow", "ask_place", "built_lines", "check_mirror_image", "class_of", "compare"]
-__all__ += ["compare_figures", "condition_warnings", "costs_nothing", "curve_note"]
-__all__ += ["curve_warnings", "fragile", "hardware_note", "hidden_sensors", "hidden_words"]
-__all__ += ["joined", "lone_reach", "loss_text", "not_kept", "object_words", "objects_looked_at"]
-__all__ += ["occluded_shares", "off_by", "outlook", "percent"]
-__all__ += [
-    "TRAFFIC",
-    "disagreement",
-    "gain_sentence",
-    "ranking",
-    "rig_words",
-    "search_cost",
-    "sensor_rows",
-]
-__all__ += ["sensor_table", "unmet", "warnings"]
+from .score_comparison import OTHER_HARDWARE, TRAFFIC, ComparedRow, compare, compare_figures
+from .score_comparison import hardware_note
+from .summary import WHERE, Outlook, class_of, lone_reach, object_words, objects_looked_at, outlook
+from .summary import rig_words
+from .warnings import condition_warnings, curve_note, curve_warnings, hidden_sensors, hidden_words
+from .warnings import warnings

@@ -1,7 +1,5 @@
 """The warning record, and warnings about a placement as a whole."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
@@ -11,12 +9,9 @@ from pe_core.study.requirement_search import Suggestion
 
 from ..wording import warning_text
 
-FRAGILE = "fragile"
-"""Code of the warning that concerns the placement of all sensors."""
-UNMET = "requirement"
-"""Code of the warning about a requirement that a search could not keep."""
-NOT_KEPT = "figure"
-"""Code of the warning about a key figure that a search could not keep."""
+FRAGILE = "fragile"  # Code of the warning that concerns the placement of all sensors
+UNMET = "requirement"  # Code of the warning about a requirement that a search could not keep
+NOT_KEPT = "figure"  # Code of the warning about a key figure that a search could not keep
 SUBJECTS = {FRAGILE: "placement", UNMET: "placement", NOT_KEPT: "search", "returns": "returns"}
 SUBJECTS |= {"range_term": "AP curves", "protocol_floor": "expected AP"}
 """What warnings without a sensor concern, by code; others concern the vehicle."""
@@ -69,18 +64,15 @@ class Advice:
 
 FRAGILE_NATS = 0.05
 """A rise of the mean entropy up to this [nats] is within the uncertainty of voxels and mounting."""
-SURE = 2.0
-"""A rise of at most this many standard errors is not significant."""
+SURE = 2.0  # A rise of at most this many standard errors is not significant
 
 
 def fragile(
     rise: float, stderr: float, position: float, angle: float, tolerant: bool
 ) -> tuple[Advice, ...]:
     """Return a warning if the entropy of a placement rises much under mounting errors, or none.
-
     `rise` is that of the mean entropy, with its standard error [nats], under errors of `position`
-    [m] and `angle` [rad], 1 sigma; a `tolerant` search already took them into account.
-    """
+    [m] and `angle` [rad], 1 sigma; a `tolerant` search already took them into account."""
     if rise <= max(FRAGILE_NATS, SURE * stderr):
         return ()
     values = {"rise": rise, "position": position, "angle": angle, "tolerant": tolerant}
@@ -88,10 +80,8 @@ def fragile(
 
 
 def unmet(found: Mapping[str, Suggestion | None]) -> tuple[Advice, ...]:
-    """Return a warning for each requirement that a search could not keep.
-
-    `found` has the nearest placement that meets each, and what it breaks; None: it was met nowhere.
-    """
+    """Return a warning for each requirement that a search could not keep. `found` has the nearest
+    placement that meets each, and what it breaks; None: it was met nowhere."""
     return tuple(
         Advice(None, UNMET, {"name": name, "against": own and list(own.breaks)})
         for name, own in found.items()

@@ -1,7 +1,5 @@
 """The table of a rig's sensors, and what can be built in words."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -26,8 +24,7 @@ SHORT_ZONES = {
 }
 """Short text for each zone of `scoring.zones.ZONES`, for a narrow column."""
 OCCLUDERS_NAMED = 3
-MIN_SHARE = 5e-4
-"""A part that hides a smaller share is not named: the share would read 0.0%."""
+MIN_SHARE = 5e-4  # A part that hides a smaller share is not named: the share would read 0.0%
 MIN_RISE, MIN_LOSS = 0.005, 0.00005
 """A rise of entropy [nats] below `MIN_RISE` would read 0.00; below `MIN_LOSS` it counts as none."""
 NO_FIGURE = "-"
@@ -35,13 +32,11 @@ NO_FIGURE = "-"
 
 @dataclass(frozen=True, slots=True)
 class SensorRow:
-    """What one sensor contributes to its rig.
-
-    `loss` is how much the rig's entropy rises when the sensor fails [nats]; None for the only one.
-    `zone` (`scoring.zones.ZONES`) is that whose entropy rises most, by `zone_loss` [nats] on a
-    sample of the prior; empty where none rises, or unknown. `occluded_by` is the share of the
-    sensor's beams or pixels that each part of the vehicle occludes, highest first.
-    """
+    """What one sensor contributes to its rig. `loss` is how much the rig's entropy rises when the
+    sensor fails [nats]; None for the only one. `zone` (`scoring.zones.ZONES`) is that whose entropy
+    rises most, by `zone_loss` [nats] on a sample of the prior; empty where none rises, or unknown.
+    `occluded_by` is the share of the sensor's beams or pixels that each part of the vehicle
+    occludes, highest first."""
 
     name: str
     loss: float | None
@@ -75,12 +70,10 @@ def sensor_rows(
     vehicle: Vehicle | None = None,
     seen: Outlook | None = None,
 ) -> tuple[SensorRow, ...]:
-    """Return a row for every sensor of a score, in the rig's order.
-
-    With the rig and the vehicle that were scored, the parts that hide pixels of a camera are
-    listed, too. `seen`, the outlook of the same rig, has the zone in which the loss of a sensor
-    costs most; for a score on objects this zone is unknown.
-    """
+    """Return a row for every sensor of a score, in the rig's order. With the rig and the vehicle
+    that were scored, the parts that hide pixels of a camera are listed, too. `seen`, the outlook of
+    the same rig, has the zone in which the loss of a sensor costs most; for a score on objects this
+    zone is unknown."""
     only = len(score.per_sensor) == 1
     rows = []
     for name, sensor_score in score.per_sensor.items():
@@ -118,9 +111,7 @@ def loss_text(loss: float | None) -> str:
 
 def built_lines(figures: Sequence[KeyFigures]) -> list[str]:
     """Return what can be built in two lines, of one rig, or of start and result; none without it.
-
-    Figures that are not known are named with their sensors; prices only where there are some.
-    """
+    Figures that are not known are named with their sensors; prices only where there are some."""
     last, texts, by_sensors = figures[-1], [], dict[str, list[str]]()
     for key, row in BUILD_FIGURES.items():
         if found := dict.fromkeys(row.text(f.built[key]) for f in figures if key in f.built):

@@ -1,7 +1,5 @@
 """Query one location: which sensors see it, how well, and what hides it from the others."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -34,13 +32,11 @@ WAYS = (("ahead", "behind"), ("left", "right"), ("up", "down"))
 
 @dataclass(frozen=True, slots=True)
 class SensorAtPlace:
-    """Measurement of one location by one sensor.
-
-    `m` is the number of beams or pixels on the voxel (`sensors.measure`), `unhidden` that number if
-    the vehicle hid nothing, `ap` the average precision of m (eq. 4). `occluded_by` is the part of
-    the vehicle that blocks most of the rays, if it hides the location. `reason` is "sees",
-    "occluded", or one of the kind: "out of view", "out of range", "between beams", ...
-    """
+    """Measurement of one location by one sensor. `m` is the number of beams or pixels on the voxel
+    (`sensors.measure`), `unhidden` that number if the vehicle hid nothing, `ap` the average
+    precision of m (eq. 4). `occluded_by` is the part of the vehicle that blocks most of the rays,
+    if it hides the location. `reason` is "sees", "occluded", or one of the kind: "out of view",
+    "out of range", "between beams", ..."""
 
     name: str
     kind: str
@@ -53,13 +49,11 @@ class SensorAtPlace:
 
 @dataclass(frozen=True, slots=True)
 class AskedPlace:
-    """Result of a location query: one voxel, and what each sensor measures there.
-
-    `center` is its centre [m], `entropy` H (eq. 8) [nats], `ap` the average precision of all
-    sensors fused, 0 to 1; `seen` is whether any sensor sees it. `density` is the prior density of
-    objects, relative to the mean over the space; 0 in the vehicle. `in_vehicle` is whether it is in
-    the vehicle's own volume, which is not scored. `sensors` are in the rig's order.
-    """
+    """Result of a location query: one voxel, and what each sensor measures there. `center` is its
+    centre [m], `entropy` H (eq. 8) [nats], `ap` the average precision of all sensors fused, 0 to 1;
+    `seen` is whether any sensor sees it. `density` is the prior density of objects, relative to the
+    mean over the space; 0 in the vehicle. `in_vehicle` is whether it is in the vehicle's own
+    volume, which is not scored. `sensors` are in the rig's order."""
 
     center: tuple[float, float, float]
     entropy: float
@@ -94,20 +88,10 @@ def ask_place(
     *,
     densities: Sequence[ClassDensity] | None = None,
 ) -> AskedPlace:
-    """Evaluate a rig at the voxel that contains a point.
-
-    Parameters
-    ----------
-    rig, space, prior, vehicle
-    point : (2,) or (3,) float
-        Ground frame [m]; z is 0 if it is missing or None. One outside the space raises
-        `InputError`.
-    model : PerceptionModel, optional
-        AP curves and fusion rule; the paper's by default.
-    densities : sequence of ClassDensity, optional
-        ``prior.densities(space)`` if the caller has it: that takes longer than the rest of the
-        query.
-    """
+    """Evaluate a rig at the voxel that contains a point. `point` (2,): ground frame [m]; z is 0 if
+    it is missing or None. One outside the space raises `InputError`. `model`: AP curves and fusion
+    rule; the paper's by default. `densities`: ``prior.densities(space)`` if the caller has it: that
+    takes longer than the rest of the query."""
     model, side = model or PerceptionModel(), space.interval
     values = listed(point, 3) or []
     if len(values) == 2 or values[2:] == [None]:

@@ -1,7 +1,5 @@
 """Checks of a sensor's mounting position: inside the body, off the body, or occluded by it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -27,15 +25,12 @@ from .vehicle_checks import OFF_AXIS_M, Bodywork
 CLEAR_M, CLEAR_ABOVE_M = 0.5, 0.75
 """Greatest distance from the body of a mounted sensor [m]. Above the body it is larger: there are
 racks and masts, and a search tries positions up to that height."""
-NEAR_M = 0.05
-"""First radius of the search for the nearest triangle, beyond the bounding box [m]."""
-LOOKS_AT_M = 0.3
-"""If half of a sensor's rays end nearer than this [m], it looks only at the body."""
+NEAR_M = 0.05  # First radius of the search for the nearest triangle, beyond the bounding box [m]
+LOOKS_AT_M = 0.3  # If half of a sensor's rays end nearer than this [m], it looks only at the body
 MAX_OCCLUDED_SHARE = 1.0 / 3.0
 """Occluded share from which there is a warning: more than the quarter that a sensor at a corner of
 the vehicle loses."""
-MAX_RAYS = 4096
-"""Rays of a sensor that are cast at most."""
+MAX_RAYS = 4096  # Rays of a sensor that are cast at most
 UPSIDE_DOWN = -0.2
 """Vertical component of a sensor's unit upward axis below which its picture is upside down."""
 
@@ -44,11 +39,9 @@ def occluded_shares(
     sensor: Sensor | None, own: SensorScore | None = None, vehicle: Vehicle | None = None
 ) -> dict[str, float]:
     """Return the share of a sensor's rays that each part of the vehicle blocks, highest first.
-
     Without `own`, the sensor's part of a score, or where it counts no beams (cameras), an even
     sample of the sensor's rays is cast; without the sensor, only counted beams are used. Shares, 0
-    to 1, are by name of the part; parts that block nothing are left out.
-    """
+    to 1, are by name of the part; parts that block nothing are left out."""
     if own is not None and own.beams:
         return _shares(own.beams, own.occluded_by)
     if sensor is None or vehicle is None:
@@ -175,15 +168,12 @@ def distance_to(vehicle: Vehicle, point: Floats) -> float:
         radius *= 2.0
 
 
-IMAGE_GAP_M = 0.1
-"""A mirror image may be this much farther from the body than its original [m]."""
+IMAGE_GAP_M = 0.1  # A mirror image may be this much farther from the body than its original [m]
 
 
 def check_mirror_image(vehicle: Vehicle, sensor: Sensor, image: Pose) -> None:
-    """Check that a sensor's mirror image is on the vehicle where the sensor is.
-
-    A vehicle that is not centred, or an image in the air beside it, raises `InputError`.
-    """
+    """Check that a sensor's mirror image is on the vehicle where the sensor is. A vehicle that is
+    not centred, or an image in the air beside it, raises `InputError`."""
     field, body = f"sensor {sensor.name!r}: mirror image", Bodywork(vehicle)
     off_m = body.shape.middle[1]
     if abs(off_m) > OFF_AXIS_M:

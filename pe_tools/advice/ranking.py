@@ -1,7 +1,5 @@
 """Several rigs in sentences: which is better, and what a search cost."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 
@@ -12,7 +10,7 @@ from pe_core.search.key_figures import KEY_FIGURES, KeyFigures
 from ..wording import joined, metres
 from .location import WAYS
 from .score_comparison import AP, COVERAGE, ENTROPY, MIN_CHANGE, SECTOR, TRAFFIC, ComparedRow
-from .summary_text import WHERE
+from .summary import WHERE
 
 ZONES_NAMED = 2
 SENSORS_NAMED = 3
@@ -23,15 +21,12 @@ RANKED = {
     ENTROPY: ("entropy", 1.0, 2, " nats", " nats"),
     COVERAGE: ("coverage", 100.0, 1, "%", " points"),
     AP: ("expected AP", 1.0, 3, "", ""),
-}
-"""Measures that rank rigs: name, factor, decimals, units after a value and after a difference."""
+}  # Measures that rank rigs: name, factor, decimals, units after a value and after a difference
 
 
 def ranking(names: Sequence[str], rows: Sequence[ComparedRow]) -> tuple[str, ...]:
     """Return a sentence for each measure: the best of several rigs, and how much worse others are.
-
-    `names` are those of the rigs in the order of the values of `rows`, the result of `compare`.
-    """
+    `names` are those of the rigs in the order of the values of `rows`, the result of `compare`."""
     return tuple(
         _ranked(names, row)
         for row in rows
@@ -57,11 +52,9 @@ def _ranked(names: Sequence[str], row: ComparedRow) -> str:
 
 def disagreement(names: Sequence[str], rows: Sequence[ComparedRow]) -> str:
     """Return one sentence where the three figures prefer different rigs; empty where one is best.
-
     The figures are entropy, expected AP in traffic, and the widest blind sector for the lowest
     body. `rows` are those of `compare` and of `compare_figures`. Rigs that do not differ clearly
-    from the best one are as good as it.
-    """
+    from the best one are as good as it."""
     entropy = (row for row in rows if (row.group, row.measure) == ("rig", ENTROPY))
     traffic = (row for row in rows if (row.group, row.name) == (TRAFFIC, ""))
     sector = (row for row in rows if row.measure == SECTOR)
@@ -98,11 +91,9 @@ def moved_words(before: Rig, after: Rig) -> str:
 
 
 def gain_sentence(before: Rig, after: Rig, start: KeyFigures, result: KeyFigures) -> str:
-    """Return the move from a rig to another, its gain and its error, in one sentence.
-
-    The gain is that of the expected AP in traffic by distance. The error is the largest standard
-    error of these, so that of a difference is smaller. Empty without a move or such an AP.
-    """
+    """Return the move from a rig to another, its gain and its error, in one sentence. The gain is
+    that of the expected AP in traffic by distance. The error is the largest standard error of
+    these, so that of a difference is smaller. Empty without a move or such an AP."""
     if start.traffic is None or result.traffic is None or before == after:
         return ""
     first, last = start.traffic.rings, result.traffic.rings
@@ -113,10 +104,8 @@ def gain_sentence(before: Rig, after: Rig, start: KeyFigures, result: KeyFigures
 
 
 def search_cost(before: Score, after: Score, start: KeyFigures, result: KeyFigures) -> str:
-    """Return one sentence on what a search made worse, or that nothing is.
-
-    `start` and `result` are the key figures of the rigs with the scores `before` and `after`.
-    """
+    """Return one sentence on what a search made worse, or that nothing is. `start` and `result` are
+    the key figures of the rigs with the scores `before` and `after`."""
     losses = []
     for row in KEY_FIGURES.values():
         first, last = row.value(start), row.value(result)

@@ -1,7 +1,5 @@
 """Compare scores of several rigs: differences, their standard errors, and which are significant."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -31,12 +29,10 @@ sector the error of its edges [deg]."""
 
 
 def sure_factor(studies: int, degrees: int = BLOCKS - 1) -> float:
-    """Return how many standard errors a difference must exceed to be significant.
-
-    It is a two-sided quantile of Student's t distribution. All pairs of the studies are compared:
-    the Bonferroni correction divides the 5 % error probability among them. The standard errors have
-    `degrees` of freedom, the number of batches of the estimate minus one.
-    """
+    """Return how many standard errors a difference must exceed to be significant. It is a two-sided
+    quantile of Student's t distribution. All pairs of the studies are compared: the Bonferroni
+    correction divides the 5 % error probability among them. The standard errors have `degrees` of
+    freedom, the number of batches of the estimate minus one."""
     pairs = max(studies * (studies - 1) // 2, 1)
     z = NormalDist().inv_cdf(1.0 - (1.0 - CERTAINTY) / (2.0 * pairs))
     # Abramowitz & Stegun 26.7.5, quantile of Student's t from that of the normal distribution.
@@ -57,12 +53,10 @@ def degrees_of(scores: Iterable[Score]) -> int:
 
 
 def difference_errors(scores: Sequence[Score], figure: FigureKey) -> tuple[tuple[float, ...], ...]:
-    """Return the standard errors of the differences of a figure between all pairs of scores.
-
-    Errors of scores on the same sample are paired (`scoring.scatter`). Errors of scores on
-    different samples are independent: their squares add up. The error is 0 for scores of the whole
-    grid, and for reach, which is not sampled. The result (N, N) has the unit of the figure.
-    """
+    """Return the standard errors of the differences of a figure between all pairs of scores. Errors
+    of scores on the same sample are paired (`scoring.scatter`). Errors of scores on different
+    samples are independent: their squares add up. The error is 0 for scores of the whole grid, and
+    for reach, which is not sampled. The result (N, N) has the unit of the figure."""
     errors = [_error(score, figure) for score in scores]
     found = [[0.0] * len(scores) for _ in scores]
     for i, j in permutations(range(len(scores)), 2):
@@ -107,30 +101,19 @@ OTHER_HARDWARE = (
 """Note beside scores of rigs that differ in their sensors, not in their placement alone."""
 OTHER_RETURNS = "LiDAR returns differ, as in the paper or on the road: do not compare scores."
 LOWER_IS_BETTER = frozenset({ENTROPY, BLIND, SECTOR})
-AHEAD = "front"
-"""Direction whose reach is compared."""
+AHEAD = "front"  # Direction whose reach is compared
 
 
 @dataclass(frozen=True, slots=True)
 class ComparedRow:
-    """One figure of several rigs: a row of a comparison table.
-
-    Attributes
-    ----------
-    group, name : str
-        "rig", "zone", "class" or "in traffic", and the name of the zone or class.
-    measure : {"entropy", "coverage", "ap", "reach", "blind", "sector", "margin"}
-        Entropy [nats], blind ground [m2] and widest blind sector [deg]: lower is better. Coverage
-        and expected AP, 0 to 1, reach ahead [m] and margin [s]: higher is better.
-    values : tuple of float or None
-        By score; None for a score without this zone or class.
-    errors : tuple of tuple of float
-        (N, N) standard errors of the differences of each two values; 0 where nothing is sampled.
-    factor : float
-        Number of standard errors beyond which a difference is significant (`sure_factor`).
-    is_ranked : bool
-        Whether a value may be the best; not where the error of a difference is unknown.
-    """
+    """One figure of several rigs: a row of a comparison table. `group`, `name`: "rig", "zone",
+    "class" or "in traffic", and the name of the zone or class. `measure`: entropy [nats], blind
+    ground [m2] and widest blind sector [deg]: lower is better. Coverage and expected AP, 0 to 1,
+    reach ahead [m] and margin [s]: higher is better. `values`: by score; None for a score without
+    this zone or class. `errors`: (N, N) standard errors of the differences of each two values; 0
+    where nothing is sampled. `factor`: number of standard errors beyond which a difference is
+    significant (`sure_factor`). `is_ranked`: whether a value may be the best; not where the error
+    of a difference is unknown."""
 
     group: str
     name: str
@@ -166,10 +149,8 @@ class ComparedRow:
         return tuple(k for _, k in sorted(present))
 
     def sense(self, k: int) -> int:
-        """Return -1 if a value is clearly better than the first one, 1 if it is worse, else 0.
-
-        A loss counts also within the error, a gain does not.
-        """
+        """Return -1 if a value is clearly better than the first one, 1 if it is worse, else 0. A
+        loss counts also within the error, a gain does not."""
         less = self.differences[k]
         if less is None or abs(less) <= MIN_CHANGE[self.measure]:
             return 0
@@ -191,18 +172,15 @@ class ComparedRow:
 
 def compare(scores: Mapping[str, Score]) -> tuple[ComparedRow, ...]:
     """Compare scores by name: entropy and coverage of the rigs, of every zone and of every class.
-
-    For scores on objects, expected AP and reach ahead follow. Differences refer to the first score.
-    """
+    For scores on objects, expected AP and reach ahead follow. Differences refer to the first
+    score."""
     return tuple(_rows(list(scores.values())))
 
 
 def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...]:
     """Compare key figures: expected AP in traffic, blind sectors, blind ground, and reach ahead.
-
-    Differences refer to the first. The error of a difference
-    of AP is that of independent samples, which is too large: rigs share the scenes.
-    """
+    Differences refer to the first. The error of a difference of AP is that of independent samples,
+    which is too large: rigs share the scenes."""
     columns = list(figures.values())
     if not columns:
         return ()
@@ -273,10 +251,8 @@ def _row(
 
 
 def hardware_note(rigs: Iterable[Sequence[SensorModel]]) -> str:
-    """Return `OTHER_HARDWARE` where rigs, by their models in any order, differ; else nothing.
-
-    Where LiDARs have other `returns`, it is `OTHER_RETURNS`.
-    """
+    """Return `OTHER_HARDWARE` where rigs, by their models in any order, differ; else nothing. Where
+    LiDARs have other `returns`, it is `OTHER_RETURNS`."""
     first, *others = rows = [list(models) for models in rigs] or [[]]
     if len({m.returns for models in rows for m in models if hasattr(m, "returns")}) > 1:
         return OTHER_RETURNS

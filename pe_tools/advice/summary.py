@@ -1,21 +1,29 @@
 """Reach, blind ground and expected AP of a rig: the figures, and their description in sentences."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from pe_core.base.values import choice
 from pe_core.prior.prior import Prior
 from pe_core.scene.rig import Rig
-from pe_core.scoring.score import FARTHEST_M, FoundClass, ObjectScore
+from pe_core.scoring.score import (
+    FAR_M,
+    FARTHEST_M,
+    NEAR_M,
+    FoundClass,
+    ObjectScore,
+    PartScore,
+    Score,
+)
 from pe_core.scoring.sight import BLIND_TO_M, BlindGround, Reach, Sight, VisibleShares, shown_end
 from pe_tools.wording import percent
 
-NEAREST_M = 0.5
-"""A shorter reach [m] is described as "nowhere"."""
+from .advice import Advice
+from .warnings import hidden_sensors, hidden_words
+
+NEAREST_M = 0.5  # A shorter reach [m] is described as "nowhere"
 
 
 def object_words(found: ObjectScore) -> tuple[str, ...]:
@@ -57,25 +65,21 @@ def reach_words(own: FoundClass) -> str:
     return f"up to {ways}{f'; not {missing}' if missing else ''}"
 
 
-USUAL_CLASS = "pedestrian"
-"""Class of the reach unless the user chooses another."""
+USUAL_CLASS = "pedestrian"  # Class of the reach unless the user chooses another
 SIDES = {"front": "ahead", "rear": "behind", "left": "left", "right": "right"}
 """Text for each side of the vehicle."""
 BEARINGS = {"front": 0.0, "rear": math.pi, "left": math.pi / 2.0, "right": -math.pi / 2.0}
 """Bearing of each side, counter-clockwise from straight ahead [rad]."""
-ANY_CLASS = "any"
-"""Name of the only class of a prior without classes."""
+ANY_CLASS = "any"  # Name of the only class of a prior without classes
 CLASSES_NAMED = 8
 
 
 @dataclass(frozen=True, slots=True)
 class Outlook:
-    """Results of `Sight` for a rig.
-
-    `expected_ap` is by class, 0 to 1; `shares` are the visible shares by number of sensors, by
-    sensor and zone; `reach` is that for one class; `blind` is the ground on which an object of
-    height `BLIND_TO_M` is invisible, or of the lowest height of the space if that is greater.
-    """
+    """Results of `Sight` for a rig. `expected_ap` is by class, 0 to 1; `shares` are the visible
+    shares by number of sensors, by sensor and zone; `reach` is that for one class; `blind` is the
+    ground on which an object of height `BLIND_TO_M` is invisible, or of the lowest height of the
+    space if that is greater."""
 
     expected_ap: Mapping[str, float]
     shares: VisibleShares
@@ -112,10 +116,8 @@ def outlook(sight: Sight, rig: Rig, class_name: str | None = None) -> Outlook:
 
 
 def class_of(prior: Prior, name: str | None) -> str:
-    """Return the name of the class for the reach, which has to be one of the prior.
-
-    For None it is pedestrians, or the first class of a prior without them.
-    """
+    """Return the name of the class for the reach, which has to be one of the prior. For None it is
+    pedestrians, or the first class of a prior without them."""
     names = prior.class_names
     if name is None:
         return USUAL_CLASS if USUAL_CLASS in names else names[0]
@@ -177,3 +179,54 @@ def _blind_dict(blind: BlindGround) -> dict[str, Any]:
         "zone_m": dict(blind.zone),
         "seen_from_m": dict(blind.seen_from),
     }
+
+
+WHERE = {
+    "front": "ahead",
+    "rear": "behind",
+    "left": "on the left",
+    "right": "on the right",
+    "near": f"within {NEAR_M:g} m",
+    "mid": f"from {NEAR_M:g} to {FAR_M:g} m",
+    "far": f"beyond {FAR_M:g} m",
+}  # Text for each zone of `scoring.zones.ZONES`
+
+
+def rig_words(
+    score: Score,
+    seen: Outlook | None = None,
+    rig: Rig | None = None,
+    warnings: Sequence[Advice] = (),
+) -> tuple[str, ...]:
+    """Describe a score in short lines: hidden sensors, coverage, zones. `seen` is the outlook of
+    the same rig: it adds the coverage by several sensors, expected AP, reach and blind ground. Of
+    `rig`, sensors that see nothing are named; `warnings` explain why."""
+    hidden = () if rig is None else hidden_words(hidden_sensors(rig, score, warnings))
+    lines = [*hidden, _coverage(score, seen), *_zones(score.per_zone)]
+    if score.objects is not None:
+        lines += object_words(score.objects)
+    if seen is not None:
+        lines += outlook_words(seen, of_voxels=score.objects is None)
+    return tuple(lines)
+
+
+def _coverage(score: Score, seen: Outlook | None) -> str:
+    if score.objects is not None:
+        looked_at = objects_looked_at(score.objects)
+        return f"{percent(score.coverage)} of the objects are seen, by weight ({looked_at})"
+    line = f"{percent(score.coverage)} of where objects are is seen"
+    if seen is None or len(seen.shares.by_number) < 3:
+        return line
+    return f"{line}; {percent(seen.shares.by_number[2])} by two or more sensors"
+
+
+def _zones(zones: Mapping[str, PartScore]) -> Iterator[str]:
+    """Name the zones with the lowest and the highest entropy."""
+    order = sorted(zones, key=lambda name: zones[name].entropy)
+    if order and zones[order[0]].entropy < zones[order[-1]].entropy:
+        best, worst = (
+            f"{WHERE.get(name, name)} ({zones[name].entropy:.2f} nats, "
+            f"{percent(zones[name].coverage)} seen)"
+            for name in (order[0], order[-1])
+        )
+        yield f"best {best}, worst {worst}"

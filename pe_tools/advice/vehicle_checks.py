@@ -1,7 +1,5 @@
 """Checks of a vehicle's mesh: its size, its orientation, its position on the ground."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -53,12 +51,10 @@ OFF_AXIS_M, OFF_MIDDLE_M = 0.05, 1.0
 origin may be at an axle, but a mirror image is on the vehicle only if the axis is y = 0."""
 WIDE_M = 3.2
 """Greatest width of a road vehicle [m]: a lorry is 2.6 m wide, and each mirror adds 0.3 m."""
-FLOOR_M = 6.0
-"""A mesh wider than any vehicle and lower than this [m] may be a vehicle on a floor."""
+FLOOR_M = 6.0  # A mesh wider than any vehicle and lower than this [m] may be a vehicle on a floor
 
 
-WHEELS_BELOW = 0.1
-"""The wheels are this far off the middle of the up axis, as a share of the side."""
+WHEELS_BELOW = 0.1  # The wheels are this far off the middle of the up axis, as a share of the side
 
 
 def odd_vehicle(body: Bodywork) -> Iterator[Advice]:

@@ -1,7 +1,5 @@
 """Warnings about a rig, its vehicle, its conditions and its AP curves; sensors that see nothing."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -29,9 +27,7 @@ def warnings(
     score: Score | None = None,
 ) -> tuple[Advice, ...]:
     """Return warnings about probable mistakes: of the vehicle, then of the sensors in their order.
-
-    `score` is the rig's: beams that it has counted as occluded are not cast again.
-    """
+    `score` is the rig's: beams that it has counted as occluded are not cast again."""
     body = None if vehicle is None else Bodywork(vehicle)
     found = [] if body is None else [*odd_vehicle(body)]
     sensors = tuple(rig)
@@ -91,12 +87,10 @@ NOTHING_THERE = "no object is expected where it looks"
 @dataclass(frozen=True, slots=True)
 class HiddenSensor:
     """A sensor that sees no place where objects are expected, or is mostly hidden by the vehicle.
-
     `dead` is whether it sees none of the evaluated voxels or objects, `exact` whether all voxels
     were evaluated, not a sample. `lost` is the share of its beams, or of its picture, that the
     vehicle blocks, 0 to 1; 0 for kinds that do not count beams. `why` is the reason as a phrase:
-    "inside the body", "86% of its picture occluded".
-    """
+    "inside the body", "86% of its picture occluded"."""
 
     name: str
     dead: bool
@@ -109,9 +103,7 @@ def hidden_sensors(
     rig: Rig, score: Score, warnings: Iterable[Advice] = ()
 ) -> tuple[HiddenSensor, ...]:
     """Return the sensors of a scored rig that are dead or mostly hidden, the dead ones first.
-
-    `warnings` about this rig tell which sensors are inside the body.
-    """
+    `warnings` about this rig tell which sensors are inside the body."""
     inside = {warning.subject for warning in warnings if warning.code == "inside"}
     hidden = []
     for sensor in rig:

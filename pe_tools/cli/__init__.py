@@ -2,53 +2,16 @@
 
 from pe_core.version import WEBSITE as WEBSITE
 
-from .check_verb import add_check_options as add_check_options
-from .check_verb import check_study as check_study
-from .choose_verb import choose as choose
-from .choose_verb import plots as plots
-from .choose_verb import resumed as resumed
-from .command import Parser as Parser
-from .command import add_run_options as add_run_options
-from .command import add_score_options as add_score_options
-from .command import add_sensors_verb as add_sensors_verb
-from .command import as_typed as as_typed
-from .command import count_up_to as count_up_to
-from .command import run as run
-from .command import with_options as with_options
-from .drive_by_verb import add_drive_by_options as add_drive_by_options
-from .drive_by_verb import chosen_stories as chosen_stories
-from .drive_by_verb import drive_by_study as drive_by_study
-from .exchange_verbs import SUFFIXES as SUFFIXES
-from .exchange_verbs import add_export_options as add_export_options
-from .exchange_verbs import add_rigs_verb as add_rigs_verb
-from .exchange_verbs import chosen_models as chosen_models
-from .exchange_verbs import export as export
-from .exchange_verbs import study_of_rig as study_of_rig
-from .explain_verbs import add_compare_options as add_compare_options
-from .explain_verbs import add_explain_options as add_explain_options
-from .explain_verbs import compare as compare
-from .explain_verbs import explain as explain
-from .explain_verbs import named_by_file as named_by_file
-from .explain_verbs import refuse_different as refuse_different
-from .explain_verbs import scored as scored
-from .interrupts import leave as leave
-from .interrupts import noted_when_interrupted as noted_when_interrupted
-from .run_job import More as More
-from .run_job import add_page_option as add_page_option
-from .run_job import begun_search as begun_search
-from .run_job import carry_out as carry_out
-from .run_job import drive as drive
-from .run_job import job_and_folder as job_and_folder
-from .run_job import pages as pages
-from .run_job import with_pages as with_pages
-from .sweep_verb import add_sweep_options as add_sweep_options
-from .sweep_verb import sweep as sweep
-from .terminal import BAD_INPUT as BAD_INPUT
-from .terminal import DONE as DONE
-from .terminal import USAGE as USAGE
-from .terminal import Answer as Answer
-from .terminal import open_missing_streams as open_missing_streams
-from .terminal import show as show
-from .terminal import tell as tell
-from .where_verb import add_where_options as add_where_options
-from .where_verb import where as where
+from .check_verb import add_check_options, check_study
+from .command import Parser, add_run_options, add_score_options, add_sensors_verb, as_typed
+from .command import count_up_to, run, with_options
+from .drive_by_verb import add_drive_by_options, chosen_stories, drive_by_study
+from .exchange_verbs import SUFFIXES, add_export_options, add_rigs_verb, chosen_models, export
+from .exchange_verbs import study_of_rig
+from .explain_verbs import add_compare_options, add_explain_options, compare, explain, named_by_file
+from .explain_verbs import refuse_different, scored
+from .interrupts import leave, noted_when_interrupted
+from .run_job import More, add_page_option, drive, front_pages, pages, run_study
+from .sweep_verb import add_sweep_options, sweep
+from .terminal import BAD_INPUT, DONE, USAGE, Answer, open_missing_streams, show, tell
+from .where_verb import add_where_options, where

@@ -1,7 +1,5 @@
 """`pe check` and `pe requirements`: a study held to its requirements, and the presets."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 from dataclasses import replace
@@ -26,15 +24,13 @@ from .interrupts import stop_at_first
 from .run_job import drive, print_vehicle
 from .terminal import DONE, NOT_MET, Answer, tell
 
-STOPPED = "stopped before"
-"""Why a requirement has no verdict after Ctrl-C."""
+STOPPED = "stopped before"  # Why a requirement has no verdict after Ctrl-C
 ALL = "all"
 COLUMNS = (
     *("name", "check", "met", "margin_m", "share", "worst_x", "worst_y", "worst_body"),
     *("seen_by", "unseen_by", "breaks_without", "blind_m2", "source"),
 )
-LONGEST = 34
-"""Longer names are cut in the table."""
+LONGEST = 34  # Longer names are cut in the table
 
 
 def add_check_options(parser: argparse.ArgumentParser) -> None:
@@ -83,12 +79,9 @@ def check(args: argparse.Namespace) -> Answer:
 
 
 def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] = ()) -> Answer:
-    """Hold a study to its requirements and to the presets that are named.
-
-    After Ctrl-C the verdicts that were found are printed, and written to the CSV file.
-
-    `inputs` are files that no output replaces.
-    """
+    """Hold a study to its requirements and to the presets that are named. After Ctrl-C the verdicts
+    that were found are printed, and written to the CSV file. `inputs` are files that no output
+    replaces."""
     if args.csv is not None:
         require_new(Path(args.csv), replace=args.replace, inputs=inputs)
     study, unchecked = with_presets(with_curves(study, args), args.preset)
@@ -128,10 +121,8 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
 
 
 def with_presets(study: Study, names: Sequence[str]) -> tuple[Study, dict[str, str]]:
-    """Return a study with presets added to its requirements, and those that cannot be checked.
-
-    Of ``all`` presets those that cannot be placed round the vehicle are left out, with the reason.
-    """
+    """Return a study with presets added to its requirements, and those that cannot be checked. Of
+    ``all`` presets those that cannot be placed round the vehicle are left out, with the reason."""
     named = [preset(name, "check", "--preset").id for name in names if name != ALL]
     own = {each.name for each in study.requirements}
     added = [presets()[name].requirement() for name in dict.fromkeys(named) if name not in own]

@@ -1,9 +1,5 @@
-"""What every command line shares: parser, options, the verb ``sensors``, exit status.
-
-Used by `pe`, by `blender --command pe` and by bpy as a module, so that they behave alike.
-"""
-
-from __future__ import annotations
+"""What every command line shares: parser, options, the verb ``sensors``, exit status. Used by `pe`,
+by `blender --command pe` and by bpy as a module, so that they behave alike."""
 
 import argparse
 import shlex
@@ -35,10 +31,8 @@ MAX_WORKERS, MAX_VOXELS, LAST_SEED = 1024, 10**9, 2**64 - 1
 """Greatest values of options: more threads or voxels than anyone has a use for."""
 
 
-AUTO = "auto"
-"""Value of `--sensitivity` that leaves the study's own."""
-NOTHING = "none"
-"""Value of `--keep` that keeps no figure."""
+AUTO = "auto"  # Value of `--sensitivity` that leaves the study's own
+NOTHING = "none"  # Value of `--keep` that keeps no figure
 STOPS = {"stop_at": "target", "stop_after": "seconds", "stop_gain": "gain"}
 """Fields of `Stop` by option."""
 PATHS = ("STUDY", "FILE", "MESH", "PATH", "TABLE", "DIR")
@@ -206,10 +200,8 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
 
 
 def with_goals(study: Study, args: argparse.Namespace) -> Study:
-    """Return the study with the changes of these options; `InputError` for an impossible one.
-
-    A verb that does not search has none of them.
-    """
+    """Return the study with the changes of these options; `InputError` for an impossible one. A
+    verb that does not search has none of them."""
     goals = own = study.search.goals
     given = {field: getattr(args, option, None) for option, field in STOPS.items()}
     stops = {field: value for field, value in given.items() if value is not None}
@@ -242,7 +234,7 @@ def _kept(text: str) -> tuple[str, float | None]:
     return name, int(value) if value.isdigit() else _number(value) if value else None
 
 
-def add_sensors_verb(verbs: argparse._SubParsersAction[Any]) -> None:
+def add_sensors_verb(verbs: Any) -> None:
     """Add ``sensors``: the catalogue, or one of its entries with a plot of its channels."""
     parser = verbs.add_parser("sensors", help="list the catalogue, or show one sensor")
     parser.add_argument("name", nargs="?", help="a sensor's name")
@@ -260,7 +252,7 @@ def _show_sensors(args: argparse.Namespace) -> Answer:
     return "\n".join([*lines, *(["", *plot] if plot else [])]), DONE
 
 
-def add_curves_verb(verbs: argparse._SubParsersAction[Any]) -> None:
+def add_curves_verb(verbs: Any) -> None:
     """Add ``curves``: the AP curves of whole objects by model, and where they hold."""
     parser = verbs.add_parser("curves", help="list the AP curves of whole objects, by model")
     parser.set_defaults(function=_show_curves)
@@ -287,11 +279,9 @@ def as_typed(prog: str, argv: Sequence[str]) -> str:
 
 
 def run(main: Callable[[], Answer], out: TextIO | None = None) -> int:
-    """Run a command, print its text on `out` (stdout), and return its exit status.
-
-    Bad input is one line on stderr and status 1; a signal that ends the command is 128 and its
-    number: 130 for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP.
-    """
+    """Run a command, print its text on `out` (stdout), and return its exit status. Bad input is one
+    line on stderr and status 1; a signal that ends the command is 128 and its number: 130 for
+    Ctrl-C, 143 for SIGTERM, 129 for SIGHUP."""
     try:
         with signals_interrupt():
             text, status = main()

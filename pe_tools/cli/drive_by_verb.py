@@ -1,7 +1,5 @@
 """`pe drive-by`: stories of what moves round the vehicle, and when its tracks are confirmed."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
@@ -47,10 +45,8 @@ def drive_by(args: argparse.Namespace) -> Answer:
 
 
 def drive_by_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] = ()) -> Answer:
-    """Drive stories by a study's rig: those that are named, else the study's own.
-
-    `inputs` are files that no output replaces.
-    """
+    """Drive stories by a study's rig: those that are named, else the study's own. `inputs` are
+    files that no output replaces."""
     if args.output is not None:
         require_new(Path(args.output), replace=args.replace, inputs=inputs)
     chosen = chosen_stories(study, args.story)

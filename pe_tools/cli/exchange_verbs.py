@@ -1,7 +1,5 @@
 """`pe export`, `pe import` and `pe rigs`: rigs of other programs and known vehicles."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 from dataclasses import replace
@@ -23,7 +21,7 @@ from ..wording import aligned
 from .terminal import DONE, Answer, tell
 
 
-def add_rigs_verb(verbs: argparse._SubParsersAction[Any]) -> None:
+def add_rigs_verb(verbs: Any) -> None:
     """Add ``rigs``: list known rigs, describe one, or write a study of one."""
     parser = verbs.add_parser("rigs", help="list known rigs, or write one as a study")
     parser.add_argument("name", nargs="?", metavar="NAME", help="a rig's name in the list")
@@ -92,11 +90,8 @@ NO_GUESS = "parts named as wheels, front and rear, to guess the rear axle from"
 def add_export_options(
     parser: argparse.ArgumentParser, *, also_study: bool = False, more: Sequence[str] = ()
 ) -> None:
-    """Add the options of ``export`` to a parser.
-
-    With `also_study`, the default without a format and a suffix is to write the study. `more` has
-    additional formats of the caller.
-    """
+    """Add the options of ``export`` to a parser. With `also_study`, the default without a format
+    and a suffix is to write the study. `more` has additional formats of the caller."""
     known = [*RIG_FORMATS, *dict.fromkeys([*scene_outputs(), *OF_EXAMPLE]), *more]
     default = "by the suffix of PATH" + (", or else a study" if also_study else "")
     about = f"format: {', '.join(known)} (default: {default})"

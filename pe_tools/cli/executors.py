@@ -1,7 +1,5 @@
 """Executors of runs and of candidates: processes here, a Dask cluster, or any other executor."""
 
-from __future__ import annotations
-
 import importlib
 import logging
 import os
@@ -25,17 +23,14 @@ FUNCTION = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_]\w*")
 """Name of a function in a module; no address has one, as its port is a number."""
 ADDRESS = re.compile(r"((tcp|tls)://)?[^/@\s]+:[0-9]{1,5}")
 """Address with a protocol that Dask supports without further libraries."""
-CONNECT_S = 5.0
-"""Time limit for the scheduler's answer [s]."""
+CONNECT_S = 5.0  # Time limit for the scheduler's answer [s]
 
 
 @contextmanager
 def workplace(workers: int | None, executor: str | None) -> Iterator[LocalWorkers]:
-    """Open the worker pool that the command line asks for; close it at the end.
-
-    `executor` is that of ``--executor``; None: processes here. `InputError` where no scheduler
-    answers, a package is not installed, or what is named makes no executor.
-    """
+    """Open the worker pool that the command line asks for; close it at the end. `executor` is that
+    of ``--executor``; None: processes here. `InputError` where no scheduler answers, a package is
+    not installed, or what is named makes no executor."""
     count = workers or os.cpu_count() or 1
     if executor is None:
         _tell_without_processes(count)
@@ -53,9 +48,7 @@ def _named(executor: str, count: int) -> LocalWorkers:
 @contextmanager
 def evaluated_by(job: Job, executor: str | None) -> Iterator[None]:
     """Have the workers of an executor evaluate a job's candidates meanwhile; None: processes.
-
-    `InputError` as in `workplace`.
-    """
+    `InputError` as in `workplace`."""
     if executor is None:
         if not isinstance(job, ScoreJob):
             _tell_without_processes(job.workers)
@@ -74,10 +67,8 @@ def _tell_without_processes(count: int | None) -> None:
 
 
 class ExecutorWorkers(LocalWorkers):
-    """The workers of an executor that a function of the user's returns.
-
-    They may be on other machines: they reach no folder of ours.
-    """
+    """The workers of an executor that a function of the user's returns. They may be on other
+    machines: they reach no folder of ours."""
 
     reaches_folders = False
     threads = 1
@@ -105,8 +96,7 @@ class DaskWorkers(LocalWorkers):
     """The worker pool of a Dask scheduler; its workers reach no folder of ours."""
 
     reaches_folders = False
-    threads = 1
-    """Threads of one score: a Dask worker runs one task in each of its threads."""
+    threads = 1  # Threads of one score: a Dask worker runs one task in each of its threads
 
     def __init__(self, address: str) -> None:
         self._address, self._client, self._alone = address, _client_of(address), False
@@ -117,10 +107,8 @@ class DaskWorkers(LocalWorkers):
         return 2 * max(1, self._thread_count())
 
     def check(self) -> None:
-        """Print a message, once, if there are no workers.
-
-        `InputError` where the scheduler is gone.
-        """
+        """Print a message, once, if there are no workers. `InputError` where the scheduler is
+        gone."""
         if self._client.status == "closed":
             expected = "a scheduler that runs until the end"
             found = "that it is gone; what is done is kept"

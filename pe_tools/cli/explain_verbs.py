@@ -1,7 +1,5 @@
 """`pe explain` and `pe compare`: a score described in text, and several studies compared."""
 
-from __future__ import annotations
-
 import argparse
 import signal
 from collections.abc import Mapping, Sequence
@@ -34,15 +32,12 @@ MEASURES = {
     "blind": ("blind ground [m2], lower is better", ".1f", 1),
 }
 """Title of each measure, format of its figures, and the factor of their differences."""
-WIDEST = 24
-"""Longer names of studies are cut at the front: their ends tell them apart."""
+WIDEST = 24  # Longer names of studies are cut at the front: their ends tell them apart
 
 
 def comparison(names: Sequence[str], rows: Sequence[ComparedRow]) -> list[str]:
-    """Return rows as lines with a column for each study.
-
-    The best value is marked; differences refer to the first study.
-    """
+    """Return rows as lines with a column for each study. The best value is marked; differences
+    refer to the first study."""
     heads = [name if len(name) <= WIDEST else f"...{name[3 - WIDEST :]}" for name in names]
     table = [["", *heads]]
     for measure, (title, *_) in MEASURES.items():

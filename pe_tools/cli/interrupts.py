@@ -1,7 +1,5 @@
 """Signals that end a run: the first one stops the job gracefully, the second one exits."""
 
-from __future__ import annotations
-
 import os
 import signal
 import sys
@@ -12,8 +10,7 @@ from typing import NoReturn
 
 from pe_core.base.files import finish_writing
 
-FATAL = 128
-"""Exit status of a process that a signal ended, less the signal's number."""
+FATAL = 128  # Exit status of a process that a signal ended, less the signal's number
 NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
 
 
@@ -49,10 +46,8 @@ def _numbers() -> list[signal.Signals]:
 
 @contextmanager
 def signals_interrupt() -> Iterator[None]:
-    """Have SIGTERM and SIGHUP raise `Interrupted`, as Ctrl-C raises KeyboardInterrupt.
-
-    By default they would end the program without cleanup and without a message.
-    """
+    """Have SIGTERM and SIGHUP raise `Interrupted`, as Ctrl-C raises KeyboardInterrupt. By default
+    they would end the program without cleanup and without a message."""
 
     def handler(signum: int, _frame: object) -> None:
         raise Interrupted(signum)

@@ -1,7 +1,5 @@
 """`pe new`: a first study of a vehicle's mesh, with comments and a sensor on the roof."""
 
-from __future__ import annotations
-
 import argparse
 import math
 import os
@@ -38,10 +36,8 @@ CAMERA, CAMERA_ABOVE_M = "Camera 60 deg", 0.1
 """Model of the camera that is proposed as a comment, and its height above the roof."""
 PITCH_DEG = (-10.0, 10.0)
 MAX_HEIGHT_STEP_M = 0.05
-COLUMN = 30
-"""Column of the comments."""
-LONG = 50
-"""A line with more characters has its comment above it."""
+COLUMN = 30  # Column of the comments
+LONG = 50  # A line with more characters has its comment above it
 
 
 def add_new_verb(verbs: Any) -> None:
@@ -95,12 +91,10 @@ def new_study(args: argparse.Namespace) -> Answer:
 def read_in_metres(
     path: Path, up: str | None, forward: str | None, scale: float | None
 ) -> tuple[Mesh, float, str]:
-    """Read a mesh; without a scale find the unit in which it has the size of a vehicle.
-
-    Return the mesh, metres in a unit of the file, and the name of the unit: empty for metres and
-    for a scale that was asked for. `InputError` when the file cannot be read, or has a vehicle's
-    size in no unit.
-    """
+    """Read a mesh; without a scale find the unit in which it has the size of a vehicle. Return the
+    mesh, metres in a unit of the file, and the name of the unit: empty for metres and for a scale
+    that was asked for. `InputError` when the file cannot be read, or has a vehicle's size in no
+    unit."""
     mesh = read_mesh(path, MeshAxes(up, forward, 1.0 if scale is None else scale))
     try:
         require_vehicle_size(str(path), mesh)
@@ -118,12 +112,9 @@ def read_in_metres(
 
 @dataclass(frozen=True)
 class FirstStudy:
-    """What a first study is written from.
-
-    The mesh file, relative to the study's folder, and the study's own; how the axes of the mesh
-    were determined, as `Mesh.axes` has it; metres in a unit of it, and the name of a unit that was
-    found (empty for metres).
-    """
+    """What a first study is written from. The mesh file, relative to the study's folder, and the
+    study's own; how the axes of the mesh were determined, as `Mesh.axes` has it; metres in a unit
+    of it, and the name of a unit that was found (empty for metres)."""
 
     mesh: str
     file: str

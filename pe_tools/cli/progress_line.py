@@ -1,9 +1,5 @@
-"""Progress of a job on stderr: a bar with the time left on a terminal, lines in a log.
-
-Of a stage that takes long, one line tells the time left, as soon as its progress shows it.
-"""
-
-from __future__ import annotations
+"""Progress of a job on stderr: a bar with the time left on a terminal, lines in a log. Of a stage
+that takes long, one line tells the time left, as soon as its progress shows it."""
 
 import shutil
 import time

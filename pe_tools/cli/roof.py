@@ -1,7 +1,5 @@
 """The roof of a vehicle: the mount on it, and a pose on that mount for a new study's sensor."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -27,10 +25,8 @@ COLUMNS, STEP_M = 100, 0.05
 ROOF_PERCENTILE, LEVEL_SHARE = 90.0, 0.06
 """The roof's level is that of the highest tenth of the plan view; the roof is within this share of
 the vehicle's height of it."""
-NEAR_SHARE = 0.1
-"""Radius of the middle of the roof, as a share of the vehicle's length."""
-SAME_HEIGHT_M = 0.01
-"""Places of the roof count as equally high within this."""
+NEAR_SHARE = 0.1  # Radius of the middle of the roof, as a share of the vehicle's length
+SAME_HEIGHT_M = 0.01  # Places of the roof count as equally high within this
 MAX_PLACES = 40
 STANDOFFS_M = (0.04, 0.1, 0.2)
 """Heights of the bracket under a housing: a base plate of 40 mm, or more where that is needed."""
@@ -41,10 +37,8 @@ STEEP = 0.5
 @dataclass(frozen=True)
 class Roof:
     """Where the roof of a vehicle is: points (N, 3) of it [m], the best place for a sensor first.
-
     `level` is its height above the ground, `tolerance` its greatest distance from that, `front` the
-    x of the foremost point [m].
-    """
+    x of the foremost point [m]."""
 
     places: Floats
     level: float
@@ -112,12 +106,10 @@ def _best_first(roof: Floats, low: Floats, high: Floats) -> Floats:
 
 
 def roof_sensor(vehicle: Vehicle, sensor: Sensor, housing: Housing | None, file: str) -> RoofSensor:
-    """Return a sensor on the roof of a vehicle: on a named part, else on an area of the mesh.
-
-    Its housing intersects no part of the vehicle. Without such a place it is above the highest
-    point of the vehicle, without a mount. The angles of its pose are kept. `file` names the area's
-    file in the study.
-    """
+    """Return a sensor on the roof of a vehicle: on a named part, else on an area of the mesh. Its
+    housing intersects no part of the vehicle. Without such a place it is above the highest point of
+    the vehicle, without a mount. The angles of its pose are kept. `file` names the area's file in
+    the study."""
     roof = find_roof(vehicle)
     for mount in _mounts(vehicle, roof, file):
         for place in roof.places[:MAX_PLACES]:
@@ -169,9 +161,7 @@ def _mounts(vehicle: Vehicle, roof: Roof, file: str) -> Iterator[SurfaceMount]:
 
 def _roof_faces(vehicle: Vehicle, roof: Roof) -> NDArray[np.bool_]:
     """(F,) triangles that are level and at the roof's height: with all corners, or else with one.
-
-    Open meshes have no inside, so triangles that face down count, too.
-    """
+    Open meshes have no inside, so triangles that face down count, too."""
     triangles = vehicle.triangles
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     is_level = np.abs(normals[:, 2]) > STEEP * np.sqrt((normals * normals).sum(axis=1))

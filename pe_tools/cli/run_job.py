@@ -1,7 +1,5 @@
 """Run a job of a verb's options, and keep its results."""
 
-from __future__ import annotations
-
 import argparse
 import signal
 import sys
@@ -14,7 +12,9 @@ from pe_core.base.errors import InputError
 from pe_core.study import STUDY, Study
 
 from .. import jobs
+from ..advice import Advice
 from .executors import evaluated_by
+from .front_text import front_summary
 from .interrupts import Interrupted, stop_at_first
 from .progress_line import Reporter
 from .terminal import BAD_INPUT, DONE, Answer, one_line, printable, show, summary, tell
@@ -31,45 +31,88 @@ def written(write: Callable[[Path], object], folder: Path) -> bool:
 
 
 Data = dict[str, Any]
+Found = jobs.Outcome | jobs.TradeOff
+Runs = jobs.ScoreJob | jobs.OptimizeJob | jobs.FrontJob
 
 
 class More(NamedTuple):
-    """Additional files of a run: their names, and the function that writes them.
-
-    `write` takes the outcome, the data of result.json, in which it lists the files, and the folder.
-    """
+    """Additional files of a run: their names, and the function that writes them. `write` takes the
+    outcome or the front, the data of its JSON file, in which an outcome lists them, the folder."""
 
     names: Sequence[str]
-    write: Callable[[jobs.Outcome, Data, Path], None]
+    write: Callable[[Any, Data, Path], None]
 
 
-def carry_out(
-    job: jobs.Job,
-    output: Path | None,
+pages: list[More] = []  # Additional files of a search; packages with further verbs append to it
+front_pages: list[More] = []  # The same of a front
+
+
+def run_study(
+    study: Study,
+    args: argparse.Namespace,
     *,
-    as_json: bool,
     host: dict[str, str] | None = None,
-    more: More | None = None,
-    executor: str | None = None,
+    more: Sequence[More] = (),
+    notes: tuple[Advice, ...] = (),
 ) -> Answer:
-    """Run a job, keep its results, and return what is printed with the exit status.
+    """Score or optimize a study, as `args.kind` says, and return what is printed. Results go to the
+    folder of ``--output``; with ``--resume`` a search or a front goes on in that folder. `host` has
+    versions of the host program, `more` its files, and `notes` its warnings about the study.
+    `InputError`, before the work, where a folder cannot take the results, or holds the search of
+    another study."""
+    searches, folder = args.kind == "optimize", args.output
+    is_front = searches and jobs.has_front(study)
+    if searches and args.review:
+        more = (*more, *(front_pages if is_front else pages))
+    job: Runs
+    if not searches:
+        job = jobs.ScoreJob(study, args.workers)
+    else:
+        job = (jobs.FrontJob if is_front else jobs.OptimizeJob)(study, args.workers)
+        if args.resume is not None:
+            folder = args.resume
+            count = jobs.resume(job, Path(folder))
+            tell(f"going on after {count:,} placements")
+    job.notes = notes
+    if folder is not None:
+        if not is_front and getattr(args, "study", None) is not None:
+            refuse_own_folder(Path(args.study), Path(folder))
+        own = jobs.FRONT_NAMES if is_front else jobs.result_names(study, args.kind)
+        jobs.prepare_folder(folder, [*own, *(name for each in more for name in each.names)])
+    output = None if folder is None else Path(folder)
+    return _carried_out(job, output, args, host, more)
 
-    The first Ctrl-C, SIGTERM or SIGHUP stops the job: the best placement so far is scored and kept.
-    The second one ends at once and keeps the best placement without its score. Where results cannot
-    be written to `output`, a line on stderr says so, and the status is 1.
-    """
-    tell_boxes(job.study)
+
+def _carried_out(
+    job: Runs,
+    output: Path | None,
+    args: argparse.Namespace,
+    host: dict[str, str] | None,
+    more: Sequence[More],
+) -> Answer:
+    """Run a job, keep its results, and return what is printed with the exit status. The first
+    Ctrl-C, SIGTERM or SIGHUP stops the job: the best so far is scored and kept. The second one ends
+    at once and keeps it as it was saved. Where results cannot be written, a line on stderr says so,
+    and the status is 1."""
+    if (report := job.study.prior.report(job.study.space)) is not None:  # of labelled boxes
+        tell(str(report))
     print_vehicle(job.study)
-    with evaluated_by(job, executor), stop_at_first(job.stop) as received:
-        outcome = drive(job, output)
-        if outcome is None:
+    with evaluated_by(job, getattr(args, "executor", None)), stop_at_first(job.stop) as received:
+        found = drive(job, output, host)
+        if found is None:
             note = "no score was complete, so nothing was written"
             raise Interrupted(received.signum or signal.SIGINT, note)
-        status, data = DONE, jobs.result_dict(outcome, host)
+        status, data = DONE, _data_of(found, host)
         if output is not None:
-            status, data = keep(outcome, output, host, more)
-        text = dump_json(data) if as_json else summary(outcome)
-        return text, status or received.status(DONE)
+            status, data = keep(found, output, host, more, args.command_line)
+        text = front_summary(found) if isinstance(found, jobs.TradeOff) else summary(found)
+        return dump_json(data) if args.json else text, status or received.status(DONE)
+
+
+def _data_of(found: Found, host: dict[str, str] | None) -> Data:
+    if isinstance(found, jobs.TradeOff):
+        return jobs.front_dict(found, host)
+    return jobs.result_dict(found, host)
 
 
 def refuse_own_folder(study: Path, output: Path) -> None:
@@ -83,68 +126,66 @@ def refuse_own_folder(study: Path, output: Path) -> None:
         raise InputError(study, "output", "another folder than the study's folder", found)
 
 
-def tell_boxes(study: Study) -> None:
-    """Print a line about labelled boxes: what is used of them."""
-    if (report := study.prior.report(study.space)) is not None:
-        tell(str(report))
-
-
 def print_vehicle(study: Study) -> None:
     """Print one line about the study's vehicle on stderr: its size and orientation."""
     if study.vehicle_line is not None:
         show(f"{one_line(study.vehicle_line)}\n", sys.stderr)
 
 
-def drive(job: jobs.Job, output: Path | None = None) -> jobs.Outcome | None:
-    """Run a job to its end, with progress on stderr; return its outcome.
-
-    The outcome is None if the job was stopped before its first score. During a search, checkpoints
-    are saved in `output`: after every round, and when an exception ends the search.
-    """
-    reporter, failed = Reporter(sys.stderr), False
-    saved = None
-    if isinstance(job, jobs.OptimizeJob) and output is not None:
-        saved = job, jobs.Checkpoint(job), output
+def drive(job: jobs.Job, output: Path | None = None, host: dict[str, str] | None = None) -> Any:
+    """Run a job to its end, with progress on stderr; return its `result`: None if it was stopped
+    before its first score. Checkpoints of a search or a front are saved in `output`: as they are
+    due, and when an exception ends it."""
+    reporter, told = Reporter(sys.stderr), False
+    checkpoint = None if output is None else jobs.checkpoint_of(job, host)
     try:
         for progress in job:
             reporter.report(progress)
-            if saved is None or not saved[1].due():
+            if output is None or checkpoint is None or not checkpoint.due():
                 continue
             try:
-                saved[1].save(saved[2])
-                if job.stopped:
-                    tell(f"the best placement so far is in {saved[2] / STUDY}; it is being scored")
+                checkpoint.save(output)
+                if job.stopped and not isinstance(job, jobs.FrontJob):
+                    tell(f"the best placement so far is in {output / STUDY}; it is being scored")
             except InputError as error:
-                if not failed:
+                if not told:
                     tell(f"{error}; the search goes on")
-                failed = True
+                told = True
     except BaseException:
-        is_kept = saved and len(saved[0].history) > 1 and written(saved[1].save, saved[2])
-        if saved and is_kept:
-            tell(f"the best placement so far is in {saved[2] / STUDY}")
+        if output and checkpoint and checkpoint.has_more and written(checkpoint.save, output):
+            tell(f"the best placement so far is in {output / checkpoint.file}")
         raise
     finally:
         reporter.clear()
-    return job.outcome
+    return job.result
 
 
 def keep(
-    outcome: jobs.Outcome, output: Path, host: dict[str, str] | None, more: More | None
+    found: Found,
+    output: Path,
+    host: dict[str, str] | None,
+    more: Sequence[More] = (),
+    command: str = "",
 ) -> tuple[int, Data]:
-    """Write the results to a folder; return the exit status and the content of result.json."""
-    data = jobs.result_dict(outcome, host)
-    names = more.names if more else ()
+    """Write the results to a folder; return the exit status and the content of the JSON file."""
+    data, names = _data_of(found, host), [name for each in more for name in each.names]
 
     def write(folder: Path) -> None:
         nonlocal data
         jobs.prepare_folder(folder, names)  # the user may have added a file meanwhile
-        data = jobs.write_outcome(outcome, folder, host, names)
-        if more is not None:
-            more.write(outcome, data, folder)
+        if isinstance(found, jobs.TradeOff):
+            data = jobs.write_front(found, folder, host)
+        else:
+            data = jobs.write_outcome(found, folder, host, names)
+            if more:  # pages show the command that repeats the run
+                data["run"] = {**data["run"], "command": command}
+        for each in more:
+            each.write(found, data, folder)
 
     is_whole = written(write, output)
-    for name in jobs.files_of_other_runs(output):  # checkpoints may lie beside an older result
-        tell(f"{output / name}: not of this run")
+    if isinstance(found, jobs.Outcome):
+        for name in jobs.files_of_other_runs(output):  # checkpoints may lie beside an older result
+            tell(f"{output / name}: not of this run")
     return (DONE if is_whole else BAD_INPUT), data
 
 
@@ -159,52 +200,9 @@ def print_answer(text: str, status: int, out: TextIO | None) -> int:
     return status or BAD_INPUT
 
 
-def begun_search(args: argparse.Namespace) -> jobs.BegunSearch | None:
-    """Return the search to resume; None without the option ``--resume``."""
-    folder = getattr(args, "resume", None)
-    return None if folder is None else jobs.read_search(folder)
-
-
-def job_and_folder(
-    study: Study, args: argparse.Namespace, begun: jobs.BegunSearch | None
-) -> tuple[jobs.ScoreJob | jobs.OptimizeJob, str | None]:
-    """Return the job of a study that `args.kind` names, and the folder for its results.
-
-    Raises `InputError` where the search to resume belongs to another study.
-    """
-    if args.kind == "score":
-        return jobs.ScoreJob(study, args.workers), args.output
-    job = jobs.OptimizeJob(study, args.workers)
-    if begun is None:
-        return job, args.output
-    job.journal, job.inputs = begun.journal_of(study), begun.inputs
-    tell(f"going on after {len(begun.evaluated):,} placements")
-    return job, args.resume
-
-
-pages: list[More] = []
-"""Additional files of a search; packages with further verbs append to this list."""
-
-
 def add_page_option(parser: argparse.ArgumentParser) -> None:
     """Add the option that leaves the pages out."""
     names = ", ".join(name for page in pages for name in page.names)
     parser.add_argument(
         "--no-review", action="store_false", dest="review", help=f"no {names or 'review'}"
     )
-
-
-def with_pages(args: argparse.Namespace, more: More | None = None) -> More | None:
-    """Return the additional files of a run: `more`, and for a search the requested pages."""
-    asked = args.kind == "optimize" and args.review
-    each = [*([more] if more else []), *(pages if asked else [])]
-    if not each:
-        return None
-
-    def write(outcome: jobs.Outcome, data: Data, folder: Path) -> None:
-        # Pages show the command that repeats the run.
-        data["run"] = {**data["run"], "command": args.command_line}
-        for one in each:
-            one.write(outcome, data, folder)
-
-    return More([name for one in each for name in one.names], write)

@@ -1,7 +1,5 @@
 """`pe set`: change keys of a study file; its comments and its order stay."""
 
-from __future__ import annotations
-
 import argparse
 import copy
 import re
@@ -21,8 +19,7 @@ from .terminal import DONE, Answer
 
 ARRAY, BEFORE = "[[", re.compile(r"""\s*(?:"[^"]*"|'[^']*'|[^"'=])*=\s*""")
 """Begin of the header of an array's table, and what stands before a value."""
-TomlPath = tuple[str | int, ...]
-"""Keys of tables, and indices in arrays of tables."""
+TomlPath = tuple[str | int, ...]  # Keys of tables, and indices in arrays of tables
 
 
 def add_set_options(parser: argparse.ArgumentParser) -> None:
@@ -33,10 +30,8 @@ def add_set_options(parser: argparse.ArgumentParser) -> None:
 
 def set_keys(args: argparse.Namespace) -> Answer:
     """Change keys of a study file, all or none; the changed study is checked before it is written.
-
     `InputError` when a key or a value does not fit the study, or stands where only an editor can
-    change it.
-    """
+    change it."""
     path = Path(args.study)
     text, lines = decode_text(read_bytes(path)), []
     for setting in read_settings(args.changes):

@@ -1,18 +1,14 @@
 """The verb ``sweep``: many studies, or one with many changes, in a table."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
-from pe_core.base.plugins import required_package
 from pe_core.study import SEARCH
 
 from .. import jobs
@@ -41,8 +37,6 @@ def add_sweep_options(parser: argparse.ArgumentParser) -> None:
     about = "only these runs, the K-th of N parts, without a table: for array jobs of a cluster"
     parser.add_argument("--part", type=part_of, metavar="K/N", help=about)
     parser.add_argument("--json", action="store_true", help=f"print {table.SWEEP_JSON} on stdout")
-    about = f"write the table as {table.SWEEP_PARQUET}, too"
-    parser.add_argument("--parquet", action="store_true", help=about)
     add_score_options(parser, workers="processes")
     add_search_options(parser)
 
@@ -57,23 +51,18 @@ def part_of(text: str) -> tuple[int, int]:
 
 def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal.Answer:
     """Run study files by name, with every combination of changes; write all results to a folder.
-
-    Runs whose results are in the folder already are not repeated.
-    """
+    Runs whose results are in the folder already are not repeated."""
     kind = "optimize" if args.optimize else "score"
     settings = read_settings(args.set)
     runs = sweep_runs(files, settings, lambda study: with_options(study, args))
     if args.part is not None:
         runs = runs[args.part[0] - 1 :: args.part[1]]
     names = [table.SWEEP_CSV, table.SWEEP_JSON]
-    if args.parquet:
-        required_package("pyarrow.parquet")  # before the work
-        names.append(table.SWEEP_PARQUET)
     folder = jobs.prepare_folder(args.output, names)
     for run in runs:  # before the work
         refuse_own_folder(Path(files[run.study_name]), folder / run.name)
         jobs.check_files(folder / run.name, jobs.result_names(run.study, kind))
-    work = _SweepVerb(runs, kind, folder, args.part is None, args.parquet)
+    work = _SweepVerb(runs, kind, folder, args.part is None)
     received = work.run(args)
     if received.signum is not None:
         kept = f", {work.count(BEGUN)} begun and kept" if work.count(BEGUN) else ""
@@ -93,18 +82,15 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
 
 
 class _SweepVerb:
-    """A running sweep, or a part of one: its rows by name, and its folder.
-
-    `data` is the content of sweep.json; `failed_to_write` says whether something could not be
-    written to the folder of the sweep.
-    """
+    """A running sweep, or a part of one: its rows by name, and its folder. `data` is the content of
+    sweep.json; `failed_to_write` says whether something could not be written to the folder of the
+    sweep."""
 
     def __init__(
-        self, runs: Sequence[SweepRun], kind: str, folder: Path, writes_table: bool, parquet: bool
+        self, runs: Sequence[SweepRun], kind: str, folder: Path, writes_table: bool
     ) -> None:
         self._writes_table = writes_table
         self._kind, self._folder = kind, folder
-        self._write = partial(table.write_table, kind=kind, parquet=parquet)
         self.failed_to_write = False
         self.rows: dict[str, SweepRow] = {}
         for run in runs:
@@ -129,10 +115,8 @@ class _SweepVerb:
         return BEGUN if searches and (self._folder / run.name / SEARCH).exists() else WAITING
 
     def run(self, args: argparse.Namespace) -> Received:
-        """Run all runs that are not done; return the signal that stopped them.
-
-        Until the workers are there, the first signal ends the sweep.
-        """
+        """Run all runs that are not done; return the signal that stopped them. Until the workers
+        are there, the first signal ends the sweep."""
         left, begun = [n for n, row in self.rows.items() if row.status != DONE], self.count(BEGUN)
         if self.count(DONE) or begun:
             going_on = f"; searches that go on: {begun}" if begun else ""
@@ -198,7 +182,7 @@ class _SweepVerb:
             self.data = table.table_data(rows, self._kind)
             return
         try:
-            self.data = self._write(rows, folder=self._folder)
+            self.data = table.write_table(rows, self._kind, self._folder)
         except InputError as error:
             if not self.failed_to_write:
                 self._print_failure("", error)

@@ -1,7 +1,5 @@
 """Output of the command line: safe printing, messages, exit statuses, an outcome in a few lines."""
 
-from __future__ import annotations
-
 import os
 import sys
 import unicodedata
@@ -24,14 +22,12 @@ from ..jobs import Outcome, condition_lines, searched_on, sureness_lines
 from ..wording import margin_text
 
 DONE, BAD_INPUT, USAGE, NOT_MET, INTERRUPTED = 0, 1, 2, 3, 130
-Answer = tuple[str, int]
-"""What a verb prints on stdout, and its exit status."""
+Answer = tuple[str, int]  # What a verb prints on stdout, and its exit status
 
 
 ESCAPED = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
 """Unicode categories that control a terminal or the direction of text, or are no characters."""
-MAX_LINE_LENGTH = 2000
-"""Maximum number of characters of a message; the rest is cut."""
+MAX_LINE_LENGTH = 2000  # Maximum number of characters of a message; the rest is cut
 
 
 def printable(text: str, encoding: str | None = "utf-8") -> str:
@@ -80,10 +76,8 @@ def is_terminal(stream: TextIO | None) -> bool:
 
 
 def open_missing_streams() -> None:
-    """Open the null device for each of stdin, stdout and stderr that is closed.
-
-    Otherwise the next opened file would get its descriptor, and the output meant for the stream.
-    """
+    """Open the null device for each of stdin, stdout and stderr that is closed. Otherwise the next
+    opened file would get its descriptor, and the output meant for the stream."""
     for number in (0, 1, 2):
         try:
             os.fstat(number)
@@ -101,8 +95,7 @@ def _shown(character: str, encoding: str) -> str:
     return "".join(f"\\u{units[i]:02x}{units[i + 1]:02x}" for i in range(0, len(units), 2))
 
 
-MIN_SHOWN_ERROR = 1e-4
-"""Smallest standard error that is printed [nats]: one unit of the last digit."""
+MIN_SHOWN_ERROR = 1e-4  # Smallest standard error that is printed [nats]: one unit of the last digit
 
 
 def summary(outcome: Outcome) -> str:

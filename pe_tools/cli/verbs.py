@@ -1,8 +1,7 @@
 """The command ``pe``: its verbs, and what each does with study files, without Blender."""
 
-from __future__ import annotations
-
 import argparse
+import platform
 import sys
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -10,16 +9,17 @@ from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from pe_core.base.errors import InputError
 from pe_core.base.plugins import call_plugin, find_plugins, load_plugin, plugin_name
 from pe_core.search.payload import keep_freed_memory
-from pe_core.study import Study, load_study
+from pe_core.study import load_study
 from pe_core.version import WEBSITE, __version__
 
-from ..jobs import FrontJob, front_study, has_front, prepare_folder, result_names
+from ..jobs import front_study, read_search
 from . import exchange_verbs, run_job
 from .check_verb import add_check_options, add_requirements_verb, check
-from .choose_verb import choose, resumed
 from .command import (
     Parser,
     add_curves_verb,
@@ -29,7 +29,6 @@ from .command import (
     run,
     with_options,
 )
-from .doctor_verb import add_doctor_verb
 from .drive_by_verb import add_list_option, drive_by
 from .explain_verbs import add_compare_options, add_explain_options, compare, explain, named_by_file
 from .new_verb import add_new_verb
@@ -38,8 +37,7 @@ from .sweep_verb import add_sweep_options, sweep
 from .terminal import Answer, open_missing_streams, tell
 from .where_verb import add_where_options, where
 
-ONE, PERHAPS, SOME = "one", "?", "+"
-"""How many study files a verb takes."""
+ONE, PERHAPS, SOME = "one", "?", "+"  # How many study files a verb takes
 
 
 GROUPS = {
@@ -47,9 +45,7 @@ GROUPS = {
     "score": "score explain check compare drive-by",
     "place": "where optimize sweep fit",
     "show": "review export",
-    "this program": "doctor",
-}
-"""Verbs by their groups in the help; what is in none of them is listed last."""
+}  # Verbs by their groups in the help; what is in none of them is listed last
 
 
 class _InGroups(argparse.HelpFormatter):
@@ -89,11 +85,8 @@ class Verb(NamedTuple):
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command and return its exit status.
-
-    0: done; 1: bad input, or results that cannot be written; 2: usage; 3: a requirement is not met;
-    128 plus the number of a signal.
-    """
+    """Run the command and return its exit status. 0: done; 1: bad input, or results that cannot be
+    written; 2: usage; 3: a requirement is not met; 128 plus the number of a signal."""
     open_missing_streams()
     keep_freed_memory()
 
@@ -115,7 +108,9 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=_InGroups,
         epilog=f"Manual: docs/index.md of the source. Home page: {WEBSITE}",
     )
-    top.add_argument("--version", action="version", version=f"pe {__version__}")
+    about = f"pe {__version__}, NumPy {np.__version__}, Python {platform.python_version()}"
+    about += f", {platform.platform()}"
+    top.add_argument("--version", action="version", version=about)
     verbs = top.add_subparsers(required=True, metavar="VERB")
     for verb in VERBS:
         verb.add(verbs)
@@ -124,7 +119,6 @@ def parser() -> argparse.ArgumentParser:
     exchange_verbs.add_rigs_verb(verbs)
     add_requirements_verb(verbs)
     add_new_verb(verbs)
-    add_doctor_verb(verbs)
     for plugin in find_plugins("verb"):
         _add_plugin_verbs(plugin, verbs)
     run_job.add_page_option(verbs.choices["optimize"])
@@ -132,10 +126,8 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _add_plugin_verbs(point: EntryPoint, verbs: Any) -> None:
-    """Add the verbs of a plugin, a function that takes the parser's verbs.
-
-    A plugin that fails is reported by name; all other verbs work.
-    """
+    """Add the verbs of a plugin, a function that takes the parser's verbs. A plugin that fails is
+    reported by name; all other verbs work."""
     try:
         call_plugin(point, load_plugin(point), verbs)
     except ImportError as error:
@@ -149,31 +141,13 @@ def _add_plugin_verbs(point: EntryPoint, verbs: Any) -> None:
 
 def _run_job(args: argparse.Namespace) -> Answer:
     resume = getattr(args, "resume", None)
-    given: Study | None = None
     if args.study is not None:
-        given = load_study(args.study)
+        study = load_study(args.study)
     elif resume is not None:
-        given = front_study(resume)
-    given = None if given is None else with_options(given, args)
-    if given is not None and args.kind == "optimize" and has_front(given):
-        front = FrontJob(given, args.workers)
-        folder = resumed(front, args)
-        output = None if folder is None else Path(folder)
-        return choose(front, output, as_json=args.json, executor=args.executor)
-    begun = run_job.begun_search(args)
-    if given is None and begun is None:
+        study = front_study(resume) or read_search(resume).study
+    else:
         args.usage_error("expected STUDY, or --resume DIR")
-    study = given if given is not None or begun is None else with_options(begun.study, args)
-    assert study is not None
-    (job, name), more = run_job.job_and_folder(study, args, begun), run_job.with_pages(args)
-    if name is not None:
-        if args.study is not None:
-            run_job.refuse_own_folder(Path(args.study), Path(name))
-        more_names = more.names if more else ()
-        prepare_folder(name, [*result_names(study, args.kind), *more_names])
-    output = None if name is None else Path(name)
-    executor = getattr(args, "executor", None)
-    return run_job.carry_out(job, output, as_json=args.json, more=more, executor=executor)
+    return run_job.run_study(with_options(study, args), args)
 
 
 VERBS = (

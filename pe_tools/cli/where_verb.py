@@ -1,7 +1,5 @@
 """`pe where`: one more sensor scored all over the vehicle's surface."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
@@ -21,8 +19,7 @@ from .interrupts import Interrupted, stop_at_first
 from .run_job import drive, print_vehicle
 from .terminal import DONE, Answer, tell
 
-BEST, APART_M = 5, 0.5
-"""How many places are named, and how far apart they are [m]."""
+BEST, APART_M = 5, 0.5  # How many places are named, and how far apart they are [m]
 
 
 def add_where_options(parser: argparse.ArgumentParser) -> None:
@@ -45,10 +42,8 @@ def add_where_options(parser: argparse.ArgumentParser) -> None:
 
 
 def where(study: Study, args: argparse.Namespace, inputs: Sequence[Path] = ()) -> Answer:
-    """Score one more sensor all over the vehicle's surface, and tell the best places.
-
-    `inputs` are files that no output replaces.
-    """
+    """Score one more sensor all over the vehicle's surface, and tell the best places. `inputs` are
+    files that no output replaces."""
     if args.output is not None:
         require_new(Path(args.output), replace=args.replace, inputs=inputs)
     study = with_curves(study, args)

@@ -1,10 +1,6 @@
-"""The engine's process as the window's side sees it: no call waits for the engine.
-
-The process starts at the first request. Where it is killed it is started anew, and what it was
-asked is asked once more.
-"""
-
-from __future__ import annotations
+"""The engine's process as the window's side sees it: no call waits for the engine. The process
+starts at the first request. Where it is killed it is started anew, and what it was asked is asked
+once more."""
 
 import multiprocessing
 import pickle
@@ -86,9 +82,7 @@ class _SharedObjects:
 
     def call(self, each: _Awaited) -> tuple[bytes, dict[int, PackedObject]]:
         """Return a call, pickled, and the shared objects in it that the engine does not have.
-
-        Raises whatever its function and arguments raise where they cannot be pickled.
-        """
+        Raises whatever its function and arguments raise where they cannot be pickled."""
         new: dict[int, PackedObject] = {}
 
         def number_of(part: object, noted: dict[int, object], inside: object = None) -> int | None:
@@ -125,19 +119,11 @@ class _SharedObjects:
 
 
 class EngineProcess:
-    """The engine's process: the latest request of each topic.
-
-    Parameters
-    ----------
-    shared : callable
-        Returns types of objects that are sent once, and how many of each the engine keeps. Such an
-        object must not change. It is called when the process starts.
-    setup : callable
-        Returns a function and its arguments, which the engine calls before a request where they are
-        others than before the last one.
-    packages : sequence of str
-        Packages of the caller whose first lines the engine must not run.
-    """
+    """The engine's process: the latest request of each topic. `shared`: returns types of objects
+    that are sent once, and how many of each the engine keeps. Such an object must not change. It is
+    called when the process starts. `setup`: returns a function and its arguments, which the engine
+    calls before a request where they are others than before the last one. `packages`: packages of
+    the caller whose first lines the engine must not run."""
 
     def __init__(
         self,
@@ -166,13 +152,10 @@ class EngineProcess:
         step: Take | None = None,
         lane: str = BEHIND,
     ) -> None:
-        """Have the engine call a function of a module; `deliver` takes its result.
-
-        A request of the topic that has not begun is dropped; the result of one in progress is
-        delivered all the same: it is the latest there is. `fail` takes what the function raised.
-        A function that returns an iterator is a job: `step` takes what it yields, `deliver` what it
-        returns.
-        """
+        """Have the engine call a function of a module; `deliver` takes its result. A request of the
+        topic that has not begun is dropped; the result of one in progress is delivered all the
+        same: it is the latest there is. `fail` takes what the function raised. A function that
+        returns an iterator is a job: `step` takes what it yields, `deliver` what it returns."""
         self._number += 1
         each = _Awaited(self._number, lane, (function, arguments), deliver, fail, step)
         self._awaited.setdefault(topic, []).append(each)
@@ -180,9 +163,7 @@ class EngineProcess:
 
     def begin(self) -> None:
         """Start the process where there is none, and have it take what `setup` returns.
-
-        `EngineEnded` where none can be started: too little memory, too many open files.
-        """
+        `EngineEnded` where none can be started: too little memory, too many open files."""
         if self._process is None:
             try:
                 self._start()
@@ -214,11 +195,9 @@ class EngineProcess:
         return None if self._process is None else self._process.pid
 
     def deliver_all(self, *beginnings: str) -> bool:
-        """Deliver what has come; return whether more is awaited.
-
-        With `beginnings` of topics, others wait for the next call without, which also finds out
-        whether the process was killed.
-        """
+        """Deliver what has come; return whether more is awaited. With `beginnings` of topics,
+        others wait for the next call without, which also finds out whether the process was
+        killed."""
         killed = False
         try:
             while self._connection is not None and self._connection.poll():

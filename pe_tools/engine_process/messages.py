@@ -1,10 +1,6 @@
-"""What the two sides send each other, and how large objects are sent once.
-
-A request is pickled. An object of a type that is shared stands in it as a number; it comes, pickled
-itself, with the first request that refers to it. Its arrays are sent as they are in memory.
-"""
-
-from __future__ import annotations
+"""What the two sides send each other, and how large objects are sent once. A request is pickled. An
+object of a type that is shared stands in it as a number; it comes, pickled itself, with the first
+request that refers to it. Its arrays are sent as they are in memory."""
 
 import io
 import pickle
@@ -14,8 +10,7 @@ from multiprocessing.connection import Connection
 from pickle import PickleBuffer
 from typing import Any, NamedTuple
 
-STEP, DONE, FAILED = "step", "done", "failed"
-"""Answers: what a job yields, a result, and an error."""
+STEP, DONE, FAILED = "step", "done", "failed"  # Answers: what a job yields, a result, and an error
 CANCEL, FORGET, SET_UP = "cancel", "forget", "set up"
 """Besides requests: end a topic's job at its next step; forget objects by their numbers; call a
 function before later requests are taken."""
@@ -30,10 +25,8 @@ class PackedObject(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """A function and its arguments, pickled, and the shared objects that come with them.
-
-    `number` rises with each request. Requests of one `lane` run one after the other.
-    """
+    """A function and its arguments, pickled, and the shared objects that come with them. `number`
+    rises with each request. Requests of one `lane` run one after the other."""
 
     number: int
     topic: str

@@ -1,10 +1,6 @@
 """In the engine's process: runs requests, the latest of each topic, and sends back results.
-
 Requests of one lane run one after the other, those of different lanes side by side: what follows
-the mouse never waits for a map. The process ends when the other side is gone.
-"""
-
-from __future__ import annotations
+the mouse never waits for a map. The process ends when the other side is gone."""
 
 import pickle
 import threading
@@ -22,10 +18,8 @@ from .messages import CANCEL, FAILED, FORGET, Request, packed, received, steps_o
 
 @dataclass(slots=True)
 class _RunningRequest:
-    """A request as it is run: a job can be cancelled, before it begins as well.
-
-    `numbers` are those of the shared objects of the request, by their `id`.
-    """
+    """A request as it is run: a job can be cancelled, before it begins as well. `numbers` are those
+    of the shared objects of the request, by their `id`."""
 
     number: int
     topic: str

@@ -1,11 +1,7 @@
-"""Argoverse 2: the feather tables of a log's folder `calibration`.
-
-The ego frame has its origin in the middle of the rear axle, at the height of the axle. A camera's
-frame is optical. A LiDAR's frame has the axes of the ground frame. Cameras are read as pinholes:
-like Argoverse's own reader, this module ignores the distortion coefficients k1, k2 and k3.
-"""
-
-from __future__ import annotations
+"""Argoverse 2: the feather tables of a log's folder `calibration`. The ego frame has its origin in
+the middle of the rear axle, at the height of the axle. A camera's frame is optical. A LiDAR's frame
+has the axes of the ground frame. Cameras are read as pinholes: like Argoverse's own reader, this
+module ignores the distortion coefficients k1, k2 and k3."""
 
 import io
 from collections.abc import Collection, Mapping, Sequence
@@ -26,11 +22,9 @@ from .lens_pictures import Picture
 from .portable import PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
-MAGIC = b"ARROW1"
-"""First bytes of an Arrow file; its stream begins after two more."""
+MAGIC = b"ARROW1"  # First bytes of an Arrow file; its stream begins after two more
 STREAM = 8
-MAX_ROWS = 100_000
-"""Columns of the null type have rows without a byte."""
+MAX_ROWS = 100_000  # Columns of the null type have rows without a byte
 MAX_FILE_BYTES = 100_000
 """Maximum size of a file: what is compressed may be a thousand times as large."""
 FILES = POSES, INTRINSICS = "egovehicle_SE3_sensor.feather", "intrinsics.feather"
@@ -110,10 +104,8 @@ def _table_bytes(
     whole: Collection[str],
     metadata: Mapping[str, str],
 ) -> bytes:
-    """Return the bytes of a feather table.
-
-    The columns of `whole` hold integers, sensor_name text, and all others floats.
-    """
+    """Return the bytes of a feather table. The columns of `whole` hold integers, sensor_name text,
+    and all others floats."""
     pyarrow, feather = _arrow()
     own = {"sensor_name": pyarrow.string(), **dict.fromkeys(whole, pyarrow.int64())}
     types = [(name, own.get(name, pyarrow.float64())) for name in columns]
@@ -127,12 +119,10 @@ def _table_bytes(
 
 def _rows_of(data: bytes) -> list[dict[str, Any]] | None:
     """Return the rows of a feather table, each by column name; None if the data are no such table.
-
     A table of more than `MAX_ROWS` rows is none of a rig. Only version 2 of feather, the Arrow file
     format, is read, as the stream of messages that it holds: a damaged file of the obsolete version
     1 would crash the process inside pyarrow. pyarrow reads offsets and lengths unchecked, so
-    `validate` checks them all before values are read.
-    """
+    `validate` checks them all before values are read."""
     if not data.startswith(MAGIC):
         return None
     pyarrow, _ = _arrow()

@@ -10,8 +10,6 @@ order and structure. The pose of the kit, the parent of each frame, and frames t
 do not change either.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -58,11 +56,9 @@ def kit_texts(folder: Path) -> dict[str, str]:
 
 
 def _units(folder: Path, texts: Mapping[str, str]) -> dict[str, Unit]:
-    """Return the parts of a kit by file name: the frames on base_link first, then its units.
-
-    A unit is the sensor kit itself or one of several groups, each in a file UNIT_calibration.yaml.
-    The kit aip_x2 of TIER IV, for example, has the units top_unit and front_unit.
-    """
+    """Return the parts of a kit by file name: the frames on base_link first, then its units. A unit
+    is the sensor kit itself or one of several groups, each in a file UNIT_calibration.yaml. The kit
+    aip_x2 of TIER IV, for example, has the units top_unit and front_unit."""
     units: dict[str, Unit] = {}
     for file, text in texts.items():
         path = folder / file
@@ -93,11 +89,9 @@ def _models(unit: Unit) -> dict[str, str]:
 
 
 def read(path: Path) -> PortableRig:
-    """Read the sensors of a kit: `path` is its folder, or one of its files.
-
-    LiDAR poses are those of the frames in the files. `lifted` moves a pose from the base of the
-    housing to the scan centre, once the model is known.
-    """
+    """Read the sensors of a kit: `path` is its folder, or one of its files. LiDAR poses are those
+    of the frames in the files. `lifted` moves a pose from the base of the housing to the scan
+    centre, once the model is known."""
     folder = path if path.is_dir() else path.parent
     base, *units = _units(folder, kit_texts(folder)).values()
     poses = {
@@ -163,10 +157,8 @@ def _lines_of(head: str, pose: Pose) -> list[str]:
 
 
 def write(sensors: PortableRig, texts: FileTexts) -> Export:
-    """Return the files of a new kit, or of the kit of these texts with its sensors updated.
-
-    A new kit has a camera_info file per camera; messages say where the LiDARs' frames are.
-    """
+    """Return the files of a new kit, or of the kit of these texts with its sensors updated. A new
+    kit has a camera_info file per camera; messages say where the LiDARs' frames are."""
     calibrations = {name: text for name, text in texts.items() if "/" not in name}
     units = _units(Path(), calibrations) if texts else {}
     parents = [unit.parent for unit in units.values()] or [BASE, KIT]
@@ -204,10 +196,8 @@ def _new(sensors: Sequence[PortableSensor]) -> dict[str, str]:
 def _updated(
     units: Mapping[str, Unit], texts: Mapping[str, str], named: Sequence[PortableSensor]
 ) -> tuple[dict[str, str], list[str]]:
-    """Return the files of an existing kit with the sensors' poses, models and lenses.
-
-    Added sensors go into the first unit.
-    """
+    """Return the files of an existing kit with the sensors' poses, models and lenses. Added sensors
+    go into the first unit."""
     by_frame = {_frame_of(sensor): sensor for sensor in named}
     parents = {unit.parent for unit in units.values()}
     base, known = units[TO_KIT].frames, {f for unit in units.values() for f in unit.frames}
@@ -230,9 +220,7 @@ def _patched(
     unit: Unit, pose: Pose, by_frame: Mapping[str, PortableSensor], added: Sequence[str]
 ) -> str:
     """Return the text of a file with the new coordinates, or all angles, of frames that moved.
-
-    `pose` is that of the unit on base_link.
-    """
+    `pose` is that of the unit on base_link."""
     values: dict[KeyPath, str] = {}
     comments: dict[KeyPath, str] = {}
     models = _models(unit)
@@ -255,10 +243,8 @@ def _patched(
 def _infos(
     texts: Mapping[str, str], named: Sequence[PortableSensor], added: Sequence[PortableSensor]
 ) -> tuple[dict[str, str], list[str]]:
-    """Return the camera_info files, and messages on cameras that have none.
-
-    A file is rewritten only when the lens has changed, and created only for an added camera.
-    """
+    """Return the camera_info files, and messages on cameras that have none. A file is rewritten
+    only when the lens has changed, and created only for an added camera."""
     files = {name: text for name, text in texts.items() if "/" in name}
     fresh, lines = info_files(named), []
     for sensor in named:
@@ -273,11 +259,9 @@ def _infos(
 
 
 def read_vehicle_info(path: str | Path) -> Reference:
-    """Return the reference points of a vehicle from Autoware's vehicle_info file.
-
-    The origin of the ground frame is below the middle of the vehicle's length. A file that cannot
-    be read, or a number that is missing or impossible, raises `InputError`.
-    """
+    """Return the reference points of a vehicle from Autoware's vehicle_info file. The origin of the
+    ground frame is below the middle of the vehicle's length. A file that cannot be read, or a
+    number that is missing or impossible, raises `InputError`."""
     path = Path(path)
     top = Table(parse_yaml(str(path), foreign.text_of(path)), str(path))
     nodes = top.table("/**") if "/**" in top else top

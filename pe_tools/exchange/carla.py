@@ -1,9 +1,5 @@
-"""CARLA's objects.json, from which its ROS bridge spawns sensors.
-
-Coordinates are right-handed, angles are in degrees.
-"""
-
-from __future__ import annotations
+"""CARLA's objects.json, from which its ROS bridge spawns sensors. Coordinates are right-handed,
+angles are in degrees."""
 
 import math
 from dataclasses import replace
@@ -62,10 +58,8 @@ def write(sensors: PortableRig, texts: FileTexts) -> Export:
 
 
 def _place_of_sensors(source: object, document: Any) -> tuple[dict[str, Any], str]:
-    """Return the object that holds the sensors, and the key of its list of sensors.
-
-    It is the first object with such a list, or else the first vehicle.
-    """
+    """Return the object that holds the sensors, and the key of its list of sensors. It is the first
+    object with such a list, or else the first vehicle."""
     objects = document.get("objects") if isinstance(document, dict) else None
     mappings = [mapping for mapping in objects or () if isinstance(mapping, dict)]
     for mapping in mappings:

@@ -1,7 +1,5 @@
 """Rigs as a CSV table, one row per sensor, for spreadsheets and for reading by eye."""
 
-from __future__ import annotations
-
 import csv
 import math
 from collections.abc import Callable, Mapping

@@ -1,9 +1,5 @@
-"""NVIDIA DriveWorks' rig.json.
-
-Angles are in degrees. The origin is the middle of the rear axle, projected to the ground.
-"""
-
-from __future__ import annotations
+"""NVIDIA DriveWorks' rig.json. Angles are in degrees. The origin is the middle of the rear axle,
+projected to the ground."""
 
 import math
 from pathlib import Path
@@ -31,8 +27,7 @@ POSE_KEY, ROTATION_KEY, POSITION_KEY = "nominalSensor2Rig_FLU", "roll-pitch-yaw"
 TURN_CORRECTION, SHIFT_CORRECTION = "correction_sensor_R_FLU", "correction_rig_T"
 PROTOCOLS = {CAMERA: "camera.gmsl", LIDAR: "lidar.virtual"}
 """Protocols to write, by kind. When reading, the word before the dot is the kind."""
-UNKNOWN = ("", "virtual")
-"""Protocols from which the kind of a sensor does not follow."""
+UNKNOWN = ("", "virtual")  # Protocols from which the kind of a sensor does not follow
 FIGURES, CORRECTION = ("properties", "parameter"), "correction_"
 
 
@@ -77,10 +72,8 @@ def _row(sensor: PortableSensor) -> dict[str, Any]:
 
 
 def read(path: Path) -> PortableRig:
-    """Read the sensors of a rig, one of which has a pose.
-
-    A sensor without a pose (CAN, GPS) takes its kind from its protocol.
-    """
+    """Read the sensors of a rig, one of which has a pose. A sensor without a pose (CAN, GPS) takes
+    its kind from its protocol."""
     rig = Table(json_of(path), str(path)).table("rig")
     rows = json_rows(path, rig.raw("sensors"), "rig.sensors")
     if not any(POSE_KEY in row for row in rows):
@@ -89,11 +82,9 @@ def read(path: Path) -> PortableRig:
 
 
 def _corrected(path: Path, row: Table, nominal: Pose) -> Pose:
-    """Return a nominal pose with the corrections of the calibration applied.
-
-    The rotation is in the sensor's axes, the translation in the rig's axes:
-    R = R_nominal R_correction, t = t_nominal + t_correction.
-    """
+    """Return a nominal pose with the corrections of the calibration applied. The rotation is in the
+    sensor's axes, the translation in the rig's axes: R = R_nominal R_correction, t = t_nominal +
+    t_correction."""
     shift, turn = row.raw(SHIFT_CORRECTION, None), row.raw(TURN_CORRECTION, None)
     if shift is None and turn is None:
         return nominal
@@ -123,14 +114,11 @@ PINHOLE, F_THETA = "pinhole", "ftheta"
 FOCAL_KEYS, MIDDLE, SIZE = ("fx", "fy"), ("cx", "cy"), ("width", "height")
 POLYNOMIALS = ("polynomial", "bw-poly")
 FORWARD, BACKWARD = "angle-to-pixeldistance", "pixeldistance-to-angle"
-MAX_POWER = 6
-"""Maximum number of coefficients of a polynomial, the constant included."""
-PLACES = 2000
-"""Number of radii at which the inverse of a polynomial is fitted."""
+MAX_POWER = 6  # Maximum number of coefficients of a polynomial, the constant included
+PLACES = 2000  # Number of radii at which the inverse of a polynomial is fitted
 NOTICED_PX = 0.1
 TURNED = "its polynomial from pixels to angles is turned round to within {:.1f} px"
-GENTLEST = 1e-9
-"""Minimum linear coefficient [rad/px or px/rad]; a smaller one describes no lens."""
+GENTLEST = 1e-9  # Minimum linear coefficient [rad/px or px/rad]; a smaller one describes no lens
 GENTLE = 1.0
 """A polynomial without a stated direction maps pixels to angles if its slope is below this."""
 
@@ -156,9 +144,7 @@ def write_properties(picture: Picture) -> dict[str, str]:
 
 def read_properties(properties: Table) -> tuple[Picture | None, str]:
     """Return a camera's intrinsics, and a note on the accuracy of the conversion (may be empty).
-
-    The intrinsics are None if properties are missing or belong to another lens model.
-    """
+    The intrinsics are None if properties are missing or belong to another lens model."""
     if not all(key in properties for key in (*MIDDLE, *SIZE)):
         return None, ""
 
@@ -208,9 +194,7 @@ def _rising(properties: Table, key: str) -> list[float]:
 
 def _turned_round(coefficients: list[float], max_radius: float) -> tuple[list[float], float]:
     """Return the polynomial from angles to radii of one from radii to angles, and its error [px].
-
-    It is a least-squares fit up to `max_radius` [px], as far as the angle rises with the radius.
-    """
+    It is a least-squares fit up to `max_radius` [px], as far as the angle rises with the radius."""
     radius = np.linspace(0.0, max_radius, PLACES + 1)[1:]
     theta = np.polyval(coefficients[::-1], radius)
     is_rising = np.diff(theta, prepend=0.0) > 0.0

@@ -1,7 +1,5 @@
 """Export of a rig to the file formats of other programs."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -28,11 +26,11 @@ def rig_files(
     passthrough: Passthrough | None = None,
     existing: Mapping[str, str] | None = None,
 ) -> tuple[Mapping[str, bytes], list[str]]:
-    """Return a rig in another program's format.
+    """Return a rig in another program's format. `InputError` when the format is unknown, needs the
+    rear axle, or cannot express the rig.
 
     Parameters
     ----------
-    rig : Rig
     name : str
         Name of the format, a key of `RIG_FORMATS`.
     reference : Reference, optional
@@ -47,11 +45,6 @@ def rig_files(
     -------
     dict of str to bytes, list of str
         Bytes by file name; a message for each property that the format cannot express.
-
-    Raises
-    ------
-    InputError
-        When the format is unknown, needs the rear axle, or cannot express the rig.
     """
     row, texts, left_out_lines = rig_format(name), existing, []
     back = [-value for value in origin_in_ground(row.origin, reference, row.title)]
@@ -70,10 +63,8 @@ def rig_files(
 
 
 def lost_line(rig: Rig, title: str, holds: frozenset[str]) -> list[str]:
-    """Return one message with the properties of a rig that are not in `holds`; [] if none.
-
-    Losses of lenses and of uneven LiDAR channels have messages of their own.
-    """
+    """Return one message with the properties of a rig that are not in `holds`; [] if none. Losses
+    of lenses and of uneven LiDAR channels have messages of their own."""
     pairs = zip(rig, portable_sensors(rig), strict=True)
     lost = {sensor.name: set(_owned(sensor, portable, holds)) - holds for sensor, portable in pairs}
     parts = []
@@ -149,12 +140,9 @@ def export_rig(
 def write_files(
     files: Mapping[str, bytes], output: Path, *, inside: bool, replace: bool
 ) -> list[Path]:
-    """Write several files, given by name, all or none, and return their paths.
-
-    They go into the folder `output` if `inside`; otherwise the first file is `output` and the
-    others are beside it. Unless `replace`, a file that exists raises `InputError`, as does one that
-    cannot be written.
-    """
+    """Write several files, given by name, all or none, and return their paths. They go into the
+    folder `output` if `inside`; otherwise the first file is `output` and the others are beside it.
+    Unless `replace`, a file that exists raises `InputError`, as does one that cannot be written."""
     folder = output if inside or output.is_dir() else output.parent
     paths = {folder / file: data for file, data in files.items()}
     if folder is not output:

@@ -1,7 +1,5 @@
 """Text, JSON and numbers of other programs' files: reading, checks against limits, writing."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -23,12 +21,9 @@ from pe_core.sensors.field_of_view import MIN_RANGE as MIN_RANGE
 from pe_core.sensors.lidar.model import RANGE as RANGE
 from pe_core.sensors.lidar.model import STEPS as STEPS
 
-Written = Mapping[str, bytes]
-"""Bytes by file name."""
-Export = tuple[Written, list[str]]
-"""Files, and messages on what they cannot hold."""
-FileTexts = Mapping[str, str]
-"""FileTexts of imported or existing files by their names."""
+Written = Mapping[str, bytes]  # Bytes by file name
+Export = tuple[Written, list[str]]  # Files, and messages on what they cannot hold
+FileTexts = Mapping[str, str]  # FileTexts of imported or existing files by their names
 
 
 def text_of(path: Path, max_bytes: int = TEXT_BYTES) -> str:
@@ -62,10 +57,8 @@ def spaced(values: Sequence[float]) -> str:
 def pose_from(
     source: object, field: str, position: Any, angles: Any, *, degrees: bool = False
 ) -> Pose:
-    """Return the pose of a position [m] and of roll, pitch, yaw, in radians unless `degrees`.
-
-    A value that is missing, not finite or out of range raises `InputError`.
-    """
+    """Return the pose of a position [m] and of roll, pitch, yaw, in radians unless `degrees`. A
+    value that is missing, not finite or out of range raises `InputError`."""
     x, y, z = vector(source, f"{field} position", position, 3, METRES)
     rule = ROTATION_DEG if degrees else ROTATION
     roll, pitch, yaw = vector(source, f"{field} rotation", angles, 3, rule)
@@ -74,8 +67,7 @@ def pose_from(
     return Pose((x, y, z), (roll, pitch, yaw))
 
 
-XYZ, RPY = ("x", "y", "z"), ("roll", "pitch", "yaw")
-"""Keys of a pose in most formats."""
+XYZ, RPY = ("x", "y", "z"), ("roll", "pitch", "yaw")  # Keys of a pose in most formats
 
 
 def pose_numbers(pose: Pose, *, degrees: bool = False) -> dict[str, float]:
@@ -122,10 +114,8 @@ def whole_figure(source: object, field: str, value: Any, rule: Whole = PIXELS) -
 def figures(
     source: object, field: str, text: Any, count: int | None, rule: Number = FINITE
 ) -> list[float]:
-    """Return the `count` numbers in a text, separated by blanks, that meet a rule each.
-
-    None allows any count. Another count, or a number that breaks the rule, raises `InputError`.
-    """
+    """Return the `count` numbers in a text, separated by blanks, that meet a rule each. None allows
+    any count. Another count, or a number that breaks the rule, raises `InputError`."""
     words = text.split() if isinstance(text, str) else [text]
     if count not in (None, len(words)):
         raise InputError(source, field, f"{count} numbers", shown(text))
@@ -135,10 +125,8 @@ def figures(
 @dataclass(frozen=True, slots=True)
 class Figures:
     """Numbers of an element of a file, by key: None if it is absent, `InputError` if it is wrong.
-
     `get` returns the value of a key, a number or its text, or None; `field` is its name in
-    messages.
-    """
+    messages."""
 
     source: object
     get: Callable[[str], Any]
@@ -162,14 +150,10 @@ class Figures:
 
 MAX_FRAMES = 10_000
 """Maximum frames of a file: URDF links, ROS transforms, frames of a kit, rows of a table."""
-MAX_SENSORS = 1_000
-"""Maximum sensors of an imported rig."""
-MAX_BEAMS = 1_000_000
-"""Maximum beams that a file lists one by one; they take some 70 MB of text."""
-BEAM_BYTES = 256 << 20
-"""Maximum size of a file that lists beams."""
-MAX_LINE_LENGTH = 10_000
-"""Maximum characters of a line that is parsed."""
+MAX_SENSORS = 1_000  # Maximum sensors of an imported rig
+MAX_BEAMS = 1_000_000  # Maximum beams that a file lists one by one; they take some 70 MB of text
+BEAM_BYTES = 256 << 20  # Maximum size of a file that lists beams
+MAX_LINE_LENGTH = 10_000  # Maximum characters of a line that is parsed
 
 
 def require_at_most(source: object, field: str, count: int, most: int, noun: str) -> None:

@@ -1,11 +1,7 @@
-"""Axes, origins, trees and names of other programs' frames; rotations and quaternions.
-
-Frames of this project: x forward, y left, z up; a camera looks along its x axis; the origin is on
-the ground under the vehicle's centre. Optical frames (ROS REP 103, nuScenes, Argoverse, KITTI): z
-forward, x right, y down.
-"""
-
-from __future__ import annotations
+"""Axes, origins, trees and names of other programs' frames; rotations and quaternions. Frames of
+this project: x forward, y left, z up; a camera looks along its x axis; the origin is on the ground
+under the vehicle's centre. Optical frames (ROS REP 103, nuScenes, Argoverse, KITTI): z forward, x
+right, y down."""
 
 import math
 import re
@@ -38,20 +34,16 @@ BODY_FROM_RIGHT_FORWARD = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0
 
 GROUND, REAR_AXLE_GROUND, REAR_AXLE = "ground", "rear axle on the ground", "rear axle"
 """Origins: of the ground frame; the middle of the rear axle on the ground; the middle itself."""
-PROPER_WITHIN = 1e-6
-"""Maximum deviation of a matrix from a rotation."""
-ASKING = "calibration"
-"""Source of messages on poses that a program hands over."""
-OPTICAL = "_optical"
-"""Suffix of the name of a camera's optical frame."""
+PROPER_WITHIN = 1e-6  # Maximum deviation of a matrix from a rotation
+ASKING = "calibration"  # Source of messages on poses that a program hands over
+OPTICAL = "_optical"  # Suffix of the name of a camera's optical frame
 ILLEGAL, ILLEGAL_IN_TF = (re.compile(f"[^A-Za-z0-9_{more}]+") for more in ("", "/"))
 AXES = (
     "x forward, y left, z up; metres, radians. NAME_optical looks along z, x right, y down (REP "
     "103). "
 )
 """Comment in files of ROS, after `origin_text`."""
-Hung = Mapping[str, tuple[str, Pose]]
-"""Parent frame and pose in the parent frame, by frame name."""
+Hung = Mapping[str, tuple[str, Pose]]  # Parent frame and pose in the parent frame, by frame name
 
 
 def product(a: Floats, b: Floats) -> Floats:
@@ -138,10 +130,8 @@ def seen_from(outer: Pose, inner: Pose) -> Pose:
 def origin_in_ground(
     origin: str, reference: Reference | None, asking: str, source: object = "study"
 ) -> tuple[float, ...]:
-    """Return the position of an origin in the ground frame, (3,) [m].
-
-    An origin at a rear axle whose position is not known raises `InputError`.
-    """
+    """Return the position of an origin in the ground frame, (3,) [m]. An origin at a rear axle
+    whose position is not known raises `InputError`."""
     if origin == GROUND:
         return 0.0, 0.0, 0.0
     if reference is None:
@@ -164,26 +154,12 @@ def pose_from_quaternion(
     inverse: bool = False,
     within: Pose | None = None,
 ) -> Pose:
-    """Return a sensor's pose from a calibration.
-
-    Parameters
-    ----------
-    rotation : (4,) float
-        Quaternion w, x, y, z: from the sensor's axes to its parent's.
-    translation : (3,) float
-        Position of the sensor in its parent frame [m].
-    optical : bool
-        Whether the sensor's axes are a camera's optical ones: z forward, x right, y down.
-    inverse : bool
-        Whether both are given in the other direction: from the parent to the sensor.
-    within : Pose, optional
-        Pose of the parent; by default the parent is the ground frame.
-
-    Raises
-    ------
-    InputError
-        When a number is missing, or the quaternion is not valid.
-    """
+    """Return a sensor's pose from a calibration. `InputError` when a number is missing, or the
+    quaternion is not valid. `rotation` (4,): quaternion w, x, y, z: from the sensor's axes to its
+    parent's. `translation` (3,): position of the sensor in its parent frame [m]. `optical`: whether
+    the sensor's axes are a camera's optical ones: z forward, x right, y down. `inverse`: whether
+    both are given in the other direction: from the parent to the sensor. `within`: pose of the
+    parent; by default the parent is the ground frame."""
     position: Sequence[float] = vector(ASKING, "translation", translation, 3, METRES)
     matrix = from_quaternion(ASKING, "rotation", vector(ASKING, "rotation", rotation, 4))
     if inverse:
@@ -196,12 +172,10 @@ def pose_from_quaternion(
 
 
 def poses_from_root(path: Path, hung: Hung, frames: Collection[str], noun: str) -> dict[str, Pose]:
-    """Return the poses of all `frames` in the root frame, by name, ordered by depth.
-
-    Frames of equal depth are in the order of `hung`. Each pose is computed once, from that of its
-    parent, so the time is linear in the number of frames. `noun` is the word for a frame in this
-    format. More than `MAX_FRAMES`, not exactly one root or a cycle raise `InputError`.
-    """
+    """Return the poses of all `frames` in the root frame, by name, ordered by depth. Frames of
+    equal depth are in the order of `hung`. Each pose is computed once, from that of its parent, so
+    the time is linear in the number of frames. `noun` is the word for a frame in this format. More
+    than `MAX_FRAMES`, not exactly one root or a cycle raise `InputError`."""
     require_at_most(path, noun, len(frames), MAX_FRAMES, f"{noun}s")
     roots = [name for name in frames if name not in hung]
     if len(roots) != 1:
@@ -224,11 +198,9 @@ def poses_from_root(path: Path, hung: Hung, frames: Collection[str], noun: str) 
 
 
 def legal_frame(name: str, *, slashes: bool = False) -> str:
-    """Return a frame name of letters, digits and underscores that begins with a letter.
-
-    With `slashes`, the name may also contain ``/``, as frame names of tf2 may. Files are named
-    after frames: no part of the name is one that Windows keeps for a device.
-    """
+    """Return a frame name of letters, digits and underscores that begins with a letter. With
+    `slashes`, the name may also contain ``/``, as frame names of tf2 may. Files are named after
+    frames: no part of the name is one that Windows keeps for a device."""
     plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
     legal = (ILLEGAL_IN_TF if slashes else ILLEGAL).sub("_", plain).strip("_/")
     legal = "/".join(f"sensor_{p}" if is_reserved(p) else p for p in legal.split("/"))
@@ -244,10 +216,8 @@ def with_legal_frames(
     not_ending: str = "",
 ) -> tuple[tuple[PortableSensor, ...], list[str]]:
     """Return sensors with legal names and unique frames, and a message for each renamed sensor.
-
     `frames` returns the names of all frames of a sensor, `taken` are names in use. No name may have
-    the suffix `not_ending`, which marks another sort of frame. For `slashes` see `legal_frame`.
-    """
+    the suffix `not_ending`, which marks another sort of frame. For `slashes` see `legal_frame`."""
     used, renamed, lines = set(taken), [], []
     for sensor in sensors:
         legal = legal_frame(sensor.name, slashes=slashes)
@@ -266,11 +236,9 @@ def with_legal_frames(
 def linked(
     sensors: Sequence[PortableSensor], root: str
 ) -> tuple[list[tuple[PortableSensor, list[tuple[str, str, Pose]]]], list[str]]:
-    """Return sensors with legal names, each with its frames below a root, and messages.
-
-    A frame is its parent, its name and its pose in the parent. A camera also has an optical frame
-    (REP 103). Sensors that an import left out come last, with the pose in their entry.
-    """
+    """Return sensors with legal names, each with its frames below a root, and messages. A frame is
+    its parent, its name and its pose in the parent. A camera also has an optical frame (REP 103).
+    Sensors that an import left out come last, with the pose in their entry."""
 
     def names(sensor: PortableSensor) -> tuple[str, ...]:
         return (sensor.name, sensor.name + OPTICAL) if sensor.kind == CAMERA else (sensor.name,)

@@ -1,10 +1,5 @@
-"""Gazebo's cameras and LiDARs in SDF.
-
-A missing value is None. One that violates its rule raises `InputError`: the author of the file did
-not mean it to be missing.
-"""
-
-from __future__ import annotations
+"""Gazebo's cameras and LiDARs in SDF. A missing value is None. One that violates its rule raises
+`InputError`: the author of the file did not mean it to be missing."""
 
 import math
 from xml.etree.ElementTree import Element, SubElement
@@ -49,10 +44,8 @@ def write_picture(element: Element, picture: Picture, size: Size) -> None:
 
 
 def write_clip(element: Element, nearest: float | None, farthest: float | None) -> None:
-    """Write a camera's minimum and maximum range [m] into a ``<camera>`` element.
-
-    Nothing is written if both are None. Gazebo requires both, so a missing one gets a default.
-    """
+    """Write a camera's minimum and maximum range [m] into a ``<camera>`` element. Nothing is
+    written if both are None. Gazebo requires both, so a missing one gets a default."""
     if nearest is None and farthest is None:
         return
     clip = SubElement(element, "clip")
@@ -61,12 +54,10 @@ def write_clip(element: Element, nearest: float | None, farthest: float | None) 
 
 
 def picture_in(sensor: Figures) -> Picture | None:
-    """Return a camera's intrinsics; None if its field of view or its image size is missing.
-
-    Without intrinsics in the file, the principal point is the centre of the distortion, which is
-    given as a fraction of the image size. A field of view of 180 degrees or more is not that of a
-    pinhole; the result is None and the user has to choose a model.
-    """
+    """Return a camera's intrinsics; None if its field of view or its image size is missing. Without
+    intrinsics in the file, the principal point is the centre of the distortion, which is given as a
+    fraction of the image size. A field of view of 180 degrees or more is not that of a pinhole; the
+    result is None and the user has to choose a model."""
     fov = sensor.number("camera/horizontal_fov", WIDEST)
     width, height = (sensor.whole(f"image/{key}") for key in ("width", "height"))
     intrinsics = [f"lens/intrinsics/{key}" for key in INTRINSICS]
@@ -108,9 +99,7 @@ def write_scan(element: Element, scan: Scan) -> None:
 
 def scan_in(sensor: Figures) -> Scan | None:
     """Return a LiDAR's scan; None if it is incomplete. Without ``<vertical>`` it has one channel.
-
-    Angles that end before they begin raise `InputError`.
-    """
+    Angles that end before they begin raise `InputError`."""
     azimuths = sensor.whole("horizontal/samples", values.STEPS)
     across = sensor.numbers([f"horizontal/{end}" for end in ENDS], values.AZIMUTH)
     max_range = sensor.number("range/max", values.RANGE)

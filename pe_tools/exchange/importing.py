@@ -1,7 +1,5 @@
 """Import of a rig from the files of another program."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -24,8 +22,7 @@ from .rig_formats import RigFormat, detect_format, rig_format
 
 STAND_INS = {
     kind: row.stand_in for kind, row in portable_kinds.PORTABLE_KINDS.items() if row.stand_in
-}
-"""Stand-in models by kind, for sensors whose model the file does not name."""
+}  # Stand-in models by kind, for sensors whose model the file does not name
 CHOOSE = "choose its model"
 Modelled = tuple[PortableSensor, SensorModel, str]
 """A sensor, its model, and a message about the model (may be empty)."""
@@ -33,18 +30,10 @@ Modelled = tuple[PortableSensor, SensorModel, str]
 
 @dataclass(frozen=True, slots=True)
 class ImportedRig:
-    """An imported rig and the messages about it.
-
-    Attributes
-    ----------
-    rig : Rig
-    to_choose : tuple of str
-        Names of sensors with a stand-in model, because the file does not name the model.
-    lines : tuple of str
-        Messages about single sensors and about sensors that were left out.
-    passthrough : Passthrough or None
-        Other content of the file, for an export in the same format; None if there is none.
-    """
+    """An imported rig and the messages about it. `to_choose`: names of sensors with a stand-in
+    model, because the file does not name the model. `lines`: messages about single sensors and
+    about sensors that were left out. `passthrough`: other content of the file, for an export in the
+    same format; None if there is none."""
 
     rig: Rig
     to_choose: tuple[str, ...]
@@ -144,10 +133,8 @@ def _with_model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> M
 
 
 def _model(sensor: PortableSensor, row: RigFormat) -> tuple[SensorModel, str]:
-    """Return the catalogue's model, one of the file's figures, or a stand-in, with a message.
-
-    A camera that the catalogue has with another lens gets the file's lens.
-    """
+    """Return the catalogue's model, one of the file's figures, or a stand-in, with a message. A
+    camera that the catalogue has with another lens gets the file's lens."""
     normalized = NO_WORD.sub("", (sensor.model or "").lower())
     names = {NO_WORD.sub("", name.lower()): name for name in catalog.names(sensor.kind)}
     if normalized and normalized in names:

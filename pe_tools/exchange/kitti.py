@@ -1,10 +1,6 @@
 """KITTI's calibration: projection matrices, and the transform from the LiDAR to the first camera.
-
 The file does not locate the vehicle; an imported LiDAR is at the origin. All cameras have the same
-orientation.
-"""
-
-from __future__ import annotations
+orientation."""
 
 import re
 from collections.abc import Sequence
@@ -31,15 +27,12 @@ ODOMETRY = "Tr"
 KEY = re.compile(r"\s*([^\s:]*):?(.*)$")
 """A key and its numbers, separated by a colon, or by a blank in files of the tracking benchmark."""
 PARALLEL = 1e-9
-ENTRY = Number(cap=1e9)
-"""An entry of a matrix."""
+ENTRY = Number(cap=1e9)  # An entry of a matrix
 
 
 def write(sensors: PortableRig, _texts: FileTexts) -> Export:
-    """Return the calibration of one LiDAR and up to four cameras, and a message.
-
-    Another number of LiDARs or cameras, or orientations that differ, raise `InputError`.
-    """
+    """Return the calibration of one LiDAR and up to four cameras, and a message. Another number of
+    LiDARs or cameras, or orientations that differ, raise `InputError`."""
     rig_cameras, rig_lidars = ([s for s in sensors if s.kind == kind] for kind in (CAMERA, LIDAR))
     if len(rig_lidars) != 1 or not 1 <= len(rig_cameras) <= MAX_CAMERAS:
         found = f"{len(rig_lidars)} LiDARs and {len(rig_cameras)} cameras"

@@ -1,7 +1,5 @@
 """Camera intrinsics for exchange: reduction to what a format can express, and conversions."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -11,8 +9,7 @@ import numpy as np
 from pe_core.sensors.camera import BrownConrady, FTheta, KannalaBrandt, Lens, Pinhole
 
 Size = tuple[int, int]
-ALIKE_PX = 1e-6
-"""Tolerance below which two lens parameters are equal [px]."""
+ALIKE_PX = 1e-6  # Tolerance below which two lens parameters are equal [px]
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,9 +100,7 @@ def opencv_of_five(p: Picture) -> Picture:
 
 def f_theta_of_five(p: Picture) -> Picture:
     """Return an f-theta lens of square pixels and degree 5 at most, its focal length multiplied in.
-
-    Others become a pinhole.
-    """
+    Others become a pinhole."""
     lens = p.lens
     if not isinstance(lens, FTheta) or lens.fx != lens.fy or lens.k6:
         return straight(p)

@@ -1,11 +1,7 @@
-"""nuScenes: the tables sensor.json and calibrated_sensor.json.
-
-The origin of the ego frame is the middle of the rear axle, projected to the ground. A camera's
-frame is optical. A LiDAR's frame has x to the right and y forward. The distortion is that of
-nuImages, camera_distortion: k1, k2, p1, p2, k3, and k4 for fisheyes.
-"""
-
-from __future__ import annotations
+"""nuScenes: the tables sensor.json and calibrated_sensor.json. The origin of the ego frame is the
+middle of the rear axle, projected to the ground. A camera's frame is optical. A LiDAR's frame has x
+to the right and y forward. The distortion is that of nuImages, camera_distortion: k1, k2, p1, p2,
+k3, and k4 for fisheyes."""
 
 import hashlib
 from pathlib import Path
@@ -75,9 +71,7 @@ def _token(table: str, name: str) -> str:
 
 def read(path: Path) -> PortableRig:
     """Read the sensors from calibrated_sensor.json, or its folder, and the sensor.json beside it.
-
-    The last calibration of a sensor is used.
-    """
+    The last calibration of a sensor is used."""
     path = path / CALIBRATED if path.is_dir() else path
     beside = path.with_name(SENSORS)
     names = {row.text("token"): row for row in json_rows(beside, json_of(beside))}

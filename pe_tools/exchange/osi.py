@@ -1,9 +1,7 @@
-"""ASAM OSI: mounting positions in a SensorViewConfiguration, as protobuf's JSON.
-
-The origin is the middle of the rear axle, at the height of the axle. Angles are in radians. Fields
-are those of osi_sensorviewconfiguration.proto (OpenSimulationInterface/open-simulation-interface,
-00eec02). The configuration has one range for all its sensors.
-"""
+"""ASAM OSI: mounting positions in a SensorViewConfiguration, as protobuf's JSON. The origin is the
+middle of the rear axle, at the height of the axle. Angles are in radians. Fields are those of
+osi_sensorviewconfiguration.proto (OpenSimulationInterface/open-simulation-interface, 00eec02). The
+configuration has one range for all its sensors."""
 
 from __future__ import annotations
 
@@ -36,13 +34,11 @@ OTHER_KINDS = (RADAR, ULTRASONIC)
 COUNTS = ("number_of_rays_horizontal", "number_of_rays_vertical", "max_number_of_interactions")
 FIGURES = ("field_of_view_horizontal", "field_of_view_vertical")
 LISTS = {k: f"{k}_sensor_view_configuration" for k in (CAMERA, LIDAR, *OTHER_KINDS)}
-DIGITS = 9
-"""Decimals of a beam's direction; a LiDAR has up to 240,000 beams."""
+DIGITS = 9  # Decimals of a beam's direction; a LiDAR has up to 240,000 beams
 OTHER = "generic_sensor_view_configuration"
 WIDEST = Number(1e-4, 2.0 * math.pi, unit="rad", noun="angle")
 """Field of view, fisheyes included; that of a pinhole is below pi."""
-DIRECTION = (1e-6, 1e6)
-"""Lengths of vectors that may be directions; OSI has them of length 1."""
+DIRECTION = (1e-6, 1e6)  # Lengths of vectors that may be directions; OSI has them of length 1
 COUNT = Whole(0, 1_000_000_000)
 IDENTIFIER = Whole(0, (1 << 64) - 1)
 STAND_IN_RANGE_M = 100.0
@@ -50,11 +46,9 @@ STAND_IN_RANGE_M = 100.0
 
 
 def write(sensors: PortableRig, _texts: FileTexts) -> Export:
-    """Return a configuration with all sensors, and messages on names and ranges it cannot hold.
-
-    Ids count from 0 in rig order, around those of imported entries. Every beam is written, so more
-    than `MAX_BEAMS` raise `InputError`.
-    """
+    """Return a configuration with all sensors, and messages on names and ranges it cannot hold. Ids
+    count from 0 in rig order, around those of imported entries. Every beam is written, so more than
+    `MAX_BEAMS` raise `InputError`."""
     beams = sum(s.scan.beam_count for s in sensors if s.scan is not None)
     require_at_most("osi", "sensors", beams, MAX_BEAMS, "beams, each of which is written")
     figures = ((s.name, s.scan or s.field) for s in sensors)
@@ -126,10 +120,8 @@ def _figures(sensor: PortableSensor) -> dict[str, Any]:
 
 
 def read(path: Path) -> PortableRig:
-    """Read the sensors of a configuration; a sensor's name is its kind and id.
-
-    Fields may have the names of the schema (snake case) or of protobuf's JSON (camel case).
-    """
+    """Read the sensors of a configuration; a sensor's name is its kind and id. Fields may have the
+    names of the schema (snake case) or of protobuf's JSON (camel case)."""
     top = Message(values.json_of(path, values.BEAM_BYTES), str(path))
     max_range = top.figures.number("range", RANGE)
     sensors: dict[int, PortableSensor] = {}
@@ -205,11 +197,9 @@ CAPITAL = re.compile(r"(?<=[a-z0-9])([A-Z])")
 
 
 class Message(Table):
-    """A protobuf message: a table with the schema's field names, ``like_this``.
-
-    A field that is null is absent; one that occurs under both of its names raises `InputError`.
-    Numbers may be given as text. Names in nested messages are converted when these are accessed.
-    """
+    """A protobuf message: a table with the schema's field names, ``like_this``. A field that is
+    null is absent; one that occurs under both of its names raises `InputError`. Numbers may be
+    given as text. Names in nested messages are converted when these are accessed."""
 
     def __init__(self, data: Any, source: str, path: str = "") -> None:
         fields: dict[str, Any] = {}

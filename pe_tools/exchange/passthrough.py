@@ -1,10 +1,6 @@
 """Passthrough: content of an imported file besides the rig, written again to the same format.
-
 Sensors of unknown kinds, fields that are not read, and comments survive import and export. The
-entry of a sensor is written unchanged while the sensor has its imported pose and model.
-"""
-
-from __future__ import annotations
+entry of a sensor is written unchanged while the sensor has its imported pose and model."""
 
 import hashlib
 import json
@@ -40,11 +36,9 @@ def restored(
     passthrough: Passthrough, sensors: Iterable[PortableSensor], models: Mapping[str, str]
 ) -> PortableRig:
     """Return a rig's sensors with their imported entries, and the sensors left out at import.
-
     Sensors are in the order of the file; sensors added since follow. `models` are the `model_text`
     of the rig's models by the sensors' names; properties of a model that is still the imported one
-    are left out.
-    """
+    are left out."""
     by_name, result = {sensor.name: sensor for sensor in sensors}, []
     for source in passthrough.sensors:
         if source.pose is None:
@@ -110,11 +104,9 @@ def entry_row(
     figure_keys: Sequence[str],
     part: str = "",
 ) -> dict[str, Any]:
-    """Return a sensor's JSON object: its imported entry with the changed keys updated.
-
-    `fresh` returns the object of a sensor without an entry; `pose_keys` and `figure_keys` are the
-    keys of the pose and of the model in it. `part` is its key, if the entry has several objects.
-    """
+    """Return a sensor's JSON object: its imported entry with the changed keys updated. `fresh`
+    returns the object of a sensor without an entry; `pose_keys` and `figure_keys` are the keys of
+    the pose and of the model in it. `part` is its key, if the entry has several objects."""
     if not sensor.entry:
         return dict(fresh(sensor))
     row = json.loads(sensor.entry)
@@ -149,17 +141,14 @@ def pose_of_entry(sensor: PortableSensor) -> Pose:
 NO_WORD = re.compile("[^a-z0-9]+")
 NAMED_KINDS = ("radar", "ultrasonic", "sonar", "gnss", "gps", "imu", "ins", "collision")
 """Words in sensor names that identify a kind, if the file states none."""
-NOUNS = {"radar", "ultrasonic"}
-"""Kinds that are nouns; of others one says sensor."""
+NOUNS = {"radar", "ultrasonic"}  # Kinds that are nouns; of others one says sensor
 
 
 def parted(
     sensors: Iterable[PortableSensor], chosen: Mapping[str, str]
 ) -> tuple[list[PortableSensor], list[PortableSensor]]:
-    """Return the sensors of known kinds, and the sensors to leave out.
-
-    If the file states no kind, the sensor's name decides, unless a model was `chosen` for it.
-    """
+    """Return the sensors of known kinds, and the sensors to leave out. If the file states no kind,
+    the sensor's name decides, unless a model was `chosen` for it."""
     included, left_out = [], []
     for sensor in sensors:
         kind = sensor.kind or ""

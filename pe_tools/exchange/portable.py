@@ -1,7 +1,5 @@
 """The exchange model: sensors and poses as all rig formats can express them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -12,19 +10,16 @@ from pe_core.geometry.poses import Pose
 from .lens_pictures import KeptPicture, Picture, lost
 
 ORIGIN = Pose((0.0, 0.0, 0.0))
-EVEN_RAD = 1e-4
-"""Channels nearer to even distances than this are even."""
+EVEN_RAD = 1e-4  # Channels nearer to even distances than this are even
 
 
 @dataclass(frozen=True, slots=True)
 class Scan:
-    """A LiDAR's scan pattern, in the terms of formats with evenly spaced channels.
-
-    `low` and `high` are the elevations of the outer channels, `fov` is the azimuth range [rad];
-    ranges are in metres. `even` tells whether the channels are evenly spaced; their azimuth offsets
-    are up to `offset_rad`. `directions` (B, 3) are the beams of an imported file that lists them;
-    for a LiDAR of a rig, `compute_beams` computes them.
-    """
+    """A LiDAR's scan pattern, in the terms of formats with evenly spaced channels. `low` and `high`
+    are the elevations of the outer channels, `fov` is the azimuth range [rad]; ranges are in
+    metres. `even` tells whether the channels are evenly spaced; their azimuth offsets are up to
+    `offset_rad`. `directions` (B, 3) are the beams of an imported file that lists them; for a LiDAR
+    of a rig, `compute_beams` computes them."""
 
     channels: int
     low: float
@@ -52,9 +47,7 @@ class Scan:
 @dataclass(frozen=True, slots=True)
 class FieldOfView:
     """The field of view of a radar or an ultrasonic sensor: lowest and highest angles, ranges.
-
-    `across` are azimuths and `up` elevations [rad]; ranges are in metres.
-    """
+    `across` are azimuths and `up` elevations [rad]; ranges are in metres."""
 
     across: tuple[float, float]
     up: tuple[float, float]
@@ -64,34 +57,16 @@ class FieldOfView:
 
 @dataclass(frozen=True, slots=True)
 class PortableSensor:
-    """A sensor in the exchange model.
-
-    Attributes
-    ----------
-    name, model : str
-        Its name, and that of its model, in the file.
-    pose : Pose
-        Axes are those of this project (a camera looks along x); the origin is the format's.
-    kind : str or None
-        ``"camera"``, ``"lidar"``, another one that the file names, or None if unknown.
-    min_range, max_range : float or None
-        [m]; None if the file has none.
-    told : str
-        Note on how it was read.
-    entry : str
-        Its entry in the imported file, a JSON object of its format, which an export writes again
-        with the changes; empty if the format keeps none.
-    is_left_out : bool
-        Whether it is of an unknown kind; an export then writes only its entry.
-    is_unmoved : bool
-        Whether it has the pose of its entry.
-    is_stand_in : bool
-        Whether the model is a stand-in because the file names none.
-    parameters : str
-        Table of its model in a study (JSON), of a kind that has neither picture nor scan.
-    field : FieldOfView or None
-        To what a kind reduces in formats without room for its parameters.
-    """
+    """A sensor in the exchange model. `name`, `model`: its name, and that of its model, in the
+    file. `pose`: axes are those of this project (a camera looks along x); the origin is the
+    format's. `kind`: ``"camera"``, ``"lidar"``, another one that the file names, or None if
+    unknown. `min_range`, `max_range`: [m]; None if the file has none. `told`: note on how it was
+    read. `entry`: its entry in the imported file, a JSON object of its format, which an export
+    writes again with the changes; empty if the format keeps none. `is_left_out`: whether it is of
+    an unknown kind; an export then writes only its entry. `is_unmoved`: whether it has the pose of
+    its entry. `is_stand_in`: whether the model is a stand-in because the file names none.
+    `parameters`: table of its model in a study (JSON), of a kind that has neither picture nor scan.
+    `field`: to what a kind reduces in formats without room for its parameters."""
 
     name: str
     pose: Pose

@@ -1,9 +1,5 @@
-"""How each kind of sensor goes through the exchange model: one table, a row a kind.
-
-A kind without a row goes by its table in a study, in the formats that have room for it.
-"""
-
-from __future__ import annotations
+"""How each kind of sensor goes through the exchange model: one table, a row a kind. A kind without
+a row goes by its table in a study, in the formats that have room for it."""
 
 import json
 import math
@@ -29,8 +25,7 @@ from .lens_pictures import ALIKE_PX, Picture, Size
 from .portable import EVEN_RAD, FieldOfView, PortableRig, PortableSensor, Scan
 
 CAMERA, LIDAR, RADAR, ULTRASONIC = Camera.kind, Lidar.kind, Radar.kind, Ultrasonic.kind
-NO_EXTENT_RAD = 1e-9
-"""A scan with a smaller horizontal field of view does not rotate [rad]."""
+NO_EXTENT_RAD = 1e-9  # A scan with a smaller horizontal field of view does not rotate [rad]
 OFF_CENTER = 0.06
 """Of a picture's side, how far from the middle the principal point of a usual size may be:
 nuScenes' own cameras have it 0.046 below."""
@@ -43,13 +38,11 @@ OwnModel = tuple[SensorModel, str]
 
 @dataclass(frozen=True, slots=True)
 class PortableKind:
-    """How the exchange model expresses the sensors of a kind.
-
-    `figures` returns the fields of `PortableSensor` that describe a model. `model` returns the
-    model of a sensor's figures, by the usual image size of the format; None without figures of the
-    kind. `stand_in` is the catalogue name of the model that stands in where a file names none,
-    `name_parts` are parts of a name that identify the kind, if a file does not state it.
-    """
+    """How the exchange model expresses the sensors of a kind. `figures` returns the fields of
+    `PortableSensor` that describe a model. `model` returns the model of a sensor's figures, by the
+    usual image size of the format; None without figures of the kind. `stand_in` is the catalogue
+    name of the model that stands in where a file names none, `name_parts` are parts of a name that
+    identify the kind, if a file does not state it."""
 
     figures: Callable[[Any], Mapping[str, Any]]
     model: Callable[[PortableSensor, Size | None], OwnModel | None]
@@ -63,10 +56,8 @@ def portable_kind(name: str | None) -> PortableKind:
 
 
 def stand_in_of(kind: str) -> str | None:
-    """Return the catalogue name of the model that stands in for an unknown one of a kind.
-
-    It is the first of the catalogue where the kind has no row; None if there is none.
-    """
+    """Return the catalogue name of the model that stands in for an unknown one of a kind. It is the
+    first of the catalogue where the kind has no row; None if there is none."""
     stand_in = portable_kind(kind).stand_in
     return stand_in or next(iter(catalog.names(kind)), None)
 
@@ -115,11 +106,9 @@ def picture_of(model: object) -> Picture | None:
 
 def camera_of(name: str, p: Picture, usual: Size | None = None) -> tuple[Camera, str]:
     """Return the camera model of intrinsics, and a message on assumptions (may be empty).
-
     Intrinsics without an image size get the usual size of the format, if the principal point is
     near its middle, or else the size whose middle is the principal point. If the lens folds inside
-    the image, the field of view is limited to the part before the fold, to 0.1 degrees.
-    """
+    the image, the field of view is limited to the part before the fold, to 0.1 degrees."""
     if p.size is None:
         doubled = [2.0 * middle for middle in p.center]
         size, reason = (round(doubled[0]), round(doubled[1])), "has its middle there"
@@ -192,10 +181,8 @@ def _model_by_table(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
 
 
 def _model_by_field(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
-    """Return the model of a sensor's table, or one with the file's field of view.
-
-    It is a radar with a single mode, or an ultrasonic sensor with that cone.
-    """
+    """Return the model of a sensor's table, or one with the file's field of view. It is a radar
+    with a single mode, or an ultrasonic sensor with that cone."""
     if sensor.parameters or (seen := sensor.field) is None:
         return _model_by_table(sensor, None)
     name = sensor.model or sensor.name
@@ -228,9 +215,7 @@ PORTABLE_KINDS: dict[str, PortableKind] = {
     ULTRASONIC: PortableKind(
         _with_field, _model_by_field, "Bosch Ultrasonic 3.1", ("ultrasonic", "uss")
     ),
-}
-"""Rows by kind; other kinds are expressed by `OTHER`."""
+}  # Rows by kind; other kinds are expressed by `OTHER`
 OTHER = PortableKind(
     lambda model: {"parameters": json_entry(catalog.to_table(model))}, _model_by_table
-)
-"""The row of a kind without one."""
+)  # The row of a kind without one

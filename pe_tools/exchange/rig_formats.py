@@ -1,7 +1,5 @@
 """Registry of the rig formats for import and export, one row per format."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,13 +15,10 @@ from .foreign_values import Export, FileTexts
 from .frames import GROUND, REAR_AXLE, REAR_AXLE_GROUND
 from .portable import PortableRig, PortableSensor
 
-MODEL = "model"
-"""The model name; properties of a catalogued model are then not lost."""
-BEAMS = "beams"
-"""A LiDAR's channels, azimuths and range."""
+MODEL = "model"  # The model name; properties of a catalogued model are then not lost
+BEAMS = "beams"  # A LiDAR's channels, azimuths and range
 MIN_RANGE, MAX_RANGE = "minimum range", "maximum range"
-PARAMETERS = "parameters"
-"""The table of a model that has neither lens nor beams."""
+PARAMETERS = "parameters"  # The table of a model that has neither lens nor beams
 FUSION, CURVE = "fusion group", "AP curve"
 EVERYTHING = (BEAMS, PARAMETERS, MIN_RANGE, MAX_RANGE, FUSION, CURVE)
 
@@ -35,41 +30,21 @@ class Codec(Protocol):
         """Return the sensors of a file or folder, in the format's frame."""
 
     def write(self, sensors: PortableRig, texts: FileTexts, /) -> Export:
-        """Return bytes by file name, and messages, of sensors in the format's frame.
-
-        `texts` are those of imported or existing files whose other content it keeps.
-        """
+        """Return bytes by file name, and messages, of sensors in the format's frame. `texts` are
+        those of imported or existing files whose other content it keeps."""
 
 
 @dataclass(frozen=True, slots=True)
 class RigFormat:
-    """A format of rigs.
-
-    Attributes
-    ----------
-    name, title : str
-        Name in commands, and title in messages.
-    origin : str
-        Origin of its frame on the vehicle; `GROUND` is the origin of the ground frame.
-    files : tuple of str
-        Names of the written files; the first one identifies the format.
-    code : Codec
-        Module that reads and writes it.
-    holds : frozenset of str
-        Properties that it holds besides poses and lenses.
-    keeps : callable
-        Function that reduces a camera's intrinsics to what the format can express.
-    settled : callable
-        Function that adjusts a sensor once its model is known.
-    source : callable
-        Function of an imported path; returns the texts that `write` takes, by file name.
-    usual_size : (int, int) or None
-        Image size of the format's data set [px], for a format that states no size.
-    beside : bool
-        Whether files with camera intrinsics are beside the main file.
-    passes_through : bool
-        Whether an export restores imported sensors of unknown kinds.
-    """
+    """A format of rigs. `name`, `title`: name in commands, and title in messages. `origin`: origin
+    of its frame on the vehicle; `GROUND` is the origin of the ground frame. `files`: names of the
+    written files; the first one identifies the format. `code`: module that reads and writes it.
+    `holds`: properties that it holds besides poses and lenses. `keeps`: function that reduces a
+    camera's intrinsics to what the format can express. `settled`: function that adjusts a sensor
+    once its model is known. `source`: function of an imported path; returns the texts that `write`
+    takes, by file name. `usual_size` (int, int): image size of the format's data set [px], for a
+    format that states no size. `beside`: whether files with camera intrinsics are beside the main
+    file. `passes_through`: whether an export restores imported sensors of unknown kinds."""
 
     name: str
     title: str
@@ -139,8 +114,7 @@ _ROWS = (
         source=driveworks.source,
     ),
 )
-RIG_FORMATS = MappingProxyType({row.name: row for row in _ROWS})
-"""Formats by name."""
+RIG_FORMATS = MappingProxyType({row.name: row for row in _ROWS})  # Formats by name
 
 
 def rig_format(name: str) -> RigFormat:
@@ -149,22 +123,11 @@ def rig_format(name: str) -> RigFormat:
 
 
 def format_of_file(output: Path, files: Mapping[str, str], chosen: str | None = None) -> str:
-    """Return the format that a file to be written has: the suffix of its name decides.
-
-    Parameters
-    ----------
-    output : Path
-        File or folder to write.
-    files : mapping of str to str
-        The usual name of the file of each format that has one file, by the format's name.
-    chosen : str, optional
-        Name of the format that was asked for; it may be one that has a folder of files.
-
-    Raises
-    ------
-    InputError
-        When the suffix is that of another format than `chosen` or of no single one, or is missing.
-    """
+    """Return the format that a file to be written has: the suffix of its name decides. `InputError`
+    when the suffix is that of another format than `chosen` or of no single one, or is missing.
+    `output`: file or folder to write. `files`: the usual name of the file of each format that has
+    one file, by the format's name. `chosen`: name of the format that was asked for; it may be one
+    that has a folder of files."""
     suffix = output.suffix.lower()
     fitting = [name for name, file in files.items() if Path(file).suffix == suffix]
     if chosen is not None:

@@ -7,8 +7,6 @@ Brown-Conrady distortion plumb_bob, or rational_polynomial if it has a denominat
 Kannala-Brandt distortion equidistant.
 """
 
-from __future__ import annotations
-
 import re
 import shlex
 from collections.abc import Iterable, Sequence
@@ -37,8 +35,7 @@ FILE, ROOT = "rig.launch.xml", "base_link"
 PUBLISHER = "static_transform_publisher"
 QUATERNION = ("qw", "qx", "qy", "qz")
 ENDS = ("frame-id", "child-frame-id")
-EQUALS = re.compile(r"(--[a-z-]+)=")
-"""Between an option and its value, in place of a blank."""
+EQUALS = re.compile(r"(--[a-z-]+)=")  # Between an option and its value, in place of a blank
 ARGS = re.compile(rf"{PUBLISHER}[\"']?(?:\s+args=[\"'])?([^<\"'\n]*)")
 
 FOLDER = "camera_info"
@@ -81,10 +78,8 @@ def source(path: Path) -> dict[str, str]:
 
 
 def read(path: Path) -> PortableRig:
-    """Read the transforms of all calls of the publisher in a file, in the frame of their root.
-
-    A frame with an optical frame below it is a camera; the kind of others is unknown.
-    """
+    """Read the transforms of all calls of the publisher in a file, in the frame of their root. A
+    frame with an optical frame below it is a camera; the kind of others is unknown."""
     path = path / FILE if path.is_dir() else path
     links = _links(path)
     names = dict.fromkeys(name for child, (parent, _) in links.items() for name in (parent, child))
@@ -194,10 +189,8 @@ def with_info(folder: Path, sensors: Iterable[PortableSensor]) -> PortableRig:
 
 
 def picture_of_info(source: str, text: str) -> Picture:
-    """Return the intrinsics in the text of a camera_info file.
-
-    A number that is missing, or a distortion model that is none of `LENSES`, raises `InputError`.
-    """
+    """Return the intrinsics in the text of a camera_info file. A number that is missing, or a
+    distortion model that is none of `LENSES`, raises `InputError`."""
     top = Table(parse_yaml(source, text), source)
     size = (
         top.whole("image_width", rule=values.PIXELS),

@@ -1,10 +1,6 @@
-"""URDF: links and fixed joints, an optical frame for each camera (REP 103).
-
-Intrinsics are in Gazebo's sensor elements, as far as these can express them. The model name is in
-an element beside them, which other readers of URDF ignore.
-"""
-
-from __future__ import annotations
+"""URDF: links and fixed joints, an optical frame for each camera (REP 103). Intrinsics are in
+Gazebo's sensor elements, as far as these can express them. The model name is in an element beside
+them, which other readers of URDF ignore."""
 
 from collections.abc import Collection, Iterator
 from dataclasses import replace
@@ -28,8 +24,7 @@ from .portable_kinds import CAMERA, LIDAR, has_model
 
 RANGES = {"min_range": values.MIN_RANGE, "max_range": values.FARTHEST}
 FILE, ROOT, NAME = "rig.urdf", "base_link", "rig"
-ON_GROUND = "base_footprint"
-"""The link on the ground under a robot (REP 120)."""
+ON_GROUND = "base_footprint"  # The link on the ground under a robot (REP 120)
 MASSES = (
     "Links have a mass and joints are preserved, so that Gazebo keeps each sensor's frame; gravity "
     "does not move them. "
@@ -43,10 +38,8 @@ MASS_KG, INERTIA = 0.01, 1e-5
 
 
 def write(sensors: PortableRig, texts: FileTexts) -> Export:
-    """Return a robot that consists of the rig alone, and messages on losses.
-
-    Its name and its root link are those of an imported one, if there is one.
-    """
+    """Return a robot that consists of the rig alone, and messages on losses. Its name and its root
+    link are those of an imported one, if there is one."""
     name, root = NAME, ROOT
     if texts:
         imported = parse_xml("passthrough", texts.get(FILE, "").encode())
@@ -124,11 +117,9 @@ def _gazebo(robot: Element, sensor: PortableSensor) -> None:
 
 
 def read(path: Path) -> PortableRig:
-    """Read the sensors of a robot, in the frame of its root.
-
-    Sensors are the links with a Gazebo sensor. If there are none, they are the links with an
-    optical frame, and the links without children and without a mass.
-    """
+    """Read the sensors of a robot, in the frame of its root. Sensors are the links with a Gazebo
+    sensor. If there are none, they are the links with an optical frame, and the links without
+    children and without a mass."""
     robot = _robot(path)
     in_root = _poses(path, robot)
     blocks = {

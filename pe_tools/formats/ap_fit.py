@@ -1,7 +1,5 @@
 """Tables of AP by measurement or by range, and the fit of an AP curve, a and b of equation 4."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -23,12 +21,9 @@ from pe_core.sensors.kind import PAPER_VOXEL_M, SIZES
 
 from .csv_rows import csv_rows
 
-HEADINGS = 24
-"""Headings of an object whose m is averaged."""
-FIRST_RAD = 0.01
-"""The first heading: no side of an object is exactly along a ray."""
-VOXELS_OF = "car"
-"""Class whose AP a table for a curve of voxels has."""
+HEADINGS = 24  # Headings of an object whose m is averaged
+FIRST_RAD = 0.01  # The first heading: no side of an object is exactly along a ray
+VOXELS_OF = "car"  # Class whose AP a table for a curve of voxels has
 MIN_POINTS = 3
 SATURATION = 0.02
 """A point whose AP is within this of the table's largest is saturated, and so are all after it."""
@@ -36,20 +31,11 @@ SATURATION = 0.02
 
 @dataclass(frozen=True, slots=True)
 class ApTable:
-    """AP of an algorithm, by the measurement of the objects.
-
-    Attributes
-    ----------
-    m : (N,) float
-        Measurement per voxel, as the metric counts it: points or pixels on an object, divided by
-        its surface in voxel faces; may be below 1. For curves of whole objects not divided.
-    ap : (N,) float
-        Average precision, 0 to 1.
-    n : (N,) float
-        Number of objects of each point: the weights of a fit.
-    source : str
-        Name of the table, for messages.
-    """
+    """AP of an algorithm, by the measurement of the objects. `m` (N,): measurement per voxel, as
+    the metric counts it: points or pixels on an object, divided by its surface in voxel faces; may
+    be below 1. For curves of whole objects not divided. `ap` (N,): average precision, 0 to 1. `n`
+    (N,): number of objects of each point: the weights of a fit. `source`: name of the table, for
+    messages."""
 
     m: Floats
     ap: Floats
@@ -59,10 +45,8 @@ class ApTable:
 
 @dataclass(frozen=True, slots=True)
 class CurveFit:
-    """A fitted curve with its standard errors, the rms residual of AP, and the points used.
-
-    `why` (N,) is the reason why a point was left out, or an empty text.
-    """
+    """A fitted curve with its standard errors, the rms residual of AP, and the points used. `why`
+    (N,) is the reason why a point was left out, or an empty text."""
 
     curve: ApCurve
     a_error: float
@@ -83,13 +67,11 @@ class CurveFit:
 
 
 def fit_ap_curve(table: ApTable, saturation: float = SATURATION) -> CurveFit:
-    """Find a and b of AP = a ln m + b (eq. 4) by least squares, weighted by n.
-
-    Left out are points without a measurement (m = 0), clipped ones (AP <= 0.001 or >= 0.999), and
-    saturated ones: if the AP of more than one point is within `saturation` of the largest, these
-    points and all with a larger m. Fewer than three usable points, a single value of m, or an AP
-    that falls with m raise `InputError`.
-    """
+    """Find a and b of AP = a ln m + b (eq. 4) by least squares, weighted by n. Left out are points
+    without a measurement (m = 0), clipped ones (AP <= 0.001 or >= 0.999), and saturated ones: if
+    the AP of more than one point is within `saturation` of the largest, these points and all with a
+    larger m. Fewer than three usable points, a single value of m, or an AP that falls with m raise
+    `InputError`."""
     why = _reasons(table, saturation)
     used = np.array([not reason for reason in why], dtype=bool)
     if used.sum() < MIN_POINTS:
@@ -156,10 +138,8 @@ def read_ap_table(
     path: str | Path, m_at_ranges: Callable[[Floats], Floats] | None = None
 ) -> ApTable:
     """Read a CSV with the columns m and ap, and optionally n, the number of objects of each point.
-
     Lines that begin with ``#`` are comments. Other columns are ignored. With `m_at_ranges` the
-    table has a column range_m [m] in place of m, and the function returns m (N,) of ranges (N,).
-    """
+    table has a column range_m [m] in place of m, and the function returns m (N,) of ranges (N,)."""
     source = str(path)
     data = read_bytes(Path(path))
     if b"\0" in data:
@@ -192,22 +172,9 @@ def m_by_range(
     model: SensorModel, ranges: Floats, class_name: str | None, height: float | None = None
 ) -> Floats:
     """Return m (N,) at ranges (N,), from the sensor to the object's middle over the ground [m].
-
-    Parameters
-    ----------
-    model : SensorModel
-    ranges : (N,) float
-    class_name : str or None
-        A class of the road; None: m of a voxel of a car, m of the car over
-        ``k = (l + w) h / (2 s^2)`` as in `derived_object_curve`.
-    height : float, optional
-        Of the sensor above the ground [m]; by default that of the object's middle.
-
-    Raises
-    ------
-    InputError
-        For a class without a size.
-    """
+    `InputError` when for a class without a size. `class_name`: A class of the road; None: m of a
+    voxel of a car, m of the car over ``k = (l + w) h / (2 s^2)`` as in `derived_object_curve`.
+    `height`: of the sensor above the ground [m]; by default that of the object's middle."""
     name = VOXELS_OF if class_name is None else class_name
     require_name("fit", "object", name, SIZES)
     length, width, tall = SIZES[name]

@@ -1,7 +1,5 @@
 """Rows of a CSV table whose header names the columns, in any order."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Callable, Iterator, Sequence
 
@@ -17,10 +15,8 @@ def csv_rows(
     column: Callable[[str], str] = str.lower,
 ) -> Iterator[tuple[str, dict[str, str]]]:
     """Yield the rows of numbered lines: "line N", and the cells by column; the header is first.
-
     `column` returns the name of a column from its cell. A column of `required` that is not there
-    once, or a row with more or fewer cells than the header raises `InputError`.
-    """
+    once, or a row with more or fewer cells than the header raises `InputError`."""
     (first, header), *rows = lines
     names = [column(cell) for cell in _cells(source, f"line {first}", header, separator)]
     for name in required:

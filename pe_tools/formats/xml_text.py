@@ -1,23 +1,18 @@
 """XML, read without entity definitions and with limited depth, as hostile files abuse both."""
 
-from __future__ import annotations
-
 from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers import expat
 
 from pe_core.base.errors import InputError
 
-MAX_DEPTH = 100
-"""Maximum levels of elements; calibrations have fewer than ten."""
+MAX_DEPTH = 100  # Maximum levels of elements; calibrations have fewer than ten
 
 
 def parse_xml(source: str, data: bytes) -> Element:
-    """Return the root of an XML document.
-
-    Definitions in the document (``<!DOCTYPE a [...]>``) are refused: a few lines of them can
-    expand to gigabytes. A DOCTYPE without definitions is ignored. `InputError` when it is not
-    well-formed, has definitions or is nested deeper than `MAX_DEPTH`.
-    """
+    """Return the root of an XML document. Definitions in the document (``<!DOCTYPE a [...]>``) are
+    refused: a few lines of them can expand to gigabytes. A DOCTYPE without definitions is ignored.
+    `InputError` when it is not well-formed, has definitions or is nested deeper than
+    `MAX_DEPTH`."""
     tree, parser, depth = TreeBuilder(), expat.ParserCreate(), 0
 
     def start(tag: str, attributes: dict[str, str]) -> None:

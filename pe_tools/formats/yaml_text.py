@@ -1,10 +1,6 @@
-"""YAML of other programs: read with ruamel.yaml, and edited where keys and values stand.
-
-Aliases are refused: a few lines of them can unfold to gigabytes. The library is imported when a
-file is read, not with this module.
-"""
-
-from __future__ import annotations
+"""YAML of other programs: read with ruamel.yaml, and edited where keys and values stand. Aliases
+are refused: a few lines of them can unfold to gigabytes. The library is imported when a file is
+read, not with this module."""
 
 import warnings
 from collections.abc import Mapping, Sequence
@@ -22,11 +18,9 @@ TAG = "tag:yaml.org,2002:"
 
 
 class YamlText:
-    """A YAML text with its plain `data`; an edited copy keeps every byte that is not edited.
-
-    `data` are nested dicts and lists of texts, numbers (float), booleans and None. A text that is
-    no YAML, no mapping, too long or too deep, has a key twice or aliases raises `InputError`.
-    """
+    """A YAML text with its plain `data`; an edited copy keeps every byte that is not edited. `data`
+    are nested dicts and lists of texts, numbers (float), booleans and None. A text that is no YAML,
+    no mapping, too long or too deep, has a key twice or aliases raises `InputError`."""
 
     def __init__(self, source: str, text: str) -> None:
         self.source, self.text = source, text
@@ -110,11 +104,9 @@ class YamlText:
         comments: Mapping[KeyPath, str],
         added: tuple[KeyPath, Sequence[str]] | None = None,
     ) -> str:
-        """Return the text with other values and comments, and lines added to a mapping.
-
-        An empty comment removes the old one; where there is none, none is written. The lines of
-        `added` are indented as the keys of the mapping at its path.
-        """
+        """Return the text with other values and comments, and lines added to a mapping. An empty
+        comment removes the old one; where there is none, none is written. The lines of `added` are
+        indented as the keys of the mapping at its path."""
         edits = []
         for path, new in values.items():
             value = self._nodes[path][1]

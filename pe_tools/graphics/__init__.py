@@ -1,98 +1,24 @@
 """Graphics of sensors and their views as plain arrays: lines, triangles, colours and labels.
-
 Blender's 3D view, the review picture and the web page render the same arrays, each with its own
-means. Nothing here needs a Blender scene or a GPU.
-"""
+means. Nothing here needs a Blender scene or a GPU."""
 
-from .beams import MAX_BEAMS as MAX_BEAMS
-from .beams import PREVIEW_BEAMS as PREVIEW_BEAMS
-from .beams import RING_FAR_M as RING_FAR_M
-from .beams import BeamChoice as BeamChoice
-from .beams import Cast as Cast
-from .beams import ChannelMode as ChannelMode
-from .beams import cast as cast
-from .beams import channels_of as channels_of
-from .beams import free_lines as free_lines
-from .beams import ground_distance as ground_distance
-from .beams import ground_rings as ground_rings
-from .beams import occluded_lines as occluded_lines
-from .beams import shown_beams as shown_beams
-from .colors import CIVIDIS as CIVIDIS
-from .colors import COUNTS as COUNTS
-from .colors import DIFFERENCE as DIFFERENCE
-from .colors import PAPER as PAPER
-from .colors import VIEWPORT as VIEWPORT
-from .colors import VIRIDIS as VIRIDIS
-from .colors import Palette as Palette
-from .colors import Rgb as Rgb
-from .colors import Rgba as Rgba
-from .colors import color_text as color_text
-from .colors import free_tint as free_tint
-from .colors import is_foreign_tint as is_foreign_tint
-from .colors import linear as linear
-from .colors import linear_of_srgb as linear_of_srgb
-from .colors import on_scale as on_scale
-from .colors import rgb_of as rgb_of
-from .colors import sensor_colors as sensor_colors
-from .colors import sensor_colors_on_paper as sensor_colors_on_paper
-from .colors import sensor_palette as sensor_palette
-from .colors import srgb_of_linear as srgb_of_linear
-from .colors import with_alpha as with_alpha
-from .drive_by import BRAKE as BRAKE
-from .drive_by import CONFIRMED as CONFIRMED
-from .drive_by import CORNERS as CORNERS
-from .drive_by import EDGES as EDGES
-from .drive_by import FACES as FACES
-from .drive_by import NEVER as NEVER
-from .drive_by import UNSEEN as UNSEEN
-from .drive_by import BodiesInTime as BodiesInTime
-from .drive_by import MovingBody as MovingBody
-from .drive_by import MovingShape as MovingShape
-from .drive_by import TimeStrip as TimeStrip
-from .drive_by import color_of_ap as color_of_ap
-from .drive_by import digest as digest
-from .drive_by import marks_of as marks_of
-from .drive_by import moving_shape as moving_shape
-from .drive_by import strip_ends as strip_ends
-from .drive_by import strip_rows as strip_rows
-from .drive_by import time_strip as time_strip
-from .ground import AS_SCORED as AS_SCORED
-from .ground import COVERAGE as COVERAGE
-from .ground import ENTROPY as ENTROPY
-from .ground import QUANTITIES as QUANTITIES
-from .ground import SENSORS as SENSORS
-from .ground import SWATCHES as SWATCHES
-from .ground import as_scored as as_scored
-from .ground import difference_map as difference_map
-from .ground import fitted_bounds as fitted_bounds
-from .ground import ground_map as ground_map
-from .ground import painted_samples as painted_samples
-from .ground import swatches_of as swatches_of
-from .kinds import beam_budget as beam_budget
-from .kinds import drawing_of as drawing_of
-from .kinds import footprint_faces as footprint_faces
-from .kinds import footprint_lines as footprint_lines
-from .kinds import ring_lines as ring_lines
-from .png import as_bytes as as_bytes
-from .png import png_bytes as png_bytes
-from .primitives import ColorKey as ColorKey
-from .primitives import GroundSheet as GroundSheet
-from .primitives import LayerShape as LayerShape
-from .primitives import Primitives as Primitives
-from .primitives import Tag as Tag
-from .primitives import boxes_overlap as boxes_overlap
-from .primitives import polyline as polyline
-from .sensor_images import BODY_NEAR as BODY_NEAR
-from .sensor_images import NO_ECHO as NO_ECHO
-from .sensor_images import RANGES as RANGES
-from .sensor_images import camera_of as camera_of
-from .sensor_images import even_angles as even_angles
-from .sensor_images import field_colors as field_colors
-from .sensor_images import hidden_lines as hidden_lines
-from .sensor_images import lidar_of as lidar_of
-from .sensor_images import range_colors as range_colors
-from .simplify import simplified as simplified
-from .surface_map import FORBIDDEN as FORBIDDEN
-from .surface_map import colored_surface as colored_surface
-from .surroundings import Surroundings as Surroundings
-from .surroundings import surroundings as surroundings
+from .beams import MAX_BEAMS, PREVIEW_BEAMS, RING_FAR_M, BeamChoice, Cast, ChannelMode, cast
+from .beams import channels_of, free_lines, ground_distance, ground_rings, occluded_lines
+from .beams import shown_beams
+from .colors import CIVIDIS, COUNTS, DIFFERENCE, PAPER, VIEWPORT, VIRIDIS, Palette, Rgb, Rgba
+from .colors import color_text, free_tint, is_foreign_tint, linear, linear_of_srgb, on_scale, rgb_of
+from .colors import sensor_colors, sensor_colors_on_paper, sensor_palette, srgb_of_linear
+from .colors import with_alpha
+from .drive_by import BRAKE, CONFIRMED, CORNERS, EDGES, FACES, NEVER, UNSEEN, BodiesInTime
+from .drive_by import MovingBody, MovingShape, TimeStrip, color_of_ap, digest, marks_of
+from .drive_by import moving_shape, strip_ends, strip_rows, time_strip
+from .ground import AS_SCORED, COVERAGE, ENTROPY, QUANTITIES, SENSORS, SWATCHES, as_scored
+from .ground import difference_map, fitted_bounds, ground_map, painted_samples, swatches_of
+from .kinds import beam_budget, drawing_of, footprint_faces, footprint_lines, ring_lines
+from .png import as_bytes, png_bytes
+from .primitives import ColorKey, GroundSheet, LayerShape, Primitives, Tag, boxes_overlap, polyline
+from .sensor_images import BODY_NEAR, NO_ECHO, RANGES, camera_of, even_angles, field_colors
+from .sensor_images import hidden_lines, lidar_of, range_colors
+from .simplify import simplified
+from .surface_map import FORBIDDEN, colored_surface
+from .surroundings import Surroundings, surroundings

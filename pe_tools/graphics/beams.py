@@ -1,10 +1,6 @@
-"""Beams of LiDARs: cast at the vehicle, chosen, and drawn as lines and as rings on the ground.
-
-The vehicle has to stay visible. So a free beam is faint near the vehicle, strongest where it leaves
-the vehicle's surroundings, and fades out from there.
-"""
-
-from __future__ import annotations
+"""Beams of LiDARs: cast at the vehicle, chosen, and drawn as lines and as rings on the ground. The
+vehicle has to stay visible. So a free beam is faint near the vehicle, strongest where it leaves the
+vehicle's surroundings, and fades out from there."""
 
 import enum
 from dataclasses import dataclass
@@ -28,8 +24,7 @@ FEWEST_AZIMUTHS = 8
 
 Colors = NDArray[np.floating]
 
-BoxBounds = tuple[Floats, Floats]
-"""Lowest and highest corner, (3,) each [m]."""
+BoxBounds = tuple[Floats, Floats]  # Lowest and highest corner, (3,) each [m]
 
 OVER_THE_CAR = 0.06
 """How strong a free beam is over the vehicle, beside where it leaves its surroundings."""
@@ -43,12 +38,10 @@ RING_JUMP = 1.35
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cast:
-    """Beams of a mounted LiDAR: some of its channels, each at the same azimuths.
-
-    `rows` (R,) are channels and `columns` (K,) indices of azimuths, both ascending. Beam
-    ``r * K + k`` has `directions` (R * K, 3) unit, ground frame; `ends` (R * K,) at the vehicle or
-    the maximum range [m]; `face` (R * K,) the triangle of the vehicle that stops it, else -1.
-    """
+    """Beams of a mounted LiDAR: some of its channels, each at the same azimuths. `rows` (R,) are
+    channels and `columns` (K,) indices of azimuths, both ascending. Beam ``r * K + k`` has
+    `directions` (R * K, 3) unit, ground frame; `ends` (R * K,) at the vehicle or the maximum range
+    [m]; `face` (R * K,) the triangle of the vehicle that stops it, else -1."""
 
     sensor: Sensor
     rows: Ints
@@ -126,12 +119,10 @@ class BeamChoice:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Beams:
-    """Some beams of a mounted LiDAR.
-
-    `directions` (N, 3) unit, ground frame; `ends` (N,) the vehicle or the maximum range [m];
-    `occluded` (N,) whether the vehicle occludes the beam; `channel` (N,) its channel; `share` the
-    share of occluded beams among all beams of the choice.
-    """
+    """Some beams of a mounted LiDAR. `directions` (N, 3) unit, ground frame; `ends` (N,) the
+    vehicle or the maximum range [m]; `occluded` (N,) whether the vehicle occludes the beam;
+    `channel` (N,) its channel; `share` the share of occluded beams among all beams of the
+    choice."""
 
     directions: Floats
     ends: Floats
@@ -141,10 +132,8 @@ class Beams:
 
 
 def shown_beams(found: Cast, choice: BeamChoice) -> Beams:
-    """Return at most `budget` beams of a cast, with the true share of occluded ones.
-
-    That share is the sensor's; of one channel, that channel's own.
-    """
+    """Return at most `budget` beams of a cast, with the true share of occluded ones. That share is
+    the sensor's; of one channel, that channel's own."""
     lidar, few = lidar_of(found.sensor), choice.channels == ChannelMode.FEW
     rows = np.flatnonzero(np.isin(found.rows, channels_of(lidar, choice)))
     occluded = found.occluded
@@ -201,11 +190,9 @@ def _some(count: int, preferred: Ints, fallback: Ints) -> Ints:
 def free_lines(
     sensor: Sensor, beams: Beams, length_m: float, colors: Colors, around: BoxBounds | None = None
 ) -> Primitives:
-    """Lines of the free beams, two pieces each, in (N, 4) colours.
-
-    The lines end at the range, the ground (z = 0) or `length_m`, and fade out towards that length.
-    Inside the box `around` they are faint.
-    """
+    """Lines of the free beams, two pieces each, in (N, 4) colours. The lines end at the range, the
+    ground (z = 0) or `length_m`, and fade out towards that length. Inside the box `around` they are
+    faint."""
     free = ~beams.occluded
     directions = beams.directions[free]
     ends = np.minimum(np.minimum(beams.ends[free], length_m), ground_distance(sensor, directions))
@@ -222,10 +209,8 @@ def free_lines(
 
 
 def occluded_lines(sensor: Sensor, beams: Beams, colors: Colors) -> Primitives:
-    """Lines of the occluded beams, one piece each, in (N, 4) colours.
-
-    A shorter line is drawn `STUB_M` long, because it would not be visible otherwise.
-    """
+    """Lines of the occluded beams, one piece each, in (N, 4) colours. A shorter line is drawn
+    `STUB_M` long, because it would not be visible otherwise."""
     occluded = beams.occluded
     ends = np.maximum(beams.ends[occluded], STUB_M)
     points = np.empty((len(ends), 2, 3))
@@ -235,10 +220,8 @@ def occluded_lines(sensor: Sensor, beams: Beams, colors: Colors) -> Primitives:
 
 
 def ground_rings(found: Cast, rows: NDArray[np.int64], colors: Colors) -> Primitives:
-    """Rings where whole channels meet the ground, without occluded parts, in (R, 4) colours.
-
-    `rows` (R,) are numbers of channels; channels that were not cast are left out.
-    """
+    """Rings where whole channels meet the ground, without occluded parts, in (R, 4) colours. `rows`
+    (R,) are numbers of channels; channels that were not cast are left out."""
     width = len(found.columns)
     if not width:
         return Primitives.empty()

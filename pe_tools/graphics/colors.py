@@ -13,8 +13,6 @@ TVCG 15(6), 2009); none is near the colours of occluded beams and of blind groun
 largest smallest distance in CIE Lab chose them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -43,8 +41,7 @@ COUNTS = ((0.12, 0.13, 0.20), (0.24, 0.36, 0.62), (0.28, 0.66, 0.66), (0.95, 0.8
 """Nobody, one, two, three or more: each clearly lighter than the one before."""
 BETTER, SAME, WORSE = (0.0, 0.36, 0.62), (0.955, 0.955, 0.945), (0.70, 0.31, 0.0)
 """Blue, white and orange: differences, told apart by all eyes."""
-DIFFERENCE = (WORSE, SAME, BETTER)
-"""From worse over alike to better, on a light page."""
+DIFFERENCE = (WORSE, SAME, BETTER)  # From worse over alike to better, on a light page
 DIFFERENCE_ON_DARK = ((0.96, 0.55, 0.16), (0.62, 0.62, 0.62), (0.28, 0.62, 0.98))
 """The same hues for the viewport's dark grey."""
 Scale = tuple[tuple[float, float, float], ...]
@@ -66,14 +63,12 @@ TINTS = {
 OTHER_TINTS = (
     *("#88a64a", "#e5edbc", "#beb792", "#808a68", "#f5eaa6", "#d3b34d"),
     *("#9c9e71", "#a5b878", "#d3d4ae", "#d3f58a", "#dccc94"),
-)
-"""Yellow: tints of ultrasonic sensors and of kinds without a hue of their own."""
+)  # Yellow: tints of ultrasonic sensors and of kinds without a hue of their own
 FACE_SHARE = 0.6
 XYZ_OF_RGB = np.array(
     [(0.4124, 0.3576, 0.1805), (0.2126, 0.7152, 0.0722), (0.0193, 0.1192, 0.9505)]
 )
-WHITE = np.array([0.9505, 1.0, 1.089])
-"""sRGB's primaries and white, D65 (IEC 61966-2-1)."""
+WHITE = np.array([0.9505, 1.0, 1.089])  # sRGB's primaries and white, D65 (IEC 61966-2-1)
 LIGHT, DARK = (54.5, 93.0), (16.0, 59.0)
 """Range of the tints' lightness L* on a dark ground, and on a light one."""
 LESS, STEPS = 0.95, 60
@@ -82,12 +77,9 @@ LESS, STEPS = 0.95, 60
 
 @dataclass(frozen=True, slots=True)
 class Palette:
-    """Colours for one kind of background.
-
-    `free` and `occluded` are a LiDAR's beams, `camera` a frustum's lines, `camera_face` its sides;
-    `other` are lines of kinds that have no colour of their own; `blind` is ground that nobody sees,
-    `reach` the rig's reach; `words` are labels.
-    """
+    """Colours for one kind of background. `free` and `occluded` are a LiDAR's beams, `camera` a
+    frustum's lines, `camera_face` its sides; `other` are lines of kinds that have no colour of
+    their own; `blind` is ground that nobody sees, `reach` the rig's reach; `words` are labels."""
 
     free: Rgba
     occluded: Rgba
@@ -105,8 +97,7 @@ VIEWPORT = Palette(
     camera=(0.90, 0.62, 0.78, 0.80),
     camera_face=(0.80, 0.47, 0.65, 0.07),
     other=(0.20, 0.80, 0.62, 0.85),
-)
-"""For the viewport's dark grey."""
+)  # For the viewport's dark grey
 
 
 PAPER = Palette(
@@ -115,8 +106,7 @@ PAPER = Palette(
     camera=(0.60, 0.25, 0.45, 0.9),
     camera_face=(0.80, 0.47, 0.65, 0.14),
     other=(0.0, 0.50, 0.37, 0.9),
-)
-"""For a light page."""
+)  # For a light page
 
 
 def on_scale(shares: ArrayLike, scale: Scale) -> NDArray[np.float32]:
@@ -177,10 +167,8 @@ def color_text(color: Sequence[float]) -> str:
 
 
 def sensor_colors(sensors: Iterable[Sensor]) -> dict[str, Rgb]:
-    """Return the colour of each sensor of a rig by name, for a dark background.
-
-    Sensors without a colour of their own get the tints of their kind that no other sensor has.
-    """
+    """Return the colour of each sensor of a rig by name, for a dark background. Sensors without a
+    colour of their own get the tints of their kind that no other sensor has."""
     rig = list(sensors)
     colors = {sensor.name: sensor.color for sensor in rig if sensor.color is not None}
     for sensor in rig:
@@ -195,11 +183,9 @@ def sensor_colors_on_paper(sensors: Iterable[Sensor]) -> dict[str, Rgb]:
 
 
 def sensor_palette(color: Rgb, palette: Palette = VIEWPORT) -> Palette:
-    """Return a palette in which all lines of one sensor have that sensor's colour.
-
-    Opacities stay those of the palette, but for sides of views: sensors' colours are light, and
-    `FACE_SHARE` of them hides as much. `occluded`, `blind` and the rig's own colours are kept.
-    """
+    """Return a palette in which all lines of one sensor have that sensor's colour. Opacities stay
+    those of the palette, but for sides of views: sensors' colours are light, and `FACE_SHARE` of
+    them hides as much. `occluded`, `blind` and the rig's own colours are kept."""
     hues = {
         name: with_alpha(color, getattr(palette, name)[3]) for name in ("free", "camera", "other")
     }

@@ -1,8 +1,6 @@
-"""A drive-by in pictures: bodies and their lines to sensors frame by frame, and AP as a strip.
-
-A `MovingShape` is what the 3D view shows; a film and the review page take the strip's cells and
-marks from here as well.
-"""
+"""A drive-by in pictures: bodies and their lines to sensors frame by frame, and AP as a strip. A
+`MovingShape` is what the 3D view shows; a film and the review page take the strip's cells and marks
+from here as well."""
 
 from __future__ import annotations
 
@@ -22,12 +20,9 @@ from pe_core.scene import Rig, Vehicle
 from .colors import CIVIDIS, Rgba, on_scale, with_alpha
 from .primitives import ColorKey, LayerShape, Primitives, Tag, polyline
 
-NEVER: Rgba = (0.843, 0.863, 0.882, 1.0)
-"""Colour of AP 0."""
-DARK: Rgba = (0.17, 0.175, 0.185, 1.0)
-"""The same on a dark ground."""
-UNSEEN: Rgba = (0.72, 0.73, 0.75, 1.0)
-"""Colour of bodies that are not seen, or only hide."""
+NEVER: Rgba = (0.843, 0.863, 0.882, 1.0)  # Colour of AP 0
+DARK: Rgba = (0.17, 0.175, 0.185, 1.0)  # The same on a dark ground
+UNSEEN: Rgba = (0.72, 0.73, 0.75, 1.0)  # Colour of bodies that are not seen, or only hide
 CONFIRMED: Rgba = (0.35, 0.85, 0.55, 1.0)
 BRAKE: Rgba = (1.0, 0.50, 0.25, 1.0)
 WHOLE_RIG, TRACK = "whole rig", "track confirmed"
@@ -150,11 +145,9 @@ def marks_of(story: Story, body: SeenBody) -> list[Mark]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TimeStrip:
-    """AP over time of the body with the least margin, in a unit square of K columns.
-
-    `names` are those of the rows from above; `cells` (triangles) lie in x and y from 0 to 1.
-    `ends` are the times at both ends, `first_s` is that of the first frame [s].
-    """
+    """AP over time of the body with the least margin, in a unit square of K columns. `names` are
+    those of the rows from above; `cells` (triangles) lie in x and y from 0 to 1. `ends` are the
+    times at both ends, `first_s` is that of the first frame [s]."""
 
     title: str
     names: tuple[str, ...]

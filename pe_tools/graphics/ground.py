@@ -17,8 +17,7 @@ from pe_core.scoring.sight import GroundSight
 from .colors import CIVIDIS, COUNTS, DIFFERENCE_ON_DARK, VIRIDIS, Rgba, Scale, on_scale
 from .primitives import ColorKey, GroundSheet, LayerShape
 
-BADLY_SEEN = "badly seen"
-"""The dark end of colours that begin above what nobody sees."""
+BADLY_SEEN = "badly seen"  # The dark end of colours that begin above what nobody sees
 ENTROPY, COVERAGE, SENSORS = "ENTROPY", "COVERAGE", "SENSORS"
 BEST_NATS, UNSEEN_NATS = -10.976, 16.651
 """H of a place that is seen as well as can be, and of one that nobody sees: equations 4, 5, 8."""
@@ -27,17 +26,14 @@ SWATCHES = 13
 AS_SCORED = "as scored"
 PERCENT_LEFT_OUT = 2.0
 """Share of the places, at each end, that a fitted range of colours leaves out [%]."""
-STEPS = {ENTROPY: 0.5, COVERAGE: 0.05}
-"""Fitted ranges end at multiples of these [nats; share]."""
-NARROWEST = {ENTROPY: 2.0, COVERAGE: 0.1}
-"""A narrower range would show grain."""
+STEPS = {ENTROPY: 0.5, COVERAGE: 0.05}  # Fitted ranges end at multiples of these [nats; share]
+NARROWEST = {ENTROPY: 2.0, COVERAGE: 0.1}  # A narrower range would show grain
 ROUNDING = 1e-9
 ALIKE_ALPHA, DIFFERENCE_GAIN = 0.08, 2.0
 """How much of a place that is alike is seen, and how much stronger than a map differences are."""
 FADE_M = 8.0
 """Width of the margin in which the sheet fades out, where its edge is no edge of anything."""
-SPOT_M = 0.3
-"""Size at which samples of paths and single spots are painted at least."""
+SPOT_M = 0.3  # Size at which samples of paths and single spots are painted at least
 
 
 def swatches_of(scale: Scale) -> tuple[Rgba, ...]:
@@ -100,22 +96,10 @@ def ground_map(
     where: str | None = None,
     bounds: tuple[float, float] | None = None,
 ) -> LayerShape:
-    """Return a ground map and its legend; transparent where the vehicle is.
-
-    Parameters
-    ----------
-    seen : GroundSight
-    quantity : str
-        A key of `QUANTITIES`, or `SENSORS`.
-    opacity : float
-    faded : bool
-        Whether the map fades out towards the edges of the evaluated area.
-    where : str, optional
-        Text of the legend about heights.
-    bounds : (float, float), optional
-        Values of the dark and the bright end of the colours (`fitted_bounds`), the better one
-        bright.
-    """
+    """Return a ground map and its legend; transparent where the vehicle is. `quantity`: A key of
+    `QUANTITIES`, or `SENSORS`. `faded`: whether the map fades out towards the edges of the
+    evaluated area. `where`: text of the legend about heights. `bounds` (float, float): values of
+    the dark and the bright end of the colours (`fitted_bounds`), the better one bright."""
     where = where or _where(seen.height)
     if quantity == SENSORS:
         is_known = seen.sensors >= 0
@@ -141,10 +125,8 @@ def difference_map(
     seen: GroundSight, before: GroundSight, quantity: str, opacity: float, *, name: str = ""
 ) -> LayerShape:
     """Return a map of where one rig is better than another (blue), and where it is worse (orange).
-
     Differences are in nats, or in shares, by a key of `QUANTITIES`. Locations without a difference
-    are nearly transparent. `name` is that of the compared rig, for the legend.
-    """
+    are nearly transparent. `name` is that of the compared rig, for the legend."""
     kind = QUANTITIES[quantity]
     sign = -1.0 if quantity == ENTROPY else 1.0
     better = sign * (values_of(seen, quantity) - values_of(before, quantity))
@@ -172,9 +154,7 @@ def values_of(seen: GroundSight, quantity: str) -> Floats:
 
 def fitted_bounds(seen: GroundSight, quantity: str) -> tuple[float, float]:
     """Return values for the dark and the bright end of the colours that fit what is shown.
-
-    Percentiles of the map's places, rounded outwards; never narrower than `NARROWEST`.
-    """
+    Percentiles of the map's places, rounded outwards; never narrower than `NARROWEST`."""
     values = values_of(seen, quantity)
     values = values[np.isfinite(values)]
     kind = QUANTITIES[quantity]
@@ -224,10 +204,8 @@ def _where(height: float | None) -> str:
 
 
 def painted_samples(verdict: Verdict) -> tuple[Floats, Floats, float]:
-    """Return the samples that pass (N, 2), those that fail (M, 2), and the size of one [m].
-
-    Of blind ground these are the squares of the zone that are seen and those that are blind.
-    """
+    """Return the samples that pass (N, 2), those that fail (M, 2), and the size of one [m]. Of
+    blind ground these are the squares of the zone that are seen and those that are blind."""
     samples = verdict.samples
     if verdict.ground is not None:
         cells, blind, mask = verdict.ground.cells, verdict.ground.blind, samples.mask

@@ -1,10 +1,6 @@
-"""How each kind of sensor is drawn, a row a kind, for the viewport and for the page.
-
-Cameras are frustums, straight or bent by their lens. A kind without a row is drawn as a ring around
-the sensor, with a tick in its forward direction.
-"""
-
-from __future__ import annotations
+"""How each kind of sensor is drawn, a row a kind, for the viewport and for the page. Cameras are
+frustums, straight or bent by their lens. A kind without a row is drawn as a ring around the sensor,
+with a tick in its forward direction."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,22 +15,18 @@ from .colors import VIEWPORT, Palette, Rgba, with_alpha
 from .primitives import Primitives, fan, polyline
 from .sensor_images import camera_of, field_faces, field_footprint, field_lines
 
-PLACES = 16
-"""Along each side of the picture."""
-MARK_SIDE = 0.06
-"""Half the width of the mark that says up, in lengths of the view."""
+PLACES = 16  # Along each side of the picture
+MARK_SIDE = 0.06  # Half the width of the mark that says up, in lengths of the view
 FACE_CORNERS = ((0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 1))
 EDGES = ((0, 1), (0, 2), (0, 3), (0, 4), (1, 2), (2, 3), (3, 4), (4, 1), (5, 6), (6, 7), (7, 5))
 RING_POINTS, TICK_SHARE = 48, 0.35
 """Corners of a ring, and the length of its tick in units of its radius."""
 MARK_GAP, MARK_HEIGHT, MARK_HALF_WIDTH = 0.08, 0.25, 0.2
 """The mark over a picture's upper edge, in units of half the picture's height."""
-ROUND_POINTS = 180
-"""Corners of the circle that is as far as a footprint is drawn."""
+ROUND_POINTS = 180  # Corners of the circle that is as far as a footprint is drawn
 FOOT_LINE, FOOT_FACE = 0.55, 0.9
 """How strong a footprint's edge and area are, beside the pyramid's edges and sides."""
-FEW_BEAMS = BeamChoice(96, ChannelMode.FEW)
-"""Of a LiDAR that is drawn alone."""
+FEW_BEAMS = BeamChoice(96, ChannelMode.FEW)  # Of a LiDAR that is drawn alone
 Draw = Callable[[Sensor, float, Palette], Primitives]
 """Takes a sensor, the length of its view [m], and colours."""
 
@@ -197,8 +189,7 @@ DRAWINGS = {
 }
 
 
-OTHER = Drawing(ring_lines)
-"""Drawing of a kind without a row."""
+OTHER = Drawing(ring_lines)  # Drawing of a kind without a row
 
 
 def drawing_of(kind: str) -> Drawing:

@@ -1,11 +1,7 @@
 """PNG files of eight bits, written with NumPy and zlib: the same pixels are the same bytes.
-
 Pictures and masks need only a part of the format (ISO/IEC 15948): grey, colour, colour with alpha.
-Rows of colours are filtered by the rule that the standard recommends, the minimum
-sum of absolute differences.
-"""
-
-from __future__ import annotations
+Rows of colours are filtered by the rule that the standard recommends, the minimum sum of absolute
+differences."""
 
 import struct
 import zlib
@@ -18,17 +14,13 @@ from pe_core.base.errors import InputError
 Bytes = NDArray[np.uint8]
 
 MAGIC = b"\x89PNG\r\n\x1a\n"
-TYPES = {1: 0, 3: 2, 4: 6}
-"""Colour types by channels: grey, colour, colour with alpha."""
-LEVEL = 7
-"""9 takes three times as long for a hundredth less."""
+TYPES = {1: 0, 3: 2, 4: 6}  # Colour types by channels: grey, colour, colour with alpha
+LEVEL = 7  # 9 takes three times as long for a hundredth less
 
 
 def png_bytes(pixels: Bytes) -> bytes:
-    """Return pixels (H, W), (H, W, 3) or (H, W, 4) as a PNG file, the top row first.
-
-    They are grey, sRGB, or sRGB with alpha. `InputError` for another shape or type, or no pixels.
-    """
+    """Return pixels (H, W), (H, W, 3) or (H, W, 4) as a PNG file, the top row first. They are grey,
+    sRGB, or sRGB with alpha. `InputError` for another shape or type, or no pixels."""
     shaped = np.asarray(pixels)
     rows = shaped[..., None] if shaped.ndim == 2 else shaped
     if rows.dtype != np.uint8 or rows.ndim != 3 or rows.shape[2] not in TYPES or not rows.size:

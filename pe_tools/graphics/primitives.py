@@ -54,10 +54,8 @@ class Primitives:
 
 @dataclass(frozen=True, eq=False)
 class GroundSheet:
-    """A picture that lies on the ground: `image` (NY, NX, 4) sRGB with alpha, row 0 at low y.
-
-    Its corners are `low` and `high` (x, y) [m].
-    """
+    """A picture that lies on the ground: `image` (NY, NX, 4) sRGB with alpha, row 0 at low y. Its
+    corners are `low` and `high` (x, y) [m]."""
 
     image: Floats32
     low: tuple[float, float]
@@ -99,12 +97,9 @@ class Tag:
 
 @dataclass(frozen=True, slots=True)
 class ColorKey:
-    """Legend of colours: a title, and a scale or classes.
-
-    `scale` is a row of colours from the low end to the high one, with `ticks` evenly below it, and
-    small `values` below these; `classes` are colours with a name each. `bounds` are the values of
-    the scale's ends.
-    """
+    """Legend of colours: a title, and a scale or classes. `scale` is a row of colours from the low
+    end to the high one, with `ticks` evenly below it, and small `values` below these; `classes` are
+    colours with a name each. `bounds` are the values of the scale's ends."""
 
     title: str
     scale: tuple[Rgba, ...] = ()
@@ -116,11 +111,9 @@ class ColorKey:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LayerShape:
-    """Everything that one layer draws for a sensor or for the rig.
-
-    `lines` and `faces` are hidden by nearer objects; `through` are lines that are never hidden.
-    `thin` lines have the minimum width, whatever the layer's width.
-    """
+    """Everything that one layer draws for a sensor or for the rig. `lines` and `faces` are hidden
+    by nearer objects; `through` are lines that are never hidden. `thin` lines have the minimum
+    width, whatever the layer's width."""
 
     lines: Primitives = field(default_factory=Primitives.empty)
     faces: Primitives = field(default_factory=Primitives.empty)

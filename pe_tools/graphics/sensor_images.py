@@ -1,7 +1,5 @@
 """What single sensors see: ranges of a LiDAR, pixels that the body hides, fields of radars."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple, cast
 
@@ -15,24 +13,19 @@ from pe_core.sensors import Camera, FieldPicture, Lidar, Radar, RangePicture, Ul
 from .colors import VIRIDIS, Palette, Scale, on_scale, with_alpha
 from .primitives import Primitives, polyline
 
-NEAREST_M = 0.5
-"""All that is nearer has the brightest colour."""
+NEAREST_M = 0.5  # All that is nearer has the brightest colour
 NO_ECHO = (0.16, 0.16, 0.17)
 BODY_NEAR, BODY_FAR = (1.0, 0.62, 0.20), (0.72, 0.28, 0.0)
 """Vermillion, as occluded beams are drawn: nearer parts are lighter."""
 BODY_SILENT = (0.42, 0.17, 0.0)
 """Colour of a beam that the body blocks so near that there is no echo."""
 BODY_FAR_M = 5.0
-RANGES: Scale = VIRIDIS[::-2]
-"""From near to far."""
-RAYS = 240
-"""Places of the picture that are looked along: enough to see where the body begins."""
-ARC_POINTS = 33
-"""Azimuths of an arc; one of them is the middle."""
+RANGES: Scale = VIRIDIS[::-2]  # From near to far
+RAYS = 240  # Places of the picture that are looked along: enough to see where the body begins
+ARC_POINTS = 33  # Azimuths of an arc; one of them is the middle
 FACE_ALPHA, EDGE_ALPHA = 0.10, 0.55
 """How strong a field's area, and the arcs above and below it, are beside its middle arc."""
-LEAST_M, MOST_M = 0.1, 30.0
-"""Detections at the ends of the colour scale, which is logarithmic."""
+LEAST_M, MOST_M = 0.1, 30.0  # Detections at the ends of the colour scale, which is logarithmic
 
 
 def lidar_of(sensor: Sensor) -> Lidar:
@@ -71,9 +64,7 @@ def even_angles(angles: NDArray[np.float64], pixels_per_deg: float) -> NDArray[n
 
 def hidden_lines(sensor: Sensor, vehicle: Vehicle | None, color: ArrayLike) -> Primitives:
     """Return lines from a sensor to its own vehicle, along at most `RAYS` over its field of view.
-
-    Cameras see through the vehicle's glass, radars through its covers; None gives no lines.
-    """
+    Cameras see through the vehicle's glass, radars through its covers; None gives no lines."""
     body = None if vehicle is None else kind_of(sensor).opaque(vehicle)
     if body is None:
         return Primitives.empty()
@@ -169,10 +160,8 @@ def field_footprint(sensor: Sensor, far_m: float) -> Floats:
 
 
 def field_colors(picture: FieldPicture) -> NDArray[np.float32]:
-    """(R, A, 3) sRGB of what a sensor detects: many detections are bright.
-
-    Where nothing is detected the picture is grey; where the vehicle hides the target, orange.
-    """
+    """(R, A, 3) sRGB of what a sensor detects: many detections are bright. Where nothing is
+    detected the picture is grey; where the vehicle hides the target, orange."""
     detected = picture.values > 0.0
     share = np.log(np.maximum(picture.values, LEAST_M) / LEAST_M) / np.log(MOST_M / LEAST_M)
     colors = on_scale(1.0 - share, RANGES)

@@ -30,13 +30,10 @@ CLOSE, MIDDLE, CLOSE_QUICKLY = 0.85, 0.93, 0.5
 """Shares of the triangles wanted: from where on it is near enough, what is aimed at, and what is
 near enough for previews. Cars keep 0.53 to 0.66 with the first cubes that are tried."""
 TRIES = 8
-MAX_CELLS_ACROSS = 1 << 20
-"""Cubes along an axis: three numbers fit into one."""
-MIN_SIDE_M = 1e-9
-"""Minimum side of a cube [m], for a mesh without extent."""
+MAX_CELLS_ACROSS = 1 << 20  # Cubes along an axis: three numbers fit into one
+MIN_SIDE_M = 1e-9  # Minimum side of a cube [m], for a mesh without extent
 MAX_INDEX = 1 << 62
-TABLE = 1 << 26
-"""Numbers below this are counted in a table, others sorted."""
+TABLE = 1 << 26  # Numbers below this are counted in a table, others sorted
 
 
 def simplified(
@@ -46,7 +43,6 @@ def simplified(
 
     Parameters
     ----------
-    vehicle : Vehicle
     triangles : int
         1000 or more, else `InputError`.
     quick : bool

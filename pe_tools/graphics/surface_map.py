@@ -1,7 +1,5 @@
 """A body coloured by values that are known at places of its surface."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pe_core.base.arrays import Flags, Floats, Singles
@@ -16,10 +14,8 @@ FORBIDDEN = (0.46, 0.46, 0.46)
 ALPHA, SHADE = 0.94, 0.30
 """Opacity, and how much darker a face is that is turned away from the light."""
 LIGHT = np.array([0.35, 0.25, 0.90])
-REACH = 0.55
-"""Width of the bell by which a place counts, in distances between places."""
-ASIDE = 0.05
-"""Share by which a place counts that is on the other side of a panel."""
+REACH = 0.55  # Width of the bell by which a place counts, in distances between places
+ASIDE = 0.05  # Share by which a place counts that is on the other side of a panel
 
 
 def colored_surface(
@@ -30,12 +26,10 @@ def colored_surface(
     bounds: tuple[float, float],
     scale: Scale = VIRIDIS,
 ) -> Primitives:
-    """Return triangles (F, 3, 3) in the colours of values at places, finely divided.
-
-    Places are `points` (N, 3) [m] with unit `normals` (N, 3) and `values` (N,), NaN where none is
-    allowed: grey. `bounds` are the values of the low and the high end of the scale. Colours run
-    into each other over the distance between places.
-    """
+    """Return triangles (F, 3, 3) in the colours of values at places, finely divided. Places are
+    `points` (N, 3) [m] with unit `normals` (N, 3) and `values` (N,), NaN where none is allowed:
+    grey. `bounds` are the values of the low and the high end of the scale. Colours run into each
+    other over the distance between places."""
     fine = divided(triangles)
     corners, place = np.unique(np.round(fine.reshape(-1, 3), 4), axis=0, return_inverse=True)
     place, across = place.reshape(-1), np.cross(fine[:, 1] - fine[:, 0], fine[:, 2] - fine[:, 0])

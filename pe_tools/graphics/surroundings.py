@@ -1,9 +1,5 @@
-"""What a camera's picture shows around the vehicle: ground, sky, a road's lanes, test bodies.
-
-It gives a picture of a vehicle alone its scale. It is drawn only: no part of a study or a scene.
-"""
-
-from __future__ import annotations
+"""What a camera's picture shows around the vehicle: ground, sky, a road's lanes, test bodies. It
+gives a picture of a vehicle alone its scale. It is drawn only: no part of a study or a scene."""
 
 import math
 from dataclasses import dataclass
@@ -20,8 +16,7 @@ from .primitives import LayerShape, Primitives, Tag
 
 CornerPair = tuple[Floats, Floats]
 
-BELOW_M = -0.02
-"""Height of the ground: a floor that the scene has at 0 hides it."""
+BELOW_M = -0.02  # Height of the ground: a floor that the scene has at 0 hides it
 FAR_M, SKY_M, SEGMENTS = 400.0, 130.0, 72
 """Radius of the ground, height of the sky at its edge, and sides of both."""
 GROUND: tuple[tuple[float, Rgba], ...] = (
@@ -29,8 +24,7 @@ GROUND: tuple[tuple[float, Rgba], ...] = (
     (12.0, (0.165, 0.175, 0.185, 1.0)),
     (60.0, (0.225, 0.240, 0.255, 1.0)),
     (FAR_M, (0.330, 0.355, 0.380, 1.0)),
-)
-"""Colours of the ground by the distance from the eye [m]: hazy far away."""
+)  # Colours of the ground by the distance from the eye [m]: hazy far away
 HORIZON: Rgba = (0.560, 0.620, 0.680, 1.0)
 ZENITH: Rgba = (0.330, 0.380, 0.440, 0.0)
 
@@ -49,10 +43,8 @@ STANDING: tuple[tuple[str, float, float, Rgba], ...] = (
     ("car", 20.0, 0.0, (0.45, 0.66, 0.86, 1.0)),
     ("cyclist", 10.0, -14.0, (0.52, 0.78, 0.55, 1.0)),
     ("adult", 5.0, 16.0, (0.94, 0.68, 0.36, 1.0)),
-)
-"""Test bodies: name, distance from the sensor [m], bearing to the left [deg], colour."""
-SHADES = (0.78, 0.62, 1.0)
-"""Brightness of sides along x, of those along y, and of the top."""
+)  # Test bodies: name, distance from the sensor [m], bearing to the left [deg], colour
+SHADES = (0.78, 0.62, 1.0)  # Brightness of sides along x, of those along y, and of the top
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,9 +57,7 @@ class Surroundings:
 
 def surroundings(eye: Pose, vehicle: CornerPair | None = None) -> Surroundings:
     """Return what a camera at a pose has around it; no test body stands in the vehicle's bounds.
-
-    Test bodies stand where the camera looks; if it looks straight down, where its top is.
-    """
+    Test bodies stand where the camera looks; if it looks straight down, where its top is."""
     x, y = eye.position[:2]
     circles = [(_circle(x, y, radius, BELOW_M), color) for radius, color in GROUND]
     bands = [_band(a[0], b[0], (a[1], b[1])) for a, b in pairwise(circles)]

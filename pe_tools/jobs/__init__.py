@@ -1,60 +1,18 @@
 """Jobs that score and optimize studies, their checkpoints, and the files of their results."""
 
-from .check_job import Checked as Checked
-from .check_job import CheckJob as CheckJob
-from .checkpoint import FRONT_SEARCH as FRONT_SEARCH
-from .checkpoint import SAVE_EVERY_S as SAVE_EVERY_S
-from .checkpoint import BegunSearch as BegunSearch
-from .checkpoint import Checkpoint as Checkpoint
-from .checkpoint import FrontCheckpoint as FrontCheckpoint
-from .checkpoint import FrontJournals as FrontJournals
-from .checkpoint import SearchState as SearchState
-from .checkpoint import front_study as front_study
-from .checkpoint import read_front_search as read_front_search
-from .checkpoint import read_search as read_search
-from .folder import FileSet as FileSet
-from .folder import check_files as check_files
-from .folder import prepare_folder as prepare_folder
-from .front_files import FRONT_JSON as FRONT_JSON
-from .front_files import FRONT_NAMES as FRONT_NAMES
-from .front_files import FRONT_PAGE as FRONT_PAGE
-from .front_files import front_dict as front_dict
-from .front_files import write_front as write_front
-from .front_job import FrontJob as FrontJob
-from .front_job import has_front as has_front
-from .job import HistoryRow as HistoryRow
-from .job import Job as Job
-from .job import Outcome as Outcome
-from .job import Progress as Progress
-from .job import StartEnd as StartEnd
-from .job import best_so_far as best_so_far
-from .results import add_to_result as add_to_result
-from .results import condition_lines as condition_lines
-from .results import files_of_other_runs as files_of_other_runs
-from .results import placements as placements
-from .results import result_dict as result_dict
-from .results import result_names as result_names
-from .results import runners_up as runners_up
-from .results import write_outcome as write_outcome
-from .score_and_optimize import OptimizeJob as OptimizeJob
-from .score_and_optimize import ScoreJob as ScoreJob
-from .searched_figure import SearchedFigure as SearchedFigure
-from .searched_figure import searched_figure as searched_figure
-from .searched_figure import searched_on as searched_on
-from .stopping import scatter_text as scatter_text
-from .stopping import stop_text as stop_text
-from .stopping import sureness_lines as sureness_lines
-from .study_export import export_study as export_study
-from .study_export import fingerprint as fingerprint
-from .study_export import study_text as study_text
-from .study_export import study_writers as study_writers
-from .trade_off import Design as Design
-from .trade_off import TradeOff as TradeOff
-from .trade_off import design_study as design_study
-from .watched_job import JobRun as JobRun
-from .watched_job import JobStep as JobStep
-from .watched_job import WatchedJob as WatchedJob
-from .where_job import PLACE_FIGURES as PLACE_FIGURES
-from .where_job import PlaceFigure as PlaceFigure
-from .where_job import PlaceMap as PlaceMap
-from .where_job import WhereJob as WhereJob
+from .check_job import Checked, CheckJob
+from .checkpoint import SAVE_EVERY_S, BegunSearch, Checkpoint, FrontCheckpoint, checkpoint_of
+from .checkpoint import front_study, read_front_search, read_search, resume
+from .folder import FileSet, check_files, prepare_folder
+from .front_files import FRONT_JSON, FRONT_NAMES, FRONT_PAGE, front_dict, write_front
+from .front_job import FRONT_SEARCH, FrontJob, FrontJournals, has_front
+from .job import HistoryRow, Job, Outcome, Progress, StartEnd, best_so_far
+from .results import SearchState, add_to_result, condition_lines, files_of_other_runs, placements
+from .results import result_dict, result_names, runners_up, write_outcome
+from .score_and_optimize import OptimizeJob, ScoreJob
+from .searched_figure import SearchedFigure, searched_figure, searched_on
+from .stopping import scatter_text, stop_text, sureness_lines
+from .study_export import export_study, fingerprint, study_text, study_writers
+from .trade_off import Design, TradeOff, design_study
+from .watched_job import JobRun, JobStep, WatchedJob
+from .where_job import PLACE_FIGURES, PlaceFigure, PlaceMap, WhereJob

@@ -1,7 +1,5 @@
 """The workers that evaluate the candidates of a job's searches: an executor, or processes here."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager, suppress

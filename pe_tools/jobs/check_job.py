@@ -1,7 +1,5 @@
 """The job that holds a study to its requirements and stories, verdict by verdict."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import partial
@@ -24,13 +22,11 @@ class Checked(NamedTuple):
 
 
 class CheckJob(Job):
-    """Holds the rig of a study to its requirements, with mounting errors, and to its stories.
-
-    A job that is stopped keeps the `verdicts` that it has found, in the order of the requirements.
-    With `fitting`, requirements that the rig cannot be held to are left out instead of raising
+    """Holds the rig of a study to its requirements, with mounting errors, and to its stories. A job
+    that is stopped keeps the `verdicts` that it has found, in the order of the requirements. With
+    `fitting`, requirements that the rig cannot be held to are left out instead of raising
     `InputError`: `unchecked` has the reason of each by name. `complete` is whether it was not
-    stopped.
-    """
+    stopped."""
 
     shown = ("verdicts", "unchecked", "driven")
 

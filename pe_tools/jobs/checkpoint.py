@@ -1,14 +1,10 @@
-"""Checkpoints of searches: a file with the state of one, or of all of a front, to resume from.
-
-A search that resumes from its journal asks for the same placements and takes their values from it.
-So a search or a front that was interrupted ends at the same bits as one that was not.
-"""
-
-from __future__ import annotations
+"""Checkpoints of searches: a file with the state of one, or of all of a front, to resume from. A
+search that resumes from its journal asks for the same placements and takes their values from it. So
+a search or a front that was interrupted ends at the same bits as one that was not."""
 
 import json
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -23,27 +19,22 @@ from pe_core.study.study import Study
 from pe_core.study.study_file import study_from_dict
 from pe_core.version import __version__
 
-from .folder import FileSet, prepare_folder
+from .folder import PROGRAM, FileSet, prepare_folder
+from .front_files import write_front
+from .front_job import FRONT_SEARCH, FrontJob, FrontJournals
+from .job import Job
+from .results import SEARCH_KIND, SearchState, state_head
 from .score_and_optimize import OptimizeJob
-from .study_export import fingerprint, inputs_of, study_text, study_writers
+from .study_export import fingerprint, study_writers
 
-PROGRAM = "perception-entropy"
-FRONT_SEARCH = "front_search.json"
-SEARCH_KIND, FRONT_KIND = "search", "front search"
+FRONT_KIND = "front search"
 WHAT = {
     SEARCH_KIND: "the state of a search, as this program writes it",
     FRONT_KIND: "the checkpoint of a front, as this program writes it",
 }
-STATE_BYTES = 1 << 30
-"""Maximum size of a state file: about thirty million evaluated placements."""
+STATE_BYTES = 1 << 30  # Maximum size of a state file: about thirty million evaluated placements
 SAVE_EVERY_S = 10.0
 """Interval of saving [s]: a round may take hours, so its intermediate results are saved, too."""
-
-
-def _head(kind: str, study: Study) -> dict[str, Any]:
-    """Return what the state files of all kinds begin with: program, version, and the study."""
-    head = {PROGRAM: kind, "version": __version__, "study_sha256": fingerprint(study)}
-    return {**head, "study": study_text(study)}
 
 
 def _state_of(path: Path, kind: str, more: Mapping[str, type]) -> dict[str, Any]:
@@ -86,48 +77,11 @@ def _check_same(path: Path, study: Study, digest: str) -> None:
         raise InputError(path, "study", expected, "others")
 
 
-class SearchState:
-    """The state of a search, which is saved in its folder while the search runs.
-
-    `inputs` is the provenance at the beginning of the search, if file names have changed since.
-    """
-
-    def __init__(self, study: Study, inputs: dict[str, Any] | None = None) -> None:
-        self._study, self._inputs = study, inputs
-
-    @cached_property
-    def _head(self) -> dict[str, Any]:
-        """The constant part of the state: cached, because it is expensive for a large mesh."""
-        inputs = self._inputs or inputs_of(self._study)
-        return {**_head(SEARCH_KIND, self._study), "inputs": inputs}
-
-    def to_bytes(self, entries: Iterable[EvaluatedRig]) -> bytes:
-        """Return the content of the state file."""
-        return json.dumps({**self._head, "evaluated": list(entries)}, ensure_ascii=False).encode()
-
-    def save(
-        self, folder: Path, best: Study, entries: Iterable[EvaluatedRig], *, meshes: bool = True
-    ) -> None:
-        """Write state and best placement into a folder.
-
-        Without `meshes`, mesh and other files of the study are in the folder already. The folder
-        stays unchanged after an `InputError`: it cannot be written, or this program did not write
-        one of the files in it.
-        """
-        with FileSet(prepare_folder(folder)) as files:
-            for name, write in study_writers(best, STUDY).items():
-                if meshes or name == STUDY:
-                    files.add(name, write)
-            files.add(SEARCH, self.to_bytes(entries))
-
-
 @dataclass(frozen=True, slots=True)
 class BegunSearch:
-    """An unfinished search, read from its state file.
-
-    The study's files have their names in the folder; `inputs` is the provenance at the beginning of
-    the search, with the original file names.
-    """
+    """An unfinished search, read from its state file. The study's files have their names in the
+    folder; `inputs` is the provenance at the beginning of the search, with the original file
+    names."""
 
     path: Path
     study: Study
@@ -135,20 +89,16 @@ class BegunSearch:
     evaluated: tuple[EvaluatedRig, ...]
 
     def journal_of(self, study: Study) -> Journal:
-        """Return the journal with which a search of the study resumes.
-
-        Raises `InputError` if the state belongs to the search of another study.
-        """
+        """Return the journal with which a search of the study resumes. Raises `InputError` if the
+        state belongs to the search of another study."""
         _check_same(self.path, study, fingerprint(self.study))
         return Journal(self.evaluated, str(self.path))
 
 
 def read_search(folder: str | Path) -> BegunSearch:
-    """Read the state of a search from the folder of its results.
-
-    `InputError` if there is no state, it is damaged or of another version, or a mesh or boxes
-    beside it have changed since the search began.
-    """
+    """Read the state of a search from the folder of its results. `InputError` if there is no state,
+    it is damaged or of another version, or a mesh or boxes beside it have changed since the search
+    began."""
     path = Path(folder) / SEARCH
     data = _state_of(path, SEARCH_KIND, {"inputs": dict, "evaluated": object})
     entries = _entries_of(path, "evaluated", data["evaluated"])
@@ -156,11 +106,11 @@ def read_search(folder: str | Path) -> BegunSearch:
 
 
 class Checkpoint:
-    """Saves the state of a search in a folder while the search runs.
+    """Saves the state of a search in a folder while the search runs. However the search ends, it
+    can resume from the last checkpoint (`SearchState`). The journal of the job may hold the entries
+    of an earlier part of the same search."""
 
-    However the search ends, it can resume from the last checkpoint (`SearchState`). The journal of
-    the job may hold the entries of an earlier part of the same search.
-    """
+    file = STUDY  # Of the best so far
 
     def __init__(self, job: OptimizeJob) -> None:
         self._job, self._state = job, SearchState(job.study, job.inputs)
@@ -168,11 +118,14 @@ class Checkpoint:
         self._saved_entries = len(job.journal.entries)
         self._folder: Path | None = None
 
-    def due(self) -> bool:
-        """Whether to save now: after every round, every few seconds, and when the job is stopped.
+    @property
+    def has_more(self) -> bool:
+        """Whether there is a placement to save beside the start."""
+        return len(self._job.history) > 1
 
-        A True result restarts the interval, whether or not the caller saves.
-        """
+    def due(self) -> bool:
+        """Whether to save now: after every round, every few seconds, and when the job is stopped. A
+        True result restarts the interval, whether or not the caller saves."""
         job = self._job
         if not job.history or len(job.journal.entries) <= self._saved_entries:
             return False
@@ -190,64 +143,73 @@ class Checkpoint:
         self._folder, self._saved_entries = folder, len(entries)
 
 
-class FrontJournals:
-    """The journals of several searches, by the name of each; `known` are of an interrupted run."""
-
-    def __init__(self, known: Mapping[str, Iterable[EvaluatedRig]] | None = None) -> None:
-        self._known = {name: tuple(entries) for name, entries in (known or {}).items()}
-        self._journals: dict[str, Journal] = {}
-
-    def __reduce__(self) -> tuple[object, ...]:
-        """Pickle the entries: searches that begin anew continue them."""
-        return FrontJournals, (self.entries(),)
-
-    def begin(self, name: str) -> Journal:
-        """Return the journal of a search that begins; it continues a known one."""
-        self._journals[name] = Journal(self._known.get(name, ()), FRONT_SEARCH)
-        return self._journals[name]
-
-    @property
-    def count(self) -> int:
-        """Number of entries so far, those of searches that have not begun again included."""
-        return sum(map(len, self.entries().values()))
-
-    def entries(self) -> dict[str, tuple[EvaluatedRig, ...]]:
-        """Return all entries by search; may be read while another thread searches."""
-        return self._known | {name: each.entries for name, each in self._journals.items()}
-
-
 class FrontCheckpoint:
-    """The checkpoint of the front of a study, which is saved in its folder while the job runs."""
+    """Saves the checkpoint of a front in its folder while the job runs, with the front so far."""
 
-    def __init__(self, study: Study) -> None:
-        self._study = study
+    file = FRONT_SEARCH
+
+    def __init__(self, job: FrontJob, host: Mapping[str, str] | None = None) -> None:
+        self._job, self._host = job, host
         self._folder: Path | None = None
+        self._saved_s, self._searched = time.monotonic(), 0
 
     @cached_property
     def _head(self) -> dict[str, Any]:
         """The constant part: cached, because it is expensive for a large mesh."""
-        return _head(FRONT_KIND, self._study)
+        return state_head(FRONT_KIND, self._job.study)
 
-    def save(self, journals: FrontJournals, folder: Path) -> None:
+    @property
+    def has_more(self) -> bool:
+        """Whether placements were evaluated."""
+        return self._job.journals.count > 0
+
+    def due(self) -> bool:
+        """Whether to save now: every few seconds, and at the end."""
+        now = time.monotonic()
+        if self._job.is_done or now - self._saved_s >= SAVE_EVERY_S:
+            self._saved_s = now
+            return self.has_more
+        return False
+
+    def save(self, folder: Path) -> None:
         """Write the checkpoint into the front's folder; once also the files that the study names.
-
-        Raises `InputError` if the folder cannot be written, or another program wrote such a file.
-        """
-        state = {**self._head, "journals": journals.entries()}
+        `InputError` if the folder cannot be written, or another program wrote such a file."""
+        state = {**self._head, "journals": self._job.journals.entries()}
         with FileSet(prepare_folder(folder, (FRONT_SEARCH,))) as files:
             if folder != self._folder:
-                for name, write in study_writers(self._study, STUDY).items():
+                for name, write in study_writers(self._job.study, STUDY).items():
                     if name != STUDY:
                         files.add(name, write)
             files.add(FRONT_SEARCH, json.dumps(state, ensure_ascii=False).encode())
-        self._folder = folder
+        self._folder, found = folder, None if self._job.is_done else self._job.trade_off
+        if found is not None and found.searched > self._searched:
+            self._searched = found.searched
+            write_front(found, folder, self._host)
+
+
+def checkpoint_of(
+    job: Job, host: Mapping[str, str] | None = None
+) -> Checkpoint | FrontCheckpoint | None:
+    """Return what saves the state of a job while it runs; None for one that does not search."""
+    if isinstance(job, FrontJob):
+        return FrontCheckpoint(job, host)
+    return Checkpoint(job) if isinstance(job, OptimizeJob) else None
+
+
+def resume(job: OptimizeJob | FrontJob, folder: Path) -> int:
+    """Let a job go on where the one in a folder ended; return how many placements are known.
+    `InputError` where the folder has no checkpoint of such a job, or that of another study."""
+    if isinstance(job, FrontJob):
+        job.journals = read_front_search(job.study, folder)
+        return job.journals.count
+    begun = read_search(folder)
+    job.journal, job.inputs = begun.journal_of(job.study), begun.inputs
+    return len(begun.evaluated)
 
 
 def front_study(folder: str | Path) -> Study | None:
     """Return the study of a front's checkpoint; None for a folder with the state of one search.
-
-    Raises `InputError` if it is damaged, or files that the study names have changed.
-    """
+    Raises `InputError` if it is damaged, or files that the study names have changed."""
     path = Path(folder) / FRONT_SEARCH
     if (Path(folder) / SEARCH).exists() or not path.exists():
         return None
@@ -255,11 +217,8 @@ def front_study(folder: str | Path) -> Study | None:
 
 
 def read_front_search(study: Study, folder: Path) -> FrontJournals:
-    """Read the checkpoint of the front of a study.
-
-    Raises `InputError` if there is none, it is damaged or of another version, or it belongs to
-    another study.
-    """
+    """Read the checkpoint of the front of a study. Raises `InputError` if there is none, it is
+    damaged or of another version, or it belongs to another study."""
     path = folder / FRONT_SEARCH
     data = _state_of(path, FRONT_KIND, {"journals": dict})
     _check_same(path, study, data["study_sha256"])

@@ -1,8 +1,6 @@
-"""Output folders: write a set of files atomically, and never replace a file of the user.
-
-Each file is listed with its SHA-256 in a small file of the folder before it is written. A file that
-is not listed, or was changed since, belongs to the user and stays unchanged.
-"""
+"""Output folders: write a set of files atomically, and never replace a file of the user. Each file
+is listed with its SHA-256 in a small file of the folder before it is written. A file that is not
+listed, or was changed since, belongs to the user and stays unchanged."""
 
 from __future__ import annotations
 
@@ -35,8 +33,7 @@ except ImportError:  # on Windows two runs in one folder may reject each other's
 LISTING = ".perception-entropy.json"
 """Name of the list of our files: ``{"perception-entropy": 1, "files": {name: [SHA-256, ...]}}``."""
 PROGRAM, VERSION = "perception-entropy", 1
-DIGESTS_KEPT = 8
-"""Number of digests listed for each file: those of its latest versions."""
+DIGESTS_KEPT = 8  # Number of digests listed for each file: those of its latest versions
 LOCK_TRIES, LOCK_PAUSE_S = 200, 0.01
 """Attempts and pause [s] of waiting for another run that writes to the folder for milliseconds."""
 Write = Callable[[Path], None]
@@ -68,10 +65,8 @@ def prepare_folder(folder: str | Path, names: Iterable[str] = ()) -> Path:
 
 def check_files(folder: Path, names: Iterable[str], replaceable: Collection[str] = ()) -> None:
     """Check that files may be written: each is absent, or unchanged since this program wrote it.
-
     Those that are `replaceable` may be replaced in any case. `InputError` where a file with one of
-    the names belongs to the user.
-    """
+    the names belongs to the user."""
     listed = _listed(folder)
     for name in names:
         path = folder / name
@@ -84,12 +79,10 @@ def check_files(folder: Path, names: Iterable[str], replaceable: Collection[str]
 
 
 class FileSet:
-    """Context manager that writes several files of one folder together, or none of them.
-
-    `add` writes each file under a temporary name. Leaving the context renames the files in the
-    order in which they were added. After an exception the folder stays unchanged. Files with a
-    `replaceable` name the user has chosen to replace, whoever wrote them.
-    """
+    """Context manager that writes several files of one folder together, or none of them. `add`
+    writes each file under a temporary name. Leaving the context renames the files in the order in
+    which they were added. After an exception the folder stays unchanged. Files with a `replaceable`
+    name the user has chosen to replace, whoever wrote them."""
 
     def __init__(self, folder: Path, replaceable: Collection[str] = ()) -> None:
         self._folder, self._replaceable = folder, replaceable

@@ -1,7 +1,5 @@
 """Files of a Pareto front of designs: front.json, front.csv, and one study for each design."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -20,18 +18,14 @@ from .trade_off import Design, TradeOff
 
 FRONT_JSON, FRONT_CSV, DESIGNS = "front.json", "front.csv", "designs"
 FRONT_PAGE = "front.html"
-FRONT_NAMES = (FRONT_JSON, FRONT_CSV, FRONT_PAGE)
-"""Files of a front. Other rooms write the page."""
+FRONT_NAMES = (FRONT_JSON, FRONT_CSV, FRONT_PAGE)  # Files of a front. Other rooms write the page.
 FRONT_SCHEMA = 1
-MAX_STEM_LENGTH = 80
-"""Maximum number of characters of a design's file name, without the suffix."""
+MAX_STEM_LENGTH = 80  # Maximum number of characters of a design's file name, without the suffix
 
 
 def front_dict(chosen: TradeOff, host: Mapping[str, str] | None = None) -> dict[str, Any]:
-    """Return a trade-off as plain JSON data.
-
-    All of it but `run` depends on the study alone. `host` has versions of the host program by name.
-    """
+    """Return a trade-off as plain JSON data. All of it but `run` depends on the study alone. `host`
+    has versions of the host program by name."""
     files = {name: f"{DESIGNS}/{file}" for name, file in design_files(chosen).items()}
     selection = chosen.study.selection
     data = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from functools import cached_property
@@ -13,6 +13,8 @@ from pe_core.scoring import RigEvaluator
 from pe_core.search import (
     SCHEDULED_METHOD,
     DesignSearch,
+    EvaluatedRig,
+    Journal,
     Objective,
     Picks,
     Stop,
@@ -26,7 +28,6 @@ from pe_core.study.requirement_search import constraints_of, feasible_first, is_
 from pe_core.study.study import Study
 
 from .candidate_workers import ExecutorSource, candidate_workers
-from .checkpoint import FrontJournals
 from .front_objectives import (
     FrontFigures,
     FrontValues,
@@ -51,6 +52,35 @@ AP]: usually the rest of a search gains less. The rest gained 0 to 0.016 of AP f
 `blend_assets/choices` with 160 candidates."""
 EVALUATIONS_A_VARIABLE, LEAST_EVALUATIONS = 25, 60
 """Evaluations of one point of the front where the study has no budget."""
+
+
+FRONT_SEARCH = "front_search.json"  # The checkpoint of a front
+
+
+class FrontJournals:
+    """The journals of several searches, by the name of each; `known` are of an interrupted run."""
+
+    def __init__(self, known: Mapping[str, Iterable[EvaluatedRig]] | None = None) -> None:
+        self._known = {name: tuple(entries) for name, entries in (known or {}).items()}
+        self._journals: dict[str, Journal] = {}
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle the entries: searches that begin anew continue them."""
+        return FrontJournals, (self.entries(),)
+
+    def begin(self, name: str) -> Journal:
+        """Return the journal of a search that begins; it continues a known one."""
+        self._journals[name] = Journal(self._known.get(name, ()), FRONT_SEARCH)
+        return self._journals[name]
+
+    @property
+    def count(self) -> int:
+        """Number of entries so far, those of searches that have not begun again included."""
+        return sum(map(len, self.entries().values()))
+
+    def entries(self) -> dict[str, tuple[EvaluatedRig, ...]]:
+        """Return all entries by search; may be read while another thread searches."""
+        return self._known | {name: each.entries for name, each in self._journals.items()}
 
 
 class FrontJob(Job):
@@ -102,7 +132,7 @@ class FrontJob(Job):
         self._several, self.points = bool(given), front.points
         if given:
             check_objectives(study, [name for name in self.names if name not in self._own])
-        self.journals = FrontJournals()
+        self.journals, self.is_done = FrontJournals(), False
         self.evaluations = 0
         self._designs = study.designs()
         self._designs.require(self.names)
@@ -136,6 +166,8 @@ class FrontJob(Job):
             self.seconds,
             self.names,
         )
+
+    result = trade_off
 
     def _named(self) -> list[Design]:
         """Return all designs by their costs. Where a design has several points of the front, names
@@ -182,6 +214,7 @@ class FrontJob(Job):
                 yield from self._search_design(picks, number / len(wanted), 1.0 / len(wanted))
         if not self._found and self._errors:
             raise next(iter(self._errors.values()))
+        self.is_done = True
         yield Progress("done", 1.0, evaluations=self.evaluations)
 
     def _screened(self) -> Generator[Progress, None, list[Picks]]:
@@ -327,10 +360,8 @@ class FrontJob(Job):
             yield Progress(stage, done + share * fraction, evaluations=self.evaluations)
 
     def helpers(self, objectives: Sequence[Objective]) -> ExecutorSource:
-        """Return what evaluates the candidates of all designs; it is made for the first one.
-
-        All models that may be chosen go to the workers at once, with the evaluators of all levels.
-        """
+        """Return what evaluates the candidates of all designs; it is made for the first one. All
+        models that may be chosen go to the workers at once, with the evaluators of all levels."""
         if self._helpers is None:
             offered = [o.model for c in self.study.selection.choices for o in c.options]
             levels = map(self.evaluators.searching, self.study.search.level_samples)

@@ -1,7 +1,5 @@
 """The objectives of a Pareto front: their figures for a rig, and scalar values made of them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -33,21 +31,16 @@ from pe_core.study.study import EXPECTED_AP, Study
 
 AUGMENTED = 0.05
 """Weight of the sum beside the maximum: it drops placements that are only weakly efficient."""
-TIE = 1e-3
-"""Weight of the other objectives while the best value of one is looked for."""
+TIE = 1e-3  # Weight of the other objectives while the best value of one is looked for
 FrontValues = Mapping[str, float]
-OwnObjectives = Mapping[str, Callable[[Rig], float]]
-"""Functions from Python, by name."""
+OwnObjectives = Mapping[str, Callable[[Rig], float]]  # Functions from Python, by name
 
 
 def objectives_of(
     given: Sequence[str | Callable[[Rig], float]],
 ) -> tuple[tuple[str, ...], OwnObjectives]:
-    """Return the names of objectives, and those that are functions.
-
-    `InputError` unless they are two or more, each once, functions by a name of their own, and one
-    depends on the placement.
-    """
+    """Return the names of objectives, and those that are functions. `InputError` unless they are
+    two or more, each once, functions by a name of their own, and one depends on the placement."""
     names = [getattr(e, "__name__", type(e).__name__) if callable(e) else str(e) for e in given]
     own = {name: each for name, each in zip(names, given, strict=True) if callable(each)}
     free = {name for name in names if (name in OBJECTIVES) != (name in own)}
@@ -179,13 +172,11 @@ def costs_of(figures: FrontValues, names: Sequence[str]) -> list[float]:
 
 
 class ScalarValue:
-    """One value of several objectives, as a search minimises it.
-
-    The augmented weighted Chebyshev norm of the distance from the ideal point (Steuer and Choo,
-    "An interactive weighted Tchebycheff procedure", 1983): each placement of the Pareto front is
-    the best one for some weights, also where the front is not convex. `ideal` and `span` are the
-    best value of each objective, and how far its values are apart on the front so far.
-    """
+    """One value of several objectives, as a search minimises it. The augmented weighted Chebyshev
+    norm of the distance from the ideal point (Steuer and Choo, "An interactive weighted Tchebycheff
+    procedure", 1983): each placement of the Pareto front is the best one for some weights, also
+    where the front is not convex. `ideal` and `span` are the best value of each objective, and how
+    far its values are apart on the front so far."""
 
     def __init__(
         self,

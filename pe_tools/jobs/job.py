@@ -1,7 +1,5 @@
 """Jobs that any driver can run: base class, progress while a job runs, and outcome."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Executor, Future, wait
@@ -36,11 +34,9 @@ from .searched_figure import IN_NATS, SearchedFigure
 
 @dataclass(frozen=True, slots=True)
 class HistoryRow:
-    """A placement that became the best: evaluation number, round, entropy [nats], and the rig.
-
-    Of a search by expected AP, `entropy` is the value that it minimised: minus the AP
-    (`searched_figure`).
-    """
+    """A placement that became the best: evaluation number, round, entropy [nats], and the rig. Of a
+    search by expected AP, `entropy` is the value that it minimised: minus the AP
+    (`searched_figure`)."""
 
     evaluation: int
     round: int
@@ -49,13 +45,11 @@ class HistoryRow:
 
 
 def best_so_far(*starts: Sequence[HistoryRow]) -> tuple[tuple[int, float], ...]:
-    """Return the curve of a search: (evaluation, value) of each best so far, which never rises.
-
-    The history from each start is given, in their order. A search that goes on with more samples
+    """Return the curve of a search: (evaluation, value) of each best so far, which never rises. The
+    history from each start is given, in their order. A search that goes on with more samples
     evaluates its best placement again. Values before that are shifted by as much as that
     placement's own changed: they are of the same samples then. Placements that break requirements
-    are left out once one keeps them.
-    """
+    are left out once one keeps them."""
     best: list[tuple[int, float]] = []
     for rows in starts:
         curve: list[tuple[int, float]] = []
@@ -193,8 +187,7 @@ def _beside(figures: KeyFigures) -> dict[str, Any]:
 
 T = TypeVar("T")
 AsDrawn = Callable[[Study], RequirementChecker]
-Watch = Callable[[float], bool]
-"""Takes the progress of a work, 0 to 1; returns whether it goes on."""
+Watch = Callable[[float], bool]  # Takes the progress of a work, 0 to 1; returns whether it goes on
 
 WAIT_S = 0.03
 """How long a job waits for its thread before it yields: a frame of a responsive window."""
@@ -269,10 +262,8 @@ class Job:
         Number of threads and processes; all processors by default.
     """
 
-    shown: tuple[str, ...] = ()
-    """Attributes that a driver looks at while the job runs."""
-    kept: tuple[str, ...] = ()
-    """Attributes that a new job of the same study resumes from."""
+    shown: tuple[str, ...] = ()  # Attributes that a driver looks at while the job runs
+    kept: tuple[str, ...] = ()  # Attributes that a new job of the same study resumes from
 
     def __init__(self, study: Study, workers: int | None = None) -> None:
         self.study, self.workers = study, workers
@@ -309,16 +300,18 @@ class Job:
         return self.outcome
 
     def stop(self) -> None:
-        """Stop the search early; score and keep the best placement so far.
-
-        Before the first score is complete there is nothing to keep: the job ends and `outcome`
-        stays None.
-        """
+        """Stop the search early; score and keep the best placement so far. Before the first score
+        is complete there is nothing to keep: the job ends and `outcome` stays None."""
         self.stopped = True
 
     def drop(self) -> None:
         """Cancel the job and discard its results: `outcome` stays None."""
         self.stopped = self.dropped = True
+
+    @property
+    def result(self) -> Any:
+        """What the job has found; None where there is nothing to keep."""
+        return self.outcome
 
     @property
     def seconds(self) -> float:

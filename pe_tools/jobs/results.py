@@ -1,13 +1,11 @@
 """The result files of a run in its output folder: result.json, history.csv, study.toml, and more.
-
 The files of a run are one set. `FileSet` writes them together, with result.json last; result.json
-lists the SHA-256 of each other file.
-"""
+lists the SHA-256 of each other file."""
 
-from __future__ import annotations
-
+import json
 import platform
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +14,7 @@ import numpy as np
 from pe_core.base.files import csv_text, read_bytes
 from pe_core.base.table_reader import dump_json, finite, parse_json
 from pe_core.scene.rig import Rig
-from pe_core.search import AXES
+from pe_core.search import AXES, EvaluatedRig
 from pe_core.study.condition_table import ConditionScore, ConditionTable
 from pe_core.study.file_names import (
     AREAS,
@@ -35,11 +33,10 @@ from pe_core.study.mounting_file import areas_of, mounts_table
 from pe_core.study.study import EXPECTED_AP, Study
 from pe_core.version import __version__
 
-from .checkpoint import SearchState
-from .folder import FileSet, Write, our_files, prepare_folder, sha256_of
+from .folder import PROGRAM, FileSet, Write, our_files, prepare_folder, sha256_of
 from .job import HistoryRow, Outcome
 from .searched_figure import IN_NATS, SearchedFigure, searched_figure
-from .study_export import inputs_of, study_text, study_writers
+from .study_export import fingerprint, inputs_of, study_text, study_writers
 
 
 def result_names(study: Study, kind: str) -> list[str]:
@@ -186,12 +183,10 @@ def add_to_result(
     writers: Mapping[str, Write | bytes],
     unwanted: Collection[str] = (),
 ) -> None:
-    """Write files of a run together with its result.json, which lists their SHA-256.
-
-    The part "run" of `data` is updated. `unwanted` files are removed, unless they are in `writers`
-    or were not written by this program. `InputError` if the folder cannot be written, or one of the
-    files in it was not written by this program.
-    """
+    """Write files of a run together with its result.json, which lists their SHA-256. The part "run"
+    of `data` is updated. `unwanted` files are removed, unless they are in `writers` or were not
+    written by this program. `InputError` if the folder cannot be written, or one of the files in it
+    was not written by this program."""
     with FileSet(folder) as files:
         files.take_away(unwanted)
         digests = {name: files.add(name, write) for name, write in writers.items()}
@@ -203,9 +198,7 @@ def add_to_result(
 
 def files_of_other_runs(folder: Path) -> list[str]:
     """Return names of result files in a folder that do not belong to the run of its result.json.
-
-    They were written by an earlier run or an interrupted later run, or were changed by hand.
-    """
+    They were written by an earlier run or an interrupted later run, or were changed by hand."""
     try:
         named = parse_json(RESULT, read_bytes(folder / RESULT))["run"]["files"]
         ours = set(our_files(folder))
@@ -258,3 +251,42 @@ def _line(row: ConditionScore) -> str:
         f"  {row.name}: {row.entropy:.4f} nats, coverage {row.coverage:.1%}{ap}, "
         f"weight {row.weight:g}"
     )
+
+
+SEARCH_KIND = "search"
+
+
+def state_head(kind: str, study: Study) -> dict[str, Any]:
+    """Return what the state files of all kinds begin with: program, version, and the study."""
+    head = {PROGRAM: kind, "version": __version__, "study_sha256": fingerprint(study)}
+    return {**head, "study": study_text(study)}
+
+
+class SearchState:
+    """The state of a search, which is saved in its folder while the search runs. `inputs` is the
+    provenance at the beginning of the search, if file names have changed since."""
+
+    def __init__(self, study: Study, inputs: dict[str, Any] | None = None) -> None:
+        self._study, self._inputs = study, inputs
+
+    @cached_property
+    def _head(self) -> dict[str, Any]:
+        """The constant part of the state: cached, because it is expensive for a large mesh."""
+        inputs = self._inputs or inputs_of(self._study)
+        return {**state_head(SEARCH_KIND, self._study), "inputs": inputs}
+
+    def to_bytes(self, entries: Iterable[EvaluatedRig]) -> bytes:
+        """Return the content of the state file."""
+        return json.dumps({**self._head, "evaluated": list(entries)}, ensure_ascii=False).encode()
+
+    def save(
+        self, folder: Path, best: Study, entries: Iterable[EvaluatedRig], *, meshes: bool = True
+    ) -> None:
+        """Write state and best placement into a folder. Without `meshes`, mesh and other files of
+        the study are in the folder already. The folder stays unchanged after an `InputError`: it
+        cannot be written, or this program did not write one of the files in it."""
+        with FileSet(prepare_folder(folder)) as files:
+            for name, write in study_writers(best, STUDY).items():
+                if meshes or name == STUDY:
+                    files.add(name, write)
+            files.add(SEARCH, self.to_bytes(entries))

@@ -1,7 +1,5 @@
 """The jobs that score a study and that search for better poses."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager
@@ -116,8 +114,7 @@ class OptimizeJob(Job):
     """
 
     shown, kept = ("history", "_ended", "evaluations"), ("journal",)
-    analyses = True
-    """Whether the result is analysed after the search."""
+    analyses = True  # Whether the result is analysed after the search
 
     def __init__(
         self,
@@ -282,12 +279,10 @@ class OptimizeJob(Job):
 
     @property
     def _start_may_stay(self) -> bool:
-        """Whether the start may be the result if the search finds nothing with a better score.
-
-        It may not if it violates a constraint of the search or breaks a requirement to be kept. It
-        may not either if the search had a tolerance: the scores ignore mounting errors and
-        failures, which the search minimized, nor if it had conditions.
-        """
+        """Whether the start may be the result if the search finds nothing with a better score. It
+        may not if it violates a constraint of the search or breaks a requirement to be kept. It may
+        not either if the search had a tolerance: the scores ignore mounting errors and failures,
+        which the search minimized, nor if it had conditions."""
         start = self._first or self.history[0]
         kept = start.rig is self.study.rig and not is_infeasible(start.entropy)
         search = self.study.search

@@ -1,9 +1,5 @@
-"""The figure that a search improves, as people read it: entropy, or expected AP in traffic.
-
-A search minimises one value. By expected AP the value is minus the AP, which nobody is shown.
-"""
-
-from __future__ import annotations
+"""The figure that a search improves, as people read it: entropy, or expected AP in traffic. A
+search minimises one value. By expected AP the value is minus the AP, which nobody is shown."""
 
 from dataclasses import dataclass
 
@@ -14,10 +10,8 @@ from pe_core.study.study import ENTROPY, EXPECTED_AP, Study
 
 @dataclass(frozen=True, slots=True)
 class SearchedFigure:
-    """The figure that a search improves: its name in files and in sentences.
-
-    The figure is `sign` times the value that the search minimises.
-    """
+    """The figure that a search improves: its name in files and in sentences. The figure is `sign`
+    times the value that the search minimises."""
 
     key: str
     label: str

@@ -1,7 +1,5 @@
 """When a search ends before its budget does, and how sure it is of its result then."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections import deque
@@ -17,8 +15,7 @@ from ..sensitivity import sensitivity_lines
 from .job import Outcome
 from .searched_figure import IN_NATS, SearchedFigure, searched_figure
 
-TARGET, SECONDS, GAIN = "target", "seconds", "gain"
-"""Reasons, as result.json names them."""
+TARGET, SECONDS, GAIN = "target", "seconds", "gain"  # Reasons, as result.json names them
 APART = 2.0
 """Within so many standard deviations of the descents of one search, another seed's result lies."""
 

@@ -1,7 +1,5 @@
 """Write a study with all files that it refers to; compute its fingerprint and provenance."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Iterator
@@ -83,10 +81,8 @@ def study_text(study: Study) -> str:
 
 
 def fingerprint(study: Study) -> str:
-    """Return the SHA-256 of the values of a study; the names of its files do not count.
-
-    Two studies with the same fingerprint give the same scores and the same search, to the bit.
-    """
+    """Return the SHA-256 of the values of a study; the names of its files do not count. Two studies
+    with the same fingerprint give the same scores and the same search, to the bit."""
     digest = hashlib.sha256()
     for part in _parts(study):
         digest.update(len(part).to_bytes(8, "little") + part)

@@ -1,7 +1,5 @@
 """Designs of a study with choices: their studies and names, and the front of those not beaten."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -40,13 +38,10 @@ NO_SHEETS: Mapping[str, DataSheet] = {}
 def design_study(
     study: Study, models: Models, sheets: Mapping[str, DataSheet] = NO_SHEETS
 ) -> Study:
-    """Return the study of a design, without choices.
-
-    `models` has the model of each sensor that the study lets choose, `sheets` what is known of it;
-    None leaves the sensor out. A
-    sensor on a surface keeps the position of its base: with a housing of another height, its origin
-    is higher or lower.
-    """
+    """Return the study of a design, without choices. `models` has the model of each sensor that the
+    study lets choose, `sheets` what is known of it; None leaves the sensor out. A sensor on a
+    surface keeps the position of its base: with a housing of another height, its origin is higher
+    or lower."""
     gone = {name for name, model in models.items() if model is None}
     rig = Rig([_taken(sensor, models, sheets) for sensor in study.rig if sensor.name not in gone])
     order = [sensor.name for sensor in rig]

@@ -1,7 +1,5 @@
 """A job that the engine's process runs, and the copy of it that the window looks at."""
 
-from __future__ import annotations
-
 import copy
 import time
 from collections.abc import Iterator, Mapping
@@ -10,16 +8,13 @@ from typing import Any
 
 from .job import Job, Progress
 
-KEEP_S = 2.0
-"""How often what a killed job would resume from is sent."""
+KEEP_S = 2.0  # How often what a killed job would resume from is sent
 
 
 @dataclass(frozen=True, slots=True)
 class JobStep:
-    """Progress of a job, and those of its attributes that have changed.
-
-    `shown` are those that its driver looks at, `kept` those that a job like it would resume from.
-    """
+    """Progress of a job, and those of its attributes that have changed. `shown` are those that its
+    driver looks at, `kept` those that a job like it would resume from."""
 
     progress: Progress
     shown: Mapping[str, Any]
@@ -27,10 +22,8 @@ class JobStep:
 
 
 class JobRun:
-    """In the engine's process: runs a job; yields a `JobStep` for each of its steps.
-
-    It returns the attribute `outcome` of the job.
-    """
+    """In the engine's process: runs a job; yields a `JobStep` for each of its steps. It returns the
+    attribute `outcome` of the job."""
 
     def __init__(self, job: Job, outcome: str = "outcome", keep_s: float = KEEP_S) -> None:
         self._job, self._outcome, self._steps = job, outcome, iter(job)
@@ -62,11 +55,9 @@ class JobRun:
 
 
 class WatchedJob:
-    """In the window's process: a job that runs elsewhere, as far as it is known here.
-
-    `job` is never run here: with what was kept of it, it can be sent again. `seen` is a copy of it
-    with the attributes that the running job has.
-    """
+    """In the window's process: a job that runs elsewhere, as far as it is known here. `job` is
+    never run here: with what was kept of it, it can be sent again. `seen` is a copy of it with the
+    attributes that the running job has."""
 
     def __init__(self, job: Job) -> None:
         self.job, self.seen = job, copy.copy(job)

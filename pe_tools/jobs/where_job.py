@@ -1,7 +1,5 @@
 """The job that scores one more sensor all over a vehicle's surface, coarse to fine."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -25,8 +23,7 @@ from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, EXPECTED_AP, Study
 from .candidate_workers import ExecutorSource, candidate_workers
 from .job import Job, Progress, begun
 
-SAMPLES = 2048
-"""Voxels on which places are scored."""
+SAMPLES = 2048  # Voxels on which places are scored
 BATCH, COMPARED = 32, 8
 """Places that are scored between two looks at the progress; and that are scored exactly, too, from
 the best to the worst: they tell the error."""
@@ -61,12 +58,9 @@ def _met(study: Study, _samples: int) -> Objective:
 
 @dataclass(frozen=True, slots=True)
 class PlaceFigure:
-    """A figure by which places are compared.
-
-    `objective` returns what is minimised, of a study and a number of voxels; the figure is `sign`
-    times its value. `places` is how many are scored in about 20 s. `exact` is whether it does not
-    depend on the voxels.
-    """
+    """A figure by which places are compared. `objective` returns what is minimised, of a study and
+    a number of voxels; the figure is `sign` times its value. `places` is how many are scored in
+    about 20 s. `exact` is whether it does not depend on the voxels."""
 
     key: str
     label: str
@@ -90,33 +84,18 @@ PLACE_FIGURES = {
         PlaceFigure("blind", "Widest blind sector", "deg", 0, _sector, 350, 1.0, True),
         PlaceFigure("verdicts", "Requirements met", "", 0, _met, 700, -1.0, True),
     )
-}
-"""Figures of places, by name."""
+}  # Figures of places, by name
 
 
 @dataclass(frozen=True, slots=True)
 class PlaceMap:
-    """Places of one more sensor, the coarse cover of the surface first.
-
-    Attributes
-    ----------
-    rig, sensor : Rig, Sensor
-        The other sensors, and the placed one: its model and its name.
-    figure : str
-        A key of `PLACE_FIGURES`.
-    mount : str
-        Name of the mount that is covered; empty for the body or parts of it.
-    count : int
-        How many places there will be.
-    surface : (F, 3, 3) float
-        The surface that they cover [m].
-    base : float
-        The figure without the sensor, on the same sample.
-    places : tuple of SurfacePlace
-    error : float or None
-        Root mean square difference of the gain on the sample and the exact one, at places from the
-        best to the worst; None where it is not known yet, 0 where places are scored exactly.
-    """
+    """Places of one more sensor, the coarse cover of the surface first. `rig`, `sensor`: the other
+    sensors, and the placed one: its model and its name. `figure`: A key of `PLACE_FIGURES`.
+    `mount`: name of the mount that is covered; empty for the body or parts of it. `count`: how many
+    places there will be. `surface` (F, 3, 3): the surface that they cover [m]. `base`: the figure
+    without the sensor, on the same sample. `error`: root mean square difference of the gain on the
+    sample and the exact one, at places from the best to the worst; None where it is not known yet,
+    0 where places are scored exactly."""
 
     rig: Rig
     sensor: Sensor
@@ -134,10 +113,8 @@ class PlaceMap:
         return PLACE_FIGURES[self.figure]
 
     def best(self, count: int = 1, apart: float = 0.0) -> list[SurfacePlace]:
-        """Return the best places, the best first; those that break a rule are left out.
-
-        Of places that are nearer to each other than `apart` [m] only the best is named.
-        """
+        """Return the best places, the best first; those that break a rule are left out. Of places
+        that are nearer to each other than `apart` [m] only the best is named."""
         free = [each for each in self.places if each.value is not None]
         found: list[SurfacePlace] = []
         for each in sorted(free, key=lambda each: self.row.sign * (each.value or 0.0)):
@@ -175,25 +152,12 @@ class PlaceMap:
 
 
 class WhereJob(Job):
-    """Scores a rig with one more sensor at places all over the surface.
-
-    Parameters
-    ----------
-    study : Study
-        Its other sensors stay as they are; its constraints forbid places.
-    sensor, parts, mount, count
-        As of `MountingPlaces`; `mount` is the name of one of the study's. By default there are as
-        many places as the figure scores in about 20 s.
-    figure : str
-        A key of `PLACE_FIGURES`.
-    workers : int, optional
-        Number of processes; all processors by default. The result does not depend on it.
-
-    Raises
-    ------
-    InputError
-        When there is no such figure or mount; once it runs, as `MountingPlaces`.
-    """
+    """Scores a rig with one more sensor at places all over the surface. `InputError` when there is
+    no such figure or mount; once it runs, as `MountingPlaces`. `study`: its other sensors stay as
+    they are; its constraints forbid places. `sensor`, `parts`, `mount`, `count`: as of
+    `MountingPlaces`; `mount` is the name of one of the study's. By default there are as many places
+    as the figure scores in about 20 s. `figure`: A key of `PLACE_FIGURES`. `workers`: number of
+    processes; all processors by default. The result does not depend on it."""
 
     shown = ("places", "base", "error", "surface")
 

@@ -1,7 +1,5 @@
 """Binary glTF writer: scene elements, the vehicle's body, and the wires of a field of view."""
 
-from __future__ import annotations
-
 import json
 import struct
 from collections.abc import Collection, Sequence

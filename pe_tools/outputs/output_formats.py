@@ -1,7 +1,5 @@
 """Registry of the output formats, one row per format, and the export of a scene."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -35,19 +33,10 @@ def _with_library(name: str, title: str, request: OutputRequest) -> tuple[Writte
 
 @dataclass(frozen=True, slots=True)
 class SceneOutput:
-    """An output of the scene.
-
-    Attributes
-    ----------
-    name, title : str
-        Name in commands, and title in the user interface.
-    file : str
-        Name of its file, or of its folder if it `has_several` files.
-    write : callable
-        Function of a request; returns bytes by file name, and messages.
-    has_range : bool
-        Whether the output depends on `range_m` of the request.
-    """
+    """An output of the scene. `name`, `title`: name in commands, and title in the user interface.
+    `file`: name of its file, or of its folder if it `has_several` files. `write`: function of a
+    request; returns bytes by file name, and messages. `has_range`: whether the output depends on
+    `range_m` of the request."""
 
     name: str
     title: str
@@ -70,8 +59,7 @@ _ROWS = (
 OF_EXAMPLE = ("footprints", "footprints-dxf", "masks", "nebula", "rerun", "solids")
 """Outputs of the plugin that is shipped as an example."""
 EXAMPLE = "the plugin perception-entropy-outputs: pip install examples/plugin"
-OUTPUT = "output"
-"""The sort of plugins that lead to a `SceneOutput`."""
+OUTPUT = "output"  # The sort of plugins that lead to a `SceneOutput`
 
 
 @cache
@@ -111,11 +99,9 @@ def scene_output(name: str) -> SceneOutput:
 
 def scene_files(study: Study, name: str, range_m: float | None = None) -> tuple[Written, list[str]]:
     """Return the files of an output of a study's scene by name, and lines on what to know of them.
-
     Fields of view are drawn up to `range_m` [m], by default to each sensor's own range. An output
     that is none of `scene_outputs`, a range that is not positive, or a missing library raises
-    `InputError`.
-    """
+    `InputError`."""
     return scene_output(name).write(OutputRequest(study, range_m))
 
 
@@ -128,11 +114,9 @@ def export_scene(
     replace: bool = False,
 ) -> tuple[list[Path], list[str]]:
     """Write an output of a study's scene; return the files, and lines on what to know of them.
-
     `output` is the file, or the folder where an output has several. Besides what `scene_files`
     raises, a file that is there already, unless `replace`, or cannot be written raises
-    `InputError`.
-    """
+    `InputError`."""
     files, lines = scene_files(study, name, range_m)
     inside = scene_output(name).has_several
     return write_files(files, Path(output), inside=inside, replace=replace), lines

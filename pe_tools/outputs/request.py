@@ -1,7 +1,5 @@
 """Request for an output: a study and its options; names for files and nodes, and colours."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -36,10 +34,8 @@ NO_RANGE_M = 80.0
 
 @dataclass(frozen=True, slots=True)
 class OutputRequest:
-    """A study, and the length to which fields of view are drawn.
-
-    They end at `range_m` [m], which is positive, or at a sensor's own range where that is nearer.
-    """
+    """A study, and the length to which fields of view are drawn. They end at `range_m` [m], which
+    is positive, or at a sensor's own range where that is nearer."""
 
     study: Study
     range_m: float | None = None
@@ -50,11 +46,9 @@ class OutputRequest:
             object.__setattr__(self, "range_m", checked)
 
     def reach(self, sensor: Sensor, default: float | None = None) -> float:
-        """Return the range to which a sensor is drawn [m].
-
-        It is the smaller of the sensor's range and `range_m`. Without `range_m`, `default` is used
-        instead. Without either, a sensor with infinite range is drawn to `NO_RANGE_M`.
-        """
+        """Return the range to which a sensor is drawn [m]. It is the smaller of the sensor's range
+        and `range_m`. Without `range_m`, `default` is used instead. Without either, a sensor with
+        infinite range is drawn to `NO_RANGE_M`."""
         sensor_range = float(getattr(sensor.model, "max_range", math.inf))
         limit = self.range_m if self.range_m is not None else default
         if limit is None:

@@ -1,11 +1,6 @@
-"""The scene as glTF.
-
-In the whole scene the axes of a sensor's node are those of glTF: x forward, y up, z to the right. A
-program with z up imports them as x forward, y left, z up. A camera is a child of its sensor's node
-and looks along -z.
-"""
-
-from __future__ import annotations
+"""The scene as glTF. In the whole scene the axes of a sensor's node are those of glTF: x forward, y
+up, z to the right. A program with z up imports them as x forward, y left, z up. A camera is a child
+of its sensor's node and looks along -z."""
 
 import math
 from typing import Any
@@ -27,14 +22,12 @@ from .solid import free_solid, mounted_view
 
 FILE, TITLE = "scene.glb", "glTF"
 ROOT = "Grp_Root"
-REACH_M = 4.0
-"""How far fields of view go unless told."""
+REACH_M = 4.0  # How far fields of view go unless told
 VIEW_ALPHA = 0.18
 LOOKING_ALONG_X = [0.0, -math.sqrt(0.5), 0.0, math.sqrt(0.5)]
 """Quaternion (x, y, z, w) that turns -z of a glTF camera to a sensor's x."""
 NEAR_M, FAR_M = 0.1, 1000.0
-STEP = math.radians(1.0)
-"""Approximate angular size of the triangles, seen from the sensor [rad]."""
+STEP = math.radians(1.0)  # Approximate angular size of the triangles, seen from the sensor [rad]
 
 
 def write(request: OutputRequest) -> tuple[Written, list[str]]:

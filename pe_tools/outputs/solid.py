@@ -10,8 +10,7 @@ from pe_core.base.arrays import Floats, Ints
 from pe_core.scene import Sensor, Vehicle, rotate
 from pe_core.sensors import kind_of
 
-NEAREST_M = 1e-3
-"""No ray ends nearer to its sensor: solids stay solid."""
+NEAREST_M = 1e-3  # No ray ends nearer to its sensor: solids stay solid
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,11 +51,9 @@ def star(name: str, view: MountedView, ends: Floats) -> Solid:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MountedView:
-    """A sensor's field of view on the vehicle, ground frame.
-
-    From `origin` (3,) [m] along unit `directions` (N, 3) to `ends` (N,): the vehicle, at most
-    `reach` [m]. `faces` (F, 3) are triangles of directions, counter-clockwise as seen from outside.
-    """
+    """A sensor's field of view on the vehicle, ground frame. From `origin` (3,) [m] along unit
+    `directions` (N, 3) to `ends` (N,): the vehicle, at most `reach` [m]. `faces` (F, 3) are
+    triangles of directions, counter-clockwise as seen from outside."""
 
     origin: Floats
     directions: Floats

@@ -1,8 +1,6 @@
-"""The review page: one HTML file that shows a rig, its score and what its sensors see.
-
-It is the same from Blender and from a command line. `sections` lists its parts, `document` puts
-them together. Names are imported at first use: other verbs of `pe` start without page and jinja2.
-"""
+"""The review page: one HTML file that shows a rig, its score and what its sensors see. It is the
+same from Blender and from a command line. `sections` lists its parts, `document` puts them
+together. Names are imported at first use: other verbs of `pe` start without page and jinja2."""
 
 from __future__ import annotations
 
@@ -39,7 +37,7 @@ def __getattr__(name: str) -> Any:
     return getattr(import_module(f".{_MODULES[name]}", __name__), name)
 
 
-def add_verbs(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def add_verbs(verbs: Any) -> None:
     """Add the verbs ``fit`` and ``review`` to ``pe``, and pages to the files of a search."""
     from .. import cli as app
 
@@ -56,7 +54,7 @@ def add_verbs(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
     add_page()
 
 
-def _add_fit(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def _add_fit(verbs: Any) -> None:
     fit = verbs.add_parser("fit", help="fit a and b of AP = a ln m + b to a table")
     fit.add_argument(
         "table", metavar="TABLE", help="CSV with the columns m (or range_m) and ap, optionally n"
@@ -99,10 +97,11 @@ def add_page() -> None:
     from pe_core import study as studies
 
     from .. import cli as app
+    from ..jobs import FRONT_PAGE
 
     if not any(studies.REVIEW_PAGE in artifact.names for artifact in app.pages):
         app.pages.append(app.More([studies.REVIEW_PAGE], _later("write_search_page")))
-        app.plots.append(_later("write_front_page"))
+        app.front_pages.append(app.More([FRONT_PAGE], _later("write_front_page")))
 
 
 def _later(name: str, module: str = "build") -> Callable[..., Any]:

@@ -1,8 +1,5 @@
 """Build pages: for the verb ``review``, for studies in memory, and beside the results of a search.
-
 A folder of search results is read back to the outcome that the search had."""
-
-from __future__ import annotations
 
 import argparse
 import math
@@ -30,8 +27,7 @@ INTERRUPTED = "no page was written"
 OWN_VERSIONS = ("perception-entropy", "numpy", "python")
 """Programs whose versions the page lists by itself."""
 A_RESULT = "the result of a search by this version"
-MAX_RESULT_BYTES = 1 << 28
-"""Size limit of a result.json that is read."""
+MAX_RESULT_BYTES = 1 << 28  # Size limit of a result.json that is read
 DesignRow = Mapping[str, Any]
 BELOW = "; the figures are in the table below"
 
@@ -66,11 +62,8 @@ def review_studies(
     args: argparse.Namespace,
     versions: Mapping[str, str] | None = None,
 ) -> app.Answer:
-    """Score studies by name and write their page.
-
-    `args` are parsed options of `add_review_options` and of a score; `versions` are those of
-    programs besides the engine's, by name.
-    """
+    """Score studies by name and write their page. `args` are parsed options of `add_review_options`
+    and of a score; `versions` are those of programs besides the engine's, by name."""
 
     def context_of(name: str, study: pe.Study) -> ReportContext:
         outcome = app.scored(study, args.workers)
@@ -110,12 +103,10 @@ def write_search_page(outcome: jobs.Outcome, data: dict[str, Any], folder: Path)
 def outcome_of_folder(
     folder: Path, score: Callable[[pe.Study], jobs.Outcome]
 ) -> jobs.Outcome | None:
-    """Return the outcome of the search in a folder; None if the folder contains no search.
-
-    Start and end are scored again, because result.json does not contain all of a score; the history
-    of the search is read from the file. A damaged file, or one of another version, raises
-    `InputError`.
-    """
+    """Return the outcome of the search in a folder; None if the folder contains no search. Start
+    and end are scored again, because result.json does not contain all of a score; the history of
+    the search is read from the file. A damaged file, or one of another version, raises
+    `InputError`."""
     if not (folder / studies.SEARCH).exists() or not (folder / studies.RESULT).exists():
         return None
     checkpoint, path = jobs.read_search(folder), folder / studies.RESULT
@@ -198,7 +189,7 @@ def _result_of(folder: Path) -> dict[str, Any]:
     return result
 
 
-def write_front_page(data: Mapping[str, Any], folder: Path) -> None:
+def write_front_page(_front: jobs.TradeOff, data: Mapping[str, Any], folder: Path) -> None:
     """Write the page of a front beside its results."""
     with jobs.FileSet(folder) as files:
         files.add(jobs.FRONT_PAGE, front_page(data))

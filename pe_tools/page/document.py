@@ -1,11 +1,7 @@
 """The page as one self-contained HTML file: sections, style sheets, scripts and security policy.
-
 The content security policy lets the page run and load what it was written with, and nothing else.
 Scripts and style sheets are allowed by their SHA-256. Style attributes cannot be allowed so: each
-becomes a rule of a style sheet, selected by a number.
-"""
-
-from __future__ import annotations
+becomes a rule of a style sheet, selected by a number."""
 
 import base64
 import hashlib
@@ -49,17 +45,9 @@ def page_bytes(
     progress: Callable[[float], None] = lambda _share: None,
     about: About = NO_INFO,
 ) -> bytes:
-    """Return the page of one study, or of several side by side.
-
-    Parameters
-    ----------
-    contexts : sequence of ReportContext
-        One to six, else `InputError`.
-    progress : callable, optional
-        Called before each section with the share of sections that are done, 0 to 1. An exception
-        that it raises ends the work.
-    about : About
-    """
+    """Return the page of one study, or of several side by side. `contexts`: one to six, else
+    `InputError`. `progress`: called before each section with the share of sections that are done, 0
+    to 1. An exception that it raises ends the work."""
     contexts = keyed_contexts(contexts)
     steps = [
         (section, group)
@@ -94,22 +82,10 @@ def write_page(
     replace: bool = False,
     about: About = NO_INFO,
 ) -> Path:
-    """Write the page to a folder; return its path.
-
-    Parameters
-    ----------
-    contexts, about
-        As of `page_bytes`.
-    folder
-    replace : bool
-        Whether an existing page is replaced, whoever wrote it.
-
-    Raises
-    ------
-    InputError
-        When the folder cannot be written, or contains a page that this program did not write or
-        that was changed since.
-    """
+    """Write the page to a folder; return its path. `InputError` when the folder cannot be written,
+    or contains a page that this program did not write or that was changed since. `contexts`,
+    `about`: as of `page_bytes`. `replace`: whether an existing page is replaced, whoever wrote
+    it."""
     folder = jobs.prepare_folder(folder, () if replace else (PAGE,))
     with jobs.FileSet(folder, (PAGE,) if replace else ()) as files:
         files.add(PAGE, page_bytes(contexts, about=about))

@@ -1,7 +1,5 @@
 """The verb ``pe fit``: a and b of AP = a ln m + b from a table, and a snippet for a study."""
 
-from __future__ import annotations
-
 import argparse
 from dataclasses import replace
 from functools import partial
@@ -17,8 +15,7 @@ from ..cli import DONE, Answer
 from ..formats import read_ap_table
 from ..jobs import FileSet, prepare_folder
 
-SNIPPET = "ap.toml"
-"""The file that the verb writes."""
+SNIPPET = "ap.toml"  # The file that the verb writes
 MAX_FILE_NAME = 255
 
 

@@ -1,9 +1,5 @@
 """The templates of the page (jinja2), and how they write values: escaped, with units and signs.
-
-Every value that a template writes is escaped, and characters that do not print are spelled out.
-"""
-
-from __future__ import annotations
+Every value that a template writes is escaped, and characters that do not print are spelled out."""
 
 from collections.abc import Iterable, Sequence
 from functools import cache

@@ -1,7 +1,5 @@
 """What the review page shows: studies with their results, and the head of the page."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import date
@@ -15,36 +13,20 @@ from pe_core.scoring.sight import GroundSight
 from .. import advice, graphics, jobs
 
 T = TypeVar("T")
-MAX_TRIANGLES = 200_000
-"""Of the vehicle in pictures on the page; rays are cast at all triangles."""
+MAX_TRIANGLES = 200_000  # Of the vehicle in pictures on the page; rays are cast at all triangles
 MAP_STEP_M = 1.0
-MAX_STUDIES = 6
-"""On one page, side by side."""
+MAX_STUDIES = 6  # On one page, side by side
 
 
 @dataclass(frozen=True, eq=False)
 class ReportContext:
-    """One study, its results, and the values that sections derive from them.
-
-    Attributes
-    ----------
-    name : str
-        Name of the study as readers see it; any text.
-    outcome : Outcome
-        Of a score, or of a search with the study before and after it.
-    key : str
-        A letter that identifies the study on its page: ids of elements end in it.
-    command : str
-        Command line that reproduces the results; empty if unknown.
-    versions : mapping of str
-        Versions of programs besides the engine's, by name.
-    cache : dict
-        Derived values by name, filled by `cached`; pages that show the same study share it.
-    folder : Path, optional
-        Folder of the page, where films of its stories may be.
-    study_count : int
-        Number of studies on the page.
-    """
+    """One study, its results, and the values that sections derive from them. `name`: name of the
+    study as readers see it; any text. `outcome`: of a score, or of a search with the study before
+    and after it. `key`: A letter that identifies the study on its page: ids of elements end in it.
+    `command`: command line that reproduces the results; empty if unknown. `versions`: versions of
+    programs besides the engine's, by name. `cache`: derived values by name, filled by `cached`;
+    pages that show the same study share it. `folder`: folder of the page, where films of its
+    stories may be. `study_count`: number of studies on the page."""
 
     name: str
     outcome: jobs.Outcome
@@ -134,12 +116,10 @@ MAX_LETTERS = 200
 
 @dataclass(frozen=True, slots=True)
 class About:
-    """Title, author, date and revision at the head of the page; empty ones are left out.
-
-    The `title` is a heading in place of the studies' names, which then stand below it. The `date`
-    is any text ("2026-05-04", "May 2026"); "today" is the day of the run. A text of more than 200
-    letters raises `InputError`.
-    """
+    """Title, author, date and revision at the head of the page; empty ones are left out. The
+    `title` is a heading in place of the studies' names, which then stand below it. The `date` is
+    any text ("2026-05-04", "May 2026"); "today" is the day of the run. A text of more than 200
+    letters raises `InputError`."""
 
     title: str = ""
     author: str = ""

@@ -1,7 +1,5 @@
 """The sensitivity analysis of a search's result: what is computed, its data, and its lines."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -32,31 +30,19 @@ from .flatness import (
 )
 from .optima import BETWEEN, EXAMINED, Archive, Basins, Endings, RunnerUp
 
-SHARE = 8
-"""The analysis evaluates at most the search's evaluations divided by this."""
+SHARE = 8  # The analysis evaluates at most the search's evaluations divided by this
 ENDINGS_NEED = EXAMINED * (1 + len(BETWEEN))
 """Evaluations that the endings of a search take at most, about."""
-NAMED = 4
-"""How many axes, constraints or runners-up a line names."""
+NAMED = 4  # How many axes, constraints or runners-up a line names
 
 
 @dataclass(frozen=True, slots=True)
 class Sensitivity:
-    """How sure a search is of its result.
-
-    Attributes
-    ----------
-    evaluations : int
-        Rigs that were evaluated.
-    axes : tuple of AxisCost
-        What a step costs, by sensor and axis.
-    constraints : tuple of ActiveConstraint
-        Those that are active; one without names says that a longer search would gain.
-    endings : Endings or None
-        Where the starts ended; None where the budget was too small.
-    by_ap : bool
-        Whether costs and gains are differences of the expected AP; positive is still worse.
-    """
+    """How sure a search is of its result. `evaluations`: rigs that were evaluated. `axes`: what a
+    step costs, by sensor and axis. `constraints`: those that are active; one without names says
+    that a longer search would gain. `endings`: where the starts ended; None where the budget was
+    too small. `by_ap`: whether costs and gains are differences of the expected AP; positive is
+    still worse."""
 
     evaluations: int
     axes: tuple[AxisCost, ...]
@@ -87,9 +73,7 @@ class Sensitivity:
 
 def budget_of(study: Study, evaluations: int) -> tuple[tuple[float, ...], bool] | None:
     """Return the steps of the table and whether the endings are examined; None for no analysis.
-
-    Short searches have less, so that the analysis does not outlast them.
-    """
+    Short searches have less, so that the analysis does not outlast them."""
     wanted, sensors = study.search.goals.sensitivity, len(study.rig)
     if wanted == OFF:
         return None
@@ -112,12 +96,10 @@ def analyse(
     helpers: Callable[[], Executor | None] = lambda: None,
     goes_on: Callable[[], bool] = lambda: True,
 ) -> Sensitivity | None:
-    """Return the sensitivity analysis of a search's result; None where its budget is too small.
-
-    The result depends on the study alone, not on workers or time. `start` is the study as it was
-    given, `best` with the result, `archive` what the search evaluated in so many `evaluations`.
-    `objective` is what the search minimised. Where `goes_on` returns False, it is given up.
-    """
+    """Return the sensitivity analysis of a search's result; None where its budget is too small. The
+    result depends on the study alone, not on workers or time. `start` is the study as it was given,
+    `best` with the result, `archive` what the search evaluated in so many `evaluations`.
+    `objective` is what the search minimised. Where `goes_on` returns False, it is given up."""
     parts = budget_of(best, evaluations)
     if parts is None or not goes_on():
         return None
@@ -149,11 +131,9 @@ def _unmet_by(study: Study) -> Unmet | None:
 
 
 def sensitivity_from_dict(table: Mapping[str, Any] | None, rig: Rig) -> Sensitivity | None:
-    """Return the analysis that `Sensitivity.to_dict` wrote; None for None.
-
-    Runners-up are of the rig's sensors, at other poses. `KeyError`, `TypeError` or `ValueError`
-    when the table is no such analysis.
-    """
+    """Return the analysis that `Sensitivity.to_dict` wrote; None for None. Runners-up are of the
+    rig's sensors, at other poses. `KeyError`, `TypeError` or `ValueError` when the table is no such
+    analysis."""
     if table is None:
         return None
     by_ap = table.get("objective") == EXPECTED_AP

@@ -1,10 +1,6 @@
-"""Steps from an optimum: what 1 cm and 1 deg cost, and the constraints that forbid better ones.
-
-A constraint is active if it forbids a step of 1 cm or 1 deg of one sensor that would lower the
-entropy. Such a step that nothing forbids says that a longer search would gain.
-"""
-
-from __future__ import annotations
+"""Steps from an optimum: what 1 cm and 1 deg cost, and the constraints that forbid better ones. A
+constraint is active if it forbids a step of 1 cm or 1 deg of one sensor that would lower the
+entropy. Such a step that nothing forbids says that a longer search would gain."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -30,18 +26,14 @@ from pe_core.search.parametrization import followers
 
 UNIT_M, UNIT_RAD = 0.01, math.radians(1.0)
 """One unit: 1 cm along x, y and z of the ground frame, 1 deg of roll, pitch and yaw."""
-NEAR, FAR = 1.0, 5.0
-"""Steps to both sides [cm or deg]."""
+NEAR, FAR = 1.0, 5.0  # Steps to both sides [cm or deg]
 FLAT, STEEP = "flat", "steep"
 STEEP_NATS, STEEP_AP = 0.01, 0.001
 """From this cost of one step on, an axis is called steep [nats; expected AP]: a third of what the
 default search flatters itself by; half of that by AP, for 600 placements of experiment 3."""
-NOTICED = 0.1
-"""A smaller difference is noise of the search's own sample, in costs of a steep axis."""
-SLACK = 1e-6
-"""A value this far outside of its bounds is rounding [m or rad]."""
-ON_SURFACE_M = 0.1 * UNIT_M
-"""A step along a surface ends this near to the surface at most."""
+NOTICED = 0.1  # A smaller difference is noise of the search's own sample, in costs of a steep axis
+SLACK = 1e-6  # A value this far outside of its bounds is rounding [m or rad]
+ON_SURFACE_M = 0.1 * UNIT_M  # A step along a surface ends this near to the surface at most
 CLEARANCE = "standoff of "
 """A step off a surface also breaks the rule of its stand-off: one constraint, named once."""
 Unmet = Callable[[Rig], Sequence[str]]
@@ -119,10 +111,8 @@ class AxisCost:
 
 class StepCosts:
     """The objective of a search around its result, the `reference`; each rig is evaluated once.
-
     With a tolerance it is the mean (or the worst) over mounting errors and failures. Requirements
-    are left out. `helpers` returns the executor that evaluates rigs.
-    """
+    are left out. `helpers` returns the executor that evaluates rigs."""
 
     def __init__(
         self,

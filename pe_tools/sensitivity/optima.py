@@ -1,12 +1,8 @@
 """Where a search could have ended: optima that are apart from its result, by the hill-valley test.
-
 The archive of the search keeps the best placement of each neighbourhood. Two placements are in one
 basin if no placement on the straight line between them is worse than both (Ursem, "Multinational
 evolutionary algorithms", 1999). Here the line is taken in the design variables and projected onto
-the mounts.
-"""
-
-from __future__ import annotations
+the mounts."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -24,11 +20,9 @@ from .flatness import NOTICED, StepCosts
 
 APART_M, APART_RAD = 0.15, math.radians(6.0)
 """Placements are in one neighbourhood if no sensor is farther away or turned more than this."""
-KEPT = 48
-"""Neighbourhoods that are kept for each level of the search."""
+KEPT = 48  # Neighbourhoods that are kept for each level of the search
 MAX_RUNNERS_UP = 3
-EXAMINED = 16
-"""Placements of the archive that are evaluated, the best first."""
+EXAMINED = 16  # Placements of the archive that are evaluated, the best first
 BETWEEN = (0.25, 0.5, 0.75)
 """Shares of the way between two placements at which a hill is looked for."""
 
@@ -46,11 +40,9 @@ def is_near(one: Rig, other: Rig) -> bool:
 
 
 class Archive:
-    """Keeps the best placement of each neighbourhood, by level.
-
-    The content follows from what the search was told, in its order: a search that resumes from its
-    journal fills its archive with the same placements.
-    """
+    """Keeps the best placement of each neighbourhood, by level. The content follows from what the
+    search was told, in its order: a search that resumes from its journal fills its archive with the
+    same placements."""
 
     def __init__(self) -> None:
         self._levels: dict[int, list[tuple[float, Rig]]] = {}

@@ -1,9 +1,5 @@
-"""The runs of a sweep: every study with every combination of changes, and their folders' names.
-
-A change is given as ``sensor.roof.model=Pandar64,HDL-64E``.
-"""
-
-from __future__ import annotations
+"""The runs of a sweep: every study with every combination of changes, and their folders' names. A
+change is given as ``sensor.roof.model=Pandar64,HDL-64E``."""
 
 import copy
 import hashlib
@@ -25,17 +21,14 @@ from pe_core.study import Study, load_study_data, study_from_dict
 from .sweep_runner import SweepRun
 
 UNSAFE = re.compile(r"[^A-Za-z0-9._=+-]+")
-MAX_NAME_LENGTH = 100
-"""Characters of a name; a longer one is cut and gets a hash."""
+MAX_NAME_LENGTH = 100  # Characters of a name; a longer one is cut and gets a hash
 HASH_BYTES = 4
 
 
 def folder_names(runs: Sequence[tuple[str, Mapping[str, str]]]) -> list[str]:
     """Return a folder name for each run: study and changes, ``car,sensor.roof.model=Pandar64``.
-
     Characters that are not allowed in names become hyphens. Such names, long names, and names that
-    differ only in case end in a hash of study and changes.
-    """
+    differ only in case end in a hash of study and changes."""
     words = [(name, *(f"{key}={text}" for key, text in changes.items())) for name, changes in runs]
     plain = [",".join(UNSAFE.sub("-", word) for word in each) for each in words]
     alike = Counter(name.casefold() for name in plain)
@@ -55,19 +48,16 @@ PART = r"""(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')"""
 KEY = re.compile(rf"\s*({PART}(?:\.{PART})*)\s*=(.*)", re.DOTALL)
 PARTS = re.compile(PART)
 RANGE = re.compile(r"(\d{1,9}):(\d{1,9})")
-MAX_RUNS = 10_000
-"""A sweep of more runs is taken for a typing error."""
+MAX_RUNS = 10_000  # A sweep of more runs is taken for a typing error
 MAX_PARTS = 30
 SOURCE = "--set"
 OPENING, CLOSING, QUOTES = "[{", "]}", "\"'"
 
 
 class TriedKey(NamedTuple):
-    """A key of a study as the user wrote it, and the values that are tried, by their texts.
-
-    In its path, an element of an array of tables has its name, or its index from 0. Values are
-    those of TOML, a text that is none is a string.
-    """
+    """A key of a study as the user wrote it, and the values that are tried, by their texts. In its
+    path, an element of an array of tables has its name, or its index from 0. Values are those of
+    TOML, a text that is none is a string."""
 
     key: str
     path: tuple[str, ...]
@@ -75,11 +65,8 @@ class TriedKey(NamedTuple):
 
 
 def read_settings(texts: Sequence[str]) -> tuple[TriedKey, ...]:
-    """Read settings from the command line.
-
-    `InputError` for one that is not ``KEY=VALUE,VALUE``, has no value or a value twice, or repeats
-    a key.
-    """
+    """Read settings from the command line. `InputError` for one that is not ``KEY=VALUE,VALUE``,
+    has no value or a value twice, or repeats a key."""
     settings = tuple(map(_setting, texts))
     keys = [setting.path for setting in settings]
     for setting in settings:
@@ -151,10 +138,8 @@ def sweep_runs(
     options: Callable[[Study], Study] = lambda study: study,
 ) -> list[SweepRun]:
     """Return the runs of study files by name, each with each combination of the settings' values.
-
     `options` are applied to every study after the changes. `InputError` for a file that is no
-    study, a key or a value that does not fit it, or more than `MAX_RUNS` runs.
-    """
+    study, a key or a value that does not fit it, or more than `MAX_RUNS` runs."""
     count = len(files) * math.prod(len(setting.values) for setting in settings)
     if count > MAX_RUNS:
         raise InputError(SOURCE, "runs", f"at most {MAX_RUNS:,}", f"{count:,}")
@@ -191,10 +176,8 @@ def _changed_studies(path: Path, settings: Sequence[TriedKey]) -> Iterator[tuple
 def set_value(
     data: dict[str, Any], setting: TriedKey, value: Any, source: str
 ) -> tuple[tuple[str | int, ...], Any]:
-    """Change a value in a study's plain data; missing tables on the path are created.
-
-    Return the path, with the index of each element of a list, and the value before.
-    """
+    """Change a value in a study's plain data; missing tables on the path are created. Return the
+    path, with the index of each element of a list, and the value before."""
     node: Any = data
     path: tuple[str | int, ...] = ()
     for number, part in enumerate(setting.path, 1):

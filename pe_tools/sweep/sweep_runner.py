@@ -1,7 +1,5 @@
 """The runs of a sweep: tasks for the workers of any executor, and checkpoints of their searches."""
 
-from __future__ import annotations
-
 import os
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
@@ -18,8 +16,7 @@ from pe_core.version import __version__
 
 from ..jobs import Checkpoint, OptimizeJob, Outcome, ScoreJob, read_search
 
-WAIT_S = 0.2
-"""How often it is checked whether the sweep continues, while no result arrives."""
+WAIT_S = 0.2  # How often it is checked whether the sweep continues, while no result arrives
 RunResult = Outcome | InputError
 
 
@@ -35,11 +32,9 @@ class SweepRun:
 
 @dataclass(frozen=True, slots=True)
 class RunTask:
-    """The task of a run, as it is sent to a worker: all of it can be pickled.
-
-    Without `optimize` the study is scored, by so many threads. A search leaves checkpoints in
-    `folder`, and goes on from there. `version` is that of the engine that sends the task.
-    """
+    """The task of a run, as it is sent to a worker: all of it can be pickled. Without `optimize`
+    the study is scored, by so many threads. A search leaves checkpoints in `folder`, and goes on
+    from there. `version` is that of the engine that sends the task."""
 
     study: Study
     optimize: bool
@@ -87,13 +82,10 @@ def _begun(job: OptimizeJob, folder: Path) -> Callable[[], None]:
 
 
 class LocalWorkers:
-    """Processes on this machine that run the tasks of a sweep; a thread where there are none.
+    """Processes on this machine that run the tasks of a sweep; a thread where there are none. Other
+    workers have the same methods. The executor accepts tasks even after a worker's death."""
 
-    Other workers have the same methods. The executor accepts tasks even after a worker's death.
-    """
-
-    reaches_folders = True
-    """Whether the workers save checkpoints in the folders of the results."""
+    reaches_folders = True  # Whether the workers save checkpoints in the folders of the results
 
     def __init__(self, count: int) -> None:
         processes = start_processes(count)
@@ -122,11 +114,9 @@ def run_all(
     should_continue: Callable[[], bool] = lambda: True,
 ) -> None:
     """Run tasks by name; `on_result` is called with each result as it arrives, in this thread.
-
     `make_task` is called when a worker is free. A task whose worker died is made and run once more,
     alone, after all others. `should_continue` is called several times a second; when it returns
-    False, the remaining tasks are cancelled. `InputError` when the workers are gone.
-    """
+    False, the remaining tasks are cancelled. `InputError` when the workers are gone."""
 
     def call_of(name: str) -> Call:
         return Call(run_task, (make_task(name),))

@@ -1,8 +1,5 @@
 """The table of a sweep, one row for each run: as CSV, as JSON and for the terminal."""
 
-from __future__ import annotations
-
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +7,6 @@ from typing import Any
 
 from pe_core.base.errors import InputError
 from pe_core.base.files import csv_text, read_bytes
-from pe_core.base.plugins import required_package
 from pe_core.base.table_reader import dump_json, finite, parse_json
 from pe_core.study import RESULT
 from pe_core.study.study import EXPECTED_AP
@@ -20,22 +16,18 @@ from ..jobs import FileSet, Outcome, files_of_other_runs, fingerprint, prepare_f
 from ..wording import aligned
 from .sweep_runner import SweepRun
 
-SWEEP_CSV, SWEEP_JSON, SWEEP_PARQUET = "sweep.csv", "sweep.json", "sweep.parquet"
+SWEEP_CSV, SWEEP_JSON = "sweep.csv", "sweep.json"
 WAITING, BEGUN, DONE, FAILED = "waiting", "begun", "done", "failed"
-UNWRITTEN = "not written"
-"""The status of a run whose results could not be written."""
+UNWRITTEN = "not written"  # The status of a run whose results could not be written
 BEST = "*"
 
 
 @dataclass(frozen=True, slots=True)
 class SweepRow:
-    """The state of a run.
-
-    One that is "begun" may have a checkpoint of its search in its folder, one that is "done" has
-    its results there. Entropies are those of the given study and of the result [nats]; `message` is
-    why the run failed or was not written, or where its results are. APs are expected ones in
-    traffic, of a search by them.
-    """
+    """The state of a run. One that is "begun" may have a checkpoint of its search in its folder,
+    one that is "done" has its results there. Entropies are those of the given study and of the
+    result [nats]; `message` is why the run failed or was not written, or where its results are. APs
+    are expected ones in traffic, of a search by them."""
 
     run: SweepRun
     status: str = WAITING
@@ -59,10 +51,8 @@ def row_of(
 
 
 def row_of_result(run: SweepRun, folder: Path, kind: str) -> SweepRow | None:
-    """Return the row of a run whose result is in its folder already; None otherwise.
-
-    The result must be complete, of this study and kind, and of this version.
-    """
+    """Return the row of a run whose result is in its folder already; None otherwise. The result
+    must be complete, of this study and kind, and of this version."""
     try:
         data: Any = parse_json(RESULT, read_bytes(folder / RESULT))
         made = (data["kind"], data["stopped"], data["run"]["versions"]["perception-entropy"])
@@ -82,21 +72,12 @@ def table_data(rows: Sequence[SweepRow], kind: str) -> dict[str, Any]:
     return {"kind": f"sweep of {kind}", "version": __version__, "runs": [_dict(r) for r in rows]}
 
 
-def write_table(
-    rows: Sequence[SweepRow], kind: str, folder: Path, *, parquet: bool = False
-) -> dict[str, Any]:
-    """Write sweep.csv and sweep.json, together; return what sweep.json holds.
-
-    With `parquet` also the table of sweep.csv as sweep.parquet; a figure that is missing is null.
-
-    `InputError` if the folder cannot be written, or one of the files is of another program.
-    """
+def write_table(rows: Sequence[SweepRow], kind: str, folder: Path) -> dict[str, Any]:
+    """Write sweep.csv and sweep.json, together; return what sweep.json holds. `InputError` if the
+    folder cannot be written, or one of the files is of another program."""
     data = table_data(rows, kind)
     with FileSet(prepare_folder(folder)) as files:
-        table = _table(rows)
-        files.add(SWEEP_CSV, csv_text(table).encode(errors="backslashreplace"))
-        if parquet:
-            files.add(SWEEP_PARQUET, _parquet(table))
+        files.add(SWEEP_CSV, csv_text(_table(rows)).encode(errors="backslashreplace"))
         files.add(SWEEP_JSON, dump_json(finite(data)).encode(errors="backslashreplace"))
     return data
 
@@ -142,15 +123,6 @@ def _dict(row: SweepRow) -> dict[str, Any]:
         "message": row.message,
         **({} if row.ap is None else {f"{EXPECTED_AP}_before": row.ap_before, EXPECTED_AP: row.ap}),
     }
-
-
-def _parquet(table: Sequence[Sequence[object]]) -> bytes:
-    heads, *lines = table
-    columns = {str(head): [line[k] for line in lines] for k, head in enumerate(heads)}
-    data = io.BytesIO()
-    arrow = required_package("pyarrow").table(columns)
-    required_package("pyarrow.parquet").write_table(arrow, data)
-    return data.getvalue()
 
 
 def _table(rows: Sequence[SweepRow]) -> list[list[object]]:

@@ -11,8 +11,8 @@ import pe_core as pe
 import pe_tools as pt
 from pe_core.search import EvaluatedRig
 from pe_tools import advice, jobs
-from pe_tools.cli import choose_verb, verbs
-from pe_tools.cli.choose_verb import front_summary
+from pe_tools.cli import run_job, verbs
+from pe_tools.cli.front_text import front_summary
 from pe_tools.jobs import design_study, front_job, write_front
 from tests.engine import mounting
 from tests.engine.refusals import wrongly_refused
@@ -209,7 +209,7 @@ def test_the_table_tells_price_entropy_and_where_each_sensor_sits(file, tmp_path
 def test_a_user_s_own_file_is_refused_before_the_work(file, tmp_path, capsys, monkeypatch):
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "front.csv").write_text("mine")
-    monkeypatch.setattr(choose_verb, "_drive", lambda *_: pytest.fail("the work has begun"))
+    monkeypatch.setattr(run_job, "drive", lambda *_: pytest.fail("the work has begun"))
     assert verbs.main(["optimize", str(file), "-o", str(tmp_path / "out")]) == 1
     assert "front.csv: output: expected no file, or one that was" in capsys.readouterr().err
     assert (tmp_path / "out" / "front.csv").read_text() == "mine"
@@ -229,7 +229,9 @@ def test_an_interrupted_front_goes_on_to_the_same_bits(tmp_path, capsys):
     cut = {n: rows[: len(rows) // (k + 1)] for k, (n, rows) in enumerate(state["journals"].items())}
     assert len(names) == 3 and all(cut.values())
     journals = jobs.FrontJournals({n: [EvaluatedRig(*row) for row in cut[n]] for n in names[:2]})
-    jobs.FrontCheckpoint(given).save(journals, out)
+    begun = jobs.FrontJob(given)
+    begun.journals = journals
+    jobs.FrontCheckpoint(begun).save(out)
     assert verbs.main(["optimize", "--json", "--resume", str(out)]) == 0
     told = capsys.readouterr()
     resumed = json.loads(told.out)  # the files of the study are those beside the checkpoint

@@ -225,7 +225,7 @@ def test_functions_are_objectives_beside_those_of_a_name(tmp_path):
     pt.write_front(found, tmp_path)
     data = json.loads((tmp_path / "front.json").read_text())
     assert data["objectives"] == ["entropy", "droop"]
-    write_front_page(data, tmp_path)
+    write_front_page(found, data, tmp_path)
     assert "Droop" in (tmp_path / "front.html").read_text()
 
 

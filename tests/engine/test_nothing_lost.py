@@ -133,7 +133,7 @@ def test_a_disk_that_fills_after_a_checkpoint_over_an_older_set_is_told(
 
     first = pt.OptimizeJob(pe.load_study(study))
     list(first)
-    assert keep(first.outcome, out, None, None)[0] == 0
+    assert keep(first.outcome, out, None)[0] == 0
     old = (out / "result.json").read_bytes()
     job = pt.OptimizeJob(replace(first.study, search=replace(first.study.search, seed=9)))
     list(job)
@@ -148,7 +148,7 @@ def test_a_disk_that_fills_after_a_checkpoint_over_an_older_set_is_told(
         real(path, data)
 
     monkeypatch.setattr(jobs.folder, "write_synced", full)
-    assert keep(job.outcome, out, None, None)[0] == 1
+    assert keep(job.outcome, out, None)[0] == 1
     assert fired and (out / "result.json").read_bytes() == old
     told = capsys.readouterr().err
     assert f"{out / 'study.toml'}: not of this run" in told

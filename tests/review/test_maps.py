@@ -10,10 +10,8 @@ import pytest
 from pe_core.scoring.sight import GroundSight
 from pe_tools import graphics
 from pe_tools.page.pictures.ground_plan import (
-    BETTER,
     ENTROPY,
     SENSORS,
-    WORSE,
     PlanDrawing,
     difference_map,
     ground_map,
@@ -65,8 +63,10 @@ def test_a_difference_is_blue_where_the_second_is_better():
     one, two = np.array([[0.0, 0.0, 0.0]]), np.array([[-20.0, 0.0, 20.0]])
     pixels = pixels_of(difference_map(seen(one), seen(two), None, "alt", ("better", "worse")))
     right, middle, left = (pixels[k, 0, :3] for k in (2, 1, 0))
-    assert right.tolist() == graphics.as_bytes(BETTER).tolist()
-    assert left.tolist() == graphics.as_bytes(WORSE).tolist() and middle.min() > 235
+    assert right.tolist() == graphics.as_bytes(graphics.DIFFERENCE[2]).tolist()
+    assert (
+        left.tolist() == graphics.as_bytes(graphics.DIFFERENCE[0]).tolist() and middle.min() > 235
+    )
 
 
 def test_a_plan_has_metres_where_they_are():

@@ -7,11 +7,8 @@ from pathlib import Path
 import pe_core as pe
 import pe_tools as pt
 from pe_core.catalog import load
-from pe_core.scoring.sight import BlindGround
-from pe_core.scoring.sight.blind_ground import BlindSpot
 from pe_tools.page import ReportContext, keyed_contexts
 from pe_tools.page.pictures.dimension_drawing import side_view, top_view
-from pe_tools.page.pictures.sight_plans import blind_plan
 from pe_tools.page.sections.comparison import bill_of_materials
 from pe_tools.page.sections.traceability import (
     CURVE_SOURCES,
@@ -32,18 +29,12 @@ def texts(svg):
     return [element.text for element in ET.fromstring(svg).iter("text")]
 
 
-def test_both_views_have_the_vehicle_s_size_and_the_sensors_ordinates():
-    """By hand: LiDAR at (0, 0, 1.8), camera at (2.3, 0.2, 1.2); front at 2.2, rear axle at -1.5."""
+def test_both_views_have_the_vehicle_s_size_and_the_sensors_in_their_places():
+    """By hand: LiDAR at (0, 0, 1.8), camera at (2.3, 0.2, 1.2)."""
     sensors = small_study().rig
-    side, top = side_view(sensors, CAR, "side"), top_view(sensors, CAR, -1.5, "top")
-    assert set(texts(side)) == {
-        *("4.40 m", "1.50", "1", "2", "2.20", "−0.10", "1.80", "1.20"),
-        *("from the foremost point [m]", "height [m]"),
-    }
-    assert set(texts(top)) == {
-        *("4.40 m", "1.80", "1", "2", "1.50", "3.80", "0.00", "0.20"),
-        *("forward of the rear axle [m]", "to the left [m]"),
-    }
+    side, top = side_view(sensors, CAR, "side"), top_view(sensors, CAR, "top")
+    assert set(texts(side)) == {"4.40 m", "1.50", "1", "2"}
+    assert set(texts(top)) == {"4.40 m", "1.80", "1", "2"}
     lidar, camera = (
         [float(e.get(k)) for k in ("cx", "cy")] for e in ET.fromstring(side).iter("circle")
     )
@@ -102,21 +93,3 @@ def test_the_verdict_on_validity_is_that_of_its_page():
     text = " ".join((ROOT / VALIDITY_PAGE).read_text("utf-8").split())
     assert VALIDITY in text and "16 placements in two papers" in text
     assert "detectors find more at a better score" in text and "a blind sector" in text  # OWN_STUDY
-
-
-def test_a_whisker_is_blind_ground_from_the_body_on():
-    """Nearest blind ground that begins farther out has a ring and "from" in place of a whisker."""
-    spots = {
-        "front": BlindSpot((6.2, 0.0), 4.0),
-        "rear": BlindSpot((-2.2, 0.0), 0.0),
-        "left": BlindSpot((0.0, 0.9), 0.0),
-        "right": None,
-    }
-    zone = {"front": 0.0, "rear": 2.0, "left": None, "right": 0.0}
-    found = BlindGround((), 9.0, 0.5, 10.0, spots, zone, dict.fromkeys(zone))
-    svg = ET.fromstring(blind_plan(found, CAR, "plan"))
-    whiskers = [e.get("d") for e in svg.iter("path") if e.get("stroke") == "#1b1f24"]
-    whiskers = [d for d in whiskers if d.startswith("M") and "m0 0" in d]
-    assert len(whiskers) == 2 and len(list(svg.iter("circle"))) == 1
-    said = [text for text in texts(ET.tostring(svg)) if text and "m" in text]
-    assert {"from 4.0 m", "2.0 m", "> 10 m"} <= set(said)

@@ -1,7 +1,5 @@
 """Labelled boxes from a file; the content decides the layout."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

@@ -1,11 +1,7 @@
-"""KITTI's labels: object benchmark (label_2), or tracking, which has frame and id first.
-
-A line is ``type truncated occluded alpha left top right bottom height width length x y z rotation_y
-[score]`` in the left camera's frame (x right, y down, z forward). The location is the middle of the
-box's bottom; rotation_y turns about y and is 0 where the object heads along x.
-"""
-
-from __future__ import annotations
+"""KITTI's labels: object benchmark (label_2), or tracking, which has frame and id first. A line is
+``type truncated occluded alpha left top right bottom height width length x y z rotation_y [score]``
+in the left camera's frame (x right, y down, z forward). The location is the middle of the box's
+bottom; rotation_y turns about y and is 0 where the object heads along x."""
 
 import math
 from collections.abc import Sequence
@@ -28,8 +24,7 @@ CLASSES = {
     "person_sitting": "pedestrian",
     "person": "pedestrian",
     "cyclist": "cyclist",
-}
-"""KITTI's classes by name; trams and Misc (trailers and similar) are left out."""
+}  # KITTI's classes by name; trams and Misc (trailers and similar) are left out
 UNLABELLED = "dontcare"
 
 COLUMNS = 15

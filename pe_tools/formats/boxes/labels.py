@@ -1,7 +1,5 @@
 """The common form of boxes from all layouts, and checks that the layouts share."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field

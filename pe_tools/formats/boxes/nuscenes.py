@@ -1,12 +1,7 @@
-"""Boxes in nuScenes' format: a list of annotations, or a submission of results.
-
-A box is a table with ``translation`` [x, y, z] of its centre, ``size`` [width, length, height],
-``rotation`` as a quaternion [w, x, y, z], and ``category_name``, ``detection_name`` or
-``tracking_name``. The published annotations are in a map's frame; these files have to be in the
-vehicle's frame.
-"""
-
-from __future__ import annotations
+"""Boxes in nuScenes' format: a list of annotations, or a submission of results. A box is a table
+with ``translation`` [x, y, z] of its centre, ``size`` [width, length, height], ``rotation`` as a
+quaternion [w, x, y, z], and ``category_name``, ``detection_name`` or ``tracking_name``. The
+published annotations are in a map's frame; these files have to be in the vehicle's frame."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -30,10 +25,8 @@ CLASSES = {
     "motorcycle": "cyclist",
     "traffic_cone": "cone",
     "trafficcone": "cone",
-}
-"""By detection_name, or by the second word of category_name (``vehicle.bus.rigid``)."""
-EMERGENCY = {"ambulance": "truck", "police": "car"}
-"""By the third word of ``vehicle.emergency.*``."""
+}  # By detection_name, or by the second word of category_name (``vehicle.bus.rigid``)
+EMERGENCY = {"ambulance": "truck", "police": "car"}  # By the third word of ``vehicle.emergency.*``
 GROUPS = ("vehicle", "human", "movable_object")
 NAMES = ("detection_name", "category_name", "tracking_name")
 LIST = 'a list of boxes, or {"results": {sample: [boxes]}}'

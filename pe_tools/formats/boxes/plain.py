@@ -1,7 +1,5 @@
 """Boxes as CSV: class, x, y, z of the centre, length, width, height [m], yaw [deg]."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Sequence
@@ -40,10 +38,8 @@ def _column(cell: str) -> str:
 
 @lru_cache(maxsize=1)
 def csv_bytes(boxes: Boxes) -> bytes:
-    """Return boxes as a file that gives the same bits when it is read.
-
-    It is cached for the last boxes, which do not change: a search writes them every few seconds.
-    """
+    """Return boxes as a file that gives the same bits when it is read. It is cached for the last
+    boxes, which do not change: a search writes them every few seconds."""
     columns = [getattr(boxes, c) for c in COLUMNS[:-1]] + [degrees_of(boxes.yaw)]
     rows = zip(boxes.names.tolist(), *(c.tolist() for c in columns), strict=True)
     return (",".join((CLASS, *COLUMNS)) + "\n" + csv_text(rows, quote_texts=True)).encode()

@@ -1,7 +1,5 @@
 """Read and write files of triangle meshes, by their suffix."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path

@@ -1,10 +1,6 @@
-"""The forward and up axes of a mesh file: from the study, from the file, or guessed.
-
-The axes of the study come first, then those that the file names. Without either, the names of parts
-and the shape decide; the last resort is a default. A text says how the axes were determined.
-"""
-
-from __future__ import annotations
+"""The forward and up axes of a mesh file: from the study, from the file, or guessed. The axes of
+the study come first, then those that the file names. Without either, the names of parts and the
+shape decide; the last resort is a default. A text says how the axes were determined."""
 
 import re
 from typing import NamedTuple
@@ -20,8 +16,7 @@ from pe_core.scene.vehicle_description import along, front_by_names, hood_end, u
 
 BLENDER_S_FRONT = "-y"
 """Forward axis if z is up and the body is along y: Blender's front view shows the front so."""
-COMMENT_BYTES = 4096
-"""Maximum position in a text file of the comments that name its axes."""
+COMMENT_BYTES = 4096  # Maximum position in a text file of the comments that name its axes
 _COMMENT = re.compile(
     rb"^#.*?([+-]?)([xyz])[ -]*(forward|up)\b(?:.*?([+-]?)([xyz])[ -]*(up)\b)?",
     re.IGNORECASE | re.MULTILINE,
@@ -58,10 +53,8 @@ def said_in_comments(data: bytes) -> SaidAxes:
 
 
 def oriented(source: str, mesh: Mesh, said: SaidAxes, axes: MeshAxes) -> Mesh:
-    """Return a mesh in the ground frame, with a text on how its axes were determined.
-
-    The text is empty if the file is in the ground frame.
-    """
+    """Return a mesh in the ground frame, with a text on how its axes were determined. The text is
+    empty if the file is in the ground frame."""
     chosen = _chosen(mesh, said, axes)
     triangles = _turned(mesh.triangles, chosen.up, chosen.forward)
     if axes.scale != 1.0:

@@ -1,7 +1,5 @@
 """Collada (.dae), read by pycollada."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,10 +17,8 @@ PROLOGUE_BYTES = 1 << 16
 
 
 def read_dae(path: Path, data: bytes) -> FoundMesh:
-    """Read the scene of a Collada file with its up axis and unit; each node is a part.
-
-    Skins, morphs, cameras and lights are ignored.
-    """
+    """Read the scene of a Collada file with its up axis and unit; each node is a part. Skins,
+    morphs, cameras and lights are ignored."""
     source = str(path)
     if b"<!DOCTYPE" in data[:PROLOGUE_BYTES] or b"<!ENTITY" in data[:PROLOGUE_BYTES]:
         raise InputError(source, "XML", "Collada without definitions", "<!DOCTYPE")

@@ -19,19 +19,16 @@ from pe_core.scene.mesh import Mesh
 
 from .axes import SaidAxes
 
-MAX_TRIANGLES = 25_000_000
-"""Maximum triangles of a mesh: cars have up to some millions."""
+MAX_TRIANGLES = 25_000_000  # Maximum triangles of a mesh: cars have up to some millions
 TRIANGLE_BYTES = 320
 """Maximum memory of a triangle while it is read (measured): corners, copies, indices."""
 
 
 def make_mesh(source: str, triangles: ArrayLike, parts: ArrayLike, names: Sequence[str]) -> Mesh:
-    """Return a checked mesh with unique part names, from the output of a reader.
-
-    `triangles` (F, 3, 3) are in metres, `parts` (F,) are indices into `names`; parts with the same
-    name are merged, names without triangles are dropped. No triangle, a wrong shape, a coordinate
-    that is not finite or an index out of range raises `InputError`.
-    """
+    """Return a checked mesh with unique part names, from the output of a reader. `triangles` (F, 3,
+    3) are in metres, `parts` (F,) are indices into `names`; parts with the same name are merged,
+    names without triangles are dropped. No triangle, a wrong shape, a coordinate that is not finite
+    or an index out of range raises `InputError`."""
     corners = np.ascontiguousarray(triangles, dtype=np.float64)
     labels = np.asarray(parts)
     if corners.size == 0:
@@ -74,11 +71,9 @@ def require_labels(source: str, shape: tuple[int, ...], dtype: np.dtype[Any], fa
 
 
 def fan(counts: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Cut polygons of `counts` (P,) corners, all in one list, into triangle fans.
-
-    Returns the positions (T, 3) of each triangle's corners in the list, and the polygon (T,) of
-    each triangle. Polygons of fewer than three corners give none.
-    """
+    """Cut polygons of `counts` (P,) corners, all in one list, into triangle fans. Returns the
+    positions (T, 3) of each triangle's corners in the list, and the polygon (T,) of each triangle.
+    Polygons of fewer than three corners give none."""
     sizes = counts.astype(np.int64)
     if (sizes == 3).all():  # the usual case
         return np.arange(3 * len(sizes)).reshape(-1, 3), np.arange(len(sizes))
@@ -89,19 +84,15 @@ def fan(counts: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     return np.stack([first, first + step + 1, first + step + 2], axis=1), polygons
 
 
-INSTEAD = "?"
-"""Replacement of an unprintable character, and of a name without a printable one."""
-MAX_NUMBER_DIGITS = 12
-"""Characters kept free for a number behind a name."""
+INSTEAD = "?"  # Replacement of an unprintable character, and of a name without a printable one
+MAX_NUMBER_DIGITS = 12  # Characters kept free for a number behind a name
 
 
 def fit_names(names: Sequence[str]) -> tuple[str, ...]:
-    """Return a name for each of different names: printable, on one line and not too long.
-
-    Valid names are unchanged. In other names `INSTEAD` replaces characters that cannot be printed
-    (line ends, controls, changes of the text direction, halves of a surrogate pair). Long names are
-    cut at the end. A number makes names different that would become equal.
-    """
+    """Return a name for each of different names: printable, on one line and not too long. Valid
+    names are unchanged. In other names `INSTEAD` replaces characters that cannot be printed (line
+    ends, controls, changes of the text direction, halves of a surrogate pair). Long names are cut
+    at the end. A number makes names different that would become equal."""
     taken = set()
     for name in names:
         with suppress(InputError):
@@ -166,11 +157,8 @@ class FoundMesh(NamedTuple):
 
 
 def read_with_plugin(path: Path, data: bytes) -> tuple[Mesh, SaidAxes]:
-    """Read a mesh with the plugin for its suffix.
-
-    No plugin, a missing library (the message says how to install it), or an error of the plugin
-    raises `InputError`.
-    """
+    """Read a mesh with the plugin for its suffix. No plugin, a missing library (the message says
+    how to install it), or an error of the plugin raises `InputError`."""
     suffix = path.suffix.lower()
     hint = install_hint(MESH_PLUGIN, suffix[1:])
     expected = f"a reader for it ({hint}), or the mesh imported into Blender"

@@ -1,7 +1,5 @@
 """Meshes as .npz: NumPy's archive."""
 
-from __future__ import annotations
-
 import io
 import zipfile
 from pathlib import Path
@@ -20,11 +18,9 @@ MAX_PARTS = 1_000_000
 
 
 def read_npz(path: Path, data: bytes) -> Mesh:
-    """Read an archive of `triangles` (F, 3, 3), `parts` (F,) and `part_names` (P,).
-
-    Coordinates are metres in the ground frame. Without `parts` all triangles are one part; its
-    name is the only part name, or the file's stem. Pickled objects are never unpickled.
-    """
+    """Read an archive of `triangles` (F, 3, 3), `parts` (F,) and `part_names` (P,). Coordinates are
+    metres in the ground frame. Without `parts` all triangles are one part; its name is the only
+    part name, or the file's stem. Pickled objects are never unpickled."""
     source = str(path)
     try:
         # What a header claims and the archive does not hold is no memory in use.

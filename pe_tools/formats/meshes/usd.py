@@ -1,7 +1,5 @@
 """USD (.usd, .usda, .usdc, .usdz): read by usd-core."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -17,12 +15,9 @@ HIDDEN_PURPOSES = ("guide", "proxy")
 
 
 def read_usd(path: Path, _data: bytes) -> FoundMesh:
-    """Read the meshes of a USD stage, with the stage's up axis and unit.
-
-    A part has the name of the transform above its mesh, as Blender and others name objects, or
-    the mesh's name. Invisible prims, guides and proxies are ignored. A subdivision surface is
-    represented by its cage.
-    """
+    """Read the meshes of a USD stage, with the stage's up axis and unit. A part has the name of the
+    transform above its mesh, as Blender and others name objects, or the mesh's name. Invisible
+    prims, guides and proxies are ignored. A subdivision surface is represented by its cage."""
     source = str(path)
     diagnostics = UsdUtils.CoalescingDiagnosticDelegate()  # while it exists, USD prints nothing
     try:

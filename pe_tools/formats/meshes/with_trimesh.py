@@ -1,7 +1,5 @@
 """OBJ, STL, PLY and binary glTF, read by trimesh; what it would read wrongly is refused before."""
 
-from __future__ import annotations
-
 import io
 import json
 import re
@@ -18,24 +16,20 @@ from pe_core.scene.mesh import Mesh
 
 from .mesh import Piece, fit_names, joined, make_mesh, placed, require_room
 
-UNFOLDS = 20
-"""Memory of a byte of a file while it is read, at most (measured)."""
+UNFOLDS = 20  # Memory of a byte of a file while it is read, at most (measured)
 MAX_NODES, MAX_PLACED, MAX_JSON_BYTES = 200_000, 20_000, 32 << 20
 """Limits of a glTF scene: nodes, surfaces of all that have a mesh, and bytes of JSON."""
-UNNAMED = re.compile(r"geometry(_\d+)?|GLTF(_\d+)?")
-"""Names that trimesh gives to what has none."""
+UNNAMED = re.compile(r"geometry(_\d+)?|GLTF(_\d+)?")  # Names that trimesh gives to what has none
 BACKWARDS = re.compile(r"^f (?:.* )?[-0].*", re.MULTILINE)
 """A face of an OBJ file with an index that counts backwards, or is 0: trimesh takes another."""
 HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quant")
 
 
 def read_scene(path: Path, data: bytes) -> Mesh:
-    """Read a file in its own axes, in metres; polygons are cut into triangles.
-
-    Parts are the objects of an OBJ file (without any, its groups), the solids of an ASCII STL file,
-    the nodes of glTF's default scene; else the file's stem. Transforms of nodes are applied; one
-    that mirrors also reverses the triangles. Whatever trimesh raises becomes an `InputError`.
-    """
+    """Read a file in its own axes, in metres; polygons are cut into triangles. Parts are the
+    objects of an OBJ file (without any, its groups), the solids of an ASCII STL file, the nodes of
+    glTF's default scene; else the file's stem. Transforms of nodes are applied; one that mirrors
+    also reverses the triangles. Whatever trimesh raises becomes an `InputError`."""
     import trimesh
 
     source, kind = str(path), path.suffix[1:].lower()

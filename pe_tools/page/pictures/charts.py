@@ -1,7 +1,5 @@
 """Charts as SVG: the curve of a search, what steps of sensors cost, pairs of objectives."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 
@@ -10,10 +8,7 @@ from markupsafe import Markup
 from ..markup import MINUS, number
 from .svg import Canvas
 
-AxisMap = Callable[[float], float]
-"""Maps a value to its position on the drawing."""
-LEAST_NATS, LEAST_AP = 0.004, 0.0004
-"""The axis of costs shows at least this, so that noise does not look like a slope [nats; AP]."""
+AxisMap = Callable[[float], float]  # Maps a value to its position on the drawing
 
 
 def round_steps() -> Iterator[float]:

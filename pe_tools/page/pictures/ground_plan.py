@@ -1,10 +1,7 @@
 """Plans of the ground, ahead to the right and left up: the drawing itself, and maps in it."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +9,7 @@ from markupsafe import Markup
 from numpy.typing import NDArray
 
 import pe_core as pe
-from pe_core.base.arrays import Flags, Floats
+from pe_core.base.arrays import Floats
 from pe_core.scoring import sight
 
 from ... import graphics
@@ -27,12 +24,10 @@ OUTLINE_M, MAX_SQUARES = 0.04, 600
 TICKS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)
 MAX_NUMBERS, NUMBER_HEIGHT = 9, 16.0
 """Numbers along x at most, and distance of two numbers along y at least."""
-RINGS = (10.0, 40.0)
-"""Radii between the zones near, middle and far [m]."""
+RINGS = (10.0, 40.0)  # Radii between the zones near, middle and far [m]
 KEY_HEIGHT, KEY_WIDTH = 34.0, 210.0
-WORSE, SAME, BETTER = graphics.DIFFERENCE
-MAX_CHANGE = 8.0
-"""Difference at the ends of the colour scale [nats]."""
+COUNT_NAMES = ("none", "1", "2", "3 or more")
+MAX_CHANGE = 8.0  # Difference at the ends of the colour scale [nats]
 
 
 class Margins(NamedTuple):
@@ -146,51 +141,21 @@ def _ticks(low: float, high: float, step: float) -> list[float]:
     return [k * step for k in range(first, last + 1)]
 
 
-@dataclass(frozen=True)
-class MapLayer:
-    """One map of a `GroundSight`: title, the attribute that is shown, its colours and their key."""
+class MapLayer(NamedTuple):
+    """One map of a `GroundSight`: title, what it shows, and the map of `graphics`."""
 
     title: str
     about: str
-    attribute: str
-    colors: Callable[[NDArray[Any]], NDArray[Any]]
-    key: graphics.ColorKey
+    quantity: str = graphics.SENSORS
 
 
-def _count_colors(values: NDArray[Any]) -> NDArray[Any]:
-    return np.array(graphics.COUNTS)[np.clip(values, 0, 3).astype(np.int64)]
-
-
-def _quantity(title: str, about: str, name: str, ticks: tuple[str, ...] = ()) -> MapLayer:
-    """Return the layer of a quantity, in the colours of the 3D view."""
-    quantity = graphics.QUANTITIES[name]
-    key = graphics.ColorKey(title, quantity.swatches, ticks or quantity.values)
-    return MapLayer(title, about, name.lower(), quantity.colors, key)
-
-
-ENTROPY = _quantity(
-    "Entropy",
-    "in nats, averaged over height as in the score; lower is better",
-    graphics.ENTROPY,
-    ("16.7 unseen", "\N{MINUS SIGN}11.0 best"),
-)
-COVERAGE = _quantity(
-    "Coverage", "share of the height that at least one sensor sees", graphics.COVERAGE
-)
-COUNT_NAMES = ("none", "1", "2", "3 or more")
-COUNT_KEY = graphics.ColorKey(
-    "",
-    classes=tuple(((*c, 1.0), name) for c, name in zip(graphics.COUNTS, COUNT_NAMES, strict=True)),
-)
-SENSORS = MapLayer(
-    *("Number of sensors", "that see a location at any height", "sensors"),
-    *(_count_colors, COUNT_KEY),
-)
-KINDS = MapLayer(
-    "Number of sensor kinds",
-    "that see a location; two kinds fail in different ways",
-    *("kinds", _count_colors, COUNT_KEY),
-)
+ABOUT_ENTROPY = "in nats, averaged over height as in the score; lower is better"
+ENTROPY = MapLayer("Entropy", ABOUT_ENTROPY, graphics.ENTROPY)
+SEEN = "share of the height that at least one sensor sees"
+COVERAGE = MapLayer("Coverage", SEEN, graphics.COVERAGE)
+SENSORS = MapLayer("Number of sensors", "that see a location at any height")
+TWO_KINDS = "that see a location; two kinds fail in different ways"
+KINDS = MapLayer("Number of sensor kinds", TWO_KINDS)
 LAYERS = (ENTROPY, COVERAGE, SENSORS, KINDS)
 
 
@@ -198,10 +163,14 @@ def ground_map(
     ground: sight.GroundSight, layer: MapLayer, vehicle: pe.Vehicle | None, alt: str
 ) -> Markup:
     """Return a map as SVG; the same colour means the same value on all maps of a layer."""
-    values = np.asarray(getattr(ground, layer.attribute), float)
-    known = np.isfinite(values) & (ground.sensors >= 0)
-    colors = layer.colors(np.where(known, values, 0.0))
-    return _map(_bounds(ground), colors, known, layer.key, vehicle, alt, RINGS)
+    seen = replace(ground, sensors=ground.kinds) if layer is KINDS else ground
+    shape = graphics.ground_map(seen, layer.quantity, 1.0, faded=False)
+    assert shape.sheet is not None and shape.legend is not None
+    key = shape.legend
+    if layer.quantity == graphics.SENSORS:
+        classes = zip(key.classes, COUNT_NAMES, strict=True)
+        key = replace(key, classes=tuple((color, name) for (color, _), name in classes))
+    return _map(ground, shape.sheet.image, key, key.values, vehicle, alt)
 
 
 def difference_map(
@@ -212,42 +181,32 @@ def difference_map(
     ends: tuple[str, str],
 ) -> Markup:
     """Return a map of where the second rig has less entropy (blue) or more (orange) than the first.
-
-    `ends` are the texts at the ends of the key. Both arguments must have the same cells.
-    """
-    change = np.clip((second.entropy - first.entropy) / MAX_CHANGE, -1.0, 1.0)
-    known = np.isfinite(change)
-    scale = (BETTER, SAME, WORSE)
+    `ends` are the texts at the ends of the key. Both arguments must have the same cells."""
+    change = np.clip((second.entropy - first.entropy) / MAX_CHANGE, -1.0, 1.0).T
+    known, scale = np.isfinite(change), graphics.DIFFERENCE[::-1]
     colors = graphics.on_scale(0.5 + 0.5 * np.where(known, change, 0.0), scale)
-    swatches = graphics.on_scale(np.linspace(0.0, 1.0, 13), scale).tolist()
-    key = graphics.ColorKey("", tuple(graphics.with_alpha(c, 1.0) for c in swatches), ends)
-    return _map(_bounds(second), colors, known, key, vehicle, alt, RINGS)
-
-
-def _bounds(ground: sight.GroundSight) -> PlanBounds:
-    half = ground.step / 2.0
-    x, y = ((float(w[0]) - half, float(w[-1]) + half) for w in (ground.x, ground.y))
-    return x, y
+    key = graphics.ColorKey("", graphics.swatches_of(scale))
+    return _map(second, np.dstack([colors, known]), key, ends, vehicle, alt)
 
 
 def _map(
-    bounds: PlanBounds,
-    colors: NDArray[Any],
-    known: Flags,
+    ground: sight.GroundSight,
+    image: NDArray[Any],
     key: graphics.ColorKey,
+    ticks: tuple[str, ...],
     vehicle: pe.Vehicle | None,
     alt: str,
-    rings: tuple[float, ...] = (),
 ) -> Markup:
-    """Return a map of colours (NX, NY, 3) with rings of these radii [m] and a key."""
-    plan = PlanDrawing(bounds, alt, KEY_HEIGHT)
-    rgba = np.concatenate([colors[..., :3], known[..., None]], axis=-1)
-    plan.cells(graphics.png_bytes(graphics.as_bytes(rgba.transpose(1, 0, 2)[::-1])))
-    for radius in rings:
+    """Return a map of colours (NY, NX, 4), from low y to high, with rings and a key."""
+    half = ground.step / 2.0
+    x, y = ((float(w[0]) - half, float(w[-1]) + half) for w in (ground.x, ground.y))
+    plan = PlanDrawing((x, y), alt, KEY_HEIGHT)
+    plan.cells(graphics.png_bytes(graphics.as_bytes(image[::-1])))
+    for radius in RINGS:
         plan.ring(radius, f"{radius:g} m")
     plan.vehicle(vehicle)
     plan.frame()
-    _draw_key(plan.canvas, key, plan.left, plan.bottom + 30.0)
+    _draw_key(plan.canvas, replace(key, ticks=ticks), plan.left, plan.bottom + 30.0)
     return plan.canvas.svg()
 
 

@@ -1,7 +1,5 @@
 """Meshes with paint: colours by part, smooth normals, and simple shapes as triangles."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,14 +16,11 @@ Rgb = tuple[float, float, float]
 
 CREASE = math.cos(math.radians(38.0))
 """Cosine of the largest angle between faces that are shaded as one smooth surface."""
-WELD_M = 1e-4
-"""Corners nearer to each other than this count as equal."""
-MAX_FACES_AROUND = 24
-"""Faces at a corner that contribute to its normal."""
+WELD_M = 1e-4  # Corners nearer to each other than this count as equal
+MAX_FACES_AROUND = 24  # Faces at a corner that contribute to its normal
 MAX_SMOOTH_TRIANGLES = 250_000
 """Meshes with more triangles are shaded flat: their triangles are smaller than a pixel."""
-AROUND = 28
-"""Points of a circle."""
+AROUND = 28  # Points of a circle
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,8 +147,7 @@ def loft(rings: Sequence[Floats]) -> Floats:
     return triangles[(normal * normal).sum(axis=1) > 1e-18]
 
 
-BEVEL = 0.12
-"""Of a box's edges, as a share of its least half size."""
+BEVEL = 0.12  # Of a box's edges, as a share of its least half size
 
 
 def rounded_box(half: Floats) -> Floats:

@@ -15,8 +15,7 @@ from .painted_mesh import PaintedMesh, unit
 
 NOTHING, SKY, GROUND = -2, -1, 0
 """Surfaces of rays that meet no solid: outside the lens, sky, ground. Solids count from 1."""
-SLACK_M = 0.004
-"""Hits this near to a point do not shade it: they are the point's own surface."""
+SLACK_M = 0.004  # Hits this near to a point do not shade it: they are the point's own surface
 PixelRays = Callable[[Floats, Floats], Floats]
 """Maps positions in the picture (right, down) [px] to unit directions (N, 3), ground frame; NaN
 outside the image circle of a lens."""
@@ -24,12 +23,10 @@ outside the image circle of a lens."""
 
 @dataclass(frozen=True, eq=False)
 class RayCamera:
-    """The eye (3,) of a picture [m], and the ray through each of its pixels.
-
-    `width` and `height` are in pixels, `pixel_rad` is the angle between two neighbouring pixels in
-    the centre [rad]. `from_sensor`: the eye is a camera on the vehicle. As in a measurement, its
-    rays begin outside the vehicle's surface and pass through the vehicle's glass.
-    """
+    """The eye (3,) of a picture [m], and the ray through each of its pixels. `width` and `height`
+    are in pixels, `pixel_rad` is the angle between two neighbouring pixels in the centre [rad].
+    `from_sensor`: the eye is a camera on the vehicle. As in a measurement, its rays begin outside
+    the vehicle's surface and pass through the vehicle's glass."""
 
     eye: Floats
     width: int
@@ -86,13 +83,10 @@ class Viewpoint:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RayHits:
-    """The first hits of rays (N,) in unit `directions` (N, 3).
-
-    `surface` is NOTHING, SKY, GROUND, or the number of a solid; `part` that of the solid, else -1;
-    `points` (N, 3) where the rays hit [m]; `normals` (N, 3) unit normals there, on the side of the
-    eye; `color` (N, 4) linear red, green, blue, and shine; `distance` from the eye [m], inf in the
-    sky.
-    """
+    """The first hits of rays (N,) in unit `directions` (N, 3). `surface` is NOTHING, SKY, GROUND,
+    or the number of a solid; `part` that of the solid, else -1; `points` (N, 3) where the rays hit
+    [m]; `normals` (N, 3) unit normals there, on the side of the eye; `color` (N, 4) linear red,
+    green, blue, and shine; `distance` from the eye [m], inf in the sky."""
 
     directions: Floats
     surface: Ints

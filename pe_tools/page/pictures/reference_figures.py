@@ -1,7 +1,5 @@
 """Figures in pictures of sensors: persons and cars of known size, test bodies at worst places."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,10 +13,8 @@ from pe_core.scoring.requirements.definition import placed
 
 from .painted_mesh import GLASS, TYRE, Paint, PaintedMesh, rounded_box
 
-PERSON_M = (0.5, 0.5, 1.75)
-"""Length, width and height of a person."""
-CAR_M = (4.5, 1.8, 1.5)
-"""Length, width and height of a car; about the mean of cars on the road."""
+PERSON_M = (0.5, 0.5, 1.75)  # Length, width and height of a person
+CAR_M = (4.5, 1.8, 1.5)  # Length, width and height of a car; about the mean of cars on the road
 SKIN, COAT = Paint((0.55, 0.36, 0.25)), Paint((0.80, 0.36, 0.02))
 TROUSERS = Paint((0.10, 0.11, 0.14))
 CAR_PAINT = Paint((0.03, 0.14, 0.38), 0.6)
@@ -39,12 +35,9 @@ DISTANCES = (5.0, 10.0, 20.0, 40.0)
 """Distances from the sensor to the near side of figures, along the ground [m]."""
 FIRST_RAD, GAP_RAD = math.radians(0.8), math.radians(0.7)
 """Angles between straight ahead and the first figure, and between two figures."""
-VIEW_SHARE = 0.72
-"""Share of a wide view over which figures are spread."""
-MAX_SPREAD = 3.0
-"""Limit of the factor by which angles grow in a wide view."""
-CLEAR_M = 0.3
-"""Smallest distance between a figure and the vehicle."""
+VIEW_SHARE = 0.72  # Share of a wide view over which figures are spread
+MAX_SPREAD = 3.0  # Limit of the factor by which angles grow in a wide view
+CLEAR_M = 0.3  # Smallest distance between a figure and the vehicle
 
 
 @dataclass(frozen=True, slots=True)

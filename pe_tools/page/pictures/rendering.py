@@ -1,9 +1,5 @@
-"""Rendering: cast rays, shade paint and ground under sun and sky, antialias the edges.
-
-Rays cast from a lamp far away show what the sun illuminates; everything else is in its shadow.
-"""
-
-from __future__ import annotations
+"""Rendering: cast rays, shade paint and ground under sun and sky, antialias the edges. Rays cast
+from a lamp far away show what the sun illuminates; everything else is in its shadow."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -18,39 +14,27 @@ from .ray_scene import GROUND, NOTHING, SKY, RayCamera, RayHits, RayScene
 
 SUN, UPPER, LOWER = np.array([1.16, 1.11, 1.04]), np.array([0.50, 0.54, 0.60]), np.array([0.30] * 3)
 """Linear light of the sun, of the sky above and of the ground below."""
-MIRRORED = 0.07
-"""Share of light that paint mirrors at normal incidence (Schlick's formula)."""
-GLOSS = 220.0
-"""Exponent of the sun's highlight."""
-KNEE = 0.75
-"""Linear light above this value is compressed, so that it approaches white."""
-OUTSIDE_LENS = (0.11, 0.115, 0.125)
-"""Colour outside the image circle of a lens; sRGB."""
+MIRRORED = 0.07  # Share of light that paint mirrors at normal incidence (Schlick's formula)
+GLOSS = 220.0  # Exponent of the sun's highlight
+KNEE = 0.75  # Linear light above this value is compressed, so that it approaches white
+OUTSIDE_LENS = (0.11, 0.115, 0.125)  # Colour outside the image circle of a lens; sRGB
 
-SUN_M = 1000.0
-"""Distance of the lamp that stands for the sun."""
-SHADOW = 12.0
-"""Ground farther than this from every solid is in no shadow, in heights of the solid."""
-SURFACE_OFFSET_M = 0.02
-"""Distance from a surface at which its light is evaluated."""
-STANDS_M = 0.5
-"""A solid whose lowest point is higher takes no sky from the ground."""
+SUN_M = 1000.0  # Distance of the lamp that stands for the sun
+SHADOW = 12.0  # Ground farther than this from every solid is in no shadow, in heights of the solid
+SURFACE_OFFSET_M = 0.02  # Distance from a surface at which its light is evaluated
+STANDS_M = 0.5  # A solid whose lowest point is higher takes no sky from the ground
 SUBPIXELS = ((-0.375, -0.125), (-0.125, 0.375), (0.125, -0.375), (0.375, 0.125))
 """Rays within a pixel at an edge: no two in one row or column."""
-EDGE_COSINE = 0.92
-"""Cosine of the angle between neighbouring normals below which there is an edge."""
-EDGE_STEP = 0.06
-"""Relative step of neighbouring distances above which there is an edge."""
+EDGE_COSINE = 0.92  # Cosine of the angle between neighbouring normals below which there is an edge
+EDGE_STEP = 0.06  # Relative step of neighbouring distances above which there is an edge
 
 
 @dataclass(frozen=True, eq=False)
 class Environment:
-    """Ground, sky, sun and haze around the solids; colours (N, 3) are linear.
-
-    `ground` takes points (N, 3) of the ground and the width (N,) of a pixel there [m], and returns
-    colours; `sky` takes directions (N, 3), and returns colours; `sun` (3,) is the direction to the
-    sun; `haze` takes points of the ground, and returns how far (N,) they fade into the sky, 0 to 1.
-    """
+    """Ground, sky, sun and haze around the solids; colours (N, 3) are linear. `ground` takes points
+    (N, 3) of the ground and the width (N,) of a pixel there [m], and returns colours; `sky` takes
+    directions (N, 3), and returns colours; `sun` (3,) is the direction to the sun; `haze` takes
+    points of the ground, and returns how far (N,) they fade into the sky, 0 to 1."""
 
     ground: Callable[[Floats, Floats], Floats]
     sky: Callable[[Floats], Floats]

@@ -1,11 +1,6 @@
-"""What each sensor sees, as a figure: a row for each kind of sensor.
-
-A camera's image is rendered through its own lens; a LiDAR's ranges are an image of channels and
-azimuths. Persons and cars of known size stand in front of both. Of a kind without a row, the
-parameters are shown.
-"""
-
-from __future__ import annotations
+"""What each sensor sees, as a figure: a row for each kind of sensor. A camera's image is rendered
+through its own lens; a LiDAR's ranges are an image of channels and azimuths. Persons and cars of
+known size stand in front of both. Of a kind without a row, the parameters are shown."""
 
 import math
 from collections.abc import Callable
@@ -29,26 +24,22 @@ from .reference_figures import DISTANCES, reference_figures
 from .rendering import Environment, render
 from .svg import LETTER_WIDTH, Canvas, LabelledPicture
 
-MAX_WIDTH, MAX_HEIGHT = 640, 480
-"""Size of a camera's image on the page [px]."""
+MAX_WIDTH, MAX_HEIGHT = 640, 480  # Size of a camera's image on the page [px]
 ROAD, RING, ZENITH, HORIZON = graphics.linear_of_srgb(
     np.array([(0.50, 0.51, 0.52), (0.93, 0.94, 0.95), (0.62, 0.74, 0.86), (0.90, 0.92, 0.93)])
 )
 SUN = np.array([-0.35, 0.5, 1.0])
 """Direction to the sun relative to the sensor's heading: from behind, on the left."""
-RING_M = 0.05
-"""Half the width of a ring's line."""
+RING_M = 0.05  # Half the width of a ring's line
 MIN_LINE_PX = 0.6
-FADED_M = (30.0, 160.0)
-"""Distances at which the ground begins and ends to fade into the horizon."""
+FADED_M = (30.0, 160.0)  # Distances at which the ground begins and ends to fade into the horizon
 CIRCLE_WIDTH, MIN_ROWS_HEIGHT, MAX_ROW_HEIGHT = 720, 144, 12
 """Size of a LiDAR's image [px]: a full circle, all rows at least, one row at most."""
 SIDES = {"behind": -180.0, "right": -90.0, "ahead": 0.0, "left": 90.0, "behind ": 180.0}
 """Azimuths that are labelled [deg]; both ends of a full circle are behind."""
 FIGURES_RAD = math.radians(80.0)
 """Half the azimuth range in which persons and cars stand before a LiDAR."""
-FIELD_PX = 2
-"""Pixels for each range and azimuth of a picture of detections."""
+FIELD_PX = 2  # Pixels for each range and azimuth of a picture of detections
 KEY_WIDTH = 190.0
 SMALL_BOX = scene.Housing("box", (0.05, 0.06, 0.05), (0.025, 0.0, 0.025))
 """About the size of a camera module."""
@@ -59,12 +50,10 @@ ViewFigure = tuple[Markup | list[str], str]
 
 @dataclass(frozen=True, slots=True)
 class SensorView:
-    """How the page shows the sensors of one kind.
-
-    `figure` returns a drawing (or lines of text) of what a sensor sees beside a vehicle or None,
-    and a caption. `housing` is drawn where the catalogue knows no size. `image_field` returns width
-    and height of a model's image [deg], or None.
-    """
+    """How the page shows the sensors of one kind. `figure` returns a drawing (or lines of text) of
+    what a sensor sees beside a vehicle or None, and a caption. `housing` is drawn where the
+    catalogue knows no size. `image_field` returns width and height of a model's image [deg], or
+    None."""
 
     figure: Callable[[pe.Sensor, pe.Vehicle | None], ViewFigure]
     housing: scene.Housing = SMALL_BOX
@@ -284,7 +273,5 @@ SENSOR_VIEWS = {
     "ultrasonic": SensorView(
         field_figure, housing=scene.Housing("box", (0.02, 0.03, 0.03), (0.01, 0.0, 0.0))
     ),
-}
-"""A row for each kind of sensor, by its name."""
-OTHER_KIND = SensorView(_parameter_figure)
-"""Of kinds that have no row."""
+}  # A row for each kind of sensor, by its name
+OTHER_KIND = SensorView(_parameter_figure)  # Of kinds that have no row

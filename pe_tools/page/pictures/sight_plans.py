@@ -1,7 +1,5 @@
 """Plans of the ground: blind ground, reach by direction, and the zones of requirements."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from itertools import pairwise
@@ -21,44 +19,26 @@ from .ground_plan import PlanBounds, PlanDrawing
 RIG, BEFORE = "#0b5cad", "#8c959f"
 GRID = "#c8cfd6"
 KEY_HEIGHT = 24.0
-WRITTEN_BEARINGS = 8
-"""Number of bearings at which the distance is written."""
-MIN_WRITTEN_M = 3.0
-"""Shorter distances are not written."""
 BLIND = "#d55e00"
-SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
-"""Axis (0: x, 1: y) and sign of each side's direction."""
-MIN_EXTENT_M = 0.3
-"""Blind ground that extends less far from the body is not measured."""
 BLIND_WIDTH = 330.0
-MARGIN_M = 2.0
-"""Space that the text of a measure needs between its end and the border."""
 MET, NOT_MET, INK = "#1a7f4b", "#c4320a", "#1b1f24"
 MET_RGBA, NOT_MET_RGBA = (26, 127, 75, 90), (196, 50, 10, 235)
-BETWEEN_RGBA = (196, 50, 10, 70)
-"""Between the lines of the hatching."""
+BETWEEN_RGBA = (196, 50, 10, 70)  # Between the lines of the hatching
 PLAN_WIDTH, PIXELS = 330.0, 760
 """Width of the drawing, and pixels along the longer side of its zone."""
 HATCH_PX = 4
-AROUND_M = 1.0
-"""Ground that is shown round the vehicle and the zone with its margin."""
+AROUND_M = 1.0  # Ground that is shown round the vehicle and the zone with its margin
 CONTOUR_CELLS = 220
-LETTER = 7.5
-"""Width of a letter of a plan's text, at most."""
+LETTER = 7.5  # Width of a letter of a plan's text, at most
 
 
 def blind_plan(blind: sight.BlindGround, vehicle: pe.Vehicle | None, alt: str) -> Markup:
-    """Return a plan of blind ground, with its extent in metres on each side. A line from the body
-    to a cap is the extent of blind ground that begins at the body. If none begins there, a ring
-    marks the nearest blind ground."""
+    """Return a plan of blind ground."""
     plan = PlanDrawing(_bounds(blind, vehicle), alt, width=BLIND_WIDTH)
     if lines := [plan.points(line) for line in blind.outlines]:
         style = {"fill": BLIND, "fill_opacity": "0.32", "stroke": BLIND}
         plan.canvas.path(lines, True, fill_rule="evenodd", stroke_width=1.0, **style)
     plan.vehicle(vehicle)
-    if vehicle is not None:
-        for side in SIDES:
-            _draw_extent(plan, blind, vehicle, side)
     plan.frame()
     return plan.canvas.svg()
 
@@ -73,40 +53,6 @@ def side_text(blind: sight.BlindGround, side: str) -> str:
     if zone > 0.0:
         return f"at the body, to {sight.shown_end(zone):.1f} m"
     return f"at {sight.shown_start(spot.distance):.1f} m"
-
-
-def _draw_extent(
-    plan: PlanDrawing, blind: sight.BlindGround, vehicle: pe.Vehicle, side: str
-) -> None:
-    """Draw the extent of blind ground at the body, else mark the nearest blind ground."""
-    spot, zone = blind.nearest[side], blind.zone[side]
-    if spot is None or (zone is not None and 0.0 < zone < MIN_EXTENT_M):
-        return
-    axis, sign = SIDES[side]
-    away = blind.within if zone is None else (zone or spot.distance)
-    edge = float(vehicle.bounds[1 if sign > 0 else 0][axis])
-    start, end = list(spot.point), list(spot.point)
-    start[axis], end[axis] = edge, edge + sign * away
-    x, y = plan.point(*end)
-    if zone == 0.0:
-        words = f"from {sight.shown_start(away):.1f} m"
-        plan.canvas.add("circle", cx=x, cy=y, r=3.5, fill="#fff", stroke=INK, stroke_width=1.2)
-    else:
-        words = f"> {away:g} m" if zone is None else f"{sight.shown_end(away):.1f} m"
-        x0, y0 = plan.point(*start)
-        cap = "v6m0 -12v12" if axis == 0 else "h6m-12 0h12"
-        line = f"M{x0:.1f} {y0:.1f}L{x:.1f} {y:.1f}m0 0{cap}"
-        plan.canvas.add("path", d=line, fill="none", stroke=INK, stroke_width=1.0)
-    right, down, anchor = _text_place(axis, sign, away > blind.within - MARGIN_M)
-    plan.canvas.text(x + right, y + down, words, text_anchor=anchor, css="strong halo")
-
-
-def _text_place(axis: int, sign: int, on_vehicle_side: bool) -> tuple[float, float, str]:
-    """Return offset and anchor of a text beside the end of a measure."""
-    if axis == 1:
-        return 8.0, (14.0 if sign > 0 else -6.0) if on_vehicle_side else 4.0, "start"
-    ends = ("start", "end") if sign > 0 else ("end", "start")
-    return (-sign * 6.0, -6.0, ends[1]) if on_vehicle_side else (sign * 8.0, 4.0, ends[0])
 
 
 def _bounds(blind: sight.BlindGround, vehicle: pe.Vehicle | None) -> PlanBounds:
@@ -139,7 +85,6 @@ def reach_plan(
     line = plan.points(_reach_outline(reach, reach.distance, bounds))
     plan.canvas.path([line], fill=RIG, fill_opacity="0.09", stroke=RIG, stroke_width=2.2)
     plan.vehicle(vehicle)
-    _write_distances(plan, reach)
     plan.frame()
     _draw_key(plan, before is not None, graphics.color_text(next(iter(colors.values()))))
     return plan.canvas.svg()
@@ -147,11 +92,7 @@ def reach_plan(
 
 def reach_text(reach: sight.Reach, bearing_deg: float) -> str:
     """Return the reach in a direction as text; the bearing is counter-clockwise from ahead."""
-    away = np.abs(np.angle(np.exp(1j * (reach.bearings - np.radians(bearing_deg)))))
-    return _distance_text(reach, int(np.argmin(away)))
-
-
-def _distance_text(reach: sight.Reach, k: int) -> str:
+    k = int(np.abs(np.angle(np.exp(1j * (reach.bearings - np.radians(bearing_deg))))).argmin())
     distance = float(reach.distance[k])
     if distance <= 0.0:
         return "none"
@@ -163,20 +104,6 @@ def _reach_outline(reach: sight.Reach, distance: Floats, bounds: PlanBounds) -> 
     """(N, 2) closed outline of a reach, clipped to the plan: lone objects may be beyond it."""
     low, high = np.transpose(bounds)
     return np.clip(sight.reach_line(reach, distance).points, low, high)
-
-
-def _write_distances(plan: PlanDrawing, reach: sight.Reach) -> None:
-    bearings = reach.bearings.tolist()
-    for k in range(0, len(bearings), max(1, len(bearings) // WRITTEN_BEARINGS)):
-        distance = float(reach.distance[k])
-        if distance < MIN_WRITTEN_M:
-            continue
-        x, y = plan.point(distance * math.cos(bearings[k]), distance * math.sin(bearings[k]))
-        away, down = math.cos(bearings[k]), -math.sin(bearings[k])
-        x = min(max(x + 24.0 * away, plan.left + 20.0), plan.left + plan.width - 22.0)
-        y = min(max(y + 13.0 * down + 4.0, 22.0), plan.bottom - 6.0)
-        text = _distance_text(reach, k)
-        plan.canvas.text(x, y, text, text_anchor="middle", css="strong halo")
 
 
 def _draw_key(plan: PlanDrawing, has_before: bool, color: str) -> None:

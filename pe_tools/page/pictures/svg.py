@@ -1,7 +1,5 @@
 """SVG drawings inside the page: a canvas, and pictures with labels."""
 
-from __future__ import annotations
-
 import base64
 import math
 from collections.abc import Iterable
@@ -14,14 +12,11 @@ from pe_core.base.arrays import Floats
 
 from ..markup import escaped
 
-PictureBox = tuple[float, float, float, float]
-"""Left, top, width and height."""
+PictureBox = tuple[float, float, float, float]  # Left, top, width and height
 LINE_HEIGHT, LETTER_WIDTH = 17.0, 10.0
 """Height of a line of text, and mean width of a letter, in a picture 640 wide."""
-LABEL_RISE = 7.0
-"""Distance of a label above its point."""
-FOOT_HEIGHT = 26.0
-"""Space below a picture for the labels of its lower edge."""
+LABEL_RISE = 7.0  # Distance of a label above its point
+FOOT_HEIGHT = 26.0  # Space below a picture for the labels of its lower edge
 
 
 @dataclass(eq=False)
@@ -95,8 +90,7 @@ def _svg_number(value: float) -> str:
     return text[:-2] if text.endswith(".0") else text
 
 
-TextLabel = tuple[float, float, str]
-"""Position (right, down) in a picture [px], and text."""
+TextLabel = tuple[float, float, str]  # Position (right, down) in a picture [px], and text
 
 
 @dataclass(frozen=True, slots=True)

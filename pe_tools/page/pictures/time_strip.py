@@ -1,7 +1,5 @@
 """A drive-by as a strip: AP of each sensor over time, and the moments of a body's track."""
 
-from __future__ import annotations
-
 from markupsafe import Markup
 
 from pe_core.motion import SeenBody, Story
@@ -24,9 +22,7 @@ def strip_data(story: Story) -> str:
 
 def time_strip(story: Story, body: SeenBody, alt: str) -> Markup:
     """Return rows of AP over time, of the rig and each sensor, and the probability of a track.
-
-    Vertical lines: confirmed with the story's probability; the last moment to brake.
-    """
+    Vertical lines: confirmed with the story's probability; the last moment to brake."""
     rows = graphics.strip_rows(body)
     height = TOP + len(rows) * (ROW + GAP) + FOOT
     canvas = Canvas(WIDTH, height, alt, "curve")

@@ -1,9 +1,5 @@
-"""The picture of a rig on its vehicle: rendered, with numbered labels and a key.
-
-Sensors are drawn in their colours, with housings of the size that data sheets state.
-"""
-
-from __future__ import annotations
+"""The picture of a rig on its vehicle: rendered, with numbered labels and a key. Sensors are drawn
+in their colours, with housings of the size that data sheets state."""
 
 import math
 from typing import Any, NamedTuple
@@ -23,8 +19,7 @@ from .rendering import Environment, render
 from .sensor_views import sensor_view
 from .svg import Canvas
 
-SIZE = (960, 540)
-"""Width and height of the picture [px]."""
+SIZE = (960, 540)  # Width and height of the picture [px]
 FOV_DEG = 26.0
 VIEW_DIRECTION = np.array([0.80, -0.58, 0.29])
 """From the vehicle to the default viewpoint: ahead, on the right, a little above."""
@@ -44,12 +39,9 @@ STYLE = "<style>.number { fill: #fff; font-weight: bold }</style>"
 LABEL_RISE, RADIUS = 46.0, 15.0
 """Distance of a number above its sensor, and radius of its disc [px]."""
 LABEL_SPACING = 34.0
-ROUNDS = 40
-"""Distance between two discs, and steps in which they are moved apart."""
-BEHIND_M = 0.12
-"""A sensor farther than this behind the visible surface counts as hidden by it."""
-PROUD_M = 0.0005
-"""Height of a window above the housing's surface."""
+ROUNDS = 40  # Distance between two discs, and steps in which they are moved apart
+BEHIND_M = 0.12  # A sensor farther than this behind the visible surface counts as hidden by it
+PROUD_M = 0.0005  # Height of a window above the housing's surface
 WINDOW = Paint((0.02, 0.022, 0.025), 0.9)
 
 

@@ -1,11 +1,7 @@
-"""The interactive 3-D view: vehicle, sensors, their fields of view, and ground maps.
-
-Python writes the geometry (of the engine's `graphics`) as plain data; the scripts in this folder
-render it with three.js, which is vendored: the page loads nothing from elsewhere. Arrays are
-packed: numbers are quantized to integers of few bits and encoded as base64, which a script decodes.
-"""
-
-from __future__ import annotations
+"""The interactive 3-D view: vehicle, sensors, their fields of view, and ground maps. Python writes
+the geometry (of the engine's `graphics`) as plain data; the scripts in this folder render it with
+three.js, which is vendored: the page loads nothing from elsewhere. Arrays are packed: numbers are
+quantized to integers of few bits and encoded as base64, which a script decodes."""
 
 import base64
 from dataclasses import replace
@@ -25,13 +21,10 @@ from ..pictures.painted_mesh import look_of
 from ..pictures.sensor_views import sensor_view
 from ..report_context import ReportContext
 
-MAX_STEPS = 65_535
-"""Quantization steps of the longest side: a vehicle's points are exact to 0.1 mm."""
-MAX_TRIANGLES = 40_000
-"""Of the vehicle in the 3-D view: a phone renders so many smoothly."""
+MAX_STEPS = 65_535  # Quantization steps of the longest side: a vehicle's points are exact to 0.1 mm
+MAX_TRIANGLES = 40_000  # Of the vehicle in the 3-D view: a phone renders so many smoothly
 STEP_M = 1.0
-MAX_MAP_CELLS = 40_000
-"""Limit of cells of a map: a space of hundreds of metres has larger cells."""
+MAX_MAP_CELLS = 40_000  # Limit of cells of a map: a space of hundreds of metres has larger cells
 MAPS = {
     graphics.ENTROPY: "Entropy",
     graphics.COVERAGE: "Coverage",
@@ -48,10 +41,8 @@ TEXTS = {
     "look_from": "Look from {name}",
     "from": "From {name}",
     "from_middle": "From {name}, the middle of its view",
-}
-"""Texts of the view's program; {name} is a sensor's name."""
-MAX_BEAMS = 60_000
-"""Beams that are cast of one sensor; a selection of them is drawn."""
+}  # Texts of the view's program; {name} is a sensor's name
+MAX_BEAMS = 60_000  # Beams that are cast of one sensor; a selection of them is drawn
 BEAMS_EACH, BEAM_M, VIEW_M, FOOT_M = 180, 7.0, 2.5, 20.0
 """Beams drawn of a sensor and their length; length of a field of view; reach of its footprint."""
 MAX_RINGS = 10

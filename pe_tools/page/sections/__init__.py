@@ -1,10 +1,6 @@
-"""The sections of the page, in order: a row each.
-
-A section is a function from a study (or, if it is `joint`, from all studies of the page) to the
-values that its template shows; None leaves it out.
-"""
-
-from __future__ import annotations
+"""The sections of the page, in order: a row each. A section is a function from a study (or, if it
+is `joint`, from all studies of the page) to the values that its template shows; None leaves it
+out."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -39,23 +35,13 @@ from .visibility import (
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """A section of the page.
-
-    Attributes
-    ----------
-    anchor, title : str
-        Id (lower-case letters and hyphens), which names the template, too; and title, plain text.
-    data : callable
-        Takes a `ReportContext`, or a tuple of all if the section is `joint`; returns the values of
-        the template, or None. ``script_data`` is plain JSON, the text of ``#data-ANCHOR-KEY``.
-    joint : bool
-        One section for all studies; several studies have the others side by side.
-    template : str
-        Another template. Headings begin at h3; ids end in ``-KEY`` of the `ReportContext`.
-    scripts : callable
-        Returns whole JavaScript programs, of which the page contains each once; a program looks for
-        ``[data-section=ANCHOR]``, whose ``data-key`` is KEY.
-    """
+    """A section of the page. `anchor`, `title`: id (lower-case letters and hyphens), which names
+    the template, too; and title, plain text. `data`: takes a `ReportContext`, or a tuple of all if
+    the section is `joint`; returns the values of the template, or None. ``script_data`` is plain
+    JSON, the text of ``#data-ANCHOR-KEY``. `joint`: one section for all studies; several studies
+    have the others side by side. `template`: another template. Headings begin at h3; ids end in
+    ``-KEY`` of the `ReportContext`. `scripts`: returns whole JavaScript programs, of which the page
+    contains each once; a program looks for ``[data-section=ANCHOR]``, whose ``data-key`` is KEY."""
 
     anchor: str
     title: str

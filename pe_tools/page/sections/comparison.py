@@ -1,8 +1,5 @@
 """Several studies side by side: which rig is better where, how the sensors differ, what they cost.
-
 Prices come from the study's choices (``[[choice]]``); the catalogue has none."""
-
-from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence

@@ -1,9 +1,5 @@
-"""The results of a study: the overview at the top of its page, its parts, and its search.
-
-The overview has three sentences (question, result, notes), key figures and a picture.
-"""
-
-from __future__ import annotations
+"""The results of a study: the overview at the top of its page, its parts, and its search. The
+overview has three sentences (question, result, notes), key figures and a picture."""
 
 import math
 from dataclasses import replace
@@ -23,16 +19,14 @@ from ..pictures.vehicle_picture import labelled_picture
 from ..report_context import ReportContext
 
 SIDES = {"front": "ahead", "rear": "behind", "left": "on the left", "right": "on the right"}
-PALE, DARK = (255, 255, 255), (242, 165, 120)
-"""Colours of the lowest and of the highest entropy."""
+PALE, DARK = (255, 255, 255), (242, 165, 120)  # Colours of the lowest and of the highest entropy
 STATUS = {
     "free": "free",
     "surface": "on its mount",
     "slot": "in its slot",
     "fixed": "held",
     "linked": "linked",
-}
-"""What the search does with an axis, in the table."""
+}  # What the search does with an axis, in the table
 
 
 def overview(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:

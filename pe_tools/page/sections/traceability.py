@@ -1,7 +1,5 @@
 """Traceability: sources and limits of the numbers, and everything needed to reproduce them."""
 
-from __future__ import annotations
-
 import platform
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What the rig sees where: maps, blind ground, reach, requirements, and what each sensor sees."""
 
-from __future__ import annotations
-
 import base64
 from collections.abc import Sequence
 from typing import Any
@@ -20,11 +18,9 @@ from ..pictures.vehicle_picture import sensor_key
 from ..report_context import MAP_STEP_M, ReportContext
 
 CHANGE_ENDS = ("8 nats better", "8 nats worse")
-HEIGHTS = (0.0, 0.5, 1.5)
-"""Heights of objects for which blind ground is shown [m]."""
+HEIGHTS = (0.0, 0.5, 1.5)  # Heights of objects for which blind ground is shown [m]
 SIDES = {"front": "ahead", "left": "left", "right": "right", "rear": "behind"}
-PREFERRED_CLASSES = ("pedestrian", "car")
-"""Classes whose reach is shown, if the prior has them."""
+PREFERRED_CLASSES = ("pedestrian", "car")  # Classes whose reach is shown, if the prior has them
 BEARINGS_DEG = {"ahead": 0.0, "ahead left": 45.0, "left": 90.0, "behind": 180.0, "right": 270.0}
 BEARINGS_DEG["ahead right"] = 315.0
 MAX_PARTS, MIN_SHARE = 3, 0.0005
@@ -33,9 +29,7 @@ MAX_PARTS, MIN_SHARE = 3, 0.0005
 
 def visibility(context: ReportContext) -> dict[str, Any]:
     """Return maps of the whole space, plans of blind ground by height, and of the reach by class.
-
-    After a search the maps are also those before it, with the difference.
-    """
+    After a search the maps are also those before it, with the difference."""
     rig, vehicle, study, sight = context.rig, context.vehicle, context.study, context.sight
 
     def drawn(ground: Any, layer: Any, when: str = "") -> Any:
@@ -120,11 +114,10 @@ def dimensions(context: ReportContext) -> dict[str, Any] | None:
     vehicle, axle = context.display_vehicle[0], context.study.reference
     if vehicle is None:
         return None
-    axle_x = None if axle is None else axle.rear_axle_x
     alt = f"Top view of {context.name} with dimensions"
     return {
         "side": side_view(context.rig, vehicle, f"Side view of {context.name} with dimensions"),
-        "top": top_view(context.rig, vehicle, axle_x, alt),
+        "top": top_view(context.rig, vehicle, alt),
         "size": (vehicle.bounds[1] - vehicle.bounds[0]).tolist(),
         "front": float(vehicle.bounds[1][0]),
         "height": float(vehicle.bounds[1][2]),

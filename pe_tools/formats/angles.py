@@ -1,16 +1,20 @@
-"""Channel angles of a LiDAR in columns: a plain table, or Hesai's angle correction file.
-
-Here is also what all layouts share: a channel, and the checks of its values.
-"""
-
-from __future__ import annotations
+"""Channel angles of a LiDAR in columns: a plain table, or Hesai's angle correction file. Here is
+also what all layouts share: a channel, and the checks of its values."""
 
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from pe_core.base.errors import InputError
-from pe_core.base.files import MAX_QUOTE, numbered_lines, parse_number, quoted
+from pe_core.base.files import (
+    MAX_QUOTE,
+    decode_text,
+    numbered_lines,
+    parse_number,
+    quoted,
+    read_bytes,
+)
 
 MAX_ELEVATION_DEG = 90.0
 MAX_OFFSET_DEG = 180.0
@@ -37,10 +41,8 @@ LAYOUTS = "a column named elevation, or Hesai or Velodyne channel angles"
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """A channel's angles [deg]: above the horizon, and counter-clockwise seen from above.
-
-    `where` is its location in the file, for messages; `number` its id, if the file has ids.
-    """
+    """A channel's angles [deg]: above the horizon, and counter-clockwise seen from above. `where`
+    is its location in the file, for messages; `number` its id, if the file has ids."""
 
     where: str
     number: int | None
@@ -89,8 +91,7 @@ def sorted_by_id(source: str, channels: Sequence[Channel], first: int) -> list[C
     return [channel_by_id[number] for number in ids]
 
 
-Line = tuple[str, tuple[str, ...]]
-"""A line's location, for messages, and its cells."""
+Line = tuple[str, tuple[str, ...]]  # A line's location, for messages, and its cells
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,10 +111,8 @@ class Layout:
 
 
 def read_columns(source: str, text: str) -> list[Channel]:
-    """Read channels from columns separated by commas, semicolons, tabs or spaces.
-
-    No column of elevations, or a row that is invalid, raises `InputError`.
-    """
+    """Read channels from columns separated by commas, semicolons, tabs or spaces. No column of
+    elevations, or a row that is invalid, raises `InputError`."""
     lines = numbered_lines(text)
     while lines and lines[0][1].strip().lower().startswith(PREAMBLE):
         lines = lines[1:]
@@ -209,3 +208,15 @@ def _channel(source: str, layout: Layout, row: Line) -> Channel:
     if layout.azimuth is not None:
         offset = parse_number(source, where, "the azimuth offset", cells[layout.azimuth])
     return checked_channel(source, where, number, elevation, layout.azimuth_sign * offset)
+
+
+def read_angles(path: str | Path) -> list[Channel]:
+    """Read the channels of a LiDAR from a file; its content decides the layout, not its name.
+    Layouts: plain columns (counter-clockwise offsets), Hesai's angle correction (clockwise).
+    Channels are sorted by id if the file has ids, else in the file's order. A file of none of these
+    layouts, or with a wrong value, raises `InputError`."""
+    path = Path(path)
+    source, text = str(path), decode_text(read_bytes(path))
+    if not text.strip():
+        raise InputError(source, "file", "channel angles", "an empty file")
+    return read_columns(source, text)

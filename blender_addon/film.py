@@ -18,7 +18,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from .engine import graphics, motion, pe, text
+from .engine import Floats, graphics, motion, pe, text
 
 WEBM = ".webm"
 FORMATS = {WEBM: ("WEBM", "WEBM"), ".mp4": ("MPEG4", "H264")}
@@ -248,7 +248,7 @@ def _body(
 
 
 def _strip(
-    stage: _Stage, camera: bpy.types.Object, strip: graphics.TimeStrip, times: np.ndarray
+    stage: _Stage, camera: bpy.types.Object, strip: graphics.TimeStrip, times: Floats
 ) -> None:
     """Add the strip in front of the camera, 1 m away; `times` (K,) are those of its cursor [s]."""
     half = math.tan(camera.data.angle / 2.0)

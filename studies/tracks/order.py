@@ -88,7 +88,8 @@ def follows() -> dict[str, bool]:
     found = read_json(TABLE)
     ones = [np.array(row["one"]) for row in found["rings"]["rows"].values()]
     ones += [np.sort(row["ap"][0])[::-1] for row in found["frames"]["rows"].values()]
-    rising, less = [], []
+    rising: list[bool] = []
+    less: list[bool] = []
     for q in NOISES:
         for one in ones:
             ap = [one, *(over_frames(one, count, q) for count in COUNTS)]

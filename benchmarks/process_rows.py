@@ -20,7 +20,7 @@ _evaluators: RecentCache[pe.RigEvaluator] = RecentCache()
 def score(study: pe.Study, rig: pe.Rig) -> float:
     """Return the entropy of a rig; the evaluator is kept for the vehicle."""
     evaluator = _evaluators.made(id(study.vehicle), lambda: study.evaluator(SAMPLES))
-    return evaluator.entropy(rig, preview=True)
+    return evaluator.entropy(rig)
 
 
 def request_of_a_move() -> Timing:

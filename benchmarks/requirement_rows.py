@@ -23,13 +23,13 @@ TWELVE = (*NINE, "fmvss111_rear", "r151_static_crossing", "ncap26_frontal_pedest
 
 def nine_presets_preview() -> Timing:
     """Verdicts that follow a drag."""
-    return _after_a_move("nine presets, preview", _checked(preview=True), preview=True)
+    return _after_a_move("nine presets, preview", _checked(preview=True))
 
 
 def twelve_presets_with_shares_preview() -> Timing:
     """The same of a dozen requirements, three of which ask for a share of the body."""
     label = "twelve presets, three with a share, preview"
-    return _after_a_move(label, _checked(preview=True, names=TWELVE), preview=True)
+    return _after_a_move(label, _checked(preview=True, names=TWELVE))
 
 
 def nine_presets() -> Timing:
@@ -44,17 +44,15 @@ def _checked(preview: bool, names: Sequence[str] = NINE) -> Callable[[pe.Rig], o
     return lambda rig: checker.check(rig, preview=preview)
 
 
-def _after_a_move(label: str, look: Callable[[pe.Rig], object], preview: bool = False) -> Timing:
+def _after_a_move(label: str, look: Callable[[pe.Rig], object]) -> Timing:
     """Look again after one Pandar64 of four sensors moved."""
     study = four_on_car()
     evaluator = study.evaluator(SAMPLES)
     look(study.rig)
-    evaluator.entropy(study.rig, preview=preview)
+    evaluator.entropy(study.rig)
     rigs = [moved_a_little(study.rig, along) for along in np.linspace(0.004, 0.05, 12)]
     ours, theirs = iter(rigs), iter(rigs)
     mine = best_of_processor(lambda: look(next(ours)), len(rigs))
-    yardstick = best_of_processor(
-        lambda: evaluator.entropy(next(theirs), preview=preview), len(rigs)
-    )
+    yardstick = best_of_processor(lambda: evaluator.entropy(next(theirs)), len(rigs))
     work = f"{label}, one Pandar64 of four sensors moved, processor time"
     return Timing(work, mine, peak_mb(), f"score of {SAMPLES:,} samples", yardstick)

@@ -111,28 +111,23 @@ def samples_on_car() -> Timing:
     return _after_a_move(car(), "vehicle")
 
 
-def samples_on_car_preview() -> Timing:
-    """The same as a preview, as while a sensor is dragged."""
-    return _after_a_move(car(), "vehicle, preview", preview=True)
-
-
-def _after_a_move(vehicle: pe.Vehicle | None, label: str, preview: bool = False) -> Timing:
+def _after_a_move(vehicle: pe.Vehicle | None, label: str) -> Timing:
     study = plain_study(vehicle)
-    ours, _ = best(_moving(study, study.evaluator(262_144), preview), 8)
+    ours, _ = best(_moving(study, study.evaluator(262_144)), 8)
     peak = peak_mb()
     grid, _ = best(lambda: study.evaluator(0).entropy(study.rig), 1)
     work = f"262,144 samples after a move, {label}"
     return Timing(work, ours, peak, "grid score, first", grid)
 
 
-def _moving(study: pe.Study, evaluator: pe.Evaluator, preview: bool) -> Work:
+def _moving(study: pe.Study, evaluator: pe.Evaluator) -> Work:
     """Return a call that moves the sensor a little and scores again."""
     x, y, z = study.rig.sensors[0].pose.position
     places = iter(np.linspace(0.0, 0.05, 1000))
 
     def call() -> float:
         moved = study.rig.with_poses([pe.Pose((x + next(places), y, z))])
-        return evaluator.entropy(moved, preview=preview)
+        return evaluator.entropy(moved)
 
     return call
 
@@ -229,7 +224,6 @@ ROWS: dict[str, Callable[[], Timing]] = {
         full_score,
         samples_free,
         samples_on_car,
-        samples_on_car_preview,
         rays,
         rays_close,
         rays_from_roof,

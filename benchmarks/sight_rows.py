@@ -17,9 +17,7 @@ SAMPLES = 262_144
 
 def live_map() -> Timing:
     """The map that follows a drag."""
-    return _after_a_move(
-        "ground map of 1 m, preview", lambda view, rig: view.ground(rig, preview=True), preview=True
-    )
+    return _after_a_move("ground map of 1 m", lambda view, rig: view.ground(rig))
 
 
 def fine_map() -> Timing:
@@ -48,20 +46,16 @@ def simplify() -> Timing:
     return Timing(work, ours, peak, "their tree", theirs)
 
 
-def _after_a_move(
-    label: str, look: Callable[[pe.Sight, pe.Rig], object], preview: bool = False
-) -> Timing:
+def _after_a_move(label: str, look: Callable[[pe.Sight, pe.Rig], object]) -> Timing:
     """Look again after one Pandar64 of four sensors moved."""
     study = four_on_car()
     view, evaluator = study.sight(), study.evaluator(SAMPLES)
     rigs = [moved_a_little(study.rig, along) for along in np.linspace(0.0, 0.05, 12)]
     look(view, study.rig)
-    evaluator.entropy(study.rig, preview=preview)
+    evaluator.entropy(study.rig)
     ours, theirs = iter(rigs), iter(rigs)
     mine, yardstick = best_in_turn(
-        lambda: look(view, next(ours)),
-        lambda: evaluator.entropy(next(theirs), preview=preview),
-        len(rigs),
+        lambda: look(view, next(ours)), lambda: evaluator.entropy(next(theirs)), len(rigs)
     )
     work = f"{label}, one Pandar64 of four sensors moved"
     return Timing(work, mine, peak_mb(), f"score of {SAMPLES:,} samples", yardstick)

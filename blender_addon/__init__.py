@@ -1,7 +1,5 @@
 """Perception Entropy: places LiDARs and cameras on a vehicle by what they let it perceive."""
 
-from __future__ import annotations
-
 import bpy
 
 from . import (

@@ -1,7 +1,5 @@
 """``python -m blender_addon FILE.blend VERB``: the command in bpy, without a Blender installed."""
 
-from __future__ import annotations
-
 import shutil
 import sys
 from pathlib import Path

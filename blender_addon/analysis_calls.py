@@ -1,7 +1,5 @@
 """What the engine's process finds out for panels and views: figures, warnings, shapes of layers."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -5,8 +5,6 @@ work in it would delay the redraw; so a change is only counted there, and timers
 the idle signal is debounced. Without a window nothing is emitted.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Hashable
 

@@ -3,8 +3,6 @@
 A .blend file holds numbers of these lists: new entries go to the end.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import NamedTuple

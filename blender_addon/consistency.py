@@ -6,8 +6,6 @@ the moving signal, after a file was opened and before one is saved: at these tim
 written.
 """
 
-from __future__ import annotations
-
 import bpy
 
 from . import bridge, sensor_cache

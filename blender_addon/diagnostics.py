@@ -5,8 +5,6 @@ far a rig sees is computed after a score, and after a file with a result was ope
 this session: a file keeps the figures.
 """
 
-from __future__ import annotations
-
 import json
 from typing import NamedTuple
 

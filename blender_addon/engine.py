@@ -62,18 +62,3 @@ def __getattr__(name: str) -> object:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     package, room = ROOMS[name]
     return import_module(f"{package.__name__}.{room}")
-
-
-__all__ = ["Flags", "Floats", "Ints", "Singles", "advice", "app", "catalog", "engine_process"]
-__all__ += [
-    "exchange",
-    "formats",
-    "geometry",
-    "graphics",
-    "jobs",
-    "kinds",
-    "motion",
-    "outputs",
-    "page",
-]
-__all__ += ["pe", "requirements", "scoring", "search", "sight", "studies", "text", "wording"]

@@ -1,21 +1,9 @@
 """Scores that the engine's process makes for the add-on: of a rig, and of a sensor that is held.
 
-A score as quick as a move of the mouse is made on a sample of voxels, and is a preview as long as a
-sensor moves. On a sedan of 400,000 triangles, a move of a LiDAR takes this processor time, in ms:
-
-============================  ========  =====  ================
-move                          preview   exact  exact, 1.6 million
-============================  ========  =====  ================
-Pandar64 on the roof               7     17        19
-Pandar64 at the bumper            11     52        71
-Pandar64 low over the bonnet      13     60        89
-128 channels, the same            27    110
-============================  ========  =====  ================
-
-So previews save up to 83 ms a move.
+A score as quick as a move of the mouse is made on a sample of voxels. On a sedan of 400,000
+triangles, a move of a Pandar64 takes 17 ms of processor time on the roof, 60 ms low over the
+bonnet, one of 128 channels there 110 ms.
 """
-
-from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
@@ -51,12 +39,11 @@ class Problem(NamedTuple):
 
 @dataclass(frozen=True)
 class ScoreRequest:
-    """A rig to be scored; approximately, as a preview, while something is `moving`."""
+    """A rig to be scored."""
 
     problem: Problem
     rig: pe.Rig
     prior_key: Hashable = None
-    moving: bool = False
 
 
 class ScoredRig(NamedTuple):
@@ -74,8 +61,8 @@ def live_score(scene_name: str, request: ScoreRequest, baseline: pe.Rig | None) 
     """Return the summary score of a rig; only sensors that have moved are measured again."""
     kept = _evaluators.setdefault(scene_name, text.RecentCache())
     evaluator = kept.made(request.problem.key, lambda: make_evaluator(request.problem))
-    before = None if baseline is None else evaluator.summary(baseline, preview=request.moving)
-    return ScoredRig(evaluator.summary(request.rig, preview=request.moving), before)
+    before = None if baseline is None else evaluator.summary(baseline)
+    return ScoredRig(evaluator.summary(request.rig), before)
 
 
 def make_evaluator(problem: Problem) -> pe.RigEvaluator:
@@ -119,7 +106,7 @@ def gain(number: int, study: pe.Study, name: str, pose: pe.Pose) -> Gain:
         return evaluator, evaluator.entropy(pe.Rig(others)) if others else None
 
     evaluator, before = _held.made(number, make)
-    score = evaluator.score(pe.Rig([*others, study.rig[name].moved(pose)]), preview=True)
+    score = evaluator.score(pe.Rig([*others, study.rig[name].moved(pose)]))
     return Gain(before, score.entropy, score.coverage)
 
 

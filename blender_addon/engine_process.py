@@ -4,8 +4,6 @@ There Blender's data may be read and written. Without a window there is no timer
 called here and at once. The process ends with the file, with the add-on, and with Blender.
 """
 
-from __future__ import annotations
-
 import atexit
 import traceback
 from collections.abc import Callable

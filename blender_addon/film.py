@@ -5,8 +5,6 @@ Animation does not have it. So the same is built of meshes with keyframes, besid
 scene, and Workbench renders it: with a window or without, wherever OpenGL is, in software as well.
 """
 
-from __future__ import annotations
-
 import math
 import tempfile
 from collections.abc import Sequence

@@ -5,8 +5,6 @@ the sensor, and a sensor never occludes its own beams. Surfaces are made as plai
 Outer sizes are the housing's; windows and lenses are where they usually are.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -35,13 +33,13 @@ class Surface:
     faces: tuple[tuple[int, ...], ...]
     made_of: tuple[int, ...]
 
-    def __add__(self, other: Surface) -> Surface:
+    def __add__(self, other: "Surface") -> "Surface":
         """Both together."""
         moved = tuple(tuple(i + len(self.points) for i in face) for face in other.faces)
         points = np.concatenate([self.points, other.points])
         return Surface(points, self.faces + moved, self.made_of + other.made_of)
 
-    def moved(self, by: Floats) -> Surface:
+    def moved(self, by: Floats) -> "Surface":
         """The same somewhere else."""
         return Surface(self.points + by, self.faces, self.made_of)
 

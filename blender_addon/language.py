@@ -6,8 +6,6 @@ Sentences, messages, files and the review page are English: a text without a tra
 as it is.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 from functools import cache

@@ -1,7 +1,5 @@
 """The extension's preferences and assets: the library of sensors, and the example."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import bpy

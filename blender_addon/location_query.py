@@ -4,8 +4,6 @@ It is kept here and not in a property: an answer is not part of the user's work.
 idle after a change, the location is queried again.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import bpy

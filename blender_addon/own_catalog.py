@@ -1,7 +1,5 @@
 """Sensors of the user's own in the catalogue, from a file that the preferences name."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import bpy

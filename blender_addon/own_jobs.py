@@ -1,7 +1,5 @@
 """Jobs of the add-on's own, which the engine's process runs: exports, and scores of variants."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial

@@ -1,7 +1,5 @@
 """The extension's preferences, as Blender stores and draws them."""
 
-from __future__ import annotations
-
 import bpy
 
 from . import library, own_catalog, signals

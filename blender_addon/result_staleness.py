@@ -6,8 +6,6 @@ is shown: going to that frame would lose a pose without a key. So the scene as d
 and counts until something changes in the state that is shown.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -5,8 +5,6 @@ large. A script may call an operator before Blender has noted what the script di
 sensors themselves (`bridge.sensor_objects`).
 """
 
-from __future__ import annotations
-
 import bpy
 
 from . import bridge

@@ -4,8 +4,6 @@ A kind that the engine has and this table has not takes the row `OTHER`: without
 here its sensors are added, placed, defined by a file of their own, searched and shown.
 """
 
-from __future__ import annotations
-
 import math
 import zlib
 from collections.abc import Callable

@@ -4,8 +4,6 @@ Blender's own message bus tells nothing of properties inside a group, and nothin
 sets: so each property emits a signal itself, by its update callback.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 Listener = Callable[[], None]

@@ -5,8 +5,6 @@ word, its translation wins, be it of another meaning: "Range" of numbers, or "Ke
 No catalogue but ours has this context.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from inspect import get_annotations
 from typing import Any, get_type_hints

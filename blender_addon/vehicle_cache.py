@@ -4,8 +4,6 @@ Reading takes a tenth of a second for half a million triangles: too long for eac
 Changes are found in Blender's own updates, moved vertices included.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 from collections.abc import Hashable

@@ -3,8 +3,6 @@
 A layer's settings stand below its switch, `show_` and its name. See `pe_core.base.setting`.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -221,8 +219,7 @@ class LiveSettings:
     on: bool = _switch(
         False,
         "Live",
-        "Update a score while a sensor moves: a preview at once, an exact score when the scene is "
-        "idle, on a sample of voxels. Score evaluates all voxels",
+        "Update a score, on a sample of voxels, while a sensor moves. Score evaluates all voxels",
     )
     against: int = _value(
         BEFORE_MOVE, studies.Whole(0), "Compared With",

@@ -6,8 +6,6 @@ releases it; a plate that is drawn later in the same redraw is put above it. Box
 by region; no object of Blender's is held.
 """
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Callable, Iterator, Sequence
 from typing import Protocol

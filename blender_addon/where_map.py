@@ -3,8 +3,6 @@
 They are kept here and not in a property: they are not part of the user's work.
 """
 
-from __future__ import annotations
-
 from . import signals
 from .engine import jobs
 

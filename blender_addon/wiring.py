@@ -5,8 +5,6 @@ the order that is written here. Caches are invalidated first, as what follows re
 are counted before the live score, which compares the counts, follows them.
 """
 
-from __future__ import annotations
-
 import traceback
 from collections.abc import Callable
 

@@ -5,8 +5,6 @@ excluded from the view layers, so Blender neither draws nor evaluates them, and 
 them. Their settings, housings and animations stay unchanged.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 import bpy

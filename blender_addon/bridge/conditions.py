@@ -6,8 +6,6 @@ and sensors, rounded as placements are. The engine moves the vehicle by these mo
 without Blender alike, so the front ends agree to the bit.
 """
 
-from __future__ import annotations
-
 import contextlib
 import json
 import math

@@ -1,7 +1,5 @@
 """Fingerprint of a scene: shows whether a stored result is still valid for the scene."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -38,7 +36,7 @@ class Fingerprint:
         """The text that is stored with a variant's score: everything but its sensors."""
         return hashlib.sha256(self.rest.encode()).hexdigest()
 
-    def with_rig(self, rig: pe.Rig) -> Fingerprint:
+    def with_rig(self, rig: pe.Rig) -> "Fingerprint":
         """Return the fingerprint of the same scene with its sensors placed as in a rig."""
         placed = {s.name: _placed(self.sensors[s.name], s.pose) for s in rig}
         return replace(self, sensors={**self.sensors, **placed})

@@ -3,8 +3,6 @@
 A comparison of the imported study with the study of the scene finds what the scene cannot hold.
 """
 
-from __future__ import annotations
-
 import contextlib
 import math
 from collections.abc import Mapping
@@ -22,7 +20,13 @@ from .conditions import write_conditions
 from .prior import write_prior
 from .requirements import write_requirements
 from .rig import place_at, view_layer_of
-from .scene_record import SceneRecord, study_from_scene, vehicle_of_scene, write_options
+from .scene_record import (
+    SceneRecord,
+    as_in_study,
+    study_from_scene,
+    vehicle_of_scene,
+    write_options,
+)
 from .scene_settings import write_goals, write_passthrough, write_reference, write_values
 from .sensor_records import NO_BOUNDS, ZEROS, ModelOption, SensorRecord
 from .time import write_time
@@ -79,24 +83,11 @@ def record_of_study(study: pe.Study) -> SceneRecord:
     return SceneRecord(
         source="study",
         sensors=_sensor_records(study),
-        vehicle=study.vehicle,
-        space=study.space,
-        prior=study.prior,
-        model=study.model,
-        targets=study.targets,
-        samples=study.samples,
-        returns=study.returns,
         search=replace(study.search, free={}, limits={}, mounting=pe.Mounting(), goals=goals),
         mounts=mounting.mounts,
         constraints=mounting.constraints,
         selection=replace(study.selection, choices=()),
-        reference=study.reference,
-        passthrough=study.passthrough,
-        requirements=study.requirements,
-        conditions=study.conditions,
-        frames=study.frames,
-        confirmation=study.confirmation,
-        stories=study.stories,
+        **as_in_study(study),
     )
 
 

@@ -1,7 +1,5 @@
 """Copies of sensors: mirror images, linked pairs that stay so, and duplicates made in Blender."""
 
-from __future__ import annotations
-
 import contextlib
 import math
 import re

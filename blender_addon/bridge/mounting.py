@@ -4,8 +4,6 @@ A mount's faces are those of parts, or painted. The faces and boxes that the 3D 
 are computed here, too.
 """
 
-from __future__ import annotations
-
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TypeAlias

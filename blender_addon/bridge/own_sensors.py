@@ -3,8 +3,6 @@
 A camera's lens is stored as one line of text, with the keys of a study file.
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Mapping
 from typing import Any

@@ -1,7 +1,5 @@
 """The scene's prior with its focus weights w(s, c): regions and classes that count more."""
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Iterator, Sequence
 from dataclasses import replace

@@ -4,8 +4,6 @@ The properties of a row that the panel shows are read from the table and written
 is one copy of each value.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy

@@ -3,8 +3,6 @@
 A scene keeps figures and codes; texts are made when they are asked for.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass

@@ -1,7 +1,5 @@
 """Sensors: read objects of the scene as the engine's rig, and write the poses of a rig to them."""
 
-from __future__ import annotations
-
 import contextlib
 import math
 from collections.abc import Callable, Mapping, Sequence

@@ -6,10 +6,9 @@ those of a variant (`variants.study_of_variant`), or with any rig (`study_of_rig
 imported study (`loading.record_of_study`). `study_of` converts each of them to a `Study`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 from bpy.types import Collection, Depsgraph, Object, PropertyGroup, Scene
 
@@ -180,24 +179,17 @@ def study_of(record: SceneRecord) -> pe.Study:
     )
     return pe.Study(
         rig,
-        record.vehicle,
-        record.space,
-        prior=record.prior,
-        model=record.model,
         search=search_of_rig,
-        samples=record.samples,
-        returns=record.returns,
         mesh=studies.MESH,  # the name the mesh gets beside a study: part of what is reported
-        reference=record.reference,
         selection=selection_of(counted, record.selection),
-        passthrough=record.passthrough,
-        targets=record.targets,
-        requirements=record.requirements,
-        conditions=record.conditions,
-        frames=record.frames,
-        confirmation=record.confirmation,
-        stories=record.stories,
+        **as_in_study(record),
     )
+
+
+def as_in_study(given: SceneRecord | pe.Study) -> dict[str, Any]:
+    """Return by name the values that a record and a study have alike."""
+    names = {f.name for f in fields(SceneRecord)} & {f.name for f in fields(pe.Study)}
+    return {name: getattr(given, name) for name in names - {"search", "selection"}}
 
 
 def _limits(

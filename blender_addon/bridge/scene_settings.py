@@ -4,8 +4,6 @@ Numbers and switches follow the engine's declarations (`Setting.panel` names the
 that a scene stores in a different form than a study file have separate functions here.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Goals of a search that depend on a scene's sensors and variants: what stays, further starts."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Colours of a scene's sensors: each new sensor gets a tint of its kind, and keeps it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from bpy.types import Object, Scene

@@ -4,8 +4,6 @@ A scene is read into records, a variant stores records, and an imported study is
 records. `scene_record.study_of` makes a study from records only.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterable, Sequence

@@ -1,7 +1,5 @@
 """Time in a scene: frames, how tracks are confirmed, and stories, a row each."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Mapping, Sequence

@@ -4,8 +4,6 @@ A lock fixes an axis in a search. An animation, a driver or a constraint defines
 so that a search of that sensor is impossible.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from typing import cast
 

@@ -1,7 +1,5 @@
 """Results of variants: their stored scores and key figures, and the designs of a search."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress

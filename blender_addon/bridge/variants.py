@@ -1,7 +1,5 @@
 """Variants of a scene: find, store and apply them, and convert them to studies."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The vehicle: the visible solid objects of a collection as triangles of named parts, and back."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 

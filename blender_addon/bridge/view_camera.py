@@ -1,7 +1,5 @@
 """View cameras: a camera of Blender as the child of a camera sensor, with its field of view."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Sequence

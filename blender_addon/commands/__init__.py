@@ -3,8 +3,6 @@
 Options, progress, files and exit statuses are those of the command ``pe``.
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import shlex

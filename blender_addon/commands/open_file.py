@@ -1,7 +1,5 @@
 """The open .blend file on the command line: study, streams, artifacts that only Blender writes."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import signal

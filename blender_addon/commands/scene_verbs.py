@@ -1,7 +1,5 @@
 """Verbs of the scene and of its variants: what each does with the open file."""
 
-from __future__ import annotations
-
 import argparse
 import json
 from collections.abc import Sequence

@@ -5,18 +5,12 @@ with, `background_figures` requests their key figures, `readout_text` puts all o
 and `readout` draws that in a corner of the 3D view.
 """
 
-from __future__ import annotations
-
 import bpy
 
 from ..engine import advice
 from . import background_figures, readout, session
 from .readout_text import ARROW, BETTER, SAME, SENSE_ICONS, WORSE, change_text
 from .state import FinishedScore, ShownScore, live_state, shown_score
-
-__all__ = ["ARROW", "BETTER", "SAME", "SENSE_ICONS", "WORSE", "FinishedScore", "ShownScore"]
-__all__ += ["built_lines", "change_text", "live_state", "register", "shown_score"]
-__all__ += ["told_figures", "unregister"]
 
 
 def built_lines(scene: bpy.types.Scene) -> list[str]:

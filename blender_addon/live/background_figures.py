@@ -3,8 +3,6 @@
 They are requested once the scene is idle. Figures of a rig are computed once.
 """
 
-from __future__ import annotations
-
 from collections.abc import Hashable
 from functools import partial
 

@@ -4,8 +4,6 @@ It is drawn clear of the toolbar and of the panel of the last operation; Blender
 the top.
 """
 
-from __future__ import annotations
-
 import textwrap
 from typing import NamedTuple
 

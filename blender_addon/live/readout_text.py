@@ -1,7 +1,5 @@
 """The live score as text for the read-out and the panel: plain data in, text out, no Blender."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -50,7 +48,7 @@ class ReadoutText(NamedTuple):
 
 
 def readout_of(score: LiveScore | None, shown: ShownScore) -> ReadoutText:
-    """Return the text of the score that is shown: a preview, an exact or a stored one.
+    """Return the text of the score that is shown: a live or a stored one.
 
     Changes are those of the live score, from sample to sample; of a stored search, its own.
     """
@@ -76,8 +74,8 @@ def readout_of(score: LiveScore | None, shown: ShownScore) -> ReadoutText:
 
 
 def state_of(shown: ShownScore) -> str:
-    """Return a score's error, and what it is of: the idle scene, a preview, a stored result."""
-    state = "as scored" if shown.stored else "exact" if shown.exact else "preview"
+    """Return a score's error, and what it is of: the scene now, one that moves, a stored result."""
+    state = "as scored" if shown.stored else "exact" if shown.exact else "moving"
     if shown.state:
         state += f", state {shown.state}"
     if shown.view_outdated:

@@ -1,11 +1,9 @@
-"""Requests live scores: an exact one once the scene is idle, a preview of each move before.
+"""Requests live scores: of each move, and once the scene is idle.
 
 A request is read inside Blender's own update, which costs a fraction of a millisecond, and scored
 by the engine's process at once, while Blender draws; only the latest request waits. The score is
 stored between two redraws: panel and read-out show the same one.
 """
-
-from __future__ import annotations
 
 from functools import partial
 
@@ -73,7 +71,7 @@ def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, mov
     name, state = scene.name, live_state(scene.name)
     number = state.next_request()
     try:
-        request = read_request(scene, depsgraph, moving=moving)
+        request = read_request(scene, depsgraph)
     except pe.InputError as error:
         show_note(name, str(error))
         return
@@ -83,9 +81,9 @@ def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, mov
         state.before_move = None  # entropies under two priors cannot be compared
     counts = change_events.change_count(), vehicle_cache.shared.version
     state.last_read = LastRead(*counts, request.prior_key, request.rig, request.problem.key)
-    baseline = baseline_of(scene, request)
+    baseline = baseline_of(scene, request, moving)
     needed = None if baseline is None or moving or baseline.summary else baseline.rig
-    deliver = partial(take_score, name, request, number, baseline)
+    deliver = partial(take_score, name, request, number, baseline, moving)
     fail = partial(report_failure, name)
     topic, given = engine_process.LIVE_SCORE + name, (name, request, needed)
     lane = engine_process.FOLLOWS_MOUSE
@@ -94,9 +92,7 @@ def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, mov
         background_figures.request(scene, request, baseline)
 
 
-def read_request(
-    scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, moving: bool
-) -> ScoreRequest:
+def read_request(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> ScoreRequest:
     """Read what the score needs of a scene; the vehicle only if it has changed.
 
     `InputError` when something in the scene is wrong: one line.
@@ -116,18 +112,22 @@ def read_request(
     targets = bridge.targets_of(settings)
     problem_key = prior_key, vehicle_key, space, model, targets
     problem = Problem(problem_key, prior, vehicle, space, model, targets)
-    return ScoreRequest(problem, rig, (prior_key, space, model, targets), moving)
+    return ScoreRequest(problem, rig, (prior_key, space, model, targets))
 
 
 def take_score(
-    name: str, request: ScoreRequest, number: int, baseline: Baseline | None, scored: ScoredRig
+    name: str,
+    request: ScoreRequest,
+    number: int,
+    baseline: Baseline | None,
+    moving: bool,
+    scored: ScoredRig,
 ) -> None:
     """Store a score that the engine made, and have it drawn."""
     state, problem = live_state(name), request.problem.key
     if baseline is not None and scored.baseline is not None:
         baseline.summary = scored.baseline
-    is_exact = not request.moving
-    state.put(LiveScore(scored.summary, baseline, is_exact, request.rig, number, problem))
+    state.put(LiveScore(scored.summary, baseline, not moving, request.rig, number, problem))
     signals.live_score_changed.emit()
 
 
@@ -206,25 +206,21 @@ def note_move(state: LiveState, operator: int, now: pe.Rig | None) -> None:
         return
     state.operator = operator
     exact, summary = state.exact, None
-    if (
-        exact is not None
-        and exact.problem == last.problem
-        and rig_key(exact.rig) == rig_key(last.rig)
-    ):
+    if exact and exact.problem == last.problem and rig_key(exact.rig) == rig_key(last.rig):
         summary = exact.summary
     if operator or summary is not None:  # otherwise a field is dragged, or typed in several times
         rig = None if now is None else last.rig
         state.before_move = Baseline(MOVE_LABEL, rig, summary)
 
 
-def baseline_of(scene: bpy.types.Scene, request: ScoreRequest) -> Baseline | None:
+def baseline_of(scene: bpy.types.Scene, request: ScoreRequest, moving: bool) -> Baseline | None:
     """Return what a scene is compared with, as its settings choose; None where nothing is yet.
 
     A variant is read again whenever the scene is idle; while sensors move it stays what it was.
     """
     state, choice = live_state(scene.name), scene.perception_entropy.live.against
     chosen = state.chosen
-    if chosen is not None and request.moving and chosen[0][:2] == (choice, request.problem.key):
+    if chosen is not None and moving and chosen[0][:2] == (choice, request.problem.key):
         return chosen[1]
     rig_and_label = _chosen_rig(scene, choice)
     if rig_and_label is None:

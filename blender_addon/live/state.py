@@ -3,8 +3,6 @@
 A state is made when its scene is first asked for. It holds no object of Blender's.
 """
 
-from __future__ import annotations
-
 from collections.abc import Hashable
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -43,8 +41,7 @@ class FinishedScore:
 class LiveScore:
     """The score of a rig by request `number` of its scene.
 
-    `exact`: it is no preview, but that of every front end, to the last bit. `problem` identifies
-    vehicle, prior, space and settings.
+    `exact`: the scene is idle. `problem` identifies vehicle, prior, space and settings.
     """
 
     summary: pe.Score
@@ -81,7 +78,7 @@ class LiveState:
     """The last score that was finished in this session, its ground map included."""
     score: LiveScore | None = None
     exact: LiveScore | None = None
-    """The latest score, and the latest exact one of the idle scene."""
+    """The latest score, and the latest one of the idle scene."""
     note: str = ""
     """Why there is no newer score, in one line; empty when there is one, or soon will be."""
     requests: int = 0
@@ -111,7 +108,7 @@ class LiveState:
             self.exact = score
 
     def is_current(self, score: LiveScore) -> bool:
-        """Whether a score is the exact one of the scene as it is now; otherwise it is a preview."""
+        """Whether a score is of the idle scene as it is now."""
         return score.exact and score.number == self.requests
 
     def switch_off(self) -> None:
@@ -133,9 +130,9 @@ def live_state(scene_name: str) -> LiveState:
 class ShownScore(NamedTuple):
     """The one score that panel and read-out show; entropy and standard error in nats.
 
-    `exact`: it is of the scene as it is now; otherwise it is a preview. `stored`: it is the stored
-    result. `view_outdated`: beams and maps are still those of before the last move. `state` is the
-    vehicle's; empty: as drawn. `before` is the entropy before the search whose result is stored.
+    `exact`: it is of the scene as it is now. `stored`: it is the stored result. `view_outdated`:
+    beams and maps are still those of before the last move. `state` is the vehicle's; empty: as
+    drawn. `before` is the entropy before the search whose result is stored.
     """
 
     entropy: float

@@ -28,12 +28,6 @@ from .imports import menu_of_rigs
 from .panel_rows import reference_label
 from .requirements import ShownVerdict, shown_verdicts
 
-__all__ = ["CLASSES", "FIX_LABELS", "Offer", "ShownVerdict"]
-__all__ += ["compare_variants", "conditions", "edit_sensors", "exports", "first_steps"]
-__all__ += ["known_rigs", "look_through", "menu_of_rigs", "models", "mounts", "offers"]
-__all__ += ["place_sensor", "reference_label", "register", "running_job"]
-__all__ += ["shown_verdicts", "unregister", "upright", "variants", "where"]
-
 
 def register() -> None:
     """Add keys, draw handlers and listeners of operators."""

@@ -1,7 +1,5 @@
 """Add a sensor of the catalogue: the menus' entries, and the location of a new sensor."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any

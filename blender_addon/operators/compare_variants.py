@@ -1,7 +1,5 @@
 """Compare variants: score those without a valid score in one job, then show a table."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from textwrap import wrap
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """States, weathers and stories in the panel: add, remove; show a state, read its motions again."""
 
-from __future__ import annotations
-
 import bpy
 from bpy.props import EnumProperty, IntProperty
 

@@ -3,8 +3,6 @@
 A report is one line in the status bar, whatever the input was.
 """
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable
 from dataclasses import dataclass

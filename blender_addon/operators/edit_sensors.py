@@ -1,7 +1,5 @@
 """Operators on sensors that exist: select, show or hide, mirror, apply the scale."""
 
-from __future__ import annotations
-
 import bpy
 from bpy.props import BoolProperty, StringProperty
 from mathutils import Matrix

@@ -4,8 +4,6 @@ What takes long is a job, whose files are written as one set at the end. A file
 dialog's operator ends with it: the job then runs in an operator of its own.
 """
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import fields

@@ -1,7 +1,5 @@
 """The first steps in an empty tab: choose the vehicle from what is selected, or open an example."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Fix the cause of a warning, if there is a known fix: turn, move or scale the vehicle, ..."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable
 

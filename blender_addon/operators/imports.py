@@ -4,8 +4,6 @@ Sensors replace those of the scene and become a variant; sensors that were no va
 as one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import bpy

@@ -6,8 +6,6 @@ LiDAR's ranges. Blender's camera has no distortion: for a lens with distortion, 
 pinhole view of *Look Through*.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Hashable
 from functools import partial

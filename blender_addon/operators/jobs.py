@@ -4,8 +4,6 @@ A row says what to make from the scene and what to do with the result. Esc stops
 the best so far; Esc once more discards all changes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
@@ -74,7 +72,7 @@ class JobRow:
     of_scene: bool = True
     """Whether the result belongs to the scene, and is discarded with it."""
 
-    def declare(self) -> JobRow:
+    def declare(self) -> "JobRow":
         """Make the operator of the row."""
         given = {
             "__doc__": self.about,

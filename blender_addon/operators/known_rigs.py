@@ -1,7 +1,5 @@
 """What a good score is: that of the known rigs on the same body, in the background."""
 
-from __future__ import annotations
-
 import json
 
 import bpy

@@ -4,8 +4,6 @@ While a view shows what a camera sees, Blender overwrites its rotation, and lose
 orthographic. The states of views are kept here: undo would take them away from the scene.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import bpy

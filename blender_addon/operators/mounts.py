@@ -1,7 +1,5 @@
 """Mounts: rows of the panel's list, their faces, and sensors that are put on them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import bpy

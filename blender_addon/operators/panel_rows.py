@@ -1,7 +1,5 @@
 """Operators on rows of the panel: focus, own sensors, AP curves, models, axles, view settings."""
 
-from __future__ import annotations
-
 import math
 from itertools import count
 

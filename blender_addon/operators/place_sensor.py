@@ -1,7 +1,5 @@
 """Add a sensor by pointing: it stands on the surface under the mouse, a click places it there."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

@@ -4,8 +4,6 @@ Its state is in this module, not in the scene: the file does not change before i
 picture is drawn from arrays and lines of text. The engine computes the score on a small sample.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from itertools import count

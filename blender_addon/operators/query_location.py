@@ -1,7 +1,5 @@
 """Query a location: click the ground or any surface to see which sensors see it, and why not."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Requirements in the panel: add a preset or an own one, remove, order."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import bpy

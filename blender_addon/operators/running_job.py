@@ -3,8 +3,6 @@
 It is kept here and not in a property: undo would restore an old value of a property.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator
 from typing import Any, cast

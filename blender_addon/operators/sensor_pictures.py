@@ -1,7 +1,5 @@
 """Pictures of what sensors see: textures for a corner of the 3D view."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, NamedTuple
 

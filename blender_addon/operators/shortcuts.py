@@ -1,7 +1,5 @@
 """Keys of the extension in 3D views; Blender's preferences list them, and can change them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import bpy

@@ -1,7 +1,5 @@
 """A spot on the vehicle's surface under the mouse, and the pose of a sensor on it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -87,12 +85,12 @@ class Stance:
     yaw_deg: float = 0.0
     pitch_deg: float = 0.0
 
-    def changed(self, by_m: float) -> Stance:
+    def changed(self, by_m: float) -> "Stance":
         """Return the stance with a changed distance, clipped to the allowed range."""
         nearer = min(max(self.stand_off_m + by_m, MIN_STAND_OFF_M), MAX_STAND_OFF_M)
         return replace(self, stand_off_m=round(nearer, POSITION_DECIMALS))
 
-    def turned(self, yaw_deg: float, pitch_deg: float) -> Stance:
+    def turned(self, yaw_deg: float, pitch_deg: float) -> "Stance":
         """Return the stance, turned further by these angles."""
         yaw = (self.yaw_deg + yaw_deg + 180.0) % 360.0 - 180.0
         pitch = min(max(self.pitch_deg + pitch_deg, -MAX_PITCH_DEG), MAX_PITCH_DEG)

@@ -5,8 +5,6 @@ camera on a tailgate would look along the tailgate. A dropped sensor is turned a
 by the next timer; undo of the drop takes both back.
 """
 
-from __future__ import annotations
-
 import bpy
 import numpy as np
 from mathutils import Matrix, Vector

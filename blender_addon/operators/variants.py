@@ -1,7 +1,5 @@
 """Operators of variants: save, update, switch, duplicate, delete, show as a ghost."""
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,5 @@
 """*Where?*: one more sensor scored all over the body, and put where one clicks."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Shapes on the graphics card: what is drawn of a layer, or around a sensor."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import bpy
@@ -27,7 +25,7 @@ class Batches:
     sheet: gpu.types.GPUBatch | None
 
     @classmethod
-    def of(cls, shape: graphics.LayerShape) -> Batches:
+    def of(cls, shape: graphics.LayerShape) -> "Batches":
         """Upload a shape."""
         wide = shader("POLYLINE_SMOOTH_COLOR")
         sorts = (shape.lines, shape.through, shape.thin)

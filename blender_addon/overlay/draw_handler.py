@@ -3,8 +3,6 @@
 Nothing is read, cast or computed here: a redraw takes what is ready.
 """
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Iterator
 from dataclasses import replace

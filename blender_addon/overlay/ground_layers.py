@@ -69,9 +69,7 @@ def step_of(space: pe.PerceptionSpace, *, moving: bool) -> float:
 def _ground_sight(request: ViewRequest, cache: LayerCache, rig: pe.Rig) -> sight.GroundSight:
     assert request.space is not None  # the layer has no key without one
     step = step_of(request.space, moving=request.moving)
-    return cache.sight(request).ground(
-        rig, request.view.ground_height_m, step, preview=request.moving
-    )
+    return cache.sight(request).ground(rig, request.view.ground_height_m, step)
 
 
 def _difference(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:

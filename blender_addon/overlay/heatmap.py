@@ -1,7 +1,5 @@
 """Heat map of occluded beams: hits per area, as tiles on the vehicle's surface."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -70,7 +68,7 @@ class _Tiles:
         self.points, self.normals, self.density = points, normals, density
 
     @classmethod
-    def of(cls, points: Floats, normals: Floats, weight: Floats) -> _Tiles:
+    def of(cls, points: Floats, normals: Floats, weight: Floats) -> "_Tiles":
         """Sort hits (N, 3) into squares perpendicular to the axis nearest to the surface's normal.
 
         `weight` (N,) is the number of beams that each hit represents.
@@ -111,7 +109,7 @@ class _Cells:
     steps: Ints
 
     @classmethod
-    def among(cls, corners: Ints) -> tuple[_Cells, Ints]:
+    def among(cls, corners: Ints) -> "tuple[_Cells, Ints]":
         """Return the cells that occur in (N, 4), and the cell (N,) of each row."""
         low = corners.min(axis=0) - 1
         sides = corners.max(axis=0) - low + 2

@@ -1,7 +1,5 @@
 """Text of the overlay: labels at positions in the 3D view, and legends beside the vehicle."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import bpy

@@ -3,8 +3,6 @@
 Plain data, no scene and no GPU. `shown` belongs to the main thread, a `LayerCache` to one thread.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar

@@ -1,11 +1,9 @@
 """The table of layers: a row a layer, in the order in which they are drawn."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,9 +85,7 @@ def _ground(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.Lay
 
 def _blind(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
     height = request.view.blind_height_m
-    found = cache.sight(request).blind(
-        _counted_rig(request), height, within=BLIND_WITHIN_M, preview=request.moving
-    )
+    found = cache.sight(request).blind(_counted_rig(request), height, within=BLIND_WITHIN_M)
     body = None if request.vehicle is None else request.vehicle.bounds
     return ground_layers.blind_ground(found, body, height)
 
@@ -106,11 +102,7 @@ def _reach(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.Laye
     known = request.prior.class_names
     of = view.reach_class if view.reach_class in known else known[0]
     found = cache.sight(request).reach(
-        _counted_rig(request),
-        of,
-        ap=ground_layers.REACH_AP,
-        bearings=ground_layers.BEARINGS,
-        preview=request.moving,
+        _counted_rig(request), of, ap=ground_layers.REACH_AP, bearings=ground_layers.BEARINGS
     )
     whole = ground_layers.reach_of_rig(found)
     if view.reach_of == RIG:
@@ -359,28 +351,13 @@ def _front(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.Lay
     return front_arrow(request.vehicle)
 
 
+ZONES: dict[str, Any] = {"on_ground": True, "edged": True}
 LAYERS = (
     Layer("ground", "Ground Map", _ground_keys, _ground, rough=True, on_ground=True),
+    Layer("blind", "Blind Ground", _rig_keys("blind_height"), _blind, 1.6, **ZONES),
+    Layer("reach", "Reach", _reach_keys, _reach, 2.2, **ZONES),
     Layer(
-        "blind",
-        "Blind Ground",
-        _rig_keys("blind_height", prior=True),
-        _blind,
-        1.6,
-        rough=True,
-        on_ground=True,
-        edged=True,
-    ),
-    Layer("reach", "Reach", _reach_keys, _reach, 2.2, rough=True, on_ground=True, edged=True),
-    Layer(
-        "requirements",
-        "Requirements",
-        _requirement_keys,
-        _requirements,
-        1.6,
-        rough=True,
-        on_ground=True,
-        edged=True,
+        "requirements", "Requirements", _requirement_keys, _requirements, 1.6, rough=True, **ZONES
     ),
     Layer("where", "Where?", _where_keys, _where, on_ground=True),
     Layer("mounts", "Mounts", _mount_keys, _mounts, 1.4, edged=True),

@@ -1,7 +1,5 @@
 """The body in the colours of the figure that a rig would have with one more sensor there."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -19,7 +17,7 @@ GREY: graphics.Rgba = (*graphics.FORBIDDEN, 1.0)
 MARK = (1.0, 1.0, 1.0, 0.95)
 
 
-def place_colors(found: jobs.PlaceMap, sensors: Sequence[pe.Sensor]) -> graphics.LayerShape:
+def place_colors(found: "jobs.PlaceMap", sensors: "Sequence[pe.Sensor]") -> graphics.LayerShape:
     """Return the surface in colours, bright is good, with the best place named.
 
     `sensors` are those of the scene: where they are not those that were scored with, the legend
@@ -52,7 +50,7 @@ def place_colors(found: jobs.PlaceMap, sensors: Sequence[pe.Sensor]) -> graphics
     return graphics.LayerShape(faces=faces, labels=tuple(labels), legend=legend)
 
 
-def _state(found: jobs.PlaceMap, sensors: Sequence[pe.Sensor]) -> str:
+def _state(found: "jobs.PlaceMap", sensors: "Sequence[pe.Sensor]") -> str:
     """Return how far the places are, how sure they are, or that they are of before a change."""
     if {(s.name, s.pose) for s in sensors} != {(s.name, s.pose) for s in found.rig}:
         return " (before the last change)"

@@ -1,7 +1,5 @@
 """Regions as boxes and tinted surfaces: mounts, bounds, no-go areas, focus; no scene, no GPU."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -26,7 +24,9 @@ LIFT_M = 0.003
 """Distance of the tint from the surface, on both sides: it would flicker in it."""
 
 
-def mount_regions(several: Sequence[MountFaces], boxes: Sequence[LimitBox]) -> graphics.LayerShape:
+def mount_regions(
+    several: "Sequence[MountFaces]", boxes: "Sequence[LimitBox]"
+) -> graphics.LayerShape:
     """Return the tint of surfaces with their rims, and boxes."""
     faces, lines, classes = [], [], []
     for each in several:
@@ -100,7 +100,9 @@ MORE_COLOR: graphics.Rgba = (0.98, 0.82, 0.30, 0.90)
 LESS_COLOR: graphics.Rgba = (0.62, 0.66, 0.74, 0.90)
 
 
-def focus_regions(regions: Sequence[FocusRegion], space: pe.PerceptionSpace) -> graphics.LayerShape:
+def focus_regions(
+    regions: "Sequence[FocusRegion]", space: "pe.PerceptionSpace"
+) -> graphics.LayerShape:
     """Return an outlined box for each area of each focus, cut to the space, with its label."""
     lines, labels = [], []
     for number, region in enumerate(regions):
@@ -125,7 +127,7 @@ def focus_regions(regions: Sequence[FocusRegion], space: pe.PerceptionSpace) -> 
     )
 
 
-def _classes(regions: Sequence[FocusRegion]) -> tuple[tuple[graphics.Rgba, str], ...]:
+def _classes(regions: "Sequence[FocusRegion]") -> tuple[tuple[graphics.Rgba, str], ...]:
     rows = ((MORE_COLOR, "counts more", True), (LESS_COLOR, "counts less", False))
     kinds = {region.factor >= 1.0 for region in regions}
     return tuple((color, text) for color, text, more in rows if more in kinds)

@@ -1,7 +1,5 @@
 """Zones of requirements in the 3D view: filled where met, hatched where not; no scene, no GPU."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 

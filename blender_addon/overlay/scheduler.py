@@ -5,8 +5,6 @@ have changed. Results are stored in `layer_cache.shown`, and the views are redra
 there is no timer, and `update` does everything at once.
 """
 
-from __future__ import annotations
-
 from collections.abc import Hashable, Iterator, Mapping
 
 import bpy

@@ -1,7 +1,5 @@
 """Reads a scene into a request: the only part of the overlay that reads Blender's data."""
 
-from __future__ import annotations
-
 import contextlib
 import time
 from collections.abc import Hashable

@@ -1,7 +1,5 @@
 """The strip of a drive-by along the lower edge of the 3D view: AP over time, moments, a cursor."""
 
-from __future__ import annotations
-
 import bpy
 
 from .. import viewport

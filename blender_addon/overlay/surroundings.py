@@ -4,8 +4,6 @@ They are drawn over the view of a scene, hidden by what is nearer. The scene has
 nothing of it is scored, exported or rendered.
 """
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
 import gpu
@@ -30,13 +28,13 @@ def clear() -> None:
     _kept.clear()
 
 
-def labels_around(scene: bpy.types.Scene, eye: pe.Pose) -> tuple[graphics.Tag, ...]:
+def labels_around(scene: "bpy.types.Scene", eye: pe.Pose) -> tuple[graphics.Tag, ...]:
     """Return the names and distances of the test bodies around a sensor."""
     return _around(scene, eye)[0].bodies.labels
 
 
 def draw_around(
-    scene: bpy.types.Scene, eye: pe.Pose, area: DrawRegion, as_linear: bool = False
+    scene: "bpy.types.Scene", eye: pe.Pose, area: DrawRegion, as_linear: bool = False
 ) -> None:
     """Draw what is around a sensor, with the matrices of its picture.
 
@@ -59,7 +57,7 @@ def draw_around(
 
 
 def _around(
-    scene: bpy.types.Scene, eye: pe.Pose, as_linear: bool = False
+    scene: "bpy.types.Scene", eye: pe.Pose, as_linear: bool = False
 ) -> tuple[graphics.Surroundings, Batches, Batches]:
     vehicle = vehicle_cache.shared.last_read(scene.name)
 

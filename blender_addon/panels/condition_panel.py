@@ -1,7 +1,5 @@
 """Conditions: states and weathers, with scores under them; and stories of what moves."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

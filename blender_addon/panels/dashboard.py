@@ -1,7 +1,5 @@
 """The dashboard: what the sensors are decided by, what is wanted, and what *Optimize* keeps."""
 
-from __future__ import annotations
-
 from bpy.types import Context, Scene, UILayout
 
 from ..bridge import shown_state, wanted_of
@@ -37,7 +35,7 @@ def draw_dashboard(layout: UILayout, context: Context) -> None:
     column.active = live is not None or not settings.result_stale
     head, wanted = columns(column, 0.66)
     if live is not None:
-        draw_label(head, "Live" if live.exact else "Live: a preview", "REC")
+        draw_label(head, "Live" if live.exact else "Live: moving", "REC")
     elif result is None:
         draw_label(head, "Not scored yet", "BLANK1")
     elif settings.result_stale:

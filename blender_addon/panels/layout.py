@@ -1,7 +1,5 @@
 """Common parts of all panels: tab, columns, wrapped sentences, warnings, colour swatches."""
 
-from __future__ import annotations
-
 import re
 from bisect import bisect_left
 from collections.abc import Callable, Collection, Iterable

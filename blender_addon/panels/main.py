@@ -1,7 +1,5 @@
 """The tab's first panel, with vehicle, sensors, Score and Optimize; the last: Export and Import."""
 
-from __future__ import annotations
-
 import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 

@@ -1,7 +1,5 @@
 """Entries in Blender's own menus: Object, its right click, and the Outliner's; F3 searches them."""
 
-from __future__ import annotations
-
 import bpy
 from bpy.types import Context, UILayout
 

@@ -1,7 +1,5 @@
 """What is drawn in the 3D view: one popover in its header, beside Blender's own for overlays."""
 
-from __future__ import annotations
-
 from typing import Any, TypeAlias
 
 import bpy

@@ -1,7 +1,5 @@
 """Requirements: a list with verdicts, and the settings of the one that is selected."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from bpy.types import Context, PropertyGroup, UILayout

@@ -1,7 +1,5 @@
 """Details of a score: explanations, and figures by zone and class."""
 
-from __future__ import annotations
-
 from bpy.types import Context, PropertyGroup, UILayout
 
 from .. import location_query

@@ -1,7 +1,5 @@
 """What is scored: prior, targets, focus; and advanced settings: own sensors, AP curves, space."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from bpy.types import Context, PropertyGroup, UILayout

@@ -1,7 +1,5 @@
 """How to search: the method, mounts, constraints and tolerance."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from bpy.types import Context, PropertyGroup, UILayout

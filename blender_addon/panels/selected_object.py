@@ -1,7 +1,5 @@
 """Settings of the selected object: a sensor, or a part of the vehicle."""
 
-from __future__ import annotations
-
 from bpy.types import Context, Object, PropertyGroup, UILayout
 
 from ..bridge import holder_of

@@ -1,7 +1,5 @@
 """Sensors as lists: one with switches and models, one with what each sensor contributes."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from bpy.types import Context, Object, PropertyGroup, Scene, UILayout

@@ -1,7 +1,5 @@
 """The menu of the sensors to add: by kind, or by a search of the catalogue."""
 
-from __future__ import annotations
-
 import bpy
 from bpy.types import Context
 

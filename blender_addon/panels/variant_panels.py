@@ -1,7 +1,5 @@
 """Designs side by side: the variants of this vehicle, and the choice of sensors by price."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import bpy

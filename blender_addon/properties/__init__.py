@@ -3,8 +3,6 @@
 Here is what the user typed, and small summaries of the last result. Arrays live elsewhere.
 """
 
-from __future__ import annotations
-
 import bpy
 from bpy.props import PointerProperty
 
@@ -32,10 +30,6 @@ from .view import PE_LiveSettings, PE_ViewSettings
 
 VIEW_ROWS = rows_of(ViewSettings)
 """Fields of the settings of the 3D view, by property."""
-
-__all__ = ["AXIS_LABELS", "CLASSES", "DEFAULT_MODEL", "DEFAULT_REGION", "FREE_BY_DEFAULT", "ROWS"]
-__all__ += ["VIEW_ROWS", "DeclaredRow", "declared_rows"]
-__all__ += ["model_suggestions"]
 
 CLASSES = (
     PE_CurveSettings,

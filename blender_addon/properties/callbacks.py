@@ -1,7 +1,5 @@
 """Update callbacks of properties, and suggestions for their fields."""
 
-from __future__ import annotations
-
 import bpy
 from bpy.types import Context, PropertyGroup
 

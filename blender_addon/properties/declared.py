@@ -1,7 +1,5 @@
 """Blender properties of settings that the engine declares: name, tooltip, range, unit and menu."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from typing import Any, NamedTuple, cast
@@ -87,17 +85,10 @@ def group_of(
 ) -> Any:
     """Return a mixin of a property group: all settings of a dataclass that the panel shows.
 
-    Parameters
-    ----------
-    cls : dataclass
-    names : iterable of str
-        Only these settings; all by default.
-    prefix : str
-        Before the properties' names.
-    own : dict, optional
-        As of `property_of`, for single settings by their names.
-    **more
-        As of `property_of`, for each of them.
+    `names`: Only these settings; all by default.
+    `prefix`: Before the properties' names.
+    `own`: As of `property_of`, for single settings by their names.
+    `**more`: As of `property_of`, for each of them.
     """
     declared = studies.settings_of(cls)
     chosen = [declared[name] for name in names or declared]

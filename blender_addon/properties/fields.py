@@ -1,7 +1,5 @@
 """Properties that no setting of the engine declares, each with its label and its tooltip."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from bpy.props import (

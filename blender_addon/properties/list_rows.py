@@ -3,8 +3,6 @@
 Lists belong to the scene, those of offered models to a sensor.
 """
 
-from __future__ import annotations
-
 import json
 from typing import Any
 
@@ -105,7 +103,7 @@ def _free_name(row: PropertyGroup, rows: Any, usual: str) -> bool:
     return False
 
 
-def _mount_renamed(mount: PE_MountSettings, _context: Context) -> None:
+def _mount_renamed(mount: "PE_MountSettings", _context: Context) -> None:
     """Update callback of a mount's name: names are unique, and sensors follow a new name."""
     scene = mount.id_data
     if not _free_name(mount, scene.perception_entropy.mounts, "Mount"):
@@ -116,12 +114,12 @@ def _mount_renamed(mount: PE_MountSettings, _context: Context) -> None:
     mount.known_as = mount.name
 
 
-def _variant_renamed(variant: PE_Variant, _context: Context) -> None:
+def _variant_renamed(variant: "PE_Variant", _context: Context) -> None:
     """Update callback of a variant's name: names are unique and not empty."""
     _free_name(variant, variant.id_data.perception_entropy.variants, "Variant")
 
 
-def groups_of_vehicle(mount: PE_MountSettings, _context: Context, _typed: str) -> list[str]:
+def groups_of_vehicle(mount: "PE_MountSettings", _context: Context, _typed: str) -> list[str]:
     """Return the names of all vertex groups of the vehicle's meshes."""
     vehicle = mount.id_data.perception_entropy.vehicle
     objects = () if vehicle is None else vehicle.all_objects

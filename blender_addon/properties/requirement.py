@@ -4,8 +4,6 @@ What the engine declares is a field of its own. The shape of the zone and the bo
 the keys of a study file.
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable
 from copy import deepcopy

@@ -1,7 +1,5 @@
 """What is stored on the scene: the study's settings, and a small summary of the last result."""
 
-from __future__ import annotations
-
 import zlib
 from typing import Any
 

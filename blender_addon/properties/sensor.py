@@ -3,8 +3,6 @@
 A sensor's pose is its transform: the fields of the pose in the ground frame store nothing.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

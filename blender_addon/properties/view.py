@@ -1,7 +1,5 @@
 """Settings of the 3D view, and of the live score."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from bpy.types import Context, PropertyGroup

@@ -6,7 +6,3 @@ from .files import csv_text, decode_text, named_path, read_bytes, require_new, w
 from .recent_cache import RecentCache
 from .table_reader import Table, dump_json, dumps, parse_json
 from .values import Name, Number
-
-__all__ = ["Flags", "Floats", "Ints", "Name", "Number", "RecentCache", "Singles", "Table"]
-__all__ += ["available_bytes", "csv_text", "decode_text", "dump_json", "dumps", "named_path"]
-__all__ += ["parse_json", "read_bytes", "require_memory", "require_new", "write_bytes"]

@@ -2,8 +2,6 @@
 
 A value that was checked cannot change afterwards."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, NoReturn
 

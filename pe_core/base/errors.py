@@ -4,8 +4,6 @@ A message may quote any input, so a quote is cut short and kept on one line, wit
 escaped.
 """
 
-from __future__ import annotations
-
 import os
 import reprlib
 import sys
@@ -62,11 +60,11 @@ class InputError(ValueError):
     def __reduce__(self) -> tuple[object, ...]:
         return type(self), (self.source, self.field, self.expected, self._found_text)
 
-    def at(self, source: object) -> InputError:
+    def at(self, source: object) -> "InputError":
         """Return the same error with another source, such as the file of the value."""
         return InputError(source, self.field, self.expected, self.found)
 
-    def within(self, source: object, of: str = "") -> InputError:
+    def within(self, source: object, of: str = "") -> "InputError":
         """Return the same error with another source; `of`, else its own, goes before the field."""
         field = ": ".join(filter(None, (of or self.source, self.field)))
         return InputError(source, field, self.expected, self.found)
@@ -181,7 +179,7 @@ def available_bytes() -> int | None:
 def require_memory(source: object, field: str, needed: int) -> None:
     """Refuse work that needs more than the available memory.
 
-    `InputError` With the needed and the available memory.
+    `InputError` with the needed and the available memory.
     """
     available = available_bytes()
     if available is not None and needed > available:

@@ -5,8 +5,6 @@ anybody's file. Such a text gets an apostrophe in front (OWASP, "CSV injection")
 take it off again.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import math
@@ -95,13 +93,8 @@ def require_new(path: Path, *, replace: bool, inputs: Iterable[Path] = ()) -> No
     Whatever has the name counts, a link that leads nowhere, too. (A folder of results has
     `FileSet`, which also replaces what this program wrote there.)
 
-    Parameters
-    ----------
-    path : path
-    replace : bool
-        Whether the user has agreed to replace a file of that name.
-    inputs : iterable of path
-        Files that the output is made from; none of them is ever replaced.
+    `replace`: Whether the user has agreed to replace a file of that name.
+    `inputs`: Files that the output is made from; none of them is ever replaced.
 
     `InputError` when there is something of that name, or it is an input.
     """
@@ -340,11 +333,7 @@ def numbered_lines(text: str) -> list[tuple[int, str]]:
 def csv_text(rows: Iterable[Iterable[object]], *, quote_texts: bool = False) -> str:
     """Return rows as CSV: None is an empty cell, texts that look like formulas are marked.
 
-    Parameters
-    ----------
-    rows : iterable of iterable
-    quote_texts : bool
-        Whether every text is in quotes, not only those that need them.
+    `quote_texts`: Whether every text is in quotes, not only those that need them.
     """
     text = io.StringIO()
     if quote_texts:

@@ -1,7 +1,5 @@
 """What consoles and notebooks show of a value: one short line, a table, a pandas data frame."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from html import escape
@@ -94,10 +92,7 @@ class Tabular(ShortRepr):
     def to_pandas(self) -> Any:
         """Return the table as a `pandas.DataFrame`, a row a part, units in the names of columns.
 
-        Raises
-        ------
-        InputError
-            When pandas is not installed: the extra ``notebook`` brings it.
+        `InputError` when pandas is not installed: the extra ``notebook`` brings it.
         """
         return required_package("pandas").DataFrame(self._rows())
 

@@ -6,8 +6,6 @@ plugin is foreign code: a library may be missing, it may fail, or return a wrong
 becomes an `InputError` that names the plugin and its package.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points

@@ -1,7 +1,5 @@
 """A cache of the values that were used last."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 

@@ -7,8 +7,6 @@ the declaration: the check when the dataclass is made (`check_settings`), the ke
 table of keys in docs/settings.md.
 """
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Iterable
@@ -115,31 +113,18 @@ FLAG, NAMES = Toggle(), Texts()
 class Panel:
     """A setting in Blender's panel.
 
-    Parameters
-    ----------
-    property : str
-        Name of the property in .blend files, which never changes; empty: that of the field.
-    label : str
-    default : optional
-        The panel's initial value, if it differs from that of a study file.
-    min, max, soft_max : float, optional
-        Limits of the field, if they differ from those of the rule.
-    zero : str
-        Text of the field at 0, for a setting that may be absent (None) in a file.
-    none : int
-        Value of the field for an absent number, as all below its least, if 0 is a value.
-    precision, step : optional
-        As in `bpy.props`.
-    menu : tuple of (label, meaning)
-        Of a rule `OneOf`: how a menu shows each of its texts, in their order. The order never
+    `property`: Name of the property in .blend files, which never changes; empty: that of the field.
+    `default`: The panel's initial value, if it differs from that of a study file.
+    `min, max, soft_max`: Limits of the field, if they differ from those of the rule.
+    `zero`: Text of the field at 0, for a setting that may be absent (None) in a file.
+    `none`: Value of the field for an absent number, as all below its least, if 0 is a value.
+    `precision, step`: As in `bpy.props`.
+    `menu`: Of a rule `OneOf`: how a menu shows each of its texts, in their order. The order never
         changes, and new ones go last: .blend files store numbers.
-    absent : tuple of (text, label, meaning)
-        The menu's first entry, for an optional setting that is absent. Without it an optional
+    `absent`: The menu's first entry, for an optional setting that is absent. Without it an optional
         setting with one possible text is a switch.
-    beside : str
-        Word beside the field while it is 0.
-    when : str
-        The field is drawn while this property is not 0 (``night``), or has this value
+    `beside`: Word beside the field while it is 0.
+    `when`: The field is drawn while this property is not 0 (``night``), or has this value
         (``targets=objects``) or another (``targets!=objects``).
     """
 
@@ -163,19 +148,12 @@ class Panel:
 class Setting:
     """The declaration of a setting.
 
-    Parameters
-    ----------
-    name : str
-        Name of the field.
-    default
-        Default of the field; `REQUIRED` if a study must have the setting.
-    rule : ValueRule
-    text : str
-        Meaning of the setting, in one or two sentences without the last full stop.
-    panel : Panel, optional
-        None if the panel does not have the setting.
-    scored : bool
-        Whether a score depends on the setting. If so, a change makes the stored score out of date.
+    `name`: Name of the field.
+    `default`: Default of the field; `REQUIRED` if a study must have the setting.
+    `text`: Meaning of the setting, in one or two sentences without the last full stop.
+    `panel`: None if the panel does not have the setting.
+    `scored`: Whether a score depends on the setting. If so, a change makes the stored score out of
+        date.
     """
 
     name: str

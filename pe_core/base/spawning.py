@@ -1,7 +1,5 @@
 """How processes are started anywhere, inside Blender too, and how they end with their parent."""
 
-from __future__ import annotations
-
 import multiprocessing
 import multiprocessing.connection
 import os

@@ -3,8 +3,6 @@
 The standard library reads TOML; it does not write it.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import re
@@ -30,13 +28,8 @@ LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-])(?:{PART}){{{MAX_KEY_PARTS},}}+")
 class Table:
     """A table of a file. Keys that are read are noted; `finish` reports the first unknown key.
 
-    Parameters
-    ----------
-    data : mapping
-    source : str
-        The file's name, for messages.
-    path : str
-        Position of the table in the file (``sensor[0]``).
+    `source`: The file's name, for messages.
+    `path`: Position of the table in the file (``sensor[0]``).
     """
 
     def __init__(self, data: Any, source: str, path: str = "") -> None:
@@ -132,11 +125,11 @@ class Table:
         value = self.raw(key, default)
         return value if value is default and default is not REQUIRED else check(value)
 
-    def table(self, key: str) -> Table:
+    def table(self, key: str) -> "Table":
         """Return a sub-table; an empty one if the key is absent."""
         return Table(self.raw(key, {}), self.source, self.field(key))
 
-    def tables(self, key: str) -> list[Table]:
+    def tables(self, key: str) -> "list[Table]":
         """Return an array of tables; an empty list if the key is absent."""
         value = self.raw(key, [])
         if not isinstance(value, list):
@@ -243,9 +236,7 @@ def parse_json(source: object, text: str | bytes, *, infinite: bool = False) -> 
     What Python takes but no file could be written of is refused: NaN, infinity (unless `infinite`
     allows it), numbers beyond those of 64 bits, halves of surrogate pairs.
 
-    Raises
-    ------
-    InputError
+    Raises `InputError`.
     """
 
     def constant(word: str) -> float:

@@ -7,8 +7,6 @@ numbers; True, False and NaN do not.
 Angles are in radians in memory and in degrees in files, exact to the last bit.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -39,21 +37,13 @@ NUMBER_NAMES = {2: "two", 3: "three"}
 class Number:
     """A real number in a range.
 
-    Parameters
-    ----------
-    minimum, maximum : float
-        The range; both ends belong to it.
-    above, below : bool
-        Whether `minimum` (`maximum`) itself is excluded.
-    cap : float
-        Largest magnitude with which arithmetic is safe. A message mentions it only for a value
+    `minimum, maximum`: The range; both ends belong to it.
+    `above, below`: Whether `minimum` (`maximum`) itself is excluded.
+    `cap`: Largest magnitude with which arithmetic is safe. A message mentions it only for a value
         beyond it.
-    unit : str
-        Unit of the value, for messages.
-    noun : str
-        What messages call the value.
-    infinite : bool
-        Whether infinity is allowed, although beyond the cap.
+    `unit`: Unit of the value, for messages.
+    `noun`: What messages call the value.
+    `infinite`: Whether infinity is allowed, although beyond the cap.
     """
 
     minimum: float = -math.inf

@@ -4,8 +4,6 @@ Three presets have no document as a source, which they state (Waymo's: general k
 are not products, but cameras for comparison.
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -102,18 +100,10 @@ def matching(typed: str, kind: str | None = None) -> list[str]:
 def add(name: str, table: Mapping[str, Any], folder: Path | None = None) -> None:
     """Add a preset to the catalogue, until the program ends.
 
-    Parameters
-    ----------
-    name : str
-    table : mapping
-        Table of the sensor, see `from_table`.
-    folder : Path, optional
-        Folder of the table's file of angles.
+    `InputError` when the name is taken, or the table does not describe a sensor.
 
-    Raises
-    ------
-    InputError
-        When the name is taken, or the table does not describe a sensor.
+    `table`: Table of the sensor, see `from_table`.
+    `folder`: Folder of the table's file of angles.
     """
     if name in entries():
         raise InputError("catalogue", "name", "a name used once", repr(name))
@@ -124,10 +114,7 @@ def add(name: str, table: Mapping[str, Any], folder: Path | None = None) -> None
 def add_file(path: Path) -> list[str]:
     """Add the presets of a file, a table each by its name; return their names.
 
-    Raises
-    ------
-    InputError
-        When the file is no TOML, or a preset cannot be added; then none of them is.
+    `InputError` when the file is no TOML, or a preset cannot be added; then none of them is.
     """
     tables, added = load_toml(path, "catalogue", decode_text(read_bytes(path))), []
     try:
@@ -164,10 +151,7 @@ def replace_added(models: Mapping[str, SensorModel]) -> None:
 def load(name: str) -> SensorModel:
     """Return the sensor of that name; the same object every time.
 
-    Raises
-    ------
-    InputError
-        When there is no such sensor; the message has similar names.
+    `InputError` when there is no such sensor; the message has similar names.
     """
     name = A_TEXT.checked("catalogue", "model", name)
     if name not in _loaded:
@@ -188,10 +172,7 @@ def rig_on(known: KnownRig, vehicle: Vehicle | None = None) -> Rig:
 def housing(name: str) -> Housing | None:
     """Return the housing of the sensor of that name; None if its size is not known.
 
-    Raises
-    ------
-    InputError
-        When its table in the catalogue is not valid.
+    `InputError` when its table in the catalogue is not valid.
     """
     entry = entries().get(name)
     table = None if entry is None else entry.table.get("housing")
@@ -219,10 +200,7 @@ def from_table(name: str, table: Mapping[str, Any], folder: Path | None = None) 
     All kinds: ``source``, ``note``, and ``housing`` and ``data_sheet`` (see `read_housing` and
     `read_data_sheet`), which are not used here.
 
-    Raises
-    ------
-    InputError
-        When a value or the file of angles is not valid, or there is no such kind.
+    `InputError` when a value or the file of angles is not valid, or there is no such kind.
     """
     name = A_NAME.checked("sensor", "name", name)
     if not isinstance(table, Mapping):

@@ -1,7 +1,5 @@
 """Tables of a sensor's housing and data sheet in the catalogue; scan centres above bases."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from typing import Any
@@ -26,10 +24,7 @@ def read_housing(name: str, table: Any) -> Housing:
     ``size`` (3,), and ``optical_center`` (3,) relative to the middle of the base (default: the
     middle of the front). Both: ``source``, the source of the figures and assumptions.
 
-    Raises
-    ------
-    InputError
-        When `table` is not a table, a key is unknown, or a value is not valid.
+    `InputError` when `table` is not a table, a key is unknown, or a value is not valid.
     """
     if not isinstance(table, Mapping):
         raise InputError(name, "housing", "a table", shown(table))

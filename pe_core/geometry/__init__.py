@@ -2,5 +2,3 @@
 
 from .grids import GroundGrid, PerceptionSpace
 from .poses import Pose, rotate, rotation_matrix, rpy_from_matrix
-
-__all__ = ["GroundGrid", "PerceptionSpace", "Pose", "rotate", "rotation_matrix", "rpy_from_matrix"]

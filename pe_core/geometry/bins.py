@@ -7,8 +7,6 @@ by `count` bins: the rows follow one another along u, the bins of a row along v.
 Index arrays are ranges counted up side by side, or cut into blocks.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -4,8 +4,6 @@ A `FaceLook` is the view through one face of a cube round the point. Rays and tr
 by the planes through the point and each edge.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -51,7 +49,7 @@ class Facing:
     u: Spans
     v: Spans
 
-    def __getitem__(self, index: NDArray) -> Facing:
+    def __getitem__(self, index: NDArray) -> "Facing":
         """Return the triangles at `index`."""
         u, v = ((w[0][index], w[1][index]) for w in (self.u, self.v))
         return Facing(self.corners[index], self.number[index], u, v)
@@ -134,7 +132,7 @@ class VisibleBoxes:
     v: Spans
     near: Floats
 
-    def __getitem__(self, index: NDArray | slice) -> VisibleBoxes:
+    def __getitem__(self, index: NDArray | slice) -> "VisibleBoxes":
         """Return the boxes at `index`."""
         u, v = ((w[0][index], w[1][index]) for w in (self.u, self.v))
         return VisibleBoxes(self.number[index], u, v, self.near[index])

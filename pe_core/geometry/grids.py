@@ -1,7 +1,5 @@
 """Grids: the voxels of the perception space, squares of the ground, and height maps."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -38,18 +36,15 @@ def _bounds(axis: str, default: tuple[float, float]) -> tuple[float, float]:
 class PerceptionSpace:
     """A box in the ground frame, divided into cubic voxels with side `interval`.
 
+    `InputError` when a bound is not finite, an extent is not positive or not a multiple of the
+    interval, or there are too many voxels.
+
     Parameters
     ----------
     x, y, z : (low, high) float
         Bounds [m]; by default those of the paper.
     interval : float
         Side of a voxel [m]; every extent has to be a multiple of it.
-
-    Raises
-    ------
-    InputError
-        When a bound is not finite, an extent is not positive or not a multiple of the interval, or
-        there are too many voxels.
     """
 
     x: tuple[float, float] = _bounds("x", (-80.0, 80.0))
@@ -136,7 +131,7 @@ class GroundGrid:
         i, j = np.divmod(squares, self.shape[1])
         return np.stack([self.x[i], self.y[j]], axis=1)
 
-    def widened(self, squares: int) -> GroundGrid:
+    def widened(self, squares: int) -> "GroundGrid":
         """Return the grid with `squares` more squares on each side."""
         x, y = (w - squares * self.step for w in self.origin)
         nx, ny = (n + 2 * squares for n in self.shape)

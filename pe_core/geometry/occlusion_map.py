@@ -11,8 +11,6 @@ triangles in the bin. The same holds for triangles seen from the back. A mesh ne
 nor oriented.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise

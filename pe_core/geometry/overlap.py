@@ -1,7 +1,5 @@
 """Overlap tests: convex hulls by separating axes, and triangles with boxes or cylinders."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from itertools import product

@@ -4,8 +4,6 @@ All products are written out. Matrix products are not used: BLAS builds differ i
 a study must have the same score in every Python, including Blender's.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -28,6 +26,9 @@ ROTATION_DEG = Number(-TURNS_DEG, TURNS_DEG, unit="degrees")
 class Pose:
     """Position and rotation of a sensor in the ground frame: its extrinsics.
 
+    `InputError` when a number is missing, NaN or infinite, a position beyond 10 km or an angle
+    beyond ten turns.
+
     Parameters
     ----------
     position : (3,) float
@@ -38,12 +39,6 @@ class Pose:
 
     Angles are rounded so that a file, which has degrees, restores the same bits: an angle that is
     not `math.radians` of any float changes by one unit in the last place.
-
-    Raises
-    ------
-    InputError
-        When a number is missing, NaN or infinite, a position beyond 10 km or an angle beyond ten
-        turns.
     """
 
     position: tuple[float, float, float]
@@ -55,7 +50,7 @@ class Pose:
         object.__setattr__(self, "rpy", vector("pose", "rpy", self.rpy, 3, ROTATION))
 
     @classmethod
-    def from_degrees(cls, position: ArrayLike, rotation_deg: ArrayLike = (0.0, 0.0, 0.0)) -> Pose:
+    def from_degrees(cls, position: ArrayLike, rotation_deg: ArrayLike = (0.0, 0.0, 0.0)) -> "Pose":
         """Return a pose with roll, pitch and yaw in degrees, as in files and the user interface."""
         degrees = vector("pose", "rotation", rotation_deg, 3, ROTATION_DEG)
         roll, pitch, yaw = (math.radians(d) for d in degrees)

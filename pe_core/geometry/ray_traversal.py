@@ -12,8 +12,6 @@ Boxes are slightly enlarged and tested in single precision: none is missed. Tria
 double precision by the planes of their edges, with the same bits as in `culling`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -178,11 +176,11 @@ class RayBoxes:
     ray: Ints
     near: Singles
 
-    def __getitem__(self, index: NDArray | slice) -> RayBoxes:
+    def __getitem__(self, index: NDArray | slice) -> "RayBoxes":
         """Return the pairs at `index`."""
         return RayBoxes(self.box[index], self.ray[index], self.near[index])
 
-    def nearest_first(self) -> RayBoxes:
+    def nearest_first(self) -> "RayBoxes":
         """Return the pairs sorted by distance, to 1/128: 16-bit keys, for NumPy's radix sort."""
         bits = np.maximum(self.near, np.float32(0.0)).view(np.uint32)
         return self[np.argsort((bits >> np.uint32(16)).astype(np.uint16), kind="stable")]

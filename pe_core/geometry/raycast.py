@@ -11,8 +11,6 @@ The test uses the planes through the origin and each edge, computed from the two
 so that triangles with a common edge leave no gap.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
@@ -60,7 +58,7 @@ class BinnedRays:
         self._sums = sums.reshape(-1)
 
     @classmethod
-    def within(cls, look: FaceLook, ends: Ends, d: Floats, ray: Ints) -> BinnedRays | None:
+    def within(cls, look: FaceLook, ends: Ends, d: Floats, ray: Ints) -> "BinnedRays | None":
         """Return the rays that pass a face within a rectangle; None if there are none.
 
         `d` (3, B) are the directions of all rays, `ray` the numbers of those that pass the face.
@@ -72,7 +70,7 @@ class BinnedRays:
         ray = ray[index]
         return cls(ray, u[index], v[index], d[:, ray], len(look.tree.number)) if len(ray) else None
 
-    def but_nearer(self, distance: Floats, than: float) -> BinnedRays:
+    def but_nearer(self, distance: Floats, than: float) -> "BinnedRays":
         """Return the rays without a hit nearer than `than` [m]; all if few have one."""
         left = np.flatnonzero(distance[self.ray] >= than)
         if not 0 < len(left) <= SORTING_SHARE * len(self.ray):

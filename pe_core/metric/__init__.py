@@ -16,7 +16,3 @@ from .entropy import (
     sigma_of,
 )
 from .fusion import early_fusion, late_fusion
-
-__all__ = ["AP_MAX", "AP_MIN", "BLIND_PRECISION", "H_BEST", "H_BLIND", "POINTPILLARS", "RTM3D"]
-__all__ += ["ApCurve", "average_precision", "early_fusion", "entropy_of", "late_fusion"]
-__all__ += ["perception_entropy", "precision_of", "sigma_of"]

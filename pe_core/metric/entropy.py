@@ -4,8 +4,6 @@ All functions are element-wise over arrays of any shape and return float64. Equa
 those of docs/metric.md, which gives the paper's numbers beside them.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -9,8 +9,6 @@ each fusion group that has a frame adds its own information (`updated`, eq. T2):
 H follows from lambda by eq. 8. One frame, or q = inf, is eq. 7 to the bit: so the paper's entropy.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -54,21 +52,13 @@ def steady(added: ArrayLike, noise: float) -> Floats:
 class Frames:
     """Frames that an entropy is of, the process noise between them, and the rates of sensors.
 
-    Parameters
-    ----------
-    frames : int
-        Of the slowest sensor; the others have as many as fit between. The last is of all at once.
-    q : float
-        Process noise of a class that has none of its own [1/s]; inf: only the last frame counts.
-    rate_hz : float
-        Rate of a kind of sensor that has none of its own [Hz].
-    noises, rates : mapping of str to float
-        Process noise by class [1/s], rates by kind of sensor [Hz].
+    `InputError` when a number is out of its range.
 
-    Raises
-    ------
-    InputError
-        When a number is out of its range.
+    `frames`: Of the slowest sensor; the others have as many as fit between. The last is of all at
+        once.
+    `q`: Process noise of a class that has none of its own [1/s]; inf: only the last frame counts.
+    `rate_hz`: Rate of a kind of sensor that has none of its own [Hz].
+    `noises, rates`: Process noise by class [1/s], rates by kind of sensor [Hz].
     """
 
     frames: int = setting(
@@ -93,7 +83,7 @@ class Frames:
             checked = {key: rule.checked(f"time.{name}", key, given[key]) for key in given}
             object.__setattr__(self, name, ReadOnlyDict(checked))
 
-    def of_class(self, name: str) -> Frames:
+    def of_class(self, name: str) -> "Frames":
         """Return the same with the noise of one class as that of all."""
         return replace(self, q=self.noises.get(name, self.q), noises={})
 

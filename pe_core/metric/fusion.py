@@ -16,8 +16,6 @@ backwards over the groups: as many additions as there are groups, and no subtrac
 cost digits. The floor rule for blind sensors is assumed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import reduce
@@ -187,7 +185,7 @@ class VisibleRows:
     rows: slice
     m: NDArray[np.floating]
 
-    def __add__(self, other: VisibleRows) -> VisibleRows:
+    def __add__(self, other: "VisibleRows") -> "VisibleRows":
         """Sum of two measurements of the same planes."""
         if not (self.m.size and other.m.size):
             return self if self.m.size else other
@@ -324,7 +322,7 @@ class RowValues(NamedTuple):
     rows: slice
     values: NDArray
 
-    def at(self, visible: VisibleVoxels) -> NDArray:
+    def at(self, visible: "VisibleVoxels") -> NDArray:
         """Values (N,) at the voxels that a sensor sees, whose rows are within these."""
         rows = slice(visible.rows.start - self.rows.start, visible.rows.stop - self.rows.start)
         return self.values[rows].reshape(-1).take(visible.position, mode="clip")
@@ -339,7 +337,7 @@ class VisibleVoxels(NamedTuple):
     m: NDArray
 
     @classmethod
-    def of(cls, sensor: Group, plane: int) -> VisibleVoxels:
+    def of(cls, sensor: Group, plane: int) -> "VisibleVoxels":
         """Return the voxels of a plane that a sensor sees."""
         rows, m = _on_plane(sensor, plane)
         position = np.flatnonzero(m != 0)
@@ -384,7 +382,12 @@ class LeaveOneOut:
         return np.array(sums).T
 
     def _add_rest(
-        self, group: _FusionGroup, precision: Floats, rank: int, visible: VisibleVoxels, plane: int
+        self,
+        group: "_FusionGroup",
+        precision: Floats,
+        rank: int,
+        visible: VisibleVoxels,
+        plane: int,
     ) -> None:
         """Add to 1 / sigma^2 (N,) what a group adds without its sensor `rank`."""
         if len(group.sensors) == 1:

@@ -4,6 +4,3 @@ from ..metric.frames import Frames
 from .drive_by import DriveBy, Moment, SeenBody, drive_by
 from .story import MAX_FRAMES, ORIGIN, REAR, Actor, Story, read_story, stories
 from .tracks import Confirmation
-
-__all__ = ["Actor", "Confirmation", "DriveBy", "Frames", "Moment", "SeenBody", "Story", "drive_by"]
-__all__ += ["MAX_FRAMES", "ORIGIN", "REAR", "read_story", "stories"]

@@ -4,8 +4,6 @@ A frame is a scene of objects, measured by the kernels of objects in traffic. AP
 to 8 and counts as the probability that a detector finds the body at the frame.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
@@ -41,25 +39,16 @@ class Moment:
 class SeenBody:
     """What a rig sees of a watched body.
 
-    Attributes
-    ----------
-    name : str
-    ap, confirmed : (K,) float
-        AP at each frame, and the probability that its track is confirmed by then.
-    by_sensor : mapping of str to (K,) float
-        AP of each sensor alone.
-    positions : (K, 2) float
-        In the ground frame [m].
-    moments : mapping of float to Moment or None
-        When it is confirmed, by probability; None: never in the story.
-    lost_s : float
-        Longest time for which it is lost after it was confirmed, by the story's probability [s].
-    seam_m, seam_of : float or None, tuple of str
-        The widest distance at which two sensors that both see it see it apart (eq. T4), and which
-        two; None: not known.
-    margin_s : float or None
-        How long before the last moment at which the vehicle can stop, less the time that the story
-        asks for [s]; negative: too late. None: never confirmed.
+    `ap, confirmed` (K,): AP at each frame, and the probability that its track is confirmed by then.
+    `by_sensor`: AP of each sensor alone.
+    `positions` (K, 2): In the ground frame [m].
+    `moments`: When it is confirmed, by probability; None: never in the story.
+    `lost_s`: Longest time for which it is lost after it was confirmed, by the story's probability
+        [s].
+    `seam_m, seam_of`: The widest distance at which two sensors that both see it see it apart (eq.
+        T4), and which two; None: not known.
+    `margin_s`: How long before the last moment at which the vehicle can stop, less the time that
+        the story asks for [s]; negative: too late. None: never confirmed.
     """
 
     name: str
@@ -151,10 +140,7 @@ def drive_by(
 
     `rates` are those of scans and exposures by kind [Hz]; a kind without one has the story's.
 
-    Raises
-    ------
-    InputError
-        When a sensor has an AP curve of its own, or a class has none.
+    `InputError` when a sensor has an AP curve of its own, or a class has none.
     """
     confirmation = confirmation or Confirmation()
     where, headings = story.positions(vehicle)

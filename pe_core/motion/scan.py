@@ -4,8 +4,6 @@ A sensor takes its frame over a time, and at a time of its own. What moves is me
 beams, and two sensors see it at two places. All of it is zero, or one, at rest.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace
@@ -45,13 +43,10 @@ def exposed(sensor: Sensor, frame: int) -> Sensor:
 def scan_factor(bearing_rate: ArrayLike, rate_hz: float) -> Floats:
     """Return the factor of m by a rotating scan: Omega / (Omega - omega), eq. T3.
 
-    Parameters
-    ----------
-    bearing_rate : (N,) float
-        omega, the rate at which an object's bearing changes in the sensor's frame [rad/s]; positive
-        with the scan.
-    rate_hz : float
-        Revolutions in a second; Omega = 2 pi of it. The factor is that of objects slower than it.
+    `bearing_rate` (N,): omega, the rate at which an object's bearing changes in the sensor's frame
+        [rad/s]; positive with the scan.
+    `rate_hz`: Revolutions in a second; Omega = 2 pi of it. The factor is that of objects slower
+        than it.
     """
     speed = 2.0 * math.pi * rate_hz
     omega = np.clip(np.asarray(bearing_rate, dtype=float), -speed, 0.5 * speed)
@@ -82,13 +77,8 @@ def seam(
     they drift: it is the longest, half a frame of the faster one. None where the direction of a
     LiDAR is not known, or none of both is a LiDAR.
 
-    Parameters
-    ----------
-    sensors : tuple of Sensor
-    bearings, rates : mapping of str to (A, K) float and to float
-        Of bodies in the ground frame [rad], and frames in a second [Hz], by sensor.
-    speed : (A, K) float
-        Of the bodies over the ground [m/s]: own motion is taken as compensated.
+    `bearings, rates`: Of bodies in the ground frame [rad], and frames in a second [Hz], by sensor.
+    `speed` (A, K): Of the bodies over the ground [m/s]: own motion is taken as compensated.
     """
     lidars = [sensor for sensor in sensors if sensor.kind == LIDAR.name]
     if not lidars or any(sensor.scan.turns == UNKNOWN for sensor in lidars):
@@ -119,17 +109,12 @@ def ap_with_latency(
 ) -> Floats:
     """Return AP when boxes come late, eq. T5: the mean over d of AP Phi((d - |v| tau) / s).
 
-    Parameters
-    ----------
-    ap, speed : (N,) float
-        AP without latency, and the objects' speeds [m/s].
-    latency_s, spread_s : float
-        tau and its standard deviation: the object has moved on by |v| tau when the box is used.
-    scatter_m : float
-        Standard deviation of a box's place [m]; s also has the object's way in `spread_s`. Without
-        latency, AP is that without scatter.
-    distances_m : (D,) float
-        d: distances up to which a box counts as found [m].
+    `ap, speed` (N,): AP without latency, and the objects' speeds [m/s].
+    `latency_s, spread_s`: tau and its standard deviation: the object has moved on by |v| tau when
+        the box is used.
+    `scatter_m`: Standard deviation of a box's place [m]; s also has the object's way in `spread_s`.
+        Without latency, AP is that without scatter.
+    `distances_m` (D,): d: distances up to which a box counts as found [m].
     """
     v, near = np.abs(np.asarray(speed, dtype=float))[..., None], np.asarray(distances_m, float)
     s = np.sqrt(scatter_m**2 + (v * spread_s) ** 2)

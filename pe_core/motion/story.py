@@ -5,8 +5,6 @@ At time 0 the vehicle, driving on at its speed, is where the story says: `anchor
 line, on the ground that does not move; of the anchor `ORIGIN` in the vehicle's ground frame.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -82,10 +80,7 @@ class Actor:
 class Story:
     """A scene in time: the vehicle's own speed, how it stops, and what moves.
 
-    Raises
-    ------
-    InputError
-        When a number is out of its range, or there is no body to watch.
+    `InputError` when a number is out of its range, or there is no body to watch.
     """
 
     name: str

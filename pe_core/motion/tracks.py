@@ -7,8 +7,6 @@ one that did not. At a steady p it is p on average. r = 0 is independence; r = 1
 all frames.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -3,6 +3,3 @@
 from .boxes import Boxes, BoxReport
 from .classes import HIGHWAY_CLASSES, ROAD_CLASSES, ObjectClass
 from .prior import Focus, Prior
-
-__all__ = ["HIGHWAY_CLASSES", "ROAD_CLASSES", "BoxReport", "Boxes", "Focus"]
-__all__ += ["ObjectClass", "Prior"]

@@ -4,8 +4,6 @@ A report tells which boxes were used and left out. All counts are integers, so t
 depend on the order of the boxes.
 """
 
-from __future__ import annotations
-
 import hashlib
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -47,6 +45,9 @@ STRAIGHT = 1e-12
 class Boxes(ShortRepr):
     """Labelled boxes in the ground frame; equal when they hold the same boxes.
 
+    `InputError` when columns differ in length, a number is not finite, a size is not positive, a
+    name is empty or cannot be printed, or there are more than 64 names.
+
     Parameters
     ----------
     names : (N,) str
@@ -63,12 +64,6 @@ class Boxes(ShortRepr):
         Origin of the labels' frame in the ground frame, if the user gave it [m].
     left_out : sequence of (reason, count)
         Boxes of the file that are not used.
-
-    Raises
-    ------
-    InputError
-        When columns differ in length, a number is not finite, a size is not positive, a name is
-        empty or cannot be printed, or there are more than 64 names.
     """
 
     names: NDArray[np.str_]
@@ -118,7 +113,7 @@ class Boxes(ShortRepr):
         return hash(self.digest)
 
     @classmethod
-    def of(cls, table: Any) -> Boxes:
+    def of(cls, table: Any) -> "Boxes":
         """Return the boxes of a table in memory, yaw in radians.
 
         `table` is a mapping or a structured array with the columns class, x, y, z, length, width,

@@ -1,7 +1,5 @@
 """Classes of objects on the road, and the densities of their positions."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
@@ -39,9 +37,10 @@ class ObjectClass:
     densities about the middle of each lane. The box stands on the ground, along x. Heights are
     normally distributed.
 
+    `InputError` when a length is not positive, or a share is out of range.
+
     Parameters
     ----------
-    name : str
     size : (length, width, height) float
         Mean box [m].
     height_spread : float
@@ -58,11 +57,6 @@ class ObjectClass:
         Standard deviations of length and width of sampled objects [m]; voxels use the mean.
     any_heading : float
         Share of sampled objects with a random heading, 0 to 1; the others stand along x.
-
-    Raises
-    ------
-    InputError
-        When a length is not positive, or a share is out of range.
     """
 
     name: str

@@ -1,7 +1,5 @@
 """A prior given voxel by voxel: weights on the ground, or on all voxels, of a space."""
 
-from __future__ import annotations
-
 import hashlib
 import io
 from dataclasses import dataclass, field
@@ -28,20 +26,13 @@ NPY_BYTES = 2**28
 class Grid(ShortRepr):
     """Weights in the ground frame; equal when they hold the same numbers on the same space.
 
-    Parameters
-    ----------
-    weights : (nx, ny) or (nx, ny, nz) float
-        Weight of each column, the same at all heights, or of each voxel; at least 0.
-    space : PerceptionSpace
-        The space of the weights. In another space each voxel has the weight at its centre.
-    file : str, optional
-        The .npy file of the weights, as the user named it.
+    `InputError` when the shape is not that of the space, a weight is negative or not finite, none
+    is above 0, or weights that differ by height have more than 64 layers.
 
-    Raises
-    ------
-    InputError
-        When the shape is not that of the space, a weight is negative or not finite, none is above
-        0, or weights that differ by height have more than 64 layers.
+    `weights` (nx, ny): Weight of each column, the same at all heights, or of each voxel; at least
+        0.
+    `space`: The space of the weights. In another space each voxel has the weight at its centre.
+    `file`: The .npy file of the weights, as the user named it.
     """
 
     weights: Floats

@@ -4,8 +4,6 @@ Each class is a density over the ground times a profile over height, so that no 
 each of 64 million voxels. Traffic density is the number of objects of a class in the space at once.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -164,34 +162,30 @@ class Prior(ShortRepr):
                 require_name("focus", "classes", name, names)
 
     @classmethod
-    def road(cls, focus: Sequence[Focus] = ()) -> Prior:
+    def road(cls, focus: Sequence[Focus] = ()) -> "Prior":
         """Public roads: cars, pedestrians, cyclists, trucks and cones, with equal shares."""
         return cls("road", ROAD_CLASSES, tuple(focus))
 
     @classmethod
-    def highway(cls, focus: Sequence[Focus] = ()) -> Prior:
+    def highway(cls, focus: Sequence[Focus] = ()) -> "Prior":
         """A highway: cars, trucks, motorcyclists and cones on and near three lanes."""
         return cls("highway", HIGHWAY_CLASSES, tuple(focus))
 
     @classmethod
-    def uniform(cls, focus: Sequence[Focus] = ()) -> Prior:
+    def uniform(cls, focus: Sequence[Focus] = ()) -> "Prior":
         """The same density at every voxel."""
         return cls(UNIFORM, (), tuple(focus))
 
     @classmethod
-    def from_boxes(cls, table: Any, focus: Sequence[Focus] = ()) -> Prior:
+    def from_boxes(cls, table: Any, focus: Sequence[Focus] = ()) -> "Prior":
         """Labelled boxes, voxelized; their classes have equal shares.
+
+        `InputError` when a box is wrong, or there is no box.
 
         Parameters
         ----------
         table : Boxes, or table
             The result of `read_boxes`, or a table that `Boxes.of` takes.
-        focus : sequence of Focus
-
-        Raises
-        ------
-        InputError
-            When a box is wrong, or there is no box.
         """
         boxes = table if isinstance(table, Boxes) else Boxes.of(table)
         return cls(FROM_BOXES, (), tuple(focus), boxes)
@@ -199,8 +193,10 @@ class Prior(ShortRepr):
     @classmethod
     def from_grid(
         cls, weights: ArrayLike, space: PerceptionSpace, focus: Sequence[Focus] = ()
-    ) -> Prior:
+    ) -> "Prior":
         """Weights of the voxels of a space, in any unit: the prior is their share of the sum.
+
+        `InputError` when the shape is another, or a weight is negative or not finite.
 
         Parameters
         ----------
@@ -208,33 +204,22 @@ class Prior(ShortRepr):
             Of each column, the same at all heights, or of each voxel; at least 0.
         space : PerceptionSpace
             The space of the weights, whose `shape` is (nx, ny, nz).
-        focus : sequence of Focus
-
-        Raises
-        ------
-        InputError
-            When the shape is another, or a weight is negative or not finite.
         """
         return cls(FROM_GRID, (), tuple(focus), grid=Grid(weights, space))  # type: ignore[arg-type]
 
     @classmethod
     def from_function(
         cls, weight: Callable[..., ArrayLike], space: PerceptionSpace, focus: Sequence[Focus] = ()
-    ) -> Prior:
+    ) -> "Prior":
         """Weights by a function of the voxels' centres: ``from_grid`` of what it returns.
+
+        `InputError` when what is returned does not broadcast to the space; else as of `from_grid`.
 
         Parameters
         ----------
         weight : callable
             Takes x (nx, 1, 1), y (1, ny, 1) and z (1, 1, nz) [m], ground frame, and returns weights
             that broadcast with them. Without z in it, weights are the same at all heights.
-        space : PerceptionSpace
-        focus : sequence of Focus
-
-        Raises
-        ------
-        InputError
-            When what is returned does not broadcast to the space; else as of `from_grid`.
         """
         x, y, z = (space.centers(axis) for axis in range(3))
         values = np.asarray(weight(x[:, None, None], y[:, None], z))
@@ -259,10 +244,7 @@ class Prior(ShortRepr):
     def objects_at_once(self, space: PerceptionSpace) -> dict[str, float]:
         """Return how many objects of each class are in a space at once, on average.
 
-        Raises
-        ------
-        InputError
-            When there is no number for a class, or the prior has no classes.
+        `InputError` when there is no number for a class, or the prior has no classes.
         """
         if self.model in (UNIFORM, FROM_GRID):
             expected = "a prior with classes, because objects need them"
@@ -293,11 +275,8 @@ class Prior(ShortRepr):
         Before focus weights the distribution of a class (the paper's p_Sc) sums to its share, which
         is the same for all classes except those of the highway.
 
-        Raises
-        ------
-        InputError
-            When the focus weights leave no mass, no box is in the space, or the classes and columns
-            do not fit in memory.
+        `InputError` when the focus weights leave no mass, no box is in the space, or the classes
+        and columns do not fit in memory.
         """
         names = self.class_names
         require_memory("prior", "classes", len(names) * math.prod(space.shape[:2]) * CLASS_BYTES)

@@ -10,7 +10,3 @@ from .scan import ScanTiming
 from .vehicle import Vehicle
 from .vehicle_description import Reference, guessed_reference, vehicle_line
 from .vehicle_state import Motion, State
-
-__all__ = ["BodyShape", "DataSheet", "Housing", "Motion", "Objects", "PerceptionSpace", "Pose"]
-__all__ += ["Reference", "Rig", "ScanTiming", "Sensor", "State", "Vehicle", "cuts_body"]
-__all__ += ["guessed_reference", "rotate", "rotation_matrix", "rpy_from_matrix", "vehicle_line"]

@@ -3,8 +3,6 @@
 Nothing here changes a score. What is not known is None, which is not zero.
 """
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -39,7 +37,7 @@ class DataSheet:
     def __post_init__(self) -> None:
         check_settings(self, "sensor")
 
-    def over(self, other: DataSheet) -> DataSheet:
+    def over(self, other: "DataSheet") -> "DataSheet":
         """Return these figures, and those of another sheet where these are not known."""
         own = {key: value for key, value in asdict(self).items() if value is not None}
         return replace(other, **own)

@@ -4,8 +4,6 @@ Options are for the axes and the unit. Of the shape are size, positions of parts
 vehicle's size is checked.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -73,6 +71,9 @@ class Mesh(ShortRepr):
 class MeshAxes:
     """Axes and scale of a mesh file, by a study; other values are from the file, or guessed.
 
+    `InputError` when an axis is unknown, both axes are parallel, the scale is not above 0, or the
+    rotation is not three angles.
+
     Parameters
     ----------
     up, forward : str, optional
@@ -81,12 +82,6 @@ class MeshAxes:
         Factor for lengths, applied after the file's own unit.
     rotation_deg : (3,) float, optional
         Roll, pitch, yaw [deg]: a rotation of the body, applied last. Then nothing is guessed.
-
-    Raises
-    ------
-    InputError
-        When an axis is unknown, both axes are parallel, the scale is not above 0, or the rotation
-        is not three angles.
     """
 
     up: str | None = None

@@ -1,7 +1,5 @@
 """Objects on the road: upright boxes, grouped into scenes."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,6 +22,9 @@ STRAIGHT = 1e-12
 class Objects(ShortRepr):
     """Boxes in the ground frame, rotated about the vertical axis only.
 
+    `InputError` when there is no object, arrays differ in length, a number is not finite, a size is
+    not positive, or an index is not valid.
+
     Parameters
     ----------
     centers : (N, 3) float
@@ -34,15 +35,8 @@ class Objects(ShortRepr):
         Heading, counter-clockwise from x seen from above [rad].
     labels : (N,) int
         Class of each object: an index into `class_names`.
-    class_names : sequence of str
     scenes : (N,) int, optional
         Scene of each object, whose objects may occlude each other; by default one scene each.
-
-    Raises
-    ------
-    InputError
-        When there is no object, arrays differ in length, a number is not finite, a size is not
-        positive, or an index is not valid.
     """
 
     centers: Floats
@@ -86,13 +80,13 @@ class Objects(ShortRepr):
         return read_only(directions)
 
     @classmethod
-    def joined(cls, parts: Sequence[Objects]) -> Objects:
+    def joined(cls, parts: "Sequence[Objects]") -> "Objects":
         """Return objects of the same classes as one set, with their scenes."""
         keys = ("centers", "sizes", "yaws", "labels", "scenes")
         c, s, y, n, own = (np.concatenate([getattr(p, key) for p in parts]) for key in keys)
         return cls(c, s, y, n, parts[0].class_names, own)
 
-    def some(self, which: NDArray) -> Objects:
+    def some(self, which: NDArray) -> "Objects":
         """Return the objects that `which` selects, by indices or flags (N,)."""
         c, s, y, n = (w[which] for w in (self.centers, self.sizes, self.yaws, self.labels))
         return Objects(c, s, y, n, self.class_names, self.scenes[which])

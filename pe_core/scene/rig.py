@@ -4,8 +4,6 @@ A housing has its size as a data sheet gives it. It is shown, and checked for cu
 never changes a score.
 """
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -51,13 +49,15 @@ class SensorModel(ShortRepr):
 class Sensor(ShortRepr):
     """A sensor on the vehicle: intrinsics, extrinsics and the fusion group it belongs to.
 
+    `InputError` when a value has another type, a name is not one line of printable letters, or the
+    colour is none.
+
     Parameters
     ----------
     name : str
         Unique in its rig.
     model : SensorModel
         A `Lidar`, a `Camera`, or the model of another kind.
-    pose : Pose
     fusion : str, optional
         Measurements inside one group are summed (early fusion, eq. 6). LiDARs share the group
         "lidar" by default; a camera has a group of its own.
@@ -69,12 +69,6 @@ class Sensor(ShortRepr):
         Figures of its own, in place of the catalogue's.
     scan : ScanTiming
         When its frames begin, and which way its scan turns. It changes no score.
-
-    Raises
-    ------
-    InputError
-        When a value has another type, a name is not one line of printable letters, or the colour
-        is none.
     """
 
     name: str
@@ -113,11 +107,11 @@ class Sensor(ShortRepr):
         alone = f"{self.kind} {self.name}"
         return self.fusion or (self.kind if self.model.fuses_early else alone)
 
-    def measures_as(self, other: Sensor) -> bool:
+    def measures_as(self, other: "Sensor") -> bool:
         """Whether two sensors measure the same: the same model at the same pose."""
         return self.model is other.model and self.pose == other.pose
 
-    def moved(self, pose: Pose) -> Sensor:
+    def moved(self, pose: Pose) -> "Sensor":
         """Return the same sensor at another pose."""
         return replace(self, pose=pose)
 
@@ -126,14 +120,8 @@ class Sensor(ShortRepr):
 class Rig(Tabular):
     """The sensors mounted on one vehicle.
 
-    Parameters
-    ----------
-    sensors : sequence of Sensor
-
-    Raises
-    ------
-    InputError
-        When there is no sensor, two share a name, or a fusion group mixes kinds or AP curves.
+    `InputError` when there is no sensor, two share a name, or a fusion group mixes kinds or AP
+    curves.
     """
 
     sensors: Sequence[Sensor]
@@ -183,7 +171,7 @@ class Rig(Tabular):
             groups.setdefault(sensor.group, []).append(sensor)
         return groups
 
-    def with_poses(self, poses: Sequence[Pose]) -> Rig:
+    def with_poses(self, poses: Sequence[Pose]) -> "Rig":
         """Return the rig with a new pose for each sensor; unmoved sensors are the same objects."""
         pairs = zip(self.sensors, poses, strict=True)
         return Rig([s if s.pose == pose else s.moved(pose) for s, pose in pairs])
@@ -192,6 +180,8 @@ class Rig(Tabular):
 @dataclass(frozen=True, slots=True)
 class Housing:
     """A sensor's outer shape, upright in the sensor frame.
+
+    `InputError` when the shape is unknown, or a size is not above 0.
 
     Parameters
     ----------
@@ -203,11 +193,6 @@ class Housing:
         Origin of the sensor frame, relative to the middle of the housing's base [m].
     source : str
         Source of the figures, and assumptions.
-
-    Raises
-    ------
-    InputError
-        When the shape is unknown, or a size is not above 0.
     """
 
     shape: str
@@ -239,8 +224,6 @@ def cuts_body(
     ----------
     pose : Pose
         Pose of the sensor, ground frame.
-    housing : Housing
-    vehicle : Vehicle
     seat : float
         Overlap up to this depth, from any side, that is allowed [m].
 

@@ -1,7 +1,5 @@
 """How a sensor takes its frames in time: when they begin, and which way a scan turns."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from ..base.setting import OneOf, Panel, check_settings, setting

@@ -4,8 +4,6 @@ Whether a point is inside, and which side of a surface is outside, is told by fi
 alone, so holes, double surfaces and a missing underbody do not matter.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -58,6 +56,9 @@ def checked_covers(covers: Any, names: Sequence[str]) -> Mapping[str, float]:
 class Vehicle(Tabular):
     """Triangles of the vehicle in the ground frame.
 
+    `InputError` when the triangles are not (F, 3, 3), there are none, a coordinate is not finite or
+    beyond 10 km, or a name or the clearance is not valid.
+
     Parameters
     ----------
     triangles : (F, 3, 3) float
@@ -73,12 +74,6 @@ class Vehicle(Tabular):
         outside the surface [m]. So a flush-mounted sensor is not occluded by its own surface.
     covers : mapping of str to float
         Parts that radars measure through, and their loss one way [dB]. They occlude all others.
-
-    Raises
-    ------
-    InputError
-        When the triangles are not (F, 3, 3), there are none, a coordinate is not finite or beyond
-        10 km, or a name or the clearance is not valid.
     """
 
     triangles: Floats
@@ -127,8 +122,10 @@ class Vehicle(Tabular):
         ]
 
     @classmethod
-    def from_trimesh(cls, mesh: Any, **options: Any) -> Vehicle:
+    def from_trimesh(cls, mesh: Any, **options: Any) -> "Vehicle":
         """Return the vehicle of a mesh of the library trimesh, or of a scene, a part a mesh.
+
+        `InputError` when it is no mesh, or has no triangles; else as of the class.
 
         Parameters
         ----------
@@ -137,11 +134,6 @@ class Vehicle(Tabular):
             has no triangles is left out.
         **options
             `glass`, `clearance` and `covers`, as of the class.
-
-        Raises
-        ------
-        InputError
-            When it is no mesh, or has no triangles; else as of the class.
         """
         found = {"vehicle": (mesh, np.eye(4))}
         if hasattr(mesh, "graph"):
@@ -183,7 +175,7 @@ class Vehicle(Tabular):
     def _tree_without_glass(self) -> TriangleTree:
         return TriangleTree(self.triangles[self._opaque]) if self.glass else self._tree
 
-    def seen_from(self, position: Sequence[float], through_glass: bool = False) -> VisibleMesh:
+    def seen_from(self, position: Sequence[float], through_glass: bool = False) -> "VisibleMesh":
         """Return the vehicle for rays from a position (3,) [m]; `through_glass` removes glass."""
         tree = self._tree_without_glass if through_glass else self._tree
         triangles = self.triangles[self._opaque] if through_glass else self.triangles

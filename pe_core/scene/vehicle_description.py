@@ -1,7 +1,5 @@
 """A vehicle described: axles, up and forward axis by shape and parts' names, a line of text."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from typing import Any
@@ -196,10 +194,7 @@ def _field(name: str, label: str, **options: Any) -> Panel:
 class Reference:
     """Axles of a vehicle, in the ground frame, and its overhangs, as its fields say [m].
 
-    Raises
-    ------
-    InputError
-        When a value is not a number, or out of its range.
+    `InputError` when a value is not a number, or out of its range.
     """
 
     rear_axle_x: float = required_setting(
@@ -266,12 +261,9 @@ def _wheels(vehicle: Vehicle) -> list[Floats]:
 def vehicle_line(vehicle: Vehicle, faces: str = "") -> str:
     """Return "4.70 x 1.85 x 1.45 m, faces +x, 15,498 triangles, 22 parts".
 
-    Parameters
-    ----------
-    vehicle : Vehicle
-    faces : str
-        Text on how the axes of its file were interpreted. Without it, the line has the direction
-        that follows from the names of the parts, or the axis along which the vehicle is long.
+    `faces`: Text on how the axes of its file were interpreted. Without it, the line has the
+        direction that follows from the names of the parts, or the axis along which the vehicle is
+        long.
     """
     low, high = vehicle.bounds
     size = size_words(tuple((high - low).tolist()))

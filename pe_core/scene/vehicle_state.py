@@ -4,8 +4,6 @@ A part is a door, a boot, a trailer, a wheel, a wiper, a cab. Sensors that stand
 move with it. All products are written out, so that a state has the same bits in all front ends.
 """
 
-from __future__ import annotations
-
 import fnmatch
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -39,10 +37,7 @@ class Motion:
 
     R is ``Rz(yaw) Ry(pitch) Rx(roll)``, of `rotation` [rad]; `about` is a hinge, or the hitch.
 
-    Raises
-    ------
-    InputError
-        When there is no part, or a number is out of its range.
+    `InputError` when there is no part, or a number is out of its range.
     """
 
     parts: Sequence[str] = required_setting(
@@ -84,10 +79,7 @@ class State:
     The motions are in this order; without any, the vehicle is as it is drawn. After them the
     body on its springs is raised [m], leans to the right and goes nose down [rad].
 
-    Raises
-    ------
-    InputError
-        When a value is out of its range.
+    `InputError` when a value is out of its range.
     """
 
     name: str
@@ -118,13 +110,10 @@ class State:
     def _leans(self) -> bool:
         return any((self.heave, self.roll_rad, self.pitch_rad))
 
-    def moves(self, vehicle: Vehicle | None, rig: Rig | None = None) -> list[_Moved]:
+    def moves(self, vehicle: Vehicle | None, rig: Rig | None = None) -> "list[_Moved]":
         """Return what moves, in order, with its parts and sensors.
 
-        Raises
-        ------
-        InputError
-            For a part or a sensor that there is not, with the nearest names.
+        `InputError` for a part or a sensor that there is not, with the nearest names.
         """
         if self.is_as_drawn:
             return []

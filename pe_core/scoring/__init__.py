@@ -13,7 +13,3 @@ from .score import (
     ScoreStopped,
     SensorScore,
 )
-
-__all__ = ["Evaluator", "FoundClass", "GroundMap", "ObjectScore", "PartScore"]
-__all__ += ["RigEvaluator", "Scatter", "Score", "ScoreStopped", "SensorScore"]
-__all__ += ["VoxelSample", "draw"]

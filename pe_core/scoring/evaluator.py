@@ -1,7 +1,5 @@
 """The Evaluator: one problem, made ready to score many rigs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 
@@ -24,10 +22,11 @@ SHIFT = Number(0.0, 1.0, below=True)
 class Evaluator:
     """Scores rigs in one space, under one prior, on one vehicle.
 
+    `InputError` when the prior has no weight in the space outside the vehicle, or `samples` is too
+    small.
+
     Parameters
     ----------
-    space : PerceptionSpace
-    prior : Prior
     vehicle : Vehicle, optional
         None: nothing hides anything, and no voxel is excluded.
     samples : int
@@ -40,11 +39,6 @@ class Evaluator:
         AP curves and fusion rule; the paper's by default.
     workers : int, optional
         Threads for a grid score; all processors by default. The result does not depend on it.
-
-    Raises
-    ------
-    InputError
-        When the prior has no weight in the space outside the vehicle, or `samples` is too small.
     """
 
     def __init__(
@@ -82,55 +76,37 @@ class Evaluator:
         again = partial(Evaluator, *what, samples=self.samples, shift=self._shift)
         return partial(again, model=self._model, workers=self._workers), ()
 
-    def score(self, rig: Rig, *, preview: bool = False, watch: Watch | None = None) -> Score:
+    def score(self, rig: Rig, *, watch: Watch | None = None) -> Score:
         """Score a rig in full: entropy, coverage, by class, by sensor, ground map.
+
+        `ScoreStopped` when `watch` returned False.
 
         Parameters
         ----------
-        rig : Rig
-        preview : bool
-            Return an approximate preview, for use while a sensor is being moved: which LiDAR beams
-            the vehicle occludes is read from a map of its top surface, if the sensor is above it,
-            and not ray cast. `Score.preview` is then set. The next score without it is exact.
-            A score of all voxels is always exact.
         watch : callable, optional
             Called repeatedly with the completed share, 0 to 1. When it returns False, the
             score is stopped.
-
-        Raises
-        ------
-        ScoreStopped
-            When `watch` returned False.
         """
-        return self._scorer.score(rig, preview, watch)
+        return self._scorer.score(rig, watch)
 
-    def entropy(self, rig: Rig, *, preview: bool = False) -> float:
-        """Return the perception entropy of a rig [nats], without the other figures.
+    def entropy(self, rig: Rig) -> float:
+        """Return the perception entropy of a rig [nats], without the other figures."""
+        return self._scorer.entropy(rig)
 
-        `preview` as in `score`.
-        """
-        return self._scorer.entropy(rig, preview)
-
-    def summary(self, rig: Rig, *, preview: bool = False) -> Score:
-        """Return the score of a rig without the part by sensor, for use while one is being moved.
-
-        `preview` as in `score`.
-        """
-        return self._scorer.summary(rig, preview)
+    def summary(self, rig: Rig) -> Score:
+        """Return the score of a rig without the part by sensor: for one that is being moved."""
+        return self._scorer.summary(rig)
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the perception entropy of each of several rigs [nats].
 
         On a sample, a sensor that has the same name and pose in several of them is measured once.
 
+        `InputError` when there is no rig.
+
         Parameters
         ----------
         rigs : sequence of Rig
             Rigs of the same sensors, in the same or other poses; sensors may be missing.
-
-        Raises
-        ------
-        InputError
-            When there is no rig.
         """
         return self._scorer.entropies(rigs)

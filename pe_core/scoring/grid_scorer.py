@@ -4,8 +4,6 @@ It is estimated before a score starts; too much is refused in one line. A test h
 to measured peaks: neither is more than `FACTOR` times the other.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
@@ -123,10 +121,7 @@ class Sums(NamedTuple):
 
 
 class GridScorer:
-    """Scores rigs on all voxels, in runs of x-planes; `workers` threads share them.
-
-    No score is a preview: `preview` has no effect.
-    """
+    """Scores rigs on all voxels, in runs of x-planes; `workers` threads share them."""
 
     def __init__(
         self,
@@ -149,7 +144,7 @@ class GridScorer:
         self._kernels: dict[KernelKey, GridKernel] = {}  # as many as there are
         self._lock = threads().RLock()
 
-    def entropy(self, rig: Rig, preview: bool = False) -> float:
+    def entropy(self, rig: Rig) -> float:
         """Return the perception entropy alone."""
         require_room_for(self._space, partial(self.needs, list(rig.groups.values())))
         with self._lock, threads().ThreadPoolExecutor(self._workers) as pool:
@@ -163,7 +158,7 @@ class GridScorer:
 
             return self._mean(np.sum(list(pool.map(work, self._blocks)), axis=0))
 
-    def summary(self, rig: Rig, preview: bool = False) -> Score:
+    def summary(self, rig: Rig) -> Score:
         """Return the score without the part by sensor."""
         return replace(self.score(rig, by_sensor=False), ground_map=None)
 
@@ -171,9 +166,7 @@ class GridScorer:
         """Return the entropy of each of several rigs [nats]."""
         return [self.entropy(part) for part in Scenarios(rigs).parts]
 
-    def score(
-        self, rig: Rig, preview: bool = False, watch: Watch | None = None, by_sensor: bool = True
-    ) -> Score:
+    def score(self, rig: Rig, watch: Watch | None = None, by_sensor: bool = True) -> Score:
         """Return the full score; without the part by sensor if that is not asked for."""
         require_room_for(self._space, partial(self.needs, [[s] for s in rig]))
         progress = ScoreProgress(watch, len(self._blocks))

@@ -1,7 +1,5 @@
 """Scores on a sample of voxels: fast, with a standard error."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -72,10 +70,10 @@ class SampledScorer:
     def _digest(self) -> str:
         return sample_digest([self._sample.centers, self._sample.classes])
 
-    def entropy(self, rig: Rig, preview: bool = False) -> float:
+    def entropy(self, rig: Rig) -> float:
         """Return the perception entropy alone."""
         with self._lock:
-            self._sensors.measure(rig, preview)
+            self._sensors.measure(rig)
             return self._entropy_of(rig, self._sensors.m)
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
@@ -86,18 +84,18 @@ class SampledScorer:
             m = self._sensors.m
             return [self._entropy_of(part, m) for part in scenarios.parts]
 
-    def summary(self, rig: Rig, preview: bool = False) -> Score:
+    def summary(self, rig: Rig) -> Score:
         """Return the score without the part by sensor."""
         with self._lock:
-            self._sensors.measure(rig, preview)
+            self._sensors.measure(rig)
             return self._summary(rig, *self._entropies(rig, [s.name for s in rig]))
 
-    def score(self, rig: Rig, preview: bool = False, watch: Watch | None = None) -> Score:
+    def score(self, rig: Rig, watch: Watch | None = None) -> Score:
         """Return the full score; `watch` gets the share that is done after each sensor."""
         count = len(rig.sensors)  # each is measured, then all others are fused without it
         progress = ScoreProgress(watch, count * (1.0 + count / SENSORS_FUSED))
         with self._lock:
-            self._sensors.measure(rig, preview, progress.add)
+            self._sensors.measure(rig, progress.add)
             values = self._entropies(rig, [s.name for s in rig])
             whole = self._summary(rig, *values)
             per_sensor = {s.name: self._sensor(s, rig, whole.entropy, progress) for s in rig}
@@ -126,7 +124,6 @@ class SampledScorer:
             },
             {},
             len(self._sample.index),
-            preview=any(m.approximate for m in self._sensors.last.values()),
         )
 
     def _whole(self, entropies: Floats, visible: NDArray[np.bool_]) -> tuple[float, float]:

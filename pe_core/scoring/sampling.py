@@ -8,8 +8,6 @@ pattern of beams may be in step with; each run of 2^k points remains a low-discr
 The vehicle's own volume carries no weight in eq. 9.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -162,16 +160,9 @@ def draw(
     are drawn together, from the whole prior. Sensors see in rings and sectors, so visibility
     changes along the axes of the sequence.
 
-    Parameters
-    ----------
-    densities : list of ClassDensity
-    space : PerceptionSpace
-    count : int
-        Number of draws.
-    excluded : (nx, ny) float, optional
-        Heights below which voxels carry no weight [m]: draws there are dropped.
-    shift : (3,) float
-        Three numbers in [0, 1) that scramble the sequence.
+    `count`: Number of draws.
+    `excluded` (nx, ny): Heights below which voxels carry no weight [m]: draws there are dropped.
+    `shift` (3,): Three numbers in [0, 1) that scramble the sequence.
     """
     count = SAMPLES.checked("evaluator", "samples", count)
     u = scrambled_sobol(count, shift)

@@ -4,8 +4,6 @@ A sensor that several rigs have at the same pose is measured once. The parts of 
 sensor alone, and the rig without each sensor.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any

@@ -6,8 +6,6 @@ stores the residuals of its means in a few batches of the sample. Residuals of t
 same sample are subtracted by batch (paired); on different samples, their squares are added.
 """
 
-from __future__ import annotations
-
 import hashlib
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -76,7 +74,7 @@ class Scatter(ShortRepr):
         return {"sample": self.sample, "residuals": rows}
 
     @classmethod
-    def from_dict(cls, data: Mapping[str, Any]) -> Scatter:
+    def from_dict(cls, data: Mapping[str, Any]) -> "Scatter":
         """Return the `Scatter` from the data of `to_dict`."""
         rows = {
             (group, name, measure): tuple(sums) for group, name, measure, sums in data["residuals"]
@@ -130,21 +128,14 @@ def _standard_error(batches: Iterable[float]) -> float:
 class FoundClass:
     """How well a rig finds a class of objects.
 
-    Attributes
-    ----------
-    objects : int
-        How many objects were evaluated.
-    share : float
-        Weight of the class in the score, 0 to 1.
-    entropy, stderr : float
-        Mean entropy of its objects [nats], and the standard error.
-    ap, ap_stderr : float
-        Expected AP, 0 to 1: the mean over its objects, and the standard error.
-    points : mapping of int to float
-        Share of its objects that get at least so many points, by number; empty without LiDARs.
-    reach : mapping of str to float
-        By direction, the distance up to which a lone object of the class is found with an AP of 0.5
-        [m]: 0 where no object is found, `FARTHEST_M` where AP stays at 0.5 or above.
+    `objects`: How many objects were evaluated.
+    `share`: Weight of the class in the score, 0 to 1.
+    `entropy, stderr`: Mean entropy of its objects [nats], and the standard error.
+    `ap, ap_stderr`: Expected AP, 0 to 1: the mean over its objects, and the standard error.
+    `points`: Share of its objects that get at least so many points, by number; empty without
+        LiDARs.
+    `reach`: By direction, the distance up to which a lone object of the class is found with an AP
+        of 0.5 [m]: 0 where no object is found, `FARTHEST_M` where AP stays at 0.5 or above.
     """
 
     objects: int
@@ -165,15 +156,10 @@ class FoundClass:
 class TrafficAp:
     """Expected AP of objects in traffic: the mean over all, by their weights, and by ring.
 
-    Attributes
-    ----------
-    ap, stderr : float
-        0 to 1, and its standard error.
-    scenes : int
-        Number of scenes of the sample.
-    rings : mapping of str to (float, float)
-        AP and standard error by "near", "mid" and "far" (`ZONES`); a ring without objects is left
-        out.
+    `ap, stderr`: 0 to 1, and its standard error.
+    `scenes`: Number of scenes of the sample.
+    `rings`: AP and standard error by "near", "mid" and "far" (`ZONES`); a ring without objects is
+        left out.
     """
 
     ap: float
@@ -212,7 +198,7 @@ class ObjectScore(Tabular):
         ]
 
     @classmethod
-    def from_dict(cls, data: Mapping[str, Any]) -> ObjectScore:
+    def from_dict(cls, data: Mapping[str, Any]) -> "ObjectScore":
         """Return the score from the data of `to_dict`."""
         per_class = {name: _found(class_data) for name, class_data in data["per_class"].items()}
         return cls(**{**data, "per_class": per_class})
@@ -304,7 +290,7 @@ class GroundMap(ShortRepr):
     coverage: NDArray[np.float64]
     mass: NDArray[np.float64]
 
-    def coarser(self, columns: int) -> GroundMap:
+    def coarser(self, columns: int) -> "GroundMap":
         """Return the map in squares of `columns` by `columns` columns (fewer at the far edges)."""
         rows, ys = (np.arange(0, n, columns) for n in self.mass.shape)
 
@@ -346,8 +332,6 @@ class Score(Tabular):
         Number of voxels evaluated.
     ground_map : GroundMap or None
         None for a sampled score.
-    preview : bool
-        Approximate preview: occlusion of a LiDAR was read from a map of the vehicle's top surface.
     objects : ObjectScore or None
         Only for a score on objects: entropy, coverage and the other figures are then weighted
         means over objects, and no voxel was evaluated.
@@ -365,7 +349,6 @@ class Score(Tabular):
     per_sensor: dict[str, SensorScore]
     voxels: int
     ground_map: GroundMap | None = None
-    preview: bool = False
     objects: ObjectScore | None = None
     scatter: Scatter | None = None
     ap: float | None = None
@@ -393,9 +376,7 @@ class Score(Tabular):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the score as plain JSON data, without ground map and scatter."""
-        mark = {"preview": True} if self.preview else {}
         return {
-            **mark,
             "entropy": self.entropy,
             "coverage": self.coverage,
             "stderr": self.stderr,
@@ -433,13 +414,13 @@ class RigEvaluator(Protocol):
 
     samples: int
 
-    def score(self, rig: Rig, *, preview: bool = False, watch: Watch | None = None) -> Score:
+    def score(self, rig: Rig, *, watch: Watch | None = None) -> Score:
         """Score a rig in full."""
 
-    def summary(self, rig: Rig, *, preview: bool = False) -> Score:
+    def summary(self, rig: Rig) -> Score:
         """Score a rig as a whole, without the part by sensor."""
 
-    def entropy(self, rig: Rig, *, preview: bool = False) -> float:
+    def entropy(self, rig: Rig) -> float:
         """Return a rig's entropy [nats]."""
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:

@@ -48,18 +48,3 @@ from .tolerance import (
     objective_of,
     robustness,
 )
-
-__all__ = ["AXES", "DEFAULT_METHOD", "KEPT", "KEY_FIGURES", "METHODS", "PAPER_FREE"]
-__all__ += ["POSITION_AXES", "SCHEDULED_METHOD", "AnyMount", "Call", "Candidate", "Choice"]
-__all__ += ["Constraints", "DesignSearch", "DesignSpace", "EvaluatedRig"]
-__all__ += ["FigureOfMerit", "Front", "Goals", "Journal", "KeyFigures", "LazyProcesses", "Method"]
-__all__ += ["MountArea", "Mounting", "MountingPlaces", "NoGo", "Objective", "Option"]
-__all__ += ["Parametrization", "Payload", "Picks", "Processes", "Reading", "RigRobustness"]
-__all__ += ["RobustObjective", "Robustness", "Schedule", "SearchRun", "SearchSpace", "Selection"]
-__all__ += ["Slot", "SlotMount", "Start", "Step", "Stop", "SurfaceMount", "SurfacePlace"]
-__all__ += ["Tolerance", "Unreadable", "Wanted", "WorkerDied", "above_front", "checked_axes"]
-__all__ += ["checked_bounds", "checked_method", "dashboard", "default_bounds", "evaluate_all"]
-__all__ += ["feasible_start", "mirrored", "mounted_off", "no_processes", "objective_of"]
-__all__ += ["optimize", "outward_yaw", "pareto_front", "pose_from_values", "pose_values"]
-__all__ += ["robustness", "run_tasks", "send_payload", "shared_parts", "snap_to_mount"]
-__all__ += ["standoff_point", "start_processes"]

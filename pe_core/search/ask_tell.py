@@ -1,7 +1,5 @@
 """A search that is asked for placements and told their values, by a program of the user's own."""
 
-from __future__ import annotations
-
 import math
 import sys
 from collections.abc import Generator, Iterable, Sequence
@@ -23,6 +21,8 @@ class SearchRun:
 
     It follows its method, its seed and the values alone: told the same, it asks the same.
 
+    `InputError`: As of `optimize`; or when the journal is of another search.
+
     Parameters
     ----------
     rig, search_space, seed, schedule, method, evaluations
@@ -39,11 +39,6 @@ class SearchRun:
         Number of values told, those of the journal included.
     is_done : bool
         Whether the search is over: nothing is asked any more.
-
-    Raises
-    ------
-    InputError
-        As of `optimize`; or when the journal is of another search.
     """
 
     def __init__(
@@ -87,10 +82,8 @@ class SearchRun:
     def tell(self, rigs: Sequence[Rig], values: Sequence[float]) -> None:
         """Take the value of each placement, in any order; lower is better.
 
-        Raises
-        ------
-        InputError
-            When a placement was not asked for, or was told before; or a value is no number.
+        `InputError` when a placement was not asked for, or was told before; or a value is no
+        number.
         """
         for rig, value in zip(rigs, values, strict=True):
             waiting = range(len(self._values), self._given)

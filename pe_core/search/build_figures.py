@@ -4,8 +4,6 @@ The limits of a search and of a choice, the objectives of a front, the lines of 
 fields of the panel follow from the rows. A figure of which something is not known has no value.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, field
@@ -54,7 +52,7 @@ class Placement:
     _hulls: dict[str, Hull] = field(default_factory=dict)
 
     @classmethod
-    def on(cls, rig: Rig, vehicle: Vehicle | None) -> Placement:
+    def on(cls, rig: Rig, vehicle: Vehicle | None) -> "Placement":
         """Return a rig on a vehicle, with the housings of the catalogue."""
         return cls(rig, vehicle, housings_of(rig))
 

@@ -4,8 +4,6 @@ The worker pool takes any `concurrent.futures.Executor`: processes, threads, a c
 worker died is run once more; if that worker dies too, the task is named.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 import traceback
@@ -136,16 +134,11 @@ def evaluate_all(
 ) -> list[float]:
     """Evaluate several rigs; the result depends neither on the workers nor on earlier calls.
 
-    Parameters
-    ----------
-    objective : Objective
-        Its `shared_parts` are sent to each worker once, so they must not change. Where it cannot be
-        pickled, or a worker cannot unpickle it, the rigs are evaluated here.
-    rigs : sequence of Rig
-    cutoff : float
-        Entropies are needed only below this value [nats]; all of them, by default.
-    executor : concurrent.futures.Executor, optional
-        Its workers evaluate; by default this thread does. `Processes` replaces dead workers.
+    `objective`: Its `shared_parts` are sent to each worker once, so they must not change. Where it
+        cannot be pickled, or a worker cannot unpickle it, the rigs are evaluated here.
+    `cutoff`: Entropies are needed only below this value [nats]; all of them, by default.
+    `executor`: Its workers evaluate; by default this thread does. `Processes` replaces dead
+        workers.
 
     Returns
     -------

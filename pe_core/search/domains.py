@@ -5,8 +5,6 @@ A domain has `variables`, its design variables, and `start`, their values where 
 the surface: the search continues from these. `snap_to_mount` finds a pose on a mount to start from.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ By default nothing: a search then ends when its method or its budget does, moves
 from the given placement alone, and minimises one value.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -168,13 +166,13 @@ class Start:
         return {name: [*p.position, *p.rotation_deg] for name, p in self.poses.items()}
 
     @staticmethod
-    def text_of(starts: Sequence[Start]) -> str:
+    def text_of(starts: "Sequence[Start]") -> str:
         """Return starts as JSON text; empty for none."""
         rows = [[start.name, start.numbers] for start in starts]
         return json.dumps(rows) if rows else ""
 
     @staticmethod
-    def of_text(text: str) -> tuple[Start, ...]:
+    def of_text(text: str) -> "tuple[Start, ...]":
         """Return the starts of a text of `text_of`; `InputError` where it is none."""
         try:
             return tuple(
@@ -237,7 +235,7 @@ class Goals:
         object.__setattr__(self, "starts", tuple(starts))
         check_settings(self, "optimize")
 
-    def of_rig(self, rig: Rig, mounting: Mounting) -> Goals:
+    def of_rig(self, rig: Rig, mounting: Mounting) -> "Goals":
         """Return itself; raise `InputError` where a sensor that is fixed or placed is none."""
         followers = {pair[1] for pair in mounting.pairs}
         followers |= {name for group in mounting.groups for name in group[1:]}

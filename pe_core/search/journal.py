@@ -5,8 +5,6 @@ search, and no other state is ever stored: a search that resumes from a journal 
 bits as one that was never interrupted.
 """
 
-from __future__ import annotations
-
 import hashlib
 import math
 from collections.abc import Callable, Iterable, Sequence

@@ -65,26 +65,17 @@ PARTS: dict[str, Callable[[Sight, Rig], Any]] = {
 class KeyFigures:
     """What a rig is decided by beside its entropy: expected AP in traffic, and what is blind.
 
-    Attributes
-    ----------
-    traffic : TrafficAp or None
-        None where the prior's objects have no room, or a sensor has a curve of its own.
-    sectors : tuple of BlindSector
-        The widest blind sector for bodies of each height.
-    blind_m2, height, within : float
-        Ground within a distance of the body's rectangle on which an object `height` tall is
-        invisible [m2, m, m].
-    reach : mapping of str to (float, bool)
-        By class: how far ahead of the origin an object is found with an AP of 0.5 or more [m]; 0:
-        it is not; and whether the space ends there: the true reach may be longer. Empty where
+    `traffic`: None where the prior's objects have no room, or a sensor has a curve of its own.
+    `sectors`: The widest blind sector for bodies of each height.
+    `blind_m2, height, within`: Ground within a distance of the body's rectangle on which an object
+        `height` tall is invisible [m2, m, m].
+    `reach`: By class: how far ahead of the origin an object is found with an AP of 0.5 or more [m];
+        0: it is not; and whether the space ends there: the true reach may be longer. Empty where
         objects are scored: that score already has it.
-    over_frames : float or None
-        Entropy over the study's frames [nats]; None for one frame.
-    margins : mapping of str to float or None
-        By story, where a study has some: its margin [s]; None: never confirmed.
-    built, unknown : mapping of str
-        What can be built, by the names of `BUILD_FIGURES`: the figures that are known, and of which
-        sensors the others are not.
+    `over_frames`: Entropy over the study's frames [nats]; None for one frame.
+    `margins`: By story, where a study has some: its margin [s]; None: never confirmed.
+    `built, unknown`: What can be built, by the names of `BUILD_FIGURES`: the figures that are
+        known, and of which sensors the others are not.
     """
 
     traffic: TrafficAp | None

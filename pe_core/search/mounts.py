@@ -1,7 +1,5 @@
 """Where sensors may be mounted, as a study declares it: mounts, pairs, groups, constraints."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -22,6 +20,9 @@ from ..scene.vehicle import Vehicle
 class MountArea(ShortRepr):
     """Faces on which a sensor moves, independent of the parts of the body.
 
+    `InputError` when the triangles are not (F, 3, 3), none of them has an area, or a coordinate is
+    not finite.
+
     Parameters
     ----------
     triangles : (F, 3, 3) float
@@ -30,12 +31,6 @@ class MountArea(ShortRepr):
         The mesh file of the faces, as a study names it.
     parts : sequence of str
         The parts of that file; none: all of it.
-
-    Raises
-    ------
-    InputError
-        When the triangles are not (F, 3, 3), none of them has an area, or a coordinate is not
-        finite.
     """
 
     triangles: Floats = field(repr=False)
@@ -249,21 +244,17 @@ class Constraints:
 class Mounting(ShortRepr):
     """Where the sensors of a rig may be mounted, besides their bounds.
 
+    `InputError` when a name or a number is impossible, or a sensor is on a mount that does not
+    exist.
+
     Parameters
     ----------
-    mounts : mapping of name to SurfaceMount or SlotMount
     on : mapping of sensor name to name of its mount
         A sensor that is not named moves within its bounds.
     pairs : sequence of (str, str)
         Two sensors each: the second is the first's mirror image across y = 0.
     groups : sequence of sequence of str
         Sensors that move as one: the first leads, the others keep their pose relative to it.
-    constraints : Constraints
-
-    Raises
-    ------
-    InputError
-        When a name or a number is impossible, or a sensor is on a mount that does not exist.
     """
 
     mounts: Mapping[str, AnyMount] = field(default_factory=dict)

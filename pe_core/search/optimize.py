@@ -1,7 +1,5 @@
 """The search for a better placement by any method, as a generator of steps."""
 
-from __future__ import annotations
-
 import math
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -102,6 +100,9 @@ def optimize(
     start breaks one, the search starts from a feasible placement near it. The search may be stopped
     at any step: the last one holds the incumbent.
 
+    `InputError` when there is no such method, the search space does not fit the rig, no placement
+    keeps to all of its rules, or an objective is none.
+
     Parameters
     ----------
     objective : Objective, callable, or sequence of Objective
@@ -110,7 +111,6 @@ def optimize(
         first.
     rig : Rig
         Where the search starts.
-    search_space : SearchSpace
     seed : int
         The same seed gives the same steps.
     schedule : Schedule, optional
@@ -122,12 +122,6 @@ def optimize(
     executor : concurrent.futures.Executor, or callable, optional
         Evaluates several candidates in parallel. The steps do not depend on it. A callable returns
         an executor, or None as long as there is none; it is called before every batch.
-
-    Raises
-    ------
-    InputError
-        When there is no such method, the search space does not fit the rig, no placement keeps to
-        all of its rules, or an objective is none.
     """
     chosen = METHODS[checked_method("optimize", method, schedule is not None)]
     levels = [

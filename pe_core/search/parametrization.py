@@ -7,8 +7,6 @@ placement that breaks no rule.
 Linked sensors, mirror images and groups that move as one, have the variables of the first of them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -146,11 +144,8 @@ class Parametrization:
     the positions in the vector of each sensor's variables, `models` the names of their models.
     `start` is the rig as it is, `rules` what no placement may break.
 
-    Raises
-    ------
-    InputError
-        When a sensor, a part or a mount does not exist, a start is outside its bounds or its mount,
-        or a pair or a group is impossible.
+    `InputError` when a sensor, a part or a mount does not exist, a start is outside its bounds or
+    its mount, or a pair or a group is impossible.
     """
 
     variables: tuple[DesignVariable, ...]
@@ -253,10 +248,7 @@ def _domain(sensor: Sensor, space: SearchSpace, surfaces: dict[str, MountSurface
 def feasible_start(parametrization: Parametrization, seed: int = 0) -> Candidate:
     """Return the start; if it breaks a rule, a placement near it that breaks none.
 
-    Raises
-    ------
-    InputError
-        When no such placement is found; the message names rules that exclude each other.
+    `InputError` when no such placement is found; the message names rules that exclude each other.
     """
     if parametrization.allowed(parametrization.start.rig):
         return parametrization.start

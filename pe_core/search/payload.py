@@ -4,8 +4,6 @@ Our own processes get it by their initializer, the workers of a Dask client by a
 it comes with every task. Each worker unpickles it once.
 """
 
-from __future__ import annotations
-
 import ctypes
 import hashlib
 import io
@@ -23,7 +21,7 @@ from ..base.plugins import optional_package
 
 MAX_OBJECTS = 12
 """How many objects an executor's payload grows to, as further objectives are evaluated."""
-_SENT: WeakKeyDictionary[Executor, SentPayload] = WeakKeyDictionary()
+_SENT: "WeakKeyDictionary[Executor, SentPayload]" = WeakKeyDictionary()
 """The payload that the workers of each executor have."""
 _INITIAL: dict[str, bytes] = {}
 """In a worker: the payloads that came before their tasks, by key."""
@@ -50,7 +48,7 @@ class PackedPayload:
 class SentPayload:
     """A payload, and the argument by which tasks refer to it on one executor."""
 
-    payload: Payload
+    payload: "Payload"
     argument: PackedPayload
 
 

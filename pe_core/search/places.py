@@ -5,8 +5,6 @@ the order covers the surface evenly. At each a sensor is upright and looks away 
 middle, or is aligned as its mount says. A place where it would break a rule has the rule as reason.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -83,23 +81,12 @@ def surface_points(triangles: Floats, count: int) -> tuple[Floats, Ints]:
 class MountingPlaces:
     """Places for one more sensor of a rig; iterated, it yields them, the coarse cover first.
 
-    Parameters
-    ----------
-    rig, sensor : Rig, Sensor
-        The other sensors, and the one to place, whose pose does not matter.
-    vehicle : Vehicle or None
-    constraints : Constraints
-    parts : sequence of str
-        Parts of the vehicle that are covered; none: all of them.
-    mount : SurfaceMount, optional
-        The mount that is covered instead, with its stand-off and orientation. Without one the
-        stand-off is that of the sensor's kind.
-    count : int
+    `InputError` when there is no vehicle or no such part, or what a constraint needs is not known.
 
-    Raises
-    ------
-    InputError
-        When there is no vehicle or no such part, or what a constraint needs is not known.
+    `rig, sensor`: The other sensors, and the one to place, whose pose does not matter.
+    `parts`: Parts of the vehicle that are covered; none: all of them.
+    `mount`: The mount that is covered instead, with its stand-off and orientation. Without one the
+        stand-off is that of the sensor's kind.
     """
 
     def __init__(

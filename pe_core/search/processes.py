@@ -1,7 +1,5 @@
 """Worker processes as an executor: they can be started anywhere, inside Blender too."""
 
-from __future__ import annotations
-
 import multiprocessing
 import os
 import time

@@ -3,8 +3,6 @@
 A rule is what no placement may break, with its text for messages.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
@@ -88,22 +86,18 @@ class SearchSpace(ShortRepr):
         mounting: Mounting | None = None,
         housings: Mapping[str, Housing] | None = None,
         fixed: Sequence[str] = (),
-    ) -> SearchSpace:
+    ) -> "SearchSpace":
         """Return a rig's free axes within the vehicle's outline and HEADROOM_M above it.
 
         Parameters
         ----------
-        rig : Rig
         vehicle : Vehicle or None
             Without a vehicle, sensors may move `Schedule.reach_m` from their start.
-        free : tuple of str, or mapping of sensor name to it
         limits : mapping, optional
             Bounds that replace the default ones, by sensor and axis.
         mounting : Mounting, optional
             A sensor on a surface moves on it, whichever of x, y, z are free; a sensor in a slot, or
             one that follows another, has no bounds.
-        housings : mapping of sensor name to Housing, optional
-        fixed : sequence of str
         """
         limits, mounting, bounds = limits or {}, mounting or Mounting(), {}
         for sensor in rig:
@@ -126,7 +120,7 @@ class SearchSpace(ShortRepr):
         """Return a rig on the vehicle, as rules see it."""
         return Placement(rig, self.vehicle, self.housings)
 
-    def checked(self, rig: Rig) -> SearchSpace:
+    def checked(self, rig: Rig) -> "SearchSpace":
         """Return itself, or raise `InputError` when a name, an axis or a start is not possible."""
         sensors = {sensor.name: sensor for sensor in rig}
         for name, axes in self.bounds.items():
@@ -189,10 +183,7 @@ class Schedule:
     `reach_m` and `reach_rad` are half widths of the first neighbourhood. Each is `decay` (k)
     times the one before, until one is at or below `floor_m` and `floor_rad`.
 
-    Raises
-    ------
-    InputError
-        When a number is out of its range, or the rounds are more than 1000.
+    `InputError` when a number is out of its range, or the rounds are more than 1000.
     """
 
     candidates: int = setting(

@@ -3,8 +3,6 @@
 A design says which option each site takes. The front is that of price against entropy.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -43,7 +41,6 @@ class Option:
 
     Parameters
     ----------
-    model : SensorModel
     price : float
         In the unit of the study: the catalogue has no prices.
     mass, power, data_rate : float, optional
@@ -75,9 +72,11 @@ class Option:
 class Choice:
     """Models of which some sensors take one.
 
+    `InputError` when there are no options, a model is offered twice, or not exactly one of
+    `sensors` and `mount` is given.
+
     Parameters
     ----------
-    options : sequence of Option
     sensors : sequence of str
         They take the same model, or are left out together. The second sensor of a pair is not
         named: it has the model of the first.
@@ -86,12 +85,6 @@ class Choice:
         Exchanging the models of two of them does not give another design.
     optional : bool
         Whether the sensors may be left out.
-
-    Raises
-    ------
-    InputError
-        When there are no options, a model is offered twice, or not exactly one of `sensors` and
-        `mount` is given.
     """
 
     options: Sequence[Option]
@@ -260,7 +253,7 @@ class DesignSpace:
     others: tuple[Sensor, ...]
 
     @classmethod
-    def of(cls, selection: Selection, rig: Rig, mounting: Mounting) -> DesignSpace:
+    def of(cls, selection: Selection, rig: Rig, mounting: Mounting) -> "DesignSpace":
         """Return the designs of a rig; `InputError` for an impossible choice, or none left."""
         sites = sites_of(selection, rig, mounting)
         chosen = {name for site in sites for name in site.sensors}
@@ -390,7 +383,7 @@ class DesignSpace:
         expected = "limits that leave a design"
         return InputError("selection", " and ".join(names), expected, f"none{least}")
 
-    def _limited_by(self, names: Sequence[str]) -> DesignSpace:
+    def _limited_by(self, names: Sequence[str]) -> "DesignSpace":
         """Return the designs under the named limits only."""
         return replace(self, limits={name: self.limits[name] for name in names})
 

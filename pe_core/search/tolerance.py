@@ -14,8 +14,6 @@ sensor before it.
 entropy of the start and of the result moves.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
@@ -51,10 +49,7 @@ class Tolerance:
     Its fields say what they mean. Errors are 1 sigma of each coordinate: along x, y and z of
     the ground frame [m]; of roll, pitch and yaw in the sensor's own frame [rad].
 
-    Raises
-    ------
-    InputError
-        When a number is out of its range, or `worst` is set without errors or failures.
+    `InputError` when a number is out of its range, or `worst` is set without errors or failures.
     """
 
     position: float = setting(
@@ -103,7 +98,7 @@ class Tolerance:
         """Whether there are mounting errors or failures."""
         return self.mounts_off or self.failures
 
-    def checked(self, rig: Rig) -> Tolerance:
+    def checked(self, rig: Rig) -> "Tolerance":
         """Return itself; raise `InputError` if the only sensor of a rig would have to fail."""
         if self.failures and len(rig) < 2:
             raise InputError("optimize", "failures", "a rig of at least two sensors", "one")
@@ -197,18 +192,12 @@ WORKSHOP = Tolerance(0.01, math.radians(0.3), draws=6)
 class RigRobustness:
     """The entropies of one placement with errors and failures, all on one sample of voxels [nats].
 
-    Attributes
-    ----------
-    entropy : float
-        Without errors and failures.
-    mounted_off, mounted_worst : float
-        Mean over the mounting errors, and the worst.
-    stderr : float
-        Standard error of `mounted_off`, from the scatter of the draws; an overestimate.
-    failed, failed_worst : float or None
-        Mean over the failures of each single sensor, and the worst; None for a single sensor.
-    missed : str or None
-        The sensor whose failure is the worst.
+    `entropy`: Without errors and failures.
+    `mounted_off, mounted_worst`: Mean over the mounting errors, and the worst.
+    `stderr`: Standard error of `mounted_off`, from the scatter of the draws; an overestimate.
+    `failed, failed_worst`: Mean over the failures of each single sensor, and the worst; None for a
+        single sensor.
+    `missed`: The sensor whose failure is the worst.
     """
 
     entropy: float
@@ -234,13 +223,8 @@ class RigRobustness:
 class Robustness:
     """The robustness of the start and of the result of a search.
 
-    Attributes
-    ----------
-    errors : Tolerance
-        The mounting errors: the study's, or `WORKSHOP`. The search did not use these draws.
-    samples : int
-        How many voxels were evaluated.
-    before, after : RigRobustness
+    `errors`: The mounting errors: the study's, or `WORKSHOP`. The search did not use these draws.
+    `samples`: How many voxels were evaluated.
     """
 
     errors: Tolerance

@@ -41,15 +41,5 @@ from .radar import RADAR, Radar, RadarMode
 from .ultrasonic import ULTRASONIC, Ultrasonic
 from .weather import Weather, returning, with_returns
 
-__all__ = ["BLIND_RULES", "CURVE_MODELS", "KINDS", "SCANS", "BeamField", "BrownConrady", "Camera"]
-__all__ += ["FTheta", "FieldPicture", "GridKernel", "GroundKernel", "GroundView"]
-__all__ += ["KannalaBrandt", "Kind", "Lens", "Lidar", "Measured", "MeasurementCache"]
-__all__ += ["ObjectKernel", "ObjectMeasurementCache", "ObjectView", "Occlusion", "PerceptionModel"]
-__all__ += ["Pinhole", "Radar", "RadarMode", "RangePicture", "SampleKernel", "Ultrasonic"]
-__all__ += ["ViewPatch", "VisibleGround", "VisibleGroundCache", "Voxels", "Weather", "beam_field"]
-__all__ += ["derived_object_curves", "kind_named", "kind_of", "measure", "measure_objects"]
-__all__ += ["range_picture", "register", "returning", "scan_curves", "unregister"]
-__all__ += ["curve_source", "detectors", "fitted_curves", "with_returns"]
-
 for _kind in (LIDAR, CAMERA, RADAR, ULTRASONIC):
     register(_kind)

@@ -3,8 +3,6 @@
 `BodyParts` are the boxes of test bodies, of which a requirement asks how much is visible.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -47,14 +45,14 @@ class PlacedBoxes:
     headings: Floats
 
     @classmethod
-    def of(cls, objects: Objects, position: Sequence[float]) -> PlacedBoxes:
+    def of(cls, objects: Objects, position: Sequence[float]) -> "PlacedBoxes":
         """Return the boxes of objects relative to a position, moved by `NUDGE_M`."""
         x, y, z = (objects.centers - (np.asarray(position) + NUDGE_M)).T
         c, s = objects.headings.T
         offsets = np.stack([c * x + s * y, c * y - s * x, z], axis=1)
         return cls(offsets, objects.sizes / 2.0, objects.headings)
 
-    def take(self, index: Ints) -> PlacedBoxes:
+    def take(self, index: Ints) -> "PlacedBoxes":
         """Return some of the boxes."""
         return PlacedBoxes(self.offsets[index], self.halves[index], self.headings[index])
 
@@ -91,7 +89,7 @@ class PlacedBoxes:
             np.minimum(leave, np.maximum(t0, t1), out=leave)
         return enter, leave
 
-    def side_points(self, count: int, turn: int) -> tuple[BoxRays, Floats]:
+    def side_points(self, count: int, turn: int) -> "tuple[BoxRays, Floats]":
         """Return rays to points on the sides that face the sensor, and solid angles (R,) [sr].
 
         A side has `count` points, each with the solid angle of an equal piece of its area: a
@@ -143,7 +141,7 @@ class Rivals:
     other: Ints
 
     @classmethod
-    def of(cls, scenes: Ints, which: Ints) -> Rivals:
+    def of(cls, scenes: Ints, which: Ints) -> "Rivals":
         """Return all other boxes of the same scenes."""
         order = stable_order(scenes)
         first = np.searchsorted(scenes[order], scenes[which], "left")
@@ -153,7 +151,7 @@ class Rivals:
         return rivals.some(other != which[rivals.ranks()])
 
     @classmethod
-    def near(cls, boxes: PlacedBoxes, scenes: Ints, balls: Floats, which: Ints) -> Rivals:
+    def near(cls, boxes: PlacedBoxes, scenes: Ints, balls: Floats, which: Ints) -> "Rivals":
         """Return, for some boxes, the other boxes of their scenes that may hide them.
 
         `balls` (N,) are radii of balls round all boxes [m].
@@ -175,7 +173,7 @@ class Rivals:
         """(R,) the box that each entry may hide."""
         return np.repeat(np.arange(len(self.count)), self.count)
 
-    def some(self, kept: Flags) -> Rivals:
+    def some(self, kept: Flags) -> "Rivals":
         """Return the flagged entries (R,)."""
         count = np.bincount(self.ranks()[kept], minlength=len(self.count))
         return Rivals(np.cumsum(count) - count, count, self.other[kept])

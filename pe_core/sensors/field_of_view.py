@@ -1,7 +1,5 @@
 """What a sensor sees: its range, the directions of its field of view, pictures."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -100,18 +98,13 @@ def count_by_part(occluded_by: NDArray[np.integer], part_names: Sequence[str]) -
 class FieldPicture:
     """What a sensor detects of a target by range and azimuth.
 
-    Attributes
-    ----------
-    values : (R, A) float
-        m of the target, farthest range first, leftmost azimuth first; 0 where it is not detected.
-    hidden : (R, A) bool
-        Whether it would be detected if the vehicle did not hide it.
-    ranges, azimuths : (R,) and (A,) float
-        Of the target's centre, over the ground [m] and from the sensor's heading [rad], descending.
-    height_m : float
-        Height of the target's centre above the ground.
-    target : str
-        What the target is.
+    `values` (R, A): m of the target, farthest range first, leftmost azimuth first; 0 where it is
+        not detected.
+    `hidden` (R, A): Whether it would be detected if the vehicle did not hide it.
+    `ranges, azimuths` (R,): Of the target's centre, over the ground [m] and from the sensor's
+        heading [rad], descending.
+    `height_m`: Height of the target's centre above the ground.
+    `target`: What the target is.
     """
 
     values: Floats

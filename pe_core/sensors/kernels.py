@@ -4,8 +4,6 @@
 kernels of `Defined...` implement them by the definition of m alone, for kinds without fast ones.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Sequence
 from concurrent.futures import Executor
@@ -63,12 +61,11 @@ class Occlusion:
 class Measured:
     """The measurement m (V,) of a sensor on a sample of voxels.
 
-    It is `approximate` if the occlusion by the vehicle is. The kernel uses `kernel_data` again.
+    The kernel uses `kernel_data` again.
     """
 
     sensor: Sensor
     m: NDArray
-    approximate: bool = False
     kernel_data: Any = None
 
 
@@ -83,11 +80,10 @@ class GroundView:
 
 @dataclass(frozen=True, slots=True)
 class VisibleGround:
-    """Squares `marked` (NX, NY) for a sensor; `approximate` if the occlusion by the vehicle is."""
+    """Squares `marked` (NX, NY) for a sensor."""
 
     sensor: Sensor
     marked: Flags
-    approximate: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,8 +155,8 @@ class SampleKernel(CachingKernel, ABC):
     """Measures sensors of one kind on a fixed sample of voxels."""
 
     @abstractmethod
-    def measure(self, sensor: Sensor, approximate: bool) -> Measured:
-        """Measure a sensor; with `approximate` occlusion may be approximate, if that is faster."""
+    def measure(self, sensor: Sensor) -> Measured:
+        """Measure a sensor."""
 
     def occlusion(self, measured: Measured) -> Occlusion:
         """Return how much of a measured sensor the vehicle occludes."""
@@ -177,8 +173,8 @@ class GroundKernel(CachingKernel, ABC):
     """
 
     @abstractmethod
-    def mark(self, sensor: Sensor, approximate: bool) -> VisibleGround:
-        """Mark squares; with `approximate` occlusion may be approximate, if that is faster."""
+    def mark(self, sensor: Sensor) -> VisibleGround:
+        """Mark squares."""
 
 
 class ObjectKernel(CachingKernel, ABC):
@@ -225,8 +221,8 @@ class DefinedSample(SampleKernel):
         self._side = voxels.space.interval
         self._centers = np.asfortranarray(voxels.centers)  # fast for arithmetic axis by axis
 
-    def measure(self, sensor: Sensor, approximate: bool) -> Measured:
-        """Measure a sensor, always exactly."""
+    def measure(self, sensor: Sensor) -> Measured:
+        """Measure a sensor."""
         return Measured(sensor, self._measure(sensor, self._centers, self._side, self._vehicle))
 
     def occlusion(self, measured: Measured) -> Occlusion:
@@ -240,7 +236,7 @@ class DefinedGround(GroundKernel):
     def __init__(self, measure: Definition, view: GroundView) -> None:
         self._measure, self._view = measure, view
 
-    def mark(self, sensor: Sensor, approximate: bool) -> VisibleGround:
+    def mark(self, sensor: Sensor) -> VisibleGround:
         """Measure small cubes, at steps of `HEIGHT_STEP_M` over the height of the posts."""
         grid, height = self._view.grid, self._view.height
         side = min(grid.step, height) or FLAT_M

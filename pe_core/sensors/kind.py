@@ -5,8 +5,6 @@ Fast kernels are optional: without them every voxel is measured by the definitio
 AP curves of whole objects, converted from its curve of voxels by the sizes of the classes.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -103,86 +101,54 @@ def ray_to_center(sensor: Sensor, center: Floats, side: float) -> tuple[Floats, 
 class Kind:
     """A kind of sensor: its figures and its functions.
 
-    Attributes
-    ----------
-    name : str
-        Its name in studies, in the catalogue and in ``[ap.NAME]``.
-    label, plural : str
-        Name of one such sensor and of several, for users.
-    unit : str
-        Unit of m, in the plural.
-    model : type
-        Class of its intrinsics; its `kind` is the name.
-    curve : ApCurve
-        Eq. 4 of its detector, unless a study has another.
-    keys : frozenset of str
-        Keys of a sensor's table, without those that every kind has.
-    measure : callable
-        Of a sensor, centres (V, 3) [m] of cubes, their side [m] and the vehicle or None: m (V,) by
-        definition.
-    read : callable
-        Of a name, a sensor's table, and the folder of files that it names: the intrinsics.
-    write : callable
-        Of intrinsics: the table that `read` turns into them again, without the kind.
-    data_sheet : callable
-        Of intrinsics: the figures for users, one line each.
-    summary : callable
-        The main figures in one line; by default the first of `data_sheet`.
-    plot : callable
-        Of intrinsics: the lines of a small text plot.
-    object_curves : mapping of str to ApCurve
-        Eq. 4 of whole objects by class, m counted on the object, unless a study has another. A
-        class without a curve cannot be scored.
-    measure_objects : callable
-        Of a sensor, objects, the vehicle and whether objects occlude each other: m (N,) of objects
-        by definition.
-    measure_parts : callable
-        Of a sensor, `BodyParts` and the vehicle: m (N,) of the cells of bodies by definition. A
-        point is counted in the cells that its ray meets in the band in which it surely ends.
-    image_widths : callable
-        Of a sensor and objects: the widths (N,) of their images [px].
-    counts_points : bool
-        Whether m of an object is a number of points on it.
-    point : float
-        m that is one point to a requirement: below 1 where m is an expected number.
-    shows_parts : bool
-        Whether its rays end on bodies, so that it tells which part of one it sees: `measure_parts`.
-    lowest_m : float
-        A body on the ground that is lower is not seen by it, to a requirement [m].
-    cautious : callable
-        Of intrinsics: as requirements take them, with what it knows of nearly all bodies, not of
-        half of them.
-    in_weather : callable
-        Of intrinsics and a `Weather`: the intrinsics as they are under it.
-    stand_off_m : float
-        From a surface to the origin of a sensor that is put on it, unless one says otherwise [m].
-    outward : callable
-        Of intrinsics: whether a sensor that is put on the vehicle looks away from its middle.
-    has_top : bool
-        Whether it matters which side of the sensor is up, as for a picture.
-    occlusion_text : str
-        Text about its occlusion by the vehicle: "12 % of its *beams occluded*".
-    rays : callable
-        Of a sensor and a number: at most so many unit directions (R, 3), ground frame, evenly
+    `name`: Its name in studies, in the catalogue and in ``[ap.NAME]``.
+    `label, plural`: Name of one such sensor and of several, for users.
+    `unit`: Unit of m, in the plural.
+    `model`: Class of its intrinsics; its `kind` is the name.
+    `curve`: Eq. 4 of its detector, unless a study has another.
+    `keys`: Keys of a sensor's table, without those that every kind has.
+    `measure`: Of a sensor, centres (V, 3) [m] of cubes, their side [m] and the vehicle or None: m
+        (V,) by definition.
+    `read`: Of a name, a sensor's table, and the folder of files that it names: the intrinsics.
+    `write`: Of intrinsics: the table that `read` turns into them again, without the kind.
+    `data_sheet`: Of intrinsics: the figures for users, one line each.
+    `summary`: The main figures in one line; by default the first of `data_sheet`.
+    `plot`: Of intrinsics: the lines of a small text plot.
+    `object_curves`: Eq. 4 of whole objects by class, m counted on the object, unless a study has
+        another. A class without a curve cannot be scored.
+    `measure_objects`: Of a sensor, objects, the vehicle and whether objects occlude each other: m
+        (N,) of objects by definition.
+    `measure_parts`: Of a sensor, `BodyParts` and the vehicle: m (N,) of the cells of bodies by
+        definition. A point is counted in the cells that its ray meets in the band in which it
+        surely ends.
+    `image_widths`: Of a sensor and objects: the widths (N,) of their images [px].
+    `counts_points`: Whether m of an object is a number of points on it.
+    `point`: m that is one point to a requirement: below 1 where m is an expected number.
+    `shows_parts`: Whether its rays end on bodies, so that it tells which part of one it sees:
+        `measure_parts`.
+    `lowest_m`: A body on the ground that is lower is not seen by it, to a requirement [m].
+    `cautious`: Of intrinsics: as requirements take them, with what it knows of nearly all bodies,
+        not of half of them.
+    `in_weather`: Of intrinsics and a `Weather`: the intrinsics as they are under it.
+    `stand_off_m`: From a surface to the origin of a sensor that is put on it, unless one says
+        otherwise [m].
+    `outward`: Of intrinsics: whether a sensor that is put on the vehicle looks away from its
+        middle.
+    `has_top`: Whether it matters which side of the sensor is up, as for a picture.
+    `occlusion_text`: Text about its occlusion by the vehicle: "12 % of its *beams occluded*".
+    `rays`: Of a sensor and a number: at most so many unit directions (R, 3), ground frame, evenly
         spread over the field of view. None: the share that the vehicle occludes is unknown.
-    rays_to : callable
-        Of a sensor, the centre (3,) and the side of a cube [m]: directions (R, 3), ground frame,
-        and lengths (R,) [m] of the rays that decide whether it is occluded.
-    missed : callable
-        Of the same: why the sensor does not see the cube, which nothing occludes.
-    view : callable
-        Of intrinsics and a step [rad]: the field of view in triangles of about that size, or None.
-    field_picture : callable
-        Of a sensor and the vehicle: what it detects by range and azimuth, or None.
-    covers_met : callable
-        Of the same: loss [dB] and share of the field of each cover it measures through.
-    opaque : callable
-        Of the vehicle: what blocks the rays of such sensors, or None.
-    on_grid, on_sample : callable
-        Of a space or of `Voxels`, the vehicle, and the integer m from which AP is at its maximum:
-        a kernel. By default it measures by definition, as do both others.
-    on_ground, on_objects : callable
-        Of a `GroundView` or an `ObjectView`: a kernel.
+    `rays_to`: Of a sensor, the centre (3,) and the side of a cube [m]: directions (R, 3), ground
+        frame, and lengths (R,) [m] of the rays that decide whether it is occluded.
+    `missed`: Of the same: why the sensor does not see the cube, which nothing occludes.
+    `view`: Of intrinsics and a step [rad]: the field of view in triangles of about that size, or
+        None.
+    `field_picture`: Of a sensor and the vehicle: what it detects by range and azimuth, or None.
+    `covers_met`: Of the same: loss [dB] and share of the field of each cover it measures through.
+    `opaque`: Of the vehicle: what blocks the rays of such sensors, or None.
+    `on_grid, on_sample`: Of a space or of `Voxels`, the vehicle, and the integer m from which AP is
+        at its maximum: a kernel. By default it measures by definition, as do both others.
+    `on_ground, on_objects`: Of a `GroundView` or an `ObjectView`: a kernel.
     """
 
     name: str
@@ -245,10 +211,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(_kinds)
 def register(kind: Kind) -> None:
     """Add a kind to the registry: its sensors can then be studied, scored, searched and shown.
 
-    Raises
-    ------
-    InputError
-        When the name is taken, or the model class names another kind.
+    `InputError` when the name is taken, or the model class names another kind.
     """
     if kind.name in _kinds:
         raise InputError("kinds", "name", "a name used once", repr(kind.name))
@@ -266,10 +229,7 @@ def unregister(name: str) -> None:
 def kind_named(name: object, source: str, field: str = "kind") -> Kind:
     """Return the kind of a name; `source` and `field` are for the message.
 
-    Raises
-    ------
-    InputError
-        When there is no such kind.
+    `InputError` when there is no such kind.
     """
     return _kinds[choice(source, field, name, _kinds)]
 
@@ -277,10 +237,7 @@ def kind_named(name: object, source: str, field: str = "kind") -> Kind:
 def kind_of(sensor: Sensor | SensorModel) -> Kind:
     """Return the kind of a sensor, or of its model.
 
-    Raises
-    ------
-    InputError
-        When its kind is not registered.
+    `InputError` when its kind is not registered.
     """
     return kind_named(getattr(sensor, "kind", None), sensor.name)
 
@@ -299,9 +256,10 @@ def measure(
     the centre (`camera.kind`). Through a lens with distortion, the part inside the lens's
     field counts, also if a corner is behind the camera (`camera.kind`).
 
+    `InputError` when the centres are not (V, 3) finite numbers.
+
     Parameters
     ----------
-    sensor : Sensor
     centers : (V, 3) float
         Voxel centres, ground frame [m].
     side : float
@@ -313,11 +271,6 @@ def measure(
     -------
     (V,) float
         Beams or pixels.
-
-    Raises
-    ------
-    InputError
-        When the centres are not (V, 3) finite numbers.
     """
     centers = np.asarray(centers, dtype=float)
     if centers.ndim != 2 or centers.shape[1] != 3 or not np.isfinite(centers).all():
@@ -334,10 +287,10 @@ def measure_objects(
     area of the box's image in pixels, clipped to the picture, times the share of it that is not
     occluded (docs/metric.md).
 
+    `InputError` when the kind of the sensor does not measure objects.
+
     Parameters
     ----------
-    sensor : Sensor
-    objects : Objects
     vehicle : Vehicle, optional
         Occludes the voxels behind it.
     traffic : bool
@@ -347,10 +300,5 @@ def measure_objects(
     -------
     (N,) float
         Beams or pixels.
-
-    Raises
-    ------
-    InputError
-        When the kind of the sensor does not measure objects.
     """
     return kind_of(sensor).measure_objects(sensor, objects, vehicle, traffic)

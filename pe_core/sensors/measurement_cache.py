@@ -8,8 +8,6 @@ range, 0 beyond it, and counted again on the few voxels that the range cuts: a s
 once for all its ranges, and the numbers are those of measuring it anew.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Hashable, Iterable, Mapping
 from types import MappingProxyType
@@ -74,14 +72,8 @@ class _Kernels(Generic[K]):
 class MeasurementCache:
     """Measures rigs on a fixed set of voxels.
 
-    Parameters
-    ----------
-    voxels : Voxels
-    vehicle : Vehicle or None
-    saturation_count : callable
-        The integer m from which AP is at its maximum, by kind or AP curve.
-    kernel_caches : dict, optional
-        Caches of kernels by kind, shared by several of these on one vehicle.
+    `saturation_count`: The integer m from which AP is at its maximum, by kind or AP curve.
+    `kernel_caches`: Caches of kernels by kind, shared by several of these on one vehicle.
     """
 
     def __init__(
@@ -109,17 +101,15 @@ class MeasurementCache:
         """m (V,) of the sensors of the last rig."""
         return {name: measured.m for name, measured in self._measured.items()}
 
-    def measure(
-        self, rig: Rig, approximate: bool = False, done: Callable[[], None] | None = None
-    ) -> None:
-        """Measure the sensors that are not cached; without `approximate` exactly.
+    def measure(self, rig: Rig, done: Callable[[], None] | None = None) -> None:
+        """Measure the sensors that are not cached.
 
         `done` is called after each sensor; if it raises, the cache stays as it was.
         """
         before, stayed = self._measured, self._stayed
         measured = {}
         for s in rig:
-            measured[s.name] = self.cached(s, approximate) or self._one(s, approximate)
+            measured[s.name] = self.cached(s) or self._one(s)
             if done is not None:
                 done()
         self._measured = measured
@@ -131,12 +121,12 @@ class MeasurementCache:
         self._occlusions = {k: v for k, v in self._occlusions.items() if k in kept}
         self._kernels.keep_only(rig)
 
-    def _one(self, sensor: Sensor, approximate: bool) -> Measured:
+    def _one(self, sensor: Sensor) -> Measured:
         """Measure a sensor; of one with a limited range only what differs from the whole one."""
         whole = at_whole_range(sensor)
         measured = self._whole.get(_key(whole))
-        if measured is None or (measured.approximate and not approximate):
-            measured = self._kernel(whole).measure(whole, approximate)
+        if measured is None:
+            measured = self._kernel(whole).measure(whole)
             self._whole[_key(whole)] = measured
         return measured if whole is sensor else self._within_range(sensor, measured)
 
@@ -153,14 +143,14 @@ class MeasurementCache:
         if len(cut):
             some = Voxels(voxels.space, voxels.index[cut], voxels.centers[cut])
             few = MeasurementCache(some, self._vehicle, self._saturation_count)
-            m[cut] = few._kernel(sensor).measure(sensor, False).m[: len(cut)]
+            m[cut] = few._kernel(sensor).measure(sensor).m[: len(cut)]
             m[cut] = np.where(square[cut] <= (limit + half) ** 2, m[cut], 0)
-        return Measured(sensor, m, whole.approximate, whole.kernel_data)
+        return Measured(sensor, m, whole.kernel_data)
 
-    def cached(self, sensor: Sensor, approximate: bool) -> Measured | None:
-        """Return the valid cached measurement of a sensor; without `approximate` an exact one."""
+    def cached(self, sensor: Sensor) -> Measured | None:
+        """Return the valid cached measurement of a sensor."""
         for cached in (self._measured.get(sensor.name), self._whole.get(_key(sensor))):
-            if cached is None or (cached.approximate and not approximate):
+            if cached is None:
                 continue
             if cached.sensor.measures_as(sensor) and cached.sensor.curve == sensor.curve:
                 return cached
@@ -199,15 +189,9 @@ def _key(sensor: Sensor) -> Hashable:
 class ObjectMeasurementCache:
     """Measures rigs on a fixed set of objects, or on the cells of bodies.
 
-    Parameters
-    ----------
-    objects : Objects or BodyParts
-        Of parts of bodies the sensors have to show parts: `Kind.shows_parts`.
-    vehicle : Vehicle, optional
-    traffic : bool
-        Whether the objects of a scene occlude each other.
-    kernel_caches : dict, optional
-        Caches of kernels by kind, shared by several of these on one vehicle.
+    `objects`: Of parts of bodies the sensors have to show parts: `Kind.shows_parts`.
+    `traffic`: Whether the objects of a scene occlude each other.
+    `kernel_caches`: Caches of kernels by kind, shared by several of these on one vehicle.
     """
 
     def __init__(
@@ -259,11 +243,7 @@ class ObjectMeasurementCache:
 class VisibleGroundCache:
     """Marks squares of the ground for rigs.
 
-    Parameters
-    ----------
-    view : GroundView
-    kernel_caches : dict
-        Caches of kernels by kind, shared by several of these on one vehicle.
+    `kernel_caches`: Caches of kernels by kind, shared by several of these on one vehicle.
     """
 
     def __init__(self, view: GroundView, kernel_caches: dict[str, Any]) -> None:
@@ -278,18 +258,17 @@ class VisibleGroundCache:
         """Squares (NX, NY) that each sensor of the last rig marks, by name."""
         return {name: visible.marked for name, visible in self._visible.items()}
 
-    def marked(self, rig: Rig, approximate: bool = False) -> tuple[Flags, bool]:
-        """Return squares (NX, NY) that any sensor marks, and whether any of it is approximate."""
-        self._visible = {s.name: self._one(s, approximate) for s in rig}
+    def marked(self, rig: Rig) -> Flags:
+        """Return squares (NX, NY) that any sensor marks."""
+        self._visible = {s.name: self._one(s) for s in rig}
         self._kernels.keep_only(rig)
         marked = np.zeros(self.view.grid.shape, bool)
         for visible in self._visible.values():
             marked |= visible.marked
-        return marked, any(visible.approximate for visible in self._visible.values())
+        return marked
 
-    def _one(self, sensor: Sensor, approximate: bool) -> VisibleGround:
+    def _one(self, sensor: Sensor) -> VisibleGround:
         cached = self._visible.get(sensor.name)
-        is_good = cached is not None and (approximate or not cached.approximate)
-        if cached is not None and is_good and sensor.measures_as(cached.sensor):
+        if cached is not None and sensor.measures_as(cached.sensor):
             return cached
-        return self._kernels.kernel_of(sensor).mark(sensor, approximate)
+        return self._kernels.kernel_of(sensor).mark(sensor)

@@ -7,8 +7,6 @@ range on one vehicle, and hold over range within one rig. Both are of LiDARs alo
 the paper's.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -132,6 +130,8 @@ def fitted_curves(model: str) -> ClassCurves:
 class PerceptionModel:
     """The AP curve of every kind of sensor, and how late fusion takes sensors that see nothing.
 
+    `InputError` when there is no kind or rule of a name, or a curve is not an `ApCurve`.
+
     Parameters
     ----------
     blind : {"floor", "literal"}
@@ -148,11 +148,6 @@ class PerceptionModel:
     **curves : ApCurve
         By kind, ``lidar=ApCurve(0.2, 0.5)``; a kind's own by default. They are attributes as well:
         ``model.lidar`` is ``model.curve("lidar")``.
-
-    Raises
-    ------
-    InputError
-        When there is no kind or rule of a name, or a curve is not an `ApCurve`.
     """
 
     blind: str
@@ -194,10 +189,7 @@ class PerceptionModel:
     def object_curve(self, kind: str, name: str) -> ApCurve:
         """Return the AP curve of whole objects of a class, by the beams or pixels on each.
 
-        Raises
-        ------
-        InputError
-            When there is none.
+        `InputError` when there is none.
         """
         own_curves = kind_named(kind, SOURCE).object_curves
         fitted = fitted_curves(self.model).get(kind, {})
@@ -209,13 +201,13 @@ class PerceptionModel:
             raise InputError(SOURCE, field, expected, "none")
         return curve
 
-    def of_class(self, name: str) -> PerceptionModel:
+    def of_class(self, name: str) -> "PerceptionModel":
         """Return this with the process noise of one class, for frames."""
         if self.frames is None:
             return self
         return self.with_model(self.model, self.frames.of_class(name))
 
-    def with_model(self, model: str, frames: Frames | None = None) -> PerceptionModel:
+    def with_model(self, model: str, frames: Frames | None = None) -> "PerceptionModel":
         """Return this with the curves of objects of another model, over frames if any are given."""
         own: Any = {"objects": self.objects, "model": model, "frames": frames, **self.other_curves}
         return PerceptionModel(self.blind, protocol_floor=self.protocol_floor, **own)

@@ -7,8 +7,6 @@ once. Parts of the vehicle that are covers (`Vehicle.covers`) let the rays of ra
 loss.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
@@ -64,7 +62,7 @@ class RayFan:
         return np.asarray(bins)
 
     @classmethod
-    def free(cls, window: AngleWindow) -> RayFan:
+    def free(cls, window: AngleWindow) -> "RayFan":
         """Return a fan whose rays are all free."""
         shape = shape_of(window)
         part = np.full(shape, FREE, np.int32)

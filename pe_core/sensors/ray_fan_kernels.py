@@ -5,8 +5,6 @@ its field of view, and its definition of m by a fan. The kernels apply the defin
 field of view may reach.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -169,8 +167,8 @@ class FanSample(SampleKernel):
         self._rules, self._voxels = rules, voxels
         self.cache = rules.cache(vehicle)
 
-    def measure(self, sensor: Sensor, approximate: bool) -> Measured:
-        """Measure a sensor, always exactly."""
+    def measure(self, sensor: Sensor) -> Measured:
+        """Measure a sensor."""
         voxels, fan = self._voxels, self.cache.fan(sensor)
         m = self._rules.voxels(sensor, voxels.centers, voxels.space.interval, fan)
         return Measured(sensor, m)
@@ -186,7 +184,7 @@ class FanGround(GroundKernel):
     def __init__(self, rules: FanRules, view: GroundView) -> None:
         self._rules, self._view, self.cache = rules, view, rules.cache(view.vehicle)
 
-    def mark(self, sensor: Sensor, approximate: bool) -> VisibleGround:
+    def mark(self, sensor: Sensor) -> VisibleGround:
         """Test the points of the posts."""
         grid, height = self._view.grid, self._view.height
         marked = np.zeros(grid.shape[0] * grid.shape[1], bool)

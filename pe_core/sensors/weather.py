@@ -10,8 +10,6 @@ Clouds, ICCV 2021, and the constants of MartinHahner/LiDAR_fog_sim@4278db1; [P83
 [IIHS] Headlight Test and Rating Protocol II (2016); [R112] UN Regulation 112, class B.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable, Sequence
@@ -57,10 +55,7 @@ class Weather:
     passive cameras see what the vehicle's headlamps light, or as far as `lit_m` in clear air.
     Wet clothes have a reflectivity of 0.5.
 
-    Raises
-    ------
-    InputError
-        When a value is out of its range, or two of rain, snow and fog are given.
+    `InputError` when a value is out of its range, or two of rain, snow and fog are given.
     """
 
     name: str

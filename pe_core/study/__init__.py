@@ -36,16 +36,3 @@ from .study_file import (
     study_to_dict,
 )
 from .time_file import by_name_of_text, by_name_text, stories_of_rows, story_table
-
-__all__ = ["AREAS", "MESH", "METHODS", "OBJECTIVES", "OPTIMIZED", "REQUIRED", "RESULT"]
-__all__ += ["REVIEW_PAGE", "SCHEDULED_METHOD", "SCHEMA", "SEARCH", "STUDY"]
-__all__ += ["Angle", "ConditionScore", "ConditionTable", "Conditions", "Name", "Number", "OneOf"]
-__all__ += ["Pair", "Panel", "Robustness", "Search", "Setting", "Several", "StateInWeather"]
-__all__ += ["Study", "Texts", "Toggle", "Triple", "Whole"]
-__all__ += ["condition_table", "is_switch", "load_study", "load_study_data", "menu_of"]
-__all__ += ["mounts_table", "panel_default", "passthrough_of_text", "passthrough_table"]
-__all__ += ["passthrough_text", "read_passthrough", "requirement_file", "requirement_search"]
-__all__ += ["save_study", "setting", "setting_keys", "settings_of", "settings_of_part"]
-__all__ += ["state_from_dict", "state_table", "study_from_dict", "study_to_dict"]
-__all__ += ["by_name_of_text", "by_name_text", "stories_of_rows", "story_table", "value_in_file"]
-__all__ += ["vehicle_digest"]

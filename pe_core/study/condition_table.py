@@ -12,8 +12,6 @@ highest of those with a weight. With a tolerance, each of these is the mean (or 
 cases. Requirements wrap either.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -78,26 +76,14 @@ def search_evaluator(
 class ConditionScore:
     """The score of a rig under one condition.
 
-    Attributes
-    ----------
-    state, weather : str
-        Names; "as drawn" and "clear" where the study has none.
-    weight : float
-    entropy, stderr : float
-        Entropy under the condition and its standard error [nats].
-    coverage : float
-    per_class : dict of str to float
-        Entropy by class [nats].
-    without : dict of str to float
-        Entropy without each sensor, by name [nats].
-    ap : float or None
-        Expected AP; only for scores on objects, as the next two.
-    ap_per_class : dict of str to float
-    reach : dict of str to dict of str to float
-        By class and direction, the distance to which a lone object is found [m].
-    covered : dict of str to dict of str to float
-        By sensor and part of the vehicle, the share of its rays that the part occludes beyond what
-        it occludes as drawn; parts of the state alone.
+    `state, weather`: Names; "as drawn" and "clear" where the study has none.
+    `entropy, stderr`: Entropy under the condition and its standard error [nats].
+    `per_class`: Entropy by class [nats].
+    `without`: Entropy without each sensor, by name [nats].
+    `ap`: Expected AP; only for scores on objects, as the next two.
+    `reach`: By class and direction, the distance to which a lone object is found [m].
+    `covered`: By sensor and part of the vehicle, the share of its rays that the part occludes
+        beyond what it occludes as drawn; parts of the state alone.
     """
 
     state: str
@@ -175,10 +161,7 @@ def condition_table(
 ) -> ConditionTable | None:
     """Return the scores of a study's rig under all its conditions; None without conditions.
 
-    Raises
-    ------
-    ScoreStopped
-        When `watch` returned False.
+    `ScoreStopped` when `watch` returned False.
     """
     if not study.conditions:
         return None

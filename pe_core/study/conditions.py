@@ -7,8 +7,6 @@ and in each named state and weather, and in both together. Its zone stays where 
 puts it: an open door moves no zone. Requirements have mounting errors and classes of a study, too.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -78,10 +76,7 @@ class StateInWeather:
 class Conditions:
     """States and weathers of a study; each state occurs in each weather.
 
-    Raises
-    ------
-    InputError
-        When names repeat, all weights are 0, or there are more than `MAX_CONDITIONS`.
+    `InputError` when names repeat, all weights are 0, or there are more than `MAX_CONDITIONS`.
     """
 
     states: Sequence[State] = ()
@@ -112,10 +107,7 @@ class Conditions:
     def one(self, state: str | None = None, weather: str | None = None) -> StateInWeather:
         """Return the condition of a state and a weather by name; None: as drawn, clear air.
 
-        Raises
-        ------
-        InputError
-            For an unknown name; the nearest ones are offered.
+        `InputError` for an unknown name; the nearest ones are offered.
         """
         return StateInWeather(
             _named("state", state, self.states), _named("weather", weather, self.weathers)

@@ -5,8 +5,6 @@ An area of the body is in a mesh file beside the study.
 Housings and models of the catalogue are looked up for them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path

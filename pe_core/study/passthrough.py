@@ -3,8 +3,6 @@
 An export in the same format writes this data again, so the file keeps its content.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Mapping

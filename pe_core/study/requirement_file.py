@@ -4,8 +4,6 @@ A preset is a requirement of a regulation, a test or a maker, with its source. A
 (``preset = "r159_crossing"``) and may replace any key of it.
 """
 
-from __future__ import annotations
-
 import math
 import tomllib
 from collections.abc import Mapping, Sequence

@@ -10,8 +10,6 @@ One design variable of the search is changed at a time, by small steps first; th
 linked pair) is put elsewhere within its range, the nearest places first.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The tables [metric], [ap], [fusion] and [prior] of a study: what a score is of."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path

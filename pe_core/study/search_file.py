@@ -1,7 +1,5 @@
 """The table [optimize] of a study, bounds and choices of its sensors: read and written."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from pathlib import Path

@@ -4,8 +4,6 @@ Panel, headless Blender and the command line all build a `Study` and give it to 
 is why they agree to the bit.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -85,13 +83,15 @@ FEW_SCENES = 32
 class Search(ShortRepr):
     """How to optimize.
 
+    `InputError` when an axis is none, bounds are not low before high, or a number is out of its
+    range.
+
     Parameters
     ----------
     free : mapping of sensor name to axes
         Which of x, y, z, roll, pitch, yaw each sensor may change.
     limits : mapping of sensor name to mapping of axis to (low, high)
         Bounds that replace the default ones; metres and radians.
-    seed : int
     samples : int
         Voxels a candidate is evaluated on; 0: all.
     schedule : Schedule
@@ -112,11 +112,6 @@ class Search(ShortRepr):
         What is minimised over the study's states and weathers, in place of the score as drawn.
     objective : {"entropy", "expected_ap"}
         What is improved: the study's entropy, or the expected AP of objects in traffic.
-
-    Raises
-    ------
-    InputError
-        When an axis is none, bounds are not low before high, or a number is out of its range.
     """
 
     free: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -211,10 +206,7 @@ class Study(Tabular):
     rig's LiDARs return. `frames` are those that the entropy over frames is of, `confirmation` says
     when a track is confirmed, in `stories` of what moves.
 
-    Raises
-    ------
-    InputError
-        When a field is not of its type, or the samples are too few.
+    `InputError` when a field is not of its type, or the samples are too few.
     """
 
     rig: Rig
@@ -346,11 +338,8 @@ class Study(Tabular):
         `as_drawn` is one of the same requirements round the same vehicle, if there is one already:
         what it has measured is not measured again.
 
-        Raises
-        ------
-        InputError
-            When a zone cannot be placed round the vehicle, the rig lacks a kind of sensor, mounting
-            errors are asked for that the study does not state, or nothing is known of a class.
+        `InputError` when a zone cannot be placed round the vehicle, the rig lacks a kind of sensor,
+        mounting errors are asked for that the study does not state, or nothing is known of a class.
         """
         wanted, where = self.requirements, (self.requirements, self.vehicle)
         check_classes(wanted, self._known_classes())
@@ -390,7 +379,7 @@ class Study(Tabular):
         cases = mounting_cases(self.requirements, rig, search.tolerance, search.seed)
         yield from (checker or self.checker()).steps(rig, cases=cases)
 
-    def under(self, condition: StateInWeather) -> Study:
+    def under(self, condition: StateInWeather) -> "Study":
         """Return the study under a condition: a study of its own, as any other."""
         rig, vehicle = condition(self.rig, self.vehicle)
         return replace(self, rig=rig, vehicle=vehicle, conditions=Conditions(), requirements=())
@@ -430,11 +419,11 @@ class Study(Tabular):
         """Return the designs to choose from; `InputError` where there is none."""
         return DesignSpace.of(self.selection, self.rig, self.search.mounting)
 
-    def with_rig(self, rig: Rig) -> Study:
+    def with_rig(self, rig: Rig) -> "Study":
         """Return the study with other placements."""
         return replace(self, rig=rig)
 
-    def with_mesh(self, mesh: str) -> Study:
+    def with_mesh(self, mesh: str) -> "Study":
         """Return the study with the file named that has the vehicle's mesh as it is here."""
         return replace(self, mesh=mesh, axes=MeshAxes(), faces="")
 

@@ -1,7 +1,5 @@
 """The study file: TOML to `Study` and back; all its settings by table, for panel and docs."""
 
-from __future__ import annotations
-
 import functools
 import os
 from collections.abc import Iterator, Mapping
@@ -95,10 +93,7 @@ AXES_KEYS = ("scale", "rotation", "up", "forward")
 def load_study(path: str | Path) -> Study:
     """Read a study from its TOML file.
 
-    Raises
-    ------
-    InputError
-        One line with the file, the field, what was expected and what was found.
+    `InputError`: one line with the file, the field, what was expected and what was found.
     """
     path = Path(path)
     return study_from_dict(load_study_data(path), str(path), path.parent)
@@ -114,11 +109,8 @@ def save_study(study: Study, path: str | Path) -> None:
 
     The files that it names are not written, but have to be there; `export_study` writes them, too.
 
-    Raises
-    ------
-    InputError
-        When the vehicle's mesh, an area or the prior's boxes or weights are in no file, or the
-        study cannot be written.
+    `InputError` when the vehicle's mesh, an area or the prior's boxes or weights are in no file, or
+    the study cannot be written.
     """
     path = Path(path)
     _check_beside(path, "vehicle.mesh", study.vehicle is not None, study.mesh)
@@ -225,7 +217,7 @@ def _read_measurement(table: Table) -> dict[str, Any]:
     return values
 
 
-def _read_vehicle(table: Table, folder: Path) -> tuple[Vehicle | None, MeshFile]:
+def _read_vehicle(table: Table, folder: Path) -> "tuple[Vehicle | None, MeshFile]":
     mesh = table.text("mesh", None, rule=A_PATH)
     keys = ("glass", "covers", "clearance", *AXES_KEYS)
     if mesh is None and any(key in table for key in keys):

@@ -1,7 +1,5 @@
 """The tables [time] and [[story]] of a study: frames, tracks, and stories of what moves."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

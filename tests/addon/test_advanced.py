@@ -71,12 +71,12 @@ def test_a_name_that_is_taken_and_figures_that_cannot_be_are_said_at_the_row(car
 
 def test_the_live_score_is_of_the_same_study(full):
     """What follows the hand is of the scene's own space and curves, as the score is."""
-    study, wish = scenes.study(), session.read_request(full, scenes.depsgraph(), moving=False)
+    study, wish = scenes.study(), session.read_request(full, scenes.depsgraph())
     problem = wish.problem
     assert (problem.space, problem.model) == (study.space, study.model)
     assert problem.vehicle.clearance == 0.05
     own = study.evaluator(samples=engine_calls.SAMPLES)
     assert engine_calls.live_score("it", wish, None).summary.entropy == own.entropy(study.rig)
     full.perception_entropy.space_x = (-20.0, 30.0)
-    changed = session.read_request(full, scenes.depsgraph(), moving=False)
+    changed = session.read_request(full, scenes.depsgraph())
     assert changed.problem.key != problem.key

@@ -1,4 +1,4 @@
-"""The live score: previews while the hand moves, exact once it rests, and nothing left behind."""
+"""The live score: exact while the hand moves and once it rests, and nothing left behind."""
 
 import json
 from dataclasses import replace
@@ -75,13 +75,13 @@ def told(summary):
     return {name: getattr(summary, name) for name in ("entropy", "coverage", "stderr", "per_zone")}
 
 
-def test_a_drag_is_previewed_exact_at_rest_and_compared_with_where_it_began(live, monkeypatch):
-    """The story of two moves: every score at rest is that of a study, to the bit."""
+def test_a_drag_is_exact_and_compared_with_where_it_began(live, monkeypatch):
+    """The story of two moves: every score is that of a study, to the bit."""
     roof, start = live.objects["roof"], reading(live).summary
     assert told(start) == told(exact()) and reading(live).exact and reading(live).before is None
     for _ in range(3):
         drag(roof)
-        assert reading(live).summary.preview and not reading(live).exact
+        assert told(reading(live).summary) == told(exact()) and not reading(live).exact
         assert reading(live).rig["roof"].pose == scenes.study().rig["roof"].pose
         assert reading(live).before == start
     rest()

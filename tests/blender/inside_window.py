@@ -156,7 +156,6 @@ def live_reading(scene):
         **said,
         "entropy": summary.entropy,
         "coverage": summary.coverage,
-        "preview": summary.preview,
         "rested": state.live_state(scene.name).is_current(reading),
         "number": reading.number,
         "before": before,

@@ -40,7 +40,7 @@ def on_sample(sensor, space, index, vehicle=None):
     """m (V,) as the kernel of samples has it; what hides nothing hides nothing there, too."""
     voxels = Voxels(space, index, space.center_of(index))
     kernel = kind_of(sensor).on_sample(voxels, vehicle, ALL)
-    m = np.asarray(kernel.measure(sensor, False).m, dtype=float)
+    m = np.asarray(kernel.measure(sensor).m, dtype=float)
     return m
 
 

@@ -298,7 +298,7 @@ def is_public(module, name):
     is_room = not room or (CHECKOUT / package / room.replace(".", "/") / "__init__.py").exists()
     if not is_room or (room and not name):
         return False
-    return not name or name in getattr(importlib.import_module(module), "__all__", ())
+    return not name or name in dir(importlib.import_module(module))
 
 
 def test_programs_outside_import_public_faces_only():

@@ -154,7 +154,7 @@ def test_the_whole(grid):
     seen = 2 * H2_C + 3 * H1 + 5 * H3 + 4 * H1_1_C + 1 * H1_C + 4 * H1 + 6 * H1
     assert grid.entropy == pytest.approx((seen + 22 * H0) / 47, abs=LOOK_UP)
     assert grid.coverage == pytest.approx(25 / 47, abs=1e-9)
-    assert (grid.stderr, grid.voxels, grid.preview) == (0.0, 24, False)
+    assert (grid.stderr, grid.voxels) == (0.0, 24)
 
 
 CLASSES = {
@@ -333,7 +333,7 @@ def test_without_a_vehicle_nothing_is_hidden_and_nothing_left_out():
 
 def test_the_score_as_plain_data_says_the_same(grid):
     data = grid.to_dict()
-    assert data["entropy"] == grid.entropy and "preview" not in data
+    assert data["entropy"] == grid.entropy
     assert data["per_class"] == {name: asdict(part) for name, part in grid.per_class.items()}
     assert data["per_zone"]["far"] == {"entropy": H0, "coverage": 0.0, "share": round(1 / 47, 9)}
     assert data["per_sensor"]["hood"]["occluded_by"] == {"mast": 1}

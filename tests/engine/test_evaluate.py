@@ -1,4 +1,4 @@
-"""Scores: grid, sample and preview against definition and each other; errors; who watches."""
+"""Scores: grid and sample against definition and each other; errors; who watches."""
 
 import math
 import threading
@@ -22,8 +22,6 @@ from pe_core.metric import (
 )
 from pe_core.scoring import ScoreStopped, draw
 from pe_core.sensors import Voxels, kind_of
-from pe_core.sensors.lidar.beams import RotatedBeams
-from pe_core.sensors.lidar.occlusion import ApproximateOcclusion, BeamSlopes, TopMap
 from tests.engine import shapes
 from tests.limits import HANG_S
 from tests.thorough import THOROUGH, pairs
@@ -135,30 +133,26 @@ def test_beams_down_from_the_middle_are_stopped(at):
     exact = pe.measure(sensor, centers, space.interval, vehicle)
     assert exact.sum() < pe.measure(sensor, centers, space.interval).sum()
     sample = kind_of(sensor).on_sample(Voxels(space, index, centers), vehicle, 60000)
-    assert (sample.measure(sensor, False).m == exact).all()
+    assert (sample.measure(sensor).m == exact).all()
 
 
 SAMPLES = 4096
 
 
 def evaluator(samples=SAMPLES):
-    return pe.Evaluator(PREVIEW_SPACE, pe.Prior.road(), CAR, samples=samples)
+    return pe.Evaluator(SMALL_SPACE, pe.Prior.road(), CAR, samples=samples)
 
 
-@pytest.mark.parametrize("preview", [False, True])
-def test_a_summary_and_a_score_agree(preview):
+def test_a_summary_and_a_score_agree():
     rig = rig_at((0.0, 0.0, 1.9))
-    summary, score = (
-        evaluator().summary(rig, preview=preview),
-        evaluator().score(rig, preview=preview),
-    )
+    summary, score = evaluator().summary(rig), evaluator().score(rig)
     assert summary == replace(score, per_sensor={}, scatter=None)
-    assert summary.preview == preview and summary.ap is None
+    assert summary.ap is None
 
 
 def test_a_summary_at_objects_has_the_ap_of_the_score():
     rule = pe.TargetRule("objects", traffic=True, scenes=8)
-    evaluator = pe.ObjectEvaluator(PREVIEW_SPACE, pe.Prior.road(), CAR, targets=rule)
+    evaluator = pe.ObjectEvaluator(SMALL_SPACE, pe.Prior.road(), CAR, targets=rule)
     rig = rig_at((0.0, 0.0, 1.9))
     assert evaluator.summary(rig).ap == evaluator.score(rig).objects.ap
 
@@ -208,12 +202,8 @@ def test_alone_and_failing_are_scores_of_other_rigs(name, how):
         assert own.lost > 0.0 or blind == "literal"
 
 
-PREVIEW_SPACE = shapes.small_space(0.25)
+SMALL_SPACE = shapes.small_space(0.25)
 CAR = shapes.box_car(2)
-
-
-def evaluator_of_preview():
-    return pe.Evaluator(PREVIEW_SPACE, pe.Prior.road(), CAR, samples=20_000)
 
 
 def rig_at(*places):
@@ -221,48 +211,6 @@ def rig_at(*places):
         shapes.lidar_on_roof(position=place, name=f"lidar {n}") for n, place in enumerate(places)
     ]
     return pe.Rig(sensors)
-
-
-@pytest.mark.parametrize("rotation", [(0, 0, 0), (3, -8, 40)])
-@pytest.mark.parametrize("place", [(-0.43, 0.0, 1.8), (0.3, 0.2, 1.6), (1.9, 0.0, 1.4), (5, 0, 2)])
-def test_a_preview_stops_nearly_the_same_beams(place, rotation):
-    sensor = shapes.lidar_on_roof(position=place, rotation=rotation)
-    cast = pe.beam_field(sensor, CAR).ends
-    preview = ApproximateOcclusion(CAR).ends(sensor, RotatedBeams(sensor).slopes)
-    stopped = cast < 200.0
-    assert np.mean(stopped != (preview < 200.0)) < 0.01
-    both = stopped & (preview < 200.0)
-    assert both.sum() > 100 or place[0] == 5
-    assert not both.any() or np.median(np.abs(preview - cast)[both] / cast[both]) < 0.05
-
-
-def test_a_score_says_that_it_is_a_preview_and_the_next_is_not():
-    own, rig = evaluator_of_preview(), rig_at((0.3, 0.2, 1.6))
-    preview, exact = own.score(rig, preview=True), own.score(rig)
-    assert preview.preview and preview.to_dict()["preview"] is True
-    assert not exact.preview and "preview" not in exact.to_dict()
-    assert exact.to_dict() == evaluator_of_preview().score(rig).to_dict()
-    assert preview.entropy != exact.entropy
-
-
-def test_a_sensor_below_the_top_is_cast():
-    own, rig = evaluator_of_preview(), rig_at((2.31, 0.0, 0.6), (0.0, 0.0, 1.0))
-    score = own.score(rig, preview=True)
-    assert not score.preview
-    assert score.to_dict() == evaluator_of_preview().score(rig).to_dict()
-
-
-def test_a_roof_hides_what_is_below_its_edge():
-    """A 2 x 2 m plate seen from 0.5 m above its middle: its edge is 26.6 degrees down ahead."""
-    plate = shapes.box((-1, -1, 1.0), (1, 1, 1.1))
-    angles = np.radians(np.arange(-60.0, 30.0, 0.5))
-    beams = np.stack([np.cos(angles), 0 * angles, np.sin(angles)], axis=1)
-    ends = TopMap(plate).ends(np.array([0.0, 0.0, 1.6]), BeamSlopes.of(beams), 100.0)
-    edge = np.degrees(np.arctan2(-0.5, 1.0))
-    clear = np.degrees(angles) > edge
-    assert np.count_nonzero((ends == 100.0) != clear) <= 3
-    low = np.degrees(angles) < edge - 3
-    assert ends[low] * -np.sin(angles[low]) == pytest.approx(0.5, rel=0.05)
 
 
 STANDARD_ERROR_RIGS = {

@@ -143,7 +143,7 @@ def test_a_lidar_anywhere_on_the_vehicle(seed):
     index = some_voxels(sensor, SPACE, CAR, rng, 100)
     expected = assert_defined(sensor, SPACE, index, CAR)
     voxels = Voxels(SPACE, index, SPACE.center_of(index))
-    few = kind_of(sensor).on_sample(voxels, CAR, 10).measure(sensor, False).m
+    few = kind_of(sensor).on_sample(voxels, CAR, 10).measure(sensor).m
     assert np.minimum(few, 10).tolist() == np.minimum(expected, 10).tolist()
 
 

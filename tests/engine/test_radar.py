@@ -163,7 +163,7 @@ def test_a_sensor_beside_the_body_has_rays_that_end_on_it():
     space, car = pe.PerceptionSpace((-4, 36), (-20, 20), (0, 3), 0.5), shapes.box_car()
     sample = kinds.KINDS["radar"].on_sample(every_voxel(space), car, 1)
     inside = radar(position=(1.0, 1.1, 0.6), rotation=(0, 0, -20))
-    occlusion = sample.occlusion(sample.measure(inside, False))
+    occlusion = sample.occlusion(sample.measure(inside))
     assert 0 < occlusion.occluded == sum(occlusion.by_part.values()) <= occlusion.rays
 
 

@@ -114,7 +114,7 @@ def test_a_speck_along_the_body_is_no_blind_ground_to_a_side(rows, zone):
     cells = GroundCells.of(SPACE, 0.05)
     blind = np.zeros((len(cells.x), len(cells.y)), bool)
     blind[(cells.x > 2.0) & (cells.x < 2.0 + 0.05 * rows)] = True
-    found = blind_ground(cells, blind, ((-2.0, 2.0), (-0.5, 0.5)), 0.5, 15.0, False)
+    found = blind_ground(cells, blind, ((-2.0, 2.0), (-0.5, 0.5)), 0.5, 15.0)
     assert (found.zone["front"], found.seen_from["front"]) == (zone, zone)
     assert (found.nearest["front"] is None) == (zone == 0.0)
 
@@ -124,7 +124,7 @@ def test_of_two_nearest_places_the_one_nearer_to_the_middle_is_told():
     cells = GroundCells.of(pe.PerceptionSpace((-4, 4), (-4, 4), (0, 1), 1.0), 1.0)
     blind = np.zeros((8, 8), bool)
     blind[5, [2, 4]] = True  # centres at y = -1.5 and 0.5
-    found = blind_ground(cells, blind, ((-1.0, 1.0), (-2.0, 2.0)), 0.5, 15.0, False)
+    found = blind_ground(cells, blind, ((-1.0, 1.0), (-2.0, 2.0)), 0.5, 15.0)
     assert found.nearest["front"].point == (1.0, 0.5)
 
 
@@ -176,11 +176,11 @@ def test_a_lens_that_bends_and_a_definition_alone_see_the_same_ground():
     round_ = pe.Camera("round", 1920, 1080, lens=lens)
     view = GroundView(GroundGrid((1.0, -2.0), (60, 80), 0.05), 0.5, BOX)
     one, other = (
-        CAMERA.on_ground(view).mark(pe.Sensor("eye", model, pose), False).marked
+        CAMERA.on_ground(view).mark(pe.Sensor("eye", model, pose)).marked
         for model in (wide, round_)
     )
     assert 500 < one.sum() < 4000 and np.array_equal(one, other)
-    defined = DefinedGround(CAMERA.measure, view).mark(pe.Sensor("eye", wide, pose), False).marked
+    defined = DefinedGround(CAMERA.measure, view).mark(pe.Sensor("eye", wide, pose)).marked
     first = one[1::2, 1::2]  # where nothing is at an edge, every other square is asked about
     assert np.mean(first != defined[1::2, 1::2]) < 0.03
 

@@ -80,8 +80,8 @@ def test_objects_are_heard_where_points_of_their_surface_are():
 def test_the_body_hides_some_of_the_cone():
     sensor, kind = ultrasonic((2.32, 0.3, 0.5), (0, 0, 70)), kinds.KINDS["ultrasonic"]
     sample = kind.on_sample(every_voxel(SPACE), shapes.box_car(), 1)
-    measured = sample.measure(sensor, False)
-    free = kind.on_sample(every_voxel(SPACE), None, 1).measure(sensor, False)
+    measured = sample.measure(sensor)
+    free = kind.on_sample(every_voxel(SPACE), None, 1).measure(sensor)
     assert 0 < measured.m.sum() < free.m.sum()
     occlusion = sample.occlusion(measured)
     assert 0 < occlusion.occluded < occlusion.rays and set(occlusion.by_part) <= {"body", "cabin"}
@@ -100,7 +100,7 @@ def test_it_is_in_no_entropy_until_a_curve_is_given():
 def test_the_ground_map_hears_posts_and_no_more():
     """A post of half a metre is heard in the cone, seen from above."""
     sensor, grid = ultrasonic((0, 0, 0.3)), GroundGrid((-1.0, -2.0), (80, 80), 0.05)
-    marked = kinds.KINDS["ultrasonic"].on_ground(kinds.GroundView(grid, 0.5)).mark(sensor, False)
+    marked = kinds.KINDS["ultrasonic"].on_ground(kinds.GroundView(grid, 0.5)).mark(sensor)
     x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
     far, aside = np.hypot(x, y), np.degrees(np.abs(np.arctan2(y, x)))
     assert marked.marked[(far > 0.1) & (far < 1.95) & (aside < 28)].all()
@@ -114,7 +114,7 @@ def test_the_near_field_is_tested_every_two_centimetres(side):
     sensor = ultrasonic((0, 0, 0.3))
     grid = GroundGrid((-1.0, -2.0), (round(4 / side), round(4 / side)), side)
     view = kinds.GroundView(grid, 0.5)
-    marked = kinds.KINDS["ultrasonic"].on_ground(view).mark(sensor, False).marked
+    marked = kinds.KINDS["ultrasonic"].on_ground(view).mark(sensor).marked
     fine = GroundGrid(grid.origin, (grid.shape[0] * 5, grid.shape[1] * 5), side / 5)
     middles = fine.middles(np.arange(fine.shape[0] * fine.shape[1]))
     x, y = middles.T

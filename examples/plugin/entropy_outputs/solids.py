@@ -126,7 +126,7 @@ def blind_volume(name: str, rig: Rig, vehicle: Vehicle) -> Solid | None:
     index = np.argwhere(np.ones(space.shape, bool))
     voxels = Voxels(space, index, space.center_of(index))
     measured = MeasurementCache(voxels, vehicle, lambda _: ANYTHING)
-    measured.measure(rig, False)
+    measured.measure(rig)
     visible = np.logical_or.reduce([m > 0 for m in measured.m.values()]).reshape(space.shape)
     inside_vehicle = space.centers(2) < vehicle.top(space)[..., None]
     blind = joined(_squares(~visible | inside_vehicle) & ~inside_vehicle)

@@ -5,8 +5,6 @@ are of the base of the housing. This module converts them to the ground frame, a
 to another vehicle.
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -37,17 +35,11 @@ class KnownSensor:
 class KnownRig:
     """A rig as it was published, moved into the ground frame.
 
-    Attributes
-    ----------
-    key, title : str
-        Name of its file, and its usual name.
-    vehicle, origin, source, note : str
-        The vehicle, the origin of the publisher's frame, the source of the figures, and remarks
-        on them.
-    size : (3,) float or None
-        Length, width and height of that vehicle [m]; None if not known.
-    sensors : tuple of KnownSensor
-        Ground frame: the origin is under that vehicle's centre.
+    `key, title`: Name of its file, and its usual name.
+    `vehicle, origin, source, note`: The vehicle, the origin of the publisher's frame, the source of
+        the figures, and remarks on them.
+    `size` (3,): Length, width and height of that vehicle [m]; None if not known.
+    `sensors`: Ground frame: the origin is under that vehicle's centre.
     """
 
     key: str
@@ -97,10 +89,7 @@ def known_rigs() -> Mapping[str, KnownRig]:
 def known_rig(key: str) -> KnownRig:
     """Return the rig of that key.
 
-    Raises
-    ------
-    InputError
-        When there is no rig of that key.
+    `InputError` when there is no rig of that key.
     """
     return known_rigs()[choice("catalogue", "rig", key, known_rigs())]
 

@@ -15,8 +15,3 @@ from .verdict import (
     part_in_the_way,
 )
 from .zones import PlacedZone, Zone, signed_distance
-
-__all__ = ["BODIES", "FARTHEST_M", "Body", "CheckStep", "Criterion", "PlacedZone"]
-__all__ += ["Reason", "Requirement", "RequirementChecker", "Samples"]
-__all__ += ["Under", "VehiclePlanes", "Verdict", "VerdictSummary", "Zone", "body_met", "checkable"]
-__all__ += ["checked_requirements", "margin_of", "part_in_the_way", "sees", "signed_distance"]

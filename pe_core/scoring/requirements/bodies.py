@@ -5,8 +5,6 @@ that of the body. So a body never gets fewer beams or pixels than its box: verdi
 side.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -42,28 +40,15 @@ FLAT_M = 1e-3
 class Body:
     """A test body.
 
-    Parameters
-    ----------
-    name : str
-    size : (3,) float
-        Length along the heading, width, height [m]; of a round body twice the diameter.
-    low : float
-        Height of its lower edge above its foot [m].
-    is_round : bool
-        Whether it is an upright cylinder; then the box inside has 0.71 times its diameter.
-    is_ring : bool
-        Whether it is the rim of the cylinder that has to be seen, all round.
-    class_name : str, optional
-        Its class of objects, for criteria of AP.
-    headings : tuple of float
-        Headings at which it stands at every sample [rad].
-    source : str
-        Where its size is from.
+    `InputError` when a size is none.
 
-    Raises
-    ------
-    InputError
-        When a size is none.
+    `size` (3,): Length along the heading, width, height [m]; of a round body twice the diameter.
+    `low`: Height of its lower edge above its foot [m].
+    `is_round`: Whether it is an upright cylinder; then the box inside has 0.71 times its diameter.
+    `is_ring`: Whether it is the rim of the cylinder that has to be seen, all round.
+    `class_name`: Its class of objects, for criteria of AP.
+    `headings`: Headings at which it stands at every sample [rad].
+    `source`: Where its size is from.
     """
 
     name: str
@@ -100,11 +85,9 @@ class Body:
     def boxes(self, cells: bool) -> tuple[Floats, Floats]:
         """Return centres (K, 3), from the foot, and sizes (K, 3) of the body's boxes [m].
 
-        Parameters
-        ----------
-        cells : bool
-            The cells of which a share has to be visible, and the posts beside the body, instead of
-            the one box: band after band, those of `cell_plan`. Of a ring, its four sides.
+        `cells`: The cells of which a share has to be visible, and the posts beside the body,
+            instead of the one box: band after band, those of `cell_plan`. Of a ring, its four
+            sides.
         """
         length, width, height = self.box
         if not cells:

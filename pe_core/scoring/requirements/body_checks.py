@@ -4,8 +4,6 @@ All bodies of some requirements are one set of objects, so a sensor that has mov
 with the kernels of objects. What follows, for every requirement and every lost sensor, is counting.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any

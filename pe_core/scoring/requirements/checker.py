@@ -1,7 +1,5 @@
 """RequirementChecker: holds rigs to requirements; a sensor that has not moved costs nothing."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -49,23 +47,12 @@ class RequirementChecker:
 
     It is thread-safe: one thread at a time checks.
 
-    Parameters
-    ----------
-    requirements : sequence of Requirement
-    vehicle : Vehicle or None
-    model : PerceptionModel, optional
-        AP curves of objects, for criteria of AP.
-    reference : Reference, optional
-        The vehicle's axles, for zones that are anchored to them.
-    space : PerceptionSpace, optional
-        The ground on which blind ground is searched.
-    anchor : Vehicle, optional
-        The vehicle to which zones are anchored, where it is not the one that occludes.
+    `InputError` when a zone cannot be placed, or two requirements have one name.
 
-    Raises
-    ------
-    InputError
-        When a zone cannot be placed, or two requirements have one name.
+    `model`: AP curves of objects, for criteria of AP.
+    `reference`: The vehicle's axles, for zones that are anchored to them.
+    `space`: The ground on which blind ground is searched.
+    `anchor`: The vehicle to which zones are anchored, where it is not the one that occludes.
     """
 
     def __init__(
@@ -108,19 +95,11 @@ class RequirementChecker:
     ) -> tuple[Verdict, ...]:
         """Return a verdict on each requirement.
 
-        Parameters
-        ----------
-        rig : Rig
-        preview : bool
-            Only samples inside the zones, with twice the step in large zones: fast, without
-            margins of zones that are met.
-        cases : sequence of Rig
-            The rig with mounting errors, for requirements that have to be met under them.
+        `InputError` when a requirement asks for kinds of sensors that the rig lacks.
 
-        Raises
-        ------
-        InputError
-            When a requirement asks for kinds of sensors that the rig lacks.
+        `preview`: Only samples inside the zones, with twice the step in large zones: fast, without
+            margins of zones that are met.
+        `cases`: The rig with mounting errors, for requirements that have to be met under them.
         """
         steps = self.steps(rig, preview=preview, cases=cases)
         return tuple(step.verdict for step in steps if step.verdict is not None)
@@ -158,7 +137,7 @@ class RequirementChecker:
         with self._lock:
             return self._set(INSIDE).shortfalls(rig, cases) if self.requirements else ()
 
-    def _set(self, name: str) -> _CheckedSet:
+    def _set(self, name: str) -> "_CheckedSet":
         if name not in self._sets:
             self._sets[name] = _CheckedSet(self, name, self._space, self._model, self._caches)
         return self._sets[name]

@@ -1,7 +1,5 @@
 """Requirements: a zone, test bodies, a criterion, and what the criterion has to survive."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -37,10 +35,7 @@ class Criterion:
     `pixels_high` is m over the width of the box's image, which errs low. `per_degree` is on average
     over the body's box: the square root of m over its solid angle, which errs high.
 
-    Raises
-    ------
-    InputError
-        When a value is none, or keys of bodies are mixed with those of the ground.
+    `InputError` when a value is none, or keys of bodies are mixed with those of the ground.
     """
 
     sensors: int = setting(
@@ -183,28 +178,15 @@ class Under:
 class Requirement(ShortRepr):
     """A requirement: bodies at all samples of a zone meet a criterion.
 
-    Parameters
-    ----------
-    name : str
-        Unique in a study.
-    zone : Zone
-    bodies : sequence of Body
-        Each of them has to meet the criterion, one at a time.
-    criterion : Criterion
-    under : Under
-    preset : str, optional
-        Identifier of the preset that it was made from.
-    source : str
-        Where its figures are from.
-    check : str
-        What it is called in a verdict: "R159 Annex 3".
-    original : Requirement, optional
-        The preset as it is shipped; it tells whether this requirement is changed.
+    `InputError` when a value is none, there is no body, or a body has no class whose AP is asked
+    for.
 
-    Raises
-    ------
-    InputError
-        When a value is none, there is no body, or a body has no class whose AP is asked for.
+    `name`: Unique in a study.
+    `bodies`: Each of them has to meet the criterion, one at a time.
+    `preset`: Identifier of the preset that it was made from.
+    `source`: Where its figures are from.
+    `check`: What it is called in a verdict: "R159 Annex 3".
+    `original`: The preset as it is shipped; it tells whether this requirement is changed.
     """
 
     name: str
@@ -215,7 +197,7 @@ class Requirement(ShortRepr):
     preset: str | None = None
     source: str = ""
     check: str = ""
-    original: Requirement | None = field(default=None, compare=False, repr=False)
+    original: "Requirement | None" = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         put = object.__setattr__

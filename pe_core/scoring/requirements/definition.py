@@ -3,8 +3,6 @@
 Plain functions on one body at a time; the kernels of `checker` are held to them by tests.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

@@ -4,8 +4,6 @@ Blind squares are those of `sight.blind_ground`: never too few, edges at most 0.
 What each sensor marks is cached by sensor, so a moved sensor and a lost one cost only their own.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -55,14 +53,14 @@ class GroundCheck:
         not count.
         """
         own, ground = self.requirement, self._own
-        marks = ground.marks(rig, preview)
+        marks = ground.marks(rig)
         blind = ground.blind(marks.values())
         lost = {}
         if own.under.one_lost or not preview:
             lost = {name: ground.blind_without(marks, name) for name in marks}
         counted = [blind, *(lost.values() if own.under.one_lost else ())]
         for number, case in self._asked(cases):
-            counted += self._blinds(ground, ground.marks(case, False, number))
+            counted += self._blinds(ground, ground.marks(case, number))
         met_whole, met = self._meets(blind), all(map(self._meets, counted))
         margin, at_least = (None, False) if preview else self._margin(rig, met, cases)
         i, j = np.nonzero(blind)
@@ -92,16 +90,16 @@ class GroundCheck:
 
     def shortfall(self, rig: Rig, cases: Sequence[Rig] = ()) -> float:
         """Return how far a rig is off the requirement, 0 where it is met, else above 0 to 1."""
-        blinds = self._blinds(self._own, self._own.marks(rig, False))
+        blinds = self._blinds(self._own, self._own.marks(rig))
         for number, case in self._asked(cases):
-            blinds += self._blinds(self._own, self._own.marks(case, False, number))
+            blinds += self._blinds(self._own, self._own.marks(case, number))
         return max(map(self._off, blinds))
 
     def _asked(self, cases: Sequence[Rig]) -> list[tuple[int, Rig]]:
         """Return the rigs with mounting errors that count, with their numbers as scenes."""
         return list(enumerate(cases, start=1)) if self.requirement.under.mounting else []
 
-    def _blinds(self, ground: _ZoneGround, marks: Mapping[str, Flags]) -> list[Flags]:
+    def _blinds(self, ground: "_ZoneGround", marks: Mapping[str, Flags]) -> list[Flags]:
         """Return all blind squares that count: of a whole rig, and with each sensor lost."""
         found = [ground.blind(marks.values())]
         if self.requirement.under.one_lost:
@@ -123,9 +121,9 @@ class GroundCheck:
             ground = self._grown[grown]
             if ground is None:
                 break
-            blinds = self._blinds(ground, ground.marks(rig, False))
+            blinds = self._blinds(ground, ground.marks(rig))
             for number, case in self._asked(cases):
-                blinds += self._blinds(ground, ground.marks(case, False, number))
+                blinds += self._blinds(ground, ground.marks(case, number))
             at = min(ground.fails_at(blind, criterion) for blind in blinds)
             if at < math.inf:
                 margin = rounded_down(at - step)
@@ -205,14 +203,14 @@ class _ZoneGround:
     def _searches(self) -> dict[int, BlindSearch]:
         return {}
 
-    def marks(self, rig: Rig, approximate: bool, number: int = 0) -> dict[str, Flags]:
+    def marks(self, rig: Rig, number: int = 0) -> dict[str, Flags]:
         """Return the squares that each sensor marks in a scene, with their margin, by name."""
         check = self.check
         if number not in self._searches:
             height, caches = (check.requirement.criterion.blind_height, check._caches[number])
             self._searches[number] = BlindSearch.of(self.cells, height, check._vehicle, caches)
         search = self._searches[number]
-        search.squares.marked(rig, approximate)
+        search.squares.marked(rig)
         counting = {s.name for s in rig if check.requirement.criterion.counts(s.kind)}
         return {
             name: marked & ~search.own & (name in counting)

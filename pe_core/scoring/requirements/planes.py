@@ -10,8 +10,6 @@ meshes are one part, or have parts named ``Mesh.003``. All that touches the grou
 mirror is a small piece high up that sticks out at both sides.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -170,16 +168,11 @@ def _pieces(triangles: Floats) -> tuple[Ints, int]:
 class VehiclePlanes:
     """The planes of a vehicle by name, and its outline seen from above.
 
-    Attributes
-    ----------
-    along, across : dict of float
-        x of the planes across the vehicle, y of the planes along it [m].
-    found : dict of dict
-        By plane how it was found: a `code` (`FOUND`), and values.
-    missing : dict of str
-        By plane that was not found: what would be needed.
-    outline : (K, 2) float
-        Corners of the convex outline of the body seen from above, counter-clockwise [m].
+    `along, across`: x of the planes across the vehicle, y of the planes along it [m].
+    `found`: By plane how it was found: a `code` (`FOUND`), and values.
+    `missing`: By plane that was not found: what would be needed.
+    `outline` (K, 2): Corners of the convex outline of the body seen from above, counter-clockwise
+        [m].
     """
 
     along: Mapping[str, float]
@@ -196,20 +189,15 @@ class VehiclePlanes:
         below: float | None = None,
         near_side: str = "right",
         eyes: float | None = None,
-    ) -> VehiclePlanes:
+    ) -> "VehiclePlanes":
         """Find the planes of a vehicle.
 
-        Parameters
-        ----------
-        vehicle : Vehicle
-        reference : Reference, optional
-            The axles; by default those of parts that are wheels by name, else of tyres by shape.
-        below : float, optional
-            What is higher than this is left out [m], as UN R159 leaves out what is above 2.0 m.
-        near_side : {"left", "right"}
-            The side of the kerb.
-        eyes : float, optional
-            x of the driver's eyes [m].
+        `reference`: The axles; by default those of parts that are wheels by name, else of tyres by
+            shape.
+        `below`: What is higher than this is left out [m], as UN R159 leaves out what is above 2.0
+            m.
+        `near_side` {"left", "right"}: The side of the kerb.
+        `eyes`: x of the driver's eyes [m].
         """
         points, how = _body_points(vehicle, below)
         low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)

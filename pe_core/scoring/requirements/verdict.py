@@ -4,8 +4,6 @@ Margins say how far a zone could grow before a requirement fails, or would have 
 to the safe side: a step is taken off, and they are rounded down to the centimetre.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -210,41 +208,22 @@ class VerdictSummary:
 class Verdict(ShortRepr):
     """A verdict on one requirement.
 
-    Attributes
-    ----------
-    requirement : Requirement
-    met : bool
-    margin : float or None
-        Met: how far the zone could grow before it fails [m]. Not met, negative: how far the zone
-        would have to shrink. None: not known (a preview), or a path or spots that fail: they have
-        no inside.
-    at_least : bool
-        Whether the zone could grow farther than was looked.
-    share : float
-        Share of the zone's samples (of its ground) that pass.
-    worst : (x, y) or None
-        The worst sample; None where all is seen.
-    body : str or None
-        The body that is seen worst there.
-    seen_by : tuple of str
-        Sensors that see that body.
-    why : callable
-        Computes `unseen_by`.
-    without : dict of bool
-        Whether it is met without each sensor, by name.
-    sensors : tuple of int
-        Fewest and most sensors that see a body in the zone.
-    ground : GroundFigures or None
-        Of the zone's ground, where that is asked for.
-    met_whole : bool
-        Whether it is met where no sensor is lost and all are mounted as they should.
-    preview : bool
-    condition : str
-        State and weather of the worst verdict; "" for the vehicle as drawn, in clear air.
-    samples : Samples
-        Where it was sampled.
-    passed : (N,) bool
-        Whether each sample passes.
+    `margin`: Met: how far the zone could grow before it fails [m]. Not met, negative: how far the
+        zone would have to shrink. None: not known (a preview), or a path or spots that fail: they
+        have no inside.
+    `at_least`: Whether the zone could grow farther than was looked.
+    `share`: Share of the zone's samples (of its ground) that pass.
+    `worst` (x, y): The worst sample; None where all is seen.
+    `body`: The body that is seen worst there.
+    `seen_by`: Sensors that see that body.
+    `why`: Computes `unseen_by`.
+    `without`: Whether it is met without each sensor, by name.
+    `sensors`: Fewest and most sensors that see a body in the zone.
+    `ground`: Of the zone's ground, where that is asked for.
+    `met_whole`: Whether it is met where no sensor is lost and all are mounted as they should.
+    `condition`: State and weather of the worst verdict; "" for the vehicle as drawn, in clear air.
+    `samples`: Where it was sampled.
+    `passed` (N,): Whether each sample passes.
     """
 
     requirement: Requirement

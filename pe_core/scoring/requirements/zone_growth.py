@@ -7,8 +7,6 @@ only about samples that the ones before leave undecided. A sensor more that sees
 sample fail, so the samples that pass are those of `BodyChecks.results`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
@@ -73,7 +71,7 @@ class ZoneGrowth:
             inner = outer
             yield margin_of(distance, passed, wanted, step, outer)
 
-    def _ring(self, inner: float, outer: float) -> list[RingPart] | None:
+    def _ring(self, inner: float, outer: float) -> "list[RingPart] | None":
         """Return the ground round the zone between two distances; None where it is too much."""
         if outer not in self._rings:
             most = MAX_GROWN // boxes_of(self._requirement)
@@ -82,7 +80,7 @@ class ZoneGrowth:
             self._rings[outer] = parts
         return self._rings[outer]
 
-    def _parts(self, points: Floats, distance: Floats) -> list[RingPart]:
+    def _parts(self, points: Floats, distance: Floats) -> "list[RingPart]":
         """Return samples from the zone outwards; those at one distance stay together."""
         order, size = np.argsort(distance, kind="stable"), PART_BOXES // boxes_of(self._requirement)
         away, cuts, last = distance[order], [], 0

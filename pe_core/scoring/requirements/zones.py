@@ -5,8 +5,6 @@ signed distance (negative inside) tells how far a sample is inside the zone or o
 margin of a verdict is a distance of this kind.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -84,10 +82,7 @@ class Zone:
     Its fields say what they mean. Places are numbers [m], or planes of the vehicle with
     offsets. Bodies stand on the ground.
 
-    Raises
-    ------
-    InputError
-        When it has no shape or several, or a value is none.
+    `InputError` when it has no shape or several, or a value is none.
     """
 
     x: PlacePair | None = setting(None, ALONG, "A rectangle: from and to along x")
@@ -147,7 +142,7 @@ class Zone:
         reference: Reference | None,
         name: str,
         planes: dict[tuple[Any, ...], VehiclePlanes] | None = None,
-    ) -> PlacedZone:
+    ) -> "PlacedZone":
         """Return the zone round a vehicle, for the requirement of a name.
 
         `planes` caches the vehicle's planes, for several zones. `InputError` when there is no
@@ -162,7 +157,7 @@ class Zone:
             planes[key] = VehiclePlanes.of(vehicle, reference, *key)
         return self._on(planes[key], who)
 
-    def _on(self, planes: VehiclePlanes, who: str) -> PlacedZone:
+    def _on(self, planes: VehiclePlanes, who: str) -> "PlacedZone":
         """Return the zone on the planes of a vehicle."""
 
         def at(corners: tuple[PlacePair, ...], key: str) -> Floats:
@@ -199,13 +194,8 @@ class Zone:
 class PlacedZone:
     """A zone in the ground frame.
 
-    Attributes
-    ----------
-    zone : Zone
-    planes : VehiclePlanes
-    kind : {"area", "ring", "path", "spots"}
-    corners : (K, 2) float
-        Of the area, path or spots [m]; none of a ring.
+    `kind` {"area", "ring", "path", "spots"}.
+    `corners` (K, 2): Of the area, path or spots [m]; none of a ring.
     """
 
     zone: Zone

@@ -13,8 +13,3 @@ from .ground_cells import outlines
 from .reach import Reach, ends_with_space, reach_line
 from .sight import Sight
 from .visibility import GroundSight, VisibleShares
-
-__all__ = ["BLIND_TO_M", "SECTOR_RADIUS_M", "BlindGround", "BlindSector", "BlindSpot"]
-__all__ += ["GroundSight", "Reach", "Sight"]
-__all__ += ["VisibleShares", "ends_with_space", "outlines", "reach_line", "shown_end"]
-__all__ += ["shown_start"]

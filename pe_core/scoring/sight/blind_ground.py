@@ -16,8 +16,6 @@ Distances are from the body's rectangle. They are rounded to the worse side, so 
 better than the truth.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -112,8 +110,6 @@ class BlindGround(ShortRepr):
     seen_from : dict of float or None
         By side: the distance from the body beyond which the strip has no blind location [m]; None
         where there is one at the edge of the evaluated ground.
-    preview : bool
-        Approximate preview: occlusion of a LiDAR was read from a map of the vehicle's top surface.
     """
 
     outlines: tuple[Floats, ...]
@@ -123,23 +119,17 @@ class BlindGround(ShortRepr):
     nearest: Mapping[str, BlindSpot | None]
     zone: Mapping[str, float | None]
     seen_from: Mapping[str, float | None]
-    preview: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class BlindSector:
     """The widest sector in which a body is invisible, `SECTOR_RADIUS_M` from the origin.
 
-    Attributes
-    ----------
-    height : float
-        Height of the body [m].
-    width : float
-        0 where the body is visible all round, 360 where it is nowhere [deg]. It is never too small,
-        and at most 2 deg wider than where the middle of an invisible body can stand: it counts the
-        ground under the body, and edges are up to `TOO_FAR_M` too far out.
-    bearing : float
-        Bearing of its middle, counter-clockwise from ahead, above -180 to 180 [deg].
+    `height`: Height of the body [m].
+    `width`: 0 where the body is visible all round, 360 where it is nowhere [deg]. It is never too
+        small, and at most 2 deg wider than where the middle of an invisible body can stand: it
+        counts the ground under the body, and edges are up to `TOO_FAR_M` too far out.
+    `bearing`: Bearing of its middle, counter-clockwise from ahead, above -180 to 180 [deg].
     """
 
     height: float
@@ -201,7 +191,7 @@ def shown_start(distance: float) -> float:
 
 
 def blind_ground(
-    cells: GroundCells, blind: Flags, body: Rectangle, height: float, within: float, preview: bool
+    cells: GroundCells, blind: Flags, body: Rectangle, height: float, within: float
 ) -> BlindGround:
     """Return the figures of blind cells (NX, NY) round a body's rectangle."""
     strips = {side: _Strip.of(cells, blind, body, side) for side in SIDES}
@@ -213,7 +203,6 @@ def blind_ground(
         ReadOnlyDict({side: strip.nearest() for side, strip in strips.items()}),
         ReadOnlyDict({side: strip.zone() for side, strip in strips.items()}),
         ReadOnlyDict({side: strip.seen_from() for side, strip in strips.items()}),
-        preview,
     )
 
 
@@ -239,7 +228,7 @@ class _Strip:
     sign: int
 
     @classmethod
-    def of(cls, cells: GroundCells, blind: Flags, body: Rectangle, side: str) -> _Strip:
+    def of(cls, cells: GroundCells, blind: Flags, body: Rectangle, side: str) -> "_Strip":
         """Cut out the strip of a side, as wide as the body or one cell."""
         axis, sign = SIDES[side]
         along, across = (cells.x, cells.y)[axis], (cells.x, cells.y)[1 - axis]
@@ -303,7 +292,7 @@ class BlindSearch:
         height: float,
         vehicle: Vehicle | None,
         kernel_cache: dict[str, Any],
-    ) -> BlindSearch:
+    ) -> "BlindSearch":
         """Prepare the search of cells for bodies of a height [m]."""
         margin = math.ceil(BODY_M / cells.step) + 2
         inner = GroundGrid((float(cells.x0[0]), float(cells.y0[0])), cells.shape, cells.step)
@@ -316,12 +305,12 @@ class BlindSearch:
         """Its size in the cache, in voxels."""
         return self.own.size // SQUARES_PER_VOXEL
 
-    def blind(self, rig: Rig, preview: bool) -> tuple[Flags, bool]:
-        """Return the blind cells (NX, NY) of a rig, and whether they are approximate."""
-        marked, approximate = self.squares.marked(rig, preview)
+    def blind(self, rig: Rig) -> Flags:
+        """Return the blind cells (NX, NY) of a rig."""
+        marked = self.squares.marked(rig)
         blind = blind_squares(marked & ~self.own, self.own, self.cells.step)
         inner = tuple(slice(self.margin, n - self.margin) for n in blind.shape)
-        return np.ascontiguousarray(blind[inner]), approximate
+        return np.ascontiguousarray(blind[inner])
 
 
 def blind_squares(marked: Flags, covered: Flags, step: float) -> Flags:

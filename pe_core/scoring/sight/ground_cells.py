@@ -8,8 +8,6 @@ in each cell, and reproducibly.
 Regions of a grid are grown, smoothed, and outlined by marching squares.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -72,7 +70,9 @@ class GroundCells:
     step: float
 
     @classmethod
-    def of(cls, space: PerceptionSpace, step: float, part: Rectangle | None = None) -> GroundCells:
+    def of(
+        cls, space: PerceptionSpace, step: float, part: Rectangle | None = None
+    ) -> "GroundCells":
         """Cut the ground of a space, or a part of it, into cells.
 
          `InputError` when the step is not positive, the cells are too many, or the part is beside

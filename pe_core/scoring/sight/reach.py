@@ -10,8 +10,6 @@ In a study on objects, reach is that of lone objects by eighths of the circle, t
 score reports (`targets.object_metric`), so that maps, views and tables show the same metres.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -62,8 +60,6 @@ class Reach(ShortRepr):
         The same for each sensor alone, by name.
     limit : (B,) float
         Where the space ends [m]: a reach that equals it is "at least".
-    preview : bool
-        Approximate preview: occlusion of a LiDAR was read from a map of the vehicle's top surface.
     sector : float
         In a study on objects: width of the sector round each bearing [rad]; distances are those of
         lone objects. 0 in a study on voxels: distances are along bearings.
@@ -75,7 +71,6 @@ class Reach(ShortRepr):
     distance: Floats
     per_sensor: Mapping[str, Floats]
     limit: Floats
-    preview: bool = False
     sector: float = 0.0
 
 
@@ -96,7 +91,7 @@ class Spokes:
     @classmethod
     def of(
         cls, space: PerceptionSpace, tops: Floats | None, density: ClassDensity, bearings: int
-    ) -> Spokes:
+    ) -> "Spokes":
         """Choose voxels for a class, round the origin."""
         angles = np.array([2.0 * math.pi * b / bearings for b in range(bearings)])
         limit = np.array([_edge(space, angle) for angle in angles.tolist()])
@@ -119,7 +114,7 @@ class Spokes:
         return cls(read_only(angles), read_only(limit), index[inside], ring, mass)
 
     @property
-    def ahead(self) -> Spokes:
+    def ahead(self) -> "Spokes":
         """The voxels that `distance` needs for the first bearing alone."""
         count, rings = self.mass.shape
         near = np.isin(self.ring // rings, (0, 1, count - 1))

@@ -1,7 +1,5 @@
 """Sight: what is visible to rigs, in one space, under one prior, on one vehicle."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from functools import cached_property, partial
@@ -67,10 +65,10 @@ class Sight:
     A sensor that has not moved since the last call is not measured again. It is thread-safe: one
     thread at a time computes.
 
+    `InputError` when the prior has no weight in the space.
+
     Parameters
     ----------
-    space : PerceptionSpace
-    prior : Prior
     vehicle : Vehicle, optional
         None: nothing occludes.
     model : PerceptionModel, optional
@@ -82,11 +80,6 @@ class Sight:
         Frames that `over_frames` is of; one by default.
     samples : int
         Voxels that it is evaluated on; 0: all.
-
-    Raises
-    ------
-    InputError
-        When the prior has no weight in the space.
     """
 
     def __init__(
@@ -115,33 +108,22 @@ class Sight:
         return partial(type(self), *what, model=self._model, targets=self.targets, **options), ()
 
     def ground(
-        self,
-        rig: Rig,
-        height: float | None = None,
-        step: float = 1.0,
-        preview: bool = False,
-        within: float | None = None,
+        self, rig: Rig, height: float | None = None, step: float = 1.0, within: float | None = None
     ) -> GroundSight:
         """Return what is visible to the rig at every location on the ground.
 
+        `InputError` when the height is not in the space, the step is not positive or gives too many
+        cells, or no cell is within.
+
         Parameters
         ----------
-        rig : Rig
         height : float, optional
             The height of the layer of voxels that is evaluated [m]. None: averaged over height by
             the prior, as in a score.
         step : float
             Side of a cell [m].
-        preview : bool
-            Return an approximate preview, as in `Evaluator.score`.
         within : float, optional
             Half the side of the square round the origin that is evaluated [m]; None: all.
-
-        Raises
-        ------
-        InputError
-            When the height is not in the space, the step is not positive or gives too many cells,
-            or no cell is within.
         """
         part = None if within is None else widened(ORIGIN, within)
         cells = GroundCells.of(self.space, step, part)
@@ -156,39 +138,31 @@ class Sight:
                     else in_layer(cells, self.space, self._tops, layer)
                 ),
             )
-            m, approximate = measured.measured(rig, preview)
-            return ground_sight(measured.voxels, rig, m, self._fusion, height, approximate)
+            m = measured.measured(rig)
+            return ground_sight(measured.voxels, rig, m, self._fusion, height)
 
-    def blind(
-        self, rig: Rig, height: float = 0.0, within: float = WITHIN_M, preview: bool = False
-    ) -> BlindGround:
+    def blind(self, rig: Rig, height: float = 0.0, within: float = WITHIN_M) -> BlindGround:
         """Return the ground round the vehicle where a body is invisible to all sensors.
 
         The body is an upright cylinder, 0.3 m wide. All figures are conservative: no blind ground
         and no distance is too small, and edges are at most three squares too far out.
 
+        `InputError` when the height is not in the space, or no square is within, or too many are.
+
         Parameters
         ----------
-        rig : Rig
         height : float
             Height of the body [m]; 0 or less: flat on the ground.
         within : float
             How far from the rectangle of the vehicle's body the ground is evaluated [m].
-        preview : bool
-            As in `ground`.
-
-        Raises
-        ------
-        InputError
-            When the height is not in the space, or no square is within, or too many are.
         """
         body = body_rectangle(self.vehicle)
-        cells, blind, approximate = self._blind_cells(rig, height, within, preview)
-        return blind_ground(cells, blind, body, float(height), float(within), approximate)
+        cells, blind = self._blind_cells(rig, height, within)
+        return blind_ground(cells, blind, body, float(height), float(within))
 
     def blind_area(self, rig: Rig, height: float = 0.0) -> float:
         """Return the area of `blind` [m2], without its outlines: quicker."""
-        cells, blind, _ = self._blind_cells(rig, height, WITHIN_M, False)
+        cells, blind = self._blind_cells(rig, height, WITHIN_M)
         return area_of(cells, blind)
 
     def blind_sectors(self, rig: Rig) -> tuple[BlindSector, ...]:
@@ -197,7 +171,7 @@ class Sight:
         The body and the safe side are those of `blind`; the space may be smaller than the circle.
         """
         cells = sector_cells()
-        found = ((h, self._blind_of(cells, rig, h, False)[0]) for h in SECTOR_HEIGHTS_M)
+        found = ((h, self._blind_of(cells, rig, h)) for h in SECTOR_HEIGHTS_M)
         return tuple(widest_sector(blind, height) for height, blind in found)
 
     def in_traffic(self, rig: Rig) -> TrafficAp | None:
@@ -252,17 +226,15 @@ class Sight:
         }
 
     def _blind_cells(
-        self, rig: Rig, height: float, within: float, preview: bool
-    ) -> tuple[GroundCells, NDArray[np.bool_], bool]:
-        """Return cells, which of them (NX, NY) are blind, and whether they are approximate."""
+        self, rig: Rig, height: float, within: float
+    ) -> tuple[GroundCells, NDArray[np.bool_]]:
+        """Return cells, and which of them (NX, NY) are blind."""
         area = widened(body_rectangle(self.vehicle), within)
         cells = GroundCells.of(self.space, STEP_M, area)
         layer_at(self.space, height)  # raises InputError for a height that is not in the space
-        return (cells, *self._blind_of(cells, rig, height, preview))
+        return cells, self._blind_of(cells, rig, height)
 
-    def _blind_of(
-        self, cells: GroundCells, rig: Rig, height: float, preview: bool
-    ) -> tuple[NDArray[np.bool_], bool]:
+    def _blind_of(self, cells: GroundCells, rig: Rig, height: float) -> NDArray[np.bool_]:
         with self._lock:
             search = self._voxel_sets.cached(
                 ("blind", float(height), cells.key),
@@ -270,37 +242,24 @@ class Sight:
                     cells, max(float(height), 0.0), self.vehicle, self._voxel_sets.kernel_cache
                 ),
             )
-            return search.blind(rig, preview)
+            return search.blind(rig)
 
     def reach(
-        self,
-        rig: Rig,
-        class_name: str,
-        *,
-        ap: float = MIN_AP,
-        bearings: int = BEARINGS_SHOWN,
-        preview: bool = False,
+        self, rig: Rig, class_name: str, *, ap: float = MIN_AP, bearings: int = BEARINGS_SHOWN
     ) -> Reach:
         """Return the distance up to which objects of a class are found, in all directions.
 
         In a study on objects, the reach is that of lone objects in each eighth of the circle, as in
-        the score; `bearings` and `preview` then have no effect.
+        the score; `bearings` then has no effect.
+
+        `InputError` when the prior has no such class, or a number is out of its range.
 
         Parameters
         ----------
-        rig : Rig
         class_name : str
             A class of the prior.
         ap : float
             The expected AP from which an object counts as found, 0 to 1.
-        bearings : int
-        preview : bool
-            As in `ground`.
-
-        Raises
-        ------
-        InputError
-            When the prior has no such class, or a number is out of its range.
         """
         min_ap = AP.checked("sight", "ap", ap)
         count = BEARINGS.checked("sight", "bearings", bearings)
@@ -312,15 +271,13 @@ class Sight:
                 ("reach", class_name, count),
                 lambda: Spokes.of(self.space, self._tops, density, count),
             )
-            m, approximate = measured.measured(rig, preview)
+            m = measured.measured(rig)
             spokes = measured.voxels
             alone = {
                 s.name: read_only(spokes.distance(self._ap(rig, m, [s.name]), min_ap)) for s in rig
             }
             whole = read_only(spokes.distance(self._ap(rig, m, list(m)), min_ap))
-            return Reach(
-                class_name, min_ap, spokes.bearings, whole, alone, spokes.limit, approximate
-            )
+            return Reach(class_name, min_ap, spokes.bearings, whole, alone, spokes.limit)
 
     def reach_ahead(self, rig: Rig, class_name: str) -> tuple[float, bool]:
         """Return `reach` by voxels straight ahead [m], and whether it ends with the space."""
@@ -330,7 +287,7 @@ class Sight:
                 ("ahead", class_name),
                 lambda: Spokes.of(self.space, self._tops, density, BEARINGS_SHOWN).ahead,
             )
-            m, _ = measured.measured(rig, False)
+            m = measured.measured(rig)
             spokes = measured.voxels
             found = float(spokes.distance(self._ap(rig, m, list(m)), MIN_AP)[0])
             return found, bool(0.0 < found >= spokes.limit[0] - AT_LEAST_M)
@@ -340,10 +297,6 @@ class Sight:
 
         It is computed on a sample of the prior, as a sampled score.
 
-        Parameters
-        ----------
-        rig : Rig
-
         Returns
         -------
         dict of float
@@ -351,7 +304,7 @@ class Sight:
         """
         with self._lock:
             measured = self._voxel_sets.voxels("prior", self._sampled)
-            m, _ = measured.measured(rig, False)
+            m = measured.measured(rig)
             ap = self._ap(rig, m, list(m))
             likely = measured.voxels.classes
             masses = likely.sum(axis=0)
@@ -368,7 +321,7 @@ class Sight:
         """
         with self._lock:
             measured = self._voxel_sets.voxels("prior", self._sampled)
-            m, _ = measured.measured(rig, False)
+            m = measured.measured(rig)
             return visible_shares(measured.voxels, m, self._rises(rig, m))
 
     @property

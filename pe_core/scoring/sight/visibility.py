@@ -4,8 +4,6 @@ A cell of the ground is represented by a set of voxels; what each sensor measure
 cached.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
@@ -205,16 +203,12 @@ class MeasuredVoxels:
         """Number of voxels."""
         return len(self.voxels.index)
 
-    def measured(self, rig: Rig, preview: bool) -> tuple[dict[str, NDArray], bool]:
-        """Return m of the rig's sensors by name, (V,) each, and whether any is approximate.
-
-        It has the range terms of their curves.
-        """
-        self._sensors.measure(rig, preview)
+    def measured(self, rig: Rig) -> dict[str, NDArray]:
+        """Return m (V,) of each sensor by name, with the range terms of their curves."""
+        self._sensors.measure(rig)
         named = [(s.curve or s.kind, self._sensors.m[s.name]) for s in rig]
         terms = self._fusion.ranged(named, self._distance)
-        m = {s.name: of_sensor for s, (_, of_sensor) in zip(rig, terms, strict=True)}
-        return m, any(m.approximate for m in self._sensors.last.values())
+        return {s.name: of_sensor for s, (_, of_sensor) in zip(rig, terms, strict=True)}
 
 
 class VoxelSetCache:
@@ -270,8 +264,6 @@ class GroundSight(ShortRepr):
         Number of sensors that see a part of a cell; -1 where the vehicle is.
     kinds : (NX, NY) int
         Number of kinds of sensors that see a part of a cell; -1 where the vehicle is.
-    preview : bool
-        Approximate preview: occlusion of a LiDAR was read from a map of the vehicle's top surface.
     """
 
     x: Floats
@@ -282,16 +274,10 @@ class GroundSight(ShortRepr):
     coverage: Floats
     sensors: Ints
     kinds: Ints
-    preview: bool = False
 
 
 def ground_sight(
-    voxels: VoxelsByCell,
-    rig: Rig,
-    m: Mapping[str, NDArray],
-    fusion: Fusion,
-    height: float | None,
-    preview: bool,
+    voxels: VoxelsByCell, rig: Rig, m: Mapping[str, NDArray], fusion: Fusion, height: float | None
 ) -> GroundSight:
     """Combine the measurements `m` (by sensor name) on the voxels of cells."""
     entropies, visible = fusion.entropies(fused_early(rig, m, [s.name for s in rig]))
@@ -308,7 +294,6 @@ def ground_sight(
         read_only(voxels.mean(visible)),
         read_only(_number(by_sensor, voxels)),
         read_only(_number(by_kind, voxels)),
-        preview,
     )
 
 
@@ -322,15 +307,11 @@ def _number(flags: Mapping[str, NDArray[np.bool_]], voxels: VoxelsByCell) -> Int
 class VisibleShares:
     """Visible shares of the prior, 0 to 1.
 
-    Attributes
-    ----------
-    by_number : tuple of float
-        By at least 0, 1, 2, ... sensors, up to all of them.
-    zones : dict of dict of float
-        By sensor and zone (`scoring.zones.ZONES`): the share of the zone that the sensor sees. A
-        zone without prior mass is left out.
-    losses : dict of dict of float
-        By sensor and zone: how much the zone's mean entropy rises when the sensor fails [nats].
+    `by_number`: By at least 0, 1, 2, ... sensors, up to all of them.
+    `zones`: By sensor and zone (`scoring.zones.ZONES`): the share of the zone that the sensor sees.
+        A zone without prior mass is left out.
+    `losses`: By sensor and zone: how much the zone's mean entropy rises when the sensor fails
+        [nats].
     """
 
     by_number: tuple[float, ...]

@@ -2,5 +2,3 @@
 
 from .object_evaluator import ObjectEvaluator
 from .object_sampling import OBJECTS, SampledObjects, TargetRule, sample_objects
-
-__all__ = ["OBJECTS", "ObjectEvaluator", "SampledObjects", "TargetRule", "sample_objects"]

@@ -1,7 +1,5 @@
 """ObjectEvaluator: scores rigs on a fixed set of objects."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
@@ -32,10 +30,10 @@ class ObjectEvaluator:
 
     It has the methods of `Evaluator`. It is thread-safe: one thread at a time scores.
 
+    `InputError` when objects are missing, have no room or no weight, or memory does not suffice.
+
     Parameters
     ----------
-    space : PerceptionSpace
-    prior : Prior
     vehicle : Vehicle, optional
         None: only other objects occlude, and the ground of a car is kept free.
     targets : TargetRule, optional
@@ -44,11 +42,6 @@ class ObjectEvaluator:
         AP curves by class and kind, and the fusion rule.
     shift : float
         A number in [0, 1) that scrambles the sample: others give other scenes of the same quality.
-
-    Raises
-    ------
-    InputError
-        When objects are missing, have no room or no weight, or memory does not suffice.
     """
 
     def __init__(
@@ -78,8 +71,8 @@ class ObjectEvaluator:
         targets, model, shift = self.targets, self._model, self._shift
         return partial(type(self), *what, targets=targets, model=model, shift=shift), ()
 
-    def entropy(self, rig: Rig, *, preview: bool = False) -> float:
-        """Return the object entropy of a rig [nats]; `preview` has no effect."""
+    def entropy(self, rig: Rig) -> float:
+        """Return the object entropy of a rig [nats]."""
         with self._lock:
             self._fused.check(rig)
             return self._value(rig, self._sensors.measure(rig))
@@ -92,7 +85,7 @@ class ObjectEvaluator:
             m = self._sensors.measure(scenarios.all)
             return [self._value(part, m) for part in scenarios.parts]
 
-    def summary(self, rig: Rig, *, preview: bool = False) -> Score:
+    def summary(self, rig: Rig) -> Score:
         """Return the score of a rig without the part by sensor."""
         with self._lock:
             self._fused.check(rig)
@@ -105,7 +98,7 @@ class ObjectEvaluator:
             entropies, _ = self._fused.entropies(rig, self._sensors.measure(rig))
             return self._sums.by_ring(entropies)
 
-    def score(self, rig: Rig, *, preview: bool = False, watch: Watch | None = None) -> Score:
+    def score(self, rig: Rig, *, watch: Watch | None = None) -> Score:
         """Score a rig in full: as `Evaluator.score`, with an `ObjectScore`."""
         with self._lock:
             progress = ScoreProgress(watch, 1.0)

@@ -4,8 +4,6 @@ Lone objects say how far each class is found by a rig where only the vehicle occ
 a class's mean size stand in rings round the vehicle, in eight sectors.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass

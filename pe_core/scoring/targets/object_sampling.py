@@ -3,8 +3,6 @@
 Objects are placed in scenes.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -53,10 +51,7 @@ CLASS_STEP = math.sqrt(2.0) - 1.0
 class TargetRule:
     """The targets of a score, and how objects are placed.
 
-    Raises
-    ------
-    InputError
-        When a value is not valid, or traffic is requested for voxels.
+    `InputError` when a value is not valid, or traffic is requested for voxels.
     """
 
     targets: str = setting(
@@ -126,11 +121,8 @@ def sample_objects(
     Their centres are in the space, seen from above, and none overlaps the vehicle's rectangle on
     the ground. `shift` is in [0, 1); another one gives another sample of the same quality.
 
-    Raises
-    ------
-    InputError
-        When the prior has no classes or no number of objects for one, when scenes have no object or
-        no room for all, when no object has any weight, or memory does not suffice.
+    `InputError` when the prior has no classes or no number of objects for one, when scenes have no
+    object or no room for all, when no object has any weight, or memory does not suffice.
     """
     if prior.boxes is not None and not targets.traffic:
         boxes, labels = _each_once(prior, space, vehicle)

@@ -4,8 +4,6 @@ Sources of boxes propose a position at each attempt, by a low-discrepancy sequen
 at the first attempt at which its rectangle on the ground is free.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import cache
@@ -41,7 +39,7 @@ class LaidOutBoxes(NamedTuple):
     sizes: Floats
     yaws: Floats
 
-    def subset(self, which: NDArray) -> LaidOutBoxes:
+    def subset(self, which: NDArray) -> "LaidOutBoxes":
         """Return the boxes with the given indices, or where a mask is set."""
         return LaidOutBoxes(*(values[which] for values in self))
 
@@ -120,16 +118,16 @@ class GroundRectangles(NamedTuple):
     along: Floats
     across: Floats
 
-    def at(self, which: Any) -> GroundRectangles:
+    def at(self, which: Any) -> "GroundRectangles":
         """Return the rectangles at indices."""
         return GroundRectangles(*(values[which] for values in self))
 
-    def put(self, which: Any, rectangles: GroundRectangles) -> None:
+    def put(self, which: Any, rectangles: "GroundRectangles") -> None:
         """Replace the rectangles at indices."""
         for values, new in zip(self, rectangles, strict=True):
             values[which] = new
 
-    def among(self) -> GroundRectangles:
+    def among(self) -> "GroundRectangles":
         """Return them with one more axis, to compare each with several others."""
         return GroundRectangles(*(values[..., None] for values in self))
 

@@ -1,7 +1,5 @@
 """Methods of search by name: a module and a row of `METHODS` each; `method` has the interface."""
 
-from __future__ import annotations
-
 from ...base.errors import InputError
 from ...base.values import choice
 from . import portfolio, random_search
@@ -36,7 +34,3 @@ def checked_method(source: str, name: object, scheduled: bool = False) -> str:
     if name is None:
         return DEFAULT_METHOD
     return choice(source, "method", name, tuple(METHODS))
-
-
-__all__ = ["DEFAULT_METHOD", "METHODS", "SCHEDULED_METHOD", "Given", "Method", "Question"]
-__all__ += ["checked_method"]

@@ -17,8 +17,6 @@ Vectors are those of `Parametrization`: its method `candidate` makes a placement
 one breaks no rule.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass, field
@@ -32,23 +30,14 @@ from ..search_space import Schedule
 class Given:
     """The problem that a method is given.
 
-    Attributes
-    ----------
-    parametrization : Parametrization
-        The design variables and what they mean. There is at least one variable.
-    start : Candidate
-        It breaks no rule.
-    entropy : float
-        Of the start, on level 0 [nats].
-    seed : int
-    schedule : Schedule
-    levels : int
-        How many objectives there are: 0 is the cheapest, `levels - 1` is what the search minimises.
-    batch : int
-        How many placements are evaluated in parallel. The questions of a method may depend on it,
-        its result must not.
-    evaluations : int
-        How many placements the method may have evaluated; 0: as many as it takes.
+    `parametrization`: The design variables and what they mean. There is at least one variable.
+    `start`: It breaks no rule.
+    `entropy`: Of the start, on level 0 [nats].
+    `levels`: How many objectives there are: 0 is the cheapest, `levels - 1` is what the search
+        minimises.
+    `batch`: How many placements are evaluated in parallel. The questions of a method may depend on
+        it, its result must not.
+    `evaluations`: How many placements the method may have evaluated; 0: as many as it takes.
     """
 
     parametrization: Parametrization
@@ -65,20 +54,12 @@ class Given:
 class Question:
     """A batch of placements to evaluate, all on one level and independently of each other.
 
-    Attributes
-    ----------
-    candidates : sequence of Candidate or None
-        None where no feasible candidate was sampled; its answer is None.
-    cutoff : float
-        A value that is not below the cutoff is answered by inf [nats].
-    round : int
-        From 0, for progress reports.
-    total : int
-        Candidates of the whole search, as far as is known, for the progress bar.
-    level : int
-        The objective that evaluates. It never decreases in a search.
-    ends : tuple of float
-        Where independent descents of the method ended so far, on the last level.
+    `candidates`: None where no feasible candidate was sampled; its answer is None.
+    `cutoff`: A value that is not below the cutoff is answered by inf [nats].
+    `round`: From 0, for progress reports.
+    `total`: Candidates of the whole search, as far as is known, for the progress bar.
+    `level`: The objective that evaluates. It never decreases in a search.
+    `ends`: Where independent descents of the method ended so far, on the last level.
     """
 
     candidates: Sequence[Candidate | None]
@@ -125,13 +106,7 @@ MethodPart = Generator[Question, Answered, T]
 class Phase:
     """What all questions of one phase of a search share.
 
-    Attributes
-    ----------
-    round : int
-    total : int
-        Candidates of the whole search.
-    level : int
-    ends : tuple of float
+    `total`: Candidates of the whole search.
     """
 
     round: int

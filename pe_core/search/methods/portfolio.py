@@ -5,8 +5,6 @@ share nothing but their start race then; the best of them goes on to the end, wi
 Sensors on lists of slots try all slots, exchange them, and move two at a time.
 """
 
-from __future__ import annotations
-
 from .method import Given, Incumbent, MethodPart, Phase, QuestionStream
 from .portfolio_steps import MultiscaleDescent
 from .portfolio_survey import Survey, to_best_corners

@@ -11,8 +11,6 @@ both have the same pitch to a tenth of a degree. So a step may give a sensor val
 or move both alike: a valley that no step of one sensor follows.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 import numpy as np

@@ -4,8 +4,6 @@ A sensor in ranges tries places all over them, or their corners; one on a list o
 slots. Sensors in slots exchange them, and move two at a time.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import combinations, product
 

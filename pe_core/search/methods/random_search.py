@@ -1,7 +1,5 @@
 """Algorithm 1 of the paper: random search in a shrinking neighbourhood."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..domains import METRE, RADIAN, SHARE

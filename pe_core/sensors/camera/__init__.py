@@ -3,5 +3,3 @@
 from .kind import CAMERA
 from .lens import BrownConrady, FTheta, KannalaBrandt, Lens, Pinhole
 from .model import Camera
-
-__all__ = ["CAMERA", "BrownConrady", "Camera", "FTheta", "KannalaBrandt", "Lens", "Pinhole"]

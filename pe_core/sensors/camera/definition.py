@@ -31,8 +31,6 @@ rules. So they agree wherever the origin of the ground frame is:
   nudge decides, not rounding.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

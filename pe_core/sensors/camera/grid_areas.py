@@ -13,8 +13,6 @@ all planes at once. `voxel_occlusion` decides for most voxels whether the vehicl
 covers all directions.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -60,7 +58,7 @@ class ColumnRuns(NamedTuple):
     first: Ints
     end: Ints
 
-    def within(self, outer: ColumnRuns) -> ColumnRuns:
+    def within(self, outer: "ColumnRuns") -> "ColumnRuns":
         """Return the parts inside the outer runs; an empty run is at the outer run's end."""
         first = np.clip(self.first, outer.first, outer.end)
         end = np.clip(self.end, first, outer.end)

@@ -7,8 +7,6 @@ block is tested, then all squares of the blocks along the edge.
 **Objects.** Rays are cast only for boxes that may be partly occluded.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple, cast
 
@@ -111,7 +109,7 @@ class CameraGround(GroundKernel):
     def __init__(self, view: GroundView) -> None:
         self._view = view
 
-    def mark(self, sensor: Sensor, approximate: bool) -> VisibleGround:
+    def mark(self, sensor: Sensor) -> VisibleGround:
         """Test one post of each block, then the posts along the edges of the visible area."""
         grid = self._view.grid
         look = PostVisibility(sensor, self._view)

@@ -1,7 +1,5 @@
 """The camera as a kind: its row of the registry, its table in degrees, and its figures in text."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from functools import partial

@@ -10,8 +10,6 @@ down, and r its distance from the centre, x and y are scaled by ``(1 + k1 r^2 + 
 y^2) + 2 p2 x y``.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
@@ -52,19 +50,11 @@ WIDEST = math.radians(89.0)
 class Lens(ABC):
     """A projection.
 
-    Parameters
-    ----------
-    fx, fy : float
-        Focal lengths [px].
-    cx, cy : float
-        Principal point, from the picture's upper left corner, right and down [px].
-    fov : float, optional
-        Full angle of the image circle [rad]; directions farther from the axis are not visible.
+    `InputError` when a number is not possible.
 
-    Raises
-    ------
-    InputError
-        When a number is not possible.
+    `fx, fy`: Focal lengths [px].
+    `cx, cy`: Principal point, from the picture's upper left corner, right and down [px].
+    `fov`: Full angle of the image circle [rad]; directions farther from the axis are not visible.
     """
 
     model: ClassVar[str]

@@ -1,7 +1,5 @@
 """A camera's intrinsics, and its picture: rays, field of view, occlusion by the vehicle."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -49,6 +47,9 @@ BORDER = 1.05
 class Camera(SensorModel):
     """Intrinsics of a camera: an ideal pinhole (eq. 3) with a field of view, or any `Lens`.
 
+    `InputError` when the name, the resolution, the field of view, a range or the lens is not
+    possible. A lens must be invertible in all of the picture, with its principal point inside.
+
     Parameters
     ----------
     name : str
@@ -63,12 +64,6 @@ class Camera(SensorModel):
         Instead of `hfov`. The edge of its field is set for this picture.
     min_range, max_range : float
         A voxel with a centre nearer or farther is not visible [m].
-
-    Raises
-    ------
-    InputError
-        When the name, the resolution, the field of view, a range or the lens is not possible. A
-        lens must be invertible in all of the picture, with its principal point inside.
     """
 
     kind: ClassVar[str] = "camera"

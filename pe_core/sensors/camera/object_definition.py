@@ -16,8 +16,6 @@ Sometimes no ray hits: the box is as thin as a wire, or only a sliver of it is i
 Then rays to points on the box's sides decide, if these are in the picture and in the field.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -75,7 +73,7 @@ class BoxImages:
     low: Floats
     high: Floats
 
-    def some(self, which: Ints) -> BoxImages:
+    def some(self, which: Ints) -> "BoxImages":
         """Return the images with these indices or flags."""
         return BoxImages(self.area[which], self.low[which], self.high[which])
 

@@ -12,8 +12,6 @@ A lens with distortion depends only on the cosine of the angle from its axis. Ta
 parts in ten thousand.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

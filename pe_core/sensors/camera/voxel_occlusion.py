@@ -4,8 +4,6 @@ The voxels of an x-plane lie in few bins of directions. The bin of a row or a he
 once, and each voxel is compared with the two depths of its bin (`occlusion_map`).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,11 +56,11 @@ class OcclusionFlags:
     unsure: Mask
 
     @classmethod
-    def none(cls, shape: tuple[int, ...]) -> OcclusionFlags:
+    def none(cls, shape: tuple[int, ...]) -> "OcclusionFlags":
         """Return flags that are all False."""
         return cls(np.zeros(shape, bool), np.zeros(shape, bool))
 
-    def __getitem__(self, some: int | slice | tuple[slice, slice]) -> OcclusionFlags:
+    def __getitem__(self, some: int | slice | tuple[slice, slice]) -> "OcclusionFlags":
         """Return a view of some of the voxels."""
         return OcclusionFlags(self.hidden[some], self.unsure[some])
 
@@ -108,7 +106,7 @@ class VoxelOcclusion:
             nearer = np.maximum(np.abs(y), abs(x))[:, None]
             flags.mark_unsure(np.abs(self._offsets[2]) > nearer)
 
-    def _face(self, face: CubeFace) -> FaceOcclusion:
+    def _face(self, face: CubeFace) -> "FaceOcclusion":
         """Return the occlusion on one of the four sides; made when the first voxel needs it."""
         with self._lock:  # threads share the planes
             if face not in self._faces:

@@ -4,6 +4,3 @@ from .beams import BeamField, beam_field
 from .field_of_view import RangePicture, range_picture
 from .kind import LIDAR
 from .model import ALL, RETURNS, Lidar
-
-__all__ = ["ALL", "LIDAR", "RETURNS", "BeamField", "Lidar", "RangePicture", "beam_field"]
-__all__ += ["range_picture"]

@@ -4,8 +4,6 @@
 matters. `BeamCache` holds rotated beams and ends by the sensor's name until it turns or moves.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -23,7 +21,7 @@ from ..kernels import Occlusion
 from .definition import beam_directions, without_zeros
 from .lattice import lattice_of
 from .model import lidar_of
-from .occlusion import ApproximateOcclusion, BeamSlopes, occlusion_candidates
+from .occlusion import occlusion_candidates
 
 
 @dataclass(frozen=True)
@@ -101,11 +99,6 @@ class RotatedBeams:
         """
         return [np.take(w, beams) for w in self._components]
 
-    @cached_property
-    def slopes(self) -> BeamSlopes:
-        """The beams by sector and slope, for approximate occlusion."""
-        return BeamSlopes.of(self.directions)
-
 
 @dataclass(frozen=True)
 class FixedEnds:
@@ -178,11 +171,10 @@ BeamEnds = FixedEnds | LazyEnds
 
 @dataclass(frozen=True, slots=True)
 class CastBeams:
-    """Where the beams of a sensor end, and whether that is an approximation."""
+    """Where the beams of a sensor end."""
 
     sensor: Sensor
     ends: BeamEnds
-    approximate: bool
 
 
 class BeamCache:
@@ -192,7 +184,7 @@ class BeamCache:
     """
 
     def __init__(self, vehicle: Vehicle | None) -> None:
-        self._vehicle, self._approximation = vehicle, ApproximateOcclusion(vehicle)
+        self._vehicle = vehicle
         self._rotated: dict[str, RotatedBeams] = {}
         self._cast: dict[str, CastBeams] = {}
 
@@ -206,23 +198,17 @@ class BeamCache:
         beams = self._rotated[sensor.name] = RotatedBeams(sensor)
         return beams
 
-    def cast(self, sensor: Sensor, approximate: bool) -> CastBeams:
-        """Return where a LiDAR's beams end; the cached ends until the sensor moves.
-
-        With `approximate` an approximation may be returned, where that is quicker.
-        """
+    def cast(self, sensor: Sensor) -> CastBeams:
+        """Return where a LiDAR's beams end; the cached ends until the sensor moves."""
         cached = self._cast.get(sensor.name)
-        if cached and (approximate or not cached.approximate) and sensor.measures_as(cached.sensor):
+        if cached and sensor.measures_as(cached.sensor):
             return cached
         beams = self.rotated(sensor)
         model = lidar_of(sensor)
         ends: BeamEnds = FixedEnds(np.full(model.beam_count, model.max_range))
-        is_approximate = approximate and self._approximation.applies_to(sensor)
-        if is_approximate:
-            ends = FixedEnds(self._approximation.ends(sensor, beams.slopes))
-        elif self._vehicle is not None:
+        if self._vehicle is not None:
             ends = LazyEnds(sensor, beams, self._vehicle)
-        cast = self._cast[sensor.name] = CastBeams(sensor, ends, is_approximate)
+        cast = self._cast[sensor.name] = CastBeams(sensor, ends)
         return cast
 
     def keep_only(self, sensors: Collection[Sensor]) -> None:

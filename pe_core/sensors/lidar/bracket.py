@@ -10,8 +10,6 @@ sensor frame's up direction and its two silhouette edges. docs/engine.md has a f
 works its voxel by hand.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -60,7 +58,7 @@ class SlopeBounds:
     upto: Counts
 
     @classmethod
-    def of(cls, elevations: Floats) -> SlopeBounds:
+    def of(cls, elevations: Floats) -> "SlopeBounds":
         """Build the table of channels at elevations (C,) [rad]."""
         slopes = np.tan(np.sort(elevations))
         room = 1e-3 * (1.0 + np.abs(slopes).max())
@@ -142,7 +140,7 @@ class Silhouettes:
     height: np.float32
 
     @classmethod
-    def of(cls, points: Sequence[Singles], rotation: Singles, step: np.float32) -> Silhouettes:
+    def of(cls, points: Sequence[Singles], rotation: Singles, step: np.float32) -> "Silhouettes":
         """Project cubes with these centres, seen from the sensor along the ground axes."""
         x, y, z = (
             rotation[0, w] * points[0] + rotation[1, w] * points[1] + rotation[2, w] * points[2]
@@ -160,7 +158,7 @@ class Silhouettes:
         up = half[:, 2]
         return cls(flat, z, middle, step, radial, lateral, up, depth, width, np.abs(up).sum())
 
-    def take(self, index: NDArray[np.intp]) -> Silhouettes:
+    def take(self, index: NDArray[np.intp]) -> "Silhouettes":
         """Return the cubes with these indices."""
         flat, z, middle, depth, width = (
             w[index] for w in (self.flat, self.z, self.middle, self.depth, self.width)

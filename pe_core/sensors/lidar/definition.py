@@ -13,8 +13,6 @@ neighbouring voxels, so the nudge has to be exact there: it is a multiple of NUD
 floats represent exactly in coordinates of several thousand voxels.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ is known by its slope, so the channels between two slopes are a run, found by tw
 `planar_clip` finds the slopes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
@@ -46,7 +44,7 @@ class ChannelSlopes:
     codes: Small
 
     @classmethod
-    def of(cls, slopes: Floats) -> ChannelSlopes:
+    def of(cls, slopes: Floats) -> "ChannelSlopes":
         """Build the bins."""
         low, high = np.clip(slopes[[0, -1]], -MAX_SLOPE, MAX_SLOPE) + np.array([-0.01, 0.01])
         inner = np.linspace(low, high, CHANNEL_BINS - 1)
@@ -120,12 +118,12 @@ class ChannelRuns:
     far: Floats
     unsure: Flags
 
-    def take(self, index: NDArray) -> ChannelRuns:
+    def take(self, index: NDArray) -> "ChannelRuns":
         """Return the runs with these indices or flags."""
         return replace(self, **{key: getattr(self, key)[index] for key in RUN_FIELDS})
 
     @classmethod
-    def concatenated(cls, parts: Sequence[ChannelRuns]) -> ChannelRuns:
+    def concatenated(cls, parts: "Sequence[ChannelRuns]") -> "ChannelRuns":
         """Join one or more parts."""
         return cls(*(np.concatenate([getattr(p, key) for p in parts]) for key in RUN_FIELDS))
 
@@ -161,7 +159,7 @@ class RotatedFan:
     rays: Floats
 
     @classmethod
-    def of(cls, fan: Fan, yaw: float, step: float, count: int) -> RotatedFan:
+    def of(cls, fan: Fan, yaw: float, step: float, count: int) -> "RotatedFan":
         """Rotate a fan of `count` azimuths by a yaw [rad]."""
         angles = np.arange(count) * step + (fan.offset + yaw)
         one_turn = np.stack([np.cos(angles), np.sin(angles)])

@@ -1,7 +1,5 @@
 """What a LiDAR sees: its field as a mesh, a range image, its mask, the beams to one location."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -94,19 +92,13 @@ class RangePicture:
     A row is a channel, the highest first; a column is an azimuth, the leftmost first. The middle of
     a full circle is straight ahead. A channel's azimuth offset moves its beams, not its columns.
 
-    Attributes
-    ----------
-    distance : (C, A) float
-        Distance at which each beam ends on the vehicle, on a thing or on the ground (z = 0) [m];
-        inf where there is no echo between minimum and maximum range.
-    occluded : (C, A) bool
-        Whether the vehicle ends the beam, also nearer than the minimum range.
-    things : (C, A) int
-        The part of `things` that ends the beam; -1 where none does, or without an echo.
-    elevations : (C,) float
-        Elevations of the rows, descending [rad].
-    azimuths : (A,) float
-        Azimuths of the columns, descending: positive is left [rad].
+    `distance` (C, A): Distance at which each beam ends on the vehicle, on a thing or on the ground
+        (z = 0) [m]; inf where there is no echo between minimum and maximum range.
+    `occluded` (C, A): Whether the vehicle ends the beam, also nearer than the minimum range.
+    `things` (C, A): The part of `things` that ends the beam; -1 where none does, or without an
+        echo.
+    `elevations` (C,): Elevations of the rows, descending [rad].
+    `azimuths` (A,): Azimuths of the columns, descending: positive is left [rad].
     """
 
     distance: Floats
@@ -121,14 +113,9 @@ def range_picture(
 ) -> RangePicture:
     """Return the range image of a mounted LiDAR.
 
-    Parameters
-    ----------
-    sensor : Sensor
-        A LiDAR.
-    vehicle : Vehicle or None
-        The vehicle it is mounted on.
-    things : Vehicle, optional
-        Other bodies in the scene, as parts of one mesh.
+    `sensor`: A LiDAR.
+    `vehicle`: The vehicle it is mounted on.
+    `things`: Other bodies in the scene, as parts of one mesh.
     """
     lidar, position = lidar_of(sensor), sensor.pose.position
     directions = rotate(sensor.pose.ground_from_sensor, lidar.directions)

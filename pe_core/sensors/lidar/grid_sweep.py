@@ -9,8 +9,6 @@ Crossing points advance by a constant step from plane to plane. They are kept in
 (FRACTION_BITS of a voxel), so a step is one integer addition and a cell index one shift.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -102,7 +100,7 @@ class BeamGrid:
                 for part in sweep.split(MAX_COUNT):
                     self._add_saturating(part, axis, sign)
 
-    def _add_saturating(self, sweep: _Sweep, axis: int, sign: int) -> None:
+    def _add_saturating(self, sweep: "_Sweep", axis: int, sign: int) -> None:
         """Add the entries through planes across `axis`, of at most MAX_COUNT beams along `sign`.
 
         So no count overflows; the sums are clipped.
@@ -185,7 +183,7 @@ class _Sweep:
     arrival: Ints | None
 
     @classmethod
-    def of(cls, paths: Paths, shape: tuple[int, ...], axis: int, sign: int) -> _Sweep:
+    def of(cls, paths: Paths, shape: tuple[int, ...], axis: int, sign: int) -> "_Sweep":
         """Advance the beams to their first plane."""
         origin, speed = paths.origin[axis], sign * paths.directions[:, axis]
         first = math.floor(origin) + 1 if sign > 0 else math.ceil(origin) - 1
@@ -206,7 +204,7 @@ class _Sweep:
         planes = [first + sign * k for k in range(count)]
         return cls(planes, active.tolist(), at, _fixed(slopes), arrival if arrival.any() else None)
 
-    def split(self, max_beams: int) -> Iterator[_Sweep]:
+    def split(self, max_beams: int) -> "Iterator[_Sweep]":
         """Yield parts of at most `max_beams` beams."""
         n = -(-len(self.step[0]) // max_beams)
         for k in range(n):

@@ -12,8 +12,6 @@ compared beam by beam. Of a tilted LiDAR the order is that of whole boxes: of th
 away as each other, the hits are compared, too.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -79,7 +77,7 @@ class LidarObjects(ObjectKernel):
 
     def _tester(self, sensor: Sensor) -> BoxTester:
         boxes = PlacedBoxes.of(self._view.objects, sensor.pose.position)
-        ends = self.cache.cast(sensor, approximate=False).ends
+        ends = self.cache.cast(sensor).ends
         return BoxTester(sensor, boxes, self.cache.rotated(sensor), ends)
 
 

@@ -9,8 +9,6 @@ a straight segment, which ends earlier where the vehicle or the range ends the b
 that hold points of the segment are marked: both of its ends, and points between.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -148,15 +146,15 @@ class LidarSample(SampleKernel):
         self._points = VoxelPoints(voxels.index)
         self.cache = BeamCache(vehicle)
 
-    def measure(self, sensor: Sensor, approximate: bool) -> Measured:
-        """Count a LiDAR's beams; `approximate`: occlusion may be an approximation."""
-        beams = self.cache.cast(sensor, approximate)
+    def measure(self, sensor: Sensor) -> Measured:
+        """Count a LiDAR's beams."""
+        beams = self.cache.cast(sensor)
         lidar = self._placed(sensor, beams.ends)
         most = self._saturation_count if lidar_of(sensor).returns == ALL else MAX_TABLE
         counts = count_voxel_beams(self._points, lidar, most)
         counts = recount_min_range(self._points, lidar, counts, lidar_of(sensor).min_range)
         m = with_returns(sensor, counts, self._centers)
-        return Measured(sensor, m, beams.approximate, beams.ends)
+        return Measured(sensor, m, beams.ends)
 
     def occlusion(self, measured: Measured) -> Occlusion:
         """Count the beams that the vehicle occludes; exactly, whatever `measured` is."""
@@ -213,12 +211,9 @@ class LidarGround(GroundKernel):
         self._view = view
         self.cache = BeamCache(view.vehicle)
 
-    def mark(self, sensor: Sensor, approximate: bool) -> VisibleGround:
-        """Mark the squares of beams between the ground and the posts' height.
-
-        With `approximate` the occlusion by the vehicle may be an approximation.
-        """
-        beams, rotated = self.cache.cast(sensor, approximate), self.cache.rotated(sensor)
+    def mark(self, sensor: Sensor) -> VisibleGround:
+        """Mark the squares of beams between the ground and the posts' height."""
+        beams, rotated = self.cache.cast(sensor), self.cache.rotated(sensor)
         components = rotated.components(np.arange(lidar_of(sensor).beam_count))
         first, last = self._low_parts(sensor, components)
         low = np.flatnonzero(first <= last)
@@ -233,7 +228,7 @@ class LidarGround(GroundKernel):
         spacing = np.clip(segments.length / MAX_POINTS, finest, MAX_SPACING_M / grid.step)
         flat[segments.subdivided(float(spacing)).squares(0.0, grid.shape)] = True
         flat[segments.squares(1.0, grid.shape)] = True
-        return VisibleGround(sensor, marked, beams.approximate)
+        return VisibleGround(sensor, marked)
 
     def _low_parts(self, sensor: Sensor, components: list[Floats]) -> tuple[Floats, Floats]:
         """Distances (B,) between which beams are low enough, above the grid and in range [m]."""
@@ -292,7 +287,7 @@ class GroundSegments:
         directions: tuple[Floats, Floats],
         first: Floats,
         last: Floats,
-    ) -> GroundSegments:
+    ) -> "GroundSegments":
         """Return the segments from `first` to `last` (L,) [m] along directions from a position."""
         start, extent = [], []
         for origin, low, direction in zip(position, grid.origin, directions, strict=False):
@@ -305,7 +300,7 @@ class GroundSegments:
         """Sum of the segments' lengths, in squares."""
         return float(np.sqrt(self.dx * self.dx + self.dy * self.dy).sum())
 
-    def subdivided(self, spacing: float) -> GroundSegments:
+    def subdivided(self, spacing: float) -> "GroundSegments":
         """Divide each segment into equal pieces, at most `spacing` squares long."""
         pieces = np.ceil(np.sqrt(self.dx * self.dx + self.dy * self.dy) / spacing).astype(np.int64)
         pieces = np.maximum(pieces, 1)

@@ -6,8 +6,6 @@ and azimuths (`Lattice`). A pattern without a lattice has its beams sorted by ba
 by azimuth, and looked up by bisection (`BeamBands`).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -46,7 +44,7 @@ class Windows:
     low: Floats
     high: Floats
 
-    def take(self, index: Ints) -> Windows:
+    def take(self, index: Ints) -> "Windows":
         """Return the windows with these indices."""
         fields = self.azimuth, self.half_azimuth, self.low, self.high
         return Windows(*(w[index] for w in fields))
@@ -71,10 +69,10 @@ class Lattice:
     position: Ints
     width: int
     slope_bounds: SlopeBounds | None
-    bands: BeamBands | None
+    bands: "BeamBands | None"
 
     @classmethod
-    def of(cls, lidar: Lidar) -> Lattice:
+    def of(cls, lidar: Lidar) -> "Lattice":
         """Build the tables of a model."""
         channels = np.argsort(lidar.elevations, kind="stable")
         position = np.full(lidar.azimuth_count, -1)
@@ -170,7 +168,7 @@ class BeamBands:
     beams: Ints
 
     @classmethod
-    def of(cls, directions: Floats) -> BeamBands:
+    def of(cls, directions: Floats) -> "BeamBands":
         """Sort the beams with unit directions (B, 3), sensor frame."""
         elevation = np.arctan2(directions[:, 2], np.hypot(directions[:, 0], directions[:, 1]))
         azimuth = np.arctan2(directions[:, 1], directions[:, 0])

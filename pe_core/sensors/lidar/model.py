@@ -1,7 +1,5 @@
 """A LiDAR's intrinsics: the beams of one revolution."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -33,6 +31,9 @@ class Lidar(SensorModel):
     A beam is a channel's elevation at an azimuth ``a_j = j * step + offset of the channel`` with
     ``step = 360 deg / azimuth_count``; beams outside `horizontal_fov` do not exist.
 
+    `InputError` when there are no beams or more than ten million, or a name, an angle, a count or
+    the range is impossible.
+
     Parameters
     ----------
     name : str
@@ -55,12 +56,6 @@ class Lidar(SensorModel):
 
     Angles are stored as reading them back from a file in degrees gives them: an angle that is the
     `math.radians` of no float changes by one unit in the last place.
-
-    Raises
-    ------
-    InputError
-        When there are no beams or more than ten million, or a name, an angle, a count or the range
-        is impossible.
     """
 
     kind: ClassVar[str] = "lidar"
@@ -110,21 +105,17 @@ class Lidar(SensorModel):
     @classmethod
     def from_directions(
         cls, name: str, directions: ArrayLike, max_range: float, min_range: float = NEAREST
-    ) -> Lidar:
+    ) -> "Lidar":
         """Return a LiDAR of an arbitrary pattern (a rosette, a raster): every beam is a channel.
+
+        `InputError` when the directions are not (B, 3) finite numbers, or one has no length.
 
         Parameters
         ----------
-        name : str
         directions : (B, 3) float
             Directions of a frame's beams in the sensor frame, of any length but zero.
         max_range, min_range : float
             [m]
-
-        Raises
-        ------
-        InputError
-            When the directions are not (B, 3) finite numbers, or one has no length.
         """
         beams = np.asarray(directions, dtype=float)
         if beams.ndim != 2 or beams.shape[1:] != (3,) or not len(beams):

@@ -1,41 +1,25 @@
-"""Which beams of a LiDAR the vehicle occludes, estimated without casting them.
+"""Which beams of a LiDAR the vehicle may occlude, without casting them.
 
 `occlusion_candidates` gives a superset for exact counts: every beam that the vehicle occludes, and
 a few more. Seen from the sensor a box covers a window of azimuths and slopes, so of beams too. The
 boxes of the vehicle's tree are opened, largest first, until their windows are small; triangles
 that are still large get windows of their own corners. A beam in no window is free.
-
-`ApproximateOcclusion` gives an approximation for a preview, from a height map of the vehicle's top.
-From a point above the vehicle its outline against the ground is a horizon: in each direction, the
-steepest look down (or up) that clears all of the surface passed so far. A beam is taken to end
-where it first falls below the horizon. Overhangs count as solid down to the ground, and details
-smaller than a cell of the map are lost; `Vehicle.first_hit` is the exact answer.
 """
 
-from __future__ import annotations
-
-import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.arrays import Flags, Floats, Ints, Singles
+from ...base.arrays import Flags, Floats, Ints
 from ...geometry.bins import corner_max, corner_min
-from ...geometry.grids import PerceptionSpace, top_heights
 from ...geometry.poses import rotate
 from ...geometry.raycast import VisibleTriangles
-from ...scene.rig import Sensor
-from ...scene.vehicle import Vehicle
-from .model import lidar_of
 
 if TYPE_CHECKING:
     from .lattice import Lattice
 
-Indices = NDArray[np.intp]
 BeamWindows = Ints
 """Windows of beams (4, N), ends included: from channel to channel, numbered by elevation, and from
 azimuth step to azimuth step, which may go on into a second turn."""
@@ -48,21 +32,10 @@ MAX_SLOPE = 1e9
 """Slopes are clipped to this: beyond all channels."""
 LARGE_WINDOW = 48
 """A box whose window has this many azimuth steps or more is opened."""
-CELL_M = 0.025
-"""Side of a cell of the height map, and the step along a sector [m]."""
-SECTORS = 900
-"""Number of directions round the sensor with a horizon each: 0.4 degrees apart."""
-SECTOR_TURNS = [
-    np.array([turn(n * 2.0 * math.pi / SECTORS) for n in range(SECTORS)], np.float32)
-    for turn in (math.cos, math.sin)
-]
-"""Cosine and sine of each sector's azimuth."""
-LARGEST_MAP_M2 = 200.0
-"""No map is made of a larger vehicle (a lorry has 50 m2): it takes seconds, as casting does."""
 
 
 def occlusion_candidates(
-    mesh: VisibleTriangles, ground_from_sensor: Floats, lattice: Lattice
+    mesh: VisibleTriangles, ground_from_sensor: Floats, lattice: "Lattice"
 ) -> Flags:
     """Flag the beams of a regular LiDAR that the vehicle may occlude: too many rather than too few.
 
@@ -82,7 +55,7 @@ def occlusion_candidates(
 
 
 def _windows(
-    mesh: VisibleTriangles, ground_from_sensor: Floats, lattice: Lattice
+    mesh: VisibleTriangles, ground_from_sensor: Floats, lattice: "Lattice"
 ) -> Iterator[BeamWindows]:
     """Yield windows that together cover every visible triangle of the vehicle."""
     tree, level = mesh.tree, len(mesh.tree.boxes) - 1
@@ -101,7 +74,7 @@ def _windows(
         yield windows[:, windows[0] <= windows[1]]
 
 
-def _box_windows(low: Floats, high: Floats, axes: Floats, lattice: Lattice) -> BeamWindows:
+def _box_windows(low: Floats, high: Floats, axes: Floats, lattice: "Lattice") -> BeamWindows:
     """Windows of axis-aligned boxes in the ground frame, lowest and highest corners (N, 3) [m]."""
     x, y, z = rotate(axes.T, (low + high) / 2.0).T
     half = ((high - low) / 2.0).T
@@ -120,7 +93,7 @@ def _box_windows(low: Floats, high: Floats, axes: Floats, lattice: Lattice) -> B
     return np.stack([low_row, high_row, *_columns(middle - reach, middle + reach, lattice)])
 
 
-def _triangle_windows(corners: Floats, lattice: Lattice) -> BeamWindows:
+def _triangle_windows(corners: Floats, lattice: "Lattice") -> BeamWindows:
     """Windows of triangles, corners (3 axes, 3, N) in the sensor frame [m]."""
     x, y, z = corners
     azimuth = np.arctan2(y, x)
@@ -145,7 +118,7 @@ def _edge_distance(x: Floats, y: Floats, i: int, j: int) -> Floats:
 
 
 def _rows(
-    low: Floats, high: Floats, near: Floats, far: Floats, lattice: Lattice
+    low: Floats, high: Floats, near: Floats, far: Floats, lattice: "Lattice"
 ) -> tuple[Ints, Ints]:
     """First and last channel that pass between two heights at these distances from the axis."""
     assert lattice.slope_bounds is not None
@@ -161,7 +134,7 @@ def _rows(
     return first, slopes.upto[slopes.bins(highest)].astype(np.int64) - 1
 
 
-def _columns(first: Floats, last: Floats, lattice: Lattice) -> tuple[Ints, Ints]:
+def _columns(first: Floats, last: Floats, lattice: "Lattice") -> tuple[Ints, Ints]:
     """First and last azimuth step between azimuths [rad]; the first step is in the first turn."""
     begin = np.ceil(first / lattice.step - MARGIN * lattice.count).astype(np.int64)
     end = np.floor(last / lattice.step + MARGIN * lattice.count).astype(np.int64)
@@ -186,112 +159,3 @@ def _mark(marks: NDArray[np.int32], windows: BeamWindows) -> None:
 def _sum3(terms: Iterator[Floats]) -> Floats:
     a, b, c = terms
     return a + b + c
-
-
-@dataclass(frozen=True, slots=True)
-class BeamSlopes:
-    """Beams as (B,) `sector` round the sensor and `slope`, the tangent of their elevation."""
-
-    sector: Indices
-    slope: Singles
-
-    @classmethod
-    def of(cls, directions: Floats) -> BeamSlopes:
-        """Convert unit directions (B, 3), ground frame."""
-        x, y, z = (directions[:, axis].astype(np.float32) for axis in range(3))
-        flat = np.sqrt(x * x + y * y)
-        around = np.arctan2(y, x) * np.float32(SECTORS / (2.0 * math.pi))
-        sector = np.rint(around).astype(np.intp) % SECTORS
-        return cls(sector, z / np.maximum(flat, np.float32(1e-6)))
-
-
-class TopMap:
-    """A height map of triangles' (F, 3, 3) top surface in cells of CELL_M; -inf beside them."""
-
-    def __init__(self, triangles: Floats) -> None:
-        corners = triangles.reshape(-1, 3)
-        low = np.floor(corners.min(axis=0)[:2] / CELL_M).astype(int) - 1
-        high = np.ceil(corners.max(axis=0)[:2] / CELL_M).astype(int) + 1
-        (x0, y0), (x1, y1) = (low * CELL_M).tolist(), (high * CELL_M).tolist()
-        cells = PerceptionSpace((x0, x1), (y0, y1), (0.0, CELL_M), CELL_M)
-        self._low = low
-        self._heights = top_heights(triangles, cells).astype(np.float32)
-
-    def is_above(self, position: Floats, clearance: float) -> bool:
-        """Whether a position (3,) is at least `clearance` [m] above the cells round it."""
-        i, j = np.floor(position[:2] / CELL_M).astype(int) - self._low
-        around = self._heights[max(i - 1, 0) : max(i + 2, 0), max(j - 1, 0) : max(j + 2, 0)]
-        return not around.size or float(around.max()) + clearance <= position[2]
-
-    def ends(self, position: Floats, beams: BeamSlopes, max_range: float) -> Floats:
-        """Return the distance (B,) at which beams from a position above the surface end [m]."""
-        low = self._low * CELL_M
-        high = low + np.array(self._heights.shape) * CELL_M
-        gap = np.maximum(np.abs(low - position[:2]), np.abs(high - position[:2]))
-        length = math.hypot(*gap.tolist())  # to the map's farthest corner
-        steps = (np.arange(math.ceil(length / CELL_M)) + 0.5) * CELL_M
-        horizon = self._horizon(position, steps.astype(np.float32))
-        ends = np.full(len(beams.slope), max_range)
-        below = np.flatnonzero(horizon[beams.sector, -1] >= beams.slope)
-        slope = beams.slope[below]
-        first = _first_above(horizon, beams.sector[below], slope)
-        slope = slope.astype(np.float64)
-        ends[below] = np.minimum(steps[first] * np.sqrt(1.0 + slope * slope), max_range)
-        return ends
-
-    def _horizon(self, position: Floats, steps: Singles) -> Singles:
-        """Maximum slope (SECTORS, S) of the surface up to each step of each sector."""
-        per_cell = np.float32(1.0 / CELL_M)
-        heights = np.pad(self._heights, 1, constant_values=-np.inf)
-        at = np.zeros((SECTORS, len(steps)), np.intp)
-        for axis, turn in enumerate(SECTOR_TURNS):
-            start = position[axis] / CELL_M - self._low[axis] + 1.0
-            along = turn[:, None] * (steps * per_cell)
-            along += np.float32(start)
-            cell = np.clip(along, 0, heights.shape[axis] - 1).astype(np.intp)
-            at = at * heights.shape[axis] + cell
-        slopes = np.take(heights, at) - np.float32(position[2])
-        # A surface below the sensor occludes to the step's far end, one above from its near end.
-        half = np.float32(CELL_M / 2.0)
-        slopes /= np.where(slopes < 0, steps + half, steps - half * np.float32(0.999))
-        horizon: Singles = np.maximum.accumulate(slopes, axis=1, out=slopes)
-        return horizon
-
-
-def _first_above(horizon: Singles, sector: Indices, slope: Singles) -> Indices:
-    """First step (B,) at which the horizon reaches each beam's slope, by bisection."""
-    last = horizon.shape[1] - 1
-    low, high = np.zeros(len(slope), np.intp), np.full(len(slope), last, np.intp)
-    row = sector * horizon.shape[1]
-    for _ in range(last.bit_length()):
-        middle = (low + high) >> 1
-        reached = np.take(horizon, row + middle) >= slope
-        high = np.where(reached, middle, high)
-        low = np.where(reached, low, middle + 1)
-    return high
-
-
-class ApproximateOcclusion:
-    """Approximate ends of the beams of LiDARs on a vehicle, from a height map of its top."""
-
-    def __init__(self, vehicle: Vehicle | None) -> None:
-        self._vehicle = vehicle
-
-    @cached_property
-    def _map(self) -> TopMap | None:
-        if self._vehicle is None:
-            return None
-        (x0, y0, _), (x1, y1, _) = (corner.tolist() for corner in self._vehicle.bounds)
-        is_large = (x1 - x0) * (y1 - y0) > LARGEST_MAP_M2
-        return None if is_large else TopMap(self._vehicle.triangles)
-
-    def applies_to(self, sensor: Sensor) -> bool:
-        """Whether there is a vehicle, not too large for a map, and the sensor is above it."""
-        if self._vehicle is None or self._map is None:
-            return False
-        return self._map.is_above(np.asarray(sensor.pose.position), self._vehicle.clearance)
-
-    def ends(self, sensor: Sensor, beams: BeamSlopes) -> Floats:
-        """Return where each beam (B,) of a sensor ends [m], if this `applies_to` it."""
-        assert self._map is not None
-        return self._map.ends(np.asarray(sensor.pose.position), beams, lidar_of(sensor).max_range)

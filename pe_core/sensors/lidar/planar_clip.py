@@ -15,8 +15,6 @@ so each pair of sides bounds s from below or above, by a number that again is li
 Where rounding could decide, a run is unsure, and its beams are left to an exact test.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -69,7 +67,7 @@ class PlanarBoxes:
     far: tuple[SideLines, SideLines, SideLines]
 
     @classmethod
-    def of(cls, boxes: PlacedBoxes) -> PlanarBoxes:
+    def of(cls, boxes: PlacedBoxes) -> "PlanarBoxes":
         """Project boxes on the ground."""
         (x, y, _), (long, wide, _) = boxes.offsets.T, boxes.halves.T
         out_x, out_y = np.abs(x) - long, np.abs(y) - wide
@@ -172,7 +170,7 @@ class TiltedBoxes:
     far: Floats
 
     @classmethod
-    def of(cls, boxes: PlacedBoxes, ground_from_sensor: Floats) -> TiltedBoxes:
+    def of(cls, boxes: PlacedBoxes, ground_from_sensor: Floats) -> "TiltedBoxes":
         """Pair the near and far sides of boxes."""
         out = np.abs(boxes.offsets) - boxes.halves
         near, far = _inverse_distances(boxes, boxes.axes_in(ground_from_sensor), out)

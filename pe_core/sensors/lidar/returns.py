@@ -11,8 +11,6 @@ Both are fitted to the points of two LiDARs in real traffic (docs/validity/road)
 class, of voxels and of other classes for all bodies together.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -6,8 +6,6 @@ without any test. Voxels are first counted as if there were no vehicle; only tho
 holds a beam that the vehicle may occlude are counted again.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -64,11 +62,11 @@ class PlacedLidar:
     (`definition.position_in_voxels`); `side` is a voxel's side [m].
     """
 
-    lattice: Lattice
+    lattice: "Lattice"
     position: Floats
     ground_from_sensor: Floats
-    beams: RotatedBeams
-    ends: BeamEnds
+    beams: "RotatedBeams"
+    ends: "BeamEnds"
     side: float
 
     def candidates(self, offsets: Floats) -> tuple[Ints, Ints]:

@@ -3,13 +3,3 @@
 from .detection import Reflectivity, detection_probability, signal_to_noise, snr_for
 from .kind import RADAR
 from .model import Radar, RadarMode
-
-__all__ = [
-    "RADAR",
-    "Radar",
-    "RadarMode",
-    "Reflectivity",
-    "detection_probability",
-    "signal_to_noise",
-    "snr_for",
-]

@@ -18,8 +18,6 @@ seen from all headings alike: m = m of the car, divided by k = (l + w) h / (2 s^
 `derived_object_curve`). The direction of the centre decides whether it is reached and hidden.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

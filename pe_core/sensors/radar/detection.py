@@ -3,8 +3,6 @@
 Powers are ratios, not dB, unless a name ends in `_db`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -79,19 +77,12 @@ def signal_to_noise(
     to an anchor (Skolnik, Introduction to Radar Systems, section 1.2), with the attenuation gamma
     of the air both ways (ITU-R P.838-3 for rain).
 
-    Parameters
-    ----------
-    rcs : float
-        Radar cross section sigma of what is in one resolution cell [m2].
-    distance : float
-        R [m].
-    reach : float
-        R0 in the direction of the target: there a target of the reference RCS has SNR0 [m]. The
-        antenna's gain is in it: Bosch states R0 by azimuth times a scale by elevation.
-    anchor : (float, float)
-        SNR0, and the reference RCS sigma0 [m2].
-    attenuation_db_km : float
-        gamma [dB/km].
+    `rcs`: Radar cross section sigma of what is in one resolution cell [m2].
+    `distance`: R [m].
+    `reach`: R0 in the direction of the target: there a target of the reference RCS has SNR0 [m].
+        The antenna's gain is in it: Bosch states R0 by azimuth times a scale by elevation.
+    `anchor` (float, float): SNR0, and the reference RCS sigma0 [m2].
+    `attenuation_db_km`: gamma [dB/km].
     """
     snr0, sigma0 = anchor
     far = np.asarray(distance, dtype=float)
@@ -107,12 +98,8 @@ def signal_to_noise(
 class Reflectivity:
     """RCS of one class by aspect.
 
-    Parameters
-    ----------
-    dbsm : tuple of float
-        RCS [dBsm].
-    aspects : tuple of float
-        Angle between the object's heading and the direction from the object to the radar,
+    `dbsm`: RCS [dBsm].
+    `aspects`: Angle between the object's heading and the direction from the object to the radar,
         ascending, 0 to 180 degrees: 0 is its front [rad]. One angle for all aspects.
     """
 

@@ -1,7 +1,5 @@
 """A radar's intrinsics: the modes of one frame, and what they detect."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -47,32 +45,19 @@ class RadarMode:
     its elevation, both interpolated; outside of the azimuths or the elevations the mode measures
     nothing.
 
-    Parameters
-    ----------
-    name : str
-    azimuths : (A,) float
-        Ascending; positive is left [rad].
-    ranges : (A,) float
-        Range for the reference RCS [m].
-    elevations : (E,) float
-        Ascending [rad].
-    scales : (E,) float
-        0 to 1.
-    range_resolution : float, optional
-        [m]; not finer than c / 2B, where the bandwidth B is known.
-    azimuth_resolution, elevation_resolution : float, optional
-        [rad]; without a resolution an object is not more than one cell deep, wide or high.
-    min_range, max_range : float
-        Nothing is detected nearer or farther [m]. The default of the maximum is the largest of
-        the ranges.
-    bandwidth_mhz : float, optional
-        Bandwidth B of the sweep, or the occupied one, which is not narrower [MHz].
+    `InputError` when a figure is impossible, angles do not ascend, the ranges cross, or a range
+    resolution is below c / 2B.
 
-    Raises
-    ------
-    InputError
-        When a figure is impossible, angles do not ascend, the ranges cross, or a range resolution
-        is below c / 2B.
+    `azimuths` (A,): Ascending; positive is left [rad].
+    `ranges` (A,): Range for the reference RCS [m].
+    `elevations` (E,): Ascending [rad].
+    `scales` (E,): 0 to 1.
+    `range_resolution`: [m]; not finer than c / 2B, where the bandwidth B is known.
+    `azimuth_resolution, elevation_resolution`: [rad]; without a resolution an object is not more
+        than one cell deep, wide or high.
+    `min_range, max_range`: Nothing is detected nearer or farther [m]. The default of the maximum is
+        the largest of the ranges.
+    `bandwidth_mhz`: Bandwidth B of the sweep, or the occupied one, which is not narrower [MHz].
     """
 
     name: str
@@ -142,31 +127,17 @@ class RadarMode:
 class Radar(SensorModel):
     """Intrinsics of a radar.
 
-    Parameters
-    ----------
-    name : str
-        Catalogue name, or the user's own.
-    modes : sequence of RadarMode
-        The scans of one frame; their detections add.
-    reference_rcs_dbsm : float
-        RCS of the target that the modes' ranges are for [dBsm].
-    detection_probability, false_alarm : float
-        Pd and Pfa of that target at that range.
-    list_length : int, optional
-        A frame has at most so many detections.
-    cover_loss_db : float
-        Loss of a cover that is no part of the vehicle's mesh, one way [dB].
-    attenuation_db_km : float
-        Attenuation of the air, one way [dB/km]: 0 in clear air.
-    rcs : mapping of str to Reflectivity
-        RCS of classes, in place of those of `reflectivity`.
-    is_cautious : bool
-        Whether classes have the RCS of `cautious_reflectivity`.
+    `InputError` when there is no mode, two have one name, or a figure is impossible.
 
-    Raises
-    ------
-    InputError
-        When there is no mode, two have one name, or a figure is impossible.
+    `name`: Catalogue name, or the user's own.
+    `modes`: The scans of one frame; their detections add.
+    `reference_rcs_dbsm`: RCS of the target that the modes' ranges are for [dBsm].
+    `detection_probability, false_alarm`: Pd and Pfa of that target at that range.
+    `list_length`: A frame has at most so many detections.
+    `cover_loss_db`: Loss of a cover that is no part of the vehicle's mesh, one way [dB].
+    `attenuation_db_km`: Attenuation of the air, one way [dB/km]: 0 in clear air.
+    `rcs`: RCS of classes, in place of those of `reflectivity`.
+    `is_cautious`: Whether classes have the RCS of `cautious_reflectivity`.
     """
 
     kind: ClassVar[str] = "radar"
@@ -208,7 +179,7 @@ class Radar(SensorModel):
         put(self, "rcs", dict(self.rcs))
 
     @cached_property
-    def cautious(self) -> Radar:
+    def cautious(self) -> "Radar":
         """The radar as requirements take it: what most bodies return, not what half of them do."""
         return replace(self, is_cautious=True)
 

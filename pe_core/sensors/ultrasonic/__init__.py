@@ -1,5 +1,3 @@
 """Ultrasonic sensors: whether an echo comes back."""
 
 from .kind import ULTRASONIC, Ultrasonic
-
-__all__ = ["ULTRASONIC", "Ultrasonic"]

@@ -8,8 +8,6 @@ vehicle nor, in traffic, another object is before it. Points of a lattice on eac
 side's nearest point, are tested. A cube of the space is one point, its centre, at any incidence.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -50,23 +48,14 @@ DEGREES = Number(0.0, 180.0, above=True, unit="degrees", noun="angle")
 class Ultrasonic(SensorModel):
     """Intrinsics of an ultrasonic sensor.
 
-    Parameters
-    ----------
-    name : str
-        Catalogue name, or the user's own.
-    max_range : float
-        [m]
-    hfov, vfov : float
-        Angles of the elliptic cone, across and up, from edge to edge [rad].
-    min_range : float
-        Nothing is measured nearer [m].
-    max_incidence : float
-        Largest angle between a ray and the normal of a surface at which an echo comes back [rad].
+    `InputError` when an angle or a range is impossible.
 
-    Raises
-    ------
-    InputError
-        When an angle or a range is impossible.
+    `name`: Catalogue name, or the user's own.
+    `max_range`: [m]
+    `hfov, vfov`: Angles of the elliptic cone, across and up, from edge to edge [rad].
+    `min_range`: Nothing is measured nearer [m].
+    `max_incidence`: Largest angle between a ray and the normal of a surface at which an echo comes
+        back [rad].
     """
 
     kind: ClassVar[str] = "ultrasonic"

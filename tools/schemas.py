@@ -238,7 +238,7 @@ def score_schema() -> dict[str, Any]:
     hints = typing.get_type_hints(pe.Score)
     names = ("entropy", "coverage", "stderr", "voxels", "per_class", "per_zone", "per_sensor")
     keys = {name: of_type(hints[name]) for name in names}
-    more = {"preview": SWITCH, "objects": of_type(pe.ObjectScore)}
+    more = {"objects": of_type(pe.ObjectScore)}
     return {"type": "object", "properties": {**keys, **more}, "required": list(names)}
 
 

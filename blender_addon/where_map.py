@@ -1,24 +1,62 @@
-"""The places of one more sensor that were scored last in each scene, for the view and the click.
+"""Where a sensor would be worth most, and what would mend something: for the view and the click.
 
-They are kept here and not in a property: they are not part of the user's work.
+The places that were scored last in each scene, and the suggestions that were asked for last. They
+are kept here and not in a property: they are not part of the user's work.
 """
 
-from . import signals
-from .engine import jobs
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import bpy
+
+from . import bridge, signals
+from .engine import jobs, studies
+
+
+class Mended(NamedTuple):
+    """Suggestions for `of`: a requirement's name, or a location that was queried [m]."""
+
+    of: str | tuple[float, ...]
+    found: tuple[studies.Suggestion, ...]
+
 
 maps: dict[str, jobs.PlaceMap] = {}
-"""By the scene's name."""
+offers: dict[str, Mended] = {}
+"""Both by the scene's name."""
 
 
 def store(scene_name: str, found: jobs.PlaceMap | None) -> None:
     """Store places, and have them shown; None discards those that are there."""
+    _store(maps, scene_name, found)
+
+
+def store_offers(scene_name: str, found: Mended | None) -> None:
+    """Store suggestions, and have them shown; None discards those that are there."""
+    _store(offers, scene_name, found)
+
+
+def _store(kept: dict, scene_name: str, found: NamedTuple | jobs.PlaceMap | None) -> None:
     if found is not None:
-        maps[scene_name] = found
-    elif maps.pop(scene_name, None) is None:
+        kept[scene_name] = found
+    elif kept.pop(scene_name, None) is None:
         return
     signals.view_changed.emit()
 
 
+def discard_outdated() -> None:
+    """Discard suggestions that are of sensors as they no longer are; the scene is idle."""
+    scene = bpy.context.scene
+    own = offers.get(scene.name)
+    if own is None or not own.found:
+        return
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    now = bridge.possible_sensors(bridge.sensor_objects(scene), depsgraph)
+    if {(s.name, s.pose) for s in now} != {(s.name, s.pose) for s in own.found[0].start}:
+        store_offers(scene.name, None)
+
+
 def clear(*_: object) -> None:
-    """Discard all places: another file is opened, whose scenes may have the same names."""
+    """Discard all: another file is opened, whose scenes may have the same names."""
     maps.clear()
+    offers.clear()

@@ -110,6 +110,7 @@ LISTENERS: tuple[tuple[signals.Signal, tuple[signals.Listener, ...]], ...] = (
             session.on_idle,
             diagnostics.schedule_checks,
             location_query.query_again,
+            where_map.discard_outdated,
             scheduler.on_idle,
         ),
     ),

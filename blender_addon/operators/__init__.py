@@ -17,6 +17,7 @@ from . import (
     placement,
     running_job,
     shortcuts,
+    suggest,
     upright,
     variants,
     where,

@@ -14,7 +14,7 @@ from ..own_jobs import ComparedVariant, CompareJob, PendingVariant
 from .declared import INTERNAL, OperatorResult, Told, operator
 from .jobs import JobRow, Task
 
-LABEL_PX, COLUMN_PX = 190, 140
+LABEL_PX, COLUMN_PX = 260, 150
 MIN_WIDTH_PX, LETTER_PX = 560, 7
 """Smallest width of the table, and width of a letter of the sentences above it."""
 MAX_VARIANTS = 8
@@ -109,8 +109,8 @@ def _open(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> Ope
 
 
 def _draw(self: Any, _context: bpy.types.Context) -> None:
-    """Draw the key figures, the scores in words, and the scores, a column for each variant."""
-    _draw_table(self.layout, self.names, [r for r in self.rows if r.measure in KEY_FIGURES])
+    """Draw figures of the rigs as bars, the scores in words, and the scores by zone and class."""
+    _draw_bars(self.layout, self.names, of_rigs(self.rows))
     said = self.layout.column(align=True)
     for line in self.said:
         draw_label(said, line)
@@ -125,6 +125,40 @@ def _draw(self: Any, _context: bpy.types.Context) -> None:
 @operator("Variants Compared", options=INTERNAL, invoke=_open, draw=_draw)
 def show_comparison(_context: bpy.types.Context) -> None:
     """Show the scores of all variants side by side"""
+
+
+def of_rigs(rows: Sequence[advice.ComparedRow]) -> list[advice.ComparedRow]:
+    """Return what rigs are decided by, that with the largest difference first."""
+    whole = [r for r in rows if r.measure in KEY_FIGURES or (r.group, r.name) == ("rig", "")]
+    return sorted(whole, key=lambda row: -row.spread)
+
+
+def _draw_bars(
+    layout: bpy.types.UILayout, names: list[str], rows: Sequence[advice.ComparedRow]
+) -> None:
+    """Draw a row a figure, and in it a bar a variant: its length, its figure and the change."""
+    lines = layout.box().column(align=True)
+    share = LABEL_PX / (LABEL_PX + COLUMN_PX * len(names))
+    for row in [None, *rows]:
+        split = lines.split(factor=share)
+        label = "The largest difference first" if row is None else label_of(row)
+        draw_label(split, label)
+        cells = split.row()
+        for k, name in enumerate(names):
+            if row is None:
+                cells.label(text=name, translate=False)
+                continue
+            cell, (text, best, change, sense) = cells.row(align=True), _cell(row, k)
+            text = f"{text} {change}".strip()
+            cell.progress(text=text, factor=row.share(k), translate=False)
+            cell.label(text="", icon="SOLO_ON" if best else SENSE_ICONS[sense])
+
+
+def label_of(row: advice.ComparedRow) -> str:
+    """Return what a bar is of: "Blind ground [m²], 0.5 m tall, within 10 m"."""
+    measure, name = TITLES[row.measure].partition(",")[0], row.name.capitalize()
+    traffic = IN_TRAFFIC if row.group == advice.TRAFFIC else ""
+    return f"{measure}{f', {name}' if name else ''}{traffic}"
 
 
 def _draw_table(

@@ -5,16 +5,17 @@ as one.
 """
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from .. import bridge, signals, vehicle_cache
-from ..engine import catalog, exchange, pe, search
+from ..engine import catalog, exchange, pe, search, studies
 from ..properties import FREE_BY_DEFAULT
 from ..sensor_kinds import mount_of
-from .declared import Told, chosen_file, operator
+from .declared import INTERNAL, Told, chosen_file, operator
 from .exports import FORMAT_ITEMS
 from .variants import stand_as_variant
 
@@ -91,7 +92,17 @@ def replace_sensors(
     `InputError` when they cannot be put into the scene.
     """
     before = bridge.records_of_scene(scene)
-    records = tuple(record_of(_known_sensor(scene, sensor)) for sensor in sensors)
+    records = tuple(
+        replace(
+            record_of(_known_sensor(scene, sensor)),
+            fusion=sensor.fusion or "",
+            curve=sensor.curve,
+            color=sensor.color,
+            sheet=sensor.sheet,
+            scan=sensor.scan,
+        )
+        for sensor in sensors
+    )
     name = stand_as_variant(scene, title, records, f"{origin}. {' '.join(lines)}", before)
     signals.study_changed.emit()
     count = len(records)
@@ -104,6 +115,34 @@ def _known_sensor(scene: bpy.types.Scene, sensor: pe.Sensor) -> catalog.KnownSen
     if name not in catalog.entries() or catalog.load(name) is not sensor.model:
         name = bridge.add_own_sensor(scene, name, catalog.to_table(sensor.model))
     return catalog.KnownSensor(sensor.name, name, sensor.pose)
+
+
+@operator(
+    "Copy as Text",
+    unless=lambda context: (
+        None if bridge.sensor_objects(context.scene) else "There are no sensors yet"
+    ),
+    options=INTERNAL,
+)
+def copy_rig(context: bpy.types.Context) -> str:
+    """Copy the sensors as one line of text, to send. Paste Rig reads it, and so does pe"""
+    depsgraph = context.evaluated_depsgraph_get()
+    found = [bridge.sensor_from_object(o, depsgraph) for o in bridge.sensor_objects(context.scene)]
+    context.window_manager.clipboard = studies.rig_line(pe.Rig(found))
+    return f"Copied as one line of text: {len(found)} sensors"
+
+
+@operator(
+    "Paste Rig",
+    mode="Rigs are added in Object Mode",
+    text=StringProperty(name="Text", description="A line of Copy as Text; empty: the clipboard"),
+)
+def paste_rig(context: bpy.types.Context, text: str) -> Told:
+    """Replace the sensors of the scene by those of a copied line or study, as a variant.
+
+    Present sensors that are no variant yet are saved as one"""
+    rig = studies.read_rig_line(text or context.window_manager.clipboard, "clipboard")
+    return replace_sensors(context.scene, "Pasted", rig, (), "Pasted")
 
 
 @operator(

@@ -20,6 +20,7 @@ from .declared import (
     UNDO,
     USER_ERRORS,
     Answer,
+    Failed,
     OperatorMixin,
     OperatorResult,
     Refused,
@@ -216,6 +217,14 @@ def of_study(make: Make) -> Callable[[bpy.types.Context], Task]:
             return task
 
     return read
+
+
+def begin(job: JobRow) -> OperatorResult:
+    """Start a job from another operator, which raises what it reports."""
+    try:
+        return getattr(bpy.ops.pe, job.name)("INVOKE_DEFAULT")
+    except RuntimeError as error:
+        raise Failed(str(error).strip().removeprefix("Error: ")) from None
 
 
 def cached_score(

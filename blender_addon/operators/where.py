@@ -11,8 +11,8 @@ from ..engine import catalog, jobs, kinds, pe
 from ..housing import measured_housing
 from ..sensor_kinds import mount_for
 from .add_sensor import MODEL, new_sensor, select_only
-from .declared import INTERNAL, Failed, OperatorResult, Refused, operator
-from .jobs import JobRow, Task, of_study
+from .declared import INTERNAL, OperatorResult, Refused, operator
+from .jobs import JobRow, Task, begin, of_study
 from .query_location import clicking
 
 WHOLE = "WHOLE"
@@ -70,10 +70,7 @@ def _lacks(context: bpy.types.Context) -> str | None:
 def where(_context: bpy.types.Context, operator: Any) -> OperatorResult:
     """Score one more sensor all over the body: colours show where it is worth most"""
     _wanted.update({name: getattr(operator, name) for name in ("model", "figure", "on", "places")})
-    try:
-        return bpy.ops.pe.score_places("INVOKE_DEFAULT")
-    except RuntimeError as error:  # what it has reported
-        raise Failed(str(error).strip().removeprefix("Error: ")) from None
+    return begin(PLACES)
 
 
 def _task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> Task:
@@ -119,7 +116,7 @@ PLACES = JobRow(
 )
 def take_place(context: bpy.types.Context, point: tuple[float, float, float]) -> str:
     """Click the coloured body: the sensor is put at the nearest place that was scored"""
-    scene, found = context.scene, where_map.maps.get(context.scene.name)
+    found = where_map.maps.get(context.scene.name)
     if found is None:
         raise Refused("Ask Where? first")
     near = min(found.places, key=lambda each: math.dist(each.point, point))
@@ -127,14 +124,20 @@ def take_place(context: bpy.types.Context, point: tuple[float, float, float]) ->
         raise Refused("Click the coloured surface")
     if near.value is None:
         raise Refused(f"Forbidden here: {near.reason}")
-    name = found.sensor.model.name
-    body = measured_housing(name)
-    obj = new_sensor(context, found.sensor.name, name, mount_for(found.sensor.model), body)
+    obj = put(context, found.sensor.moved(near.pose))
     if found.mount:
         obj.perception_entropy.mount = found.mount
-    bridge.place_poses(scene, {obj.name: near.pose})
-    select_only(context, obj)
     return f"{obj.name}: {found.text(near.value)}"
+
+
+def put(context: bpy.types.Context, sensor: pe.Sensor) -> bpy.types.Object:
+    """Add a sensor of the catalogue to the scene at its pose, with its housing, and select it."""
+    name = sensor.model.name
+    body = measured_housing(name)
+    obj = new_sensor(context, sensor.name, name, mount_for(sensor.model), body)
+    bridge.place_poses(context.scene, {obj.name: sensor.pose})
+    select_only(context, obj)
+    return obj
 
 
 @operator("Dismiss", options=INTERNAL)

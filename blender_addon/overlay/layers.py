@@ -231,13 +231,13 @@ def _ghost_keys(request: ViewRequest) -> dict[str, Hashable]:
     here = tuple((each.sensor.name, each.sensor.pose) for each in request.counted)
     reach_too = "reach" in request.view.layers and request.prior is not None
     reached = (request.body_key, request.prior_key, request.view.reach_class) if reach_too else None
-    return {WHOLE_RIG: (others, here, request.ghosts_name, reached)}
+    return {WHOLE_RIG: (others, here, request.ghosts_name, request.ghosts_title, reached)}
 
 
 def _ghosts(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
-    here, of = ([e.sensor for e in request.counted], "Search" if request.searching else GHOST_TITLE)
+    here, of = [e.sensor for e in request.counted], request.ghosts_title or GHOST_TITLE
     shape = ghost_sensors(request.ghosts, here, request.ghosts_name, of)
-    if request.searching:
+    if request.ghosts_title:
         return shape
     if "reach" not in request.view.layers or request.prior is None:
         return shape

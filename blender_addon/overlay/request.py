@@ -55,9 +55,9 @@ class ViewRequest:
     `body_key` identifies the vehicle, `prior_key` prior, space, AP curves and targets; `moving`: an
     approximate picture now is better than a fine one later. `scored` is the ground map of the last
     score, of all voxels, where the scene has not changed since. `ghosts` are the sensors of another
-    variant, or of the best placement of a running search (`searching`). `compared` are the sensors
-    that the difference map compares with. `requirement` is the name of the selected requirement,
-    `story` the selected story, which is played with `rate_hz` frames a second.
+    variant; with `ghosts_title` those of a running search, or of suggestions. `compared` are the
+    sensors that the difference map compares with. `requirement` is the name of the selected
+    requirement, `story` the selected story, which is played with `rate_hz` frames a second.
     """
 
     sensors: tuple[SceneSensor, ...]
@@ -73,7 +73,7 @@ class ViewRequest:
     targets: pe.TargetRule | None = None
     ghosts: tuple[pe.Sensor, ...] = ()
     ghosts_name: str = ""
-    searching: bool = False
+    ghosts_title: str = ""
     place: advice.AskedPlace | None = None
     mounts: tuple[MountFaces, ...] = ()
     boxes: tuple[LimitBox, ...] = ()

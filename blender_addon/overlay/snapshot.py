@@ -52,7 +52,7 @@ class SnapshotReader:
         sensors = _sensors(scene, depsgraph)
         vehicle, body_key = self._vehicle(scene, depsgraph, moving)
         inputs = self._inputs_by(scene)
-        others, name = _ghosts(scene)
+        others, name, title = _ghosts(scene)
         compared, compared_name = _compared(scene)
         answer = location_query.answer(scene)
         mounts = self._mounts(scene, depsgraph, sensors, vehicle, body_key)
@@ -64,7 +64,7 @@ class SnapshotReader:
             targets=bridge.targets_of(scene.perception_entropy),
             ghosts=others,
             ghosts_name=name,
-            searching=bool(best_so_far.best(scene.name)),
+            ghosts_title=title,
             place=None if answer is None else answer.place,
             mounts=mounts,
             boxes=_boxes(scene, sensors, vehicle, mounts),
@@ -192,12 +192,15 @@ def _scored(
     return finished.score.ground_map if now == then else None
 
 
-def _ghosts(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str]:
-    """Return sensors that are shown beside the scene's own, and their name: the best placement of a
-    running search so far, otherwise another variant."""
+def _ghosts(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str, str]:
+    """Return sensors that are shown beside the scene's own, their name, and what they are: the best
+    placement of a running search so far, suggestions, otherwise another variant."""
     if best := best_so_far.best(scene.name):
-        return best, BEST_SO_FAR
-    return _variant(scene, scene.perception_entropy.view.ghost_key)
+        return best, BEST_SO_FAR, "Search"
+    if (offers := where_map.offers.get(scene.name)) and offers.found:
+        new = tuple(each.rig[name] for each in offers.found for name in each.moved)
+        return new, "moved, or added", "Would mend it"
+    return *_variant(scene, scene.perception_entropy.view.ghost_key), ""
 
 
 def _compared(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str]:

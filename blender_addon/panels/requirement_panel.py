@@ -17,6 +17,7 @@ from .layout import (
     panel,
     row_list,
 )
+from .score_details import draw_offers
 
 ADD_REMOVE = ("pe.add_requirement", "pe.remove_requirement")
 
@@ -80,6 +81,8 @@ def draw_requirement(layout: UILayout, context: Context, row: PropertyGroup) -> 
     if verdict is not None and verdict.sentence:
         text = verdict.sentence[:1].upper() + verdict.sentence[1:]
         draw_sentence(layout, context, text, icon=ICONS[verdict.met])
+    if verdict is not None and verdict.met is False:
+        draw_offers(layout, context, row.name)
     if row.problem:
         draw_sentence(layout, context, row.problem, icon="ERROR")
     if not (table := full_table(row)):

@@ -2,9 +2,10 @@
 
 from bpy.types import Context, PropertyGroup, UILayout
 
-from .. import location_query
+from .. import location_query, where_map
 from ..diagnostics import explanation
 from ..language import draw_label
+from ..operators import suggest
 from .layout import BUTTON_PX, draw_sentence, draw_stale_mark, panel
 from .sensor_lists import draw_sensor_table
 
@@ -42,6 +43,29 @@ def draw_answer(layout: UILayout, context: Context) -> None:
     for line in found.lines:
         draw_sentence(lines, context, line, beside_px=BUTTON_PX)
     row.operator("pe.dismiss_place", text="", icon="X", emboss=False)
+    if found.place is not None and not found.place.in_vehicle:
+        draw_offers(box, context, point=found.point)
+
+
+def draw_offers(
+    layout: UILayout,
+    context: Context,
+    requirement: str = "",
+    point: tuple[float, float, float] = (0.0, 0.0, 0.0),
+) -> None:
+    """Draw what would mend a requirement, or a place, and buttons that take it."""
+    found = where_map.offers.get(context.scene.name)
+    if found is None or found.of != (requirement or point):
+        button = layout.operator("pe.suggest", icon="TOOL_SETTINGS")
+        button.requirement, button.point = requirement, point
+        return
+    if not found.found:
+        draw_sentence(layout, context, suggest.NONE_FOUND)
+    for number, each in enumerate(found.found):
+        text, lines = each.sentence, layout.column()
+        draw_sentence(lines, context, text[:1].upper() + text[1:], "GHOST_ENABLED")
+        done = "Add It" if each.added else "Move It"
+        lines.operator("pe.take_suggestion", text=done, icon="CHECKMARK").number = number
 
 
 PART_SHARE, NARROW_PART_SHARE = 0.5, 0.3

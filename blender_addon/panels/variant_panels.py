@@ -46,6 +46,7 @@ def variants(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
     if not settings.variants:
         layout.operator("pe.save_variant", icon="ADD")
         layout.menu(PE_MT_known_rigs.bl_idname, icon="AUTO")
+        draw_text(layout)
         return
     names, operators = ("variants", "variant_index"), ("pe.save_variant", "pe.delete_variant")
     buttons = draw_list(layout, variants_rows, settings, names, operators, rows=4)
@@ -57,7 +58,15 @@ def variants(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
         draw_label(name, "Compare Live With")
         label = reference_label(context.scene)
         menu.menu(PE_MT_live_against.bl_idname, text=shown(label), translate=False)
+    draw_text(layout)
     layout.prop(selected(settings), "note", text="", icon="TEXT", placeholder="Note")
+
+
+def draw_text(layout: UILayout) -> None:
+    """Draw the buttons of a rig as a line of text."""
+    row = layout.row(align=True)
+    row.operator("pe.copy_rig", icon="COPYDOWN")
+    row.operator("pe.paste_rig", icon="PASTEDOWN")
 
 
 class PE_MT_known_rigs(bpy.types.Menu):

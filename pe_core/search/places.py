@@ -87,6 +87,7 @@ class MountingPlaces:
     `parts`: Parts of the vehicle that are covered; none: all of them.
     `mount`: The mount that is covered instead, with its stand-off and orientation. Without one the
         stand-off is that of the sensor's kind.
+    `look_at`: A point [m] that the sensor looks at, instead of away from the vehicle's middle.
     """
 
     def __init__(
@@ -99,6 +100,7 @@ class MountingPlaces:
         parts: Sequence[str] = (),
         mount: SurfaceMount | None = None,
         count: int = 2000,
+        look_at: tuple[float, float, float] | None = None,
     ) -> None:
         if vehicle is None:
             raise InputError("where", "vehicle", "a vehicle with a surface", "none")
@@ -108,7 +110,7 @@ class MountingPlaces:
         self.surface = MountSurface("where", self._mount, vehicle)
         self._base = standoff_point(self._mount, self._housings.get(sensor.name) if mount else None)
         self._turned = kind.outward(sensor.model) and self._mount.orientation != "facing"
-        self._middle = (vehicle.bounds[0] + vehicle.bounds[1]) / 2.0
+        self._middle, self._look_at = (vehicle.bounds[0] + vehicle.bounds[1]) / 2.0, look_at
         moving = {sensor.name}
         space = SearchSpace({}, Mounting(constraints=constraints), vehicle, self._housings)
         self._rules = rules_of(self.with_sensor(sensor.pose), space, moving, moving, {})
@@ -119,9 +121,17 @@ class MountingPlaces:
         for point, face in zip(self._points, self._faces.tolist(), strict=True):
             normal = self.surface.outward(face)
             x, y, z = point.tolist()
-            yaw = outward_yaw(x - self._middle[0], y - self._middle[1]) if self._turned else 0.0
-            pose = pose_on(self._mount, point, normal, (0.0, 0.0, yaw), self._base)
+            pitch, yaw = self._angles(x, y, z) if self._turned else (0.0, 0.0)
+            pose = pose_on(self._mount, point, normal, (0.0, pitch, yaw), self._base)
             yield SurfacePlace((x, y, z), tuple(normal.tolist()), pose, self._reason(pose))
+
+    def _angles(self, x: float, y: float, z: float) -> tuple[float, float]:
+        """Return pitch and yaw of a sensor at a place [m], in whole degrees [rad]."""
+        if self._look_at is None:
+            return 0.0, outward_yaw(x - self._middle[0], y - self._middle[1])
+        away = self._look_at[0] - x, self._look_at[1] - y
+        down = math.degrees(math.atan2(z - self._look_at[2], math.hypot(*away)))
+        return math.radians(round(down)), outward_yaw(*away)
 
     def with_sensor(self, pose: Pose) -> Rig:
         """Return the rig with the sensor at a pose."""

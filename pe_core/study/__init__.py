@@ -29,10 +29,13 @@ from .study_file import (
     load_study_data,
     menu_of,
     panel_default,
+    read_rig_line,
+    rig_line,
     save_study,
     setting_keys,
     settings_of_part,
     study_from_dict,
     study_to_dict,
 )
+from .suggestion import Suggestion
 from .time_file import by_name_of_text, by_name_text, stories_of_rows, story_table

@@ -23,7 +23,7 @@ from ..base.setting import (
     settings_of,
     settings_table,
 )
-from ..base.table_reader import Table, dumps, load_toml
+from ..base.table_reader import Table, dumps, inline, load_toml
 from ..base.values import A_NAME, A_PATH, ANY
 from ..geometry.grids import PerceptionSpace
 from ..geometry.poses import Pose
@@ -124,6 +124,20 @@ def save_study(study: Study, path: str | Path) -> None:
 def study_bytes(study: Study) -> bytes:
     """Return a study file's text; the files that it names need not exist."""
     return dumps(study_to_dict(study)).encode()
+
+
+def rig_line(rig: Rig) -> str:
+    """Return a rig as one line: a line of a study file, and a study file by itself."""
+    rows = [_without_none(_mounted_table(sensor)) for sensor in rig]
+    return f"sensor = {inline(rows)}"
+
+
+def read_rig_line(text: str, source: str = "rig") -> Rig:
+    """Return the rig of a text of `rig_line`, or of a study file's; all else in it is left out."""
+    sensors = load_toml(source, "study", text).get("sensor")
+    if not sensors:
+        raise InputError(source, "sensor", "a line as `pe rigs --of STUDY` prints it", shown(text))
+    return study_from_dict({"sensor": sensors}, source).rig
 
 
 def study_from_dict(data: Any, source: str = "study", folder: Path | None = None) -> Study:
@@ -290,6 +304,16 @@ def _sensor_table(sensor: Sensor, search: Search) -> dict[str, Any]:
     own = search.limits.get(sensor.name, {})
     limits = {axis: [in_file(axis, v) for v in bounds] for axis, bounds in own.items()}
     return {
+        **_mounted_table(sensor),
+        "free": list(search.free.get(sensor.name, PAPER_FREE)),
+        "bounds": limits or None,
+        "mount": search.mounting.on.get(sensor.name),
+    }
+
+
+def _mounted_table(sensor: Sensor) -> dict[str, Any]:
+    """Return a sensor without what a search may change of it."""
+    return {
         "name": sensor.name,
         "model": _model_value(sensor.model, sensor.name),
         "position": list(sensor.pose.position),
@@ -299,9 +323,6 @@ def _sensor_table(sensor: Sensor, search: Search) -> dict[str, Any]:
         "color": sensor.color,
         **settings_table(sensor.sheet),
         **changed_settings(sensor.scan),
-        "free": list(search.free.get(sensor.name, PAPER_FREE)),
-        "bounds": limits or None,
-        "mount": search.mounting.on.get(sensor.name),
     }
 
 

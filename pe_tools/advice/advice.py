@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from pe_core.search.key_figures import Reading
-from pe_core.study.requirement_search import Suggestion
+from pe_core.study.suggestion import Suggestion
 
 from ..wording import warning_text
 

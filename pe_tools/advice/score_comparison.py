@@ -158,6 +158,21 @@ class ComparedRow:
             return 1
         return -1 if self.differ(0, k) else 0
 
+    @property
+    def spread(self) -> float:
+        """Difference of best and worst value, as a share of the larger one; 0 if it is not sure."""
+        order = self.order
+        if not order or not self.differ(order[0], order[-1]):
+            return 0.0
+        ends = [self.values[k] or 0.0 for k in (order[0], order[-1])]
+        return abs(ends[0] - ends[1]) / max(map(abs, ends))
+
+    def share(self, k: int) -> float:
+        """Return how long the bar of a value is, 0 to 1: the longest of the row is 1."""
+        known = [value for value in self.values if value is not None]
+        low, high = min([0.0, *known]), max([0.0, *known])
+        return ((self.values[k] or 0.0) - low) / (high - low) if high > low else 0.0
+
     def differ(self, one: int, other: int) -> bool:
         """Whether two values, given by index, differ significantly; False where one is missing."""
         a, b = self.values[one], self.values[other]
@@ -166,7 +181,17 @@ class ComparedRow:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the row as plain JSON data."""
-        keys = ("group", "name", "measure", "values", "differences", "best", "errors", "factor")
+        keys = (
+            "group",
+            "name",
+            "measure",
+            "values",
+            "differences",
+            "best",
+            "errors",
+            "factor",
+            "spread",
+        )
         return {key: getattr(self, key) for key in keys}
 
 

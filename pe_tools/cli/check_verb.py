@@ -13,10 +13,10 @@ from pe_core.base.table_reader import finite
 from pe_core.scoring.requirements import Verdict, checkable
 from pe_core.study import Study, load_study
 from pe_core.study.requirement_file import CONFIDENCE, Preset, preset, presets
-from pe_core.study.requirement_search import suggestions
+from pe_core.study.suggestion import Suggestion
 
 from ..advice import curve_note
-from ..jobs import CheckJob
+from ..jobs import CheckJob, SuggestJob
 from ..wording import aligned, margin_text, reason_text, unseen_text
 from .command import add_curve_option, with_curves
 from .drive_by_verb import story_lines
@@ -38,7 +38,7 @@ def add_check_options(parser: argparse.ArgumentParser) -> None:
     about = "a preset besides the study's requirements (pe requirements lists them); all: each one"
     parser.add_argument("--preset", action="append", default=[], metavar="ID", help=about)
     parser.add_argument("--json", action="store_true", help="print JSON")
-    about = "say which small change of one sensor would meet what is not met"
+    about = "say which small move, or one more sensor, would meet what is not met"
     parser.add_argument("--suggest", action="store_true", help=about)
     parser.add_argument("--csv", metavar="FILE", help="write the table to a CSV file")
     parser.add_argument("--replace", action="store_true", help="replace a table that is there")
@@ -102,22 +102,35 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
     status = received.status(DONE if met else NOT_MET)
     unchecked |= dict.fromkeys(job.missing, STOPPED)
     wanted = args.suggest and status == NOT_MET
-    suggested = suggestions(study) if wanted else {}
+    suggested = suggested_for(SuggestJob(study)) if wanted else {}
     if args.json:
         data = {
             "met": sum(v.met for v in verdicts),
             "requirements": [v.to_dict() for v in verdicts],
             "unchecked": unchecked,
-            "suggestions": {name: own and own.text for name, own in suggested.items()},
+            "suggestions": {n: [each.to_dict() for each in own] for n, own in suggested.items()},
             "stories": [each.to_dict() for each in driven],
         }
         return dump_json(finite(data)), status
     lines = verdict_lines(verdicts, unchecked) if verdicts or unchecked else []
     lines += story_lines(driven) if driven else []
-    none = "no placement of one sensor, or linked pair, that was tried is enough"
-    for name, own in suggested.items():
-        lines.append(f"{name}: met with {own.text}" if own else f"{name}: {none}")
+    lines += [line for name, own in suggested.items() for line in suggestion_lines(name, own)]
     return "\n".join(lines), status
+
+
+def suggested_for(job: SuggestJob) -> dict[str, list[Suggestion]]:
+    """Run a job that looks for what would mend something; nothing after Ctrl-C."""
+    with stop_at_first(job.stop):
+        drive(job)
+    return job.found or {}
+
+
+def suggestion_lines(name: str, found: Sequence[Suggestion]) -> list[str]:
+    """Return what would mend something as lines: each with where the sensors would be."""
+    none = (
+        f"{name}: no move of one sensor, or linked pair, and no added one that was tried mends it"
+    )
+    return [f"{name}: {each.sentence} ({each.text})" for each in found] or [none]
 
 
 def with_presets(study: Study, names: Sequence[str]) -> tuple[Study, dict[str, str]]:

@@ -12,7 +12,7 @@ from pe_core.base.files import quoted, require_new
 from pe_core.catalog import KnownRig
 from pe_core.scene import Pose, Reference, Vehicle, guessed_reference
 from pe_core.scoring.sampling import FIRST_SAMPLES
-from pe_core.study import Study, save_study
+from pe_core.study import Study, load_study, read_rig_line, rig_line, save_study
 
 from ..exchange import FILES, RIG_FORMATS, export_rig, format_of_file, import_rig, read_vehicle_info
 from ..formats import read_mesh
@@ -24,7 +24,11 @@ from .terminal import DONE, Answer, tell
 def add_rigs_verb(verbs: Any) -> None:
     """Add ``rigs``: list known rigs, describe one, or write a study of one."""
     parser = verbs.add_parser("rigs", help="list known rigs, or write one as a study")
-    parser.add_argument("name", nargs="?", metavar="NAME", help="a rig's name in the list")
+    parser.add_argument(
+        "name", nargs="?", metavar="NAME", help="a rig's name in the list, or its line"
+    )
+    about = "print the rig of a study as one line, to send: a study file, and NAME here"
+    parser.add_argument("--of", metavar="STUDY", help=about)
     parser.add_argument("-o", "--output", metavar="STUDY", help="study to write")
     about = "the vehicle's mesh, from the study's folder: sensors are stretched onto it"
     parser.add_argument("--mesh", metavar="FILE", help=about)
@@ -35,7 +39,9 @@ def add_rigs_verb(verbs: Any) -> None:
 
 
 def show_rigs(args: argparse.Namespace) -> Answer:
-    """List known rigs, describe one, or write a study of one."""
+    """List known rigs, describe one, or write a study of one; print a study's rig as a line."""
+    if args.of is not None:
+        return rig_line(load_study(args.of).rig), DONE
     if args.name is None:
         if args.output is not None:
             args.usage_error("expected NAME, a rig to write")
@@ -43,6 +49,14 @@ def show_rigs(args: argparse.Namespace) -> Answer:
         for each in catalog.known_rigs().values():
             rows.append([each.key, str(len(each.sensors)), each.title, each.vehicle])
         return "\n".join(aligned(rows)), DONE
+    if "=" in args.name:
+        sensors = read_rig_line(args.name)
+        if args.output is None:
+            args.usage_error("expected -o STUDY, the study to write")
+        output, vehicle = new_study(args)
+        study = Study(sensors, vehicle, samples=FIRST_SAMPLES, mesh=args.mesh)
+        save_study(study, output)
+        return _wrote(output, study), DONE
     rig = catalog.known_rig(args.name)
     if args.output is None:
         return "\n".join(_described(rig)), DONE

@@ -14,14 +14,16 @@ from pe_core.study import Study, vehicle_digest
 
 from .. import advice
 from ..advice import ComparedRow
-from ..jobs import Outcome, ScoreJob
+from ..jobs import Outcome, ScoreJob, SuggestJob
 from ..wording import aligned
+from .check_verb import suggested_for, suggestion_lines
 from .command import add_score_options
 from .interrupts import Interrupted, stop_at_first
 from .run_job import drive, print_vehicle
 from .terminal import DONE, Answer, warned, with_error
 
 BEST = "*"
+NOT_BLIND = "not blind: what is 0.5 m tall is visible there"
 MEASURES = {
     "entropy": ("entropy [nats], lower is better", ".4f", 1.0),
     "coverage": ("seen, of where objects are", ".1%", 100.0),
@@ -70,6 +72,8 @@ def add_explain_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``explain`` to a parser."""
     about = "ask one place instead: x, y and perhaps z (else 0) in metres"
     parser.add_argument("--at", type=float, nargs="+", metavar=("X Y", "Z"), help=about)
+    about = "with --at: say which small move, or one more sensor, would end the blind ground there"
+    parser.add_argument("--suggest", action="store_true", help=about)
     about = "class whose reach is told (pedestrian)"
     parser.add_argument("--class", dest="class_name", metavar="NAME", help=about)
     parser.add_argument("--json", action="store_true", help="print JSON")
@@ -90,7 +94,16 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
         parts = (study.rig, study.space, study.prior, study.vehicle, args.at, study.model)
         place = advice.ask_place(*parts)
         print_vehicle(study)
-        return _answer({"place": place.to_dict()}, place.text, args.json)
+        told = list(place.text)
+        answer: dict[str, Any] = {"place": place.to_dict()}
+        if args.suggest:
+            found = suggested_for(SuggestJob(study, spot=(args.at[0], args.at[1])))
+            answer["suggestions"] = [each.to_dict() for own in found.values() for each in own]
+            mends = [line for name, own in found.items() for line in suggestion_lines(name, own)]
+            told += mends or [NOT_BLIND]
+        return _answer(answer, told, args.json)
+    if args.suggest:
+        raise InputError("command line", "--suggest", "--at X Y, a place to mend", "none")
     name = advice.class_of(study.prior, args.class_name)
     outcome = scored(study, args.workers)
     seen = advice.outlook(study.sight(), study.rig, name)

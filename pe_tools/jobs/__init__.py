@@ -13,6 +13,7 @@ from .score_and_optimize import OptimizeJob, ScoreJob
 from .searched_figure import SearchedFigure, searched_figure, searched_on
 from .stopping import scatter_text, stop_text, sureness_lines
 from .study_export import export_study, fingerprint, study_text, study_writers
+from .suggest_job import SuggestJob
 from .trade_off import Design, TradeOff, design_study
 from .watched_job import JobRun, JobStep, WatchedJob
 from .where_job import PLACE_FIGURES, PlaceFigure, PlaceMap, WhereJob

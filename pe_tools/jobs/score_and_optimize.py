@@ -20,13 +20,9 @@ from pe_core.search import (
     robustness,
 )
 from pe_core.study.condition_table import is_by_ap, searched_study, study_objective
-from pe_core.study.requirement_search import (
-    constraints_of,
-    feasible_first,
-    is_infeasible,
-    suggestions,
-)
+from pe_core.study.requirement_search import constraints_of, feasible_first, is_infeasible
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
+from pe_core.study.suggestion import suggestions
 
 from ..advice import Advice, condition_warnings, fragile, not_kept, unmet
 from ..sensitivity import Archive, analyse

@@ -19,6 +19,7 @@ from pe_core.scoring.sight import Sight
 from pe_core.search import MountingPlaces, SurfaceMount, SurfacePlace, evaluate_all
 from pe_core.study.condition_table import search_evaluator
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, EXPECTED_AP, Study
+from pe_core.study.suggestion import with_free_name
 
 from .candidate_workers import ExecutorSource, candidate_workers
 from .job import Job, Progress, begun
@@ -180,11 +181,7 @@ class WhereJob(Job):
         if mount and mount not in mounts:
             expected = one_of(mounts, mount) if mounts else "a study with a mount on a surface"
             raise InputError("where", "mount", expected, shown(mount))
-        name, taken = sensor.name, [each.name for each in study.rig]
-        while name in taken:
-            name += "+"
-        whole = study.with_rig(Rig([*study.rig, replace(sensor, name=name)]))
-        self.sensor = whole.rig[name]  # with the study's returns
+        self.sensor = with_free_name(study, sensor)
         self.figure, self._parts, self._mount = figure, parts, mount
         self.count = self.row.places if count is None else count
         self.places: list[SurfacePlace] = []

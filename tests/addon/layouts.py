@@ -22,6 +22,9 @@ class Layout:
         self.notes.append(("operator", name if text is None else text))
         return SimpleNamespace()
 
+    def progress(self, factor=0.0, **_):
+        self.notes.append(("bar", factor))
+
     def menu(self, name, **_):
         self.notes.append(("menu", name))
 

@@ -46,7 +46,7 @@ viewport: language
 result_staleness: bridge sensor_cache signals vehicle_cache
 diagnostics: analysis_calls bridge engine engine_process sensor_cache signals vehicle_cache
 location_query: bridge engine engine_process sensor_cache signals vehicle_cache
-where_map: engine signals
+where_map: bridge engine signals
 housing: engine sensor_cache sensor_kinds
 library:
 preferences_panel: engine language library own_catalog properties

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from blender_addon import bridge, diagnostics, result_staleness
+from blender_addon.operators import compare_variants
 from tests.addon import scenes
+from tests.addon.layouts import Layout
 
 
 @pytest.fixture
@@ -205,3 +207,30 @@ def test_a_variant_that_cannot_be_scored_is_reported_and_the_others_are(ideas):
     ideas.perception_entropy.variants[1].score_json = ""
     with pytest.raises(RuntimeError, match=r"variant .Variant.*names, such as"):
         bpy.ops.pe.compare_variants()
+
+
+def test_bars_have_the_largest_difference_first_and_the_longest_is_full(ideas):
+    """Rows without a sure difference are last; a bar is as long as its value in the row."""
+    bpy.ops.pe.duplicate_variant()
+    ideas.objects["roof"].location.z += 0.6
+    bpy.context.view_layer.update()
+    bpy.ops.pe.update_variant()
+    bpy.ops.pe.compare_variants()
+    names, table = compare_variants.comparison_of(ideas)
+    rows = compare_variants.of_rigs(table)
+    spreads = [row.spread for row in rows]
+    assert spreads == sorted(spreads, reverse=True) and spreads[0] > 0.0
+    assert {row.measure for row in rows} >= {"blind", "sector", "reach", "entropy", "coverage"}
+    for row in rows:
+        ends = sorted(abs(value) for value in row.values)
+        if row.spread:
+            assert row.spread == pytest.approx(abs(row.values[0] - row.values[1]) / ends[-1])
+        if min(row.values) > 0.0:
+            shares = [row.share(k) for k in range(2)]
+            assert shares == pytest.approx([value / ends[-1] for value in row.values])
+    layout = Layout()
+    compare_variants._draw_bars(layout, names, rows)
+    texts = layout.texts("label")
+    assert texts[0] == "The largest difference first"
+    assert texts[1 + len(names)] == compare_variants.label_of(rows[0])
+    assert layout.texts("bar")[: len(names)] == [pytest.approx(rows[0].share(k)) for k in (0, 1)]

@@ -13,7 +13,7 @@ import pe_tools as pt
 from pe_core.study.requirement_file import presets
 from pe_tools.cli.check_verb import COLUMNS, NOT_MET
 from pe_tools.cli.verbs import main
-from pe_tools.jobs import CheckJob
+from pe_tools.jobs import CheckJob, SuggestJob
 from tests.engine import shapes
 
 STUDY = """
@@ -112,3 +112,22 @@ def test_a_score_has_the_verdicts_in_its_result(study, tmp_path, capsys):
     assert main(["check", str(tmp_path / "out" / "study.toml"), "--json"]) == 0
     again = json.loads(capsys.readouterr().out.split("\n{\n")[-1].join(["{\n", ""]))
     assert again["requirements"] == found["requirements"]
+
+
+def test_suggestions_are_printed_where_asked_for(study, capsys):
+    study.write_text(STUDY + SMALL)
+    assert main(["check", str(study), "--suggest", "--json"]) == NOT_MET
+    (own,) = json.loads(capsys.readouterr().out)["suggestions"].values()
+    assert main(["check", str(study), "--suggest"]) == NOT_MET
+    told = capsys.readouterr().out
+    assert all(f"bump: {each['text']}" in told for each in own) and "bump: " in told
+
+
+def test_a_blind_place_is_mended_by_the_job_and_by_the_command(study, capsys):
+    found = pe.load_study(study)
+    job = SuggestJob(found, spot=(0.0, 1.6))
+    assert list(job)[-1].stage == "done"
+    expected = [each.to_dict() for own in job.found.values() for each in own]
+    assert main(["explain", str(study), "--at", "0.0", "1.6", "--suggest", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["suggestions"] == expected
+    assert main(["explain", str(study), "--suggest"]) == 1

@@ -9,6 +9,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
+from pe_core import catalog
 from pe_core.scoring.requirements import (
     BODIES,
     Body,
@@ -21,7 +22,8 @@ from pe_core.scoring.requirements import (
 from pe_core.scoring.sight import BLIND_TO_M
 from pe_core.search import Goals, Wanted
 from pe_core.search.dispatch import value_below
-from pe_core.study.requirement_search import INFEASIBLE, constraints_of, feasible_first, suggestions
+from pe_core.study.requirement_search import INFEASIBLE, constraints_of, feasible_first
+from pe_core.study.suggestion import BLIND_SPOT, SAMPLES, mended, suggestions, with_blind_spot
 from pe_tools import advice
 from pe_tools.jobs import result_dict
 from tests.engine import shapes
@@ -121,6 +123,64 @@ def test_the_nearest_change_of_one_sensor_is_suggested():
         )
     ]
     assert not {v.name: v.met for v in start.verdicts(start.rig.with_poses(half))}["behind"]
+
+
+def test_one_more_sensor_meets_what_no_move_meets():
+    """It is of a model that the rig has, looks there, and its figures are those of the rig."""
+    start = study()
+    fixed = replace(start, search=replace(start.search, free=dict.fromkeys(start.search.free, ())))
+    found = mended(fixed, ("left",))
+    assert set(found) == {"left"}
+    (own,) = found["left"]
+    assert own.added and own.breaks == () and len(own.rig) == len(start.rig) + 1
+    met = {v.name: v.met for v in start.verdicts(own.rig)}
+    assert met["ahead"] and met["left"]
+    new = own.rig[own.moved[0]]
+    assert new.model in [each.model for each in start.rig]
+    evaluator, sight = start.evaluator(SAMPLES), start.sight()
+    for effect, rig in ((own.before, start.rig), (own.after, own.rig)):
+        assert effect.entropy == evaluator.entropy(rig)
+        assert effect.blind_m2 == pytest.approx(sight.blind_area(rig, BLIND_TO_M))
+    assert new.model.name in own.sentence and f"{own.after.blind_m2:.1f} m2" in own.sentence
+    assert own.to_dict()["poses"] == {own.moved[0]: [*new.pose.position, *new.pose.rotation_deg]}
+
+
+def test_a_blind_place_is_mended_and_what_is_seen_needs_nothing():
+    """The place is blind before, and not after; the study's requirements tell what breaks."""
+    start, place = study(), (0.0, 1.6)
+    found = mended(with_blind_spot(start, *place), (BLIND_SPOT,))[BLIND_SPOT]
+    assert [each.added for each in found] in ([False, True], [True])
+    sight = start.sight()
+
+    def is_blind(rig):
+        cells, blind, _ = sight._blind_cells(rig, BLIND_TO_M, 10.0, False)
+        at = [np.abs(w - v).argmin() for w, v in zip((cells.x, cells.y), place, strict=True)]
+        return bool(blind[at[0], at[1]])
+
+    assert is_blind(start.rig) and not any(is_blind(each.rig) for each in found)
+    for each in found:
+        met = {v.name: v.met for v in start.verdicts(each.rig)}
+        assert set(each.breaks) == {name for name in ("ahead",) if not met[name]}
+    assert all(each.after.blind_m2 < each.before.blind_m2 for each in found)
+    assert mended(with_blind_spot(start, 8.0, 0.0), (BLIND_SPOT,)) == {}
+
+
+def test_a_rig_that_cannot_see_the_ground_is_told_so():
+    """Nothing is said to be seen that the rig's kinds of sensors cannot be held to."""
+    start = study()
+    radar = replace(start.rig["rear"], model=catalog.load("Continental ARS408-21"))
+    blind = replace(start, rig=pe.Rig([radar]), requirements=(), search=pe.Search())
+    with pytest.raises(pe.InputError, match="can be held to"):
+        mended(with_blind_spot(blind, 0.0, 1.6), (BLIND_SPOT,))
+
+
+def test_a_job_that_is_stopped_has_no_suggestions():
+    job = pt.jobs.SuggestJob(study(), ("left",))
+    for _ in job:
+        job.stop()
+    assert job.found is None
+    with pytest.raises(pe.InputError, match="one of"):
+        pt.jobs.SuggestJob(study(), ("nothing",))
 
 
 def test_shortfalls_are_zero_exactly_where_a_verdict_says_met():

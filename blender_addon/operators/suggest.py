@@ -1,0 +1,87 @@
+"""What would mend it: for a blind place, or a requirement that is not met; and taking it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+from bpy.props import FloatVectorProperty, IntProperty, StringProperty
+
+from .. import bridge, where_map
+from ..engine import jobs, pe
+from .add_sensor import select_only
+from .declared import INTERNAL, OperatorResult, Refused, operator
+from .jobs import JobRow, Task, begin, of_study
+from .where import put
+
+NOTHING = "Nothing to mend: what is 0.5 m tall is seen there"
+MET = "Nothing to mend: the requirement is met"
+NONE_FOUND = "No move of one sensor, and no added one that was tried, is enough"
+_wanted: dict[str, str | tuple[float, ...]] = {}
+"""What *What Would Mend It?* was asked for last."""
+
+
+@operator(
+    "What Would Mend It?",
+    mode="Sensors are placed in Object Mode",
+    unless=lambda context: (
+        None if bridge.sensor_objects(context.scene) else "There are no sensors yet"
+    ),
+    options=INTERNAL,
+    requirement=StringProperty(name="Requirement", description="Its name; empty: the location"),
+    point=FloatVectorProperty(
+        name="Location", description="x, y and z of a place on the ground", subtype="XYZ"
+    ),
+)
+def suggest(
+    _context: bpy.types.Context, requirement: str, point: tuple[float, ...]
+) -> OperatorResult:
+    """Find the smallest move of a sensor, and one more sensor, that would make it visible there"""
+    _wanted["of"] = requirement or tuple(point)
+    return begin(SUGGESTIONS)
+
+
+def _task(_scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> Task:
+    of = _wanted["of"]
+    given: dict[str, Any] = {"names": (of,)} if isinstance(of, str) else {"spot": of[:2]}
+
+    def finish(scene: bpy.types.Scene, found: dict[str, list[Any]]) -> str:
+        every = tuple(each for own in found.values() for each in own)
+        where_map.store_offers(scene.name, where_map.Mended(of, every) if found else None)
+        if not found:
+            return MET if isinstance(of, str) else NOTHING
+        return every[0].sentence if every else NONE_FOUND
+
+    return Task(jobs.SuggestJob(study, **given), finish, "found")
+
+
+SUGGESTIONS = JobRow(
+    "find_suggestions",
+    "Find What Would Mend It",
+    "Look for the smallest move of a sensor, and for one more sensor",
+    of_study(_task),
+    unfinished="Stopped before anything was found",
+    options=INTERNAL,
+).declare()
+
+
+@operator(
+    "Take",
+    mode="Sensors are placed in Object Mode",
+    unless=lambda context: None if where_map.offers.get(context.scene.name) else "",
+    number=IntProperty(name="Number", description="Which of the suggestions", min=0),
+)
+def take_suggestion(context: bpy.types.Context, number: int) -> str:
+    """Do what is suggested: the sensor is moved there, or added"""
+    scene = context.scene
+    found = where_map.offers[scene.name].found
+    if number >= len(found):
+        raise Refused("There is no such suggestion")
+    chosen = found[number]
+    if chosen.added:
+        put(context, chosen.rig[chosen.moved[0]])
+    else:
+        bridge.place_rig(scene, chosen.rig, chosen.start)
+        select_only(context, scene.objects[chosen.moved[0]])
+    where_map.store_offers(scene.name, None)
+    return chosen.sentence

@@ -1,0 +1,336 @@
+"""What would mend it: the smallest move of a sensor, or one more sensor.
+
+For each requirement that is not met, `suggestions` looks for the nearest placement that meets it.
+One design variable of the search is changed at a time, by small steps first; then one sensor (or
+linked pair) is put elsewhere within its range, the nearest places first. `mended` looks for one
+more sensor, too, of the models that the rig has: it stands all over the vehicle's surface and looks
+to where the requirement fails. `with_blind_spot` makes a requirement of a place on the ground.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from itertools import chain
+from typing import NamedTuple
+
+import numpy as np
+
+from ..base.errors import InputError
+from ..base.lazy_threads import threads
+from ..scene.data_sheet import DataSheet
+from ..scene.rig import Rig, Sensor, SensorModel
+from ..scoring.requirements import Criterion, Requirement, RequirementChecker, Zone, checkable
+from ..scoring.score import RigEvaluator, ScoreStopped
+from ..scoring.sight import Sight
+from ..scoring.sight.blind_ground import BLIND_TO_M
+from ..search import MountingPlaces, Parametrization
+from ..search.build_figures import sheet_of
+from ..search.domains import METRE, RADIAN, SHARE
+from ..search.key_figures import blind_area
+from ..search.methods.method import sampled_candidate
+from ..search.parametrization import Candidate
+from ..sensors import kind_of
+from .study import Study
+
+Watch = Callable[[float], bool]
+"""Takes the share of the work that is done, 0 to 1; returns whether it goes on."""
+HELP_STEPS = {
+    METRE: (0.05, 0.1, 0.2, 0.4, 0.8),
+    RADIAN: (0.05, 0.1, 0.2, 0.4, 0.8),
+    SHARE: (0.1, 0.2),
+}
+"""Steps of one design variable that are tried: in metres, radians (3 to 46 deg), and shares."""
+HELP_PLACES = 40
+"""Places within its range that are tried for each sensor, after those steps."""
+ADD_PLACES, ADD_COMPARED = 80, 4
+"""Places of one more sensor of each model, and of those that are enough so many are scored."""
+POSITION_DECIMALS, ANGLE_DECIMALS = 5, 4
+"""Poses are rounded to these [m, deg]: what a suggestion says is what was checked."""
+SAMPLES = 2048
+"""Voxels on which entropies are compared: their difference is that of one sample."""
+SPOT_M = 0.25
+"""Half the side of the square that a blind spot is."""
+BLIND_SPOT = "blind spot"
+
+
+class Effect(NamedTuple):
+    """Entropy of a rig [nats], on a sample, and its blind ground [m2]; None: not known."""
+
+    entropy: float
+    blind_m2: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Suggestion:
+    """The nearest placement found that meets a requirement, or one more sensor that does.
+
+    Sensors in `moved` are elsewhere, or are new if `added`; requirements in `breaks` were met and
+    no longer are. `before` and `after` are figures of both rigs, `start` is the rig before.
+    """
+
+    rig: Rig
+    moved: tuple[str, ...]
+    breaks: tuple[str, ...]
+    start: Rig
+    before: Effect
+    after: Effect
+    added: bool = False
+
+    @property
+    def text(self) -> str:
+        """Where the sensors would be: "rear at (-2.5, 0, 1.5) m, roll 0, pitch 30, yaw 180".
+
+        Figures are those of a study file: typed in, they give the placement that was checked.
+        """
+        where = []
+        for name in self.moved:
+            pose = self.rig[name].pose
+            x, y, z = (_figure(v, POSITION_DECIMALS) for v in pose.position)
+            roll, pitch, yaw = (_figure(v, ANGLE_DECIMALS) for v in pose.rotation_deg)
+            where.append(f"{name} at ({x}, {y}, {z}) m, roll {roll}, pitch {pitch}, yaw {yaw}")
+        return "; ".join(where)
+
+    @property
+    def sentence(self) -> str:
+        """What is done, what it gains, and what it costs, in one sentence."""
+        model, name = self.rig[self.moved[0]].model, ", ".join(self.moved)
+        done = f"add a {model.name}{_takes(model)}" if self.added else f"move {name}{self._way}"
+        gains = []
+        was, now = self.before.blind_m2, self.after.blind_m2
+        if was is not None and now is not None:
+            gains.append(f"blind ground {was:.1f} to {now:.1f} m2")
+        gains.append(f"entropy {self.after.entropy - self.before.entropy:+.3f} nats")
+        broken = f"; breaks {', '.join(self.breaks)}" if self.breaks else ""
+        return f"{done}: {', '.join(gains)}{broken}"
+
+    @property
+    def is_gain(self) -> bool:
+        """Whether less ground is blind: a blind place that moves elsewhere is not mended."""
+        was, now = self.before.blind_m2, self.after.blind_m2
+        return was is None or now is None or now < was
+
+    @property
+    def _way(self) -> str:
+        """How far the first of the moved sensors is moved and turned."""
+        old, new = (rig[self.moved[0]].pose for rig in (self.start, self.rig))
+        shift = math.dist(old.position, new.position)
+        same = float((old.ground_from_sensor * new.ground_from_sensor).sum() - 1.0) / 2.0
+        turn = math.degrees(math.acos(min(max(same, -1.0), 1.0)))
+        ways = [f" by {shift:.2f} m"] * (shift >= 0.005) + [f" by {turn:.0f} deg"] * (turn >= 0.5)
+        return " and".join(ways)
+
+    def to_dict(self) -> dict[str, object]:
+        """Return the suggestion as plain JSON data."""
+        poses = {name: self.rig[name].pose for name in self.moved}
+        return {
+            "added": self.rig[self.moved[0]].model.name if self.added else None,
+            "poses": {n: [*pose.position, *pose.rotation_deg] for n, pose in poses.items()},
+            "breaks": list(self.breaks),
+            "before": self.before._asdict(),
+            "after": self.after._asdict(),
+            "text": self.sentence,
+        }
+
+
+def blind_spot(study: Study, x: float, y: float) -> Requirement:
+    """Return what a place [m] has to meet: nothing as tall as for blind ground is invisible."""
+    zone = Zone(x=(x - SPOT_M, x + SPOT_M), y=(y - SPOT_M, y + SPOT_M))
+    height = max(BLIND_TO_M, study.space.z[0])
+    return Requirement(BLIND_SPOT, zone, (), Criterion(blind_m2=0.0, blind_height=height))
+
+
+def with_blind_spot(study: Study, x: float, y: float) -> Study:
+    """Return the study with the place x, y [m] as a requirement, `BLIND_SPOT`."""
+    kept = [each for each in study.requirements if each.name != BLIND_SPOT]
+    return replace(study, requirements=(*kept, blind_spot(study, x, y)))
+
+
+def suggestions(study: Study) -> dict[str, Suggestion | None]:
+    """Return by requirement that is not met the nearest placement found that meets it.
+
+    None where no placement that was tried is enough. Mounting errors are left out.
+    """
+    mender = _Mender(study, (), None)
+    mender.move()
+    return {name: mender.moved.get(name) for name in mender.names}
+
+
+def mended(
+    study: Study, names: Sequence[str] = (), watch: Watch | None = None
+) -> dict[str, list[Suggestion]]:
+    """Return by requirement that is not met what meets it: a move, and one more sensor.
+
+    The move is that of `suggestions`. Of a few places of each model that are enough, the added
+    sensor has that with the lowest entropy. Either may be missing, where nothing that was tried is
+    enough. Of `names` alone, where there are some. `ScoreStopped` where `watch` says so.
+    """
+    mender = _Mender(study, names, watch)
+
+    def move() -> None:
+        with suppress(InputError):  # nothing may move: a sensor may be added
+            mender.move()
+
+    with threads().ThreadPoolExecutor(2) as pool:
+        moving = pool.submit(move)
+        if study.vehicle is not None:
+            mender.add()
+        moving.result()
+    return {n: [own[n] for own in (mender.moved, mender.added) if n in own] for n in mender.names}
+
+
+def with_free_name(study: Study, sensor: Sensor) -> Sensor:
+    """Return a sensor that a study could have, too: with its returns, and a name of its own."""
+    name, taken = sensor.name, [each.name for each in study.rig]
+    while name in taken:
+        name += "+"
+    return study.with_rig(Rig([*study.rig, replace(sensor, name=name)])).rig[name]
+
+
+class _Mender:
+    """The requirements that a study's rig does not meet, and what was found that meets them."""
+
+    def __init__(self, study: Study, names: Sequence[str], watch: Watch | None) -> None:
+        around = study.rig, study.vehicle, study.reference, study.space
+        fitting, unchecked = checkable(study.requirements, *around)
+        for name in unchecked.keys() & set(names):
+            expected = "one that the rig can be held to"
+            raise InputError("suggest", f"requirement {name!r}", expected, unchecked[name])
+        self._study = study = replace(study, requirements=fitting)
+        self._watch, self._checker = watch or (lambda _: True), study.checker()
+        self._before = self._checker.shortfalls(study.rig)
+        rows = zip(study.requirements, self._before, strict=True)
+        self._left = tuple(r for r, off in rows if off and (not names or r.name in names))
+        self.names = [each.name for each in self._left]
+        self.moved: dict[str, Suggestion] = {}
+        self.added: dict[str, Suggestion] = {}
+
+    def move(self) -> None:
+        """Look for the nearest placements."""
+        study, left = self._study, [*self.names]
+        coding, checker = study.coding(), self._checker_of(self._left)
+        most = sum(2 * len(HELP_STEPS[v.unit]) for v in coding.variables)
+        most += HELP_PLACES * len(coding.blocks)
+        tried = chain(_steps_of_one(coding), _places_of_one(coding, study.search.seed))
+        for number, rig in enumerate(tried):
+            if not left:
+                break
+            self._goes_on(number / most)
+            for each, off in zip(self._left, checker.shortfalls(rig), strict=True):
+                if not off and each.name in left:
+                    moved = [s.name for s in rig if s.pose != study.rig[s.name].pose]
+                    found = self._suggestion(rig, moved)
+                    if each.name != BLIND_SPOT or found.is_gain:
+                        left.remove(each.name)
+                        self.moved[each.name] = found
+
+    def add(self) -> None:
+        """Look for one more sensor."""
+        study = self._study
+        models = list({each.model.name: each.model for each in study.rig}.values())
+        where = study.vehicle, study.search.mounting.constraints
+        pairs = [(requirement, model) for requirement in self._left for model in models]
+        best: dict[str, tuple[float, Rig]] = {}
+        for number, (requirement, model) in enumerate(pairs):
+            checker, count, name = self._checker_of((requirement,)), 0, requirement.name
+            sensor = with_free_name(study, Sensor(kind_of(model).label, model))
+            (verdict,) = checker.check(study.rig, preview=True)
+            target = (*verdict.worst, BLIND_TO_M) if verdict.worst else None
+            places = MountingPlaces(study.rig, sensor, *where, count=ADD_PLACES, look_at=target)
+            for at, place in enumerate(places):
+                self._goes_on((number + at / ADD_PLACES) / len(pairs))
+                rig = places.with_sensor(place.pose)
+                if not (place.reason or checker.shortfalls(rig)[0]):
+                    found = self._evaluator.entropy(rig), rig
+                    best[name] = min(best.get(name, found), found, key=lambda pair: pair[0])
+                    if (count := count + 1) == ADD_COMPARED:
+                        break
+        for name, (_, rig) in best.items():
+            self.added[name] = self._suggestion(rig, [rig.sensors[-1].name], added=True)
+
+    def _checker_of(self, wanted: tuple[Requirement, ...]) -> RequirementChecker:
+        return replace(self._study, requirements=wanted).checker()
+
+    def _goes_on(self, share: float) -> None:
+        if not self._watch(min(share, 1.0)):
+            raise ScoreStopped
+
+    def _suggestion(self, rig: Rig, moved: Sequence[str], added: bool = False) -> Suggestion:
+        after = self._checker.shortfalls(rig)
+        rows = zip(self._study.requirements, self._before, after, strict=True)
+        breaks = tuple(each.name for each, was, off in rows if off and not was)
+        effects = self._before_figures, self._effect(rig)
+        return Suggestion(rig, tuple(moved), breaks, self._study.rig, *effects, added)
+
+    @cached_property
+    def _evaluator(self) -> RigEvaluator:
+        return self._study.evaluator(SAMPLES)
+
+    @cached_property
+    def _sight(self) -> Sight:
+        return self._study.sight()
+
+    @cached_property
+    def _before_figures(self) -> Effect:
+        return self._effect(self._study.rig)
+
+    def _effect(self, rig: Rig) -> Effect:
+        blind = None
+        with suppress(InputError):  # the ground is not in the space
+            blind = blind_area(self._sight, rig)
+        return Effect(self._evaluator.entropy(rig), blind)
+
+
+def _takes(model: SensorModel) -> str:
+    """What a data sheet says that one sensor takes: " (22 W, 1.5 kg)"."""
+    sheet = sheet_of(model, DataSheet())
+    known = ((sheet.power, "W"), (sheet.mass, "kg"))
+    told = [f"{value:g} {unit}" for value, unit in known if value is not None]
+    return f" ({', '.join(told)})" if told else ""
+
+
+def _steps_of_one(coding: Parametrization) -> Iterator[Rig]:
+    """Yield allowed placements that differ from the start in one variable, near ones first."""
+    start = coding.start.vector
+    for rank in range(max(map(len, HELP_STEPS.values()))):
+        for number, variable in enumerate(coding.variables):
+            for step in HELP_STEPS[variable.unit][rank : rank + 1]:
+                for shift in (step, -step):
+                    vector = list(start)
+                    vector[number] = variable.clipped(start[number] + shift)
+                    candidate = coding.candidate(vector)
+                    if candidate.vector != start and coding.allowed(candidate.rig):
+                        yield candidate.rig
+
+
+def _places_of_one(coding: Parametrization, seed: int) -> Iterator[Rig]:
+    """Yield placements with one sensor, or linked pair, anywhere in its range, near ones first."""
+    variables, start = coding.variables, coding.start.vector
+    rng, sampled = np.random.default_rng(seed), list[tuple[float, Candidate]]()
+
+    def sample(block: range) -> list[float]:
+        vector = list(start)
+        for k in block:
+            vector[k] = float(rng.uniform(variables[k].low, variables[k].high))
+        return vector
+
+    for block in coding.blocks:
+        for _ in range(HELP_PLACES):
+            candidate = sampled_candidate(coding, partial(sample, block))
+            if candidate is not None:
+                shares = [
+                    (candidate.vector[k] - start[k]) / max(v.high - v.low, 1e-9)
+                    for k, v in enumerate(variables)
+                ]
+                sampled.append((math.hypot(*shares), candidate))
+    for _, candidate in sorted(sampled, key=lambda pair: pair[0]):
+        yield candidate.rig
+
+
+def _figure(value: float, decimals: int) -> str:
+    """Return a figure as it is in a study file, without zeros at its end."""
+    text = f"{value:.{decimals}f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text

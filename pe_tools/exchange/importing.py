@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import NamedTuple
 
 from pe_core import catalog
 from pe_core.base.errors import InputError, report_memory_errors, shown
@@ -23,9 +24,16 @@ from .rig_formats import RigFormat, detect_format, rig_format
 STAND_INS = {
     kind: row.stand_in for kind, row in portable_kinds.PORTABLE_KINDS.items() if row.stand_in
 }  # Stand-in models by kind, for sensors whose model the file does not name
-CHOOSE = "choose its model"
-Modelled = tuple[PortableSensor, SensorModel, str]
-"""A sensor, its model, and a message about the model (may be empty)."""
+
+
+class Modelled(NamedTuple):
+    """A sensor and its model, a message about the model (may be empty), and whether the model
+    stands in for one that the user is to choose."""
+
+    sensor: PortableSensor
+    model: SensorModel
+    line: str
+    stands_in: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,33 +115,33 @@ def _imported(
             raise InputError(path, f"model of {key}", f"one of {', '.join(known)}", found)
     modelled = [_with_model(sensor, models.get(sensor.name), row) for sensor in included]
     rig = []
-    for sensor, model, _ in modelled:
+    for sensor, model, *_ in modelled:
         pose = sensor.pose if placed is None else composed(placed, sensor.pose)
         rig.append(Sensor(sensor.name, model, shifted(pose, origin), sensor.fusion))
     sources = {s.name: SourceSensor(s.name, s.kind or "", s.entry) for s in left_out}
-    for sensor, model, line in modelled:
+    for sensor, model, _, stands_in in modelled:
         text = "" if sensor.name in models else model_text(model)
         fields = sensor.name, model.kind, sensor.entry, sensor.pose, text
-        sources[sensor.name] = SourceSensor(*fields, line.endswith(CHOOSE))
+        sources[sensor.name] = SourceSensor(*fields, stands_in)
     in_order = tuple(sources[sensor.name] for sensor in named)
     passthrough = Passthrough(row.name, in_order, row.source(path), placed)
     hint = f"; an export to {row.title} has them again" if row.passes_through else ""
     left_out_lines = [f"left out: {left_out_names}{hint}"] if left_out else []
-    notes = merged_lines(((sensor.name, sensor.told) for sensor, _, _ in modelled), len(modelled))
-    lines = (*left_out_lines, *notes, *(line for _, _, line in modelled if line))
-    to_choose = tuple(sensor.name for sensor, _, line in modelled if line.endswith(CHOOSE))
+    notes = merged_lines(((m.sensor.name, m.sensor.told) for m in modelled), len(modelled))
+    lines = (*left_out_lines, *notes, *(m.line for m in modelled if m.line))
+    to_choose = tuple(m.sensor.name for m in modelled if m.stands_in)
     return ImportedRig(Rig(rig), to_choose, lines, passthrough if passthrough.holds else None)
 
 
 def _with_model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> Modelled:
     """Return a sensor with its kind resolved, its model, and a message about the model."""
     sensor = replace(sensor, kind=sensor.kind or portable_kinds.kind_by_name(sensor.name))
-    model, line = (catalog.load(chosen), "") if chosen is not None else _model(sensor, row)
-    return row.settled(replace(sensor, model=model.name)), model, line
+    modelled = Modelled(sensor, catalog.load(chosen), "") if chosen else _modelled(sensor, row)
+    return modelled._replace(sensor=row.settled(replace(sensor, model=modelled.model.name)))
 
 
-def _model(sensor: PortableSensor, row: RigFormat) -> tuple[SensorModel, str]:
-    """Return the catalogue's model, one of the file's figures, or a stand-in, with a message. A
+def _modelled(sensor: PortableSensor, row: RigFormat) -> Modelled:
+    """Return a sensor with the catalogue's model, one of the file's figures, or a stand-in. A
     camera that the catalogue has with another lens gets the file's lens."""
     normalized = NO_WORD.sub("", (sensor.model or "").lower())
     names = {NO_WORD.sub("", name.lower()): name for name in catalog.names(sensor.kind)}
@@ -144,12 +152,13 @@ def _model(sensor: PortableSensor, row: RigFormat) -> tuple[SensorModel, str]:
             note = f"{sensor.name}: its lens is not that of {model.name} in the catalogue, but the"
             model, line = portable_kinds.camera_of(sensor.name, theirs, row.usual_size)
             line = line or f"{note} file's"
-        return portable_kinds.with_ranges(model, sensor), line
+        return Modelled(sensor, portable_kinds.with_ranges(model, sensor), line)
     if (own := portable_kinds.portable_kind(sensor.kind).model(sensor, row.usual_size)) is not None:
-        return own
+        return Modelled(sensor, *own)
     stand_in = portable_kinds.stand_in_of(sensor.kind or "")
     assert stand_in is not None, "`parted` has left it out"
     reason = (
         f"no {shown(sensor.model)} in the catalogue" if sensor.model else "no model in the file"
     )
-    return catalog.load(stand_in), f"{sensor.name}: {reason}; {stand_in} stands in: {CHOOSE}"
+    line = f"{sensor.name}: {reason}; {stand_in} stands in: choose its model"
+    return Modelled(sensor, catalog.load(stand_in), line, True)
